@@ -1,0 +1,81 @@
+# Two commands set everything up on a machine with Python and make: `make demo` and `make test`.
+PYTHON ?= python3
+BIN := .venv/bin
+
+export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
+
+.DELETE_ON_ERROR:
+.PHONY: install demo test nightly coverage mutation conform lint format gap optimum-figures generated clean
+
+install: .venv/installed
+
+.venv/installed: pyproject.toml constraints.txt
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --editable '.[dev]'
+	touch $@
+
+demo: install
+	$(BIN)/carproof demo
+
+lint: install
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+
+format: install
+	$(BIN)/ruff format .
+	$(BIN)/ruff check --fix .
+
+test: lint
+	$(BIN)/pytest --numprocesses 2 --dist worksteal
+
+# Measure how far planners are from the optimum, and put the table into verify/README.md; takes a few minutes.
+gap: install
+	$(BIN)/python -m carp_oracle.gap_table
+
+# Measure how long the search for an optimum takes, and put the table into verify/README.md; takes up to five minutes.
+optimum-figures: install
+	$(BIN)/python -m carp_oracle.optimum_table
+
+generated: install
+	$(BIN)/python -m carp_spec.schema
+	$(BIN)/python -m tests.oracle.test_readme
+	$(BIN)/python -m carp_verify.vectors
+	$(BIN)/python -m carp_spec.readme
+	$(BIN)/python -m carp_oracle.viewer.samples
+
+# All tests with many more examples, and CrossHair on the integer leaf functions: hours.
+nightly: install
+	HYPOTHESIS_PROFILE=nightly $(BIN)/pytest
+
+# The long run of the planners in other languages: 2,000 random cases each.
+conform: install
+	$(BIN)/python -m tests.foreign.building
+	for language in cpp go; do \
+	    $(BIN)/carproof conform --level context-optimal --examples 2000 -- .venv/foreign/$$language || exit 1; \
+	done
+
+# Every line and branch of the specification and the reference, by their own tests.
+coverage: install
+	$(BIN)/pytest --cov --cov-fail-under=100 tests/spec tests/reference
+
+# Break the specification and the reference in one place after the other, and list what no test noticed.
+# Works on a copy; `make mutation-carp_spec` for one package. tests/mutation/survivors.md explains what is left.
+mutation: mutation-carp_spec mutation-carp_reference
+
+mutation-%: install
+	rm -rf build/mutation/$* build/mutation/$*-original
+	mkdir -p build/mutation/$*
+	git ls-files -z | xargs -0 cp --parents --target-directory=build/mutation/$*
+	cp -r build/mutation/$* build/mutation/$*-original
+	cd build/mutation/$* && export ORIGINAL=$(CURDIR)/build/mutation/$*-original PATH=$(CURDIR)/$(BIN):$$PATH PYTHONPATH=spec:reference:verify \
+	    PYTHONDONTWRITEBYTECODE=1 HYPOTHESIS_PROFILE=mutation && \
+	cosmic-ray init tests/mutation/$*.toml session.sqlite && \
+	cr-filter-operators session.sqlite tests/mutation/$*.toml && \
+	cosmic-ray baseline tests/mutation/$*.toml && \
+	nice cosmic-ray exec tests/mutation/$*.toml session.sqlite && \
+	cr-report --surviving-only session.sqlite
+
+clean:
+	rm -rf .venv

@@ -1,0 +1,71 @@
+"""The campaign engine: independent cases, each a pure function of its data, mapped over workers."""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Literal, Protocol, TypeAlias
+
+from carp_experiments.store import Row, Store
+from carp_spec import Refusal
+
+Backend: TypeAlias = Literal["loky", "dask"]
+
+
+class Case(Protocol):
+    """One case: what it is called in the store, and what it computes. It must be the same in every process."""
+
+    @property
+    def key(self) -> str:
+        """The name of the case, unique in its campaign."""
+
+    def run(self) -> Row:
+        """Compute the row of the case from nothing but the case."""
+
+
+@dataclass(frozen=True, slots=True)
+class Workers:
+    """Who computes: `count` processes on this machine (`loky`), or the cluster of a dask scheduler."""
+
+    count: int = 1
+    backend: Backend = "loky"
+    scheduler: str | None = None
+
+
+def run_campaign(cases: Sequence[Case], store: Store, workers: Workers, advance: Callable[[], None]) -> None:
+    """Run the cases that the store does not have yet; `advance` is called for each case, also those it has.
+
+    Raises `Refusal` if a result cannot be written or a worker is lost; the results until then are in the store,
+    and the same call goes on where it stopped.
+    """
+    done = store.keys()
+    for case in cases:
+        if case.key in done:
+            advance()
+    missing = [case for case in cases if case.key not in done]
+    try:
+        for key, row in _results(missing, workers):
+            store.add(key, row)
+            advance()
+    except (OSError, RuntimeError) as error:
+        why = str(error).partition(".")[0]
+        message = f"a worker was lost ({why}); run the same command again, and it goes on where it stopped"
+        raise Refusal("request", "$", "campaign/workers", message) from error
+
+
+def _results(cases: Sequence[Case], workers: Workers) -> Iterable[tuple[str, Row]]:
+    """The rows as they come."""
+    import joblib  # noqa: PLC0415 - loads numpy
+
+    if workers.backend == "dask":
+        from distributed import Client  # noqa: PLC0415 - only a campaign on a cluster needs it
+
+        with Client(workers.scheduler), joblib.parallel_config("dask"):  # type: ignore[no-untyped-call] # untyped there
+            yield from joblib.Parallel(return_as="generator_unordered")(map(joblib.delayed(_run), cases))
+    elif workers.count == 1:
+        yield from map(_run, cases)
+    else:
+        with joblib.parallel_config("loky", n_jobs=workers.count):
+            yield from joblib.Parallel(return_as="generator_unordered")(map(joblib.delayed(_run), cases))
+
+
+def _run(case: Case) -> tuple[str, Row]:
+    return case.key, case.run()

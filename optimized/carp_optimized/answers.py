@@ -1,0 +1,66 @@
+"""The answers known in a round, by the plans against which they were asked."""
+
+from carp_optimized.arrays import ANSWERS, NONE, PLANS, Answers, State
+from carp_optimized.compiling import compiled
+from carp_optimized.records import clash, same_plan
+
+
+@compiled
+def start_answers(answers: Answers, members: int) -> None:
+    """Know nothing yet."""
+    answers.used[0] = 0
+    answers.used[1] = 0
+    for member in range(members):
+        answers.newest[member] = NONE
+
+
+@compiled
+def number_plan(state: State, answers: Answers, member: int, record: int) -> int:
+    """The number of the member's plan; `PLANS` if there are too many."""
+    used = int(answers.used[0])
+    for plan in range(used):
+        if answers.owner[plan] == member and same_plan(state.records, int(answers.record[plan]), record):
+            return plan
+    if used == PLANS:
+        return PLANS
+    answers.record[used] = record
+    answers.owner[used] = member
+    answers.clashes[used] = 1 << PLANS
+    for plan in range(used):
+        if answers.owner[plan] != member and clash(state.records, int(answers.record[plan]), record):
+            answers.clashes[plan] |= 1 << used
+            answers.clashes[used] |= 1 << plan
+    answers.used[0] += 1
+    return used
+
+
+@compiled
+def learn(answers: Answers, member: int, given: int, plan: int) -> None:
+    """Remember an answer."""
+    used = int(answers.used[1])
+    if plan < PLANS and used < ANSWERS:
+        answers.given[used] = given
+        answers.plan[used] = plan
+        answers.older[used] = answers.newest[member]
+        answers.newest[member] = used
+        answers.used[1] += 1
+
+
+@compiled
+def known_answer(answers: Answers, member: int, given: int) -> int:
+    """A known answer that holds for the member against the set of plans, or `NONE`."""
+    answer = int(answers.newest[member])
+    while answer != NONE:
+        if int(answers.given[answer]) & ~given == 0:
+            plan = int(answers.plan[answer])
+            if plan == NONE or int(answers.clashes[plan]) & given == 0:
+                return answer
+        answer = int(answers.older[answer])
+    return NONE
+
+
+@compiled
+def answer_of(answers: Answers, answer: int) -> int:
+    """The record of the plan of an answer, or `NONE`."""
+    plan = int(answers.plan[answer])
+    return NONE if plan == NONE else int(answers.record[plan])

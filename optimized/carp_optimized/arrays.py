@@ -1,0 +1,231 @@
+"""The state of a fleet as flat arrays of ints: what the compiled functions read and write.
+
+Resources and robots are their indices in the instance, plans are the numbers of their records. Ticks are 32-bit;
+every sum of them is made in 64 bits, and none that is stored exceeds `NEVER`.
+"""
+
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+Ints: TypeAlias = npt.NDArray[np.int32]
+Longs: TypeAlias = npt.NDArray[np.int64]
+Flags: TypeAlias = npt.NDArray[np.bool_]
+
+NEVER = 2**31 - 1  # the end of what lasts for ever
+LARGEST = 2**30 - 1  # of ticks and durations: the sum of two is still below NEVER
+NONE = -1  # no resource, no record, no slot
+UNKNOWN = -1  # the number of expansions of a plan that no query of ours has made
+
+UNREACHABLE = -1  # a guide: the goal cannot be reached from the resource
+TOO_FAR = -2  # a guide: it can, in more than LARGEST ticks
+
+ASKED, KEPT, UNCHANGED, PREFIX, SHARED, BOUND = range(6)  # the counters of queries, see `carp_optimized.reuse`
+COUNTERS = 6
+
+PLANS = 62  # plans that a set of plans in 64 bits can hold; the bit PLANS stands for all others
+ANSWERS = 512
+NO_LIMIT = 1 << 62  # of a cost
+
+
+class Graph(NamedTuple):
+    """The resource graph: moves lead from r to `target[first[r]:first[r + 1]]`, and come to it from `source[...]`."""
+
+    first: Ints
+    target: Ints
+    backward_first: Ints
+    source: Ints
+    duration: Ints
+    capacity: Ints
+    x: Longs
+    y: Longs
+
+
+class Rows(NamedTuple):
+    """For each resource a row of intervals [start, end), in order of time, in a pool that all rows share.
+
+    The row of r has `size[r]` intervals in the slots from `offset[r]` on and room for `room[r]`. A full row moves
+    to the end of the pool, at `used[0]`, with twice the room. `resource` says whose row a slot is in.
+
+    Of windows, where the capacity is 1, `robot` is the robot that ends the window, and `source` the resource from which
+    it came (`NONE`: from none).
+    Of stays, which only resources of capacity above 1 have, `source` goes with `start`, and `end` is in order by
+    itself.
+    """
+
+    offset: Ints
+    room: Ints
+    size: Ints
+    start: Ints
+    end: Ints
+    source: Ints
+    robot: Ints
+    resource: Ints
+    used: Longs
+
+
+class Robots(NamedTuple):
+    """The robots; those with the same goal and pace share a `destination`, which has a guide."""
+
+    start: Ints
+    goal: Ints
+    release: Ints
+    pace: Ints
+    destination: Ints
+
+
+class Guides(NamedTuple):
+    """The h of A*, made when first asked for: `table[slot]` is the guide of the destination `holds[slot]`.
+
+    A guide holds, for each resource, its ticks to the goal times 2^32 plus its rank in the order of
+    (ticks to the goal, index). With t * 2^32 added it is the key of `query/ties` of a window entered at t: f first,
+    then the largest g, which is the smallest h, then the smallest index. The last slots to be used are the first
+    to be given away.
+    """
+
+    table: Longs
+    slot: Ints
+    holds: Ints
+    next: Longs
+    goal: Ints
+    pace: Ints
+
+
+class Search(NamedTuple):
+    """The scratch of a query, never cleared: what an earlier query wrote is of an earlier generation.
+
+    `reached[slot]` is the generation times 2^32 minus the tick at which the window is entered, so that a larger
+    label is an earlier entry or a newer query; `parent[slot]` is the window it is entered from. `keys` and `nodes`
+    are the heap. `expanded` and `ready` tell which resources were expanded, and from which tick on they were left.
+    """
+
+    generation: Longs
+    reached: Longs
+    parent: Ints
+    keys: Longs
+    nodes: Ints
+    expanded: Ints
+    ready: Ints
+
+
+class Records(NamedTuple):
+    """Plans, each with its robot, its visits and what its query read.
+
+    The visits of a record are `visits[record]` entries of `resource` and `enter` from `visits_at[record]` on; each
+    ends where the next begins, the last at `leave[record]`. Its expansions are entries of `expanded` and `ready`.
+    `left`, `right`, `low` and `high` bound its positions. `used` counts records, visits and expansions.
+    """
+
+    robot: Ints
+    visits_at: Longs
+    visits: Ints
+    leave: Ints
+    expansions_at: Longs
+    expansions: Ints
+    left: Longs
+    right: Longs
+    low: Longs
+    high: Longs
+    resource: Ints
+    enter: Ints
+    expanded: Ints
+    ready: Ints
+    used: Longs
+
+
+class Freed(NamedTuple):
+    """What has been taken back since a mark was set: the hull of the stays in a resource, and where it can be read.
+
+    The entries of a resource count only where `mark` is `now[0]`; `near` marks the resources that lead to one.
+    """
+
+    now: Longs
+    mark: Longs
+    near: Longs
+    earliest: Ints
+    latest: Ints
+
+
+class State(NamedTuple):
+    """All that a compiled function may need; `reserved[robot]` is the record that the windows hold of it.
+
+    `rank[robot]` is the robot's position in planning order while others are replanned, else `NONE`; so is its last
+    place, `rank[NONE]`. A query for a robot `behind` that rank takes no account of those whose rank is larger.
+    """
+
+    graph: Graph
+    robots: Robots
+    windows: Rows
+    stays: Rows
+    guides: Guides
+    search: Search
+    records: Records
+    freed: Freed
+    reserved: Ints
+    rank: Ints
+    counters: Longs
+    parks: bool
+
+
+class Work(NamedTuple):
+    """What adding a robot works on: made once for a fleet and a size of neighbourhood, so that adding makes no arrays.
+
+    By robot: `before`, the plans followed until now; `ended`, whether they have ended by now; `held`, the plans of the
+    robots outside the neighbourhood; `trajectories`, for distances. By position: `outside`, the robots outside the
+    neighbourhood in planning order; the order and the plans of the best candidate. By place in the neighbourhood:
+    the members, their plans `alone` against the robots outside, the best order of the round and its plans, and the
+    scratch of the search for it. `rows[index[k]]` are the orders drawn.
+    """
+
+    before: Ints
+    ended: Ints
+    held: Ints
+    trajectories: Ints
+    outside: Ints
+    best_order: Ints
+    best_plans: Ints
+    members: Ints
+    alone: Ints
+    found_order: Ints
+    found_plans: Ints
+    order: Ints
+    chosen: Ints
+    reserved: Ints
+    least: Longs
+    given: Longs
+    cost: Longs
+    rows: Ints
+    row_index: Ints
+    row_spare: Ints
+
+
+class Answers(NamedTuple):
+    """The answers known in a round: of a member against the set `given`, the plan `plan` (`NONE`: there is none).
+
+    Plans are numbered; `record[plan]` is the plan's record, `clashes[plan]` the set of plans that it clashes with.
+    The answers of a member are chained from `newest[member]` on by `older`. `used` counts plans and answers.
+    What does not fit is forgotten, which costs time alone.
+    """
+
+    record: Ints
+    owner: Ints
+    clashes: Longs
+    given: Longs
+    plan: Ints
+    older: Ints
+    newest: Ints
+    used: Longs
+
+
+class Options(NamedTuple):
+    """The options of `Neighbourhood`, `sample` 0 for all orders, and the kinds of reuse that are on."""
+
+    m: int
+    sample: int
+    baseline: bool
+    kept: bool
+    unchanged: bool
+    prefixes: bool
+    shared: bool
+    bounds: bool

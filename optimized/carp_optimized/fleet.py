@@ -1,0 +1,260 @@
+"""A fleet that stays up: plans are made and robots added one after the other, on arrays that are kept between."""
+
+from collections.abc import Callable, Sequence
+from typing import TypeVar
+
+import numpy as np
+
+from carp_optimized import encoding, passes
+from carp_optimized.arrays import (
+    ASKED,
+    BOUND,
+    KEPT,
+    LARGEST,
+    NONE,
+    PREFIX,
+    SHARED,
+    UNCHANGED,
+    Ints,
+    Longs,
+    Options,
+    Work,
+)
+from carp_optimized.compiling import RoomExhausted, TicksExhausted
+from carp_optimized.neighbourhood import add_robot
+from carp_optimized.recording import enlarged, only, read_plan, write_plan
+from carp_optimized.reuse import Queries, Reuse
+from carp_spec import Instance, Neighbourhood, Plan, Refusal, RobotId, Shuffled
+from carp_spec.permutations import shuffle, splitmix64
+
+T = TypeVar("T")
+
+
+class Fleet:
+    """An instance with the plans that some of its robots have, in planning order.
+
+    Robots are named by their index in the instance. The windows hold the plans of `order` whenever no compiled
+    function is at work; one that runs out of room is called again with larger arrays.
+    """
+
+    def __init__(self, instance: Instance, reuse: Reuse | None = None) -> None:
+        """Begin without plans. Raises `Refusal` if the instance has numbers that are too large."""
+        encoding.refuse_what_is_too_large(instance)
+        self.instance = instance
+        self.reuse = reuse or Reuse()
+        self._state = encoding.encode(instance)
+        self._empty = encoding.without_reservations(self._state)
+        self._split = encoding.split_of_terms(self._state.graph)
+        self._index = {robot.id: position for position, robot in enumerate(instance.robots)}
+        self._order = np.zeros(0, np.int32)
+        self._records = np.full(len(instance.robots), NONE, np.int32)
+        self._plans: dict[int, Plan] = {}
+        self._work: Work | None = None
+        self._answers = encoding.no_answers(0)
+
+    @property
+    def queries(self) -> Queries:
+        """The queries asked and avoided until now."""
+        counters = [int(count) for count in self._state.counters]
+        return Queries(
+            asked=counters[ASKED],
+            kept=counters[KEPT],
+            unchanged=counters[UNCHANGED],
+            prefixes=counters[PREFIX],
+            shared=counters[SHARED],
+            bounds=counters[BOUND],
+        )
+
+    @property
+    def plans(self) -> tuple[Plan, ...]:
+        """The plans in planning order."""
+        return tuple(self._plan(int(self._records[robot])) for robot in self._order)
+
+    @property
+    def order(self) -> tuple[int, ...]:
+        """The robots that have a plan, in planning order."""
+        return tuple(int(robot) for robot in self._order)
+
+    def index(self, robot: RobotId) -> int:
+        """The index of a robot in the instance."""
+        return self._index[robot]
+
+    def ticks_to_goal(self, robot: int) -> int:
+        """The cost of a robot's shortest path on the empty graph; 0 if there is none."""
+        return self._call(lambda: passes.shortest(self._state, robot))
+
+    def commit(self, plans: Sequence[Plan]) -> None:
+        """Take over plans made elsewhere, which must fit those there are."""
+        records = np.array([self._write(plan) for plan in plans], np.int32)
+        robots = np.array([self._index[plan.robot] for plan in plans], np.int32)
+        self._call(lambda: passes.reserve_all(self._state, records))
+        self._hold(np.concatenate([self._order, robots]), np.concatenate([self._records[self._order], records]))
+
+    def find(self, robot: int, before: Plan | None, now: int) -> Plan | None:
+        """The plan of a robot that is not in the fleet, which has followed the plan `before` until now."""
+        encoding.refuse_tick("$.now", now)
+        followed = NONE if before is None else self._write(before)
+        record = self._call(lambda: passes.find_one(self._state, robot, followed, now))
+        return None if record == NONE else self._plan(record)
+
+    def repeat_query(self, robot: int, times: int) -> None:
+        """Ask the query of a robot without a plan that often; for benchmarks."""
+        self._call(lambda: passes.repeat_query(self._state, robot, times))
+
+    def carp(self, order: Sequence[int]) -> None:
+        """Plan the robots in order, as if there were no plans yet."""
+        self.clear()
+        robots = np.array(order, np.int32)
+        plans = self._pass(robots, self._records, 0)
+        self._hold(robots[plans != NONE], plans[plans != NONE])
+
+    def shuffled(self, planner: Shuffled, order: Sequence[int], advance: Callable[[], None], now: int = 0) -> None:
+        """The best of several passes of CARP; robots that have a plan keep what they did until now."""
+        followed = self._records.copy()
+        self.clear()
+        stream = splitmix64(planner.seed)
+        best_worth: tuple[int, int] | None = None
+        best = np.zeros(0, np.int32), np.zeros(0, np.int32)
+        for attempt in range(planner.attempts):
+            order = order if attempt == 0 else shuffle(order, stream)
+            used = self._state.records.used.copy()
+            robots = np.array(order, np.int32)
+            plans = self._pass(robots, followed, now)
+            found = plans != NONE
+            worth = (-int(found.sum()), self._cost(plans[found]))
+            self._withdraw(plans[found])
+            if best_worth is None or worth < best_worth:
+                best_worth, best = worth, (robots[found], plans[found])
+            else:
+                self._state.records.used[:] = used
+            advance()
+        self._call(lambda: passes.reserve_all(self._state, best[1]))
+        self._hold(*best)
+
+    def greedy(self, advance: Callable[[], None]) -> None:
+        """Plan all robots, as if there were no plans yet, each time the one whose plan is cheapest."""
+        self.clear()
+        count = len(self._records)
+        robots, plans = np.zeros(count, np.int32), np.full(count, NONE, np.int32)
+
+        def rounds() -> int:
+            waiting, found = np.arange(count, dtype=np.int32), np.full(count, passes.UNASKED, np.int32)
+            return passes.greedy(self._state, waiting, found, robots, plans, self.reuse.unchanged)
+
+        planned = self._call(rounds)
+        self._hold(robots[:planned], plans[:planned])
+        for _ in range(planned):
+            advance()
+
+    def add(self, robot: int, now: int, options: Neighbourhood) -> bool:
+        """Add a robot by the neighbourhood planner; if it stays unplanned, all plans stay as they are."""
+        encoding.refuse_tick("$.now", now)
+        self._forget_old_records()
+        reuse = self.reuse
+        kinds = (reuse.kept, reuse.unchanged, reuse.prefixes, reuse.shared, reuse.bounds)
+        most = min(options.m, len(self._records) + 1)
+        compiled_options = Options(most, options.sample or 0, options.baseline, *kinds)
+        if self._work is None or self._work.members.size < most or self._work.row_index.size < (options.sample or 0):
+            self._work = encoding.no_work(len(self._records), most, options.sample or 0)
+            self._answers = encoding.no_answers(most)
+        work, answers = self._work, self._answers
+        order = np.append(self._order, np.int32(robot))
+        records = self._records.copy()
+
+        def attempt() -> bool:
+            order[:-1] = self._order
+            order[-1] = robot
+            records[:] = self._records
+            stream = np.array([(options.seed + robot) % 2**64], np.uint64)
+            scratch = (self._state, self._empty, work, answers)
+            return add_robot(*scratch, order, records, now, compiled_options, stream, self._split)
+
+        if self._call(attempt):
+            self._hold(order, records[order])
+            return True
+        return options.fallback is not None and self._fall_back(robot, now, Shuffled(options.fallback, options.seed))
+
+    def clear(self) -> None:
+        """Forget all plans."""
+        held = self._records[self._order]
+        self._withdraw(held)
+        self._hold(self._order[:0], held[:0])
+
+    def _withdraw(self, records: Ints) -> None:
+        self._call(lambda: passes.withdraw_all(self._state, records))
+
+    def _fall_back(self, robot: int, now: int, planner: Shuffled) -> bool:
+        order, held = self._order, self._records[self._order]
+        self.shuffled(planner, [*self.order, robot], lambda: None, now)
+        if self._order.size == order.size + 1:
+            return True
+        self.clear()
+        self._call(lambda: passes.reserve_all(self._state, held))
+        self._hold(order, held)
+        return False
+
+    def _pass(self, robots: Ints, followed: Ints, now: int) -> Ints:
+        plans = np.full(robots.size, NONE, np.int32)
+        self._call(lambda: passes.carp(self._state, robots, followed, now, plans))
+        return plans
+
+    def _hold(self, robots: Ints, records: Ints) -> None:
+        """Note what the windows hold."""
+        self._order = robots
+        self._records = np.full(self._records.size, NONE, np.int32)
+        self._records[robots] = records
+
+    def _cost(self, records: Ints) -> int:
+        held = self._state.records
+        last = held.visits_at[records] + held.visits[records] - 1
+        releases = self._state.robots.release[held.robot[records]]
+        return int(held.enter[last].sum(dtype=np.int64) - releases.sum(dtype=np.int64))
+
+    def _call(self, function: Callable[[], T]) -> T:
+        """Call a compiled function, again with more room if there was too little; refuse ticks that are too large."""
+        while True:
+            used = self._state.records.used.copy()
+            counters = self._state.counters.copy()
+            try:
+                return function()
+            except RoomExhausted:
+                self._rebuild(used, counters, larger=True)
+            except TicksExhausted:
+                self._rebuild(used, counters, larger=False)
+                message = f"a plan would need ticks beyond {LARGEST}"
+                raise Refusal("limit", "$.robots", "limit/ticks", message) from None
+
+    def _rebuild(self, used: Longs, counters: Longs, larger: bool) -> None:
+        """Go back to the plans held before a call that was broken off."""
+        self._state.records.used[:] = used
+        self._state.counters[:] = counters
+        places = self._state.windows.start.size
+        records = enlarged(self._state.records) if larger else self._state.records
+        self._state = encoding.with_room(self._state, 2 * places if larger else places, records)
+        self._empty = encoding.without_reservations(self._state)
+        held = self._records[self._order]
+        self._call(lambda: passes.reserve_all(self._state, held))
+
+    def _forget_old_records(self) -> None:
+        """Keep only the records of the plans held, if the others have become many."""
+        used = int(self._state.records.used[1])
+        held = self._records[self._order]
+        if used > 4 * int(self._state.records.visits[held].sum()) + 1024:
+            self._state = self._state._replace(records=only(self._state.records, held))
+            self._empty = self._empty._replace(records=self._state.records)
+            renumbered = {int(old): new for new, old in enumerate(held)}
+            self._plans = {renumbered[old]: plan for old, plan in self._plans.items() if old in renumbered}
+            self._records[self._order] = np.arange(held.size, dtype=np.int32)
+            self._state.reserved[self._order] = self._records[self._order]
+
+    def _write(self, plan: Plan) -> int:
+        for position, visit in enumerate(plan.visits):
+            encoding.refuse_tick(f"$.plans[{self._index[plan.robot]}].visits[{position}]", visit.leave or visit.enter)
+        record = self._call(lambda: write_plan(self._state, self.instance, self._index[plan.robot], plan))
+        self._plans[record] = plan
+        return record
+
+    def _plan(self, record: int) -> Plan:
+        if record not in self._plans:
+            self._plans[record] = read_plan(self._state, self.instance, record)
+        return self._plans[record]

@@ -1,0 +1,55 @@
+"""The h of A*, exact on the empty graph: Dijkstra from the goal along the moves backwards, one per destination."""
+
+from carp_optimized.arrays import LARGEST, NONE, TOO_FAR, UNREACHABLE, State
+from carp_optimized.compiling import compiled
+from carp_optimized.heap import push, replace_root
+
+
+@compiled
+def guide_slot(state: State, destination: int) -> int:
+    """The slot that holds the guide of the destination; it is made if there is none."""
+    guides = state.guides
+    slot = int(guides.slot[destination])
+    if slot != NONE:
+        return slot
+    slot = int(guides.next[0])
+    guides.next[0] = (slot + 1) % guides.holds.size
+    if guides.holds[slot] != NONE:
+        guides.slot[guides.holds[slot]] = NONE
+    guides.slot[destination] = slot
+    guides.holds[slot] = destination
+    make_guide(state, slot, int(guides.goal[destination]), int(guides.pace[destination]))
+    return slot
+
+
+@compiled
+def make_guide(state: State, slot: int, goal: int, pace: int) -> None:
+    """Settle the resources in the order of (ticks to the goal, index), which is the order of their ranks."""
+    graph = state.graph
+    keys = state.search.keys
+    nodes = state.search.nodes
+    guide = state.guides.table[slot]
+    guide[:] = UNREACHABLE
+    keys[0] = goal
+    nodes[0] = goal
+    size = 1
+    rank = 0
+    while size > 0:
+        key = int(keys[0])
+        resource = int(nodes[0])
+        size -= 1
+        replace_root(keys, nodes, size, int(keys[size]), int(nodes[size]))
+        if guide[resource] >= 0:
+            continue
+        ticks = key >> 32
+        guide[resource] = (ticks << 32) + rank
+        rank += 1
+        for edge in range(int(graph.backward_first[resource]), int(graph.backward_first[resource + 1])):
+            source = int(graph.source[edge])
+            further = ticks + pace * int(graph.duration[source])
+            if guide[source] < 0:
+                if further > LARGEST:
+                    guide[source] = TOO_FAR
+                else:
+                    push(keys, nodes, size, (further << 32) + source, source)
+                    size += 1

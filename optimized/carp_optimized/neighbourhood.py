@@ -1,0 +1,214 @@
+"""The neighbourhood planner, the paper's Algorithm 1: one compiled call adds a robot."""
+
+from carp_optimized.arrays import NEVER, NO_LIMIT, NONE, UNCHANGED, UNKNOWN, Answers, Ints, Options, State, Work
+from carp_optimized.compiling import compiled, entry
+from carp_optimized.distances import nearest
+from carp_optimized.order_search import search_orders
+from carp_optimized.orders import Stream, draw_orders
+from carp_optimized.records import cost_of
+from carp_optimized.replanning import could_use_freed, forget_freed, note_freed, replan
+from carp_optimized.search import find_plan
+from carp_optimized.windows import plan_fits, reserve, withdraw
+
+
+@entry
+def add_robot(  # noqa: C901 - Algorithm 1 from its first line to its last
+    state: State,
+    empty: State,
+    work: Work,
+    answers: Answers,
+    order: Ints,
+    records: Ints,
+    now: int,
+    options: Options,
+    stream: Stream,
+    split: int,
+) -> bool:
+    """Add the last robot of `order` to those before it, whose plans are `records`, by robot; whether it got a plan.
+
+    If so, `order` and `records` become those of the best candidate. The windows hold `records` before and afterwards.
+    """
+    size = order.size - 1
+    new = int(order[size])
+    shortest = find_plan(empty, new, NONE, now, NEVER)
+    if shortest == NONE:
+        return False
+    rounds = min(begin(state, work, order, records, shortest, now), options.m - 1)
+    best = NO_LIMIT
+    if options.baseline or rounds == 0:
+        best = try_baseline(state, work, order, new, now)
+    with_plan = size
+    for turn in range(1, rounds + 1):
+        taken = nearest(state, work, size, turn, now, split)
+        if taken == NONE:
+            break
+        take_out(state, work, taken, size, turn)
+        size -= 1
+        with_plan = replan(state, work, size, min(taken, with_plan), now, options)
+        cost_outside = follow(state, work.trajectories, work.outside, work.held, with_plan)
+        if with_plan < size:
+            for member in range(turn + 1):
+                work.alone[member] = NONE
+            continue
+        limit = best - cost_outside if turn == rounds else NO_LIMIT
+        cost = plan_members(state, work, answers, turn + 1, limit, now, options, stream)
+        if cost == NONE:
+            continue
+        for k in range(turn + 1):
+            work.trajectories[work.found_order[k]] = work.found_plans[k]
+        if cost_outside + cost < best:
+            best = cost_outside + cost
+            keep_candidate(work, size, turn + 1)
+    if best == NO_LIMIT:
+        for k in range(order.size - 1):
+            work.best_plans[k] = work.before[order[k]]
+        settle(state, order, work.best_plans, order.size - 1)
+        return False
+    settle(state, work.best_order, work.best_plans, order.size)
+    for k in range(order.size):
+        order[k] = work.best_order[k]
+        records[order[k]] = work.best_plans[k]
+    return True
+
+
+@compiled
+def begin(state: State, work: Work, order: Ints, records: Ints, shortest: int, now: int) -> int:
+    """Begin with all robots but the new one outside the neighbourhood; how many of them have not ended by now."""
+    under_way = 0
+    new = int(order[order.size - 1])
+    work.before[new] = NONE
+    work.trajectories[new] = shortest
+    work.members[0] = new
+    work.alone[0] = NONE
+    for k in range(order.size - 1):
+        robot = int(order[k])
+        record = int(records[robot])
+        work.outside[k] = robot
+        work.before[robot] = record
+        work.held[robot] = record
+        work.trajectories[robot] = record
+        work.ended[robot] = state.records.leave[record] <= now
+        if not work.ended[robot]:
+            under_way += 1
+    return under_way
+
+
+@compiled
+def try_baseline(state: State, work: Work, order: Ints, new: int, now: int) -> int:
+    """Make the plans unchanged, and one for the new robot, the best candidate; its cost."""
+    plan = find_plan(state, new, NONE, now, NEVER)
+    work.alone[0] = plan
+    if plan == NONE:
+        return NO_LIMIT
+    last = order.size - 1
+    cost = cost_of(state, plan)
+    for k in range(last):
+        work.best_order[k] = order[k]
+        work.best_plans[k] = work.before[order[k]]
+        cost += cost_of(state, int(work.best_plans[k]))
+    work.best_order[last] = new
+    work.best_plans[last] = plan
+    return cost
+
+
+@compiled
+def take_out(state: State, work: Work, taken: int, size: int, turn: int) -> None:
+    """Move the robot at that position from outside the neighbourhood to its end."""
+    robot = int(work.outside[taken])
+    for k in range(taken, size - 1):
+        work.outside[k] = work.outside[k + 1]
+    work.members[turn] = robot
+    work.alone[turn] = work.held[robot]
+    forget_freed(state.freed)
+    if work.held[robot] != NONE:
+        withdraw(state, int(work.held[robot]))
+        note_freed(state, int(work.held[robot]))
+
+
+@compiled
+def follow(state: State, trajectories: Ints, robots: Ints, plans: Ints, count: int) -> int:
+    """Make the plans of the first robots, given by robot, their trajectories; the sum of their costs."""
+    cost = 0
+    for k in range(count):
+        robot = int(robots[k])
+        trajectories[robot] = plans[robot]
+        cost += cost_of(state, int(plans[robot]))
+    return cost
+
+
+@compiled
+def plan_members(
+    state: State,
+    work: Work,
+    answers: Answers,
+    count: int,
+    limit: int,
+    now: int,
+    options: Options,
+    stream: Stream,
+) -> int:
+    """The cost of the members' best order below the limit, or `NONE`.
+
+    Orders are drawn even if no member can be planned: the next round draws from the same stream. With a limit there is
+    no next round.
+    """
+    possible = True
+    if options.shared or options.bounds:
+        possible = plan_alone(state, work, count, now, options.unchanged)
+        if possible and options.bounds and limit < NO_LIMIT:
+            least = 0
+            for member in range(count):
+                least += cost_of(state, int(work.alone[member]))
+            possible = least < limit
+    if not possible and limit < NO_LIMIT:
+        return NONE
+    rows = draw_orders(work, count, options.sample, stream)
+    if not possible:
+        return NONE
+    return search_orders(state, work, answers, count, rows, limit, now, options)
+
+
+@compiled
+def plan_alone(state: State, work: Work, count: int, now: int, skip_unchanged: bool) -> bool:
+    """Bring the members' plans against the robots outside alone up to date; whether all have one.
+
+    The member taken in last comes with its plan among the robots outside. It saw those before it, none of which has
+    changed in this round, so what was taken back does not touch it; those behind it were added since.
+    """
+    for member in range(count):
+        record = int(work.alone[member])
+        is_last = member == count - 1
+        is_known = record != NONE and skip_unchanged and state.records.expansions[record] != UNKNOWN
+        if is_known and (is_last or not could_use_freed(state, record)) and plan_fits(state, record):
+            state.counters[UNCHANGED] += 1
+            continue
+        robot = int(work.members[member])
+        work.alone[member] = find_plan(state, robot, int(work.before[robot]), now, NEVER)
+        if work.alone[member] == NONE:
+            for k in range(count):
+                work.alone[k] = NONE
+            return False
+    return True
+
+
+@compiled
+def keep_candidate(work: Work, size: int, count: int) -> None:
+    """Make the robots outside with their plans, and the round's best order, the best candidate."""
+    for k in range(size):
+        work.best_order[k] = work.outside[k]
+        work.best_plans[k] = work.held[work.outside[k]]
+    for k in range(count):
+        work.best_order[size + k] = work.found_order[k]
+        work.best_plans[size + k] = work.found_plans[k]
+
+
+@compiled
+def settle(state: State, robots: Ints, plans: Ints, count: int) -> None:
+    """Make the windows hold just these plans of these robots."""
+    for k in range(count):
+        held = int(state.reserved[robots[k]])
+        if held != NONE and held != plans[k]:
+            withdraw(state, held)
+    for k in range(count):
+        if plans[k] != NONE and state.reserved[robots[k]] == NONE:
+            reserve(state, int(plans[k]))

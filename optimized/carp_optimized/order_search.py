@@ -1,0 +1,146 @@
+"""Planning a neighbourhood in all its orders, asking no query whose answer is known or cannot matter.
+
+Three kinds of reuse, each of which leaves the best order and its plans as they are:
+
+- Prefixes. An order that begins like the one before keeps the plans of that beginning: they do not depend on the rest.
+- Shared answers. A query of a robot against `given` plans is answered by one asked against fewer of them, if the plan
+  found then clashes with none of the others: stays that leave room for it do not change it (see
+  `carp_optimized.replanning`). No plan against fewer is no plan against more. So the plans of two prefixes that left
+  the same plans are shared, too.
+- Bounds. A robot costs at least what it costs against the robots outside alone: more plans leave fewer ways. A prefix
+  whose cost and those of the robots still to come are not below the limit has no order that is strictly better.
+"""
+
+from carp_optimized.answers import answer_of, known_answer, learn, number_plan, start_answers
+from carp_optimized.arrays import BOUND, NEVER, NONE, PREFIX, SHARED, Answers, Options, State, Work
+from carp_optimized.compiling import compiled
+from carp_optimized.orders import next_permutation, next_row, queries_below, take_row
+from carp_optimized.records import cost_of
+from carp_optimized.search import find_plan
+from carp_optimized.windows import reserve, withdraw
+
+
+@compiled
+def search_orders(
+    state: State, work: Work, answers: Answers, count: int, rows: int, limit: int, now: int, options: Options
+) -> int:
+    """The cost of the cheapest order below the limit, the first of such, or `NONE`; it is put into `found_order`.
+
+    `rows` is the number of orders drawn, 0 for all. The members' plans `alone` are there if `shared` or `bounds` is on.
+    Afterwards the windows are as they were.
+    """
+    rest = start_search(state, work, answers, count, options)
+    if rows == 0:
+        for place in range(count):
+            work.order[place] = place
+    else:
+        take_row(work, 0, count)
+    found = NONE
+    place = 0
+    row = 0
+    while True:
+        state.counters[PREFIX] += place
+        withdraw_members(state, work, place)
+        shared = plan_order(state, work, answers, count, place, limit, rest, now, options)
+        if shared > count:
+            limit = int(work.cost[count])
+            found = limit
+            for k in range(count):
+                work.found_order[k] = work.members[work.order[k]]
+                work.found_plans[k] = work.chosen[k]
+        shared = min(shared, count) if options.prefixes else count
+        if rows == 0:
+            place = next_permutation(work.order, count, shared)
+        else:
+            row = next_row(work, row + 1, rows, shared)
+            place = take_row(work, row, count) if row < rows else NONE
+        if place == NONE:
+            break
+        if not options.prefixes:
+            place = 0
+    withdraw_members(state, work, 0)
+    return found
+
+
+@compiled
+def start_search(state: State, work: Work, answers: Answers, count: int, options: Options) -> int:
+    """Begin a round with what is known of the members alone; the sum of their least costs."""
+    start_answers(answers, count)
+    work.reserved[0] = 0
+    work.cost[0] = 0
+    work.given[0] = 0
+    total = 0
+    for member in range(count):
+        work.least[member] = 0
+        if options.shared or options.bounds:
+            work.least[member] = cost_of(state, int(work.alone[member]))
+            total += int(work.least[member])
+        if options.shared:
+            learn(answers, member, 0, number_plan(state, answers, member, int(work.alone[member])))
+    return total
+
+
+@compiled
+def plan_order(
+    state: State,
+    work: Work,
+    answers: Answers,
+    count: int,
+    place: int,
+    limit: int,
+    total_least: int,
+    now: int,
+    options: Options,
+) -> int:
+    """Plan the order from the place on. In how many first places the next order must differ; count + 1: it is better.
+
+    `total_least` is the sum of the least costs of all members.
+    """
+    rest = total_least
+    for k in range(place):
+        rest -= int(work.least[work.order[k]])
+    while place < count:
+        if options.bounds and work.cost[place] + rest >= limit:
+            state.counters[BOUND] += queries_below(count - place)
+            return place
+        member = int(work.order[place])
+        record = plan_member(state, work, answers, place, now, options.shared)
+        if record == NONE:
+            return place + 1
+        work.chosen[place] = record
+        work.cost[place + 1] = work.cost[place] + cost_of(state, record)
+        rest -= int(work.least[member])
+        place += 1
+    return count + 1 if work.cost[count] < limit else count
+
+
+@compiled
+def plan_member(state: State, work: Work, answers: Answers, place: int, now: int, shared: bool) -> int:
+    """The record of the plan of the member in that place of the order against those before it, or `NONE`."""
+    member = int(work.order[place])
+    given = int(work.given[place])
+    plan = NONE
+    answer = known_answer(answers, member, given) if shared else NONE
+    if answer != NONE:
+        state.counters[SHARED] += 1
+        plan = int(answers.plan[answer])
+        record = answer_of(answers, answer)
+    else:
+        for k in range(int(work.reserved[0]), place):
+            reserve(state, int(work.chosen[k]))
+        work.reserved[0] = max(int(work.reserved[0]), place)
+        robot = int(work.members[member])
+        record = find_plan(state, robot, int(work.before[robot]), now, NEVER)
+        if shared:
+            plan = NONE if record == NONE else number_plan(state, answers, member, record)
+            learn(answers, member, given, plan)
+    work.given[place + 1] = given if plan == NONE else given | (1 << plan)
+    return record
+
+
+@compiled
+def withdraw_members(state: State, work: Work, place: int) -> None:
+    """Withdraw the plans from that place of the order on; those before it are reserved only if a query needs it."""
+    while work.reserved[0] > place:
+        work.reserved[0] -= 1
+        withdraw(state, int(work.chosen[work.reserved[0]]))

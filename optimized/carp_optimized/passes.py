@@ -1,0 +1,118 @@
+"""Planning many robots one after the other: CARP, and greedy best-first."""
+
+from carp_optimized.arrays import NEVER, NONE, TOO_FAR, UNCHANGED, UNKNOWN, Ints, State
+from carp_optimized.compiling import RoomExhausted, TicksExhausted, entry
+from carp_optimized.guides import guide_slot
+from carp_optimized.records import close_record, cost_of, start_record
+from carp_optimized.search import find_plan
+from carp_optimized.windows import plan_fits, reserve, withdraw
+
+UNASKED = -2
+
+
+@entry
+def find_one(state: State, robot: int, before: int, now: int) -> int:
+    """The record of one robot's plan against the reservations, or `NONE`; nothing is reserved."""
+    return find_plan(state, robot, before, now, NEVER)
+
+
+@entry
+def shortest(state: State, robot: int) -> int:
+    """The ticks from the robot's start to its goal on the empty graph; 0 if no moves lead there."""
+    guide = int(state.guides.table[guide_slot(state, int(state.robots.destination[robot])), state.robots.start[robot]])
+    if guide == TOO_FAR:
+        raise TicksExhausted
+    return max(guide, 0) >> 32
+
+
+@entry
+def reserve_all(state: State, plans: Ints) -> None:
+    """Reserve plans that fit."""
+    for plan in plans:
+        reserve(state, int(plan))
+
+
+@entry
+def withdraw_all(state: State, plans: Ints) -> None:
+    """Withdraw plans that are reserved."""
+    for plan in plans:
+        withdraw(state, int(plan))
+
+
+@entry
+def record_plan(state: State, robot: int, resources: Ints, enters: Ints, leave: int) -> int:
+    """The record of a plan that no query has made."""
+    records = state.records
+    record = start_record(state, robot, 0, 0)
+    first = int(records.visits_at[record])
+    end = first + resources.size
+    if end > records.resource.size:
+        raise RoomExhausted
+    for k in range(resources.size):
+        records.resource[first + k] = resources[k]
+        records.enter[first + k] = enters[k]
+    records.visits[record] = resources.size
+    records.leave[record] = leave
+    records.expansions[record] = UNKNOWN
+    close_record(state, record)
+    return record
+
+
+@entry
+def carp(state: State, order: Ints, before: Ints, now: int, plans: Ints) -> None:
+    """Plan the robots in order, each against those before it, into `plans`; `NONE` for one that finds no plan.
+
+    `before` are the plans followed until now, by robot.
+    """
+    for k in range(order.size):
+        robot = int(order[k])
+        plan = find_plan(state, robot, int(before[robot]), now, NEVER)
+        plans[k] = plan
+        if plan != NONE:
+            reserve(state, plan)
+
+
+@entry
+def greedy(state: State, waiting: Ints, found: Ints, order: Ints, plans: Ints, skip_unchanged: bool) -> int:
+    """Plan, in each round, the robot waiting of the cheapest plan; how many have one, in `order` with their `plans`.
+
+    `found` holds what the robots waiting found last, `UNASKED` at first. In later rounds there are only more
+    reservations, so a plan that still fits is found again (see `carp_optimized.replanning`), and no plan is none again.
+    """
+    for count in range(waiting.size):
+        cheapest = NONE
+        least = NEVER
+        for k in range(waiting.size - count):
+            robot = int(waiting[k])
+            known = skip_unchanged and found[k] != UNASKED
+            if known and (found[k] == NONE or plan_fits(state, int(found[k]))):
+                state.counters[UNCHANGED] += 1
+            else:
+                found[k] = find_plan(state, robot, NONE, 0, NEVER)
+            if found[k] != NONE:
+                cost = cost_of(state, int(found[k]))
+                if cost < least:
+                    least = cost
+                    cheapest = k
+        if cheapest == NONE:
+            return count
+        order[count] = waiting[cheapest]
+        plans[count] = found[cheapest]
+        reserve(state, int(plans[count]))
+        for k in range(cheapest, waiting.size - count - 1):
+            waiting[k] = waiting[k + 1]
+            found[k] = found[k + 1]
+    return int(waiting.size)
+
+
+@entry
+def repeat_query(state: State, robot: int, times: int) -> int:
+    """Ask the same query that often, for the benchmark; the records are forgotten."""
+    records, visits, expansions = int(state.records.used[0]), int(state.records.used[1]), int(state.records.used[2])
+    found = NONE
+    for _ in range(times):
+        found = find_plan(state, robot, NONE, 0, NEVER)
+        state.records.used[0] = records
+        state.records.used[1] = visits
+        state.records.used[2] = expansions
+    return found

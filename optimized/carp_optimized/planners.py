@@ -1,0 +1,108 @@
+"""The planner's face: `query`, `plan`, `add`, the same as `carp_reference` has.
+
+Importing it loads neither numpy nor numba; planning does.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+from carp_optimized.reuse import Reuse
+from carp_spec import (
+    Carp,
+    Greedy,
+    Instance,
+    LongestFirst,
+    Neighbourhood,
+    Plan,
+    Planner,
+    Refusal,
+    RobotId,
+    Shuffled,
+    Solution,
+)
+
+if TYPE_CHECKING:
+    from carp_optimized.fleet import Fleet
+
+PLANNERS = (Carp, Shuffled, LongestFirst, Greedy, Neighbourhood)
+
+
+def _fleet(instance: Instance, reuse: Reuse | None = None) -> "Fleet":
+    from carp_optimized.fleet import Fleet  # noqa: PLC0415 - numba is slow to load
+
+    return Fleet(instance, reuse)
+
+
+def query(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0) -> Plan | None:
+    """The plan of one robot with the earliest arrival against the committed plans, or `None` if there is none.
+
+    A plan of the robot itself among those committed is what it has followed until the tick `now`.
+    """
+    own = [plan for plan in committed if plan.robot == robot]
+    fleet = _fleet(instance)
+    fleet.commit([plan for plan in committed if plan.robot != robot])
+    return fleet.find(fleet.index(robot), own[-1] if own else None, now)
+
+
+def plan(
+    instance: Instance,
+    planner: Planner,
+    advance: Callable[[], None] = lambda: None,
+    reuse: Reuse | None = None,
+) -> Solution:
+    """Plan all robots of the instance at tick 0; `advance` is called as each attempt or robot is done.
+
+    Raises `Refusal` for a planner that only the reference has, and for numbers that are too large.
+    """
+    if not isinstance(planner, PLANNERS):
+        names = ", ".join(each.name for each in PLANNERS)
+        message = f"the optimised engine has the planners {names}; ask the reference engine for {planner.name}"
+        raise Refusal("option", "$.planner", "planner/options", message)
+    fleet = _fleet(instance, reuse)
+    everyone = range(len(instance.robots))
+    match planner:
+        case Carp():
+            fleet.carp(everyone)
+        case Shuffled():
+            fleet.shuffled(planner, everyone, advance)
+        case LongestFirst():
+            fleet.carp(sorted(everyone, key=lambda robot: -fleet.ticks_to_goal(robot)))
+        case Greedy():
+            fleet.greedy(advance)
+        case Neighbourhood():
+            for robot in everyone:
+                fleet.add(robot, 0, planner)
+                advance()
+    return _solution(instance, fleet.plans, set(fleet.instance.robot))
+
+
+def steps(instance: Instance, planner: Planner) -> int:
+    """How often `plan` calls `advance` at most."""
+    return planner.attempts if isinstance(planner, Shuffled) else len(instance.robots)
+
+
+def add(
+    instance: Instance,
+    solution: Solution,
+    robot: RobotId,
+    now: int,
+    options: Neighbourhood,
+    reuse: Reuse | None = None,
+) -> Solution:
+    """Add a robot of the instance to a solution of the others at the tick `now`.
+
+    If no plan is found, the robot is unplanned and all other plans stay as they are.
+    """
+    by_robot = {each.robot: each for each in solution.plans}
+    fleet = _fleet(instance, reuse)
+    fleet.commit([by_robot[each] for each in solution.order])
+    fleet.add(fleet.index(robot), now, options)
+    return _solution(instance, fleet.plans, {*by_robot, *solution.unplanned, robot})
+
+
+def _solution(instance: Instance, plans: tuple[Plan, ...], named: set[RobotId]) -> Solution:
+    """The solution of the robots named: those without a plan are unplanned."""
+    order = tuple(each.robot for each in plans)
+    planned = set(order)
+    unplanned = (robot.id for robot in instance.robots if robot.id in named and robot.id not in planned)
+    return Solution(plans, order, tuple(unplanned))

@@ -1,0 +1,42 @@
+"""Records of plans, seen from Python: writing plans made elsewhere, reading plans, making room."""
+
+import numpy as np
+
+from carp_optimized.arrays import NEVER, Ints, Records, State
+from carp_optimized.passes import record_plan
+from carp_optimized.records import copy_records
+from carp_spec import Instance, Plan, Visit
+
+
+def write_plan(state: State, instance: Instance, robot: int, plan: Plan) -> int:
+    """The record of a plan that no query of ours has made."""
+    leave = plan.visits[-1].leave
+    resources = np.array([instance.graph.index[visit.resource] for visit in plan.visits], np.int32)
+    enters = np.array([visit.enter for visit in plan.visits], np.int32)
+    return record_plan(state, robot, resources, enters, NEVER if leave is None else leave)
+
+
+def read_plan(state: State, instance: Instance, record: int) -> Plan:
+    """The plan of a record."""
+    records = state.records
+    first = int(records.visits_at[record])
+    end = first + int(records.visits[record])
+    entered = records.enter[first:end].tolist()
+    last = int(records.leave[record])
+    leaves = [*entered[1:], None if last == NEVER else last]
+    resources = [instance.graph.resources[resource].id for resource in records.resource[first:end].tolist()]
+    visits = tuple(Visit(*visit) for visit in zip(resources, entered, leaves, strict=True))
+    return Plan(instance.robots[int(records.robot[record])].id, visits)
+
+
+def enlarged(records: Records) -> Records:
+    """The same records with twice the room."""
+    twice = [np.concatenate([each, np.zeros_like(each)]) for each in records[:-1]]
+    return Records._make([*twice, records.used.copy()])
+
+
+def only(records: Records, kept: Ints) -> Records:
+    """The records kept, renumbered in their order."""
+    new = Records._make(np.empty_like(each) for each in records)
+    copy_records(records, new, kept)
+    return new

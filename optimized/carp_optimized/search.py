@@ -1,0 +1,168 @@
+"""The CARP query: A* over free windows in the order of `query/ties`."""
+
+from carp_optimized.arrays import ASKED, LARGEST, NEVER, NONE, TOO_FAR, State
+from carp_optimized.compiling import RoomExhausted, TicksExhausted, compiled
+from carp_optimized.guides import guide_slot
+from carp_optimized.heap import push, replace_root
+from carp_optimized.records import start_record, write_record
+from carp_optimized.windows import end_of_run, fits, is_exchange, last_by, plan_fits
+
+STANDING = 0  # the slot of no row: a copy of the window in which the robot is when it sets out
+
+
+@compiled
+def find_plan(state: State, robot: int, before: int, now: int, behind: int) -> int:
+    """The record of the robot's plan against the reservations, or `NONE`; `before` is the plan followed until now.
+
+    Only robots of a rank up to `behind` count. A plan that has ended stays as it is. Otherwise the visits entered by
+    now are kept, and must fit the windows; a robot without a plan stands at its start since its release.
+    """
+    state.counters[ASKED] += 1
+    request = state.robots
+    resource = int(request.start[robot])
+    enter = int(request.release[robot])
+    history = 0
+    first = 0
+    if before != NONE:
+        records = state.records
+        if records.leave[before] <= now:
+            return before if plan_fits(state, before) else NONE
+        first = int(records.visits_at[before])
+        while history < records.visits[before] and records.enter[first + history] <= now:
+            history += 1
+        if history > 0:
+            resource = int(records.resource[first + history - 1])
+            enter = int(records.enter[first + history - 1])
+            for k in range(first, first + history - 1):
+                leave = int(records.enter[k + 1])
+                target = int(records.resource[k + 1])
+                if not fits(state, int(records.resource[k]), int(records.enter[k]), leave, target, behind):
+                    return NONE
+    ready = max(enter + int(request.pace[robot]) * int(state.graph.duration[resource]), now)
+    if not fits(state, resource, enter, ready, NONE, behind):
+        return NONE
+    slot = guide_slot(state, int(request.destination[robot]))
+    expansions = search(state, robot, slot, resource, enter, ready, behind)
+    if expansions == 0:
+        return NONE
+    record = start_record(state, robot, first, max(history - 1, 0))
+    write_record(state, record, int(state.search.nodes[0]), expansions)
+    return record
+
+
+@compiled
+def stand(state: State, resource: int, enter: int, behind: int) -> int:
+    """Copy the window around the tick into the slot `STANDING`; return its own slot."""
+    windows = state.windows
+    slot = last_by(windows, resource, enter)
+    last = end_of_run(state, slot, behind)
+    windows.resource[STANDING] = resource
+    windows.end[STANDING] = windows.end[last]
+    windows.source[STANDING] = windows.source[last]
+    while slot > windows.offset[resource] and state.rank[windows.robot[slot - 1]] > behind:
+        slot -= 1
+    return slot
+
+
+@compiled
+def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
+    state: State, robot: int, slot: int, resource: int, enter: int, ready: int, behind: int
+) -> int:
+    """A* from the resource, entered at `enter` and left from `ready` on; the number of expansions, 0: no plan.
+
+    The window in which the plan ends is then `nodes[0]`. The window in which the robot stands can be entered again
+    if it has stayed at its goal for too long to end there; otherwise entering it again leads nowhere new.
+    """
+    graph = state.graph
+    windows = state.windows
+    reached = state.search.reached
+    parent = state.search.parent
+    keys = state.search.keys
+    nodes = state.search.nodes
+    expanded = state.search.expanded
+    guide = state.guides.table[slot]
+    goal = int(state.robots.goal[robot])
+    pace = int(state.robots.pace[robot])
+    parks = state.parks
+
+    if guide[resource] < 0:
+        if guide[resource] == TOO_FAR:
+            raise TicksExhausted
+        return 0
+    generation = int(state.search.generation[0]) + 1
+    state.search.generation[0] = generation
+    label = generation << 32
+    own_slot = stand(state, resource, enter, behind)
+    overstayed = resource == goal and not parks and ready > enter + pace * int(graph.duration[resource])
+    if not overstayed:
+        reached[own_slot] = label - enter
+    reached[STANDING] = label - enter
+    parent[STANDING] = NONE
+    keys[0] = (enter << 32) + int(guide[resource])
+    nodes[0] = STANDING
+    size = 1
+    expansions = 0
+    beyond = False
+    root_is_spent = False
+    while True:
+        if root_is_spent:
+            size -= 1
+            if size == 0:
+                break
+            replace_root(keys, nodes, size, int(keys[size]), int(nodes[size]))
+        root_is_spent = True
+        node = int(nodes[0])
+        resource = int(windows.resource[node])
+        enter = label - int(reached[node])
+        if keys[0] != (enter << 32) + guide[resource]:
+            continue  # entered earlier since this entry was made
+        last = end_of_run(state, node, behind)
+        end = int(windows.end[last])
+        if expansions > 0:
+            ready = enter + pace * int(graph.duration[resource])
+        if expansions == expanded.size:
+            raise RoomExhausted
+        expanded[expansions] = resource
+        state.search.ready[expansions] = ready
+        expansions += 1
+        if resource == goal and (end == NEVER if parks else not (overstayed and node == STANDING)):
+            return expansions
+        exchanges = graph.capacity[resource] > 1
+        for edge in range(int(graph.first[resource]), int(graph.first[resource + 1])):
+            target = int(graph.target[edge])
+            toll = int(guide[target])
+            if toll < 0:
+                beyond |= toll == TOO_FAR
+                continue
+            need = pace * int(graph.duration[target])
+            first = int(windows.offset[target])
+            row_end = first + int(windows.size[target])
+            while first < row_end:
+                window = first
+                entry = max(ready, int(windows.start[window]))
+                if entry > end:
+                    break
+                first = end_of_run(state, window, behind)
+                until = int(windows.end[first])
+                first += 1
+                if entry + need > until or label - entry <= reached[window]:
+                    continue
+                if exchanges or (entry == end and windows.source[last] == target):
+                    while entry <= end and is_exchange(state, last, entry, target):
+                        entry += 1
+                    if entry > end or entry + need > until or label - entry <= reached[window]:
+                        continue
+                if entry > LARGEST or entry + (toll >> 32) > LARGEST:
+                    beyond = True
+                    continue
+                reached[window] = label - entry
+                parent[window] = node
+                if root_is_spent:
+                    replace_root(keys, nodes, size, (entry << 32) + toll, window)
+                    root_is_spent = False
+                else:
+                    push(keys, nodes, size, (entry << 32) + toll, window)
+                    size += 1
+    if beyond:
+        raise TicksExhausted
+    return 0

@@ -1,0 +1,274 @@
+"""Free windows under reservations (`window/free`): reserving a plan and withdrawing it are exact inverses.
+
+The windows of a resource of capacity 1 are the gaps between its stays, those of no length included, which are too
+short for any stay: a reservation splits the gap in which it falls, and its withdrawal joins the two. The windows of
+other resources are made anew from their stays.
+"""
+
+from carp_optimized.arrays import NEVER, NONE, Records, Rows, State
+from carp_optimized.compiling import RoomExhausted, compiled
+
+
+@compiled
+def last_by(rows: Rows, resource: int, tick: int) -> int:
+    """The slot of the last interval of the resource that starts by the tick, or `NONE`."""
+    low = int(rows.offset[resource])
+    first = low
+    high = low + int(rows.size[resource])
+    while low < high:
+        middle = (low + high) >> 1
+        if rows.start[middle] <= tick:
+            low = middle + 1
+        else:
+            high = middle
+    return low - 1 if low > first else NONE
+
+
+@compiled
+def make_room(rows: Rows, resource: int) -> None:
+    """Move the row to the end of the pool if it is full."""
+    count = int(rows.size[resource])
+    if count < rows.room[resource]:
+        return
+    room = 2 * count
+    old = int(rows.offset[resource])
+    new = int(rows.used[0])
+    if new + room > rows.start.size:
+        raise RoomExhausted
+    for k in range(count):
+        rows.start[new + k] = rows.start[old + k]
+        rows.end[new + k] = rows.end[old + k]
+        rows.source[new + k] = rows.source[old + k]
+        rows.robot[new + k] = rows.robot[old + k]
+    for k in range(room):
+        rows.resource[new + k] = resource
+    rows.offset[resource] = new
+    rows.room[resource] = room
+    rows.used[0] = new + room
+
+
+@compiled
+def split_window(windows: Rows, resource: int, enter: int, leave: int, source: int, robot: int) -> None:
+    """Take [enter, leave) out of the window that holds it, for the robot, which comes from `source`."""
+    make_room(windows, resource)
+    slot = last_by(windows, resource, enter)
+    for k in range(int(windows.offset[resource]) + int(windows.size[resource]), slot, -1):
+        windows.start[k] = windows.start[k - 1]
+        windows.end[k] = windows.end[k - 1]
+        windows.source[k] = windows.source[k - 1]
+        windows.robot[k] = windows.robot[k - 1]
+    windows.end[slot] = enter
+    windows.robot[slot] = robot
+    windows.source[slot] = source
+    windows.start[slot + 1] = leave
+    windows.size[resource] += 1
+
+
+@compiled
+def join_windows(windows: Rows, resource: int, enter: int) -> None:
+    """Give the stay that begins at `enter` back to the windows on both its sides."""
+    slot = last_by(windows, resource, enter)
+    windows.size[resource] -= 1
+    last = int(windows.offset[resource]) + int(windows.size[resource])
+    windows.end[slot] = windows.end[slot + 1]
+    windows.source[slot] = windows.source[slot + 1]
+    windows.robot[slot] = windows.robot[slot + 1]
+    for k in range(slot + 1, last):
+        windows.start[k] = windows.start[k + 1]
+        windows.end[k] = windows.end[k + 1]
+        windows.source[k] = windows.source[k + 1]
+        windows.robot[k] = windows.robot[k + 1]
+
+
+@compiled
+def add_stay(stays: Rows, resource: int, enter: int, leave: int, source: int) -> None:
+    """Insert the start with its source, and the end, each in its order."""
+    make_room(stays, resource)
+    first = int(stays.offset[resource])
+    slot = first + int(stays.size[resource])
+    while slot > first and stays.start[slot - 1] > enter:
+        stays.start[slot] = stays.start[slot - 1]
+        stays.source[slot] = stays.source[slot - 1]
+        slot -= 1
+    stays.start[slot] = enter
+    stays.source[slot] = source
+    slot = first + int(stays.size[resource])
+    while slot > first and stays.end[slot - 1] > leave:
+        stays.end[slot] = stays.end[slot - 1]
+        slot -= 1
+    stays.end[slot] = leave
+    stays.size[resource] += 1
+
+
+@compiled
+def drop_stay(stays: Rows, resource: int, enter: int, leave: int, source: int) -> None:
+    """Undo `add_stay`; stays that are alike are interchangeable."""
+    stays.size[resource] -= 1
+    first = int(stays.offset[resource])
+    last = first + int(stays.size[resource])
+    slot = first
+    while stays.start[slot] != enter or stays.source[slot] != source:
+        slot += 1
+    for k in range(slot, last):
+        stays.start[k] = stays.start[k + 1]
+        stays.source[k] = stays.source[k + 1]
+    slot = first
+    while stays.end[slot] != leave:
+        slot += 1
+    for k in range(slot, last):
+        stays.end[k] = stays.end[k + 1]
+
+
+@compiled
+def append_window(windows: Rows, resource: int, start: int, end: int) -> None:
+    """Append a window to the row, unless it has no length."""
+    if start < end:
+        make_room(windows, resource)
+        slot = int(windows.offset[resource]) + int(windows.size[resource])
+        windows.start[slot] = start
+        windows.end[slot] = end
+        windows.source[slot] = NONE
+        windows.robot[slot] = NONE
+        windows.size[resource] += 1
+
+
+@compiled
+def sweep_windows(windows: Rows, stays: Rows, resource: int, capacity: int) -> None:
+    """Make the windows of the resource anew from its stays."""
+    windows.size[resource] = 0
+    into = int(stays.offset[resource])
+    out = into
+    last = into + int(stays.size[resource])
+    inside = 0
+    opened = 0
+    while out < last and stays.end[out] < NEVER:
+        tick = int(stays.end[out])
+        if into < last:
+            tick = min(tick, int(stays.start[into]))
+        before = inside
+        while into < last and stays.start[into] == tick:
+            inside += 1
+            into += 1
+        while out < last and stays.end[out] == tick:
+            inside -= 1
+            out += 1
+        if before < capacity <= inside:
+            append_window(windows, resource, opened, tick)
+        elif inside < capacity <= before:
+            opened = tick
+    while inside < capacity and into < last:  # what is left are stays for ever
+        inside += 1
+        if inside == capacity:
+            append_window(windows, resource, opened, int(stays.start[into]))
+        into += 1
+    if inside < capacity:
+        append_window(windows, resource, opened, NEVER)
+
+
+@compiled
+def reserve(state: State, record: int) -> None:
+    """Take the stays of the plan out of the windows; the plan must fit."""
+    records = state.records
+    state.reserved[records.robot[record]] = record
+    first = int(records.visits_at[record])
+    last = first + int(records.visits[record]) - 1
+    source = NONE
+    for k in range(first, last + 1):
+        resource = int(records.resource[k])
+        enter = int(records.enter[k])
+        leave = int(records.enter[k + 1]) if k < last else int(records.leave[record])
+        if state.graph.capacity[resource] == 1:
+            split_window(state.windows, resource, enter, leave, source, int(records.robot[record]))
+        else:
+            add_stay(state.stays, resource, enter, leave, source)
+            sweep_windows(state.windows, state.stays, resource, int(state.graph.capacity[resource]))
+        source = resource
+
+
+@compiled
+def withdraw(state: State, record: int) -> None:
+    """Undo `reserve`."""
+    records = state.records
+    state.reserved[records.robot[record]] = NONE
+    first = int(records.visits_at[record])
+    last = first + int(records.visits[record]) - 1
+    source = NONE
+    for k in range(first, last + 1):
+        resource = int(records.resource[k])
+        enter = int(records.enter[k])
+        if state.graph.capacity[resource] == 1:
+            join_windows(state.windows, resource, enter)
+        else:
+            leave = int(records.enter[k + 1]) if k < last else int(records.leave[record])
+            drop_stay(state.stays, resource, enter, leave, source)
+            sweep_windows(state.windows, state.stays, resource, int(state.graph.capacity[resource]))
+        source = resource
+
+
+@compiled
+def is_exchange(state: State, slot: int, tick: int, target: int) -> bool:
+    """Whether leaving the window at the tick for `target` meets a committed robot that comes from there.
+
+    In a resource of capacity 1 that robot is the one that ends the window, so the tick is the window's end.
+    """
+    resource = int(state.windows.resource[slot])
+    if state.graph.capacity[resource] == 1:
+        return bool(state.windows.end[slot] == tick and state.windows.source[slot] == target)
+    stays = state.stays
+    first = int(stays.offset[resource])
+    stay = last_by(stays, resource, tick)
+    while stay >= first and stays.start[stay] == tick:
+        if stays.source[stay] == target:
+            return True
+        stay -= 1
+    return False
+
+
+@compiled
+def end_of_run(state: State, slot: int, behind: int) -> int:
+    """The last of the windows that are one to a robot planned behind that rank: only later robots are between them."""
+    while state.rank[state.windows.robot[slot]] > behind:
+        slot += 1
+    return slot
+
+
+@compiled
+def fits(state: State, resource: int, enter: int, leave: int, target: int, behind: int) -> bool:
+    """Whether a robot can stay in the resource in [enter, leave) and then move to `target` (`NONE`: not move)."""
+    slot = last_by(state.windows, resource, enter)
+    if slot == NONE:
+        return False
+    slot = end_of_run(state, slot, behind)
+    if leave > state.windows.end[slot]:
+        return False
+    return target == NONE or not is_exchange(state, slot, leave, target)
+
+
+@compiled
+def plan_fits(state: State, record: int) -> bool:
+    """Whether all of the plan fits the windows."""
+    records: Records = state.records
+    first = int(records.visits_at[record])
+    last = first + int(records.visits[record]) - 1
+    for k in range(first, last):
+        leave = int(records.enter[k + 1])
+        target = int(records.resource[k + 1])
+        if not fits(state, int(records.resource[k]), int(records.enter[k]), leave, target, NEVER):
+            return False
+    return fits(state, int(records.resource[last]), int(records.enter[last]), int(records.leave[record]), NONE, NEVER)
+
+
+@compiled
+def evict(state: State, record: int) -> None:
+    """Withdraw the plans that the plan, found without account of them, runs into; resources have capacity 1."""
+    records = state.records
+    windows = state.windows
+    first = int(records.visits_at[record])
+    last = first + int(records.visits[record]) - 1
+    for k in range(first, last + 1):
+        resource = int(records.resource[k])
+        leave = int(records.enter[k + 1]) if k < last else int(records.leave[record])
+        target = int(records.resource[k + 1]) if k < last else NONE
+        while not fits(state, resource, int(records.enter[k]), leave, target, NEVER):
+            slot = last_by(windows, resource, int(records.enter[k]))
+            withdraw(state, int(state.reserved[windows.robot[slot]]))

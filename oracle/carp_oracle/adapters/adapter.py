@@ -1,0 +1,24 @@
+"""What an adapter is: a format of other planners' solutions, read and written."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from carp_spec import Instance, Solution
+
+Read: TypeAlias = Callable[[str, Instance, str], Solution]
+Write: TypeAlias = Callable[[Instance, Solution], str]
+
+
+@dataclass(frozen=True, slots=True)
+class Adapter:
+    """A format: what it looks like, and how it is read and written.
+
+    `read` takes the text, the instance and the name of the file, and raises `Refusal` with file and line.
+    """
+
+    name: str
+    tells: str
+    looks_like: Callable[[str], bool]
+    read: Read
+    write: Write

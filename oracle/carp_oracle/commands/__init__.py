@@ -1,0 +1,26 @@
+"""The commands, one a module; its `command` is loaded when somebody asks for it.
+
+To add one, write the module and its name here. A `-` in a command's name is a `_` in its module's.
+"""
+
+COMMANDS = (
+    "demo",
+    "plan",
+    "add",
+    "query",
+    "check",
+    "view",
+    "generate",
+    "convert",
+    "serve",
+    "certify",
+    "theorems",
+    "conform",
+    "optimum",
+    "verify-proof",
+    "gap",
+    "crosscheck",
+    "bench",
+    "experiment",
+    "rules",
+)

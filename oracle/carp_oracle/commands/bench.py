@@ -1,0 +1,78 @@
+"""`carproof bench`: how fast the optimised planner is."""
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any
+
+import click
+import msgspec
+
+from carp_oracle.answer import Answer
+from carp_oracle.bench import GROWTH, Added, OnGrid, OnMap, on_grid, on_map
+from carp_oracle.files import print_document
+from carp_oracle.options import examples, json_option
+from carp_oracle.progress import progress
+from carp_oracle.tables import print_table
+
+MAPS = (10, 20)
+
+
+@click.command(epilog=examples("carproof bench", "carproof bench --assignments 5 --json > bench.json"))
+@click.option("--assignments", type=click.IntRange(min=1), default=20, help="How many random assignments a map.")
+@click.option("--growth/--no-growth", default=True, help="Measure larger and larger grids too.")
+@json_option
+def command(assignments: int, growth: bool, as_json: bool) -> Answer:
+    """Measure one query, one pass of CARP and the adding of a robot.
+
+    On the paper's maps 10 and 20 with 100 robots, and on full grids of 20 x 20 to 160 x 160 with a robot to every four
+    nodes. Times are medians of processor time, warm; ratios are to a pass of CARP over all robots in the same run.
+
+    Exit codes: 0 done, 2 bad usage.
+    """
+    sides = GROWTH if growth else ()
+    with progress("measuring", len(MAPS) * assignments + len(sides)) as advance:
+        maps = [on_map(map, assignments, advance) for map in MAPS]
+        grids = [on_grid(side, advance) for side in sides]
+    if as_json:
+        print_document(msgspec.json.encode(document(maps, grids)) + b"\n")
+    else:
+        show(maps, grids)
+    return Answer.YES
+
+
+def document(maps: Sequence[OnMap], grids: Sequence[OnGrid]) -> dict[str, Any]:
+    """All figures; those of the full map first."""
+    full = maps[-1]
+    last = max(each.k for each in full.added)
+    return {
+        "query_us": full.query_us,
+        "pass_us": full.pass_us,
+        "ratios": {each.neighbourhood: each.ratio for each in full.added if each.k == last},
+        "maps": [asdict(each) for each in maps],
+        "growth": [asdict(each) for each in grids],
+    }
+
+
+def show(maps: Sequence[OnMap], grids: Sequence[OnGrid]) -> None:
+    """Print tables."""
+    figures = ["query", "pass"]
+    rows = [(each.map, f"{each.query_us:.1f} us", f"{each.pass_us:.0f} us") for each in maps]
+    print_table(["map", *figures], rows, numbers=["map", *figures])
+    kinds = list(maps[0].added[0].avoided)
+    columns = ["map", "robot", "M", "add", "ratio", "asked", *kinds]
+    added = [row_of(each.map, one) for each in maps for one in each.added]
+    click.echo()
+    print_table(columns, added, numbers=columns)
+    if grids:
+        click.echo()
+        columns = ["grid", "robots", "query", "add"]
+        rows_of_grids = [
+            (f"{each.side}^2", each.robots, f"{each.query_us:.1f} us", f"{each.add_us:.0f} us") for each in grids
+        ]
+        print_table(columns, rows_of_grids, numbers=columns)
+
+
+def row_of(map: int, one: Added) -> tuple[object, ...]:
+    """A row of the table of robots added."""
+    avoided = [f"{count:.0f}" for count in one.avoided.values()]
+    return (map, one.k, one.neighbourhood, f"{one.add_us:.0f} us", f"{one.ratio:.2f}", f"{one.asked:.0f}", *avoided)

@@ -1,0 +1,71 @@
+"""`carproof certify`: have z3 show that plans keep capacities and avoid exchanges."""
+
+import json
+from dataclasses import asdict
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import click
+
+from carp_oracle.answer import Answer
+from carp_oracle.files import print_document, read_instance_file, read_solution_file, refuse_two_standard_inputs
+from carp_oracle.options import examples, instance_argument, json_option, solution_argument
+from carp_oracle.progress import progress
+from carp_oracle.tables import print_line
+
+if TYPE_CHECKING:
+    from carp_verify.certificate import Certificate
+
+
+@click.command(
+    epilog=examples(
+        "carproof certify town.json plans.json",
+        "carproof plan town.json --json | carproof certify town.json -",
+    )
+)
+@instance_argument
+@solution_argument
+@json_option
+def command(instance: str, solution: str, as_json: bool) -> Answer:
+    """Certify that the plans of SOLUTION keep capacities and avoid exchanges.
+
+    For each resource z3 shows that there is no tick at all at which it is too full, and for each pair that no
+    two robots exchange it: the rules joint/capacity and joint/exchange, by other means than check. Where there
+    is such a tick it is named, with the robots. The rules of single plans are not certified: check them.
+
+    Exit codes: 0 certified, 1 refused, 2 bad input, 3 z3 could not tell.
+    """
+    refuse_two_standard_inputs(instance, solution)
+    problem = read_instance_file(instance)
+    plans = read_solution_file(solution).plans
+    from carp_verify.certificate import certify  # noqa: PLC0415 - loads z3
+    from carp_verify.smt import Undecided  # noqa: PLC0415
+
+    visited = {visit.resource for plan in plans for visit in plan.visits} & problem.graph.resource.keys()
+    started = perf_counter()
+    try:
+        with progress("certifying", len(visited)) as advance:
+            certificate = certify(problem, plans, advance)
+    except Undecided as undecided:
+        click.echo(f"Undecided: {undecided}.", err=True)
+        return Answer.UNDECIDED
+    if as_json:
+        print_document(document(certificate))
+    else:
+        for breach in certificate.breaches:
+            print_line(str(breach))
+        print_line(f"{summary(certificate)} in {perf_counter() - started:.1f} s")
+    return Answer.of(certificate.accepted)
+
+
+def summary(certificate: "Certificate") -> str:
+    """The outcome in a line."""
+    asked = f"{certificate.resources} resources and {certificate.pairs} pairs of resources"
+    if certificate.accepted:
+        return f"certified: no tick is too full and no exchange happens in {asked}"
+    return f"REFUSED: {len(certificate.breaches)} of {asked} break a rule"
+
+
+def document(certificate: "Certificate") -> bytes:
+    """The certificate as one JSON document."""
+    return json.dumps({"accepted": certificate.accepted, **asdict(certificate)}).encode() + b"\n"

@@ -1,0 +1,81 @@
+"""`carproof check`: whether a solution is right, in whoever's format."""
+
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+
+from carp_oracle.answer import Answer
+from carp_oracle.files import InputFile, print_document, read_instance_file, refuse_two_standard_inputs, write_whole
+from carp_oracle.foreign import MovingAI, from_option, movingai_options, read_movingai, read_solution_of
+from carp_oracle.options import examples, json_option, output_option
+from carp_oracle.tables import print_line, print_table
+from carp_spec import RULES, Verdict, judge, write_verdict
+
+
+@click.command(
+    short_help="Tell whether plans are right, and every rule they break.",
+    epilog=examples(
+        "carproof check town.json plans.json",
+        "carproof plan town.json --json | carproof check town.json -",
+        "carproof check town.json plans.json --json > verdict.json",
+        "carproof check town.json result.txt --from lacam",
+        "carproof check --map town.map --scen town.scen --agents 40 result.txt",
+    ),
+)
+@click.argument("files", metavar="[INSTANCE] SOLUTION", nargs=-1, required=True, type=InputFile())
+@movingai_options
+@from_option
+@output_option
+@json_option
+def command(  # noqa: PLR0913 - one parameter for each argument and option
+    *,
+    files: Sequence[str],
+    map: str | None,
+    scen: str | None,
+    agents: int | None,
+    format: str | None,
+    output: Path | None,
+    as_json: bool,
+) -> Answer:
+    """Check the plans of SOLUTION against INSTANCE, or against a MovingAI map and scenario.
+
+    Prints every broken rule with its reason, and how often each is broken. Robots without a plan break no
+    rule; they are counted. Either file may be - for standard input.
+
+    SOLUTION is carproof's document or another planner's output (--from). Such output is of classical multi-agent
+    path finding: robots are there from tick 0, move or wait in each tick, and stay at their goals for ever;
+    following is allowed, swapping is not; durations and capacities are one unless INSTANCE says otherwise.
+
+    Exit codes: 0 no rule is broken, 1 a rule is broken, 2 bad input.
+    """
+    *instances, solution = files
+    benchmark = MovingAI.of(map, scen, agents)
+    if len(instances) != (benchmark is None):
+        raise click.UsageError("Give INSTANCE and SOLUTION, or --map, --scen and SOLUTION.")
+    refuse_two_standard_inputs(*files, *(benchmark.names if benchmark else ()))
+    instance = read_movingai(benchmark) if benchmark else read_instance_file(instances[0])
+    verdict = judge(instance, read_solution_of(instance, solution, format))
+    document = write_verdict(verdict)
+    if output is not None:
+        write_whole(output, document)
+    if as_json:
+        print_document(document)
+    else:
+        print_verdict(verdict)
+    return Answer.of(verdict.valid)
+
+
+def print_verdict(verdict: Verdict) -> None:
+    """Print the violations one a line, then how many there are of each rule."""
+    for violation in verdict.violations:
+        print_line(str(violation))
+    count = Counter(violation.rule for violation in verdict.violations)
+    if count:
+        click.echo()
+        broken = [(rule.id, count[rule.id]) for rule in RULES if rule.id in count]
+        print_table(["rule", "violations"], broken, numbers=["violations"])
+        click.echo()
+    result = "no rule is broken" if verdict.valid else "INVALID"
+    print_line(f"{result}: total cost {verdict.cost}, unplanned robots {verdict.unplanned}")

@@ -1,0 +1,187 @@
+"""`carproof conform`: whether somebody's planner conforms to the specification."""
+
+import shutil
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
+
+import click
+
+from carp_oracle.adapters import ADAPTERS
+from carp_oracle.answer import Answer
+from carp_oracle.conform.levels import CLASSICAL_LEVELS, LEVELS, Level
+from carp_oracle.files import OutputFile, print_document, write_whole
+from carp_oracle.options import examples, json_option
+from carp_oracle.progress import progress
+from carp_oracle.tables import print_line, print_table
+
+if TYPE_CHECKING:
+    from carp_oracle.conform.child import Limits
+    from carp_oracle.conform.one_shot import OneShot
+    from carp_oracle.conform.run import Report
+    from carp_oracle.conform.subjects import Subject
+
+_STAGES = "passed", "skipped", "wrong answer", "crash", "timeout", "protocol error"
+_LEVELS = "\n".join(
+    ["\b", "Levels, each with all before it:", *(f"  {level.label:17}{level.statement}" for level in Level), "", ""]
+)
+
+
+@click.command(
+    epilog=_LEVELS
+    + examples(
+        "carproof conform -- carproof serve",
+        "carproof conform --level complete --examples 2000 -- ./planner --quiet",
+        "carproof conform --one-shot -- ./planner {instance} {solution}",
+        "carproof conform --one-shot -- ./planner {map} {scen} {agents} {solution}",
+        "carproof conform --junit conform.xml --save found -- ./planner",
+    )
+)
+@click.argument("program", nargs=-1, required=True, metavar="-- PROGRAM ...")
+@click.option("--level", type=click.Choice(list(LEVELS)), default=Level.SOUND.label, help="What is asked of it.")
+@click.option("--examples", "number", type=click.IntRange(0), default=200, help="How many random cases are asked.")
+@click.option("--seed", type=click.IntRange(0, 2**64 - 1), default=0, help="The seed of the random cases.")
+@click.option(
+    "--timeout",
+    type=click.FloatRange(0, min_open=True),
+    default=5.0,
+    help="Seconds for an answer; 5 times that at a start.",
+)
+@click.option("--shrinking", type=click.FloatRange(0), default=15.0, help="Seconds for making a failure smaller.")
+@click.option("--memory", type=click.IntRange(0), default=4096, help="MiB of address space for PROGRAM; 0: any.")
+@click.option("--one-shot", is_flag=True, help="PROGRAM plans one {instance}, or {map} and {scen}.")
+@click.option(
+    "--from",
+    "format",
+    type=click.Choice([*ADAPTERS]),
+    metavar="FORMAT",
+    help=f"What it writes then: {', '.join(ADAPTERS)}.  [default: found out]",
+)
+@click.option("--save", type=click.Path(path_type=Path, file_okay=False), default="conform-failure", help="Folder.")
+@click.option("--junit", type=OutputFile(), help="Write the results to this file, as XML for continuous integration.")
+@json_option
+def command(  # noqa: PLR0913 - one parameter for each argument and option
+    *,
+    program: tuple[str, ...],
+    level: str,
+    number: int,
+    seed: int,
+    timeout: float,
+    shrinking: float,
+    memory: int,
+    one_shot: bool,
+    format: str | None,
+    save: Path,
+    junit: Path | None,
+    as_json: bool,
+) -> Answer:
+    """Ask PROGRAM questions, and judge its answers.
+
+    PROGRAM stays up and answers requests, one a line, as carproof serve does: start, and as many of check, query,
+    plan, add and optimum as it likes; what it does not offer is skipped. A failing case is shrunk, and written to the
+    folder of --save: the request, the documents, a test vector and a picture.
+
+    With --one-shot it is started for each instance, and plans the file {instance}. It writes the file {solution},
+    if its arguments name that, or else to its standard output. If they name {map} and {scen}, these are MovingAI
+    files with {agents} agents, and what it writes may be in any format that carproof check reads; all else than
+    classical grids is skipped, and the levels are sound, complete (all robots, where all can have plans) and optimal.
+
+    Exit codes: 0 it conforms, 1 it does not, 2 bad usage, 3 undecided, because it was interrupted.
+    """
+    from carp_oracle.conform.child import Limits  # noqa: PLC0415 - what runs processes is loaded when it is needed
+    from carp_oracle.conform.documents import junit_document, report_document  # noqa: PLC0415
+    from carp_oracle.conform.one_shot import OneShot  # noqa: PLC0415
+    from carp_oracle.conform.program import Program  # noqa: PLC0415
+    from carp_oracle.conform.run import Options, conform  # noqa: PLC0415
+
+    if format is not None and not one_shot:
+        raise click.UsageError("--from is of the files that programs write with --one-shot.")
+    if shutil.which(program[0]) is None:
+        raise click.UsageError(f"{program[0]}: there is no such program, or it may not be run.")
+    limits = Limits(timeout, memory)
+    subject: Subject = _one_shot(program, limits, format) if one_shot else Program(program, limits, seed)
+    classical = isinstance(subject, OneShot) and subject.is_classical
+    if classical and LEVELS[level] not in CLASSICAL_LEVELS:
+        right = ", ".join(each.label for each in CLASSICAL_LEVELS)
+        raise click.UsageError(f"Of a planner for MovingAI files --level must be one of {right}.")
+    options = Options(LEVELS[level], number, seed, timeout, shrinking, whole=one_shot, classical=classical)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    with progress("asking", number) as advance, _nothing_kept():
+        report = conform(subject, options, advance)
+    saved = _save(report, save)
+    if junit is not None:
+        write_whole(junit, junit_document(report))
+    if as_json:
+        print_document(report_document(report, saved))
+    else:
+        _show(report, saved)
+    return Answer.UNDECIDED if report.conforms is None else Answer.of(report.conforms)
+
+
+@contextmanager
+def _nothing_kept() -> Iterator[None]:
+    """Let hypothesis keep its files in a folder that goes away, not in the user's."""
+    from hypothesis.configuration import set_hypothesis_home_dir  # noqa: PLC0415 - loaded only where used
+
+    with TemporaryDirectory(prefix="carproof-") as folder:
+        set_hypothesis_home_dir(folder)
+        yield
+
+
+def _one_shot(program: tuple[str, ...], limits: "Limits", format: str | None) -> "OneShot":
+    from carp_oracle.conform.one_shot import INSTANCE, MAP, SCEN, OneShot, names  # noqa: PLC0415
+
+    has_map, has_scen = names(program, MAP), names(program, SCEN)
+    if has_map != has_scen or not (has_map or names(program, INSTANCE)):
+        message = f"With --one-shot the program's arguments must hold {INSTANCE}, or {MAP} and {SCEN}."
+        raise click.UsageError(message)
+    return OneShot(program, limits, format)
+
+
+def _save(report: "Report", folder: Path) -> Path | None:
+    """Save the smallest failure, and return its folder."""
+    from carp_oracle.conform.saving import save  # noqa: PLC0415
+
+    if not report.failures:
+        return None
+    save(report.failures[0], folder)
+    return folder
+
+
+def _show(report: "Report", saved: Path | None) -> None:
+    """Print what came of it: counts, what is wrong, and the verdict."""
+    from carp_oracle.conform.documents import counts  # noqa: PLC0415
+
+    rows = [(stage, *(count[name] for name in _STAGES)) for stage, count in counts(report).items()]
+    print_table(["cases", *_STAGES], rows, numbers=_STAGES)
+    click.echo()
+    for fault in report.faults:
+        print_line(f"{fault.category}: {fault.message} [{fault.rule}]")
+    for outcome in report.failures:
+        assert outcome.finding is not None  # noqa: S101 - a failure has a finding
+        instance = outcome.case.instance
+        size = f"{len(instance.robots)} robots, {len(instance.graph.resources)} resources"
+        finding = outcome.finding
+        print_line(f"{finding.category} ({outcome.case.name}; {size}): {finding.message} [{finding.rule}]")
+    stderr = next((finding.stderr for finding in report.findings if finding.stderr), "")
+    if stderr:
+        click.echo("the end of the program's standard error:")
+        for line in stderr.splitlines()[-10:]:
+            print_line(f"  {line}")
+    if saved is not None:
+        print_line(f"the smallest failing case is in {saved}")
+    print_line(_verdict(report))
+
+
+def _verdict(report: "Report") -> str:
+    level = report.options.level
+    if report.conforms:
+        return f"CONFORMS: {report.program}, level {level.label}: {level.statement}"
+    if report.conforms is None:
+        return f"UNDECIDED: {report.program}, level {level.label}: interrupted before anything wrong was found"
+    if not report.findings:
+        return f"DOES NOT CONFORM: {report.program} answered no case that shows level {level.label}"
+    return f"DOES NOT CONFORM: {report.program}, level {level.label}"

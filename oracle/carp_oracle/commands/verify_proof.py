@@ -1,0 +1,45 @@
+"""`carproof verify-proof`: check what `carproof optimum --proof` wrote."""
+
+from pathlib import Path
+
+import click
+
+from carp_oracle.answer import Answer
+from carp_oracle.files import InputFile, print_document, read_instance_file
+from carp_oracle.optima import ProofDocument
+from carp_oracle.options import examples, json_option
+from carp_oracle.tables import print_line, print_table
+from carp_spec.documents import solution_document, write
+
+
+@click.command(epilog=examples("carproof verify-proof proof", "carproof verify-proof proof --instance town.json"))
+@click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path))
+@click.option("--instance", type=InputFile(), help="The instance that the proof must be about.")
+@json_option
+def command(folder: Path, instance: str | None, as_json: bool) -> Answer:
+    """Check that the files in FOLDER prove the least total cost of their instance.
+
+    Both formulas are made anew from the instance and compared; the model's plans are judged; the refutation of a
+    smaller cost is replayed by a checker that is neither the solver's nor ours; and z3 is asked for both formulas.
+
+    Exit codes: 0 the cost is proved, 1 it is not, 2 bad input.
+    """
+    from carp_verify.proof import ProofError, verify_proof  # noqa: PLC0415 - loads the planners
+
+    given = None if instance is None else read_instance_file(instance)
+    try:
+        verified = verify_proof(folder, given)
+    except ProofError as error:
+        if as_json:
+            print_document(write(ProofDocument(proved=False, cost=None, solution=None, reason=str(error))))
+        else:
+            print_line(f"not proved: {error}")
+        return Answer.NO
+    if as_json:
+        solution = solution_document(verified.solution)
+        print_document(write(ProofDocument(proved=True, cost=verified.cost, solution=solution, reason=None)))
+    else:
+        columns = ["least cost", "robots", "refutation", "z3 at the cost", "z3 below it"]
+        row = [verified.cost, len(verified.solution.plans), "replayed", verified.z3_reach, verified.z3_beat]
+        print_table(columns, [row], numbers=columns[:2])
+    return Answer.YES

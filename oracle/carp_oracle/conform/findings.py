@@ -1,0 +1,110 @@
+"""What can be wrong with an answer, and the rules that a program breaks besides those of plans: `program/...`."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+from carp_spec import Rule
+from carp_spec.rule import DESIGN, rule
+
+
+class Category(StrEnum):
+    """How a case ends that a program does not pass."""
+
+    WRONG_ANSWER = "wrong answer"
+    CRASH = "crash"
+    TIMEOUT = "timeout"
+    PROTOCOL_ERROR = "protocol error"
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """What is wrong: how, by which rule, and one sentence about it; of a process also the end of its stderr."""
+
+    category: Category
+    rule: str
+    message: str
+    stderr: str = ""
+
+    @property
+    def key(self) -> tuple[Category, str]:
+        """What two findings of one fault share."""
+        return (self.category, self.rule)
+
+
+class Fault(Exception):  # noqa: N818 - a program's fault, not an error of ours
+    """A program gave no answer that can be judged."""
+
+    def __init__(self, finding: Finding) -> None:
+        super().__init__(finding)
+        self.finding = finding
+
+
+def wrong(rule: str, message: str) -> Finding:
+    """A wrong answer."""
+    return Finding(Category.WRONG_ANSWER, rule, message)
+
+
+@rule("program/alive", "A program answers until it is asked to stop, and then it ends with 0.", DESIGN)
+def is_alive(code: int | None) -> bool:
+    """Whether a process with this exit code, `None` while it runs, has kept it."""
+    return code is None or code == 0
+
+
+@rule("program/in-time", "Each answer is complete within the time limit, however it arrives.", DESIGN)
+def is_in_time(seconds: float, limit: float) -> bool:
+    """Whether the answer was in time."""
+    return seconds <= limit
+
+
+@rule(
+    "program/response",
+    "A response is one line of JSON: an object with the request's id and one of result, skipped and error.",
+    DESIGN,
+)
+def is_response(fields: set[str]) -> bool:
+    """Whether these are the fields of a response."""
+    return fields in ({"id", "result"}, {"id", "skipped"}, {"id", "error"})
+
+
+@rule(
+    "program/result",
+    "A result has the fields and types of its op; documents obey document/shape, other formats their own rules.",
+    DESIGN,
+)
+def is_result(shape_error: str | None) -> bool:
+    """Whether decoding found no error."""
+    return shape_error is None
+
+
+@rule("program/accepts", "A right request is answered by a result or skipped, never by an error.", DESIGN)
+def is_accepted(error: object) -> bool:
+    """Whether there is no error."""
+    return error is None
+
+
+@rule("program/optimal", "What is told as the optimum is the least total cost of plans for all robots.", DESIGN)
+def is_optimal(cost: int | None, least: int | None) -> bool:
+    """Whether the cost is the least; `None` is that there are no plans for all robots."""
+    return cost == least
+
+
+@rule(
+    "program/complete",
+    "A planner of whole instances leaves robots without a plan only where not all robots can have one.",
+    DESIGN,
+)
+def is_complete(unplanned: int, least: int | None) -> bool:
+    """Whether so many robots may be unplanned; `least` is the least total cost, `None` if not all can have plans."""
+    return unplanned == 0 or least is None
+
+
+PROGRAM_RULES: tuple[Rule[..., Any], ...] = (
+    is_alive,
+    is_in_time,
+    is_response,
+    is_result,
+    is_accepted,
+    is_optimal,
+    is_complete,
+)

@@ -1,0 +1,63 @@
+"""A Python function that plans whole instances."""
+
+import traceback
+from collections.abc import Callable
+from typing import Any
+
+import msgspec
+
+from carp_oracle.conform.answers import Reply, Skipped, decode_solution, protocol_error
+from carp_oracle.conform.cases import Case
+from carp_oracle.conform.findings import Category, Fault, Finding, is_alive, is_result
+from carp_spec import Instance, Solution, write_instance
+
+Document = dict[str, Any]
+
+
+def by_documents(planner: Callable[[Document], Document]) -> Callable[[Instance], Solution]:
+    """A planner of documents as one of models."""
+
+    def plan(instance: Instance) -> Solution:
+        document = planner(msgspec.json.decode(write_instance(instance)))
+        try:
+            data = msgspec.json.encode(document)
+        except (TypeError, ValueError, OverflowError) as error:
+            raise protocol_error(is_result.id, f"the planner's document cannot be written as JSON: {error}") from error
+        return decode_solution(data)
+
+    return plan
+
+
+class Function:
+    """A planner that is called with an instance and returns a solution. Nothing limits its time."""
+
+    def __init__(self, planner: Callable[[Instance], Solution], name: str) -> None:
+        self._planner = planner
+        self.name = name
+        self.ops: tuple[str, ...] = ("plan",)
+
+    def start(self) -> None:
+        """It is there."""
+
+    def ask(self, case: Case, seconds: float | None = None) -> Reply:
+        """Call the function."""
+        del seconds
+        if case.op != "plan" or case.planner is not None:
+            return Skipped("it plans whole instances, by a planner of its own")
+        try:
+            solution: object = self._planner(case.instance)
+        except Fault:
+            raise
+        except Exception as error:
+            message = f"it raised {type(error).__name__}: {str(error).partition(chr(10))[0]}"
+            raise Fault(Finding(Category.CRASH, is_alive.id, message, traceback.format_exc())) from error
+        if not isinstance(solution, Solution):
+            message = f"a planner must return a carp_spec.Solution, not {type(solution).__name__}"
+            raise protocol_error(is_result.id, message)
+        return solution
+
+    def finish(self) -> None:
+        """Nothing runs on."""
+
+    def kill(self) -> None:
+        """Nothing runs on."""

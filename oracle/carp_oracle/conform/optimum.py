@@ -1,0 +1,68 @@
+"""What the level `optimal` asks: the proved optimum of small instances."""
+
+from collections.abc import Iterator
+from functools import lru_cache
+
+from carp_oracle.conform.answers import OptimumAnswer
+from carp_oracle.conform.cases import OPTIMUM_SECONDS
+from carp_oracle.conform.findings import Finding, is_complete, is_optimal, wrong
+from carp_oracle.conform.levels import Level
+from carp_spec import Instance, Solution, judge, total_cost
+
+
+@lru_cache(maxsize=1)
+def proved_cost(instance: Instance) -> tuple[bool, int | None]:
+    """Whether the optimum could be proved in time, and its cost, `None` if there are no plans for all robots."""
+    from carp_verify.optimum import optimum  # noqa: PLC0415 - loads a solver
+
+    found = optimum(instance, OPTIMUM_SECONDS)
+    return found.proved, found.cost
+
+
+def optimum_findings(instance: Instance, answer: OptimumAnswer, level: Level) -> Iterator[Finding]:
+    """What is wrong with an answer to `optimum`."""
+    if answer.solution is not None:
+        for violation in judge(instance, answer.solution).violations:
+            yield wrong(violation.rule, violation.message)
+        if answer.solution.unplanned:
+            yield wrong("solution/covers", f"an optimum has plans for all robots, also {answer.solution.unplanned[0]}")
+        total = total_cost(instance, answer.solution.plans)
+        if answer.cost != total:
+            yield wrong("cost/total", f"the cost must be {total}, the total of the plans, not {answer.cost}")
+    elif answer.cost is not None:
+        yield wrong("cost/total", f"a cost of {answer.cost} needs a solution that has it")
+    if level >= Level.OPTIMAL:
+        yield from _against_proof(instance, answer)
+
+
+def _against_proof(instance: Instance, answer: OptimumAnswer) -> Iterator[Finding]:
+    is_proved, least = proved_cost(instance)
+    if is_proved and answer.proved and not is_optimal(answer.cost, least):
+        yield wrong(is_optimal.id, f"the least total cost is {_shown(least)}, not {_shown(answer.cost)}")
+    if is_proved and least is not None and (answer.lower or 0) > least:
+        yield wrong(is_optimal.id, f"no lower bound is above the least total cost {least}, as {answer.lower} is")
+
+
+def plan_cost_findings(instance: Instance, solution: Solution) -> Iterator[Finding]:
+    """What is wrong with the cost of a solution that is to be optimal."""
+    is_proved, least = proved_cost(instance)
+    if is_proved and least is not None:
+        cost = total_cost(instance, solution.plans)
+        if solution.unplanned:
+            yield wrong(is_optimal.id, f"all robots can have plans, with a total cost of {least}")
+        elif not is_optimal(cost, least):
+            yield wrong(is_optimal.id, f"the least total cost is {least}, not {cost}")
+
+
+def complete_findings(instance: Instance, solution: Solution) -> Iterator[Finding]:
+    """What is wrong with a solution that leaves robots unplanned, if all robots can have plans."""
+    if not solution.unplanned:
+        return
+    is_proved, least = proved_cost(instance)
+    if is_proved and not is_complete(len(solution.unplanned), least):
+        message = f"all robots can have plans, and {len(solution.unplanned)} have none"
+        yield wrong(is_complete.id, message)
+
+
+def _shown(cost: int | None) -> str:
+    return "none, as not all robots can have plans" if cost is None else str(cost)

@@ -1,0 +1,129 @@
+"""Reading and writing the user's files: one clear sentence when it cannot be done, and never half a file."""
+
+import os
+import secrets
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TypeVar
+
+import click
+
+from carp_spec import Instance, Refusal, Solution, read_instance, read_solution
+
+T = TypeVar("T")
+STANDARD_INPUT = "-"
+
+
+class InputFile(click.ParamType[str]):
+    """A file that is there to be read, or `-`; its value is the name."""
+
+    name = "file"
+
+    def convert(self, value: str, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        """Refuse what can be no input, before any work is done."""
+        path = Path(value)
+        if value != STANDARD_INPUT and path.is_dir():
+            self.fail(f"{value}: it is a folder.", param, ctx)
+        if value != STANDARD_INPUT and not path.exists():
+            self.fail(f"{value}: there is no such file.", param, ctx)
+        return value
+
+
+class OutputFile(click.ParamType[Path]):
+    """A file to write; its value is the path."""
+
+    name = "file"
+
+    def convert(self, value: str, param: click.Parameter | None, ctx: click.Context | None) -> Path:
+        """Refuse what cannot be written, before any work is done."""
+        path = target(Path(value))
+        if path.is_dir():
+            self.fail(f"{value}: it is a folder.", param, ctx)
+        if not path.parent.is_dir():
+            self.fail(f"{value}: there is no folder {path.parent}.", param, ctx)
+        if not os.access(path if path.exists() and not path.is_file() else path.parent, os.W_OK):
+            self.fail(f"{value}: it may not be written.", param, ctx)
+        return Path(value)
+
+
+def target(path: Path) -> Path:
+    """The file that is written in the end: links are followed, also to what is not there yet."""
+    return Path(os.path.realpath(path))
+
+
+def read_bytes(name: str) -> bytes:
+    """Read a file, or standard input for `-`."""
+    try:
+        return sys.stdin.buffer.read() if name == STANDARD_INPUT else Path(name).read_bytes()
+    except OSError as error:
+        raise click.ClickException(f"{name}: it cannot be read: {error.strerror}") from error
+
+
+def read_instance_file(name: str) -> Instance:
+    """Read an instance from a file or standard input."""
+    return _read(name, read_instance)
+
+
+def read_solution_file(name: str) -> Solution:
+    """Read a solution from a file or standard input."""
+    return _read(name, read_solution)
+
+
+def _read(name: str, decode: Callable[[bytes], T]) -> T:
+    data = read_bytes(name)
+    with naming(name):
+        return decode(data)
+
+
+@contextmanager
+def naming(name: str) -> Iterator[None]:
+    """Put the file's name before every refusal of what it holds; one of an option is no matter of the file."""
+    try:
+        yield
+    except Refusal as refusal:
+        if refusal.kind == "option":
+            raise
+        raise click.ClickException(f"{shown(name)}: {refusal}") from refusal
+
+
+def shown(name: str) -> str:
+    """The name of an input as people know it."""
+    return "standard input" if name == STANDARD_INPUT else name
+
+
+def refuse_two_standard_inputs(*names: str) -> None:
+    """Only one of a command's inputs can be standard input."""
+    if names.count(STANDARD_INPUT) > 1:
+        raise click.UsageError("Only one of the files can be standard input.")
+
+
+def write_whole(path: Path, data: bytes) -> None:
+    """Write a file whole or not at all: beside it, then in its place. A device or pipe is written as it is."""
+    try:
+        if path.exists() and not path.is_file():
+            path.write_bytes(data)
+        else:
+            _replace(target(path), data)
+    except OSError as error:
+        raise click.ClickException(f"{path}: it cannot be written: {error.strerror}") from error
+
+
+def _replace(path: Path, data: bytes) -> None:
+    part = path.with_name(f".carproof-{secrets.token_hex(8)}")
+    try:
+        with part.open("xb") as file:
+            file.write(data)
+        if path.exists():
+            part.chmod(path.stat().st_mode)
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def print_document(data: bytes) -> None:
+    """Print one document on standard output."""
+    sys.stdout.flush()
+    sys.stdout.buffer.write(data)
+    sys.stdout.buffer.flush()

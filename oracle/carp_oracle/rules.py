@@ -1,0 +1,27 @@
+"""All rules that carproof quotes: the specification's, then those of requests, formats and searches."""
+
+from typing import Any
+
+from carp_oracle.adapters import ADAPTER_RULES
+from carp_oracle.conform.findings import PROGRAM_RULES
+from carp_oracle.generate.options import GENERATE_RULES
+from carp_oracle.movingai import MOVINGAI_RULES
+from carp_oracle.protocol import PROTOCOL_RULES
+from carp_oracle.requests import REQUEST_RULES
+from carp_oracle.viewer.limits import VIEW_RULES
+from carp_spec import RULES, Rule
+from carp_spec.limits import LIMIT_RULES
+from carp_verify.optimum_rules import OPTIMUM_RULES
+
+ALL_RULES: tuple[Rule[..., Any], ...] = (
+    *RULES,
+    *LIMIT_RULES,
+    *REQUEST_RULES,
+    *GENERATE_RULES,
+    *MOVINGAI_RULES,
+    *ADAPTER_RULES,
+    *PROTOCOL_RULES,
+    *PROGRAM_RULES,
+    *VIEW_RULES,
+    *OPTIMUM_RULES,
+)

@@ -1,0 +1,91 @@
+"""The scene: all that a picture of a solution shows, with every place and lane worked out.
+
+It is the one thing that the page's script and the stills are made from. Texts are cut to a line that can be
+shown. Resources and robots are numbered; what a broken solution names beyond the instance's comes after them.
+"""
+
+from dataclasses import dataclass
+
+from carp_spec.windows import Occupation
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A resource: where its centre is drawn, if it has a place at all, and its lanes and free windows over time."""
+
+    label: str
+    capacity: str
+    duration: str
+    at: tuple[int, int] | None
+    lanes: int
+    windows: tuple[Occupation, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Stand:
+    """Where a robot is drawn: the place, the lane in it, and the circle there, if the place is on the map."""
+
+    place: int
+    lane: int
+    at: tuple[int, int] | None
+    radius: int
+
+
+@dataclass(frozen=True, slots=True)
+class Track:
+    """A robot with one of its plans, or with none; a stay is (stand, enter, leave), and `note` what is odd."""
+
+    label: str
+    short: str
+    tint: int
+    start: int | None
+    goal: int | None
+    release: int
+    pace: str
+    cost: int | None
+    note: str
+    stays: tuple[tuple[int, int, int | None], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Broken:
+    """A violation: its rule, tracks and place by number, and the ticks [start, end)."""
+
+    rule: int
+    tracks: tuple[int, ...]
+    place: int | None
+    start: int | None
+    end: int | None
+    message: str
+
+
+@dataclass(frozen=True, slots=True)
+class BrokenRule:
+    """A rule that is broken, and how often; not all of that may be listed."""
+
+    id: str
+    statement: str
+    count: int
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """All that a picture shows.
+
+    `first` and `last` are the ticks between which something happens; `computed` says that the places are not the
+    instance's own positions.
+    """
+
+    title: str
+    first: int
+    last: int
+    cost: str
+    unplanned: int
+    computed: bool
+    width: int
+    height: int
+    places: tuple[Place, ...]
+    stands: tuple[Stand, ...]
+    tracks: tuple[Track, ...]
+    rules: tuple[BrokenRule, ...]
+    violations: tuple[Broken, ...]

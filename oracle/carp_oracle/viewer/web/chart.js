@@ -1,0 +1,265 @@
+// The chart of resources by time, on a canvas as large as its window: only what is in sight is drawn.
+
+const LANE = 13;
+const GAP = 4;
+const LABELS = 78;
+const AXIS = 22;
+const TEXT_WIDTH = 7;
+const LEAST_LABEL_DISTANCE = 46;
+const WIDEST_TICK = 80;
+const NARROWEST_TICK = 12;
+const ROUND_STEPS = [...Array(9).keys()].flatMap((power) => [1, 2, 5].map((digit) => digit * 10 ** power));
+
+/** The colours of the style sheets, for the canvas. */
+function colours() {
+  const style = getComputedStyle(document.documentElement);
+  const named = (name) => style.getPropertyValue(`--${name}`).trim();
+  const plain = ["paper", "panel", "ink", "faint", "line", "window", "wrong", "accent"];
+  const found = Object.fromEntries(plain.map((name) => [name, named(name)]));
+  found.tints = [...Array(6).keys()].map((number) => {
+    const probe = document.body.appendChild(make("i", `tint${number}`));
+    const tint = getComputedStyle(probe);
+    const pair = { fill: tint.getPropertyValue("--fill").trim(), text: tint.getPropertyValue("--text").trim() };
+    probe.remove();
+    return pair;
+  });
+  return found;
+}
+
+class Chart {
+  constructor(view, size, canvas, pick) {
+    Object.assign(this, { view, size, canvas });
+    this.pen = canvas.getContext("2d");
+    this.chosen = [];
+    this.time = scene.first;
+    this.end = scene.last + Math.max(1, (scene.last - scene.first) / 40);
+    this.colours = colours();
+    this.stays = scene.places.map(() => []);
+    scene.tracks.forEach((track, number) => {
+      for (const [stand, enter, leave] of track.stays) {
+        const { place, lane } = scene.stands[stand];
+        this.stays[place].push({ number, lane, enter, leave });
+      }
+    });
+    this.violations = scene.places.map(() => []);
+    for (const violation of scene.violations) {
+      if (violation.place !== null && violation.start !== null) this.violations[violation.place].push(violation);
+    }
+    this.showRows("visited");
+    view.addEventListener("scroll", () => this.drawSoon());
+    canvas.addEventListener("click", (event) => this.pick(event, pick));
+    new ResizeObserver(() => this.resize()).observe(view);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+      this.colours = colours();
+      this.drawSoon();
+    });
+  }
+
+  /** Show the rows of all resources, of those visited, or of those that the chosen robots visit, in their order. */
+  showRows(which) {
+    this.which = which;
+    const everyPlace = scene.places.map((_, place) => place);
+    const visited = everyPlace.filter((place) => this.stays[place].length);
+    const ofChosen = this.chosen.flatMap((number) =>
+      scene.tracks[number].stays.map(([stand]) => scene.stands[stand].place),
+    );
+    const places = { all: everyPlace, visited, selected: [...new Set(ofChosen)] }[which];
+    let top = AXIS;
+    this.rows = places.map((place) => {
+      const row = { place, top, height: scene.places[place].lanes * LANE };
+      top += row.height + GAP;
+      return row;
+    });
+    this.height = top;
+    this.resize();
+  }
+
+  choose(chosen) {
+    this.chosen = chosen;
+    if (this.which === "selected") this.showRows("selected");
+    this.drawSoon();
+  }
+
+  resize() {
+    const room = Math.max(1, this.view.clientWidth - LABELS - 2 * GAP);
+    this.least = room / (this.end - scene.first);
+    this.pixels = Math.max(this.least, Math.min(this.pixels ?? NARROWEST_TICK, WIDEST_TICK));
+    this.size.style.width = `${LABELS + this.pixels * (this.end - scene.first)}px`;
+    this.size.style.height = `${this.height}px`;
+    this.drawSoon();
+  }
+
+  zoom(factor) {
+    const middle = (this.view.scrollLeft + this.view.clientWidth / 2) / this.pixels;
+    this.pixels *= factor;
+    this.resize();
+    this.view.scrollLeft = middle * this.pixels - this.view.clientWidth / 2;
+  }
+
+  x(tick) {
+    return LABELS + (tick - scene.first) * this.pixels - this.view.scrollLeft;
+  }
+
+  /** Show the time, and keep its line in sight. */
+  setTime(time, follow) {
+    this.time = time;
+    const x = this.x(time);
+    if (follow && (x < LABELS || x > this.view.clientWidth - 20)) this.view.scrollLeft += x - LABELS - 40;
+    this.drawSoon();
+  }
+
+  /** Scroll to the row of a place; if it is not among the rows, show all. */
+  reveal(place) {
+    if (!this.rows.some((row) => row.place === place)) return false;
+    const { top, height } = this.rows.find((row) => row.place === place);
+    const { scrollTop, clientHeight } = this.view;
+    if (top - AXIS < scrollTop || top + height > scrollTop + clientHeight) this.view.scrollTop = top - clientHeight / 2;
+    return true;
+  }
+
+  drawSoon() {
+    this.waiting ??= requestAnimationFrame(() => {
+      this.waiting = undefined;
+      this.draw();
+    });
+  }
+
+  draw() {
+    const { clientWidth: width, clientHeight: height, scrollTop } = this.view;
+    const ratio = devicePixelRatio;
+    this.canvas.width = width * ratio;
+    this.canvas.height = height * ratio;
+    this.canvas.style.width = `${width}px`;
+    this.canvas.style.height = `${height}px`;
+    this.pen.scale(ratio, ratio);
+    this.pen.textBaseline = "middle";
+    this.pen.font = "11px system-ui, sans-serif";
+    this.fill(this.colours.paper, 0, 0, width, height);
+    this.drawGrid(width, height);
+    const inSight = this.rows.filter((row) => row.top + row.height > scrollTop && row.top < scrollTop + height);
+    for (const row of inSight) this.drawRow(row, row.top - scrollTop, width);
+    const now = Math.round(this.x(this.time)) + 0.5;
+    this.fill(this.colours.ink, now - 1, 0, 2, height);
+    this.drawLabels(inSight, scrollTop, height);
+    this.drawAxis(width);
+    if (!this.rows.length) this.drawHint();
+  }
+
+  drawHint() {
+    this.pen.fillStyle = this.colours.faint;
+    this.pen.textAlign = "left";
+    this.pen.fillText("No row: choose a robot that has a plan, or other rows.", LABELS + 8, 2 * AXIS);
+  }
+
+  fill(colour, x, y, width, height) {
+    this.pen.fillStyle = colour;
+    this.pen.fillRect(x, y, width, height);
+  }
+
+  /** The part of an interval that is in sight, as left side and width, or null. */
+  span(start, end, width) {
+    const left = Math.max(LABELS - 2, this.x(start));
+    const right = Math.min(width + 2, end === null ? width + 2 : this.x(end));
+    return right < LABELS || left > width ? null : [left, Math.max(2, right - left)];
+  }
+
+  drawRow({ place, height }, top, width) {
+    for (const [start, end] of scene.places[place].windows) {
+      const part = this.span(start, end, width);
+      if (part) this.fill(this.colours.window, part[0], top, part[1], height);
+    }
+    for (const stay of this.stays[place]) this.drawStay(stay, top, width);
+    for (const { start, end } of this.violations[place]) {
+      const part = this.span(start, end, width);
+      if (part) this.drawViolation(part[0], top, part[1], height);
+    }
+  }
+
+  drawStay({ number, lane, enter, leave }, top, width) {
+    const part = this.span(enter, leave, width);
+    if (!part) return;
+    const [left, wide] = part;
+    const { tint, short } = scene.tracks[number];
+    const y = top + lane * LANE;
+    const isChosen = this.chosen.includes(number);
+    this.pen.globalAlpha = this.chosen.length && !isChosen ? 0.35 : 1;
+    this.fill(this.colours.tints[tint].fill, left, y + 1, Math.max(1, wide - 1), LANE - 2);
+    if (wide > short.length * TEXT_WIDTH + 2) {
+      this.pen.fillStyle = this.colours.tints[tint].text;
+      this.pen.textAlign = "center";
+      this.pen.fillText(short, left + wide / 2, y + LANE / 2 + 0.5);
+    }
+    this.pen.globalAlpha = 1;
+    if (isChosen) {
+      this.pen.strokeStyle = this.colours.ink;
+      this.pen.lineWidth = 2;
+      this.pen.strokeRect(left, y + 1, Math.max(1, wide - 1), LANE - 2);
+    }
+  }
+
+  drawViolation(left, top, width, height) {
+    const { pen } = this;
+    pen.save();
+    pen.strokeStyle = this.colours.wrong;
+    pen.lineWidth = 2;
+    pen.strokeRect(left, top, width, height);
+    pen.beginPath();
+    pen.rect(left, top, width, height);
+    pen.clip();
+    pen.beginPath();
+    for (let x = left - height; x < left + width; x += 5) {
+      pen.moveTo(x, top + height);
+      pen.lineTo(x + height, top);
+    }
+    pen.lineWidth = 1;
+    pen.stroke();
+    pen.restore();
+  }
+
+  drawLabels(rows, scrollTop, height) {
+    this.fill(this.colours.panel, 0, 0, LABELS - 3, height);
+    this.pen.textAlign = "right";
+    this.pen.fillStyle = this.colours.ink;
+    for (const { place, top, height: rowHeight } of rows) {
+      const { label } = scene.places[place];
+      const room = label.length > 10 ? `${label.slice(0, 9)}…` : label;
+      this.pen.fillText(room, LABELS - 8, top - scrollTop + rowHeight / 2, LABELS - 12);
+    }
+  }
+
+  /** Round ticks in sight, far enough from each other. */
+  roundTicks(width) {
+    const step = ROUND_STEPS.find((each) => each * this.pixels >= LEAST_LABEL_DISTANCE);
+    const from = scene.first + this.view.scrollLeft / this.pixels;
+    const to = Math.min(this.end, from + (width - LABELS) / this.pixels);
+    const ticks = [];
+    for (let tick = Math.ceil(from / step) * step; tick <= to; tick += step) ticks.push(tick);
+    return ticks;
+  }
+
+  drawGrid(width, height) {
+    for (const tick of this.roundTicks(width)) this.fill(this.colours.line, Math.round(this.x(tick)), 0, 1, height);
+  }
+
+  drawAxis(width) {
+    this.fill(this.colours.panel, 0, 0, width, AXIS - 3);
+    this.pen.fillStyle = this.colours.faint;
+    this.pen.textAlign = "left";
+    for (const tick of this.roundTicks(width)) this.pen.fillText(tick, Math.round(this.x(tick)) + 3, AXIS / 2 - 1);
+    this.fill(this.colours.panel, 0, 0, LABELS - 3, AXIS - 3);
+    this.pen.fillStyle = this.colours.faint;
+    this.pen.textAlign = "right";
+    this.pen.fillText("tick", LABELS - 8, AXIS / 2 - 1);
+  }
+
+  pick(event, pick) {
+    const { offsetX, offsetY } = event;
+    const tick = Math.floor(scene.first + (offsetX - LABELS + this.view.scrollLeft) / this.pixels);
+    const y = offsetY + this.view.scrollTop;
+    const row = this.rows.find(({ top, height }) => top <= y && y < top + height);
+    const lane = row && Math.floor((y - row.top) / LANE);
+    const stay =
+      row && this.stays[row.place].findLast((each) => each.lane === lane && holds(each.enter, each.leave, tick));
+    if (offsetX >= LABELS) pick(tick, stay ? [stay.number] : null);
+  }
+}

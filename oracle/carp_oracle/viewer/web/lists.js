@@ -1,0 +1,80 @@
+// The lists: broken rules with their violations, and robots.
+
+class ViolationList {
+  constructor(list, jump) {
+    this.buttons = scene.violations.map((violation) => {
+      const button = make("button", "", violation.message);
+      button.type = "button";
+      button.addEventListener("click", () => jump(violation));
+      return button;
+    });
+    scene.rules.forEach(({ id, statement, count }, rule) => {
+      const group = make("details");
+      group.open = true;
+      const summary = make("summary", "", `${id} `);
+      summary.append(make("span", "count", count));
+      const ofRule = this.buttons.filter((_, at) => scene.violations[at].rule === rule);
+      group.append(summary, make("p", "", statement), ...ofRule);
+      if (ofRule.length < count)
+        group.append(make("p", "", `and ${count - ofRule.length} more, which carproof check lists`));
+      list.append(group);
+    });
+    if (!scene.rules.length) list.append(make("p", "", "No rule is broken."));
+  }
+
+  show(violation) {
+    this.buttons.forEach((button, at) => button.classList.toggle("chosen", scene.violations[at] === violation));
+    this.buttons[scene.violations.indexOf(violation)]?.scrollIntoView({ block: "nearest" });
+  }
+}
+
+class RobotList {
+  constructor(list, jump) {
+    this.buttons = scene.tracks.map((track, number) => {
+      const button = make("button");
+      button.type = "button";
+      const name = (place) => (place === null ? "?" : scene.places[place].label);
+      button.append(make("span", `swatch tint${track.tint}`), make("strong", "", track.label));
+      button.append(make("small", "", ` ${name(track.start)} → ${name(track.goal)}`));
+      const told = [track.note, track.cost === null ? "" : `cost ${track.cost}`].filter((each) => each);
+      button.append(make("small", "", told.length ? ` · ${told.join(" · ")}` : ""));
+      button.addEventListener("click", () => jump(number));
+      return button;
+    });
+    const unplanned = this.buttons.filter((_, number) => !scene.tracks[number].stays.length);
+    if (unplanned.length) list.append(this.group("without a plan", unplanned));
+    list.append(...this.buttons.filter((button) => !unplanned.includes(button)));
+  }
+
+  group(name, buttons) {
+    const group = make("details");
+    group.open = true;
+    const summary = make("summary", "", `${name} `);
+    summary.append(make("span", "count", buttons.length));
+    group.append(summary, ...buttons);
+    return group;
+  }
+
+  find(part) {
+    this.buttons.forEach((button, at) => {
+      const { label, note } = scene.tracks[at];
+      button.hidden = !`${label} ${note}`.includes(part);
+    });
+  }
+
+  show(chosen) {
+    this.buttons.forEach((button, number) => button.classList.toggle("chosen", chosen.includes(number)));
+    this.buttons[chosen[0]]?.scrollIntoView({ block: "nearest" });
+  }
+}
+
+/** One line about a robot at the time. */
+function aboutRobot(track, time) {
+  const at = stayAt(track, time);
+  const [stand, enter, leave] = at < 0 ? [] : track.stays[at];
+  const now =
+    at < 0 ? "on no resource now" : `now in ${scene.places[scene.stands[stand].place].label} ${interval(enter, leave)}`;
+  const arrival = track.cost === null ? track.note : `arrives at ${track.release + track.cost}, cost ${track.cost}`;
+  const pace = track.pace === "1" || !track.pace ? "" : `, pace ${track.pace}`;
+  return `robot ${track.label}: released at ${track.release}${pace}, ${arrival}, ${now}`;
+}

@@ -1,0 +1,10 @@
+"""The planner to read: windows, the CARP query, the neighbourhood planner and the baselines.
+
+Read it in this order: `context`, `query`, `orderings`, `neighbourhood`; then, as needed, `problem`,
+`fixed_paths`, `time_expanded`, `reasons`, `planners`.
+"""
+
+from carp_reference.planners import add, plan, query, steps
+from carp_reference.reasons import why_unplanned
+
+__all__ = ["add", "plan", "query", "steps", "why_unplanned"]

@@ -1,0 +1,55 @@
+"""The context of a query: the free time windows and the moves of the committed plans."""
+
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from carp_spec import Instance, Move, Plan, ResourceId, Visit
+from carp_spec.windows import Occupation, Window, free_windows
+
+
+@dataclass(frozen=True, slots=True)
+class Context:
+    """What committed plans leave to the next robot.
+
+    `occupations` holds their stays by resource, `moves` each move (source, target) with its tick.
+    """
+
+    instance: Instance
+    occupations: Mapping[ResourceId, Sequence[Occupation]]
+    moves: frozenset[tuple[int, Move]]
+
+    def windows(self, resource: ResourceId) -> tuple[Window, ...]:
+        """The free windows of the resource, in order of time."""
+        return free_windows(self.occupations.get(resource, ()), self.instance.graph.resource[resource].capacity)
+
+    def window_around(self, visit: Visit) -> Window | None:
+        """The free window that holds the whole visit, if there is one."""
+        for window in self.windows(visit.resource):
+            if window.start <= visit.enter and window.lasts_until(visit.leave):
+                return window
+        return None
+
+    def is_exchange(self, tick: int, source: ResourceId, target: ResourceId) -> bool:
+        """Whether a committed robot makes the opposite move at the tick."""
+        return (tick, (target, source)) in self.moves
+
+    def allows(self, visits: Sequence[Visit]) -> bool:
+        """Whether a robot can make these visits together with the committed plans."""
+        free = all(self.window_around(visit) is not None for visit in visits)
+        return free and not any(self.is_exchange(to.enter, at.resource, to.resource) for at, to in pairwise(visits))
+
+
+def context_of(instance: Instance, committed: Sequence[Plan]) -> Context:
+    """Collect the stays and the moves of the committed plans."""
+    occupations: dict[ResourceId, list[Occupation]] = defaultdict(list)
+    for plan in committed:
+        for visit in plan.visits:
+            occupations[visit.resource].append((visit.enter, visit.leave))
+    moves = frozenset(
+        (following.enter, (visit.resource, following.resource))
+        for plan in committed
+        for visit, following in pairwise(plan.visits)
+    )
+    return Context(instance, occupations, moves)

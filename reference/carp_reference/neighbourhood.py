@@ -1,0 +1,117 @@
+"""The neighbourhood planner: the paper's Algorithm 1, line by line, with the decisions of `neighbourhood/...`.
+
+A new robot is planned together with its nearest neighbours, in every order. In the paper's
+words `outside` is the sequence A, `members` the set N, and `new` the robot a_k.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import groupby
+
+from carp_reference.orderings import Plans, shuffled
+from carp_reference.problem import Problem
+from carp_reference.query import find_plan
+from carp_spec import Neighbourhood, Plan, RobotId, has_ended, total_cost
+from carp_spec.neighbourhood_rules import (
+    baseline_is_tried,
+    distance,
+    nearest,
+    neighbourhood_orders,
+    next_trajectory,
+    replaces_best,
+    replanned_from,
+)
+from carp_spec.permutations import Order, splitmix64
+
+
+def add_robot(problem: Problem, committed: Plans, new: RobotId, options: Neighbourhood) -> Plans | None:
+    """Add a robot to committed plans: all plans in their new planning order.
+
+    `None` if the robot stays unplanned, and then the committed plans stay as they are.
+    """
+    problem = replace(problem, before={plan.robot: plan for plan in committed})
+    plans = _best_candidate(problem, committed, new, options)
+    if plans is None and options.fallback is not None:
+        order = [*problem.before, new]
+        plans = shuffled(problem, order, options.fallback, options.seed, lambda: None)
+        return plans if len(plans) == len(order) else None
+    return plans
+
+
+def _best_candidate(problem: Problem, committed: Plans, new: RobotId, options: Neighbourhood) -> Plans | None:
+    shortest = find_plan(problem, (), new)
+    if shortest is None:
+        return None
+    trajectories = {**problem.before, new: shortest}
+    stream = splitmix64(options.seed + problem.instance.robots.index(problem.instance.robot[new]))
+    outside = list(problem.before)
+    kept = committed
+    members = [new]
+    best: Plans | None = None
+    rounds = min(options.m - 1, sum(not has_ended(plan, problem.now) for plan in committed))
+    if baseline_is_tried(options.baseline, rounds):
+        plan = find_plan(problem, committed, new)
+        best = None if plan is None else (*committed, plan)
+    for _ in range(rounds):
+        taken = _nearest_outside(problem, trajectories, outside, members)
+        members.append(outside.pop(taken))
+        kept = _replan(problem, kept[: replanned_from(taken, len(kept))], outside)
+        round_best: Plans | None = None
+        if len(kept) == len(outside):
+            orders = neighbourhood_orders(len(members), options.sample, stream)
+            for plans in _plans_of_orders(problem, kept, members, orders):
+                round_best = _better(problem, round_best, (*kept, *plans))
+        best = _better(problem, best, round_best)
+        planned = {plan.robot: plan for plan in round_best or kept}
+        trajectories = {robot: next_trajectory(plan, planned.get(robot)) for robot, plan in trajectories.items()}
+    return best
+
+
+def _better(problem: Problem, best: Plans | None, candidate: Plans | None) -> Plans | None:
+    """The candidate, if there is one and it replaces the best so far."""
+    if candidate is None:
+        return best
+    best_cost = None if best is None else total_cost(problem.instance, best)
+    return candidate if replaces_best(total_cost(problem.instance, candidate), best_cost) else best
+
+
+def _nearest_outside(
+    problem: Problem, trajectories: Mapping[RobotId, Plan], outside: Sequence[RobotId], members: Sequence[RobotId]
+) -> int:
+    """The position in `outside` of the robot to take in; one whose plan has ended is left alone."""
+    under_way = [robot for robot in outside if not has_ended(problem.before[robot], problem.now)]
+    distances = [
+        [distance(problem.instance, trajectories[robot], trajectories[member]) for member in members]
+        for robot in under_way
+    ]
+    return outside.index(under_way[nearest(distances)])
+
+
+def _replan(problem: Problem, kept: Plans, outside: Sequence[RobotId]) -> Plans:
+    """The plans kept and, in order, new ones for the robots behind them, up to the first that finds none."""
+    plans = list(kept)
+    for robot in outside[len(kept) :]:
+        plan = find_plan(problem, plans, robot)
+        if plan is None:
+            break
+        plans.append(plan)
+    return tuple(plans)
+
+
+def _plans_of_orders(
+    problem: Problem, committed: Plans, members: Sequence[RobotId], orders: Iterable[Order]
+) -> Iterator[Plans]:
+    """Plan the members in each order against the committed plans; skip the orders in which one finds no plan.
+
+    Orders come in lexicographic order, and those that begin alike share the queries of their beginning.
+    """
+    for first, alike in groupby(orders, key=lambda order: order[0]):
+        rest = [order[1:] for order in alike]
+        plan = find_plan(problem, committed, members[first])
+        if plan is None:
+            continue
+        if rest == [()]:
+            yield (plan,)
+            continue
+        for plans in _plans_of_orders(problem, (*committed, plan), members, rest):
+            yield (plan, *plans)

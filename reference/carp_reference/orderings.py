@@ -1,0 +1,62 @@
+"""Planners that plan the robots one after the other, each against the plans before it; they differ in the order."""
+
+from collections.abc import Callable, Sequence
+
+from carp_reference.problem import Problem
+from carp_reference.query import find_plan
+from carp_spec import Plan, RobotId, plan_cost, total_cost
+from carp_spec.permutations import shuffle, splitmix64
+
+Plans = tuple[Plan, ...]
+
+
+def carp(problem: Problem, order: Sequence[RobotId]) -> Plans:
+    """CARP: plan the robots in the order given; one that finds no plan is left out."""
+    plans: list[Plan] = []
+    for robot in order:
+        plan = find_plan(problem, plans, robot)
+        if plan is not None:
+            plans.append(plan)
+    return tuple(plans)
+
+
+def shuffled(
+    problem: Problem, order: Sequence[RobotId], attempts: int, seed: int, advance: Callable[[], None]
+) -> Plans:
+    """The best of several passes of CARP; the first in the order given, each later one in a shuffle of the last."""
+    stream = splitmix64(seed)
+    best = carp(problem, order)
+    advance()
+    for _ in range(attempts - 1):
+        order = shuffle(order, stream)
+        plans = carp(problem, order)
+        if _worth(problem, plans) < _worth(problem, best):
+            best = plans
+        advance()
+    return best
+
+
+def _worth(problem: Problem, plans: Plans) -> tuple[int, int]:
+    """More robots planned are better, then a smaller total."""
+    return (-len(plans), total_cost(problem.instance, plans))
+
+
+def longest_first(problem: Problem) -> Plans:
+    """CARP in the order of falling shortest-path costs; a robot without a path finds no plan wherever it stands."""
+    shortest = {robot.id: problem.ticks_to_goal[robot.id].get(robot.start, 0) for robot in problem.instance.robots}
+    return carp(problem, sorted(shortest, key=lambda robot: -shortest[robot]))
+
+
+def greedy(problem: Problem, advance: Callable[[], None]) -> Plans:
+    """Plan, in each round, the robot whose plan costs least; a tie goes to the earlier in the instance."""
+    plans: list[Plan] = []
+    waiting = [robot.id for robot in problem.instance.robots]
+    while waiting:
+        found = [plan for robot in waiting if (plan := find_plan(problem, plans, robot)) is not None]
+        if not found:
+            break
+        cheapest = min(found, key=lambda plan: plan_cost(problem.instance, plan))
+        plans.append(cheapest)
+        waiting.remove(cheapest.robot)
+        advance()
+    return tuple(plans)

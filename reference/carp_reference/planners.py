@@ -1,0 +1,86 @@
+"""The planner's face: `query`, `plan`, `add`, the same as `carp_optimized` has."""
+
+from collections.abc import Callable, Sequence
+
+from carp_reference.fixed_paths import fixed_paths
+from carp_reference.neighbourhood import add_robot
+from carp_reference.orderings import Plans, carp, greedy, longest_first, shuffled
+from carp_reference.problem import Problem, prepare, ticks_to_goal
+from carp_reference.query import find_plan
+from carp_reference.time_expanded import time_expanded
+from carp_spec import (
+    Carp,
+    FixedPaths,
+    Greedy,
+    Instance,
+    LongestFirst,
+    Neighbourhood,
+    Plan,
+    Planner,
+    RobotId,
+    Shuffled,
+    Solution,
+)
+
+
+def query(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0) -> Plan | None:
+    """The plan of one robot with the earliest arrival against the committed plans, or `None` if there is none.
+
+    A plan of the robot itself among those committed is what it has followed until the tick `now`.
+    """
+    before = {plan.robot: plan for plan in committed if plan.robot == robot}
+    others = [plan for plan in committed if plan.robot != robot]
+    problem = Problem(instance, {robot: ticks_to_goal(instance, instance.robot[robot])}, now, before)
+    return find_plan(problem, others, robot)
+
+
+def plan(instance: Instance, planner: Planner, advance: Callable[[], None] = lambda: None) -> Solution:
+    """Plan all robots of the instance at tick 0; `advance` is called once for each of `steps`."""
+    return _solution(instance, _plans(prepare(instance, 0), planner, advance))
+
+
+def steps(instance: Instance, planner: Planner) -> int:
+    """How often `plan` calls `advance` at most."""
+    return planner.attempts if isinstance(planner, Shuffled) else len(instance.robots)
+
+
+def add(instance: Instance, solution: Solution, robot: RobotId, now: int, options: Neighbourhood) -> Solution:
+    """Add a robot of the instance to a solution of the others at the tick `now`.
+
+    If no plan is found, the robot is unplanned and all other plans stay as they are.
+    """
+    by_robot = {each.robot: each for each in solution.plans}
+    committed = tuple(by_robot[each] for each in solution.order)
+    plans = add_robot(prepare(instance, now), committed, robot, options)
+    named = {*by_robot, *solution.unplanned, robot}
+    return _solution(instance, committed if plans is None else plans, named)
+
+
+def _plans(problem: Problem, planner: Planner, advance: Callable[[], None]) -> Plans:  # noqa: PLR0911 - one return a planner
+    order = [robot.id for robot in problem.instance.robots]
+    match planner:
+        case Carp():
+            return carp(problem, order)
+        case Shuffled(attempts, seed):
+            return shuffled(problem, order, attempts, seed, advance)
+        case LongestFirst():
+            return longest_first(problem)
+        case Greedy():
+            return greedy(problem, advance)
+        case Neighbourhood():
+            plans: Plans = ()
+            for robot in order:
+                plans = add_robot(problem, plans, robot, planner) or plans
+                advance()
+            return plans
+        case FixedPaths():
+            return fixed_paths(problem, planner, advance)
+        case _:
+            return time_expanded(problem.instance, advance)
+
+
+def _solution(instance: Instance, plans: Plans, named: set[RobotId] | None = None) -> Solution:
+    """The solution of the robots named (all, if none are): those without a plan are unplanned."""
+    order = tuple(each.robot for each in plans)
+    robots = [robot.id for robot in instance.robots if named is None or robot.id in named]
+    return Solution(plans, order, tuple(robot for robot in robots if robot not in order))

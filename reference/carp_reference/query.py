@@ -1,0 +1,142 @@
+"""The CARP query: A* over free time windows (ter Mors 2010).
+
+A node is a window of a resource, entered at the earliest tick at which it can be entered. Waiting in a window
+is free, so an earlier entry is never worse, and each window needs only one.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from heapq import heappop, heappush
+from itertools import pairwise
+
+from carp_reference.context import Context, context_of
+from carp_reference.problem import Problem
+from carp_spec import Plan, ResourceId, RobotId, Visit, has_ended
+from carp_spec.query_rules import expansion_key
+from carp_spec.windows import Window, stay_fits
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """A window entered at `enter`, which the robot may leave from `ready` on; `parent` is where it came from."""
+
+    resource: ResourceId
+    window: Window
+    enter: int
+    ready: int
+    parent: "Node | None"
+
+
+def find_plan(
+    problem: Problem,
+    committed: Sequence[Plan],
+    robot: RobotId,
+    successors: Mapping[ResourceId, Sequence[ResourceId]] | None = None,
+) -> Plan | None:
+    """The plan with the earliest arrival against the committed plans, or `None` if there is none.
+
+    `successors` are the moves allowed, where not all moves of the graph are.
+    """
+    context = context_of(problem.instance, committed)
+    before = problem.before.get(robot)
+    if before is not None and has_ended(before, problem.now):
+        return before if context.allows(before.visits) else None
+    history = _history(problem, robot)
+    start = _start(context, history)
+    if start is None:
+        return None
+    last = _search(problem, context, robot, start, successors or problem.instance.graph.successors)
+    return None if last is None else _plan(problem, robot, history[:-1], last)
+
+
+def _history(problem: Problem, robot: RobotId) -> tuple[Visit, ...]:
+    """What the robot has done by now; the last visit is the current one, left as early as it may be.
+
+    A robot that has no plan yet stands at its start from its release on.
+    """
+    request = problem.instance.robot[robot]
+    before = problem.before.get(robot)
+    entered = () if before is None else tuple(visit for visit in before.visits if visit.enter <= problem.now)
+    *past, current = entered or (Visit(request.start, request.release, None),)
+    ready = max(current.enter + problem.instance.duration(robot, current.resource), problem.now)
+    return (*past, Visit(current.resource, current.enter, ready))
+
+
+def _start(context: Context, history: Sequence[Visit]) -> Node | None:
+    """The node of the current visit; `None` if a committed plan stands in the way of what the robot has done."""
+    current = history[-1]
+    window = context.window_around(current)
+    if window is None or current.leave is None or not context.allows(history):
+        return None
+    return Node(current.resource, window, current.enter, current.leave, None)
+
+
+def _search(
+    problem: Problem,
+    context: Context,
+    robot: RobotId,
+    start: Node,
+    successors: Mapping[ResourceId, Sequence[ResourceId]],
+) -> Node | None:
+    """A* in the order of `query/ties`: the node in which the robot ends its plan, or `None`.
+
+    The start is not among the windows entered: a robot that has stayed at its goal too long to end there may
+    come back to the same window.
+    """
+    ticks_to_goal = problem.ticks_to_goal[robot]
+    entered: dict[tuple[ResourceId, Window], int] = {}
+    queue: list[tuple[tuple[int, int, int, int], Node]] = []
+
+    def push(node: Node) -> None:
+        if node.resource in ticks_to_goal:
+            f = node.enter + ticks_to_goal[node.resource]
+            index = problem.instance.graph.index[node.resource]
+            heappush(queue, (expansion_key(f, node.enter, index, node.window.start), node))
+
+    push(start)
+    while queue:
+        _, node = heappop(queue)
+        if _can_end(problem, robot, node):
+            return node
+        for following in _expand(problem, context, robot, node, successors.get(node.resource, ())):
+            key = (following.resource, following.window)
+            if key not in entered or following.enter < entered[key]:
+                entered[key] = following.enter
+                push(following)
+    return None
+
+
+def _can_end(problem: Problem, robot: RobotId, node: Node) -> bool:
+    """Whether the plan can end in the node: the goal, for ever (`park`) or one duration that is not over (`vanish`)."""
+    instance = problem.instance
+    if node.resource != instance.robot[robot].goal:
+        return False
+    if instance.after_goal == "park":
+        return node.window.end is None
+    return node.enter + instance.duration(robot, node.resource) >= problem.now
+
+
+def _expand(
+    problem: Problem, context: Context, robot: RobotId, node: Node, targets: Sequence[ResourceId]
+) -> Iterator[Node]:
+    """Every window that one move leads to, entered as early as it can be."""
+    for target in targets:
+        duration = problem.instance.duration(robot, target)
+        for window in context.windows(target):
+            enter = max(node.ready, window.start)
+            while context.is_exchange(enter, node.resource, target):
+                enter += 1
+            if node.window.lasts_until(enter) and stay_fits(window, enter, enter + duration, duration):
+                yield Node(target, window, enter, enter + duration, node)
+
+
+def _plan(problem: Problem, robot: RobotId, past: tuple[Visit, ...], last: Node) -> Plan:
+    """Follow the parents back to the start."""
+    path = [last]
+    while path[-1].parent is not None:
+        path.append(path[-1].parent)
+    path.reverse()
+    stays = [Visit(node.resource, node.enter, following.enter) for node, following in pairwise(path)]
+    parks = problem.instance.after_goal == "park"
+    leave = None if parks else last.enter + problem.instance.duration(robot, last.resource)
+    return Plan(robot, (*past, *stays, Visit(last.resource, last.enter, leave)))

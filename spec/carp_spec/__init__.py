@@ -1,0 +1,81 @@
+"""The specification of context-aware route planning: model, rules, checker, documents.
+
+This page names what planners and their users need most; the rest is in the modules.
+"""
+
+from carp_spec.check import Verdict, check, check_update, judge
+from carp_spec.documents import (
+    read_instance,
+    read_solution,
+    write_instance,
+    write_solution,
+    write_verdict,
+)
+from carp_spec.model import (
+    AfterGoal,
+    Instance,
+    Move,
+    Plan,
+    Resource,
+    ResourceGraph,
+    ResourceId,
+    Robot,
+    RobotId,
+    Solution,
+    Visit,
+)
+from carp_spec.plan_rules import has_ended, plan_cost, total_cost
+from carp_spec.planners import (
+    Carp,
+    FixedPaths,
+    Greedy,
+    LongestFirst,
+    Neighbourhood,
+    Planner,
+    Shuffled,
+    TimeExpanded,
+    planner_named,
+)
+from carp_spec.refusal import Refusal
+from carp_spec.registry import RULES
+from carp_spec.rule import Fault, Rule, Violation
+
+__all__ = [
+    "RULES",
+    "AfterGoal",
+    "Carp",
+    "Fault",
+    "FixedPaths",
+    "Greedy",
+    "Instance",
+    "LongestFirst",
+    "Move",
+    "Neighbourhood",
+    "Plan",
+    "Planner",
+    "Refusal",
+    "Resource",
+    "ResourceGraph",
+    "ResourceId",
+    "Robot",
+    "RobotId",
+    "Rule",
+    "Shuffled",
+    "Solution",
+    "TimeExpanded",
+    "Verdict",
+    "Violation",
+    "Visit",
+    "check",
+    "check_update",
+    "has_ended",
+    "judge",
+    "plan_cost",
+    "planner_named",
+    "read_instance",
+    "read_solution",
+    "total_cost",
+    "write_instance",
+    "write_solution",
+    "write_verdict",
+]

@@ -1,0 +1,59 @@
+"""The checker: all violations of a set of plans, in a fixed order."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from carp_spec.joint_rules import JOINT_RULES, SOLUTION_RULES
+from carp_spec.model import Instance, Plan, Solution
+from carp_spec.plan_rules import PLAN_RULES, plan_keeps_history, total_cost
+from carp_spec.rule import Violation
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What the checker says of a solution; `cost` is the total of the plans there are."""
+
+    cost: int
+    unplanned: int
+    violations: tuple[Violation, ...]
+
+    @property
+    def valid(self) -> bool:
+        """Whether no rule is broken; robots may be unplanned."""
+        return not self.violations
+
+
+def check(instance: Instance, plans: Sequence[Plan]) -> tuple[Violation, ...]:
+    """All violations of plans of the instance's robots: rule by rule, each in the order of the plans or of time.
+
+    The instance must have no faults and know every plan's robot.
+    """
+    of_plans = [violation for each in PLAN_RULES for plan in plans for violation in each(instance, plan)]
+    together = [violation for each in JOINT_RULES for violation in each(instance, plans)]
+    return (*of_plans, *together)
+
+
+def judge(instance: Instance, solution: Solution) -> Verdict:
+    """Check a whole solution; plans of robots that the instance does not have break `solution/covers` alone."""
+    plans = [plan for plan in solution.plans if plan.robot in instance.robot]
+    of_solution = [violation for each in SOLUTION_RULES for violation in each(instance, solution)]
+    planned = {plan.robot for plan in plans}
+    return Verdict(
+        cost=total_cost(instance, [plan for plan in plans if plan.visits]),
+        unplanned=sum(robot.id not in planned for robot in instance.robots),
+        violations=(*of_solution, *check(instance, plans)),
+    )
+
+
+def check_update(before: Sequence[Plan], after: Sequence[Plan], now: int) -> tuple[Violation, ...]:
+    """All violations of `fleet/history` by plans made anew at the tick now.
+
+    A robot that has a plan before and none after has not been planned anew, and is passed over.
+    """
+    again = {plan.robot: plan for plan in after}
+    return tuple(
+        violation
+        for plan in before
+        if plan.robot in again
+        for violation in plan_keeps_history(plan, again[plan.robot], now)
+    )

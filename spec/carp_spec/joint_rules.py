@@ -1,0 +1,99 @@
+"""The rules of plans together: `joint/...` and `solution/...`."""
+
+from collections import Counter, defaultdict
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+from carp_spec.model import Instance, Move, Plan, ResourceId, RobotId, Solution
+from carp_spec.rule import DESIGN, MORS, Rule, Violation, rule, violation_of_robots
+
+
+@rule(
+    "joint/capacity",
+    "At no tick do more robots occupy a resource than its capacity. A robot occupies it from the tick at which it "
+    "enters up to, not including, the tick at which it leaves.",
+    f"paper, section II; {MORS}",
+)
+def capacity_is_kept(instance: Instance, plans: Sequence[Plan]) -> Iterator[Violation]:
+    arrivals: dict[ResourceId, dict[int, list[RobotId]]] = defaultdict(lambda: defaultdict(list))
+    departures: dict[ResourceId, dict[int, list[RobotId]]] = defaultdict(lambda: defaultdict(list))
+    for plan in plans:
+        for visit in plan.visits:
+            if visit.leave is None or visit.enter < visit.leave:
+                arrivals[visit.resource][visit.enter].append(plan.robot)
+            if visit.leave is not None and visit.enter < visit.leave:
+                departures[visit.resource][visit.leave].append(plan.robot)
+    arrival_order = list(instance.robot)
+    for resource in instance.graph.resources:
+        ticks = sorted(arrivals[resource.id].keys() | departures[resource.id].keys())
+        stays: list[RobotId] = []
+        for start, end in zip(ticks, [*ticks[1:], None], strict=False):
+            for robot in departures[resource.id].get(start, ()):
+                stays.remove(robot)
+            stays.extend(arrivals[resource.id].get(start, ()))
+            occupants = set(stays)
+            if len(occupants) > resource.capacity:
+                robots = tuple(sorted(occupants, key=arrival_order.index))
+                yield Violation("joint/capacity", robots, resource.id, start, end, f"capacity {resource.capacity}")
+
+
+@rule(
+    "joint/exchange",
+    "No two robots make the moves (r, s) and (s, r) at the same tick, whatever the capacities. A robot makes the move "
+    "(r, s) at the tick at which it leaves r and enters s.",
+    DESIGN,
+)
+def exchanges_are_avoided(instance: Instance, plans: Sequence[Plan]) -> Iterator[Violation]:
+    movers: dict[tuple[int, Move], list[RobotId]] = defaultdict(list)
+    for plan in plans:
+        for visit, following in pairwise(plan.visits):
+            if visit.resource in instance.graph.index and following.resource in instance.graph.index:
+                movers[following.enter, (visit.resource, following.resource)].append(plan.robot)
+    index = instance.graph.index
+    for tick, (source, target) in sorted(movers, key=lambda key: (key[0], index[key[1][0]], index[key[1][1]])):
+        there = movers[tick, (source, target)]
+        back = movers.get((tick, (target, source)), [])
+        robots = tuple(dict.fromkeys(there + back))
+        if index[source] < index[target] and back and len(robots) > 1:
+            reason = f"they exchange {source} and {target} at tick {tick}"
+            yield Violation("joint/exchange", robots, source, tick, tick + 1, reason)
+
+
+JOINT_RULES: tuple[Rule[[Instance, Sequence[Plan]], Iterator[Violation]], ...] = (
+    capacity_is_kept,
+    exchanges_are_avoided,
+)
+
+
+@rule(
+    "solution/covers",
+    "Each robot of the instance has exactly one plan or is listed once as unplanned, not both, and no robot that the "
+    "instance does not have is named.",
+    DESIGN,
+)
+def solution_covers_robots(instance: Instance, solution: Solution) -> Iterator[Violation]:
+    planned = Counter(plan.robot for plan in solution.plans)
+    unplanned = Counter(solution.unplanned)
+    for robot in dict.fromkeys([*instance.robot, *planned, *unplanned]):
+        if robot not in instance.robot:
+            yield violation_of_robots("solution/covers", [robot], "the instance has no such robot")
+        elif planned[robot] + unplanned[robot] != 1:
+            reason = f"it must have one plan or be unplanned once, and has {planned[robot]} and {unplanned[robot]}"
+            yield violation_of_robots("solution/covers", [robot], reason)
+
+
+@rule("solution/order", "The planning order names each robot that has a plan exactly once, and no other robot.", DESIGN)
+def solution_orders_plans(instance: Instance, solution: Solution) -> Iterator[Violation]:
+    del instance
+    planned = {plan.robot for plan in solution.plans}
+    named = Counter(solution.order)
+    for robot in dict.fromkeys([*(plan.robot for plan in solution.plans), *solution.order]):
+        if named[robot] != (robot in planned):
+            reason = f"the order must name it {'once' if robot in planned else 'never'}, and does {named[robot]} times"
+            yield violation_of_robots("solution/order", [robot], reason)
+
+
+SOLUTION_RULES: tuple[Rule[[Instance, Solution], Iterator[Violation]], ...] = (
+    solution_covers_robots,
+    solution_orders_plans,
+)

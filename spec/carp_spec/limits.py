@@ -1,0 +1,21 @@
+"""What planners may refuse because it would not fit: `limit/...`. The law itself knows no largest number."""
+
+from typing import Any
+
+from carp_spec.rule import DESIGN, Rule, rule
+
+LARGEST_TABLE = 5_000_000
+LARGEST_COMPILED = 2**30
+
+
+@rule(
+    "limit/ticks",
+    f"A planner that keeps ticks in tables refuses what its tables do not hold: the compiled engine ticks, durations "
+    f"and positions beyond {LARGEST_COMPILED}, the time-expanded planner more than {LARGEST_TABLE} ticks.",
+    DESIGN,
+)
+def ticks_are_held(ticks: int, most: int) -> bool:  # noqa: D103 - its statement stands in its decorator
+    return ticks <= most
+
+
+LIMIT_RULES: tuple[Rule[..., Any], ...] = (ticks_are_held,)

@@ -1,0 +1,130 @@
+"""The model: resources, robots, visits, plans, instances and solutions.
+
+Time is `int` ticks from 0. Every interval is half-open, `[enter, leave)`, and `None` as its end means
+for ever: the robot that leaves at t and the robot that enters at t never share the resource.
+
+The classes are plain data and may hold nonsense; `carp_spec.instance_rules` and `carp_spec.check` say
+what is right. Source: the paper, section II; ter Mors 2010 for capacities and durations.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal, TypeAlias
+
+ResourceId: TypeAlias = str | int
+RobotId: TypeAlias = str | int
+Move: TypeAlias = tuple[ResourceId, ResourceId]
+AfterGoal: TypeAlias = Literal["vanish", "park"]
+
+
+@dataclass(frozen=True, slots=True)
+class Resource:
+    """A place that robots occupy: a cell, a lane, a crossing.
+
+    `capacity` robots fit in at a time, and each needs `duration` ticks, times its own pace, to traverse it.
+    `x` and `y` are its position on the plane, for distances and pictures; a resource without one counts as
+    standing at (0, 0).
+    """
+
+    id: ResourceId
+    capacity: int = 1
+    duration: int = 1
+    x: int | None = None
+    y: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ResourceGraph:
+    """The resources and the edges between them.
+
+    An edge (r, s) of a directed graph is the move from r to s; of an undirected one, that and the move back.
+    The order of `resources` breaks ties. The last three fields are look-ups, made from the others: a resource
+    by its id, its index in the order, and the resources that one move leads to, in that order.
+    """
+
+    resources: tuple[Resource, ...]
+    edges: tuple[Move, ...]
+    directed: bool = False
+    resource: Mapping[ResourceId, Resource] = field(init=False, repr=False, compare=False)
+    index: Mapping[ResourceId, int] = field(init=False, repr=False, compare=False)
+    successors: Mapping[ResourceId, tuple[ResourceId, ...]] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Make the look-ups; an edge to or from an unknown resource is left to the rules."""
+        index = {each.id: position for position, each in enumerate(self.resources)}
+        backward = [] if self.directed else [(target, source) for source, target in self.edges]
+        successors: dict[ResourceId, list[ResourceId]] = {each.id: [] for each in self.resources}
+        for source, target in (*self.edges, *backward):
+            if source in index and target in index:
+                successors[source].append(target)
+        for targets in successors.values():
+            targets.sort(key=index.__getitem__)
+        object.__setattr__(self, "resource", {each.id: each for each in self.resources})
+        object.__setattr__(self, "index", index)
+        object.__setattr__(self, "successors", {source: tuple(each) for source, each in successors.items()})
+
+    def has_move(self, source: ResourceId, target: ResourceId) -> bool:
+        """Whether a robot can move from one resource to the other."""
+        return target in self.successors.get(source, ())
+
+
+@dataclass(frozen=True, slots=True)
+class Robot:
+    """A request: go from `start` to `goal`, not before the tick `release`.
+
+    A robot of pace p needs p times a resource's duration there.
+    """
+
+    id: RobotId
+    start: ResourceId
+    goal: ResourceId
+    release: int = 0
+    pace: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Instance:
+    """A resource graph, robots in the order of their arrival, and what a robot does after its goal.
+
+    `vanish`: it leaves the system one duration after it enters its goal for the last time. `park`: it stays.
+    `robot` is a look-up of the robots by id.
+    """
+
+    graph: ResourceGraph
+    robots: tuple[Robot, ...]
+    after_goal: AfterGoal = "vanish"
+    robot: Mapping[RobotId, Robot] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Make the look-up."""
+        object.__setattr__(self, "robot", {each.id: each for each in self.robots})
+
+    def duration(self, robot: RobotId, resource: ResourceId) -> int:
+        """Ticks that the robot needs at least in the resource: the resource's duration times its pace."""
+        return self.robot[robot].pace * self.graph.resource[resource].duration
+
+
+@dataclass(frozen=True, slots=True)
+class Visit:
+    """A stay in a resource from the tick `enter` up to, not including, the tick `leave` (`None`: for ever)."""
+
+    resource: ResourceId
+    enter: int
+    leave: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """A robot's visits in order."""
+
+    robot: RobotId
+    visits: tuple[Visit, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Solution:
+    """Plans, the order in which they were made, and the robots that have none."""
+
+    plans: tuple[Plan, ...]
+    order: tuple[RobotId, ...]
+    unplanned: tuple[RobotId, ...] = ()

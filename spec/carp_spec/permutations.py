@@ -1,0 +1,55 @@
+"""Chance that every program can repeat: SplitMix64, shuffles, and the orders of a neighbourhood."""
+
+from collections.abc import Iterator, Sequence
+from itertools import permutations
+from math import factorial
+from typing import TypeAlias, TypeVar
+
+T = TypeVar("T")
+Order: TypeAlias = tuple[int, ...]
+
+_WORD = (1 << 64) - 1
+
+
+def splitmix64(seed: int) -> Iterator[int]:
+    """Yield the 64-bit numbers of the SplitMix64 stream of a seed, without end.
+
+    Source: Steele, Lea and Flood 2014, "Fast splittable pseudorandom number generators", and the
+    constants of its reference implementation.
+    """
+    state = seed & _WORD
+    while True:
+        state = (state + 0x9E3779B97F4A7C15) & _WORD
+        mixed = state
+        mixed = ((mixed ^ (mixed >> 30)) * 0xBF58476D1CE4E5B9) & _WORD
+        mixed = ((mixed ^ (mixed >> 27)) * 0x94D049BB133111EB) & _WORD
+        yield mixed ^ (mixed >> 31)
+
+
+def shuffle(items: Sequence[T], stream: Iterator[int]) -> tuple[T, ...]:
+    """Shuffle by Fisher-Yates: for i from the last position down to 1, swap it with the next number mod (i + 1)."""
+    shuffled = list(items)
+    for i in range(len(shuffled) - 1, 0, -1):
+        j = next(stream) % (i + 1)
+        shuffled[i], shuffled[j] = shuffled[j], shuffled[i]
+    return tuple(shuffled)
+
+
+def all_orders(size: int) -> Iterator[Order]:
+    """Every permutation of the positions 0 .. size - 1, in lexicographic order."""
+    return permutations(range(size))
+
+
+def sampled_orders(size: int, sample: int, stream: Iterator[int]) -> list[Order]:
+    """That many distinct permutations, each a shuffle of 0 .. size - 1, in lexicographic order."""
+    drawn: set[Order] = set()
+    while len(drawn) < sample:
+        drawn.add(shuffle(range(size), stream))
+    return sorted(drawn)
+
+
+def orders(size: int, sample: int | None, stream: Iterator[int]) -> Iterator[Order]:
+    """All permutations if there are no more than the sample, or no sample is asked; else a sample of them."""
+    if sample is None or factorial(size) <= sample:
+        return all_orders(size)
+    return iter(sampled_orders(size, sample, stream))

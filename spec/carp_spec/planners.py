@@ -1,0 +1,141 @@
+"""The planners by name, and their options: the same for documents, the command line and Python.
+
+A planner's decisions stand beside its options here; `carp_reference` and `carp_optimized` carry them out.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, fields
+from typing import Any, ClassVar, Literal, TypeAlias, cast, get_args
+
+from carp_spec.refusal import Refusal
+from carp_spec.rule import DESIGN, Fault, is_whole, rule
+
+LARGEST_SEED = 2**64 - 1
+LARGEST_SAMPLE = 1_000_000
+PathKind: TypeAlias = Literal["shortest", "disjoint"]
+
+
+@dataclass(frozen=True, slots=True)
+class Carp:
+    """Each robot in the order given, against the plans before it. Source: ter Mors 2010."""
+
+    name: ClassVar = "carp"
+
+
+@dataclass(frozen=True, slots=True)
+class Shuffled:
+    """The best of `attempts` passes of CARP (the paper's CARP10 and CARP100).
+
+    The first pass is in the order given; the order of each later one is a Fisher-Yates shuffle of the order
+    before, from the SplitMix64 stream of `seed`. A pass with fewer unplanned robots is better, then one with a
+    smaller total cost, then the earlier.
+    """
+
+    name: ClassVar = "shuffled"
+    attempts: int = 10
+    seed: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class LongestFirst:
+    """CARP in the order of falling shortest-path costs; a tie goes to the earlier (the paper's LF)."""
+
+    name: ClassVar = "longest-first"
+
+
+@dataclass(frozen=True, slots=True)
+class Greedy:
+    """In each round the robot whose plan costs least is planned; a tie goes to the earlier."""
+
+    name: ClassVar = "greedy"
+
+
+@dataclass(frozen=True, slots=True)
+class Neighbourhood:
+    """The paper's Proposed_m: each robot is added together with its m - 1 nearest neighbours, in every order.
+
+    `sample` is the number of orders drawn for a neighbourhood (`None`: all), `baseline` whether keeping all
+    plans is a candidate (`False` is paper mode), `fallback` the attempts of `Shuffled`, with the same seed, when
+    no candidate is found (`None`: none).
+    """
+
+    name: ClassVar = "neighbourhood"
+    m: int = 4
+    sample: int | None = None
+    seed: int = 0
+    baseline: bool = True
+    fallback: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class FixedPaths:
+    """Each robot takes, of its k shortest or at most k disjoint paths, the first on which it arrives earliest.
+
+    The paths are those of the empty graph. Disjoint paths share no resource but start and goal, and are as many
+    as there are up to k, of the least total length. Source: ter Mors' comparison, as the paper cites it.
+    """
+
+    name: ClassVar = "fixed-paths"
+    k: int = 3
+    paths: PathKind = "shortest"
+
+
+@dataclass(frozen=True, slots=True)
+class TimeExpanded:
+    """Like `Carp`, with A* on a table of occupied ticks in place of windows (the paper's [spatioTempA*])."""
+
+    name: ClassVar = "time-expanded"
+
+
+Planner: TypeAlias = Carp | Shuffled | LongestFirst | Greedy | Neighbourhood | FixedPaths | TimeExpanded
+PLANNERS: Mapping[str, type[Planner]] = {kind.name: kind for kind in get_args(Planner)}
+
+
+def _is_between(value: object, least: int, most: int | None) -> bool:
+    return is_whole(value) and value >= least and (most is None or value <= most)
+
+
+@rule(
+    "planner/options",
+    f"Counts (m, k, attempts, fallback, sample) are whole numbers of at least 1, a sample at most {LARGEST_SAMPLE}; "
+    "a seed is between 0 and 2^64 - 1; baseline is true or false; paths is shortest or disjoint; sample and fallback "
+    "may be null.",
+    DESIGN,
+)
+def options_are_right(planner: Planner) -> Iterator[Fault]:
+    limits = {"seed": (0, LARGEST_SEED), "sample": (1, LARGEST_SAMPLE)}
+    for name, value in asdict(planner).items():
+        path = f"$.{name}"
+        if name == "baseline":
+            if not isinstance(value, bool):
+                yield Fault("planner/options", path, f"the baseline must be true or false, not {value!r}")
+        elif name == "paths":
+            if value not in get_args(PathKind):
+                yield Fault("planner/options", path, f'the paths must be "shortest" or "disjoint", not {value!r}')
+        elif not (value is None and name in ("sample", "fallback")):
+            least, most = limits.get(name, (1, None))
+            if not _is_between(value, least, most):
+                bounds = f"of at least {least}" if most is None else f"between {least} and {most}"
+                message = f"the {name} must be a whole number {bounds}, not {value!r}"
+                yield Fault("planner/options", path, message)
+
+
+def planner_named(name: object, options: Mapping[str, object]) -> Planner:
+    """Make a planner from its name and options.
+
+    Raises `Refusal` on an unknown name, an option that the planner does not have, or a value out of range.
+    """
+    if not isinstance(name, str) or name not in PLANNERS:
+        message = f"there is no planner {name!r}; the planners are {', '.join(PLANNERS)}"
+        raise Refusal("option", "$.planner", "planner/options", message)
+    kind = PLANNERS[name]
+    known = [field.name for field in fields(kind)]
+    for option in options:
+        if option not in known:
+            has = f"its options are {', '.join(known)}" if known else "it has none"
+            message = f"the planner {name} has no option {option}; {has}"
+            raise Refusal("option", f"$.{option}", "planner/options", message)
+    planner = kind(**cast("Mapping[str, Any]", options))
+    for fault in options_are_right(planner):
+        raise Refusal("option", fault.path, fault.rule, fault.message)
+    return planner

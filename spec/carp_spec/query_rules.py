@@ -1,0 +1,47 @@
+"""The rules of a query, the search for one robot's plan against committed plans: `query/...`.
+
+`query/optimal` and `query/complete` speak of all plans. Their predicates take the rivals to look at: who
+enumerates them all has the whole rule, who draws some at random has evidence for it.
+"""
+
+from collections.abc import Iterable, Sequence
+
+from carp_spec.check import check
+from carp_spec.model import Instance, Plan
+from carp_spec.plan_rules import plan_cost
+from carp_spec.rule import MORS, rule
+
+
+@rule("query/sound", "The plan returned breaks no rule, alone or together with the committed plans.", MORS)
+def plan_is_sound(instance: Instance, committed: Sequence[Plan], plan: Plan) -> bool:
+    return not check(instance, (*committed, plan))
+
+
+@rule(
+    "query/optimal",
+    "Every plan that arrives earlier than the one returned breaks a rule, alone or together with the committed plans.",
+    MORS,
+)
+def plan_is_optimal(instance: Instance, committed: Sequence[Plan], plan: Plan, rivals: Iterable[Plan]) -> bool:
+    cost = plan_cost(instance, plan)
+    return not any(plan_cost(instance, rival) < cost and plan_is_sound(instance, committed, rival) for rival in rivals)
+
+
+@rule(
+    "query/complete",
+    "That there is no plan is said only where every plan breaks a rule, alone or together with the committed plans.",
+    MORS,
+)
+def absence_is_true(instance: Instance, committed: Sequence[Plan], rivals: Iterable[Plan]) -> bool:
+    return not any(plan_is_sound(instance, committed, rival) for rival in rivals)
+
+
+@rule(
+    "query/ties",
+    "A* expands the smallest f = g + h first, then the largest g, then the smallest index of the resource in the "
+    "instance, then the earliest window; a window keeps the first parent that gave its earliest arrival. g is the tick "
+    "of entering the window, h the least ticks from entering its resource to entering the goal on the empty graph.",
+    "decision of carproof",
+)
+def expansion_key(f: int, g: int, resource_index: int, window_start: int) -> tuple[int, int, int, int]:
+    return (f, -g, resource_index, window_start)

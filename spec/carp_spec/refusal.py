@@ -1,0 +1,24 @@
+"""The one exception that carproof raises for bad input."""
+
+from typing import Literal, TypeAlias
+
+RefusalKind: TypeAlias = Literal["document", "request", "option", "limit"]
+
+
+class Refusal(Exception):  # noqa: N818 - the input is refused; nothing went wrong here
+    """Input that is refused: of what kind, at which path of the document, by which rule, and what would be right.
+
+    `kind` is `document` for a malformed document, `request` for a request that makes no sense, `option` for a
+    planner's or a command's option, `limit` for a size that would exhaust memory.
+    """
+
+    def __init__(self, kind: RefusalKind, path: str, rule: str, message: str) -> None:
+        super().__init__(kind, path, rule, message)
+        self.kind = kind
+        self.path = path
+        self.rule = rule
+        self.message = message
+
+    def __str__(self) -> str:
+        """One sentence with path and rule."""
+        return f"{self.path}: {self.message} [{self.rule}]"

@@ -1,0 +1,48 @@
+"""All rules, in the order in which they are told."""
+
+from typing import Any
+
+from carp_spec.documents import has_format, has_shape, is_json
+from carp_spec.instance_rules import INSTANCE_RULES
+from carp_spec.joint_rules import JOINT_RULES, SOLUTION_RULES
+from carp_spec.neighbourhood_rules import (
+    baseline_is_tried,
+    distance,
+    nearest,
+    neighbourhood_orders,
+    next_trajectory,
+    replaces_best,
+    replanned_from,
+)
+from carp_spec.plan_rules import PLAN_RULES, is_plan_cost, is_total_cost, plan_keeps_history
+from carp_spec.planners import options_are_right
+from carp_spec.query_rules import absence_is_true, expansion_key, plan_is_optimal, plan_is_sound
+from carp_spec.rule import Rule
+from carp_spec.windows import stay_fits, windows_are_free
+
+RULES: tuple[Rule[..., Any], ...] = (
+    is_json,
+    has_format,
+    has_shape,
+    *INSTANCE_RULES,
+    *SOLUTION_RULES,
+    *PLAN_RULES,
+    *JOINT_RULES,
+    is_plan_cost,
+    is_total_cost,
+    windows_are_free,
+    stay_fits,
+    plan_is_sound,
+    plan_is_optimal,
+    absence_is_true,
+    expansion_key,
+    baseline_is_tried,
+    nearest,
+    distance,
+    replanned_from,
+    neighbourhood_orders,
+    replaces_best,
+    next_trajectory,
+    plan_keeps_history,
+    options_are_right,
+)

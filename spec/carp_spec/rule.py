@@ -1,0 +1,100 @@
+"""What a rule is, and how a broken one is reported.
+
+A rule has a stable id, one statement, a source and one predicate, the function that decides it. Everything
+that speaks of a rule quotes its id. `carp_spec.registry` lists them all.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Generic, ParamSpec, TypeGuard, TypeVar
+
+from carp_spec.model import ResourceId, RobotId, Visit
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+DESIGN = "decision of carproof"
+MORS = "ter Mors 2010"
+
+
+@dataclass(frozen=True, slots=True)
+class Rule(Generic[P, R]):
+    """A rule: call it to ask its predicate.
+
+    A predicate that yields violations or faults is kept when it yields none.
+    """
+
+    id: str
+    statement: str
+    source: str
+    predicate: Callable[P, R]
+
+    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
+        """Ask the predicate."""
+        return self.predicate(*args, **kwargs)
+
+
+def rule(id: str, statement: str, source: str) -> Callable[[Callable[P, R]], Rule[P, R]]:
+    """Make the decorated predicate a rule."""
+
+    def decorate(predicate: Callable[P, R]) -> Rule[P, R]:
+        return Rule(id, statement, source, predicate)
+
+    return decorate
+
+
+@dataclass(frozen=True, slots=True)
+class Violation:
+    """A broken rule of a plan or of a set of plans.
+
+    It happened at `resource` in the ticks [start, end); an end of `None` is for ever, and a start of `None`
+    says that no resource or tick is to blame. `reason` says what is wrong and what would be right.
+    """
+
+    rule: str
+    robots: tuple[RobotId, ...]
+    resource: ResourceId | None
+    start: int | None
+    end: int | None
+    reason: str
+
+    @property
+    def message(self) -> str:
+        """The violation as one sentence, without the rule's id."""
+        robots = ("robot " if len(self.robots) == 1 else "robots ") + ", ".join(map(str, self.robots))
+        if self.start is None:
+            return f"{robots} ({self.reason})"
+        return f"resource {self.resource} in {interval(self.start, self.end)}: {robots} ({self.reason})"
+
+    def __str__(self) -> str:
+        """Print like `[joint/capacity] resource 3,4 in [5,7): robots r1, r9 (capacity 1)`."""
+        return f"[{self.rule}] {self.message}"
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """A broken rule of an instance or of a planner's options, at a path in the document."""
+
+    rule: str
+    path: str
+    message: str
+
+
+def is_whole(value: object) -> TypeGuard[int]:
+    """Whether the value is a whole number; `True` and `1.0` are none."""
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
+def interval(start: int, end: int | None) -> str:
+    """Print a half-open interval of ticks; `None` is for ever."""
+    return f"[{start},{'for ever' if end is None else end})"
+
+
+def violation_at_visit(rule: str, robot: RobotId, visit: Visit, reason: str) -> Violation:
+    """Blame one visit of one robot."""
+    return Violation(rule, (robot,), visit.resource, visit.enter, visit.leave, reason)
+
+
+def violation_of_robots(rule: str, robots: Sequence[RobotId], reason: str) -> Violation:
+    """Blame robots, but no resource and no tick."""
+    return Violation(rule, tuple(robots), None, None, None, reason)

@@ -1,0 +1,44 @@
+"""The documents' JSON Schemas, made from the same classes that decode them; `python -m carp_spec.schema` writes them.
+
+They are published beside this module in `schemas/`. A schema says less than the decoder: JSON Schema counts 1.0 as
+a whole number, which `document/shape` does not, and it cannot tell the `instance/...` rules that speak of ids.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import msgspec
+
+from carp_spec.documents import InstanceDocument, SolutionDocument, VerdictDocument
+from carp_spec.vectors import VectorsDocument
+
+FOLDER = Path(__file__).with_name("schemas")
+DRAFT = "https://json-schema.org/draft/2020-12/schema"
+DOCUMENTS: Mapping[str, type[msgspec.Struct]] = {
+    "instance": InstanceDocument,
+    "solution": SolutionDocument,
+    "verdict": VerdictDocument,
+    "vectors": VectorsDocument,
+}
+
+
+def schema_text(kind: type[msgspec.Struct]) -> str:
+    """The JSON Schema of a kind of document, as its file holds it."""
+    schema = {"$schema": DRAFT, **msgspec.json.schema(kind)}
+    return msgspec.json.format(msgspec.json.encode(schema, order="sorted"), indent=2).decode() + "\n"
+
+
+def schema_file(name: str) -> Path:
+    """Where the schema of that name is published."""
+    return FOLDER / f"{name}.schema.json"
+
+
+def write_schemas() -> None:
+    """Write every schema to its file."""
+    FOLDER.mkdir(exist_ok=True)
+    for name, kind in DOCUMENTS.items():
+        schema_file(name).write_text(schema_text(kind))
+
+
+if __name__ == "__main__":
+    write_schemas()

@@ -1,0 +1,94 @@
+"""Test vectors: for every rule, cases that keep it and cases that break it, as JSON for programs in any language.
+
+Each file beside this module is about one subject, a rule's id or an op, and lists cases. A case is a question (`op`,
+`instance` and `input`, the fields of a request of the protocol) with the right `answer`, and says whether what is
+judged is `valid` or `invalid`, and all rules that are `violated`. Judged is the `claim`, an answer that somebody
+might give, or, where there is none, the question's own input. Where no op of the protocol reaches a rule, the op is
+the rule's id and asks its predicate alone.
+
+An id means the same case for ever: `digests.txt` names every case with a digest of all but flags and comment, and
+only grows. `carp_verify.vectors` writes the files anew; nothing here is read before somebody asks.
+"""
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, Final, Literal, TypeAlias
+
+import msgspec
+
+from carp_spec.documents import read_instance, read_solution
+from carp_spec.model import Instance, Solution
+from carp_spec.registry import RULES
+
+FOLDER: Final = Path(__file__).parent
+DIGESTS: Final = FOLDER / "digests.txt"
+VECTORS_FORMAT: Final = "carproof-vectors/1"
+
+Flag: TypeAlias = Literal["edge-case", "known-bug-elsewhere", "free-choice"]
+Expected: TypeAlias = Literal["valid", "invalid"]
+Fields: TypeAlias = dict[str, Any]
+
+FLAGS: Final[Mapping[Flag, str]] = {
+    "edge-case": "The least, the first, the last or none of something: where an off-by-one shows.",
+    "known-bug-elsewhere": "Published planners have been wrong here; the comment says how.",
+    "free-choice": "Another answer is as good; only a program that claims carproof's ties must give this one.",
+}
+
+
+class Vector(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A case: a question with its right answer, and whether what is judged keeps the rules.
+
+    `instance` is an instance document, which may be malformed, or null. `answer` has, for `check`, `plan` and `add`,
+    the `cost` and the number of robots `unplanned`, or `refused`, the path to blame; for `query`, the `cost`, null
+    where there is no plan; for `optimum`, the least `cost`; for a rule's id, what its claims have.
+    """
+
+    id: str
+    op: str
+    instance: Any
+    input: Fields
+    claim: Fields | None
+    expected: Expected
+    violated: tuple[str, ...]
+    answer: Fields
+    flags: tuple[Flag, ...]
+    comment: str
+
+    @property
+    def request(self) -> Fields:
+        """The fields of the request that asks the question; it tells nothing of the answer."""
+        instance = {} if self.instance is None else {"instance": self.instance}
+        return {"op": self.op, **instance, **self.input}
+
+    def read_instance(self) -> Instance:
+        """The instance; raises `Refusal` if its document is malformed."""
+        return read_instance(msgspec.json.encode(self.instance))
+
+    def read_solution(self) -> Solution:
+        """The solution among the inputs; raises `Refusal` if its document is malformed."""
+        return read_solution(msgspec.json.encode(self.input["solution"]))
+
+
+class VectorsDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """All cases about one subject, and what the flags mean."""
+
+    format: Literal["carproof-vectors/1"]
+    subject: str
+    flags: dict[Flag, str]
+    cases: tuple[Vector, ...]
+
+
+def vector_file(subject: str) -> Path:
+    """The file with the cases about a rule's id or an op."""
+    return FOLDER / f"{subject.replace('/', '-')}.json"
+
+
+def subjects() -> tuple[str, ...]:
+    """What there are cases about: the ids of all rules, then ops."""
+    return (*(rule.id for rule in RULES), "optimum")
+
+
+def vectors(subject: str | None = None) -> Iterator[Vector]:
+    """The cases about a subject, or all; each file is read when its first case is asked for."""
+    for each in subjects() if subject is None else (subject,):
+        yield from msgspec.json.decode(vector_file(each).read_bytes(), type=VectorsDocument).cases

@@ -1,0 +1,3 @@
+module carproof.test/foreign
+
+go 1.21

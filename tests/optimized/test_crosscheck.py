@@ -1,0 +1,24 @@
+"""`first_difference` finds a planted difference, makes it small, and finds none where there is none."""
+
+import pytest
+
+import carp_optimized
+from carp_spec import Instance, Planner, Solution
+from carp_verify.crosscheck import first_difference
+
+
+def test_the_engines_agree() -> None:
+    assert first_difference(30, seed=1) is None
+
+
+def test_a_planted_difference_is_found_and_made_small(monkeypatch: pytest.MonkeyPatch) -> None:
+    def forgetful(instance: Instance, planner: Planner) -> Solution:
+        del planner
+        return Solution((), (), tuple(instance.robot))
+
+    monkeypatch.setattr(carp_optimized, "plan", forgetful)
+    difference = first_difference(200, seed=1)
+    assert difference is not None
+    assert len(difference.instance.robots) == 1
+    assert difference.reference.plans
+    assert not difference.optimized.plans

@@ -1,0 +1,52 @@
+"""The optimised planner makes the reference's plans, visit for visit, whatever kinds of reuse are on."""
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+import carp_optimized
+import carp_reference
+from carp_optimized import Reuse
+from carp_spec import Carp, Greedy, Instance, LongestFirst, Neighbourhood, Planner, Shuffled
+from carp_verify.strategies import FleetUnderWay, Sizes, fleets_under_way, instances
+
+SIZES = Sizes(resources=6, robots=6)
+SEEDS = st.integers(0, 2**64 - 1)
+
+
+def neighbourhoods() -> st.SearchStrategy[Neighbourhood]:
+    return st.builds(
+        Neighbourhood,
+        m=st.integers(1, 5),
+        sample=st.none() | st.integers(1, 8),
+        seed=SEEDS,
+        baseline=st.booleans(),
+        fallback=st.none() | st.integers(1, 3),
+    )
+
+
+def planners() -> st.SearchStrategy[Planner]:
+    others = st.sampled_from([Carp(), LongestFirst(), Greedy()])
+    return st.one_of(neighbourhoods(), others, st.builds(Shuffled, attempts=st.integers(1, 4), seed=SEEDS))
+
+
+def kinds_of_reuse() -> st.SearchStrategy[Reuse]:
+    on = st.booleans()
+    return st.builds(Reuse, kept=on, unchanged=on, prefixes=on, shared=on, bounds=on)
+
+
+@given(fleets_under_way(SIZES), st.data())
+def test_a_query_finds_the_same_plan(fleet: FleetUnderWay, data: st.DataObject) -> None:
+    robot = data.draw(st.sampled_from([fleet.robot, *fleet.solution.order]))
+    question = (fleet.instance, fleet.solution.plans, robot, fleet.now)
+    assert carp_optimized.query(*question) == carp_reference.query(*question)
+
+
+@given(instances(SIZES), planners(), kinds_of_reuse())
+def test_planning_all_robots_makes_the_same_solution(instance: Instance, planner: Planner, reuse: Reuse) -> None:
+    assert carp_optimized.plan(instance, planner, reuse=reuse) == carp_reference.plan(instance, planner)
+
+
+@given(fleets_under_way(SIZES), neighbourhoods(), kinds_of_reuse())
+def test_adding_a_robot_makes_the_same_solution(fleet: FleetUnderWay, options: Neighbourhood, reuse: Reuse) -> None:
+    question = (fleet.instance, fleet.solution, fleet.robot, fleet.now, options)
+    assert carp_optimized.add(*question, reuse) == carp_reference.add(*question)

@@ -1,0 +1,103 @@
+"""Pages in headless Chromium."""
+
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+from selenium.webdriver import Chrome, ChromeOptions
+from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.by import By
+
+FLAGS = (
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--hide-scrollbars",
+)
+
+
+@contextmanager
+def chromium(profile: Path) -> Iterator[Chrome]:
+    """A browser with an empty profile; the test fails where there is none."""
+    missing = [name for name in ("chromium", "chromedriver") if shutil.which(name) is None]
+    if missing:
+        pytest.fail(
+            f"{' and '.join(missing)} cannot be found: the viewer is tested in Chromium. "
+            "Install Debian's packages chromium and chromium-driver.",
+            pytrace=False,
+        )
+    options = ChromeOptions()
+    options.binary_location = shutil.which("chromium") or ""
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    for flag in (*FLAGS, f"--user-data-dir={profile}"):
+        options.add_argument(flag)
+    driver = Chrome(options=options, service=Service(shutil.which("chromedriver")))
+    try:
+        yield driver
+    finally:
+        driver.quit()
+
+
+def logged(driver: Chrome, kind: str) -> list[str]:
+    """The messages of a log since it was read last: of the `browser`'s console, or of its `performance`."""
+    return [entry["message"] for entry in driver.get_log(kind)]  # type: ignore[no-untyped-call]
+
+
+class Page:
+    """A page that is open, as its user sees it."""
+
+    def __init__(self, driver: Chrome, file: Path, width: int = 1280, height: int = 800) -> None:
+        self.driver = driver
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+        logged(driver, "browser")
+        logged(driver, "performance")
+        driver.get(file.as_uri())
+
+    def script(self, body: str, *arguments: object) -> Any:  # noqa: ANN401 - whatever the script returns
+        """Run a script in the page."""
+        return self.driver.execute_script(body, *arguments)
+
+    def text(self, id: str) -> str:
+        """The text of an element."""
+        return self.driver.find_element(By.ID, id).text
+
+    @property
+    def tick(self) -> str:
+        """The tick as the page tells it."""
+        return self.text("tick")
+
+    def press(self, *keys: str) -> None:
+        """Press keys, wherever the focus is."""
+        for key in keys:
+            ActionChains(self.driver).send_keys(key).perform()
+
+    def click(self, selector: str, text: str = "") -> None:
+        """Click the first element that has the text."""
+        found = [each for each in self.driver.find_elements(By.CSS_SELECTOR, selector) if text in each.text]
+        found[0].click()
+
+    def robots(self) -> dict[str, str]:
+        """Where the map shows which robots: the names with their transforms."""
+        shown = self.script(
+            "return [...document.querySelectorAll('.map .robot')].filter((each) => each.style.display !== 'none')"
+            ".map((each) => [each.querySelector('title').textContent, each.getAttribute('transform')])"
+        )
+        return dict(shown)
+
+    def count(self, selector: str) -> int:
+        """How many elements there are."""
+        return len(self.driver.find_elements(By.CSS_SELECTOR, selector))
+
+    def chosen(self, list: str) -> list[str]:
+        """What is chosen in a list."""
+        return [each.text for each in self.driver.find_elements(By.CSS_SELECTOR, f"#{list} button.chosen")]

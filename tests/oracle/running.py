@@ -1,0 +1,58 @@
+"""What a command line did, and documents that several tests use."""
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a command line did."""
+
+    code: int
+    stdout: str
+    stderr: str
+
+
+Run = Callable[..., Outcome]
+Document = dict[str, Any]
+
+
+def corridor(robots: list[Document], after_goal: str = "vanish") -> Document:
+    """An instance: five cells a, b, c, d, e in a row."""
+    return {
+        "format": "carproof-instance/1",
+        "graph": {
+            "nodes": [{"id": cell, "x": x, "y": 0} for x, cell in enumerate("abcde")],
+            "edges": [{"source": "abcd"[at], "target": "bcde"[at]} for at in range(4)],
+        },
+        "after_goal": after_goal,
+        "robots": robots,
+    }
+
+
+def solution(plans: dict[str, list[list[Any]]], unplanned: list[str] | None = None) -> Document:
+    """A solution."""
+    return {
+        "format": "carproof-solution/1",
+        "plans": [{"robot": robot, "visits": visits} for robot, visits in plans.items()],
+        "order": list(plans),
+        "unplanned": unplanned or [],
+    }
+
+
+EAST: Document = {"id": "r1", "start": "a", "goal": "c"}
+BEHIND: Document = {"id": "r2", "start": "b", "goal": "e"}
+HEAD_ON: Document = {"id": "r3", "start": "e", "goal": "a"}
+EAST_PLAN = [["a", 0, 1], ["b", 1, 2], ["c", 2, 3]]
+BEHIND_PLAN = [["b", 0, 1], ["c", 1, 2], ["d", 2, 3], ["e", 3, 4]]
+TWO = corridor([EAST, BEHIND])
+TWO_PLANNED = solution({"r1": EAST_PLAN, "r2": BEHIND_PLAN})
+ONE_PLANNED = solution({"r1": EAST_PLAN})
+BROKEN = solution({"r1": EAST_PLAN, "r2": [["b", 0, 2], ["c", 2, 3], ["d", 3, 4], ["e", 4, 5]]})
+
+
+def line(**fields: object) -> bytes:
+    """A request of the protocol."""
+    return json.dumps(fields).encode() + b"\n"

@@ -1,0 +1,391 @@
+"""Other planners' files: what is right in them is judged right, and what is wrong by the right rule."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from tests.oracle.foreign_files import COLUMNS, CORRECT, INSTANCE, LACAM, MAP, MOVES, ROWS, SCENARIO, SCHEDULE, TABLE
+from tests.oracle.running import Run
+
+from carp_oracle.adapters import (
+    ADAPTER_RULES,
+    ADAPTERS,
+    format_is_clear,
+    read_foreign_solution,
+    walks,
+    write_foreign_solution,
+)
+from carp_oracle.adapters.walks import instance_has_walks, solution_has_walks, walks_are_bounded
+from carp_oracle.generate.grid import cell_edges, cell_id
+from carp_spec import (
+    Instance,
+    Plan,
+    Refusal,
+    Resource,
+    ResourceGraph,
+    Robot,
+    Solution,
+    Visit,
+    judge,
+    write_instance,
+    write_solution,
+)
+from carp_verify.strategies import PlannedInstance, Sizes, instances, planned_instances
+
+SOLUTION = Solution(
+    (
+        Plan("r1", (Visit("0,0", 0, 1), Visit("1,0", 1, 2), Visit("2,0", 2, None))),
+        Plan("r2", (Visit("3,2", 0, 2), Visit("3,1", 2, 3), Visit("3,0", 3, None))),
+    ),
+    ("r1", "r2"),
+)
+
+
+def read(text: str, format: str | None = None, instance: Instance = INSTANCE) -> Solution:
+    return read_foreign_solution(text.encode(), instance, "file", format)
+
+
+def broken_rules(text: str) -> list[str]:
+    return [violation.rule for violation in judge(INSTANCE, read(text)).violations]
+
+
+@pytest.mark.parametrize("format", CORRECT)
+def test_a_correct_file_is_read_and_its_format_found(format: str) -> None:
+    assert read(CORRECT[format]) == read(CORRECT[format], format) == SOLUTION
+    assert judge(INSTANCE, SOLUTION).cost == 5
+
+
+def test_the_trackers_table_is_read_too() -> None:
+    assert read(TABLE) == SOLUTION
+    assert read('path\n"rr\nwdd"\n') == SOLUTION
+
+
+def test_a_file_with_the_other_system_s_line_ends_is_read() -> None:
+    assert all(read(text.replace("\n", "\r\n")) == SOLUTION for text in (*CORRECT.values(), TABLE))
+
+
+@pytest.mark.parametrize("format", CORRECT)
+def test_what_is_written_is_read_again(format: str) -> None:
+    assert read(write_foreign_solution(INSTANCE, SOLUTION, format).decode()) == SOLUTION
+
+
+def test_carproofs_own_document_is_one_of_the_formats() -> None:
+    assert read(write_solution(SOLUTION).decode()) == SOLUTION
+    assert write_foreign_solution(INSTANCE, SOLUTION, "carproof") == write_solution(SOLUTION)
+
+
+@pytest.mark.parametrize(
+    ("text", "rules"),
+    [
+        (LACAM.replace("1:(1,0),(3,2)", "1:(0,0),(3,2)"), ["plan/move"]),
+        (LACAM.replace("1:(1,0),(3,2)", "1:(1,1),(3,2)"), ["plan/resource"]),
+        (LACAM.replace("1:(1,0),(3,2)", "1:(-1,0),(3,2)"), ["plan/resource"]),
+        (LACAM.replace("4:(2,0),(3,0)", "4:(2,0),(3,1)"), ["plan/goal"]),
+        (LACAM.replace("4:(2,0),(3,0)", "4:(2,0),(2,0)"), ["plan/goal", "joint/capacity"]),
+        (LACAM + "5:(3,0),(2,0)\n6:(2,0),(3,0)\n", ["joint/exchange", "joint/exchange"]),
+        (LACAM.replace("0:(0,0),(3,2)", "0:(0,1),(3,2)"), ["plan/start", "plan/move"]),
+        (SCHEDULE.replace("x: 2, y: 0, t: 2", "x: 2, y: 2, t: 2"), ["plan/goal", "plan/move"]),
+        (SCHEDULE.replace("y: 2, t: 0", "y: 2, t: 1"), ["plan/start"]),
+        (MOVES.replace("2r", "r"), ["plan/goal"]),
+        (MOVES.replace("2r", "d2r"), ["plan/goal", "plan/resource"] + ["plan/resource"] * 2),
+        (MOVES.replace("2r", "2rd"), ["plan/goal", "plan/resource"]),
+        (COLUMNS.replace("->(1,0)->", "->"), ["plan/move"]),
+        (ROWS.replace("(1,3)->(0,3)", "(1,3)->(0,3)->(0,2)->(0,3)"), ["joint/capacity"]),
+    ],
+)
+def test_a_broken_solution_is_read_and_judged_by_the_right_rules(text: str, rules: list[str]) -> None:
+    assert broken_rules(text) == rules
+
+
+def test_waiting_at_the_goal_is_one_visit_for_ever() -> None:
+    assert read(MOVES.replace("2d", "2d999999999w")) == SOLUTION
+
+
+@pytest.mark.parametrize(
+    ("format", "text"),
+    [
+        ("lacam", "agents=2\nsolved=0\nsolution=\n"),
+        ("libmultirobotplanning", "schedule: {}\n"),
+        ("paths-x-y", "\n"),
+    ],
+)
+def test_a_file_without_plans_leaves_all_robots_unplanned(format: str, text: str) -> None:
+    assert read(text, format) == Solution((), (), ("r1", "r2"))
+
+
+def test_an_agent_without_a_line_is_unplanned() -> None:
+    only_second = Solution(SOLUTION.plans[1:], ("r2",), ("r1",))
+    assert read(COLUMNS.splitlines()[1]) == only_second
+    assert read("schedule:\n" + SCHEDULE[SCHEDULE.index("  agent1") :]) == only_second
+    assert read("schedule:\n  r2:" + SCHEDULE.partition("agent1:")[2]) == only_second
+    assert read(write_foreign_solution(INSTANCE, only_second, "libmultirobotplanning").decode()) == only_second
+    assert read(write_foreign_solution(INSTANCE, only_second, "paths-x-y").decode()) == only_second
+
+
+@pytest.mark.parametrize(
+    ("format", "text", "error"),
+    [
+        ("lacam", "", "file:1: there must be a line solution="),
+        ("lacam", "solution=\n0:(0,0);(3,2)", "file:2: the line must be like 0:(x,y),(x,y)"),
+        ("lacam", "solution=\n0:(0,0),(3,9999999999)", "file:2: the line must be like"),
+        ("lacam", LACAM.replace("3:(", "5:("), "file:12: the line must be that of tick 3, and is that of 5"),
+        ("lacam", LACAM + "5:(2,0)", "file:14: the line must have a position for each of 2 robots, and has 1"),
+        ("paths-x-y", "Agent 0: (0,0)->(1)", "file:1: the line must be like Agent 0: (1,2)->(1,3)->"),
+        ("paths-x-y", "\nAgent 2: (0,0)->", "file:2: the agent must be one of 2, counted from 0, and is 2"),
+        ("paths-x-y", COLUMNS + "Agent 0: (0,0)", "file:3: agent 0 must have one line, and has a second"),
+        ("mapf-tracker", "rr\nwdx\n", "file:2: the line must be of the letters l, r, u, d and w"),
+        ("mapf-tracker", "rr\n", "file:1: there must be a line for each of 2 robots, not 1"),
+        ("mapf-tracker", "rr\nwdd\n\n\n", "file:4: there must be a line for each of 2 robots, not 4"),
+        ("mapf-tracker", "999999999r\nwdd\n", "file: the walks must have at most 20000000 cells together"),
+        ("mapf-tracker", TABLE + TABLE.partition("\n")[2], "file:1: the table must have one row"),
+        ("mapf-tracker", 'path,solution_plan\n"rr","rr"', "file:1: the table must have one row"),
+        ("mapf-tracker", '"agents","path"\n"2","rr\nwd?"\n', "file:3: the line must be of the letters"),
+        ("libmultirobotplanning", "", "file:1: there must be a field schedule"),
+        ("libmultirobotplanning", "- 1", "file:1: there must be a mapping with a field schedule"),
+        ("libmultirobotplanning", "a: [1, {b: 2}]", "file:2: there must be a field schedule"),
+        ("libmultirobotplanning", "schedule: {}\nschedule: {}", "file:2: there must be one field schedule"),
+        ("libmultirobotplanning", "schedule: 1", "file:1: there must be a mapping of agents to lists"),
+        ("libmultirobotplanning", "schedule:\n  agent0: 1", "file:2: there must be a list of entries"),
+        ("libmultirobotplanning", "schedule:\n  agent0: []", "file:2: the list must have an entry"),
+        ("libmultirobotplanning", "schedule:\n  agent0:\n  - 1", "file:3: there must be an entry with x, y and t"),
+        ("libmultirobotplanning", "schedule:\n  agent0: [{x: 1}]", "file:2: an entry must have x, y and t"),
+        ("libmultirobotplanning", "schedule:\n  agent0: [{x: 1.5}]", "file:2: an entry must have x, y and t once"),
+        ("libmultirobotplanning", "schedule:\n  agent0: [{x: [1]}]", "file:2: there must be a whole number"),
+        ("libmultirobotplanning", "schedule:\n  agent2: []", "file:2: the agent must be a robot of the instance"),
+        ("libmultirobotplanning", SCHEDULE + "  agent1:\n    - {x: 3, y: 2, t: 0}", "agent agent1 must have one list"),
+        ("libmultirobotplanning", SCHEDULE.replace("t: 2}", "t: 0}"), "the t must be larger than"),
+        ("libmultirobotplanning", "schedule:\n  agent0: *x", "file:2: there must be a list of entries"),
+        ("libmultirobotplanning", "schedule:\n  agent0: [", "file:3: it must be YAML: "),
+        ("libmultirobotplanning", "schedule: \x00", "it must be YAML: "),
+        ("libmultirobotplanning", "schedule: " + "[" * 100_000, ": "),
+        ("carproof", "{}", "file: $.format: the format must be carproof-solution/1 [document/format]"),
+    ],
+)
+def test_a_malformed_file_is_refused_with_file_and_line(format: str, text: str, error: str) -> None:
+    with pytest.raises(Refusal) as refused:
+        read(text, format)
+    assert error in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "error"),
+    [
+        ("", "it looks like none of carproof, lacam"),
+        ("plan: nothing", "it looks like none of"),
+        ("Agent 0: (1,1)->(1,2)->", "it could be paths-row-column, paths-x-y"),
+        ("Agent 0: (0,0)->(0,1)->", "it could be paths-row-column, paths-x-y"),
+        (LACAM + "schedule: {}", "it could be lacam, libmultirobotplanning"),
+    ],
+)
+def test_a_format_that_is_not_clear_is_to_be_named(text: str, error: str) -> None:
+    with pytest.raises(Refusal, match="the format must be named by --from") as refused:
+        read(text)
+    assert error in str(refused.value)
+    assert not format_is_clear(text, INSTANCE)
+
+
+@pytest.mark.parametrize(
+    "instance",
+    [
+        replace(INSTANCE, after_goal="vanish"),
+        replace(INSTANCE, robots=(Robot("r1", "0,0", "2,0", release=1),)),
+        replace(INSTANCE, graph=ResourceGraph((Resource("a"), Resource("b")), ())),
+        replace(INSTANCE, graph=ResourceGraph((Resource("a", x=1, y=1), Resource("b", x=1, y=1)), ())),
+    ],
+)
+def test_an_instance_that_has_no_walks_is_refused(instance: Instance) -> None:
+    assert not instance_has_walks(instance)
+    for format in CORRECT:
+        with pytest.raises(Refusal, match="adapter/instance"):
+            read(CORRECT[format], format, replace(INSTANCE, after_goal="vanish"))
+        with pytest.raises(Refusal, match="adapter/instance"):
+            write_foreign_solution(instance, Solution((), (), ("r1",)), format)
+
+
+def test_what_a_format_cannot_hold_is_not_written() -> None:
+    half = Solution(SOLUTION.plans[:1], ("r1",), ("r2",))
+    wrong = replace(SOLUTION, order=("r1",))
+    for format in ("lacam", "mapf-tracker"):
+        with pytest.raises(Refusal, match="it leaves 1 robots unplanned"):
+            write_foreign_solution(INSTANCE, half, format)
+        with pytest.raises(Refusal, match=r"it breaks a rule: \[solution/order\]"):
+            write_foreign_solution(INSTANCE, wrong, format)
+    far = Instance(
+        ResourceGraph((Resource("a", x=0, y=0), Resource("b", x=2, y=0)), (("a", "b"),)),
+        (Robot("r1", "a", "b"),),
+        "park",
+    )
+    jump = Solution((Plan("r1", (Visit("a", 0, 1), Visit("b", 1, None))),), ("r1",))
+    assert read(write_foreign_solution(far, jump, "lacam").decode(), "lacam", far) == jump
+    with pytest.raises(Refusal, match="is not to a cell beside"):
+        write_foreign_solution(far, jump, "mapf-tracker")
+
+
+def test_walks_that_do_not_fit_in_memory_are_not_written(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(walks, "MOST_CELLS", 6)
+    with pytest.raises(Refusal, match="at most 6 cells together, and have 7"):
+        write_foreign_solution(INSTANCE, SOLUTION, "lacam")
+    assert write_foreign_solution(INSTANCE, SOLUTION, "mapf-tracker") == b"2r\nw2d\n"
+
+
+def test_the_rules_of_formats_hold_for_right_files() -> None:
+    rules = {rule.id: rule for rule in ADAPTER_RULES}
+    assert rules["adapter/lacam"](LACAM, 2)
+    assert not rules["adapter/lacam"](LACAM, 3)
+    assert rules["adapter/agent-paths"](ROWS, 2)
+    assert not rules["adapter/agent-paths"](ROWS, 1)
+    assert rules["adapter/mapf-tracker"](MOVES, 2)
+    assert not rules["adapter/mapf-tracker"](MOVES, 1)
+    assert rules["adapter/libmultirobotplanning"](SCHEDULE, INSTANCE)
+    assert not rules["adapter/libmultirobotplanning"](MOVES, INSTANCE)
+    assert format_is_clear(LACAM, INSTANCE)
+    assert walks_are_bounded(5)
+    assert solution_has_walks(INSTANCE, SOLUTION, partial=False)
+
+
+def grids() -> st.SearchStrategy[ResourceGraph]:
+    """Grids of up to 3 x 3 cells with some of the edges; cells and edges are in random order."""
+
+    @st.composite
+    def draw_grid(draw: st.DrawFn) -> ResourceGraph:
+        width, height = draw(st.integers(1, 3)), draw(st.integers(1, 3))
+        cells = draw(st.permutations([(x, y) for x in range(width) for y in range(height)]))
+        numbers = draw(st.lists(st.tuples(st.integers(1, 2), st.integers(1, 2)), min_size=9, max_size=9))
+        edges = list(cell_edges(cells))
+        kept = draw(st.lists(st.booleans(), min_size=len(edges), max_size=len(edges)))
+        resources = tuple(
+            Resource(cell_id(x, y), capacity, duration, x, y)
+            for (x, y), (capacity, duration) in zip(cells, numbers, strict=False)
+        )
+        return ResourceGraph(resources, tuple(edge for edge, keep in zip(edges, kept, strict=True) if keep))
+
+    return draw_grid()
+
+
+def planned_grids() -> st.SearchStrategy[PlannedInstance]:
+    """Grids with robots that park, all of them planned."""
+    sizes = Sizes(release=0)
+    parking = instances(sizes, grids()).map(lambda instance: replace(instance, after_goal="park"))
+
+    def only_planned(planned: PlannedInstance) -> PlannedInstance:
+        robots = tuple(robot for robot in planned.instance.robots if robot.id in planned.solution.order)
+        solution = Solution(
+            tuple(plan for robot in robots for plan in planned.solution.plans if plan.robot == robot.id),
+            tuple(robot.id for robot in robots),
+        )
+        return PlannedInstance(replace(planned.instance, robots=robots), solution)
+
+    return planned_instances(sizes, parking).map(only_planned)
+
+
+@pytest.mark.parametrize("format", ADAPTERS)
+@settings(max_examples=150)
+@given(planned=planned_grids())
+def test_every_solution_on_a_grid_survives_the_way_there_and_back(format: str, planned: PlannedInstance) -> None:
+    data = write_foreign_solution(planned.instance, planned.solution, format)
+    assert read_foreign_solution(data, planned.instance, "file", format) == planned.solution
+
+
+@settings(max_examples=300)
+@given(planned=planned_grids(), format=st.sampled_from([*CORRECT]))
+def test_a_format_that_is_found_is_the_right_one_or_means_the_same(planned: PlannedInstance, format: str) -> None:
+    data = write_foreign_solution(planned.instance, planned.solution, format)
+    try:
+        found = read_foreign_solution(data, planned.instance)
+    except Refusal as refusal:
+        assert refusal.rule == "adapter/format"  # noqa: PT017 - the refusal is one of two right answers
+    else:
+        assert found == planned.solution
+
+
+@given(
+    pieces=st.lists(
+        st.sampled_from(
+            [*"0123456789(),:->{}[]lrudw \n\"'&*#|", "solution=", "schedule:", "agent0:", "Agent 0:", "x: 1"]
+        )
+        | st.characters(),
+        max_size=40,
+    ),
+    format=st.sampled_from([None, *ADAPTERS]),
+)
+def test_any_text_is_read_or_refused(pieces: list[str], format: str | None) -> None:
+    try:
+        solution = read_foreign_solution("".join(pieces).encode(errors="surrogatepass"), INSTANCE, "file", format)
+    except Refusal as refusal:
+        assert str(refusal).startswith("file")  # noqa: PT017 - the refusal is one of two right answers
+    else:
+        judge(INSTANCE, solution)
+
+
+@pytest.fixture
+def benchmark(tmp_path: Path) -> Path:
+    (tmp_path / "m.map").write_text(MAP)
+    (tmp_path / "m.scen").write_text(SCENARIO)
+    (tmp_path / "m.json").write_bytes(write_instance(INSTANCE))
+    for format, text in CORRECT.items():
+        (tmp_path / format).write_text(text)
+    return tmp_path
+
+
+@pytest.mark.parametrize("format", CORRECT)
+def test_check_judges_a_file_against_an_instance_or_a_benchmark(carproof: Run, benchmark: Path, format: str) -> None:
+    told = "no rule is broken: total cost 5, unplanned robots 0\n"
+    maps = ("--map", benchmark / "m.map", "--scen", benchmark / "m.scen")
+    assert carproof("check", benchmark / "m.json", benchmark / format).stdout == told
+    assert carproof("check", *maps, benchmark / format, "--from", format).stdout == told
+    assert carproof("check", *maps, "--agents", "2", "-", stdin=CORRECT[format].encode()).stdout == told
+
+
+def test_check_tells_the_rule_that_a_file_breaks(carproof: Run, benchmark: Path) -> None:
+    (benchmark / "broken").write_text(LACAM.replace("1:(1,0)", "1:(0,0)"))
+    outcome = carproof("check", benchmark / "m.json", benchmark / "broken")
+    assert outcome.code == 1
+    assert outcome.stdout.startswith("[plan/move] resource 2,0 in [2,for ever): robot r1 (the graph has no move to it")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error"),
+    [
+        (["m.json"], "Give INSTANCE and SOLUTION, or --map, --scen and SOLUTION."),
+        (["m.json", "lacam", "lacam"], "Give INSTANCE and SOLUTION"),
+        (["m.json", "lacam", "--map", "m.map", "--scen", "m.scen"], "Give INSTANCE and SOLUTION"),
+        (["lacam", "--map", "m.map"], "--map and --scen go together, and --agents with them."),
+        (["lacam", "--agents", "1"], "--map and --scen go together"),
+        (["-", "--map", "-", "--scen", "m.scen"], "Only one of the files can be standard input."),
+        (["m.json", "lacam", "--from", "yaml"], "Invalid value for '--from'"),
+        (["m.json", "lacam", "--from", "mapf-tracker"], "lacam:1: the line must be of the letters"),
+    ],
+)
+def test_wrong_usage_of_check_is_one_sentence(
+    carproof: Run, benchmark: Path, monkeypatch: pytest.MonkeyPatch, arguments: list[str], error: str
+) -> None:
+    monkeypatch.chdir(benchmark)
+    outcome = carproof("check", *arguments)
+    assert (outcome.code, outcome.stdout) == (2, "")
+    assert outcome.stderr.startswith("Error: ")
+    assert error in outcome.stderr
+
+
+@pytest.mark.parametrize("format", CORRECT)
+def test_convert_turns_solutions_there_and_back(carproof: Run, benchmark: Path, format: str) -> None:
+    there = carproof("convert", benchmark / "m.json", benchmark / "lacam", "--to", format, "-o", benchmark / "there")
+    assert (there.code, there.stdout) == (0, "")
+    back = carproof("convert", benchmark / "m.json", benchmark / "there", "--to", "carproof", "--from", format)
+    assert json.loads(back.stdout) == json.loads(write_solution(SOLUTION))
+
+
+@pytest.mark.parametrize(
+    ("options", "error"),
+    [
+        (["--from", "lacam"], "--from is of a solution, and so is --to."),
+        (["--to", "lacam", "--agents", "1"], "--to is of a solution."),
+        (["--to", "lacam", "--json"], "--to is of a solution."),
+    ],
+)
+def test_convert_refuses_options_of_another_use(carproof: Run, benchmark: Path, options: list[str], error: str) -> None:
+    outcome = carproof("convert", benchmark / "m.json", benchmark / "lacam", *options)
+    assert outcome.code == 2
+    assert error in outcome.stderr

@@ -1,0 +1,117 @@
+"""The command line as a whole: help, lazy loading, exit codes and closed pipes."""
+
+import os
+import pty
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from tests.oracle.running import TWO, TWO_PLANNED, Run, line
+
+from carp_oracle.commands import COMMANDS
+
+SLOW_TO_LOAD = ("z3", "numba", "numpy", "networkx", "pysat", "hypothesis", "matplotlib")
+CARPROOF = Path(sys.executable).with_name("carproof")
+
+
+def test_help_names_every_command_and_fits_eighty_columns(carproof: Run) -> None:
+    outcome = carproof("--help")
+    assert outcome.code == 0
+    assert all(f"\n  {name} " in outcome.stdout for name in COMMANDS)
+    assert max(map(len, outcome.stdout.splitlines())) <= 80
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_each_command_explains_itself_with_an_example(carproof: Run, name: str) -> None:
+    outcome = carproof(name, "--help")
+    assert outcome.code == 0
+    assert f"\n    carproof {name}" in outcome.stdout
+    assert max(map(len, outcome.stdout.splitlines())) <= 80
+
+
+def test_version(carproof: Run) -> None:
+    outcome = carproof("--version")
+    assert outcome.code == 0
+    assert outcome.stdout.startswith("carproof ")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error"),
+    [
+        (["chek"], "No such command 'chek'"),
+        (["check"], "Missing argument"),
+        (["check", "--jsn"], "No such option"),
+        (["rules", "joint/capacty"], "the nearest are joint/capacity"),
+    ],
+)
+def test_wrong_usage_is_one_sentence_and_exit_code_2(carproof: Run, arguments: list[str], error: str) -> None:
+    outcome = carproof(*arguments)
+    assert (outcome.code, outcome.stdout) == (2, "")
+    assert outcome.stderr.startswith("Error: ")
+    assert error in outcome.stderr
+    assert outcome.stderr.count("\n") == 1
+
+
+def test_check_loads_nothing_slow(tmp_path: Path) -> None:
+    (tmp_path / "town.json").write_bytes(line(**TWO))
+    (tmp_path / "plans.json").write_bytes(line(**TWO_PLANNED))
+    program = (
+        "import sys; from carp_oracle.cli import main; code = main(['check', 'town.json', 'plans.json', '--json']);"
+        f"assert code == 0; print([name for name in {SLOW_TO_LOAD} if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True, cwd=tmp_path)
+    assert done.stdout.endswith("}\n[]\n")
+
+
+@pytest.mark.parametrize("arguments", ["rules", "--help", "rules joint/capacity"])
+def test_a_closed_pipe_ends_a_command_quietly(arguments: str) -> None:
+    shell = f"{CARPROOF} {arguments} | true; echo ${{PIPESTATUS[0]}}"
+    done = subprocess.run(["/bin/bash", "-c", shell], check=True, capture_output=True, text=True)
+    assert done.stdout in ("141\n", "0\n"), "0: the output fitted into the pipe before it was closed"
+    assert done.stderr == ""
+
+
+def test_a_full_disk_is_bad_output_and_not_the_answer_no() -> None:
+    shell = f"{CARPROOF} rules > /dev/full"
+    done = subprocess.run(["/bin/bash", "-c", shell], check=False, capture_output=True, text=True)
+    assert done.returncode == 2
+    assert done.stderr == "Error: the output cannot be written: No space left on device\n"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code"),
+    [("rules >&-", 0), ("rules >&- 2>&-", 0), ("check - x <&- 2>&-", 2), ("plan - <&-", 2), ("serve <&-", 0)],
+)
+def test_closed_standard_streams_are_empty_ones(arguments: str, code: int) -> None:
+    done = subprocess.run(["/bin/bash", "-c", f"{CARPROOF} {arguments}"], check=False, capture_output=True, text=True)
+    assert done.returncode == code
+    assert "Traceback" not in done.stderr
+
+
+def test_a_terminal_without_unicode_gets_plain_tables() -> None:
+    shell = f"PYTHONIOENCODING=ascii {CARPROOF} rules"
+    done = subprocess.run(["/bin/bash", "-c", shell], check=True, capture_output=True, text=True)
+    assert done.stdout.isascii()
+    assert done.stdout.splitlines()[0].startswith("rule ")
+
+
+def test_progress_goes_to_standard_error_and_only_to_a_terminal(tmp_path: Path) -> None:
+    town = tmp_path / "town.json"
+    subprocess.run([CARPROOF, "generate", "grid", "--robots", "5", "-o", town], check=True, capture_output=True)
+    terminal, end = pty.openpty()
+    plan: list[str | Path] = [CARPROOF, "plan", town, "--json"]
+    shown = subprocess.run(plan, check=True, stdout=subprocess.PIPE, stderr=end, env={**os.environ, "TERM": "xterm"})
+    os.close(end)
+    assert b"planning" in os.read(terminal, 100_000)
+    silent = subprocess.run(plan, check=True, capture_output=True)
+    assert silent.stderr == b""
+    assert silent.stdout == shown.stdout
+    assert silent.stdout.startswith(b'{"format":')
+
+
+def test_a_fault_of_ours_is_no_answer(carproof: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("carp_oracle.commands.rules.rule_named", lambda _: 1 // 0)
+    outcome = carproof("rules", "joint/capacity")
+    assert outcome.code == 70
+    assert outcome.stderr.endswith("carproof failed by a fault of its own; the lines above say where.\n")

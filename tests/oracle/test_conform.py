@@ -1,0 +1,42 @@
+"""The command conform: what it prints, what it writes, and its exit codes."""
+
+import json
+import sys
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import pytest
+from tests.oracle.running import Run
+
+SERVE = [sys.executable, "-m", "carp_oracle", "serve"]
+
+
+@pytest.mark.usefixtures("elsewhere")
+def test_carproof_conforms_to_its_strictest_level(process: Run) -> None:
+    outcome = process("conform", "--level", "exact", "--examples", "60", "--", *SERVE, "--engine", "reference")
+    assert outcome.code == 0, outcome
+    assert outcome.stdout.splitlines()[-1].startswith("CONFORMS: carproof ")
+
+
+def test_a_program_that_is_not_there_is_bad_usage(carproof: Run) -> None:
+    outcome = carproof("conform", "--", "./no-such-planner")
+    assert (outcome.code, outcome.stdout) == (2, "")
+    assert "there is no such program" in outcome.stderr
+
+
+@pytest.fixture
+def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_json_and_junit_tell_the_same(process: Run, elsewhere: Path) -> None:
+    outcome = process("conform", "--examples", "20", "--json", "--junit", "conform.xml", "--", *SERVE)
+    assert outcome.code == 0, outcome
+    report = json.loads(outcome.stdout)
+    assert report["conforms"]
+    assert report["cases"]["random"] == {"passed": 20}
+    suite = ET.parse(elsewhere / "conform.xml").getroot()  # noqa: S314 - written by the test
+    fixed = report["cases"]["smoke"]["passed"] + report["cases"]["vectors"]["passed"]
+    assert int(suite.get("tests", "")) == fixed + 1
+    assert suite.get("failures") == "0"

@@ -1,0 +1,176 @@
+"""Planners that read MovingAI files and write formats of their own are asked as they are, without glue code."""
+
+import json
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from tests.oracle.foreign_files import INSTANCE
+from tests.oracle.running import Run
+
+from carp_oracle.conform.classical_cases import classical_instances
+from carp_oracle.conform.findings import is_complete
+from carp_oracle.conform.function import Function
+from carp_oracle.conform.levels import Level
+from carp_oracle.conform.run import Options, conform
+from carp_oracle.movingai import movingai_instance, read_map, read_scenario
+from carp_oracle.movingai_writer import is_classical, write_movingai
+from carp_spec import Instance, Resource, ResourceGraph, Robot, Solution
+from carp_verify.optimum import optimum
+
+PLANNER = [sys.executable, "-I", "-S", str(Path(__file__).parent / "grid_planner.py")]
+FILES = ["{map}", "{scen}", "{agents}"]
+
+
+@settings(max_examples=200)
+@given(instance=classical_instances())
+def test_what_is_drawn_is_classical_and_survives_the_way_to_files_and_back(instance: Instance) -> None:
+    assert is_classical(instance)
+    files = write_movingai(instance)
+    grid = read_map(files.map)
+    kept = {(resource.x, resource.y) for resource in instance.graph.resources}
+    read = movingai_instance(grid, read_scenario(files.scen, grid, None), "park")
+    assert read == instance
+    assert kept == {(x, y) for y in range(grid.height) for x in range(grid.width) if grid.is_passable(x, y)}
+
+
+RESOURCES, EDGES = INSTANCE.graph.resources, INSTANCE.graph.edges
+FIRST, SECOND = INSTANCE.robots
+
+
+def with_graph(resources: tuple[Resource, ...] = RESOURCES, edges: tuple[Any, ...] = EDGES) -> Instance:
+    return replace(INSTANCE, graph=ResourceGraph(resources, edges))
+
+
+def with_robots(*robots: Robot) -> Instance:
+    return replace(INSTANCE, robots=robots)
+
+
+@pytest.mark.parametrize(
+    "instance",
+    [
+        replace(INSTANCE, after_goal="vanish"),
+        with_robots(),
+        with_robots(replace(FIRST, release=1), SECOND),
+        with_robots(FIRST, replace(SECOND, pace=2)),
+        with_robots(FIRST, replace(SECOND, start=FIRST.start)),
+        with_robots(FIRST, replace(SECOND, goal=FIRST.goal)),
+        with_graph((replace(RESOURCES[0], capacity=2), *RESOURCES[1:])),
+        with_graph((*RESOURCES[:-1], replace(RESOURCES[-1], duration=2))),
+        with_graph((replace(RESOURCES[0], x=None), *RESOURCES[1:])),
+        with_graph((replace(RESOURCES[0], x=-1), *RESOURCES[1:])),
+        with_graph((replace(RESOURCES[0], x=1), *RESOURCES[1:])),
+        with_graph((*RESOURCES, Resource("far", x=10**6, y=10**6))),
+        with_graph(edges=EDGES[1:]),
+        with_graph(edges=(*EDGES, ("0,0", "2,0"))),
+    ],
+)
+def test_an_instance_that_the_files_cannot_say_is_not_classical(instance: Instance) -> None:
+    assert is_classical(INSTANCE)
+    assert not is_classical(instance)
+
+
+@pytest.fixture
+def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def report_of(process: Run, *arguments: str) -> dict[str, Any]:
+    outcome = process("conform", "--one-shot", "--json", *arguments)
+    assert outcome.code in (0, 1), outcome
+    report: dict[str, Any] = json.loads(outcome.stdout)
+    return report
+
+
+@pytest.mark.parametrize(
+    ("options", "template"),
+    [
+        ([], [*PLANNER, *FILES, "-o", "{solution}"]),
+        (["--from", "paths-x-y"], [*PLANNER, *FILES, "--paths"]),
+    ],
+)
+def test_a_right_planner_conforms_and_what_its_files_cannot_say_is_skipped(
+    process: Run, elsewhere: Path, options: list[str], template: list[str]
+) -> None:
+    report = report_of(process, "--examples", "40", *options, "--", *template)
+    assert report["conforms"], report["failures"]
+    assert report["cases"]["random"] == {"passed": 40}
+    assert report["cases"]["smoke"].keys() == {"passed", "skipped"}
+    assert report["cases"]["vectors"].keys() <= {"passed", "skipped"}
+    assert list(elsewhere.iterdir()) == [], "nothing is left behind"
+
+
+@pytest.mark.parametrize(("forgotten", "rule"), [("swaps", "joint/exchange"), ("parked", "joint/capacity")])
+def test_a_bug_is_refused_by_its_rule_with_a_small_benchmark(
+    process: Run, elsewhere: Path, forgotten: str, rule: str
+) -> None:
+    template = [*PLANNER, *FILES, "--forget", forgotten]
+    report = report_of(process, "--shrinking", "4", "--", *template)
+    assert {failure["rule"] for failure in report["failures"]} == {rule}
+    assert report["failures"][0]["robots"] == 2
+    assert report["failures"][0]["resources"] <= 5
+    found = elsewhere / "conform-failure"
+    grid = read_map((found / "instance.map").read_bytes())
+    assert len(read_scenario((found / "instance.scen").read_bytes(), grid, None)) == 2
+    assert process("check", str(found / "instance.json"), str(found / "solution.json")).code == 1
+
+
+@pytest.mark.usefixtures("elsewhere")
+def test_a_planner_that_gives_up_is_sound_and_not_complete(process: Run) -> None:
+    report = report_of(process, "--level", "complete", "--shrinking", "1", "--", *PLANNER, *FILES)
+    assert {failure["rule"] for failure in report["failures"]} == {"program/complete"}
+
+
+@pytest.mark.usefixtures("elsewhere")
+def test_an_answer_in_no_format_is_a_protocol_error(process: Run) -> None:
+    report = report_of(process, "--examples", "0", "--", "cat", "{map}", "{scen}")
+    assert {failure["category"] for failure in report["failures"]} == {"protocol error"}
+    assert "the format must be named by --from" in report["failures"][0]["message"]
+
+
+@pytest.mark.usefixtures("elsewhere")
+def test_a_program_that_never_writes_a_plan_does_not_conform(process: Run) -> None:
+    report = report_of(process, "--examples", "3", "--", "true", "{map}", "{scen}")
+    assert (report["conforms"], report["failures"], report["judged"]) == (False, [], {})
+
+
+@pytest.mark.usefixtures("elsewhere")
+def test_a_program_that_ends_with_an_error_and_writes_nothing_has_crashed(process: Run) -> None:
+    report = report_of(process, "--examples", "0", "--", "false", "{map}", "{scen}")
+    assert {failure["category"] for failure in report["failures"]} == {"crash"}
+
+
+def best(instance: Instance) -> Solution:
+    found = optimum(instance, 3)
+    return found.solution or Solution((), (), tuple(instance.robot))
+
+
+def test_who_plans_best_reaches_the_highest_level_of_such_planners() -> None:
+    options = Options(Level.OPTIMAL, examples=40, whole=True, classical=True)
+    assert conform(Function(best, "best"), options).conforms
+
+
+def test_all_robots_planned_or_a_proof_that_this_cannot_be() -> None:
+    assert [is_complete(*each) for each in ((0, 5), (0, None), (2, None), (1, 5))] == [True, True, True, False]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error"),
+    [
+        (["--one-shot", "--", "cat", "{map}"], "must hold {instance}, or {map} and {scen}"),
+        (["--one-shot", "--", "cat", "{solution}"], "must hold {instance}, or {map} and {scen}"),
+        (["--from", "lacam", "--", "cat"], "--from is of the files that programs write with --one-shot"),
+        (
+            ["--one-shot", "--level", "exact", "--", "cat", "{map}", "{scen}"],
+            "--level must be one of sound, complete, optimal",
+        ),
+    ],
+)
+def test_wrong_usage_is_one_sentence(carproof: Run, arguments: list[str], error: str) -> None:
+    outcome = carproof("conform", *arguments)
+    assert (outcome.code, outcome.stdout) == (2, "")
+    assert error in " ".join(outcome.stderr.split())

@@ -1,0 +1,169 @@
+"""Programs that misbehave: each ends in the right category, in time, and leaves no process and no descriptor behind."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from carp_oracle.conform.cases import Case
+from carp_oracle.conform.child import Child, Limits
+from carp_oracle.conform.findings import Category, Fault
+from carp_oracle.conform.levels import Level
+from carp_oracle.conform.outcome import ask
+from carp_oracle.conform.program import Program
+from carp_oracle.conform.run import Options, Report, conform
+from carp_oracle.conform.smoke import smoke_cases
+
+HOSTILE = [sys.executable, "-IS", str(Path(__file__).with_name("hostile.py"))]
+LIMITS = Limits(seconds=0.5, memory=128, output=2**20)
+GENEROUS = 20.0
+"""Seconds after which a test calls it a hang: the machine may be busy."""
+
+HOW = {
+    "random bytes": (Category.PROTOCOL_ERROR, "program/response"),
+    "truncated JSON": (Category.PROTOCOL_ERROR, "program/response"),
+    "huge number": (Category.PROTOCOL_ERROR, "program/r"),
+    "huge whole number": (Category.PROTOCOL_ERROR, "program/r"),
+    "fraction": (Category.PROTOCOL_ERROR, "program/result"),
+    "boolean": (Category.PROTOCOL_ERROR, "program/result"),
+    "deep nesting": (Category.PROTOCOL_ERROR, "program/r"),
+    "empty line": (Category.PROTOCOL_ERROR, "program/response"),
+    "wrong id": (Category.PROTOCOL_ERROR, "program/response"),
+    "two answers": (Category.PROTOCOL_ERROR, "program/response"),
+    "unknown field": (Category.PROTOCOL_ERROR, "program/result"),
+    "endless output": (Category.PROTOCOL_ERROR, "program/response"),
+    "endless lines": (Category.PROTOCOL_ERROR, "program/response"),
+    "error": (Category.WRONG_ANSWER, "program/accepts"),
+    "silence": (Category.TIMEOUT, "program/in-time"),
+    "slow drip": (Category.TIMEOUT, "program/in-time"),
+    "endless standard error": (Category.TIMEOUT, "program/in-time"),
+    "exit": (Category.CRASH, "program/alive"),
+    "killed": (Category.CRASH, "program/alive"),
+    "half an answer": (Category.CRASH, "program/alive"),
+    "closed output": (Category.CRASH, "program/alive"),
+    "memory": (Category.CRASH, "program/alive"),
+    "child left behind": (Category.CRASH, "program/alive"),
+}
+
+
+def descriptors() -> int:
+    return len(list(Path("/proc/self/fd").iterdir()))
+
+
+def hostile_processes() -> list[str]:
+    """The processes that run the hostile program, zombies included."""
+    found = []
+    for folder in Path("/proc").iterdir():
+        if folder.name.isdigit():
+            try:
+                line = (folder / "cmdline").read_bytes()
+                parent = (folder / "stat").read_text().rpartition(")")[2].split()[1]
+            except OSError:
+                continue
+            is_ours = b"hostile.py" in line and HOSTILE[-1].encode() in line
+            if is_ours or (not line and parent == str(os.getpid())):
+                found.append(folder.name)
+    return found
+
+
+@pytest.fixture(autouse=True)
+def nothing_left() -> Iterator[None]:
+    before, started = descriptors(), time.monotonic()
+    yield
+    assert time.monotonic() - started < GENEROUS
+    assert descriptors() == before
+    assert hostile_processes() == []
+
+
+def query() -> Case:
+    return next(iter(smoke_cases(["query"], Level.SOUND, whole=False)))
+
+
+def run(how: str, *more: str, seconds: float = LIMITS.seconds) -> Report:
+    limits = replace(LIMITS, seconds=seconds)
+    return conform(Program([*HOSTILE, how, *more], limits), Options(examples=0, limit=seconds))
+
+
+@pytest.mark.parametrize("how", HOW)
+def test_what_is_no_answer_ends_in_its_category(how: str) -> None:
+    category, rule = HOW[how]
+    waits = category == Category.TIMEOUT or how == "child left behind"
+    program = Program([*HOSTILE, how], replace(LIMITS, seconds=LIMITS.seconds if waits else GENEROUS))
+    program.start()
+    finding = ask(program, query(), Level.SOUND).finding
+    program.kill()
+    assert finding is not None
+    assert finding.category == category, finding
+    assert finding.rule.startswith(rule)
+    assert finding.message == finding.message.strip()
+    assert "\n" not in finding.message
+
+
+@pytest.mark.parametrize("how", ["silence", "exit", "random bytes", "endless output", "slow drip"])
+def test_a_program_that_fails_at_start_does_not_conform(how: str) -> None:
+    report = run(how, "--at-start")
+    assert report.conforms is False
+    assert not report.outcomes
+    assert [fault.category for fault in report.faults] == [HOW[how][0]]
+
+
+def test_a_second_line_is_an_answer_that_nobody_asked_for() -> None:
+    with Child([sys.executable, "-IS", "-c", "input(); print('one\\ntwo')"], LIMITS) as child:
+        assert child.ask(b"?\n", GENEROUS) == b"one"
+        with pytest.raises(Fault, match="more than one line"):
+            child.ask(b"?\n", GENEROUS)
+
+
+def test_a_run_gives_up_after_a_few_lost_processes() -> None:
+    report = run("silence")
+    assert report.conforms is False
+    assert [outcome.finding is not None for outcome in report.outcomes] == [True] * 3
+
+
+def test_who_skips_everything_does_not_conform() -> None:
+    report = run("skips everything", seconds=GENEROUS)
+    assert (report.conforms, report.findings, report.judged.total()) == (False, [], 0)
+    assert all(outcome.skipped == "no time" for outcome in report.outcomes)
+
+
+def test_the_end_of_standard_error_is_kept_and_bounded() -> None:
+    assert run("exit", seconds=GENEROUS).findings[0].stderr == "out of robots\n"
+    assert 0 < len(run("endless standard error").findings[0].stderr) <= 2**14
+
+
+@pytest.mark.parametrize(("how", "category"), [("never stops", Category.TIMEOUT), ("stops badly", Category.CRASH)])
+def test_a_program_must_stop_when_it_is_asked_to(how: str, category: Category) -> None:
+    assert [fault.category for fault in run(how, seconds=2).faults] == [category]
+
+
+def test_the_environment_tells_nothing_of_the_case(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CARPROOF_SECRET", "the answer")
+    assert os.environ["PYTEST_CURRENT_TEST"]
+    assert {outcome.skipped for outcome in run("environment", seconds=GENEROUS).outcomes} == {"nothing told"}
+
+
+def test_a_program_that_cannot_be_run_is_a_crash() -> None:
+    program = Program(["/nowhere/planner"], LIMITS)
+    with pytest.raises(Fault, match="127"):
+        program.start()
+    program.kill()
+
+
+@pytest.mark.parametrize("stop", [signal.SIGINT, signal.SIGTERM])
+def test_an_interruption_leaves_no_child_and_is_undecided(stop: signal.Signals, tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "carp_oracle", "conform", "--timeout", "60", "--", *HOSTILE, "silence"]
+    with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        deadline = time.monotonic() + GENEROUS
+        while len(hostile_processes()) < 2 and time.monotonic() < deadline:
+            time.sleep(0.05)
+        time.sleep(0.3)
+        process.send_signal(stop)
+        stdout, stderr = process.communicate(timeout=GENEROUS)
+    assert (process.returncode, stderr) == (3, "")
+    assert "UNDECIDED" in stdout

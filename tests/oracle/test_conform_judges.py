@@ -1,0 +1,219 @@
+"""What each level asks: programs that are right but for one thing, and the rule by which they are refused."""
+
+import json
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import msgspec
+import pytest
+
+import carp_reference
+from carp_oracle.conform.answers import OptimumAnswer, QueryAnswer, Reply
+from carp_oracle.conform.cases import OPS, Case, request_fields
+from carp_oracle.conform.levels import Level
+from carp_oracle.conform.run import Options, Report, conform
+from carp_oracle.conform.saving import save
+from carp_spec import Carp, Plan, Solution, judge
+from carp_spec.documents import VerdictDocument, verdict_document
+from carp_spec.vectors import VectorsDocument
+from carp_verify.optimum import optimum
+
+LATE = {"query/optimal", "joint/capacity", "joint/exchange", "fleet/history"}
+Tamper = Callable[[Case, Reply], Reply]
+
+
+def right_reply(case: Case) -> Reply:
+    instance, solution = case.instance, case.solution
+    if case.op == "check":
+        return verdict_document(judge(instance, solution))
+    if case.op == "optimum":
+        best = optimum(instance, 5)
+        return OptimumAnswer(best.cost, best.lower, best.proved, best.solution)
+    if case.op == "plan":
+        assert case.planner is not None
+        return carp_reference.plan(instance, case.planner)
+    assert case.robot is not None
+    if case.op == "query":
+        return QueryAnswer(carp_reference.query(instance, solution.plans, case.robot, case.now))
+    return carp_reference.add(instance, solution, case.robot, case.now, case.options)
+
+
+class Tampered:
+    """A subject whose right answers go through a function."""
+
+    def __init__(self, tamper: Tamper) -> None:
+        self.name = "tampered"
+        self.ops: tuple[str, ...] = OPS
+        self.tamper = tamper
+        self.asked: Counter[str] = Counter()
+
+    def start(self) -> None: ...
+
+    def ask(self, case: Case, seconds: float | None = None) -> Reply:
+        del seconds
+        self.asked[case.op] += 1
+        return self.tamper(case, right_reply(case))
+
+    def finish(self) -> None: ...
+
+    def kill(self) -> None: ...
+
+
+def run(tamper: Tamper, level: Level, ops: tuple[str, ...] = OPS, examples: int = 40) -> Report:
+    subject = Tampered(tamper)
+    subject.ops = ops
+    return conform(subject, Options(level, examples, shrink_seconds=1))
+
+
+def later(plan: Plan) -> Plan:
+    """The plan with one more tick in its first resource of several."""
+    first, *rest = plan.visits
+    if not rest or first.leave is None:
+        return plan
+    delayed = [
+        replace(visit, enter=visit.enter + 1, leave=None if visit.leave is None else visit.leave + 1) for visit in rest
+    ]
+    return Plan(plan.robot, (replace(first, leave=first.leave + 1), *delayed))
+
+
+def no_plan(case: Case, reply: Reply) -> Reply:
+    del case
+    return QueryAnswer(None) if isinstance(reply, QueryAnswer) else reply
+
+
+def late_plan(case: Case, reply: Reply) -> Reply:
+    del case
+    if isinstance(reply, QueryAnswer) and reply.plan is not None:
+        return QueryAnswer(later(reply.plan))
+    return reply
+
+
+def verdict_is_always_valid(case: Case, reply: Reply) -> Reply:
+    del case
+    return msgspec.structs.replace(reply, valid=True, violations=()) if isinstance(reply, VerdictDocument) else reply
+
+
+def cost_is_wrong(case: Case, reply: Reply) -> Reply:
+    del case
+    return msgspec.structs.replace(reply, cost=reply.cost + 1) if isinstance(reply, VerdictDocument) else reply
+
+
+def adds_nobody(case: Case, reply: Reply) -> Reply:
+    del reply
+    planned = {plan.robot for plan in case.solution.plans}
+    return replace(case.solution, unplanned=tuple(robot for robot in case.instance.robot if robot not in planned))
+
+
+def drops_others(case: Case, reply: Reply) -> Reply:
+    del reply
+    return Solution((), (), tuple(case.instance.robot))
+
+
+def reverses_order(case: Case, reply: Reply) -> Reply:
+    del case
+    assert isinstance(reply, Solution)
+    return replace(reply, order=reply.order[::-1])
+
+
+def optimum_too_high(case: Case, reply: Reply) -> Reply:
+    assert isinstance(reply, OptimumAnswer)
+    solution = carp_reference.plan(case.instance, Carp())
+    cost = judge(case.instance, solution).cost
+    return reply if solution.unplanned else OptimumAnswer(cost, cost, proved=True, solution=solution)
+
+
+def optimum_without_plans(case: Case, reply: Reply) -> Reply:
+    del case
+    assert isinstance(reply, OptimumAnswer)
+    return replace(reply, solution=None)
+
+
+def as_it_is(case: Case, reply: Reply) -> Reply:
+    del case
+    return reply
+
+
+@pytest.mark.parametrize("level", Level)
+def test_right_answers_conform_to_every_level(level: Level) -> None:
+    report = run(as_it_is, level)
+    assert report.conforms, report.findings
+    assert set(report.judged) == {*OPS} - (set() if level >= Level.OPTIMAL else {"optimum"})
+
+
+@pytest.mark.parametrize(
+    ("tamper", "op", "level", "rules"),
+    [
+        (no_plan, "query", Level.COMPLETE, {"query/complete"}),
+        (late_plan, "query", Level.CONTEXT_OPTIMAL, LATE),
+        (verdict_is_always_valid, "check", Level.SOUND, {"joint/capacity", "plan/start"}),
+        (cost_is_wrong, "check", Level.SOUND, {"cost/total"}),
+        (adds_nobody, "add", Level.COMPLETE, {"query/complete"}),
+        (drops_others, "add", Level.SOUND, {"fleet/history"}),
+        (reverses_order, "plan", Level.EXACT, {"query/ties"}),
+        (reverses_order, "add", Level.EXACT, {"query/ties"}),
+        (optimum_too_high, "optimum", Level.OPTIMAL, {"program/optimal"}),
+        (optimum_without_plans, "optimum", Level.OPTIMAL, {"cost/total"}),
+    ],
+)
+def test_one_wrong_thing_is_refused_by_its_rule(tamper: Tamper, op: str, level: Level, rules: set[str]) -> None:
+    report = run(tamper, level, (op,))
+    broken = {finding.rule for finding in report.findings}
+    assert report.conforms is False
+    assert broken & rules
+    assert broken <= rules or tamper is verdict_is_always_valid
+
+
+@pytest.mark.parametrize(("tamper", "level"), [(no_plan, Level.SOUND), (late_plan, Level.SOUND)])
+def test_a_level_does_not_ask_what_a_higher_one_asks(tamper: Tamper, level: Level) -> None:
+    findings = [finding.rule for finding in run(tamper, level, ("query",)).findings]
+    assert not [rule for rule in findings if rule.startswith("query/")]
+
+
+def test_who_offers_only_check_is_sound_and_no_more() -> None:
+    assert run(as_it_is, Level.SOUND, ("check",)).conforms
+    report = run(as_it_is, Level.COMPLETE, ("check",))
+    assert (report.conforms, report.findings) == (False, [])
+
+
+def test_an_interruption_keeps_what_was_found() -> None:
+    subject = Tampered(no_plan)
+
+    def stop_later(case: Case, reply: Reply) -> Reply:
+        if subject.asked.total() > 30:
+            raise KeyboardInterrupt
+        return no_plan(case, reply)
+
+    subject.tamper = stop_later
+    report = conform(subject, Options(Level.COMPLETE))
+    assert report.interrupted
+    assert report.conforms is False
+    assert [finding.rule for finding in report.findings] == ["query/complete"]
+
+
+def test_a_program_that_is_wrong_only_now_and_then_is_refused_all_the_same() -> None:
+    subject = Tampered(as_it_is)
+    subject.tamper = lambda case, reply: no_plan(case, reply) if subject.asked["query"] % 61 == 0 else reply
+    report = conform(subject, Options(Level.COMPLETE, examples=200, shrink_seconds=1))
+    assert report.conforms is False
+
+
+def test_a_failure_is_saved_as_a_vector_that_asks_it_again(tmp_path: Path) -> None:
+    smallest = run(no_plan, Level.COMPLETE, ("query",)).failures[0]
+    save(smallest, tmp_path)
+    (vector,) = msgspec.json.decode((tmp_path / "vector.json").read_bytes(), type=VectorsDocument).cases
+    assert vector.read_instance() == smallest.case.instance
+    assert (vector.op, vector.claim, vector.violated) == ("query", {"plan": None}, ("query/complete",))
+    assert vector.answer["cost"] is not None
+    request = json.loads((tmp_path / "request.json").read_bytes())
+    assert request == {"id": 1, **vector.request}
+    assert request == json.loads(msgspec.json.encode({"id": 1, "op": "query", **request_fields(smallest.case)}))
+
+
+def test_the_same_seed_asks_the_same_cases() -> None:
+    asked: list[list[Case]] = [[], []]
+    for cases in asked:
+        subject = Tampered(lambda case, reply, cases=cases: (cases.append(case), reply)[1])  # type: ignore[misc]
+        conform(subject, Options(Level.SOUND, examples=20, seed=5))
+    assert asked[0] == asked[1]

@@ -1,0 +1,101 @@
+"""MovingAI maps and scenarios: what they mean, and where a broken one is wrong."""
+
+import json
+from pathlib import Path
+
+import pytest
+from tests.oracle.running import Run
+
+from carp_oracle.movingai import map_is_right, read_map, read_scenario, scenario_is_right
+from carp_spec import read_instance
+
+EXAMPLES = Path(__file__).parent.parent.parent / "oracle/carp_oracle/examples"
+MAP = "type octile\nheight 2\nwidth 3\nmap\n.G@\nS.T\n"
+SCENARIO = "version 1\n0\tm.map\t3\t2\t0\t0\t1\t1\t1.41\n0\tm.map\t3\t2\t1\t1\t0\t0\t1.41\n"
+
+
+def test_passable_cells_become_resources_joined_to_those_beside_them(carproof: Run, tmp_path: Path) -> None:
+    (tmp_path / "m.map").write_text(MAP)
+    (tmp_path / "m.scen").write_text(SCENARIO)
+    outcome = carproof("convert", tmp_path / "m.map", tmp_path / "m.scen", "--agents", "1")
+    assert outcome.code == 0
+    instance = read_instance(outcome.stdout.encode())
+    assert [resource.id for resource in instance.graph.resources] == ["0,0", "1,0", "0,1", "1,1"]
+    assert set(instance.graph.edges) == {("0,0", "1,0"), ("0,1", "1,1"), ("0,0", "0,1"), ("1,0", "1,1")}
+    assert [(robot.id, robot.start, robot.goal) for robot in instance.robots] == [("r1", "0,0", "1,1")]
+    assert instance.after_goal == "park"
+
+
+def test_after_goal_can_be_vanish_and_all_agents_are_the_default(carproof: Run) -> None:
+    outcome = carproof("convert", EXAMPLES / "depot.map", EXAMPLES / "depot.scen", "--after-goal", "vanish")
+    document = json.loads(outcome.stdout)
+    assert document["after_goal"] == "vanish"
+    assert len(document["robots"]) == 30
+
+
+@pytest.mark.parametrize(
+    ("text", "error"),
+    [
+        ("", "1: the line must be: type octile"),
+        ("type octile\nheight x\nwidth 3\nmap\n", "2: the line must be: height and a whole number"),
+        ("type octile\nheight 2\nwith 3\nmap\n", "3: the line must be: width and a whole number"),
+        ("type octile\nheight 2\nwidth 3\n", "4: the line must be: map"),
+        (MAP + "...\n", "7: the map must have 2 rows, and has 3"),
+        (MAP.replace("S.T", "S."), "6: the row must have 3 cells, and has 2"),
+        (MAP.replace("S.T", "S.x"), "6: a cell must be one of .GS@OTW, not 'x'"),
+        (MAP.replace("height 2", "height " + "9" * 5000), "2: the line must be: height"),
+    ],
+)
+def test_a_broken_map_is_refused_with_file_and_line(carproof: Run, tmp_path: Path, text: str, error: str) -> None:
+    file = tmp_path / "broken_$.map"
+    file.write_text(text)
+    outcome = carproof("convert", file, EXAMPLES / "depot.scen")
+    assert (outcome.code, outcome.stdout) == (2, "")
+    assert outcome.stderr.startswith(f"Error: {file}:{error}")
+    assert outcome.stderr.endswith(" [movingai/map]\n")
+    assert not map_is_right(text.encode())
+
+
+@pytest.mark.parametrize(
+    ("text", "error"),
+    [
+        ("", "1: the line must be: version 1"),
+        ("version 2\n", "1: the line must be: version 1"),
+        (SCENARIO + "0\tm.map\t3\n", "4: the line must have nine fields"),
+        (SCENARIO.replace("\t1\t1\t1.41\n0", "\t1\t-1\t1.41\n0"), "2: the line must have nine fields"),
+        (SCENARIO.replace("\t3\t2\t0", "\t4\t2\t0"), "2: the map must be 4 x 2, and is 3 x 2"),
+        (SCENARIO.replace("\t1\t1\t1.41\n0", "\t2\t0\t1.41\n0"), "2: the goal must be a passable cell of the map"),
+        (SCENARIO.replace("\t1\t1\t0", "\t1\t7\t0"), "3: the start must be a passable cell of the map, and 1,7 is not"),
+    ],
+)
+def test_a_broken_scenario_is_refused_with_file_and_line(carproof: Run, tmp_path: Path, text: str, error: str) -> None:
+    (tmp_path / "m.map").write_text(MAP)
+    file = tmp_path / "broken.scen"
+    file.write_text(text)
+    outcome = carproof("convert", tmp_path / "m.map", file)
+    assert (outcome.code, outcome.stdout) == (2, "")
+    assert outcome.stderr.startswith(f"Error: {file}:{error}")
+    assert outcome.stderr.endswith(" [movingai/scenario]\n")
+    assert not scenario_is_right(text.encode(), read_map(MAP.encode()))
+
+
+def test_the_rules_hold_for_right_files() -> None:
+    assert map_is_right(MAP.encode())
+    assert scenario_is_right(SCENARIO.encode(), read_map(MAP.encode()))
+    assert read_map(MAP.replace("\n", "\r\n").encode()) == read_map(MAP.encode())
+
+
+def test_more_agents_than_there_are_is_refused(carproof: Run) -> None:
+    outcome = carproof("convert", EXAMPLES / "depot.map", EXAMPLES / "depot.scen", "--agents", "31")
+    assert outcome.code == 2
+    assert "depot.scen:31: 31 agents are asked for, and the scenario has 30" in outcome.stderr
+
+
+def test_standard_input_is_named_as_such(carproof: Run) -> None:
+    assert carproof("convert", "-", EXAMPLES / "depot.scen", stdin=b"?").stderr.startswith("Error: standard input:1: ")
+    assert "Only one" in carproof("convert", "-", "-").stderr
+
+
+def test_agents_beyond_the_last_asked_for_are_not_read() -> None:
+    grid = read_map(MAP.encode())
+    assert len(read_scenario((SCENARIO + "nonsense\n").encode(), grid, 2)) == 2

@@ -1,0 +1,199 @@
+"""`optimum`, `verify-proof`, `gap` and the op `optimum`."""
+
+import json
+from pathlib import Path
+
+import pytest
+from tests.oracle.running import HEAD_ON, TWO, TWO_PLANNED, Document, Run, corridor, line
+
+from carp_oracle import gap_table, optimum_table
+from carp_oracle.generate import Range
+
+UNSOLVABLE = corridor([{"id": "r1", "start": "a", "goal": "e"}, HEAD_ON])
+
+
+@pytest.fixture
+def town(tmp_path: Path) -> Path:
+    path = tmp_path / "town.json"
+    path.write_text(json.dumps(TWO))
+    return path
+
+
+def written(path: Path, document: Document) -> Path:
+    path.write_text(json.dumps(document))
+    return path
+
+
+def hard(carproof: Run, path: Path) -> Path:
+    """An instance that nobody decides in a second."""
+    assert carproof("generate", "grid", "--map", 10, "--robots", 150, "-o", path).code == 0
+    return path
+
+
+def test_the_optimum_is_shown_and_its_plans_are_written(carproof: Run, town: Path, tmp_path: Path) -> None:
+    output = tmp_path / "best.json"
+    outcome = carproof("optimum", town, "-o", output)
+    assert (outcome.code, outcome.stderr) == (0, "")
+    assert outcome.stdout.splitlines()[-1].split()[:5] == ["2", "5", "5", "5", "yes"]
+    assert json.loads(output.read_text()) == TWO_PLANNED
+    assert carproof("check", town, output).code == 0
+
+
+def test_the_optimum_as_a_document(carproof: Run, town: Path) -> None:
+    outcome = carproof("optimum", town, "--json")
+    assert json.loads(outcome.stdout) == {"cost": 5, "lower": 5, "proved": True, "solution": TWO_PLANNED}
+
+
+def test_robots_that_cannot_all_be_planned_are_proved_so(carproof: Run, tmp_path: Path) -> None:
+    path = written(tmp_path / "lane.json", UNSOLVABLE)
+    outcome = carproof("optimum", path, "--proof", tmp_path / "proof")
+    assert outcome.code == 1
+    assert outcome.stdout.splitlines()[-1].startswith("the robots cannot all be planned: a search over all states")
+    assert not (tmp_path / "proof").exists()
+    document = json.loads(carproof("optimum", path, "--json").stdout)
+    assert document == {"cost": None, "lower": 28, "proved": True, "solution": None}
+
+
+def test_an_undecided_search_says_so_and_gives_its_bound(carproof: Run, tmp_path: Path) -> None:
+    outcome = carproof("optimum", hard(carproof, tmp_path / "hard.json"), "--limit", 1, "--json")
+    document = json.loads(outcome.stdout)
+    assert (outcome.code, document["proved"]) == (3, False)
+    assert document["lower"] > 1000
+
+
+def test_an_undecided_search_tells_its_bound_and_whether_it_has_plans(carproof: Run, tmp_path: Path) -> None:
+    path = tmp_path / "crowd.json"
+    for robots, map, known in ((36, 20, "no plans of all robots found yet"), (18, 0, "and the best found ")):
+        options = ["--width", 6, "--height", 6, "--robots", robots, "--map", map, "--seed", 2]
+        assert carproof("generate", "grid", *options, "-o", path).code == 0
+        outcome = carproof("optimum", path, "--limit", 2)
+        assert outcome.code == 3
+        last = outcome.stdout.splitlines()[-1]
+        assert last.startswith("undecided after 2 s: plans of all robots cost at least ")
+        assert known in last
+
+
+def test_a_proof_is_written_and_checked(carproof: Run, town: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "proof"
+    assert carproof("optimum", town, "--proof", folder).code == 0
+    outcome = carproof("verify-proof", folder, "--instance", town)
+    assert (outcome.code, outcome.stderr) == (0, "")
+    assert outcome.stdout.splitlines()[-1].split() == ["5", "2", "replayed", "sat", "unsat"]
+    document = json.loads(carproof("verify-proof", folder, "--json").stdout)
+    assert document == {"proved": True, "cost": 5, "solution": TWO_PLANNED, "reason": None}
+
+
+def test_a_proof_that_does_not_hold_is_refused_with_its_reason(carproof: Run, town: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "proof"
+    carproof("optimum", town, "--proof", folder)
+    (folder / "beat.cnf").unlink()
+    outcome = carproof("verify-proof", folder)
+    assert outcome.code == 1
+    assert outcome.stdout == "not proved: beat.cnf: it cannot be read: No such file or directory\n"
+    document = json.loads(carproof("verify-proof", folder, "--json").stdout)
+    assert (document["proved"], document["reason"]) == (False, outcome.stdout[len("not proved: ") : -1])
+
+
+@pytest.mark.parametrize("limit", ["0", "-1", "x"])
+def test_a_limit_that_is_no_time_is_refused(carproof: Run, town: Path, limit: str) -> None:
+    for command in ("optimum", "gap"):
+        outcome = carproof(command, town, "--limit", limit)
+        assert outcome.code == 2
+        assert "--limit" in outcome.stderr
+
+
+def test_a_proof_that_cannot_be_written_or_found_is_refused(carproof: Run, town: Path, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    assert carproof("optimum", town, "--proof", tmp_path / "file").code == 2
+    outcome = carproof("optimum", town, "--proof", tmp_path / "file" / "proof")
+    assert (outcome.code, outcome.stderr.count("\n")) == (2, 1)
+    assert carproof("verify-proof", tmp_path / "nowhere").code == 2
+
+
+def test_the_gap_of_every_planner_is_shown(carproof: Run, town: Path) -> None:
+    outcome = carproof("gap", town)
+    assert (outcome.code, outcome.stderr) == (0, "")
+    rows = [row.split() for row in outcome.stdout.splitlines()[2:]]
+    assert rows[0][:3] == ["optimum", "0", "5"]
+    assert [row[0] for row in rows[1:]] == [
+        "best",
+        "carp",
+        "shuffled",
+        "longest-first",
+        "greedy",
+        "fixed-paths",
+        "neighbourhood",
+    ]
+    assert rows[2] == ["carp", "0", "5", *["+0", "(0.0", "%)"] * 3]
+
+
+def test_the_gap_as_a_document(carproof: Run, town: Path) -> None:
+    document = json.loads(carproof("gap", town, "--json").stdout)
+    assert {name: document[name] for name in ("optimum", "lower", "proved", "best_order")} == {
+        "optimum": 5,
+        "lower": 5,
+        "proved": True,
+        "best_order": 5,
+    }
+    assert document["planners"][0] == {"planner": "carp", "unplanned": 0, "total": 5}
+
+
+def test_a_gap_without_optimum_says_why(carproof: Run, tmp_path: Path) -> None:
+    outcome = carproof("gap", written(tmp_path / "lane.json", UNSOLVABLE))
+    assert outcome.code == 1
+    assert outcome.stdout.splitlines()[-1].startswith("the robots cannot all be planned: ")
+
+
+def test_the_op_optimum_is_served(carproof: Run) -> None:
+    requests = [
+        line(id=1, op="optimum", instance=TWO, limit=30),
+        line(id=2, op="optimum", instance=UNSOLVABLE),
+        line(id=3, op="optimum", instance=TWO, limit=0),
+        line(id=4, op="optimum", instance=TWO, limit="long"),
+        line(id=5, op="stop"),
+    ]
+    answers = [json.loads(each) for each in carproof("serve", stdin=b"".join(requests)).stdout.splitlines()]
+    assert answers[0]["result"] == {"cost": 5, "lower": 5, "proved": True, "solution": TWO_PLANNED}
+    assert answers[1]["result"]["cost"] is None
+    assert (answers[2]["error"]["path"], answers[2]["error"]["rule"]) == ("$.limit", "request/limit")
+    assert answers[3]["error"]["path"] == "$.limit"
+
+
+def test_a_row_of_the_gap_table_tells_means_intervals_and_failures(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(gap_table, "SIZES", (3,))
+    monkeypatch.setattr(gap_table, "MAPS", (0, 20))
+    monkeypatch.setattr(gap_table, "INSTANCES", 4)
+    rows = [gap_table.row(cell) for cell in gap_table.cells(lambda: None)]
+    assert [row[:3] for row in rows] == [("3 x 3", "0", "3"), ("3 x 3", "20", "3")]
+    assert all(len(row) == len(gap_table.COLUMNS) for row in rows)
+    assert all("±" in cell or "failed" in cell for row in rows for cell in row[4:])
+
+
+def test_the_gap_table_replaces_what_stands_between_its_marks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(gap_table, "SIZES", ())
+    page = tmp_path / "README.md"
+    page.write_text(f"before\n{gap_table.BEGIN}old\n{gap_table.END}after\n")
+    gap_table.write_table(page)
+    heading = gap_table.table([])
+    assert page.read_text() == f"before\n{gap_table.BEGIN}{heading}{gap_table.END}after\n"
+
+
+def test_a_row_of_the_optimum_table_counts_what_is_undecided_as_over_the_limit() -> None:
+    family = optimum_table.Family(3, 20, 2, "park", Range(1, 3))
+    found = [
+        optimum_table.Search(seconds, is_decided) for seconds, is_decided in ((2, True), (30, False), (0.25, True))
+    ]
+    head = ("3 x 3, full grid, durations 1..3", "2", "park")
+    assert optimum_table.row(family, found) == (*head, "2/3", "2.00", "over 30")
+    assert optimum_table.row(family, found[::2]) == (*head, "2/2", "1.12", "2.00")
+
+
+def test_the_optimum_table_replaces_what_stands_between_its_marks(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(optimum_table, "FAMILIES", (optimum_table.Family(3, 5, 2, "vanish", instances=2),))
+    page = tmp_path / "README.md"
+    page.write_text(f"before\n{optimum_table.BEGIN}old\n{optimum_table.END}after\n")
+    table = optimum_table.write_table(page)
+    assert page.read_text() == f"before\n{optimum_table.BEGIN}{table}{optimum_table.END}after\n"
+    assert table.splitlines()[-1].startswith("| 3 x 3, map 5 | 2 | vanish | 2/2 | 0.")

@@ -1,0 +1,233 @@
+"""`plan`, `add`, `query` and `check`: what people see, what programs get, and the exit codes."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from tests.oracle.running import (
+    BEHIND_PLAN,
+    BROKEN,
+    EAST_PLAN,
+    HEAD_ON,
+    ONE_PLANNED,
+    TWO,
+    TWO_PLANNED,
+    Run,
+    corridor,
+    solution,
+)
+
+Write = Callable[..., Path]
+THREE = corridor([*TWO["robots"], HEAD_ON])
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Write:
+    def write(document: object, name: str = "document.json") -> Path:
+        path = tmp_path / name
+        path.write_text(json.dumps(document))
+        return path
+
+    return write
+
+
+def test_plan_prints_a_table_and_writes_the_document(carproof: Run, file: Write, tmp_path: Path) -> None:
+    output = tmp_path / "plans.json"
+    outcome = carproof("plan", file(TWO), "--planner", "carp", "-o", output)
+    assert (outcome.code, outcome.stderr) == (0, "")
+    heading, _, row = outcome.stdout.splitlines()
+    assert heading.split() == ["planner", "robots", "unplanned", "total", "cost", "shortest", "paths", "ratio", "time"]
+    assert row.split()[:6] == ["carp", "2", "0", "5", "5", "1.0000"]
+    assert json.loads(output.read_text()) == TWO_PLANNED
+
+
+def test_plan_prints_nothing_but_the_document_for_json(carproof: Run, file: Write) -> None:
+    outcome = carproof("plan", file(TWO), "--planner", "carp", "--json")
+    assert outcome.stdout.count("\n") == 1
+    assert json.loads(outcome.stdout) == TWO_PLANNED
+
+
+def test_an_unplanned_robot_is_told_with_its_reason_and_the_answer_is_no(carproof: Run, file: Write) -> None:
+    outcome = carproof("plan", file(THREE), "--planner", "carp")
+    assert outcome.code == 1
+    assert outcome.stdout.splitlines()[-1] == "unplanned: robot r3: the committed plans leave no way to its goal"
+
+
+def test_a_robot_that_another_planner_could_plan_is_told_so(carproof: Run, file: Write) -> None:
+    edges = [("s", "m"), ("m", "t"), ("s", "x"), ("x", "y"), ("y", "t")]
+    ring = {
+        "format": "carproof-instance/1",
+        "graph": {
+            "nodes": [{"id": id} for id in "smtxy"],
+            "edges": [{"source": source, "target": target} for source, target in edges],
+        },
+        "after_goal": "park",
+        "robots": [{"id": "r1", "start": "m", "goal": "m"}, {"id": "r2", "start": "s", "goal": "t"}],
+    }
+    outcome = carproof("plan", file(ring), "--planner", "fixed-paths", "--k", "1")
+    assert outcome.code == 1
+    assert outcome.stdout.splitlines()[-1] == (
+        "unplanned: robot r2: the planner found no plan for it, though there is one beside the plans of the others"
+    )
+
+
+@pytest.mark.parametrize(
+    ("options", "error"),
+    [
+        (["--planner", "best"], "--planner: there is no planner 'best'; the planners are carp, shuffled"),
+        (["--planner", "carp", "--m", "3"], "--m: the planner carp has no option m; it has none"),
+        (["--planner", "greedy", "--seed", "3"], "--seed: the planner greedy has no option seed"),
+        (["--m", "0"], "--m: "),
+        (["--m", "two"], "'two' is not a valid integer"),
+        (["--sample", "0"], "--sample: "),
+        (["--planner", "fixed-paths", "--paths", "all"], "--paths: "),
+        (["--engine", "fastest"], "'fastest' is not"),
+    ],
+)
+def test_a_wrong_option_is_refused_before_any_work(
+    carproof: Run, file: Write, tmp_path: Path, options: list[str], error: str
+) -> None:
+    outcome = carproof("plan", file(TWO), "-o", tmp_path / "out.json", *options)
+    assert (outcome.code, outcome.stdout) == (2, "")
+    assert error in outcome.stderr
+    assert outcome.stderr.count("\n") == 1
+    assert not (tmp_path / "out.json").exists()
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        "--planner neighbourhood --m 2 --sample 3 --seed 1 --no-baseline --fallback 2",
+        "--planner neighbourhood --baseline",
+        "--planner shuffled --attempts 3 --seed 4",
+        "--planner longest-first",
+        "--planner greedy",
+        "--planner fixed-paths --k 2 --paths disjoint",
+        "--planner time-expanded",
+    ],
+)
+def test_every_planner_runs_and_its_plans_are_right(carproof: Run, file: Write, options: str) -> None:
+    instance = file(TWO)
+    planned = carproof("plan", instance, "--json", *options.split())
+    assert planned.code == 0
+    checked = carproof("check", instance, "-", stdin=planned.stdout.encode())
+    assert (checked.code, checked.stdout) == (0, "no rule is broken: total cost 5, unplanned robots 0\n")
+
+
+def test_a_refusal_of_the_engine_names_the_file_or_the_option(carproof: Run, file: Write) -> None:
+    large = corridor(TWO["robots"])
+    large["graph"]["nodes"][1]["duration"] = 2**40
+    instance = file(large)
+    outcome = carproof("plan", instance, "--engine", "optimized")
+    assert outcome.code == 2
+    assert outcome.stderr.startswith(f"Error: {instance}: $.graph.nodes[1].duration: ")
+    outcome = carproof("plan", instance, "--engine", "optimized", "--planner", "time-expanded")
+    assert outcome.code == 2
+    assert outcome.stderr.startswith("Error: --planner: ")
+
+
+def test_check_prints_each_violation_and_counts_them(carproof: Run, file: Write) -> None:
+    outcome = carproof("check", file(TWO), file(BROKEN, "plans.json"))
+    assert outcome.code == 1
+    assert outcome.stdout.splitlines() == [
+        "[joint/capacity] resource b in [1,2): robots r1, r2 (capacity 1)",
+        "[joint/capacity] resource c in [2,3): robots r1, r2 (capacity 1)",
+        "",
+        "rule            violations",
+        "──────────────────────────",
+        "joint/capacity           2",
+        "",
+        "INVALID: total cost 6, unplanned robots 0",
+    ]
+
+
+def test_check_writes_a_verdict(carproof: Run, file: Write, tmp_path: Path) -> None:
+    outcome = carproof("check", file(TWO), file(BROKEN, "plans.json"), "--json", "-o", tmp_path / "verdict.json")
+    assert outcome.code == 1
+    verdict = json.loads(outcome.stdout)
+    assert (verdict["valid"], len(verdict["violations"])) == (False, 2)
+    assert json.loads((tmp_path / "verdict.json").read_text()) == verdict
+
+
+def test_ids_with_control_characters_are_shown_and_not_obeyed(carproof: Run, file: Write) -> None:
+    evil = corridor([{"id": "r\n\x1b[2J", "start": "a", "goal": "c"}])
+    outcome = carproof("check", file(evil), file(solution({"r\n\x1b[2J": [["a", 0, 1]]}), "plans.json"))
+    assert outcome.stdout.startswith("[plan/goal] resource a in [0,1): robot r\\n\\x1b[2J (")
+
+
+def test_add_plans_the_robot_and_tells_what_changed(carproof: Run, file: Write, tmp_path: Path) -> None:
+    arguments = (file(TWO), file(ONE_PLANNED, "plans.json"), "r2", "--m", "1")
+    outcome = carproof("add", *arguments, "-o", tmp_path / "more.json")
+    assert outcome.code == 0
+    assert outcome.stdout.splitlines() == [
+        "robot r2 arrives at tick 3",
+        "plans of other robots that changed: none",
+        "total cost 2 before, 5 now",
+    ]
+    assert json.loads((tmp_path / "more.json").read_text()) == TWO_PLANNED
+    assert json.loads(carproof("add", *arguments, "--json").stdout) == TWO_PLANNED
+
+
+def test_add_says_no_where_there_is_no_plan(carproof: Run, file: Write) -> None:
+    outcome = carproof("add", file(THREE), file(TWO_PLANNED, "plans.json"), "r3")
+    assert (outcome.code, outcome.stderr) == (1, "")
+    assert outcome.stdout == "unplanned: robot r3: the committed plans leave no way to its goal\n"
+
+
+def test_query_prints_the_plan(carproof: Run, file: Write) -> None:
+    arguments = (file(TWO), file(ONE_PLANNED, "plans.json"), "r2")
+    outcome = carproof("query", *arguments)
+    assert outcome.code == 0
+    assert [row.split() for row in outcome.stdout.splitlines()[2:-1]] == [
+        [resource, str(enter), str(leave)] for resource, enter, leave in BEHIND_PLAN
+    ]
+    assert outcome.stdout.endswith("cost 3\n")
+    assert json.loads(carproof("query", *arguments, "--json").stdout) == {"plan": BEHIND_PLAN}
+
+
+def test_query_says_no_where_there_is_no_plan(carproof: Run, file: Write) -> None:
+    arguments = (file(THREE), file(TWO_PLANNED, "plans.json"), "r3")
+    outcome = carproof("query", *arguments)
+    assert (outcome.code, outcome.stdout) == (1, "no plan: the committed plans leave no way to its goal\n")
+    assert carproof("query", *arguments, "--json").stdout == '{"plan":null}\n'
+
+
+def test_a_parked_robot_stays_for_ever(carproof: Run, file: Write) -> None:
+    outcome = carproof("query", file(corridor([TWO["robots"][0]], "park")), file(solution({}), "plans.json"), "r1")
+    assert outcome.stdout.splitlines()[-2].split() == ["c", "2", "for", "ever"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error"),
+    [
+        (["query", "r9"], "ROBOT: the instance must have the robot, and has no 'r9' [request/robot]"),
+        (["query", "r1", "--now", "-1"], "--now: it must be a whole number of at least 0, not -1 [request/now]"),
+        (["add", "r1"], "ROBOT: the robot to add must have no plan, and 'r1' has one [request/robot]"),
+    ],
+)
+def test_a_request_that_makes_no_sense_is_refused(carproof: Run, file: Write, arguments: list[str], error: str) -> None:
+    name, *rest = arguments
+    outcome = carproof(name, file(TWO), file(TWO_PLANNED, "plans.json"), *rest)
+    assert (outcome.code, outcome.stdout, outcome.stderr) == (2, "", f"Error: {error}\n")
+
+
+@pytest.mark.parametrize("name", ["query", "add"])
+def test_broken_plans_are_refused_with_their_place(carproof: Run, file: Write, name: str) -> None:
+    plans = file(BROKEN, "plans.json")
+    outcome = carproof(name, file(corridor([*TWO["robots"], HEAD_ON])), plans, "r3")
+    message = "$.plans[0].visits[1]: resource b in [1,2): robots r1, r2 (capacity 1) [joint/capacity]"
+    assert (outcome.code, outcome.stderr) == (2, f"Error: {plans}: {message}\n")
+
+
+def test_a_plan_that_is_in_the_way_of_others_can_be_replaced(carproof: Run, file: Write) -> None:
+    outcome = carproof("query", file(TWO), file(BROKEN, "plans.json"), "r2", "--json")
+    assert json.loads(outcome.stdout) == {"plan": BEHIND_PLAN}
+
+
+def test_a_robot_whose_id_is_a_number_is_found_by_it(carproof: Run, file: Write) -> None:
+    numbered = {**TWO, "robots": [{"id": 7, "start": "a", "goal": "c"}, {"id": "8", "start": "b", "goal": "c"}]}
+    empty = file(solution({}), "plans.json")
+    assert json.loads(carproof("query", file(numbered), empty, "7", "--json").stdout) == {"plan": EAST_PLAN}
+    twice = {**TWO, "robots": [{"id": 7, "start": "a", "goal": "c"}, {"id": "7", "start": "b", "goal": "c"}]}
+    assert "2 print as 7" in carproof("query", file(twice), empty, "7").stderr

@@ -1,0 +1,94 @@
+"""The fixture carproof: another project's tests run in a process of their own."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+PLANNERS = """
+import dataclasses
+import carp_reference
+from carp_spec import Carp, Instance, Solution
+
+def right(instance: Instance) -> Solution:
+    return carp_reference.plan(instance, Carp())
+
+def hurries(instance: Instance) -> Solution:
+    solution = right(instance)
+    plans = []
+    for plan in solution.plans:
+        first, *rest = plan.visits
+        late = dataclasses.replace(first, enter=first.enter + 1)
+        plans.append(dataclasses.replace(plan, visits=(late, *rest)))
+    return dataclasses.replace(solution, plans=tuple(plans))
+
+def gives_up(instance: Instance) -> Solution:
+    return Solution((), (), tuple(instance.robot))
+
+def fails(instance: Instance) -> Solution:
+    raise ZeroDivisionError("out of robots")
+
+def returns_nothing(instance: Instance) -> Solution:
+    return None
+
+def right_documents(document):
+    import json
+    from carp_spec import read_instance, write_solution
+    return json.loads(write_solution(right(read_instance(json.dumps(document).encode()))))
+
+def no_document(document):
+    return {"plans": []}
+"""
+
+
+def pytest_of_another_project(folder: Path, *tests: str) -> subprocess.CompletedProcess[str]:
+    body = "\n".join(f"def test_{number}(carproof):\n    {test}\n" for number, test in enumerate(tests))
+    (folder / "test_mine.py").write_text(PLANNERS + body)
+    (folder / "pytest.ini").write_text("[pytest]\n")
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "--no-header"]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True)  # noqa: PLW1510 - the tests look at it
+
+
+def test_planners_that_are_right_pass(tmp_path: Path) -> None:
+    done = pytest_of_another_project(
+        tmp_path,
+        'carproof.conforms(right, level="context-optimal", examples=30, seed=3)',
+        "carproof.conforms(right_documents, examples=20, documents=True)",
+    )
+    assert "2 passed" in done.stdout, done.stdout
+
+
+@pytest.mark.parametrize(
+    ("test", "category", "rule"),
+    [
+        ("carproof.conforms(hurries)", "wrong answer", "plan/start"),
+        ('carproof.conforms(gives_up, level="complete")', "wrong answer", "query/complete"),
+        ('carproof.conforms(gives_up, level="sound")', None, None),
+        ("carproof.conforms(fails)", "crash", "program/alive"),
+        ("carproof.conforms(returns_nothing)", "protocol error", "program/result"),
+        ("carproof.conforms(no_document, documents=True)", "protocol error", "program/result"),
+    ],
+)
+def test_a_planner_that_is_wrong_fails_the_test_by_its_rule(
+    test: str, category: str | None, rule: str | None, tmp_path: Path
+) -> None:
+    done = pytest_of_another_project(tmp_path, test)
+    saved = tmp_path / "conform-failure" / "test_0"
+    if category is None:
+        assert "1 passed" in done.stdout, done.stdout
+        return
+    assert "1 failed" in done.stdout
+    (told,) = (line for line in done.stdout.splitlines() if line.startswith(f"{category}: "))
+    assert told.endswith(f"[{rule}]")
+    assert f"saved in {saved}" in done.stdout
+    assert len(json.loads((saved / "instance.json").read_bytes())["robots"]) <= 1
+    assert "Function" not in done.stdout, "no traceback through the runner"
+
+
+def test_pytest_starts_without_loading_what_judges_planners() -> None:
+    look = "import sys, carp_oracle.pytest_plugin; print(' '.join(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", look], check=True, capture_output=True, text=True)
+    slow = {"hypothesis", "z3", "networkx", "numpy", "msgspec", "carp_spec", "carp_reference"}
+    assert not slow & set(done.stdout.split())

@@ -1,0 +1,88 @@
+"""The commands in the READMEs are run here, and print what the READMEs say.
+
+A block of `console` is run line by line; times are the only thing that may differ. A block of `json NAME` or
+`text NAME` is that file, and one of `python` is run.
+`make generated` takes over new output.
+"""
+
+import os
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent.parent
+PAGES = ["README.md", "oracle/README.md"]
+BLOCK = re.compile(r"```(console|json|text|python) ?(\S*)\n(.*?)```", re.DOTALL)
+TIME = re.compile(r" +\d+\.\d\d s$", re.MULTILINE)
+WIDTH = re.compile(r"(?<=[ ─])[ ─]+")
+
+
+def comparable(page: str) -> str:
+    """The page without times, and without the widths that they give to tables."""
+    return WIDTH.sub("", TIME.sub("", page))
+
+
+def run_console(text: str, folder: Path) -> str:
+    commands = [line.removeprefix("$ ") for line in text.splitlines() if line.startswith("$ ")]
+    script = "status=0\n" + "".join(
+        f"printf '%s\\n' {shlex.quote('$ ' + command)}; (exit $status); {command}\nstatus=$?\n" for command in commands
+    )
+    environment = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}", "COLUMNS": "80"}
+    return subprocess.run(
+        ["/bin/bash", "-c", script],
+        cwd=folder,
+        env=environment,
+        check=False,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    ).stdout
+
+
+def run_page(text: str, folder: Path) -> str:
+    """The page with the output that its commands give."""
+
+    def run_block(block: re.Match[str]) -> str:
+        kind, name, content = block.groups()
+        if kind == "python":
+            subprocess.run([sys.executable, "-c", content], cwd=folder, check=True)
+            return block[0]
+        if kind != "console":
+            (folder / name).write_text(content)
+            return block[0]
+        return f"```console\n{run_console(content, folder)}```"
+
+    return BLOCK.sub(run_block, text)
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_every_command_prints_what_the_page_says(page: str, tmp_path: Path) -> None:
+    text = (ROOT / page).read_text()
+    assert comparable(run_page(text, tmp_path)) == comparable(text)
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_every_link_leads_somewhere(page: str) -> None:
+    links = re.findall(r"\]\(([^)#]+)", (ROOT / page).read_text())
+    assert [link for link in links if not ((ROOT / page).parent / link).exists()] == []
+
+
+def test_make_knows_the_two_commands() -> None:
+    make = ["/usr/bin/env", "make", "-n", "demo", "test"]
+    dry = subprocess.run(make, cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    assert "carproof demo" in dry
+    assert "pytest" in dry
+
+
+if __name__ == "__main__":
+    for page in PAGES:
+        text = (ROOT / page).read_text()
+        with tempfile.TemporaryDirectory() as folder:
+            new = run_page(text, Path(folder))
+        if comparable(new) != comparable(text):
+            (ROOT / page).write_text(new)

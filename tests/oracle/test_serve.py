@@ -1,0 +1,310 @@
+"""The protocol: every op, every refusal with its path and rule, and a process that survives every line."""
+
+import io
+import json
+import subprocess
+import sys
+from typing import Any, Never
+
+import msgspec
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from tests.oracle.running import (
+    BEHIND_PLAN,
+    BROKEN,
+    EAST_PLAN,
+    HEAD_ON,
+    ONE_PLANNED,
+    TWO,
+    TWO_PLANNED,
+    corridor,
+    line,
+    solution,
+)
+
+from carp_oracle.engines import engine_named
+from carp_oracle.ops import OPS
+from carp_oracle.protocol import LONGEST_LINE
+from carp_oracle.rules import ALL_RULES
+from carp_oracle.server import respond, serve
+
+STOP = line(id="last", op="stop")
+GOODBYE = {"id": "last", "result": {}}
+
+
+def ask(*lines: bytes) -> list[dict[str, Any]]:
+    responses = io.BytesIO()
+    serve(io.BytesIO(b"".join(lines)), responses, engine_named("reference"))
+    return [json.loads(response) for response in responses.getvalue().splitlines()]
+
+
+def result(**fields: object) -> dict[str, Any]:
+    (response,) = ask(line(id=1, **fields))
+    assert response.keys() == {"id", "result"}, response
+    found: dict[str, Any] = response["result"]
+    return found
+
+
+def error(**fields: object) -> tuple[str, str, str | None, str]:
+    (response,) = ask(line(id=1, **fields))
+    assert response.keys() == {"id", "error"}, response
+    assert response["error"].keys() == {"kind", "path", "rule", "message"}
+    kind, path, rule, message = response["error"].values()
+    assert rule in {each.id for each in ALL_RULES} | {None}
+    return (kind, path, rule, message)
+
+
+def test_start_tells_name_version_and_ops() -> None:
+    assert result(op="start", version=1) == {"name": "carproof", "version": "0.1.0", "ops": list(OPS)}
+
+
+def test_check_gives_a_verdict() -> None:
+    right = {"format": "carproof-verdict/1", "valid": True, "cost": 5, "unplanned": 0, "violations": []}
+    assert result(op="check", instance=TWO, solution=TWO_PLANNED) == right
+    broken = result(op="check", instance=TWO, solution=BROKEN)
+    assert [violation["rule"] for violation in broken["violations"]] == ["joint/capacity", "joint/capacity"]
+    assert not broken["valid"]
+
+
+def test_query_gives_a_plan_or_null() -> None:
+    assert result(op="query", instance=TWO, solution=ONE_PLANNED, robot="r2") == {"plan": BEHIND_PLAN}
+    three = corridor([*TWO["robots"], HEAD_ON])
+    assert result(op="query", instance=three, solution=TWO_PLANNED, robot="r3") == {"plan": None}
+
+
+def test_query_keeps_what_the_robot_has_done_by_now() -> None:
+    plan = result(op="query", instance=TWO, solution=TWO_PLANNED, robot="r2", now=2)["plan"]
+    assert plan[:3] == BEHIND_PLAN[:3]
+
+
+def test_plan_takes_a_planner_and_its_options() -> None:
+    assert result(op="plan", instance=TWO, planner="carp") == TWO_PLANNED
+    assert result(op="plan", instance=TWO) == result(op="plan", instance=TWO, planner="neighbourhood", m=4, sample=None)
+
+
+def test_add_gives_a_solution_with_the_robot() -> None:
+    assert result(op="add", instance=TWO, solution=ONE_PLANNED, robot="r2", m=1) == TWO_PLANNED
+    three = corridor([*TWO["robots"], HEAD_ON])
+    assert result(op="add", instance=three, solution=TWO_PLANNED, robot="r3")["unplanned"] == ["r3"]
+
+
+@pytest.mark.parametrize("id", [None, 0, "x", [1, {"a": [None]}], 1.5, 10**30])
+def test_the_id_comes_back_as_it_was(id: object) -> None:
+    (response,) = ask(line(id=id, op="stop"))
+    assert response == {"id": id, "result": {}}
+
+
+BAD_GOAL = {**TWO, "robots": [TWO["robots"][0], {**TWO["robots"][1], "goal": "z"}]}
+NO_SHAPE = {**TWO_PLANNED, "plans": [TWO_PLANNED["plans"][0], {"robot": "r2", "visits": [["b", 0, 1.0]]}]}
+FOREIGN = {**TWO_PLANNED, "plans": [*TWO_PLANNED["plans"], {"robot": "r9", "visits": []}]}
+
+
+@pytest.mark.parametrize(
+    ("fields", "kind", "path", "rule"),
+    [
+        ({"op": "start"}, "request", "$.version", "protocol/request"),
+        ({"op": "start", "version": 2}, "request", "$.version", "protocol/version"),
+        ({"op": "start", "version": True}, "request", "$.version", "protocol/request"),
+        ({"op": "start", "version": 1, "more": 1}, "request", "$.more", "protocol/request"),
+        ({"op": "fly"}, "request", "$.op", "protocol/request"),
+        ({"op": 3}, "request", "$.op", "protocol/request"),
+        ({}, "request", "$.op", "protocol/request"),
+        ({"op": "check", "instance": TWO}, "request", "$.solution", "protocol/request"),
+        ({"op": "check", "instance": 3, "solution": TWO_PLANNED}, "document", "$.instance.format", "document/format"),
+        (
+            {"op": "check", "instance": BAD_GOAL, "solution": TWO_PLANNED},
+            "document",
+            "$.instance.robots[1].goal",
+            "instance/endpoint",
+        ),
+        (
+            {"op": "check", "instance": TWO, "solution": NO_SHAPE},
+            "document",
+            "$.solution.plans[1].visits[0][2]",
+            "document/shape",
+        ),
+        (
+            {"op": "query", "instance": corridor([*TWO["robots"], HEAD_ON]), "solution": BROKEN, "robot": "r3"},
+            "request",
+            "$.solution.plans[0].visits[1]",
+            "joint/capacity",
+        ),
+        (
+            {"op": "query", "instance": TWO, "solution": FOREIGN, "robot": "r2"},
+            "request",
+            "$.solution.plans[2]",
+            "solution/covers",
+        ),
+        (
+            {"op": "query", "instance": TWO, "solution": TWO_PLANNED, "robot": "r9"},
+            "request",
+            "$.robot",
+            "request/robot",
+        ),
+        (
+            {"op": "query", "instance": TWO, "solution": TWO_PLANNED, "robot": "r1", "now": -1},
+            "request",
+            "$.now",
+            "request/now",
+        ),
+        (
+            {"op": "query", "instance": TWO, "solution": TWO_PLANNED, "robot": "r1", "now": 1.0},
+            "request",
+            "$.now",
+            "protocol/request",
+        ),
+        (
+            {"op": "query", "instance": TWO, "solution": TWO_PLANNED, "robot": True},
+            "request",
+            "$.robot",
+            "protocol/request",
+        ),
+        (
+            {"op": "query", "instance": TWO, "solution": TWO_PLANNED, "robot": "r1", "more": 1},
+            "request",
+            "$.more",
+            "protocol/request",
+        ),
+        (
+            {"op": "check", "instance": TWO, "solution": TWO_PLANNED, "robot": "r1"},
+            "request",
+            "$.robot",
+            "protocol/request",
+        ),
+        ({"op": "stop", "now": 1}, "request", "$.now", "protocol/request"),
+        ({"op": "plan", "instance": TWO, "planner": "x"}, "option", "$.planner", "planner/options"),
+        ({"op": "plan", "instance": TWO, "planner": "carp", "m": 2}, "option", "$.m", "planner/options"),
+        ({"op": "plan", "instance": TWO, "m": True}, "option", "$.m", "planner/options"),
+        ({"op": "plan", "instance": TWO, "colour": "red"}, "option", "$.colour", "planner/options"),
+        (
+            {"op": "add", "instance": TWO, "solution": TWO_PLANNED, "robot": "r2"},
+            "request",
+            "$.robot",
+            "request/robot",
+        ),
+        (
+            {"op": "add", "instance": TWO, "solution": ONE_PLANNED, "robot": "r2", "attempts": 3},
+            "option",
+            "$.attempts",
+            "planner/options",
+        ),
+    ],
+)
+def test_a_bad_request_is_refused_with_path_and_rule(
+    fields: dict[str, object], kind: str, path: str, rule: str
+) -> None:
+    assert error(**fields)[:3] == (kind, path, rule)
+
+
+@pytest.mark.parametrize(
+    ("bad", "rule"),
+    [
+        (b"\n", "document/json"),
+        (b"hello\n", "document/json"),
+        (b'{"id": 1, "op": "start"\n', "document/json"),
+        (b'{"id": "\xff", "op": "start"}\n', "document/json"),
+        (b'{"id": "\\ud800", "op": "start"}\n', "document/json"),
+        (b"\x00\n", "document/json"),
+        (b"[" * 1_000_000 + b"\n", "document/json"),
+        (b'{"id":' + b"[" * 100_000 + b"]" * 100_000 + b"}\n", "document/json"),
+        (b'{"id": 1, "op": "check", "instance": 1e999}\n', "document/json"),
+        (b"[]\n", "protocol/request"),
+        (b"null\n", "protocol/request"),
+        (b'{"op": "stop"}\n', "protocol/request"),
+        (b'{"id": "' + b"x" * 10_000_000 + b'"}\n', "protocol/request"),
+        (b"x" * (LONGEST_LINE + 1) + b"\n", "protocol/line"),
+        (b" " * (LONGEST_LINE + 2**21 + 5) + b"\n", "protocol/line"),
+    ],
+)
+def test_no_line_ends_the_process(bad: bytes, rule: str) -> None:
+    first, last = ask(bad, STOP)
+    assert first["error"]["rule"] == rule
+    assert last == GOODBYE
+
+
+def test_a_line_at_the_limit_is_read() -> None:
+    first, last = ask(b'{"id": 1, "op": "stop"}'.ljust(LONGEST_LINE) + b"\n")[0:1] * 2
+    assert first == last == {"id": 1, "result": {}}
+
+
+def test_the_end_of_the_input_and_stop_end_the_process() -> None:
+    assert ask() == []
+    assert ask(STOP, line(id=2, op="start", version=1)) == [GOODBYE]
+    assert ask(b'{"id": "last", "op": "stop"}') == [GOODBYE], "a last line without its end is a line"
+
+
+@given(st.binary(max_size=60).filter(lambda data: b"\n" not in data))
+def test_random_bytes_get_one_error_each(data: bytes) -> None:
+    first, last = ask(data + b"\n", STOP)
+    assert "error" in first
+    assert last == GOODBYE
+
+
+JSON = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False) | st.text(max_size=5),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner, max_size=3),
+    max_leaves=8,
+)
+VALUES = JSON | st.just(TWO) | st.just(ONE_PLANNED)
+FIELDS = ["instance", "solution", "robot", "now", "planner", "m", "version", "x"]
+
+
+@given(
+    st.sampled_from([*OPS, "x"]), st.dictionaries(st.sampled_from(FIELDS), JSON | st.just(TWO) | st.just(ONE_PLANNED))
+)
+def test_random_fields_never_fail_by_a_fault_of_ours(op: str, fields: dict[str, object]) -> None:
+    (response,) = ask(line(id=7, op=op, **fields))
+    assert response["id"] == 7
+    assert response.get("error", {}).get("kind") != "internal"
+
+
+def test_a_refusal_of_the_engine_has_its_place_in_the_request() -> None:
+    large = corridor(TWO["robots"])
+    large["graph"]["nodes"][1]["duration"] = 2**40
+    for request in (
+        line(id=1, op="plan", instance=large),
+        line(id=1, op="query", instance=large, solution=solution({}), robot="r1"),
+        line(id=1, op="add", instance=large, solution=solution({}), robot="r1"),
+    ):
+        response, _ = respond(request, engine_named("optimized"))
+        told = json.loads(msgspec.json.encode(response))["error"]
+        assert (told["kind"], told["path"]) == ("limit", "$.instance.graph.nodes[1].duration")
+
+
+class Faulty:
+    """An engine that fails."""
+
+    def __init__(self, fault: type[Exception]) -> None:
+        self.fault = fault
+
+    def __getattr__(self, name: str) -> Never:
+        raise self.fault(name)
+
+
+@pytest.mark.parametrize("fault", [ZeroDivisionError, KeyError, RecursionError, MemoryError])
+def test_a_fault_of_ours_is_an_error_of_kind_internal(
+    capsys: pytest.CaptureFixture[str], fault: type[Exception]
+) -> None:
+    response, running = respond(line(id=5, op="plan", instance=TWO), Faulty(fault))
+    assert running
+    told = json.loads(msgspec.json.encode(response))
+    assert (told["id"], told["error"]["kind"], told["error"]["rule"]) == (5, "internal", None)
+    assert fault.__name__ in told["error"]["message"]
+    assert "Traceback" in capsys.readouterr().err
+
+
+def test_the_process_answers_each_line_before_it_reads_the_next() -> None:
+    command = [sys.executable, "-m", "carp_oracle", "serve"]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        for request in (line(id=1, op="start", version=1), b"nonsense\n", line(id=2, op="plan", instance=TWO), STOP):
+            process.stdin.write(request)
+            process.stdin.flush()
+            assert process.stdout.readline().startswith(b'{"id":')
+        assert process.wait(timeout=20) == 0
+
+
+def test_plans_that_a_query_returns_are_those_of_the_command_line() -> None:
+    assert result(op="query", instance=TWO, solution=TWO_PLANNED, robot="r1") == {"plan": EAST_PLAN}

@@ -1,0 +1,258 @@
+"""`carproof view`: what the page and the stills hold, for sound, broken and hostile solutions."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from tests.oracle.running import BEHIND, EAST, EAST_PLAN, Run, corridor, solution
+from tests.oracle.viewing import COLLIDING, CORRIDOR, HOSTILE, SVG, drawn, picture_of, scene_of, without_positions
+
+from carp_oracle.viewer import limits
+from carp_oracle.viewer.chart_picture import TimeScale
+from carp_oracle.viewer.lanes import lanes, spots
+from carp_oracle.viewer.placement import UNIT, placement
+from carp_oracle.viewer.samples import FOLDER, sample_pictures
+from carp_oracle.viewer.staging import short_labels
+from carp_spec import Resource, ResourceGraph, judge, read_instance, read_solution
+
+OUTSIDE = re.compile(r"""(?:src|href|url|action)\s*[=(]\s*["']?(?!#|data:)[a-z]*:?//""", re.IGNORECASE)
+PARKED = solution({"r1": [*EAST_PLAN[:2], ["c", 2, None]]}, ["r2"])
+
+
+def test_the_page_is_one_file_that_names_no_address_outside(carproof: Run, tmp_path: Path) -> None:
+    page = drawn(carproof, tmp_path, CORRIDOR, COLLIDING)
+    assert not OUTSIDE.search(page)
+    assert "default-src 'none'" in page
+    assert not re.search(r"<(?:link|script|img)[^>]*(?:src|href)=\"(?!data:)", page)
+
+
+def test_equal_input_gives_equal_bytes(process: Run, tmp_path: Path) -> None:
+    instance = without_positions(CORRIDOR)
+    (tmp_path / "town.json").write_text(json.dumps(instance))
+    (tmp_path / "plans.json").write_text(json.dumps(COLLIDING))
+    for name in ("one", "two"):
+        outcome = process("view", tmp_path / "town.json", tmp_path / "plans.json", "-o", tmp_path / name)
+        assert outcome.code == 0
+    assert (tmp_path / "one").read_bytes() == (tmp_path / "two").read_bytes()
+
+
+def test_the_scene_has_every_visit_in_its_place_and_every_free_window(carproof: Run, tmp_path: Path) -> None:
+    scene = scene_of(drawn(carproof, tmp_path, CORRIDOR, solution({"r1": EAST_PLAN, "r2": [["b", 2, 4]]})))
+    stays = [
+        [
+            (scene["places"][scene["stands"][stand]["place"]]["label"], enter, leave)
+            for stand, enter, leave in track["stays"]
+        ]
+        for track in scene["tracks"]
+    ]
+    assert stays == [[("a", 0, 1), ("b", 1, 2), ("c", 2, 3)], [("b", 2, 4)]]
+    assert [place["windows"] for place in scene["places"][:2]] == [[[1, None]], [[0, 1], [4, None]]]
+    assert (scene["first"], scene["last"]) == (0, 4)
+
+
+def test_every_violation_of_the_checker_is_in_the_scene(carproof: Run, tmp_path: Path) -> None:
+    scene = scene_of(drawn(carproof, tmp_path, CORRIDOR, COLLIDING))
+    verdict = judge(read_instance(json.dumps(CORRIDOR).encode()), read_solution(json.dumps(COLLIDING).encode()))
+    assert [each["message"] for each in scene["violations"]] == [each.message for each in verdict.violations]
+    assert [(each["start"], each["end"]) for each in scene["violations"]] == [(1, 2), (2, 3)]
+    assert scene["rules"] == [{"id": "joint/capacity", "statement": scene["rules"][0]["statement"], "count": 2}]
+    assert [scene["places"][each["place"]]["label"] for each in scene["violations"]] == ["b", "c"]
+    assert all(each["tracks"] == [0, 1] for each in scene["violations"])
+
+
+def test_what_a_broken_solution_names_beyond_the_instance_is_shown_too(carproof: Run, tmp_path: Path) -> None:
+    plans = solution({"ghost": [["nowhere", 3, 1], ["a", -2, None]], "r1": []}, ["phantom"])
+    scene = scene_of(drawn(carproof, tmp_path, CORRIDOR, plans))
+    notes = {track["label"]: track["note"] for track in scene["tracks"]}
+    gone = "not in the instance"
+    assert notes == {"r1": "", "r2": "unplanned", "ghost": gone, "phantom": gone}
+    assert scene["places"][-1]["label"] == "nowhere"
+    assert scene["places"][-1]["at"] is None
+    assert scene["first"] == -2
+
+
+def test_a_robot_with_two_plans_is_shown_with_each(carproof: Run, tmp_path: Path) -> None:
+    twice = solution({"r1": EAST_PLAN})
+    twice["plans"] *= 2
+    scene = scene_of(drawn(carproof, tmp_path, corridor([EAST]), twice))
+    assert [track["note"] for track in scene["tracks"]] == ["one of 2 plans"] * 2
+    assert scene["violations"][0]["tracks"] == [0, 1]
+
+
+def test_ids_cannot_leave_their_text(carproof: Run, tmp_path: Path) -> None:
+    robot = {**EAST, "id": HOSTILE}
+    instance = corridor([robot])
+    instance["graph"]["nodes"][0]["id"] = instance["graph"]["edges"][0]["source"] = robot["start"] = HOSTILE
+    plans = solution({HOSTILE: [[HOSTILE, 0, 1], *EAST_PLAN[1:]]})
+    page = drawn(carproof, tmp_path, instance, plans)
+    assert page.count("<script") == page.count("</script") == 2
+    shown = "</script><script>alert('1')</script>&\"\\u2028é漢字🤖\\u202e"
+    assert scene_of(page)["tracks"][0]["label"] == shown
+    for options in (("--at", "0"), ("--chart",)):
+        texts = [each.text for each in picture_of(drawn(carproof, tmp_path, instance, plans, *options)).iter()]
+        assert shown in texts
+
+
+def test_a_long_id_is_cut_in_the_middle(carproof: Run, tmp_path: Path) -> None:
+    name = "x" * 1000 + "end"
+    scene = scene_of(drawn(carproof, tmp_path, corridor([{**EAST, "id": name}]), solution({}, [name])))
+    label = scene["tracks"][0]["label"]
+    assert len(label) < 70
+    assert label.endswith("end")
+
+
+def test_robots_are_called_by_their_number_where_that_tells_them_apart() -> None:
+    assert short_labels(["r1", "r2", "r100"]) == ["1", "2", "100"]
+    assert short_labels(["a1", "b1", "a2"]) == ["a1", "b1", "2"]
+    assert short_labels(["ann", "a longer name"]) == ["ann", "…ame"]
+    assert short_labels([]) == []
+
+
+def test_the_still_of_the_map_shows_each_robot_where_it_is(carproof: Run, tmp_path: Path) -> None:
+    def robots(tick: int) -> dict[str | None, str | None]:
+        picture = picture_of(drawn(carproof, tmp_path, CORRIDOR, COLLIDING, "--at", str(tick)))
+        return {each.findtext(f"{SVG}title"): each.get("transform") for each in picture[-1]}
+
+    assert robots(0) == {"r1": "translate(26 26) scale(130e-2)", "r2": "translate(66 26) scale(130e-2)"}
+    assert robots(4) == {"r2": "translate(186 26) scale(130e-2)"}
+    assert robots(9) == {}
+
+
+def test_the_still_of_the_map_marks_the_violations_of_its_tick(carproof: Run, tmp_path: Path) -> None:
+    def marked(tick: int) -> tuple[int, int]:
+        still = drawn(carproof, tmp_path, CORRIDOR, COLLIDING, "--at", str(tick))
+        return len(picture_of(still).findall(f".//{SVG}path[@class='violation']")), still.count(" blamed")
+
+    assert [marked(tick) for tick in range(4)] == [(0, 0), (1, 2), (1, 2), (0, 0)]
+
+
+def test_robots_park_for_ever_or_vanish(carproof: Run, tmp_path: Path) -> None:
+    def robots(plans: dict[str, object], tick: int) -> int:
+        return len(
+            picture_of(drawn(carproof, tmp_path, corridor([EAST, BEHIND], "park"), plans, "--at", str(tick)))[-1]
+        )
+
+    assert robots(PARKED, 9999) == 1
+    assert robots(solution({"r1": EAST_PLAN}, ["r2"]), 9999) == 0
+
+
+def test_the_still_of_the_chart_has_rows_windows_stays_and_violations(carproof: Run, tmp_path: Path) -> None:
+    picture = picture_of(drawn(carproof, tmp_path, CORRIDOR, COLLIDING, "--chart"))
+    count = {
+        kind: len(picture.findall(f".//{SVG}{tag}[@class='{kind}']"))
+        for tag, kind in (("text", "row-name"), ("path", "window"), ("path", "bar"), ("path", "violation"))
+    }
+    assert count == {"row-name": 5, "window": 5, "bar": 7, "violation": 2}
+
+
+def test_one_way_moves_are_arrows(carproof: Run, tmp_path: Path) -> None:
+    instance = corridor([EAST])
+    instance["graph"]["directed"] = True
+    instance["graph"]["edges"].append({"source": "b", "target": "a"})
+    picture = picture_of(drawn(carproof, tmp_path, instance, solution({"r1": EAST_PLAN}), "--at", "0"))
+    paths = {each.get("class"): each.get("d", "") for each in picture.iter(f"{SVG}path")}
+    assert paths["edge"] == "M26 26L66 26"
+    assert paths["one-way"].count("M") == paths["head"].count("z") == 3
+
+
+def test_robots_that_share_a_resource_stand_side_by_side() -> None:
+    assert list(lanes([(0, 4), (1, 2), (2, None), (4, 5), (9, 10)])) == [0, 1, 1, 0, 0]
+    roomy = spots(Resource("a", capacity=4), 4)
+    assert len({(spot.dx, spot.dy) for spot in roomy}) == 4
+    assert all(max(abs(spot.dx), abs(spot.dy)) + spot.radius <= 16 for spot in roomy)
+    collision = spots(Resource("a", capacity=1), 2)
+    assert (collision[0].dx, collision[0].dy, collision[0].radius) == (0, 0, 13)
+    assert 0 < collision[1].dx < 13
+    crowd = spots(Resource("a", capacity=1), 5)
+    assert len({(spot.dx, spot.dy) for spot in crowd}) == 5
+
+
+def test_own_positions_are_kept_and_others_are_laid_out_apart() -> None:
+    row = tuple(Resource(name, x=1000 * at, y=0) for at, name in enumerate("abc"))
+    edges = (("a", "b"), ("b", "c"))
+    assert [x for x, _ in placement(ResourceGraph(row, edges)).points.values()] == [26, 66, 106]
+    uneven = tuple(Resource(name, x=x, y=0) for name, x in zip("abc", (0, 1, 4), strict=True))
+    assert [x for x, _ in placement(ResourceGraph(uneven, edges)).points.values()] == [26, 66, 186]
+    for lacking in (
+        tuple(Resource(each.id) for each in row),
+        (*row[:2], Resource("c")),
+        (*row[:2], Resource("c", x=0, y=0)),
+        (*row[:2], Resource("c", x=10**30, y=0)),
+        (*row, Resource("lonely")),
+    ):
+        placed = placement(ResourceGraph(lacking, edges))
+        points = list(placed.points.values())
+        assert placed.computed
+        assert all(
+            max(abs(one[0] - two[0]), abs(one[1] - two[1])) >= UNIT * 4 // 5
+            for at, one in enumerate(points)
+            for two in points[:at]
+        )
+
+
+def test_large_graphs_without_positions_are_laid_out_in_rows() -> None:
+    many = tuple(Resource(number) for number in range(900))
+    placed = placement(ResourceGraph(many, tuple((number, number + 1) for number in range(899))))
+    assert (placed.width, placed.height) == (29 * UNIT + 52, 29 * UNIT + 52)
+
+
+def test_an_instance_without_resources_or_robots_is_drawn(carproof: Run, tmp_path: Path) -> None:
+    instance = {**corridor([]), "graph": {"nodes": [], "edges": []}}
+    for options in ((), ("--at", "0"), ("--chart",)):
+        assert drawn(carproof, tmp_path, instance, solution({}), *options)
+
+
+def test_the_chart_marks_round_ticks() -> None:
+    assert list(TimeScale(0, 10).marks()) == list(range(11))
+    assert list(TimeScale(0, 100).marks()) == list(range(0, 101, 5))
+    assert list(TimeScale(-3, 10_000).marks())[:3] == [0, 500, 1000]
+    assert len(list(TimeScale(0, 10**7).marks())) == 21
+
+
+@pytest.mark.parametrize(
+    ("name", "what"),
+    [("resources", "5 "), ("edges", "4 "), ("robots", "2 "), ("visits", "7 "), ("bytes", "")],
+)
+def test_what_is_too_large_is_refused_with_the_limit(
+    carproof: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, what: str
+) -> None:
+    monkeypatch.setitem(limits._MOST, name, 1)
+    (tmp_path / "town.json").write_text(json.dumps(CORRIDOR))
+    (tmp_path / "plans.json").write_text(json.dumps(COLLIDING))
+    outcome = carproof("view", tmp_path / "town.json", tmp_path / "plans.json", "-o", tmp_path / "out.html")
+    assert outcome.code == 2
+    assert f"a picture shows at most 1 {name}, and this one would have {what}" in outcome.stderr.replace("\n", " \n")
+    assert outcome.stderr.endswith("[view/size]\n")
+    assert not (tmp_path / "out.html").exists()
+
+
+def test_ticks_that_no_picture_shows_are_refused(carproof: Run, tmp_path: Path) -> None:
+    (tmp_path / "town.json").write_text(json.dumps(CORRIDOR))
+    (tmp_path / "plans.json").write_text(json.dumps(solution({"r1": [["a", 0, 10**9]]}, ["r2"])))
+    outcome = carproof("view", tmp_path / "town.json", tmp_path / "plans.json")
+    assert (outcome.code, outcome.stdout) == (2, "")
+    assert "and there is 1000000000 [view/ticks]" in outcome.stderr
+    outcome = carproof("view", tmp_path / "town.json", tmp_path / "plans.json", "--at", "-10000001")
+    assert "[view/ticks]" in outcome.stderr
+
+
+def test_two_pictures_at_once_are_refused(carproof: Run, tmp_path: Path) -> None:
+    (tmp_path / "town.json").write_text(json.dumps(CORRIDOR))
+    outcome = carproof("view", tmp_path / "town.json", tmp_path / "town.json", "--at", "1", "--chart")
+    assert outcome.code == 2
+    assert "Only one of --at and --chart can be drawn." in outcome.stderr
+
+
+def test_only_the_first_of_very_many_violations_are_listed(
+    carproof: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("carp_oracle.viewer.staging.MOST_LISTED", 1)
+    scene = scene_of(drawn(carproof, tmp_path, CORRIDOR, COLLIDING))
+    assert len(scene["violations"]) == 1
+    assert scene["rules"][0]["count"] == 2
+
+
+@pytest.mark.parametrize("name", ["map.svg", "chart.svg"])
+def test_the_pictures_of_the_project_are_drawn_by_it(name: str) -> None:
+    assert (FOLDER / name).read_bytes() == sample_pictures()[name], "run: make generated"

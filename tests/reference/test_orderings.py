@@ -1,0 +1,89 @@
+"""CARP in an order, and the planners that differ from it in the order alone."""
+
+import pytest
+from tests.reference.examples import grid, instance, line
+
+from carp_reference import plan, steps
+from carp_spec import (
+    Carp,
+    FixedPaths,
+    Greedy,
+    LongestFirst,
+    Neighbourhood,
+    Planner,
+    Resource,
+    ResourceGraph,
+    Shuffled,
+    TimeExpanded,
+    judge,
+    total_cost,
+)
+
+ALL_PLANNERS: list[Planner] = [
+    Carp(),
+    Shuffled(attempts=3, seed=1),
+    LongestFirst(),
+    Greedy(),
+    Neighbourhood(m=3),
+    FixedPaths(),
+    FixedPaths(k=2, paths="disjoint"),
+    TimeExpanded(),
+]
+SIDING = ResourceGraph(tuple(map(Resource, "abcde")), (("a", "b"), ("b", "c"), ("c", "d"), ("b", "e")))
+
+
+def test_a_robot_without_a_plan_is_left_out_and_the_rest_goes_on() -> None:
+    three = instance(line("abc"), ("a", "a"), ("a", "c"), ("c", "b"))
+    solution = plan(three, Carp())
+    assert (solution.order, solution.unplanned) == (("r0", "r2"), ("r1",))
+
+
+def test_shuffled_finds_the_order_that_plans_every_robot() -> None:
+    two = instance(SIDING, ("b", "c"), ("a", "d"), after_goal="park")
+    assert plan(two, Shuffled(attempts=1)).unplanned == ("r1",)
+    assert plan(two, Shuffled(attempts=10)).order == ("r1", "r0")
+
+
+def test_shuffled_keeps_the_first_of_equally_good_passes() -> None:
+    rows = [(f"0,{row}", f"1,{row}") for row in range(5)]
+    for attempts in (2, 3, 4):
+        assert plan(instance(grid(2, 5), *rows), Shuffled(attempts=attempts)).order == ("r0", "r1", "r2", "r3", "r4")
+
+
+def test_shuffled_makes_as_many_passes_as_it_is_told() -> None:
+    passes: list[None] = []
+    plan(instance(line("ab"), ("a", "b")), Shuffled(attempts=3), lambda: passes.append(None))
+    assert len(passes) == 3
+
+
+def test_longest_first_plans_the_longest_way_first_and_the_earlier_of_equals() -> None:
+    four = instance(grid(4, 4), ("0,0", "1,0"), ("0,1", "3,1"), ("0,2", "1,2"), ("0,3", "3,3"))
+    assert plan(four, LongestFirst()).order == ("r1", "r3", "r0", "r2")
+
+
+def test_greedy_plans_the_cheapest_of_each_round() -> None:
+    four = instance(grid(4, 4), ("0,0", "3,0"), ("0,1", "1,1"), ("0,2", "2,2"), ("0,3", "1,3"))
+    assert plan(four, Greedy()).order == ("r1", "r3", "r2", "r0")
+    three = instance(line("abc"), ("a", "a"), ("a", "c"), ("c", "b"))
+    assert plan(three, Greedy()).unplanned == ("r1",)
+
+
+@pytest.mark.parametrize("planner", ALL_PLANNERS, ids=str)
+def test_every_planner_returns_a_valid_solution_and_reports_its_progress(planner: Planner) -> None:
+    four = instance(grid(3, 3), ("0,0", "2,2"), ("2,2", "0,0"), ("0,2", "2,0"), ("1,1", "1,1"))
+    advanced = 0
+
+    def advance() -> None:
+        nonlocal advanced
+        advanced += 1
+
+    solution = plan(four, planner, advance)
+    assert judge(four, solution).valid
+    assert solution.unplanned == ()
+    assert total_cost(four, solution.plans) >= 12
+    assert advanced <= steps(four, planner)
+
+
+def test_the_time_expanded_planner_leaves_out_a_robot_without_a_plan() -> None:
+    three = instance(line("abc"), ("a", "a"), ("a", "c"), ("c", "b"))
+    assert plan(three, TimeExpanded()).unplanned == ("r1",)

@@ -1,0 +1,76 @@
+"""The naive twin: hand-made cases and its limit; that it agrees with the query, test_twins holds."""
+
+import pytest
+from tests.reference.examples import instance, line, plan_of
+
+from carp_reference import time_expanded
+from carp_reference.time_expanded import find_plan_by_ticks
+from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
+
+
+def test_it_joins_ticks_into_visits() -> None:
+    two = instance(line("abc", b=2), ("b", "b"), ("a", "c"))
+    assert find_plan_by_ticks(two, (plan_of("r0", ("b", 0, 2)),), "r1") == plan_of(
+        "r1", ("a", 0, 2), ("b", 2, 4), ("c", 4, 5)
+    )
+
+
+def test_it_ends_where_there_is_no_plan() -> None:
+    two = instance(line("abc"), ("b", "b"), ("a", "c"), after_goal="park")
+    assert find_plan_by_ticks(two, (plan_of("r0", ("b", 0, None)),), "r1") is None
+
+
+def test_a_table_that_memory_should_not_hold_is_refused() -> None:
+    two = instance(line("abc"), ("b", "b"), ("a", "c"))
+    with pytest.raises(Refusal, match="the committed plans occupy 10000000 ticks") as refused:
+        find_plan_by_ticks(two, (plan_of("r0", ("b", 0, 10_000_000)),), "r1")
+    assert (refused.value.kind, refused.value.rule) == ("limit", "limit/ticks")
+
+
+@pytest.mark.parametrize(("duration", "now"), [(10**9, 0), (1, 10**9)])
+def test_a_way_of_more_ticks_than_it_holds_is_refused(duration: int, now: int) -> None:
+    one = instance(line("abc", b=duration), ("a", "c"))
+    with pytest.raises(Refusal, match=r"robot r0 may be under way for 100000000\d ticks"):
+        find_plan_by_ticks(one, (), "r0", now)
+
+
+def test_a_late_release_is_no_long_way() -> None:
+    late = Instance(line("ab"), (Robot("r0", "a", "b", release=10**9),))
+    assert find_plan_by_ticks(late, (), "r0") == plan_of("r0", ("a", 10**9, 10**9 + 1), ("b", 10**9 + 1, 10**9 + 2))
+
+
+def test_what_it_holds_is_counted_to_the_tick(monkeypatch: pytest.MonkeyPatch) -> None:
+    two = instance(line("abc"), ("a", "b"), ("c", "c"), after_goal="park")
+    parked = plan_of("r0", ("a", 0, 4), ("b", 4, None))
+    for most, refused in ((4, True), (5, False)):
+        monkeypatch.setattr(time_expanded, "LARGEST_TABLE", most)
+        if refused:
+            with pytest.raises(Refusal, match="the committed plans occupy 5 ticks"):
+                time_expanded.table_of(two, (parked,))
+        else:
+            assert time_expanded.table_of(two, (parked,)).still == 4
+
+
+def test_it_plans_at_tick_0_unless_it_is_told_when() -> None:
+    one = instance(line("abc"), ("b", "c"))
+    wrong_way = plan_of("r0", ("b", 0, 1), ("a", 1, 2), ("b", 2, 3), ("c", 3, 4))
+    assert find_plan_by_ticks(one, (), "r0", before=wrong_way) == plan_of("r0", ("b", 0, 1), ("c", 1, 2))
+    assert find_plan_by_ticks(one, (), "r0", 1, wrong_way) == wrong_way
+
+
+def test_a_robot_that_stayed_at_its_goal_too_long_to_vanish_there_comes_back_to_it() -> None:
+    one = instance(line("ab"), ("a", "a"))
+    wandering = plan_of("r0", ("a", 0, 4), ("b", 4, 5), ("a", 5, 6))
+    back = plan_of("r0", ("a", 0, 2), ("b", 2, 3), ("a", 3, 4))
+    assert find_plan_by_ticks(one, (), "r0", 2, wandering) == back
+
+
+def test_it_takes_the_longer_way_where_that_is_quicker() -> None:
+    slow = {"a": 5}
+    resources = tuple(Resource(name, duration=slow.get(name, 1)) for name in "sagbcde")
+    ring = ResourceGraph(
+        resources, (("s", "a"), ("a", "g"), ("s", "b"), ("b", "c"), ("c", "d"), ("d", "e"), ("e", "g"))
+    )
+    found = find_plan_by_ticks(instance(ring, ("s", "g")), (), "r0")
+    assert found is not None
+    assert [visit.resource for visit in found.visits] == ["s", "b", "c", "d", "e", "g"]

@@ -1,0 +1,66 @@
+"""Short ways to write instances and plans down, and a solved instance to break in one place."""
+
+from collections.abc import Iterable
+from itertools import pairwise
+from typing import TypeAlias
+
+from carp_spec import (
+    AfterGoal,
+    Instance,
+    Plan,
+    Resource,
+    ResourceGraph,
+    ResourceId,
+    Robot,
+    RobotId,
+    Solution,
+    Visit,
+)
+
+Stay: TypeAlias = tuple[ResourceId, int, int | None]
+
+
+def line(names: str, directed: bool = False) -> ResourceGraph:
+    """A row of resources with capacity and duration 1, at (0, 0), (1, 0), and so on."""
+    resources = tuple(Resource(name, x=position, y=0) for position, name in enumerate(names))
+    return ResourceGraph(resources, tuple(pairwise(names)), directed)
+
+
+def instance_on(graph: ResourceGraph, *robots: Robot, after_goal: AfterGoal = "vanish") -> Instance:
+    return Instance(graph, robots, after_goal)
+
+
+def plan_of(robot: RobotId, *stays: Stay) -> Plan:
+    return Plan(robot, tuple(Visit(*stay) for stay in stays))
+
+
+def solution_of(plans: Iterable[Plan], unplanned: tuple[RobotId, ...] = ()) -> Solution:
+    plans = tuple(plans)
+    return Solution(plans, tuple(plan.robot for plan in plans), unplanned)
+
+
+# A line a - b - c - d with e beside b and f beside c. Two robots fit into b, and c takes two ticks.
+CROSSING = ResourceGraph(
+    (
+        Resource("a", x=0, y=0),
+        Resource("b", capacity=2, x=1, y=0),
+        Resource("c", duration=2, x=2, y=0),
+        Resource("d", x=3, y=0),
+        Resource("e", x=1, y=1),
+        Resource("f", x=2, y=1),
+    ),
+    (("a", "b"), ("b", "c"), ("c", "d"), ("b", "e"), ("c", "f")),
+)
+ROBOTS = (Robot("r1", "a", "d"), Robot("r2", "e", "a", release=1), Robot("r3", "f", "f"))
+VANISHING = Instance(CROSSING, ROBOTS, "vanish")
+PARKING = Instance(CROSSING, ROBOTS, "park")
+SOLVED = (
+    plan_of("r1", ("a", 0, 2), ("b", 2, 3), ("c", 3, 5), ("d", 5, 6)),
+    plan_of("r2", ("e", 1, 2), ("b", 2, 4), ("a", 4, 5)),
+    plan_of("r3", ("f", 0, 1)),
+)
+PARKED = (
+    plan_of("r1", ("a", 0, 2), ("b", 2, 3), ("c", 3, 5), ("d", 5, None)),
+    plan_of("r2", ("e", 1, 2), ("b", 2, 4), ("a", 4, None)),
+    plan_of("r3", ("f", 0, None)),
+)

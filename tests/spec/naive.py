@@ -1,0 +1,68 @@
+"""The rules once more, tick by tick and pair by pair: slow, short, and written without looking at the checker."""
+
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+from typing import TypeAlias
+
+from carp_spec import Instance, Plan, ResourceId, Visit
+
+FIRST, HORIZON = -15, 45
+Blamed: TypeAlias = tuple[str, Plan, Visit | None]
+
+
+def broken_plan_rules(instance: Instance, plan: Plan) -> Iterator[Blamed]:
+    robot = instance.robot[plan.robot]
+    graph = instance.graph
+    known = {resource.id: resource.duration * robot.pace for resource in graph.resources}
+    moves = set(graph.edges) if graph.directed else {*graph.edges, *((s, r) for r, s in graph.edges)}
+    if not plan.visits:
+        yield from (("plan/start", plan, None), ("plan/goal", plan, None))
+        return
+    first, last = plan.visits[0], plan.visits[-1]
+    if not (first.resource == robot.start and first.enter == robot.release):
+        yield "plan/start", plan, first
+    ends = {"vanish": last.enter + known[robot.goal], "park": None}
+    if not (last.resource == robot.goal and last.leave == ends[instance.after_goal]):
+        yield "plan/goal", plan, last
+    for visit in plan.visits:
+        if visit.resource not in known:
+            yield "plan/resource", plan, visit
+        elif visit.leave is not None and len(range(visit.enter, visit.leave)) < known[visit.resource]:
+            yield "plan/duration", plan, visit
+    for visit, following in zip(plan.visits, plan.visits[1:], strict=False):
+        step = (visit.resource, following.resource)
+        if set(step) <= known.keys() and step not in moves:
+            yield "plan/move", plan, following
+        if visit.leave != following.enter:
+            yield "plan/contiguous", plan, following
+
+
+def occupies(plan: Plan, resource: ResourceId, tick: int) -> bool:
+    return any(
+        visit.resource == resource and tick >= visit.enter and (visit.leave is None or tick < visit.leave)
+        for visit in plan.visits
+    )
+
+
+def crowds(instance: Instance, plans: Sequence[Plan]) -> Iterator[tuple[ResourceId, int, frozenset[object]]]:
+    """Each resource and tick with too many robots, and which."""
+    for resource in instance.graph.resources:
+        for tick in range(FIRST, HORIZON):
+            robots = frozenset(plan.robot for plan in plans if occupies(plan, resource.id, tick))
+            if len(robots) > resource.capacity:
+                yield resource.id, tick, robots
+
+
+def moves_at(instance: Instance, plan: Plan, tick: int) -> set[tuple[ResourceId, ResourceId]]:
+    pairs = zip(plan.visits, plan.visits[1:], strict=False)
+    steps = {(visit.resource, following.resource) for visit, following in pairs if following.enter == tick}
+    return {step for step in steps if set(step) <= instance.graph.index.keys() and len(set(step)) == 2}
+
+
+def exchanges(instance: Instance, plans: Sequence[Plan]) -> Iterator[tuple[int, frozenset[ResourceId]]]:
+    """Each tick and pair of resources that two robots exchange."""
+    for tick in range(FIRST, HORIZON):
+        for one, other in combinations(plans, 2):
+            back = {(target, source) for source, target in moves_at(instance, other, tick)}
+            if one.robot != other.robot:
+                yield from ((tick, frozenset(step)) for step in moves_at(instance, one, tick) & back)

@@ -1,0 +1,246 @@
+"""The checker as a whole: silent on correct plans, and exactly right about each planted violation."""
+
+from collections import Counter
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from tests.spec.making import PARKED, PARKING, SOLVED, VANISHING, Stay, instance_on, line, plan_of, solution_of
+from tests.spec.naive import HORIZON, broken_plan_rules, crowds, exchanges
+from tests.spec.strategies import FEWER, instances, instances_with_plans
+
+import carp_reference
+from carp_spec import (
+    RULES,
+    Carp,
+    FixedPaths,
+    Greedy,
+    Instance,
+    LongestFirst,
+    Neighbourhood,
+    Plan,
+    Planner,
+    Robot,
+    Shuffled,
+    Solution,
+    TimeExpanded,
+    check,
+    check_update,
+    judge,
+)
+
+PLANNERS: tuple[Planner, ...] = (
+    Carp(),
+    Shuffled(attempts=2),
+    LongestFirst(),
+    Greedy(),
+    Neighbourhood(m=3),
+    Neighbourhood(m=3, baseline=False),
+    FixedPaths(k=2),
+    TimeExpanded(),
+)
+
+
+def rules_broken(instance: Instance, plans: tuple[Plan, ...]) -> list[str]:
+    return [violation.rule for violation in check(instance, plans)]
+
+
+@pytest.mark.parametrize(("instance", "plans"), [(VANISHING, SOLVED), (PARKING, PARKED)])
+def test_hand_made_correct_plans_break_no_rule(instance: Instance, plans: tuple[Plan, ...]) -> None:
+    assert check(instance, plans) == ()
+    assert judge(instance, solution_of(plans)).valid
+
+
+@FEWER
+@given(instance=instances(most_robots=3), planner=st.sampled_from(PLANNERS))
+def test_what_the_planners_plan_breaks_no_rule(instance: Instance, planner: Planner) -> None:
+    verdict = judge(instance, carp_reference.plan(instance, planner))
+    assert verdict.violations == ()
+
+
+def first_plan(*stays: Stay) -> tuple[Plan, ...]:
+    """The solved crossing with another plan for r1."""
+    return (plan_of("r1", *stays), *SOLVED[1:])
+
+
+PLANTED: dict[str, tuple[tuple[Plan, ...], list[str]]] = {
+    "starts late": (first_plan(("a", 1, 2), ("b", 2, 3), ("c", 3, 5), ("d", 5, 6)), ["plan/start"]),
+    "starts elsewhere": (first_plan(("c", 0, 2), ("b", 2, 3), ("c", 3, 5), ("d", 5, 6)), ["plan/start"]),
+    "ends elsewhere": (first_plan(("a", 0, 2), ("b", 2, 3), ("c", 3, 5), ("f", 5, 6)), ["plan/goal"]),
+    "lingers at its goal": (first_plan(("a", 0, 2), ("b", 2, 3), ("c", 3, 5), ("d", 5, 7)), ["plan/goal"]),
+    "parks where it is to vanish": (first_plan(("a", 0, 2), ("b", 2, 3), ("c", 3, 5), ("d", 5, None)), ["plan/goal"]),
+    "vanishes too soon": (
+        first_plan(("a", 0, 2), ("b", 2, 3), ("c", 3, 5), ("d", 5, 5)),
+        ["plan/goal", "plan/duration"],
+    ),
+    "has no visit": (first_plan(), ["plan/start", "plan/goal"]),
+    "visits nowhere": (first_plan(("a", 0, 2), ("x", 2, 3), ("c", 3, 5), ("d", 5, 6)), ["plan/resource"]),
+    "starts nowhere": (
+        first_plan(("x", 0, 2), ("b", 2, 3), ("c", 3, 5), ("d", 5, 6)),
+        ["plan/start", "plan/resource"],
+    ),
+    "jumps": (first_plan(("a", 0, 2), ("f", 2, 3), ("c", 3, 5), ("d", 5, 6)), ["plan/move"]),
+    "stays in two visits": (first_plan(("a", 0, 1), ("a", 1, 2), ("b", 2, 3), ("c", 3, 5), ("d", 5, 6)), ["plan/move"]),
+    "is nowhere for a tick": (first_plan(("a", 0, 1), ("b", 2, 3), ("c", 3, 5), ("d", 5, 6)), ["plan/contiguous"]),
+    "is twice for a tick": (first_plan(("a", 0, 3), ("b", 2, 3), ("c", 3, 5), ("d", 5, 6)), ["plan/contiguous"]),
+    "never leaves, and goes on": (
+        first_plan(("a", 0, 2), ("b", 2, None), ("c", 3, 5), ("d", 5, 6)),
+        ["plan/contiguous"],
+    ),
+    "hurries": (first_plan(("a", 0, 2), ("b", 2, 3), ("c", 3, 4), ("d", 4, 5)), ["plan/duration"]),
+    "passes in no time": (first_plan(("a", 0, 2), ("b", 2, 2), ("c", 2, 5), ("d", 5, 6)), ["plan/duration"]),
+    "goes back in time": (
+        first_plan(("a", 0, 3), ("b", 3, 2), ("c", 2, 5), ("d", 5, 6)),
+        ["plan/duration"],
+    ),
+    "leaves out a visit": (
+        first_plan(("a", 0, 2), ("c", 3, 5), ("d", 5, 6)),
+        ["plan/move", "plan/contiguous"],
+    ),
+    "waits in the way": (first_plan(("a", 0, 5), ("b", 5, 6), ("c", 6, 8), ("d", 8, 9)), ["joint/capacity"]),
+    "exchanges places": (first_plan(("a", 0, 4), ("b", 4, 5), ("c", 5, 7), ("d", 7, 8)), ["joint/exchange"]),
+}
+
+
+@pytest.mark.parametrize("planted", PLANTED)
+def test_each_planted_violation_is_found_and_nothing_else(planted: str) -> None:
+    plans, expected = PLANTED[planted]
+    assert rules_broken(VANISHING, plans) == expected
+
+
+PLANTED_PARKED: dict[str, tuple[tuple[Plan, ...], list[str]]] = {
+    "vanishes where it is to park": ((*PARKED[:2], plan_of("r3", ("f", 0, 1))), ["plan/goal"]),
+    "passes a parked robot": (
+        (plan_of("r1", ("a", 0, 2), ("b", 2, 3), ("c", 3, 5), ("f", 5, 6), ("c", 6, 8), ("d", 8, None)), *PARKED[1:]),
+        ["joint/capacity"],
+    ),
+    "parks on a parked robot": (
+        (PARKED[0], plan_of("r2", ("e", 1, 2), ("b", 2, 5), ("c", 5, 7), ("d", 7, None)), PARKED[2]),
+        ["plan/goal", "joint/capacity"],
+    ),
+}
+
+
+@pytest.mark.parametrize("planted", PLANTED_PARKED)
+def test_each_planted_violation_is_found_among_parking_robots(planted: str) -> None:
+    plans, expected = PLANTED_PARKED[planted]
+    assert rules_broken(PARKING, plans) == expected
+
+
+def test_every_rule_of_plans_is_planted() -> None:
+    planted = {rule for _, expected in PLANTED.values() for rule in expected}
+    assert planted == {rule.id for rule in RULES if rule.id.startswith(("plan/", "joint/"))}
+
+
+def test_violations_come_rule_by_rule_then_plan_by_plan_and_in_order_of_time() -> None:
+    wrong = (
+        plan_of("r1", ("b", 0, 0), ("f", 3, 4), ("d", 4, 5)),
+        plan_of("r2", ("b", 1, 2), ("c", 2, 3), ("a", 3, None)),
+        plan_of("r3", ("f", 0, 9)),
+    )
+    told = [(violation.rule, violation.robots, violation.start) for violation in check(VANISHING, wrong)]
+    assert told == [
+        ("plan/start", ("r1",), 0),
+        ("plan/start", ("r2",), 1),
+        ("plan/goal", ("r2",), 3),
+        ("plan/goal", ("r3",), 0),
+        ("plan/move", ("r1",), 3),
+        ("plan/move", ("r1",), 4),
+        ("plan/move", ("r2",), 3),
+        ("plan/contiguous", ("r1",), 3),
+        ("plan/duration", ("r1",), 0),
+        ("plan/duration", ("r2",), 2),
+        ("joint/capacity", ("r1", "r3"), 3),
+    ]
+
+
+@FEWER
+@given(case=instances_with_plans())
+def test_the_checker_agrees_with_the_rules_spelt_out_plan_by_plan(case: tuple[Instance, tuple[Plan, ...]]) -> None:
+    instance, plans = case
+    told = Counter(
+        (each.rule, each.robots, each.resource, each.start, each.end)
+        for each in check(instance, plans)
+        if each.rule.startswith("plan/")
+    )
+    spelt_out = Counter(
+        (rule, (plan.robot,), visit and visit.resource, visit and visit.enter, visit and visit.leave)
+        for each in plans
+        for rule, plan, visit in broken_plan_rules(instance, each)
+    )
+    assert told == spelt_out
+
+
+@FEWER
+@given(case=instances_with_plans())
+def test_the_checker_agrees_with_the_rules_spelt_out_tick_by_tick(case: tuple[Instance, tuple[Plan, ...]]) -> None:
+    instance, plans = case
+    violations = check(instance, plans)
+    crowded = [
+        (each.resource, tick, frozenset(each.robots))
+        for each in violations
+        if each.rule == "joint/capacity" and each.start is not None
+        for tick in range(each.start, HORIZON if each.end is None else each.end)
+    ]
+    assert Counter(crowded) == Counter(crowds(instance, plans))
+    exchanged = [
+        (each.start, each.resource, other)
+        for each in violations
+        if each.rule == "joint/exchange"
+        for other in instance.graph.index
+        if f"exchange {each.resource} and {other} at" in each.reason
+    ]
+    index = instance.graph.index
+    spelt_out = {(tick, *sorted(pair, key=index.__getitem__)) for tick, pair in exchanges(instance, plans)}
+    assert Counter(exchanged) == Counter(spelt_out)
+
+
+def test_a_verdict_sums_the_costs_and_counts_the_unplanned() -> None:
+    verdict = judge(VANISHING, solution_of(SOLVED[:2], unplanned=("r3",)))
+    assert (verdict.valid, verdict.cost, verdict.unplanned) == (True, 5 + 3, 1)
+
+
+def test_a_plan_without_visits_adds_no_cost_and_counts_as_a_plan() -> None:
+    verdict = judge(VANISHING, solution_of((*SOLVED[:2], plan_of("r3"))))
+    assert (verdict.valid, verdict.cost, verdict.unplanned) == (False, 8, 0)
+
+
+def test_a_stranger_is_named_and_its_plan_is_not_looked_at() -> None:
+    verdict = judge(VANISHING, solution_of((*SOLVED, plan_of("r9", ("x", -1, -2)))))
+    assert [(each.rule, each.robots) for each in verdict.violations] == [("solution/covers", ("r9",))]
+    assert (verdict.cost, verdict.unplanned) == (8, 0)
+
+
+@pytest.mark.parametrize(
+    ("solution", "expected"),
+    [
+        (Solution(SOLVED, ("r1", "r2")), ["solution/order"]),
+        (Solution(SOLVED, ("r1", "r2", "r3", "r3")), ["solution/order"]),
+        (Solution(SOLVED, ("r1", "r2", "r3", "r9")), ["solution/order"]),
+        (Solution(SOLVED, ("r1", "r2", "r3"), ("r3",)), ["solution/covers"]),
+        (Solution(SOLVED, ("r1", "r2", "r3"), ("r9",)), ["solution/covers"]),
+        (Solution((*SOLVED, SOLVED[2]), ("r1", "r2", "r3")), ["solution/covers"]),
+        (Solution(SOLVED[:2], ("r1", "r2", "r3"), ("r3",)), ["solution/order"]),
+        (Solution(SOLVED[:2], ("r1", "r2")), ["solution/covers"]),
+        (Solution(SOLVED[:2], ("r1", "r2"), ("r3", "r3")), ["solution/covers"]),
+    ],
+)
+def test_each_violation_planted_in_the_rest_of_a_solution_is_found(solution: Solution, expected: list[str]) -> None:
+    assert [each.rule for each in judge(VANISHING, solution).violations] == expected
+
+
+def test_the_planning_order_need_not_be_the_order_of_arrival() -> None:
+    assert judge(VANISHING, solution_of(reversed(SOLVED))).valid
+
+
+def test_an_update_is_checked_robot_by_robot() -> None:
+    again = plan_of("r2", ("e", 1, 3), ("b", 3, 5), ("a", 5, 6))
+    assert check_update(SOLVED, (SOLVED[0], again), now=1) == ()
+    assert [each.robots for each in check_update(SOLVED, (SOLVED[0], again), now=2)] == [("r2",), ("r2",)]
+    assert check_update(SOLVED, (), now=2) == ()
+
+
+def test_check_takes_robots_and_resources_of_both_kinds_of_id() -> None:
+    instance = instance_on(line("ab"), Robot(7, "a", "b"), Robot("7", "b", "b"))
+    plans = (plan_of(7, ("a", 0, 1), ("b", 1, 2)), plan_of("7", ("b", 0, 1)))
+    assert check(instance, plans) == ()

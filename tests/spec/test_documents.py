@@ -1,0 +1,434 @@
+"""Documents: what is read is what was written, and every malformed document is refused with path and rule."""
+
+import json
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any
+
+import networkx as nx
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from tests.spec.making import PARKED, PARKING, SOLVED, VANISHING, plan_of, solution_of
+from tests.spec.strategies import FEWER, graphs, instances, solutions
+
+from carp_spec import (
+    Instance,
+    Refusal,
+    Resource,
+    ResourceGraph,
+    Robot,
+    Solution,
+    judge,
+    read_instance,
+    read_solution,
+    write_instance,
+    write_solution,
+    write_verdict,
+)
+
+Json = Any
+
+
+def instance_json() -> Json:
+    return json.loads(write_instance(VANISHING))
+
+
+def solution_json() -> Json:
+    return json.loads(write_solution(solution_of(PARKED)))
+
+
+def encode(value: Json) -> bytes:
+    return json.dumps(value).encode()
+
+
+def refusal(read: Callable[[bytes], object], data: bytes) -> tuple[str, str]:
+    """The path and the rule with which the document is refused."""
+    with pytest.raises(Refusal) as caught:
+        read(data)
+    assert caught.value.kind == "document"
+    assert caught.value.message
+    return caught.value.path, caught.value.rule
+
+
+@FEWER
+@given(instance=instances())
+def test_an_instance_is_read_as_it_was_written(instance: Instance) -> None:
+    assert read_instance(write_instance(instance)) == instance
+
+
+@FEWER
+@given(solution=solutions())
+def test_a_solution_is_read_as_it_was_written(solution: Solution) -> None:
+    assert read_solution(write_solution(solution)) == solution
+
+
+def test_defaults_may_be_left_out() -> None:
+    nodes = [{"id": "a"}, {"id": 2}]
+    graph = {"nodes": nodes, "edges": [{"source": "a", "target": 2}]}
+    robots = [{"id": "r", "start": "a", "goal": 2}]
+    document = {"format": "carproof-instance/1", "graph": graph, "after_goal": "park", "robots": robots}
+    expected = Instance(ResourceGraph((Resource("a"), Resource(2)), (("a", 2),)), (Robot("r", "a", 2),), "park")
+    assert read_instance(encode(document)) == expected
+
+
+def test_a_document_is_one_line() -> None:
+    for data in (write_instance(VANISHING), write_solution(solution_of(SOLVED))):
+        assert data.count(b"\n") == 1
+        assert data.endswith(b"\n")
+
+
+def test_a_verdict_is_written_with_its_violations() -> None:
+    solution = solution_of((plan_of("r1", ("a", 0, 2), ("b", 2, 3), ("c", 3, 4), ("d", 4, None)), *SOLVED[1:]))
+    assert json.loads(write_verdict(judge(VANISHING, solution))) == {
+        "format": "carproof-verdict/1",
+        "valid": False,
+        "cost": 7,
+        "unplanned": 0,
+        "violations": [
+            {
+                "rule": "plan/goal",
+                "robots": ["r1"],
+                "resource": "d",
+                "from": 4,
+                "to": None,
+                "message": "resource d in [4,for ever): robot r1 (it must leave the goal at 5)",
+            },
+            {
+                "rule": "plan/duration",
+                "robots": ["r1"],
+                "resource": "c",
+                "from": 3,
+                "to": 4,
+                "message": "resource c in [3,4): robot r1 (it stays 1 of at least 2 ticks)",
+            },
+        ],
+    }
+
+
+# At each path of a document: a value that does not belong there, and the rule that says so.
+WRONG_IN_INSTANCE: list[tuple[str, Json, str]] = [
+    ("$.format", "carproof-instance/2", "document/format"),
+    ("$.format", "carproof-solution/1", "document/format"),
+    ("$.format", 1, "document/format"),
+    ("$.format", None, "document/format"),
+    ("$.after_goal", "stay", "document/shape"),
+    ("$.after_goal", None, "document/shape"),
+    ("$.graph", None, "document/shape"),
+    ("$.graph", [], "document/shape"),
+    ("$.graph.nodes", {}, "document/shape"),
+    ("$.graph.nodes[0]", "a", "document/shape"),
+    ("$.graph.nodes[0].id", None, "document/shape"),
+    ("$.graph.nodes[0].id", True, "document/shape"),
+    ("$.graph.nodes[0].id", 1.0, "document/shape"),
+    ("$.graph.nodes[0].id", [0, 1], "document/shape"),
+    ("$.graph.nodes[1].id", "a", "instance/resource-id"),
+    ("$.graph.nodes[0].capacity", True, "document/shape"),
+    ("$.graph.nodes[0].capacity", 1.0, "document/shape"),
+    ("$.graph.nodes[0].capacity", "1", "document/shape"),
+    ("$.graph.nodes[0].capacity", None, "document/shape"),
+    ("$.graph.nodes[0].capacity", 0, "instance/capacity"),
+    ("$.graph.nodes[2].duration", False, "document/shape"),
+    ("$.graph.nodes[2].duration", 1.5, "document/shape"),
+    ("$.graph.nodes[2].duration", 0, "instance/duration"),
+    ("$.graph.nodes[2].duration", -1, "instance/duration"),
+    ("$.graph.nodes[3].x", None, "document/shape"),
+    ("$.graph.nodes[3].y", 0.0, "document/shape"),
+    ("$.graph.edges", None, "document/shape"),
+    ("$.graph.edges[0]", ["a", "b"], "document/shape"),
+    ("$.graph.edges[0].source", 1.0, "document/shape"),
+    ("$.graph.edges[0].source", "x", "instance/edge"),
+    ("$.graph.edges[0].target", 1, "instance/edge"),
+    ("$.graph.edges[2]", {"source": "d", "target": "d"}, "instance/edge"),
+    ("$.graph.edges[2]", {"source": "a", "target": "b"}, "instance/edge"),
+    ("$.graph.edges[2]", {"source": "b", "target": "a"}, "instance/edge"),
+    ("$.graph.directed", 0, "document/shape"),
+    ("$.graph.directed", None, "document/shape"),
+    ("$.graph.multigraph", 1, "document/shape"),
+    ("$.robots", {}, "document/shape"),
+    ("$.robots[0].id", None, "document/shape"),
+    ("$.robots[2].id", "r1", "instance/robot-id"),
+    ("$.robots[0].start", False, "document/shape"),
+    ("$.robots[0].start", "x", "instance/endpoint"),
+    ("$.robots[1].goal", 0, "instance/endpoint"),
+    ("$.robots[1].release", True, "document/shape"),
+    ("$.robots[1].release", 1.0, "document/shape"),
+    ("$.robots[1].release", -1, "instance/release"),
+    ("$.robots[1].pace", None, "document/shape"),
+    ("$.robots[1].pace", 0, "instance/pace"),
+]
+
+WRONG_IN_SOLUTION: list[tuple[str, Json, str]] = [
+    ("$.format", "carproof-instance/1", "document/format"),
+    ("$.plans", {}, "document/shape"),
+    ("$.plans[0].robot", None, "document/shape"),
+    ("$.plans[0].robot", 1.0, "document/shape"),
+    ("$.plans[0].visits", None, "document/shape"),
+    ("$.plans[0].visits[1]", ["b", 2], "document/shape"),
+    ("$.plans[0].visits[1]", ["b", 2, 3, 4], "document/shape"),
+    ("$.plans[0].visits[1]", {"resource": "b"}, "document/shape"),
+    ("$.plans[0].visits[1][0]", True, "document/shape"),
+    ("$.plans[0].visits[1][1]", None, "document/shape"),
+    ("$.plans[0].visits[1][1]", 2.0, "document/shape"),
+    ("$.plans[0].visits[1][2]", False, "document/shape"),
+    ("$.plans[0].visits[1][2]", "3", "document/shape"),
+    ("$.order", None, "document/shape"),
+    ("$.order[0]", None, "document/shape"),
+    ("$.unplanned", "r1", "document/shape"),
+    ("$.unplanned", None, "document/shape"),
+]
+
+
+def steps_of(path: str) -> list[str | int]:
+    parts = path.removeprefix("$.").replace("[", ".").replace("]", "").split(".")
+    return [int(part) if part.isdigit() else part for part in parts]
+
+
+def put(document: Json, path: str, value: Json) -> bytes:
+    """The document with another value at the path."""
+    *steps, last = steps_of(path)
+    holder = document
+    for step in steps:
+        holder = holder[step]
+    if isinstance(holder, list) and last == len(holder):
+        holder.append(value)
+    else:
+        holder[last] = value
+    return encode(document)
+
+
+@pytest.mark.parametrize(("path", "value", "rule"), WRONG_IN_INSTANCE)
+def test_a_wrong_value_in_an_instance_is_refused_at_its_path(path: str, value: Json, rule: str) -> None:
+    assert refusal(read_instance, put(instance_json(), path, value)) == (path, rule)
+
+
+@pytest.mark.parametrize(("path", "value", "rule"), WRONG_IN_SOLUTION)
+def test_a_wrong_value_in_a_solution_is_refused_at_its_path(path: str, value: Json, rule: str) -> None:
+    document = solution_json() | {"order": ["r1", "r2", "r3"]}
+    assert refusal(read_solution, put(document, path, value)) == (path, rule)
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "message"),
+    [
+        ("$.robots[1].pace", 1.0, "expected int, got float"),
+        ("$.robots[1].id", None, "expected int | str, got null"),
+        ("$.robots[1].colour", "red", "object contains unknown field colour"),
+        ("$.format", "x", "the format must be carproof-instance/1"),
+        ("$.graph.multigraph", True, "expected multigraph to be false"),
+    ],
+)
+def test_a_refusal_says_what_would_be_right(path: str, value: Json, message: str) -> None:
+    with pytest.raises(Refusal) as caught:
+        read_instance(put(instance_json(), path, value))
+    assert caught.value.message == message
+
+
+def test_a_multigraph_is_refused() -> None:
+    data = put(instance_json(), "$.graph.multigraph", True)
+    assert refusal(read_instance, data) == ("$.graph", "document/shape")
+
+
+def test_half_a_position_is_refused() -> None:
+    document = instance_json()
+    del document["graph"]["nodes"][4]["y"]
+    assert refusal(read_instance, encode(document)) == ("$.graph.nodes[4]", "instance/position")
+
+
+@pytest.mark.parametrize("path", ["$", "$.graph", "$.graph.nodes[0]", "$.graph.edges[0]", "$.robots[0]"])
+def test_a_field_that_an_instance_does_not_have_is_refused_where_it_stands(path: str) -> None:
+    field = f"{path}.colour"
+    assert refusal(read_instance, put(instance_json(), field, 1)) == (path, "document/shape")
+
+
+@pytest.mark.parametrize("path", ["$", "$.plans[0]"])
+def test_a_field_that_a_solution_does_not_have_is_refused_where_it_stands(path: str) -> None:
+    assert refusal(read_solution, put(solution_json(), f"{path}.colour", 1)) == (path, "document/shape")
+
+
+def test_a_field_whose_name_looks_like_a_path_does_not_mislead() -> None:
+    path = refusal(read_instance, put(instance_json(), "$.robots[1].colour", 1))[0]
+    document = instance_json()
+    document["robots"][1]["x - at `$.graph"] = 1
+    assert refusal(read_instance, encode(document)) == (path, "document/shape") == ("$.robots[1]", "document/shape")
+
+
+@pytest.mark.parametrize(
+    ("holder", "fields"),
+    [
+        ("$.graph", ["nodes", "edges"]),
+        ("$.graph.nodes[0]", ["id"]),
+        ("$.graph.edges[0]", ["source", "target"]),
+        ("$.robots[0]", ["id", "start", "goal"]),
+    ],
+)
+def test_a_field_that_is_missing_is_refused_where_it_should_stand(holder: str, fields: list[str]) -> None:
+    for field in fields:
+        document = instance_json()
+        at = document
+        for step in steps_of(holder):
+            at = at[step]
+        del at[field]
+        assert refusal(read_instance, encode(document)) == (holder, "document/shape")
+
+
+@pytest.mark.parametrize("field", ["graph", "after_goal", "robots"])
+def test_an_instance_without_one_of_its_parts_is_refused(field: str) -> None:
+    document = instance_json()
+    del document[field]
+    assert refusal(read_instance, encode(document)) == ("$", "document/shape")
+
+
+@pytest.mark.parametrize("field", ["plans", "order", "unplanned"])
+def test_a_solution_without_one_of_its_parts_is_refused(field: str) -> None:
+    document = solution_json()
+    del document[field]
+    assert refusal(read_solution, encode(document)) == ("$", "document/shape")
+
+
+@pytest.mark.parametrize("read", [read_instance, read_solution])
+@pytest.mark.parametrize("value", [{}, {"format": ""}, [], [{}], "format", 3, None, True])
+def test_any_other_json_has_not_the_format(read: Callable[[bytes], object], value: Json) -> None:
+    assert refusal(read, encode(value)) == ("$.format", "document/format")
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        (b'"release":1', b'"release":1e3'),
+        (b'"release":1', b'"release":1E0'),
+        (b'"release":1', b'"release":-0.0'),
+    ],
+)
+def test_a_number_with_a_point_or_an_exponent_is_no_whole_number(old: bytes, new: bytes) -> None:
+    data = write_instance(VANISHING).replace(old, new)
+    assert refusal(read_instance, data) == ("$.robots[1].release", "document/shape")
+
+
+NOT_JSON: dict[str, tuple[bytes, bytes]] = {
+    "NaN": (b'"release":1', b'"release":NaN'),
+    "infinity": (b'"release":1', b'"release":-Infinity'),
+    "more than a float holds": (b'"release":1', b'"release":1e999'),
+    "a leading zero": (b'"release":1', b'"release":01'),
+    "more digits than a hundred": (b'"release":1', b'"release":' + b"9" * 101),
+    "more digits than Python reads": (b'"release":1', b'"release":' + b"9" * 10_000),
+    "a name twice": (b'"release":1', b'"release":1,"release":2'),
+    "a byte that is not UTF-8": (b'"r2"', b'"r\xff"'),
+    "half a surrogate pair": (b'"r2"', b'"\\ud800"'),
+    "a control character": (b'"r2"', b'"r\n2"'),
+    "single quotes": (b'"r2"', b"'r2'"),
+    "a comma too many": (b'"release":1', b'"release":1,'),
+    "a comment": (b'"release":1', b'"release":1 /* tick */'),
+}
+
+
+@pytest.mark.parametrize("what", NOT_JSON)
+def test_what_is_not_json_is_refused(what: str) -> None:
+    data = write_instance(VANISHING).replace(*NOT_JSON[what])
+    assert refusal(read_instance, data) == ("$", "document/json")
+
+
+@pytest.mark.parametrize(
+    "data", [b"", b" ", b"[" * 100_000, b'{"a":' * 100_000, b"\xef\xbb\xbf{}", "{}".encode("utf-16")]
+)
+@pytest.mark.parametrize("read", [read_instance, read_solution])
+def test_bytes_that_hold_no_document_are_refused(read: Callable[[bytes], object], data: bytes) -> None:
+    assert refusal(read, data) == ("$", "document/json")
+
+
+def test_an_instance_cut_short_anywhere_is_refused() -> None:
+    data = write_instance(VANISHING).rstrip()
+    for length in range(len(data)):
+        assert refusal(read_instance, data[:length]) == ("$", "document/json")
+
+
+def test_a_solution_followed_by_anything_is_refused() -> None:
+    data = write_solution(solution_of(SOLVED))
+    assert read_solution(data + b" \r\n\t") == solution_of(SOLVED)
+    assert refusal(read_solution, data + b"x") == ("$", "document/json")
+
+
+def test_the_deepest_nesting_that_is_json_is_no_document_either() -> None:
+    for depth in range(900, 1100):
+        data = b'{"format":"carproof-solution/1","plans":' + b"[" * depth + b"]" * depth + b"}"
+        assert refusal(read_solution, data) in (
+            ("$", "document/json"),
+            ("$", "document/shape"),
+            ("$.plans[0]", "document/shape"),
+        )
+
+
+def test_whole_numbers_of_a_hundred_digits_are_read_and_can_be_judged() -> None:
+    huge = 10**100 - 1
+    graph = ResourceGraph((Resource("a", huge, huge), Resource("b", 1, huge, -huge, huge)), (("a", "b"),))
+    instance = Instance(graph, (Robot(-huge, "a", "b", huge, huge),))
+    solution = solution_of([plan_of(-huge, ("a", huge, huge), ("b", -huge, huge))])
+    assert read_instance(write_instance(instance)) == instance
+    assert read_solution(write_solution(solution)) == solution
+    assert not json.loads(write_verdict(judge(instance, solution)))["valid"]
+
+
+@given(data=st.binary(max_size=40))
+def test_random_bytes_are_read_or_refused(data: bytes) -> None:
+    for read in (read_instance, read_solution):
+        with pytest.raises(Refusal):
+            read(data)
+
+
+@FEWER
+@given(data=st.data())
+def test_a_document_with_random_bytes_in_it_is_read_or_refused(data: st.DataObject) -> None:
+    read, whole = data.draw(
+        st.sampled_from(
+            [(read_instance, write_instance(VANISHING)), (read_solution, write_solution(solution_of(PARKED)))]
+        )
+    )
+    start = data.draw(st.integers(0, len(whole)))
+    end = data.draw(st.integers(start, start + 8))
+    changed = (
+        whole[:start]
+        + data.draw(st.binary(max_size=4) | st.sampled_from([b"-", b"null", b"1e5", b"[", b'"']))
+        + whole[end:]
+    )
+    with suppress(Refusal):
+        assert isinstance(read(changed), Instance | Solution)
+
+
+def test_networkx_node_link_data_is_read() -> None:
+    graph = nx.path_graph(3)
+    graph.graph["name"] = "a row"
+    nx.set_node_attributes(graph, {0: {"capacity": 2}, 1: {"duration": 3, "x": 1, "y": 0}})
+    document = {
+        "format": "carproof-instance/1",
+        "graph": nx.node_link_data(graph, edges="edges"),
+        "after_goal": "vanish",
+        "robots": [],
+    }
+    resources = (Resource(0, capacity=2), Resource(1, duration=3, x=1, y=0), Resource(2))
+    assert read_instance(encode(document)) == Instance(ResourceGraph(resources, ((0, 1), (1, 2))), ())
+
+
+def test_directed_networkx_node_link_data_is_read() -> None:
+    links = nx.node_link_data(nx.DiGraph([("a", "b"), ("b", "a")]), edges="edges")
+    document = {"format": "carproof-instance/1", "graph": links, "after_goal": "park", "robots": []}
+    graph = read_instance(encode(document)).graph
+    assert graph == ResourceGraph((Resource("a"), Resource("b")), (("a", "b"), ("b", "a")), directed=True)
+
+
+@FEWER
+@given(graph=graphs())
+def test_networkx_reads_what_is_written(graph: ResourceGraph) -> None:
+    document = json.loads(write_instance(Instance(graph, ())))
+    read = nx.node_link_graph(document["graph"], edges="edges")
+    assert read.is_directed() == graph.directed
+    assert not read.is_multigraph()
+    assert list(read) == list(graph.index)
+    assert {source: set(targets) for source, targets in read.adjacency()} == {
+        source: set(targets) for source, targets in graph.successors.items()
+    }
+    assert [read.nodes[each.id]["capacity"] for each in graph.resources] == [each.capacity for each in graph.resources]
+
+
+def test_the_instances_of_these_tests_are_right() -> None:
+    for instance in (VANISHING, PARKING):
+        assert read_instance(write_instance(instance)) == instance

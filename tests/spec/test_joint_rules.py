@@ -1,0 +1,123 @@
+"""Robots together: who is blamed, where and when."""
+
+from tests.spec.making import VANISHING, instance_on, line, plan_of
+
+from carp_spec import Instance, Resource, ResourceGraph, Robot, Solution, Violation
+from carp_spec.joint_rules import (
+    capacity_is_kept,
+    exchanges_are_avoided,
+    solution_covers_robots,
+    solution_orders_plans,
+)
+
+NAMES = ("r1", "r2", "r3", "r4")
+ROW = instance_on(line("ab"), *(Robot(name, "a", "b") for name in NAMES))
+WIDE = Instance(ResourceGraph((Resource("a", capacity=2),), ()), ROW.robots)
+
+
+def crowd(start: int, end: int | None, *robots: str, capacity: int = 1, resource: str = "a") -> Violation:
+    return Violation("joint/capacity", robots, resource, start, end, f"capacity {capacity}")
+
+
+def test_a_crowd_is_told_anew_whenever_it_changes() -> None:
+    plans = [plan_of("r3", ("a", 0, 6)), plan_of("r1", ("a", 2, None)), plan_of("r2", ("a", 4, 9))]
+    assert list(capacity_is_kept(ROW, plans)) == [
+        crowd(2, 4, "r1", "r3"),
+        crowd(4, 6, "r1", "r2", "r3"),
+        crowd(6, 9, "r1", "r2"),
+    ]
+
+
+def test_a_crowd_for_ever_has_no_end() -> None:
+    plans = [plan_of("r1", ("a", 3, None)), plan_of("r2", ("a", 5, None))]
+    assert list(capacity_is_kept(ROW, plans)) == [crowd(5, None, "r1", "r2")]
+
+
+def test_capacity_counts_robots_and_not_visits() -> None:
+    twice = plan_of("r1", ("a", 0, 5), ("a", 2, 4))
+    assert list(capacity_is_kept(WIDE, [twice, plan_of("r2", ("a", 3, 9))])) == []
+    three = [twice, plan_of("r2", ("a", 3, 9)), plan_of("r3", ("a", 1, 9))]
+    assert list(capacity_is_kept(WIDE, three)) == [
+        crowd(3, 4, "r1", "r2", "r3", capacity=2),
+        crowd(4, 5, "r1", "r2", "r3", capacity=2),
+    ]
+
+
+def test_who_leaves_at_a_tick_makes_room_for_who_enters_at_it() -> None:
+    assert list(capacity_is_kept(ROW, [plan_of("r1", ("a", 0, 5)), plan_of("r2", ("a", 5, 9))])) == []
+
+
+def test_a_visit_of_no_ticks_takes_no_room() -> None:
+    plans = [plan_of("r1", ("a", 0, 9)), plan_of("r2", ("a", 5, 5)), plan_of("r3", ("a", 7, 3))]
+    assert list(capacity_is_kept(ROW, plans)) == []
+
+
+def test_crowds_come_in_the_order_of_the_resources() -> None:
+    plans = [plan_of(name, ("b", 0, 1), ("a", 1, 2)) for name in ("r1", "r2")]
+    assert list(capacity_is_kept(ROW, plans)) == [crowd(1, 2, "r1", "r2"), crowd(0, 1, "r1", "r2", resource="b")]
+
+
+def test_an_exchange_names_all_who_take_part_and_comes_in_order_of_time() -> None:
+    plans = [
+        plan_of("r2", ("b", 0, 9), ("a", 9, 10)),
+        plan_of("r1", ("a", 8, 9), ("b", 9, 10), ("a", 10, 11)),
+        plan_of("r3", ("a", 2, 9), ("b", 9, 12)),
+        plan_of("r4", ("a", 9, 10), ("b", 10, 12)),
+    ]
+    assert list(exchanges_are_avoided(ROW, plans)) == [
+        Violation("joint/exchange", ("r1", "r3", "r2"), "a", 9, 10, "they exchange a and b at tick 9"),
+        Violation("joint/exchange", ("r4", "r1"), "a", 10, 11, "they exchange a and b at tick 10"),
+    ]
+
+
+def test_exchanges_at_one_tick_come_in_the_order_of_the_resources() -> None:
+    ends = [("b", "c"), ("c", "b"), ("d", "a"), ("a", "d"), ("a", "c"), ("c", "a")]
+    names = [f"r{at}" for at in range(len(ends))]
+    instance = instance_on(line("abcd"), *(Robot(name, "a", "b") for name in names))
+    moves = zip(names, ends, strict=True)
+    plans = [plan_of(name, (source, 0, 1), (target, 1, 2)) for name, (source, target) in moves]
+    assert [each.reason for each in exchanges_are_avoided(instance, plans)] == [
+        "they exchange a and c at tick 1",
+        "they exchange a and d at tick 1",
+        "they exchange b and c at tick 1",
+    ]
+
+
+def test_robots_may_follow_each_other_and_turn_in_a_circle() -> None:
+    ring = ResourceGraph(line("abc").resources, (("a", "b"), ("b", "c"), ("c", "a")))
+    instance = instance_on(ring, *(Robot(name, "a", "b") for name in NAMES))
+    turn = [plan_of(name, (here, 0, 1), (there, 1, 2)) for name, here, there in zip(NAMES, "abc", "bca", strict=False)]
+    assert list(exchanges_are_avoided(instance, turn)) == []
+    assert list(capacity_is_kept(instance, turn)) == []
+
+
+def test_a_robot_does_not_exchange_with_itself() -> None:
+    assert list(exchanges_are_avoided(ROW, [plan_of("r1", ("a", 0, 1), ("b", 1, 1), ("a", 1, 2))])) == []
+
+
+def test_moves_to_and_from_nowhere_are_no_exchange() -> None:
+    there, back = plan_of("r1", ("a", 0, 1), ("x", 1, 2)), plan_of("r2", ("x", 0, 1), ("a", 1, 2))
+    assert list(exchanges_are_avoided(VANISHING, [there, back])) == []
+
+
+def test_staying_on_in_a_second_visit_is_no_exchange() -> None:
+    plans = [plan_of(name, ("b", 0, 1), ("b", 1, 2)) for name in ("r1", "r2")]
+    assert list(exchanges_are_avoided(VANISHING, plans)) == []
+
+
+def test_a_solution_is_told_what_it_names_too_often_and_too_rarely() -> None:
+    plans = tuple(plan_of(name) for name in ("r2", "r2", "r1", "r9"))
+    solution = Solution(plans, ("r3", "r2", "r2", "r1"), ("r1", "r8"))
+    assert [str(violation) for violation in solution_covers_robots(ROW, solution)] == [
+        "[solution/covers] robot r1 (it must have one plan or be unplanned once, and has 1 and 1)",
+        "[solution/covers] robot r2 (it must have one plan or be unplanned once, and has 2 and 0)",
+        "[solution/covers] robot r3 (it must have one plan or be unplanned once, and has 0 and 0)",
+        "[solution/covers] robot r4 (it must have one plan or be unplanned once, and has 0 and 0)",
+        "[solution/covers] robot r9 (the instance has no such robot)",
+        "[solution/covers] robot r8 (the instance has no such robot)",
+    ]
+    assert [str(violation) for violation in solution_orders_plans(ROW, solution)] == [
+        "[solution/order] robot r2 (the order must name it once, and does 2 times)",
+        "[solution/order] robot r9 (the order must name it once, and does 0 times)",
+        "[solution/order] robot r3 (the order must name it never, and does 1 times)",
+    ]

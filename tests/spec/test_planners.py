@@ -1,0 +1,99 @@
+"""The planners by name, and what their options may be."""
+
+import pytest
+
+from carp_spec import (
+    Carp,
+    FixedPaths,
+    Greedy,
+    LongestFirst,
+    Neighbourhood,
+    Planner,
+    Refusal,
+    Shuffled,
+    TimeExpanded,
+    planner_named,
+)
+from carp_spec.planners import LARGEST_SAMPLE, LARGEST_SEED, PLANNERS, options_are_right
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "planner"),
+    [
+        ("carp", {}, Carp()),
+        ("shuffled", {}, Shuffled(attempts=10, seed=0)),
+        ("shuffled", {"attempts": 100, "seed": LARGEST_SEED}, Shuffled(100, LARGEST_SEED)),
+        ("longest-first", {}, LongestFirst()),
+        ("greedy", {}, Greedy()),
+        ("neighbourhood", {}, Neighbourhood(m=4, sample=None, seed=0, baseline=True, fallback=None)),
+        ("neighbourhood", {"m": 1, "sample": 1, "fallback": 1}, Neighbourhood(1, 1, 0, True, 1)),
+        ("neighbourhood", {"sample": LARGEST_SAMPLE, "baseline": False}, Neighbourhood(4, LARGEST_SAMPLE, 0, False)),
+        ("neighbourhood", {"sample": None, "fallback": None}, Neighbourhood()),
+        ("fixed-paths", {}, FixedPaths(k=3, paths="shortest")),
+        ("fixed-paths", {"k": 1, "paths": "disjoint"}, FixedPaths(1, "disjoint")),
+        ("time-expanded", {}, TimeExpanded()),
+    ],
+)
+def test_a_planner_is_made_from_its_name_and_options(name: str, options: dict[str, object], planner: Planner) -> None:
+    assert planner_named(name, options) == planner
+    assert PLANNERS[name] is type(planner)
+
+
+def test_every_planner_is_known_by_the_name_that_it_bears() -> None:
+    assert list(PLANNERS) == [
+        "carp", "shuffled", "longest-first", "greedy", "neighbourhood", "fixed-paths", "time-expanded",
+    ]  # fmt: skip
+    assert all(kind.name == name for name, kind in PLANNERS.items())
+
+
+COUNT = "must be a whole number of at least 1"
+SAMPLE = f"must be a whole number between 1 and {LARGEST_SAMPLE}"
+SEED = f"must be a whole number between 0 and {LARGEST_SEED}"
+OUT_OF_RANGE: list[tuple[str, str, str, list[object]]] = [
+    ("shuffled", "attempts", COUNT, [0, -1, True, 1.0, "1", None, [1]]),
+    ("shuffled", "seed", SEED, [-1, LARGEST_SEED + 1, None, True, 0.0]),
+    ("neighbourhood", "m", COUNT, [0, False, 2.5, None]),
+    ("neighbourhood", "sample", SAMPLE, [0, LARGEST_SAMPLE + 1, True, "all"]),
+    ("neighbourhood", "seed", SEED, [-1, LARGEST_SEED + 1, None]),
+    ("neighbourhood", "baseline", "must be true or false", [0, 1, None, "yes"]),
+    ("neighbourhood", "fallback", COUNT, [0, True, "none"]),
+    ("fixed-paths", "k", COUNT, [0, None]),
+    ("fixed-paths", "paths", 'must be "shortest" or "disjoint"', ["long", None, []]),
+]
+
+
+@pytest.mark.parametrize(("name", "option", "right", "values"), OUT_OF_RANGE)
+def test_a_value_out_of_range_is_refused(name: str, option: str, right: str, values: list[object]) -> None:
+    for value in values:
+        with pytest.raises(Refusal) as caught:
+            planner_named(name, {option: value})
+        refused = caught.value
+        assert (refused.kind, refused.path, refused.rule) == ("option", f"$.{option}", "planner/options")
+        assert refused.message == f"the {option} {right}, not {value!r}"
+
+
+@pytest.mark.parametrize(
+    ("name", "option", "message"),
+    [
+        ("carp", "m", "the planner carp has no option m; it has none"),
+        ("shuffled", "m", "the planner shuffled has no option m; its options are attempts, seed"),
+        ("fixed-paths", "name", "the planner fixed-paths has no option name; its options are k, paths"),
+    ],
+)
+def test_an_option_that_the_planner_does_not_have_is_refused(name: str, option: str, message: str) -> None:
+    with pytest.raises(Refusal) as caught:
+        planner_named(name, {option: 1})
+    assert str(caught.value) == f"$.{option}: {message} [planner/options]"
+
+
+@pytest.mark.parametrize("name", ["", "CARP", "Proposed_4", None, 4, ["carp"], {}])
+def test_a_planner_that_there_is_not_is_refused(name: object) -> None:
+    with pytest.raises(Refusal) as caught:
+        planner_named(name, {})
+    assert (caught.value.kind, caught.value.path) == ("option", "$.planner")
+    assert caught.value.message == f"there is no planner {name!r}; the planners are {', '.join(PLANNERS)}"
+
+
+def test_all_faults_of_a_planner_made_by_hand_are_told() -> None:
+    planner = Neighbourhood(m=0, sample=0, seed=-1, fallback=0)
+    assert [fault.path for fault in options_are_right(planner)] == ["$.m", "$.sample", "$.seed", "$.fallback"]

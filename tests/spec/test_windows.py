@@ -1,0 +1,98 @@
+"""Free time windows: as the ticks say, and no other list passes for them."""
+
+from collections.abc import Sequence
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from carp_spec.windows import Occupation, Window, free_windows, occupancy, stay_fits, windows_are_free
+
+HORIZON = 30
+STAYS = st.tuples(st.integers(0, 12), st.integers(1, 6) | st.none()).map(
+    lambda stay: (stay[0], None if stay[1] is None else stay[0] + stay[1])
+)
+OCCUPATIONS = st.lists(STAYS, max_size=6)
+CAPACITIES = st.integers(1, 3)
+
+
+def room(occupations: Sequence[Occupation], capacity: int) -> list[bool]:
+    """Tick by tick, whether one more robot has room."""
+    return [
+        capacity
+        > len([enter for enter, leave in occupations if tick in range(enter, HORIZON if leave is None else leave)])
+        for tick in range(HORIZON)
+    ]
+
+
+def runs(ticks: Sequence[bool]) -> list[Window]:
+    """The maximal runs of free ticks; a run that reaches the horizon is for ever."""
+    starts = [tick for tick in range(HORIZON) if ticks[tick] and (tick == 0 or not ticks[tick - 1])]
+    ends = [tick for tick in range(1, HORIZON) if ticks[tick - 1] and not ticks[tick]]
+    return [Window(start, end) for start, end in zip(starts, [*ends, None], strict=False)]
+
+
+@given(occupations=OCCUPATIONS, tick=st.integers(0, HORIZON - 1), capacity=CAPACITIES)
+def test_occupancy_counts_the_stays_that_hold_the_tick(occupations: list[Occupation], tick: int, capacity: int) -> None:
+    assert (occupancy(occupations, tick) < capacity) == room(occupations, capacity)[tick]
+
+
+@given(occupations=OCCUPATIONS, capacity=CAPACITIES)
+def test_free_windows_are_the_maximal_runs_of_free_ticks(occupations: list[Occupation], capacity: int) -> None:
+    windows = free_windows(occupations, capacity)
+    assert list(windows) == runs(room(occupations, capacity))
+    assert windows_are_free(windows, occupations, capacity)
+
+
+@given(
+    occupations=OCCUPATIONS,
+    capacity=CAPACITIES,
+    told=st.lists(st.builds(Window, st.integers(-1, 14), st.integers(-1, 14) | st.none()), max_size=4),
+)
+def test_no_other_list_of_windows_is_free(occupations: list[Occupation], capacity: int, told: list[Window]) -> None:
+    assert windows_are_free(told, occupations, capacity) == (told == runs(room(occupations, capacity)))
+
+
+@given(occupations=OCCUPATIONS, capacity=CAPACITIES)
+def test_every_small_change_to_the_free_windows_is_refused(occupations: list[Occupation], capacity: int) -> None:
+    windows = free_windows(occupations, capacity)
+    for at, window in enumerate(windows):
+        last = HORIZON if window.end is None else window.end
+        for others in (
+            (),
+            (Window(window.start + 1, window.end),),
+            (Window(window.start - 1, window.end),),
+            (Window(window.start, last + 1),),
+            (Window(window.start, last - 1),),
+            (Window(window.start, last), Window(last, window.end)),
+            (window, window),
+            (window, Window(last, last)),
+        ):
+            assert not windows_are_free((*windows[:at], *others, *windows[at + 1 :]), occupations, capacity)
+    if len(windows) > 1:
+        assert not windows_are_free(windows[::-1], occupations, capacity)
+
+
+@given(
+    start=st.integers(0, 6),
+    lasts=st.integers(1, 6) | st.none(),
+    enter=st.integers(0, 9),
+    stays=st.integers(0, 6) | st.none(),
+    duration=st.integers(1, 5),
+)
+def test_a_stay_fits_if_all_its_ticks_are_in_the_window_and_enough(
+    start: int, lasts: int | None, enter: int, stays: int | None, duration: int
+) -> None:
+    window = range(start, HORIZON if lasts is None else start + lasts)
+    ticks = range(enter, HORIZON if stays is None else enter + stays)
+    leave = None if stays is None else enter + stays
+    fits = all(tick in window for tick in ticks) and len(ticks) >= duration
+    assert stay_fits(Window(start, None if lasts is None else start + lasts), enter, leave, duration) == fits
+
+
+@pytest.mark.parametrize(
+    ("end", "tick", "expected"),
+    [(5, 4, True), (5, 5, True), (5, 6, False), (5, None, False), (None, 6, True), (None, None, True)],
+)
+def test_a_window_lasts_until_its_end(end: int | None, tick: int | None, expected: bool) -> None:
+    assert Window(2, end).lasts_until(tick) == expected

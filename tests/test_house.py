@@ -1,0 +1,59 @@
+"""The layout of the house: which package may import which, and what an import may load."""
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+MAY_IMPORT: dict[str, set[str]] = {
+    "carp_spec": set(),
+    "carp_reference": {"carp_spec"},
+    "carp_optimized": {"carp_spec"},
+    "carp_verify": {"carp_spec", "carp_reference", "carp_optimized"},
+    "carp_oracle": {"carp_spec", "carp_reference", "carp_optimized", "carp_verify", "carp_experiments"},
+    "carp_experiments": {"carp_spec", "carp_reference", "carp_optimized", "carp_verify", "carp_oracle"},
+}
+SLOW_TO_LOAD = {"z3", "numba", "numpy", "pysat", "matplotlib", "hypothesis", "networkx"}
+
+
+def packages() -> dict[str, Path]:
+    return {name: ROOT / name.removeprefix("carp_") / name for name in MAY_IMPORT if list(ROOT.glob(f"*/{name}"))}
+
+
+def imported(package: Path) -> Iterator[tuple[str, str]]:
+    for file in sorted(package.rglob("*.py")):
+        for node in ast.walk(ast.parse(file.read_text())):
+            names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+            if isinstance(node, ast.ImportFrom):
+                names = [node.module or "."]
+            for name in names:
+                yield str(file.relative_to(ROOT)), name.partition(".")[0]
+
+
+@pytest.mark.parametrize("package", packages())
+def test_packages_import_only_along_the_arrows(package: str) -> None:
+    against = [
+        (file, name)
+        for file, name in imported(packages()[package])
+        if name in MAY_IMPORT and name not in MAY_IMPORT[package] | {package}
+    ]
+    assert not against
+
+
+@pytest.mark.parametrize("package", packages())
+def test_each_top_folder_holds_one_package_and_its_readme(package: str) -> None:
+    folder = packages()[package].parent
+    assert (folder / "README.md").is_file()
+    assert [path.name for path in folder.iterdir() if (path / "__init__.py").is_file()] == [package]
+    assert (folder / package / "py.typed").is_file()
+
+
+@pytest.mark.parametrize("package", packages())
+def test_importing_a_package_loads_nothing_slow(package: str) -> None:
+    loaded = f"import sys, {package}; print(' '.join(sys.modules))"
+    modules = subprocess.run([sys.executable, "-c", loaded], check=True, capture_output=True, text=True).stdout.split()
+    assert not SLOW_TO_LOAD & set(modules)

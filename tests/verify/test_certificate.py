@@ -1,0 +1,141 @@
+"""The capacity certificate: it agrees with the checker, and names what it refuses."""
+
+import json
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from tests.oracle.conftest import carproof
+from tests.oracle.running import Run
+
+from carp_spec import (
+    Instance,
+    Plan,
+    Resource,
+    ResourceGraph,
+    Robot,
+    Solution,
+    Visit,
+    check,
+    write_instance,
+    write_solution,
+)
+from carp_verify import certificate
+from carp_verify.certificate import certify
+from carp_verify.smt import Solver, Undecided
+from carp_verify.strategies import BrokenSolution, PlannedInstance, broken_solutions, planned_instances
+
+__all__ = ["carproof"]
+
+LINE = ResourceGraph((Resource("a"), Resource("b", capacity=2), Resource("c")), (("a", "b"), ("b", "c")))
+INSTANCE = Instance(LINE, (Robot("r1", "a", "c"), Robot("r2", "c", "a"), Robot("r3", "b", "b", 1)), "vanish")
+EASTWARD = Plan("r1", (Visit("a", 0, 1), Visit("b", 1, 2), Visit("c", 2, 3)))
+WESTWARD = Plan("r2", (Visit("c", 0, 1), Visit("b", 1, 2), Visit("a", 2, 3)))
+STANDING = Plan("r3", (Visit("b", 1, 2),))
+
+
+def agree(instance: Instance, plans: tuple[Plan, ...]) -> None:
+    """Both find fault with the same resources; the certificate's tick and robots are among the checker's."""
+    certified = certify(instance, plans)
+    told = [violation for violation in check(instance, plans) if violation.rule.startswith("joint/")]
+    blamed = {(violation.rule, violation.resource) for violation in told}
+    assert {(breach.rule, breach.resource) for breach in certified.breaches} == blamed
+    for breach in certified.breaches:
+        assert any(
+            violation.rule == breach.rule
+            and set(violation.robots) == set(breach.robots)
+            and violation.resource == breach.resource
+            and (violation.start or 0) <= breach.tick
+            and (violation.end is None or breach.tick < violation.end)
+            for violation in told
+        )
+
+
+@given(planned_instances())
+@settings(max_examples=200)
+def test_sound_solutions_are_certified(planned: PlannedInstance) -> None:
+    assert certify(planned.instance, planned.solution.plans).accepted
+
+
+@given(broken_solutions())
+@settings(max_examples=500)
+def test_certificate_and_checker_agree_on_broken_solutions(broken: BrokenSolution) -> None:
+    agree(broken.instance, broken.solution.plans)
+
+
+def test_plans_that_follow_each_other_are_certified() -> None:
+    behind = Plan("r2", (Visit("c", 0, 1),))
+    assert certify(INSTANCE, (EASTWARD, behind)).accepted
+
+
+def test_a_resource_that_is_too_full_is_refused_with_rule_robots_and_tick() -> None:
+    (breach,) = certify(INSTANCE, (EASTWARD, WESTWARD, STANDING)).breaches
+    assert (breach.rule, breach.robots, breach.resource, breach.tick) == ("joint/capacity", ("r1", "r2", "r3"), "b", 1)
+    assert str(breach) == "[joint/capacity] resource b at tick 1: robots r1, r2, r3 (capacity 2)"
+
+
+def test_an_exchange_is_refused_with_rule_robots_and_tick() -> None:
+    meeting = Plan("r2", (Visit("b", 0, 1), Visit("a", 1, 2)))
+    (breach,) = certify(INSTANCE, (EASTWARD, meeting)).breaches
+    assert (breach.rule, set(breach.robots), breach.tick) == ("joint/exchange", {"r1", "r2"}, 1)
+    assert "they exchange a and b" in str(breach)
+
+
+def test_a_robot_in_a_resource_for_ever_is_met_at_any_later_tick() -> None:
+    parked = Plan("r2", (Visit("c", 0, None),))
+    late = Plan("r1", (Visit("c", 10**12, 10**12 + 1),))
+    (breach,) = certify(INSTANCE, (parked, late)).breaches
+    assert breach.tick == 10**12
+
+
+def test_a_robot_that_moves_both_ways_at_a_tick_exchanges_with_nobody() -> None:
+    alone = Plan("r1", (Visit("a", 0, 1), Visit("b", 1, 1), Visit("a", 1, 2)))
+    agree(INSTANCE, (alone,))
+
+
+def test_visits_to_no_resource_of_the_graph_are_none_of_its_business() -> None:
+    assert certify(INSTANCE, (Plan("r1", (Visit("elsewhere", 0, 1), Visit("a", 1, 2))),)).resources == 1
+
+
+def write(folder: Path, *plans: Plan) -> tuple[Path, Path]:
+    files = folder / "instance.json", folder / "solution.json"
+    files[0].write_bytes(write_instance(INSTANCE))
+    files[1].write_bytes(write_solution(Solution(plans, tuple(plan.robot for plan in plans))))
+    return files
+
+
+def test_the_command_certifies_and_refuses(carproof: Run, tmp_path: Path) -> None:
+    accepted = carproof("certify", *write(tmp_path, EASTWARD, STANDING))
+    assert (accepted.code, accepted.stderr) == (0, "")
+    assert accepted.stdout.startswith("certified: no tick is too full and no exchange happens in 3 resources")
+    refused = carproof("certify", *write(tmp_path, EASTWARD, WESTWARD, STANDING))
+    assert refused.code == 1
+    assert "[joint/capacity] resource b at tick 1" in refused.stdout
+    assert "REFUSED: 1 of 3 resources" in refused.stdout
+
+
+def test_the_command_prints_one_document(carproof: Run, tmp_path: Path) -> None:
+    outcome = carproof("certify", *write(tmp_path, EASTWARD, WESTWARD, STANDING), "--json")
+    document = json.loads(outcome.stdout)
+    assert outcome.code == 1
+    assert document["accepted"] is False
+    assert document["breaches"][0]["robots"] == ["r1", "r2", "r3"]
+
+
+def test_a_broken_document_is_bad_input(carproof: Run, tmp_path: Path) -> None:
+    instance, solution = write(tmp_path)
+    solution.write_bytes(b"{}")
+    outcome = carproof("certify", instance, solution)
+    assert (outcome.code, outcome.stdout) == (2, "")
+    assert "document/format" in outcome.stderr
+
+
+def test_what_z3_cannot_tell_is_undecided(carproof: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Puzzled(Solver):
+        def find_model(self, formulas: object) -> None:
+            raise Undecided(f"z3 answers unknown to {formulas}")
+
+    monkeypatch.setattr(certificate, "Solver", Puzzled)
+    outcome = carproof("certify", *write(tmp_path, EASTWARD))
+    assert outcome.code == 3
+    assert outcome.stderr.startswith("Undecided: z3 answers unknown")

@@ -1,0 +1,114 @@
+from hypothesis import given, settings
+
+from carp_spec import Instance, Resource, ResourceGraph, Robot, check, total_cost
+from carp_verify.encoding import Conflict, Encoding, violated
+from carp_verify.joint_search import least_total_cost
+from carp_verify.solver import Deadline, Solver
+from carp_verify.strategies import PlannedInstance, Sizes, instances, planned_instances
+
+TINY = Sizes(resources=4, robots=3, capacity=2, duration=2, release=2, pace=2)
+SECONDS = 60
+HORIZON = 6
+
+
+def line(*durations: int, capacity: int = 1) -> ResourceGraph:
+    resources = tuple(Resource(i, capacity, duration) for i, duration in enumerate(durations))
+    return ResourceGraph(resources, tuple((i, i + 1) for i in range(len(durations) - 1)))
+
+
+def has_model(encoding: Encoding) -> bool:
+    solver = Solver(encoding.formula, Deadline(SECONDS).check)
+    try:
+        return bool(solver.satisfiable([]))
+    finally:
+        solver.close()
+
+
+def bounded(instance: Instance, horizons: list[int], bound: int, closed: bool) -> Encoding:
+    encoding = Encoding(instance)
+    encoding.grow_to(horizons)
+    encoding.forbid_all()
+    encoding.bound_delays(bound, range(len(instance.robots)))
+    if closed:
+        encoding.close()
+    return encoding
+
+
+def has_ways(instance: Instance) -> bool:
+    return not Encoding(instance).wayless
+
+
+@settings(max_examples=300)
+@given(instances(TINY, least_robots=1))
+def test_with_horizons_far_enough_the_clauses_have_a_model_from_the_least_total_on(instance: Instance) -> None:
+    least = least_total_cost(instance)
+    if has_ways(instance):
+        horizons = [HORIZON] * len(instance.robots)
+        delay = HORIZON if least is None else least - Encoding(instance).shortest
+        assert not has_model(bounded(instance, horizons, min(delay, HORIZON), closed=True))
+        if delay < HORIZON:
+            assert has_model(bounded(instance, horizons, delay + 1, closed=True))
+
+
+@settings(max_examples=300)
+@given(instances(TINY, least_robots=1))
+def test_short_horizons_only_relax(instance: Instance) -> None:
+    least = least_total_cost(instance)
+    if least is not None:
+        for horizon in (0, 1):
+            horizons = [horizon] * len(instance.robots)
+            delay = least - Encoding(instance).shortest
+            assert has_model(bounded(instance, horizons, delay + 1, closed=False))
+
+
+@settings(max_examples=300)
+@given(planned_instances(TINY))
+def test_the_conflicts_among_plans_are_those_of_the_checker(planned: PlannedInstance) -> None:
+    plans = [plan for robot in planned.instance.robots for plan in planned.solution.plans if plan.robot == robot.id]
+    assert violated(planned.instance, plans) == []
+
+
+@settings(max_examples=300)
+@given(instances(TINY, least_robots=2))
+def test_models_with_no_conflict_forbidden_hold_plans_that_break_joint_rules_only(instance: Instance) -> None:
+    if has_ways(instance):
+        encoding = Encoding(instance)
+        encoding.grow_to([2] * len(instance.robots))
+        encoding.close()
+        solver = Solver(encoding.formula, Deadline(SECONDS).check)
+        assert solver.satisfiable([])
+        plans = [plan for plan in encoding.plans(solver.model()) if plan is not None]
+        solver.close()
+        assert len(plans) == len(instance.robots)
+        broken = check(instance, plans)
+        assert {violation.rule for violation in broken} <= {"joint/capacity", "joint/exchange"}
+        assert bool(violated(instance, plans)) == bool(broken)
+        assert total_cost(instance, plans) >= encoding.shortest
+
+
+def test_a_conflict_is_named_by_its_tick_and_its_resources() -> None:
+    head_on = Instance(line(1, 1), (Robot("a", 0, 1), Robot("b", 1, 0)))
+    encoding = Encoding(head_on)
+    encoding.grow_to([0, 0])
+    solver = Solver(encoding.formula, Deadline(SECONDS).check)
+    assert solver.satisfiable([])
+    plans = [plan for plan in encoding.plans(solver.model()) if plan is not None]
+    solver.close()
+    assert violated(head_on, plans) == [Conflict(1, 0, 1)]
+
+
+def test_a_long_stay_needs_no_more_variables_than_a_short_one() -> None:
+    sizes = []
+    for duration in (1, 1000):
+        encoding = Encoding(Instance(line(duration, duration, duration), (Robot("a", 0, 2), Robot("b", 1, 2))))
+        encoding.grow_to([0, 0])
+        encoding.forbid_all()
+        sizes.append((encoding.formula.variables, len(encoding.formula.clauses)))
+    assert sizes[1] <= (sizes[0][0] + 2, sizes[0][1] + 6)
+
+
+def test_many_robots_in_a_wide_place_are_counted() -> None:
+    graph = ResourceGraph((Resource(0, 9), Resource(1, 3), Resource(2, 9)), ((0, 1), (1, 2)))
+    instance = Instance(graph, tuple(Robot(i, 0, 2) for i in range(5)))
+    for bound, possible in ((2, False), (3, True)):
+        assert has_model(bounded(instance, [2] * 5, bound, closed=True)) == possible

@@ -1,0 +1,58 @@
+from hypothesis import assume, given, settings
+from tests.verify.test_optimum import turned_ring
+
+from carp_reference import plan
+from carp_reference.problem import prepare
+from carp_spec import Carp, Instance, Plan, Solution, judge
+from carp_verify.encoding import Encoding
+from carp_verify.heuristics import plans_of_all
+from carp_verify.solver import TimeOver
+from carp_verify.strategies import Sizes, instances
+
+SMALL = Sizes(resources=6, robots=4, capacity=2, duration=3, release=3, pace=2)
+
+
+def never() -> None:
+    """Let the search run as long as it likes."""
+
+
+def found(instance: Instance) -> tuple[Plan, ...] | None:
+    return plans_of_all(instance, prepare(instance, 0).ticks_to_goal, never)
+
+
+@settings(max_examples=200)
+@given(instances(SMALL))
+def test_the_plans_are_sound_and_of_all_robots(instance: Instance) -> None:
+    plans = found(instance)
+    if plans is not None:
+        verdict = judge(instance, Solution(plans, tuple(each.robot for each in plans)))
+        assert (verdict.violations, verdict.unplanned) == ((), 0)
+
+
+@settings(max_examples=200)
+@given(instances(SMALL, least_robots=2))
+def test_a_robot_that_found_no_plan_is_planned_earlier(instance: Instance) -> None:
+    backwards = Instance(instance.graph, instance.robots[::-1], instance.after_goal)
+    assume(len(instance.robots) == 2 and any(not plan(each, Carp()).unplanned for each in (instance, backwards)))
+    assert found(instance) is not None
+
+
+@settings(max_examples=200)
+@given(instances(SMALL))
+def test_the_distances_of_the_encoding_are_those_of_the_planner(instance: Instance) -> None:
+    ticks_to_goal = {robot.robot.id: robot.ticks_to_goal for robot in Encoding(instance).robots}
+    assert ticks_to_goal == prepare(instance, 0).ticks_to_goal
+
+
+def test_what_was_found_before_the_end_of_the_time_is_kept() -> None:
+    instance = turned_ring(3)
+    looks = 0
+
+    def check() -> None:
+        nonlocal looks
+        looks += 1
+        if looks > 100:
+            raise TimeOver
+
+    ticks_to_goal = prepare(instance, 0).ticks_to_goal
+    assert plans_of_all(instance, ticks_to_goal, check) == found(instance)

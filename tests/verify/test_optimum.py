@@ -1,0 +1,112 @@
+import time
+
+import pytest
+from hypothesis import given, settings
+
+from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, judge
+from carp_verify import robot_clauses
+from carp_verify.joint_search import least_total_cost
+from carp_verify.optimum import optimum
+from carp_verify.strategies import Sizes, instances
+
+TINY = Sizes(resources=4, robots=3, capacity=2, duration=2, release=2, pace=2)
+LONG = 60
+
+
+def grid(size: int, *robots: Robot, after_goal: str = "vanish") -> Instance:
+    cells = [(x, y) for y in range(size) for x in range(size)]
+    edges = [((x, y), (x + dx, y + dy)) for x, y in cells for dx, dy in ((1, 0), (0, 1)) if max(x + dx, y + dy) < size]
+    named = tuple((f"{a},{b}", f"{c},{d}") for (a, b), (c, d) in edges)
+    graph = ResourceGraph(tuple(Resource(f"{x},{y}") for x, y in cells), named)
+    return Instance(graph, robots, "park" if after_goal == "park" else "vanish")
+
+
+def turned_ring(size: int, after_goal: str = "vanish") -> Instance:
+    """Every cell has a robot that wants to the opposite cell, all of them crossing at the middle."""
+    cells = [(x, y) for y in range(size) for x in range(size) if (x, y) != (size // 2, size // 2)]
+    robots = (Robot(i, f"{x},{y}", f"{size - 1 - x},{size - 1 - y}") for i, (x, y) in enumerate(cells))
+    return grid(size, *robots, after_goal=after_goal)
+
+
+@settings(max_examples=1200)
+@given(instances(TINY, least_robots=2))
+def test_the_optimum_is_that_of_the_joint_search(instance: Instance) -> None:
+    best = optimum(instance, LONG)
+    assert best.proved
+    assert best.cost == least_total_cost(instance)
+    if best.cost is not None:
+        assert best.solution is not None
+        verdict = judge(instance, best.solution)
+        assert (verdict.violations, verdict.unplanned, verdict.cost) == ((), 0, best.cost)
+
+
+def test_the_same_instance_gives_the_same_solution() -> None:
+    instance = grid(5, *(Robot(i, f"{i},0", f"{4 - i},4") for i in range(5)), Robot(5, "4,4", "0,0"))
+    assert optimum(instance, LONG) == optimum(instance, LONG)
+
+
+def test_nobody_costs_nothing() -> None:
+    best = optimum(grid(2), LONG)
+    assert (best.cost, best.proved) == (0, True)
+
+
+@pytest.mark.parametrize(
+    ("instance", "reason"),
+    [
+        (
+            Instance(ResourceGraph((Resource(0), Resource(1)), ()), (Robot("a", 0, 1),)),
+            "no way leads from 0 to 1, the goal of robot a",
+        ),
+        (
+            grid(2, Robot("a", "0,0", "1,1"), Robot("b", "1,0", "1,1"), after_goal="park"),
+            "2 robots are to park in 1,1, which has a capacity of 1",
+        ),
+        (
+            grid(3, Robot("a", "0,0", "1,1"), Robot("b", "0,0", "2,2")),
+            "robots are in one place, or exchange places, however late they are",
+        ),
+        (
+            Instance(
+                ResourceGraph(tuple(map(Resource, range(12))), tuple((i, i + 1) for i in range(11))),
+                (Robot("a", 0, 11), Robot("b", 11, 0)),
+            ),
+            "a search over all states of the robots together finds no plan set",
+        ),
+    ],
+)
+def test_an_unsolvable_instance_is_proved_so_with_the_reason(instance: Instance, reason: str) -> None:
+    best = optimum(instance, LONG)
+    assert (best.cost, best.proved, best.solution) == (None, True, None)
+    assert best.reason == reason
+
+
+def test_the_limit_is_kept_and_leaves_the_best_plan_and_a_bound() -> None:
+    instance = turned_ring(9)
+    started = time.monotonic()
+    best = optimum(instance, 3)
+    assert time.monotonic() - started < 6
+    assert not best.proved
+    shortest = sum(abs(8 - 2 * x) + abs(8 - 2 * y) for x in range(9) for y in range(9))
+    assert best.lower >= shortest
+    if best.solution is not None:
+        assert judge(instance, best.solution).valid
+        assert best.cost is not None
+        assert best.cost >= best.lower
+
+
+def test_a_formula_too_large_is_refused_with_the_limit_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(robot_clauses, "LARGEST_FORMULA", 20)
+    instance = grid(6, Robot("a", "0,0", "5,5"), Robot("b", "5,5", "0,0"))
+    with pytest.raises(Refusal, match="clauses of the formula must be at most 20, the limit"):
+        optimum(instance, LONG)
+
+
+@pytest.mark.parametrize("limit", [0, 1])
+def test_the_limit_is_kept_on_a_large_map_with_many_robots(limit: int) -> None:
+    """Counted in processor time, so that a busy machine does not matter."""
+    robots = (Robot(i, f"{i},{7 * i % 60}", f"{11 * i % 60},{59 - i}") for i in range(50))
+    instance = grid(60, *robots)
+    started = time.process_time()
+    best = optimum(instance, limit)
+    assert time.process_time() - started < 2 * limit + 0.5
+    assert best.proved == (best.cost == best.lower)

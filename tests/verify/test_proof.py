@@ -1,0 +1,207 @@
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from hashlib import sha256
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+
+from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, judge, write_instance
+from carp_verify.optimum import optimum
+from carp_verify.proof import FILES, ProofError, verify_proof, write_proof
+from carp_verify.strategies import Sizes, instances
+
+SECONDS = 60
+TINY = Sizes(resources=4, robots=3, capacity=2, duration=2, release=2, pace=2)
+
+
+def crossing(after_goal: str = "vanish") -> Instance:
+    """Four robots that cross a 3 x 3 grid and turn each other round: delays are needed."""
+    cells = [(x, y) for y in range(3) for x in range(3)]
+    edges = [((x, y), (x + dx, y + dy)) for x, y in cells for dx, dy in ((1, 0), (0, 1)) if max(x + dx, y + dy) < 3]
+    named = tuple((f"{a},{b}", f"{c},{d}") for (a, b), (c, d) in edges)
+    ends = (("0,1", "2,1"), ("2,1", "0,1"), ("1,0", "1,2"), ("1,2", "1,0"))
+    robots = tuple(Robot(i, start, goal) for i, (start, goal) in enumerate(ends))
+    graph = ResourceGraph(tuple(Resource(f"{x},{y}") for x, y in cells), named)
+    return Instance(graph, robots, "park" if after_goal == "park" else "vanish")
+
+
+def prove(instance: Instance, directory: Path) -> int:
+    best = optimum(instance, SECONDS)
+    assert best.cost is not None
+    write_proof(instance, best, directory, SECONDS)
+    return best.cost
+
+
+@pytest.fixture(name="proof")
+def written_proof(tmp_path: Path) -> Path:
+    prove(crossing(), tmp_path / "proof")
+    return tmp_path / "proof"
+
+
+def with_digests(directory: Path) -> None:
+    """Make the manifest's digests right again, as somebody who tampers would."""
+    manifest = json.loads((directory / "manifest.json").read_text())
+    manifest["sha256"] = {name: sha256((directory / name).read_bytes()).hexdigest() for name in FILES}
+    (directory / "manifest.json").write_text(json.dumps(manifest))
+
+
+def change_manifest(**changes: object) -> Callable[[Path], None]:
+    def change(directory: Path) -> None:
+        path = directory / "manifest.json"
+        path.write_text(json.dumps(json.loads(path.read_text()) | changes))
+
+    return change
+
+
+def change_text(name: str, change: Callable[[str], str]) -> Callable[[Path], None]:
+    def tamper(directory: Path) -> None:
+        before = (directory / name).read_text()
+        after = change(before)
+        assert after != before
+        (directory / name).write_text(after)
+
+    return tamper
+
+
+def flip(text: str) -> str:
+    """Flip the first literal of the last clause."""
+    *lines, last = text.splitlines()
+    first, *rest = last.split()
+    return "\n".join([*lines, " ".join([str(-int(first)), *rest])]) + "\n"
+
+
+def drop_last_line(text: str) -> str:
+    return "".join(text.splitlines(keepends=True)[:-1])
+
+
+def drop_clause(text: str) -> str:
+    """Drop the last clause and count it off."""
+    head, *lines = drop_last_line(text).splitlines()
+    *words, count = head.split()
+    return "\n".join([" ".join([*words, str(int(count) - 1)]), *lines]) + "\n"
+
+
+@pytest.mark.parametrize("after_goal", ["vanish", "park"])
+def test_a_proof_directory_proves_its_cost(after_goal: str, tmp_path: Path) -> None:
+    instance = crossing(after_goal)
+    cost = prove(instance, tmp_path)
+    assert cost > 8
+    verified = verify_proof(tmp_path, instance)
+    assert verified.cost == cost
+    assert (verified.z3_reach, verified.z3_beat) == ("sat", "unsat")
+    assert judge(instance, verified.solution).cost == cost
+
+
+def test_an_optimum_of_the_shortest_paths_is_proved_too(tmp_path: Path) -> None:
+    graph = ResourceGraph((Resource(0), Resource(1)), ((0, 1),))
+    assert prove(Instance(graph, (Robot("a", 0, 1),)), tmp_path) == 1
+    assert verify_proof(tmp_path).cost == 1
+
+
+@settings(max_examples=150)
+@given(instances(TINY, least_robots=1))
+def test_every_optimum_can_be_proved(tmp_path_factory: pytest.TempPathFactory, instance: Instance) -> None:
+    best = optimum(instance, SECONDS)
+    if best.cost is not None:
+        directory = tmp_path_factory.mktemp("proof")
+        write_proof(instance, best, directory, SECONDS)
+        assert verify_proof(directory, instance).cost == best.cost
+
+
+@pytest.mark.parametrize("name", ["manifest.json", *FILES])
+def test_a_missing_file_is_refused(proof: Path, name: str) -> None:
+    (proof / name).unlink()
+    with pytest.raises(ProofError, match=f"^{name}: it cannot be read: No such file"):
+        verify_proof(proof)
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_a_file_that_was_changed_has_another_digest(proof: Path, name: str) -> None:
+    (proof / name).write_bytes((proof / name).read_bytes() + b" ")
+    with pytest.raises(ProofError, match=f"^{name}: its SHA-256 digest"):
+        verify_proof(proof)
+
+
+@pytest.mark.parametrize(
+    ("tamper", "reason"),
+    [
+        (change_text("beat.cnf", flip), r"beat.cnf: line \d+ must be"),
+        (change_text("reach.cnf", flip), r"reach.cnf: line \d+ must be"),
+        (change_text("beat.cnf", drop_clause), r"beat.cnf: line 1 must be"),
+        (change_text("reach.cnf", drop_clause), r"reach.cnf: line 1 must be"),
+        (change_text("beat.cnf", lambda text: text + "1 0\n"), r"beat.cnf: it must have \d+ lines"),
+        (change_text("beat.cnf", drop_last_line), r"beat.cnf: it must have \d+ lines"),
+        (change_text("reach.model", lambda text: text.replace(" 0\n", "\n")), "reach.model: it must be whole numbers"),
+        (change_text("reach.model", lambda text: text.replace("1 ", "x ", 1)), "reach.model: it must be whole numbers"),
+        (change_text("reach.model", lambda text: text.split(" ", 1)[1]), "reach.model: it must give each"),
+        (change_text("reach.model", lambda text: text.replace("-", "")), "reach.model: it breaks clause"),
+        (change_text("variables.json", lambda text: text.replace("0,1", "1,0", 1)), "variables.json: line"),
+        (change_text("beat.drat", lambda _: ""), "beat.drat: it does not prove"),
+        (change_text("beat.drat", lambda _: "hello\n"), "beat.drat: it must be a DRAT proof"),
+        (change_text("beat.drat", lambda _: "0\n"), "beat.drat: it does not prove"),
+        (change_text("instance.json", lambda text: text.replace('"vanish"', '"park"')), "reach.cnf: line"),
+        (change_manifest(format="carproof-proof/9"), "manifest.json: the format must be carproof-proof/1"),
+        (change_manifest(cost="12"), "manifest.json: it must be a manifest"),
+        (change_manifest(more=1), "manifest.json: it must be a manifest"),
+        (change_manifest(cost=7), r"manifest.json: a horizon must be between|reach.cnf: line"),
+        (change_manifest(cost=40), "reach.cnf: line"),
+        (change_manifest(horizons=[1, 1]), "manifest.json: it must have a horizon of each of 4 robots"),
+        (change_manifest(horizons=[99, 1, 1, 1]), "manifest.json: a horizon must be between 0 and the cost"),
+        (change_manifest(order=[0, 1, 2, 2]), "manifest.json: it must have a horizon of each of 4 robots"),
+        (change_manifest(horizons=[3, 3, 3, 3]), "reach.cnf: line"),
+    ],
+)
+def test_tampering_is_refused_though_the_digests_are_right(
+    proof: Path, tamper: Callable[[Path], None], reason: str
+) -> None:
+    tamper(proof)
+    with_digests(proof)
+    with pytest.raises(ProofError, match=reason):
+        verify_proof(proof)
+
+
+def test_a_truncated_refutation_is_refused(proof: Path) -> None:
+    lines = (proof / "beat.drat").read_text().splitlines(keepends=True)
+    (proof / "beat.drat").write_text("".join(lines[: len(lines) // 2]))
+    with_digests(proof)
+    with pytest.raises(ProofError, match=r"beat\.drat: it does not prove"):
+        verify_proof(proof)
+
+
+def test_a_model_of_another_instance_is_refused(proof: Path, tmp_path: Path) -> None:
+    prove(crossing("park"), tmp_path / "other")
+    (proof / "reach.model").write_bytes((tmp_path / "other" / "reach.model").read_bytes())
+    with_digests(proof)
+    with pytest.raises(ProofError, match=r"^reach\.model: "):
+        verify_proof(proof)
+
+
+def test_a_proof_of_another_instance_is_refused(proof: Path) -> None:
+    with pytest.raises(ProofError, match=r"^instance\.json: it is another instance"):
+        verify_proof(proof, crossing("park"))
+
+
+def test_a_worse_total_is_not_proved_to_be_least(tmp_path: Path) -> None:
+    best = optimum(crossing(), SECONDS)
+    assert best.cost is not None
+    worse = replace(best, cost=best.cost + 1)
+    with pytest.raises(Refusal, match="the formula below the optimum has a model"):
+        write_proof(crossing(), worse, tmp_path, SECONDS)
+
+
+def test_an_instance_without_optimum_has_no_proof_directory(proof: Path, tmp_path: Path) -> None:
+    apart = Instance(ResourceGraph((Resource(0), Resource(1)), ()), (Robot("a", 0, 1),))
+    with pytest.raises(Refusal, match="only for a proved optimum"):
+        write_proof(apart, optimum(apart, SECONDS), tmp_path, SECONDS)
+    (proof / "instance.json").write_bytes(write_instance(apart))
+    with_digests(proof)
+    with pytest.raises(ProofError, match="a robot has no way to its goal"):
+        verify_proof(proof)
+
+
+def test_a_malformed_manifest_is_refused(proof: Path) -> None:
+    (proof / "manifest.json").write_bytes(b"\xff{")
+    with pytest.raises(ProofError, match=r"manifest\.json: it must be a manifest"):
+        verify_proof(proof)

@@ -1,0 +1,124 @@
+"""The capacity certificate: z3 shows, resource by resource, that plans keep `joint/capacity` and `joint/exchange`.
+
+For each resource z3 is asked for a tick, any whole number, at which more robots occupy it than its capacity; for each
+pair of resources between which robots move both ways, for a tick at which two robots make opposite moves. Each
+robot's stays are one tracked term, so that an answer names the robots. Where there is no answer, there is no such
+tick; the theorem "An accepted certificate bounds every tick" says why. Nothing here is shared with
+`carp_spec.check`, which sweeps over events instead.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TypeAlias
+
+from carp_spec import Instance, Plan, Resource, ResourceId, RobotId, Visit
+from carp_verify.smt import Bool, Int, Model, Solver, any_of, at_least, between, equal, integer
+
+Stays: TypeAlias = dict[RobotId, list[Visit]]
+Ticks: TypeAlias = dict[RobotId, list[int]]
+Pair: TypeAlias = tuple[ResourceId, ResourceId]
+
+
+@dataclass(frozen=True, slots=True)
+class Breach:
+    """A tick at which a rule is broken: all robots in the resource, or all that exchange it and another."""
+
+    rule: str
+    robots: tuple[RobotId, ...]
+    resource: ResourceId
+    tick: int
+    reason: str
+
+    def __str__(self) -> str:
+        """Print like `[joint/capacity] resource 3,4 at tick 5: robots r1, r9 (capacity 1)`."""
+        robots = ", ".join(map(str, self.robots))
+        return f"[{self.rule}] resource {self.resource} at tick {self.tick}: robots {robots} ({self.reason})"
+
+
+@dataclass(frozen=True, slots=True)
+class Certificate:
+    """How many resources z3 was asked about, and pairs between which robots move both ways; a bad tick of each."""
+
+    resources: int
+    pairs: int
+    breaches: tuple[Breach, ...]
+
+    @property
+    def accepted(self) -> bool:
+        """Whether there is no bad tick at all."""
+        return not self.breaches
+
+
+def certify(instance: Instance, plans: Sequence[Plan], advance: Callable[[], None] = lambda: None) -> Certificate:
+    """Ask z3 about every resource that is visited; `advance` is called after each. Raises `smt.Undecided`."""
+    solver = Solver()
+    index = instance.graph.index
+    stays = stays_by_resource(instance, plans)
+    moves = moves_by_pair(instance, plans)
+    opposite = [(one, other) for one, other in moves if index[one] < index[other] and (other, one) in moves]
+    breaches: list[Breach] = []
+    for resource, visitors in stays.items():
+        breaches.extend(overfull(solver, instance.graph.resource[resource], visitors))
+        advance()
+    for one, other in opposite:
+        breaches.extend(exchanged(solver, (one, other), moves[one, other], moves[other, one]))
+    return Certificate(len(stays), len(opposite), tuple(breaches))
+
+
+def stays_by_resource(instance: Instance, plans: Sequence[Plan]) -> Mapping[ResourceId, Stays]:
+    """The visits to each resource of the graph, by robot."""
+    stays: dict[ResourceId, Stays] = {}
+    for plan in plans:
+        for visit in plan.visits:
+            if visit.resource in instance.graph.resource:
+                stays.setdefault(visit.resource, {}).setdefault(plan.robot, []).append(visit)
+    return stays
+
+
+def moves_by_pair(instance: Instance, plans: Sequence[Plan]) -> Mapping[Pair, Ticks]:
+    """The ticks of the moves from one resource of the graph to another, by robot."""
+    known = instance.graph.resource
+    moves: dict[Pair, Ticks] = {}
+    for plan in plans:
+        for visit, following in pairwise(plan.visits):
+            pair = (visit.resource, following.resource)
+            if visit.resource in known and following.resource in known:
+                moves.setdefault(pair, {}).setdefault(plan.robot, []).append(following.enter)
+    return moves
+
+
+def overfull(solver: Solver, resource: Resource, stays: Stays) -> Iterator[Breach]:
+    """A tick at which more robots are in the resource than its capacity, if there is one."""
+    tick = integer("tick")
+    occupies = {robot: any_of(*(is_there(tick, visit) for visit in visits)) for robot, visits in stays.items()}
+    model = solver.find_model([at_least(resource.capacity + 1, list(occupies.values()))])
+    if model is not None:
+        reason = f"capacity {resource.capacity}"
+        yield Breach("joint/capacity", _robots_of(model, occupies), resource.id, int(model.value(tick)), reason)
+
+
+def is_there(tick: Int, visit: Visit) -> Bool:
+    """Whether the tick is in the visit."""
+    return tick >= visit.enter if visit.leave is None else between(visit.enter, tick, visit.leave)
+
+
+def exchanged(solver: Solver, pair: Pair, there: Ticks, back: Ticks) -> Iterator[Breach]:
+    """A tick at which two robots move opposite ways between the pair, if there is one."""
+    tick = integer("tick")
+    goes, comes = (
+        {robot: any_of(*(equal(tick, each) for each in ticks)) for robot, ticks in ways.items()}
+        for ways in (there, back)
+    )
+    both = {robot: any_of(goes[robot], comes[robot]) for robot in goes if robot in comes}
+    movers = {**goes, **comes, **both}
+    different = at_least(2, list(movers.values()))
+    model = solver.find_model([any_of(*goes.values()), any_of(*comes.values()), different])
+    if model is not None:
+        reason = f"they exchange {pair[0]} and {pair[1]}"
+        yield Breach("joint/exchange", _robots_of(model, movers), pair[0], int(model.value(tick)), reason)
+
+
+def _robots_of(model: Model, terms: Mapping[RobotId, Bool]) -> tuple[RobotId, ...]:
+    """The robots whose tracked terms hold in the model."""
+    return tuple(robot for robot, term in terms.items() if model.value(term))

@@ -1,0 +1,90 @@
+"""How far planners are from the optimum, and why: the price of planning in some order, and of the search for one.
+
+A planner that plans one robot after the other, each against the plans before it, can at best find the least total
+over all orders. Its distance from the optimum is the price of such planning, whatever the search;
+a planner's own distance from it is the price of its search for an order (below zero if it does better than
+any order, as a planner that plans robots again may).
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from carp_reference import plan, query
+from carp_spec import Instance, Plan, Planner, RobotId, plan_cost, total_cost
+from carp_verify.encoding import Encoding
+from carp_verify.optimum import Optimum, optimum
+from carp_verify.optimum_rules import MOST_ORDERED, refuse_size
+from carp_verify.solver import Deadline, TimeOver
+
+
+@dataclass(frozen=True, slots=True)
+class PlannerGap:
+    """A planner's total cost, and how many robots it left unplanned; a total without them means nothing."""
+
+    planner: Planner
+    total: int
+    unplanned: int
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """The optimum, the least total over all orders (`None`: none, or not known), and what planners reach."""
+
+    optimum: Optimum
+    best_order: int | None
+    planners: tuple[PlannerGap, ...]
+
+
+def gap(instance: Instance, planners: Sequence[Planner], limit: float) -> Gap:
+    """Plan with every planner, and search for the optimum and for the best order, each for `limit` seconds at most."""
+    best = optimum(instance, limit)
+    reached = []
+    for planner in planners:
+        solution = plan(instance, planner)
+        reached.append(PlannerGap(planner, total_cost(instance, solution.plans), len(solution.unplanned)))
+    order = None
+    if len(instance.robots) <= MOST_ORDERED:
+        try:
+            order = best_order(instance, limit, best.lower)
+        except TimeOver:
+            order = None
+    return Gap(best, order, tuple(reached))
+
+
+def best_order(instance: Instance, limit: float, floor: int = 0) -> int | None:
+    """The least total cost over all orders in which CARP plans all robots, or `None` if it fails in every order.
+
+    Orders that begin alike share their plans, and one is left as soon as it cannot get better than the best. No total
+    is less than `floor`; where an order reaches it, the others are not tried.
+    Raises `TimeOver` after `limit` seconds, and `Refusal` for more than `MOST_ORDERED` robots.
+    """
+    refuse_size("the robots whose orders are all tried", len(instance.robots), MOST_ORDERED)
+    encoding = Encoding(instance)
+    if encoding.wayless:
+        return None
+    shortest = {robot.robot.id: robot.shortest or 0 for robot in encoding.robots}
+    return _Orders(instance, shortest, Deadline(limit), floor).best([], 0, encoding.shortest, None)
+
+
+@dataclass(frozen=True, slots=True)
+class _Orders:
+    instance: Instance
+    shortest: Mapping[RobotId, int]
+    deadline: Deadline
+    floor: int
+
+    def best(self, plans: list[Plan], delay: int, shortest: int, known: int | None) -> int | None:
+        """The least total over the orders that begin with the plans, if it is less than what is known."""
+        self.deadline.check()
+        planned = {each.robot for each in plans}
+        if len(planned) == len(self.instance.robots):
+            return shortest + delay
+        for robot in self.instance.robots:
+            if robot.id in planned or (known is not None and max(shortest + delay, self.floor) >= known):
+                continue
+            following = query(self.instance, plans, robot.id)
+            if following is not None:
+                later = delay + plan_cost(self.instance, following) - self.shortest[robot.id]
+                if known is None or shortest + later < known:
+                    known = self.best([*plans, following], later, shortest, known)
+        return known

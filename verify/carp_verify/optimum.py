@@ -1,0 +1,233 @@
+"""The least total cost of plans for all robots, by a core-guided search over one encoding.
+
+Each robot is assumed to have no delay at first. As long as the assumptions cannot hold together, the solver names
+a core of them, one of which must be given up: the lower bound rises by one, the robots in the core get a longer
+horizon, and the next assumption is that no other one of the core is given up. Once the assumptions hold, the
+model's plans have a total of just the lower bound; the conflicts among them are forbidden and the search goes
+on, until there are none. Source: the OLL algorithm of Andres, Kaufmann, Matheis and Schaub 2012, over delays.
+
+Where no plan set exists, the search is told so by one of these facts:
+
+- a robot has no way to its goal;
+- with `park`, a resource is the goal of more robots than its capacity: once the last of them has come, all are there;
+- a core is empty: not even robots as late as you like can keep the rules (such as two released into one place);
+- the states of all robots together are few (`joint_states`), and a search over them all finds no end
+  (`carp_verify.joint_search`). Proof idea: after the last release the rules do not look at the clock, so a plan set
+  that is in one joint state twice can be cut between; hence the states, without the tick, are all that can happen.
+"""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from carp_spec import Instance, Plan, Solution, total_cost
+from carp_verify.clauses import Literal, Unary
+from carp_verify.encoding import Encoding, violated
+from carp_verify.heuristics import plans_of_all
+from carp_verify.joint_search import least_total_cost
+from carp_verify.solver import Deadline, Solver, TimeOver
+
+CONFLICTS_TO_SHRINK = 900
+DELAY_OF_DOUBT = 20
+FEW_STATES = 1_000_000
+PART_BEFORE_HEURISTICS = 5
+PART_OF_HEURISTICS = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """What the encoding needs to prove the bound: each robot's horizon, and an order in which to add the delays."""
+
+    horizons: tuple[int, ...]
+    order: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Optimum:
+    """The least total cost.
+
+    `proved`: `cost` is the optimum and `solution` has it, or, where `cost` is `None`, no plan set exists, and
+    `reason` says why. Otherwise `solution` is the best known, if any, `cost` its total, and `lower` a bound that
+    no plan set beats. `shortest` is the sum of the robots' costs if each were alone, a robot without a way left out;
+    `None` if the limit did not suffice to find them.
+    """
+
+    shortest: int | None
+    cost: int | None
+    lower: int
+    proved: bool
+    solution: Solution | None
+    evidence: Evidence
+    reason: str | None = None
+
+
+def optimum(instance: Instance, limit: float) -> Optimum:
+    """Search for the optimum for at most `limit` seconds. Raises `Refusal` if the formula outgrows the memory.
+
+    What is proved does not depend on the clock: the same instance gives the same solution.
+    """
+    deadline = Deadline(limit)
+    try:
+        encoding = Encoding(instance, deadline.check)
+    except TimeOver:
+        return Optimum(None, None, 0, proved=False, solution=None, evidence=Evidence((), ()))
+    search = _Search(encoding, deadline)
+    try:
+        return search.run()
+    finally:
+        search.close()
+
+
+def joint_states(instance: Instance) -> int:
+    """No fewer than the states of all robots together, apart from the tick.
+
+    A robot is in a resource, with a number of ticks to stay, or waits for its release, or is gone or parked.
+    """
+    states = 1
+    for robot in instance.robots:
+        states *= 2 + sum(instance.duration(robot.id, resource.id) + 1 for resource in instance.graph.resources)
+    return states
+
+
+class _Search:
+    def __init__(self, encoding: Encoding, deadline: Deadline) -> None:
+        self.instance = encoding.instance
+        self.deadline = deadline
+        self.encoding = encoding
+        self.solver = Solver(encoding.formula, self.look)
+        self.delay = 0
+        self.best: Sequence[Plan] | None = None
+        self.has_tried_heuristics = False
+        self.order: dict[int, None] = {}
+        self.robot_of: dict[Literal, int] = {}
+        self.sum_of: dict[Literal, tuple[Unary, int]] = {}
+
+    def close(self) -> None:
+        self.solver.close()
+
+    def run(self) -> Optimum:
+        reason = self.obstacle()
+        if reason is not None:
+            return self.unsolvable(reason)
+        try:
+            for position in range(len(self.encoding.robots)):
+                self.grow(position)
+            return self.raise_bound()
+        except TimeOver:
+            return self.undecided()
+
+    def obstacle(self) -> str | None:
+        """Why no plan set exists, if that shows without a search."""
+        for robot in self.encoding.wayless:
+            return f"no way leads from {robot.start} to {robot.goal}, the goal of robot {robot.id}"
+        if self.instance.after_goal == "park":
+            for goal, robots in Counter(robot.goal for robot in self.instance.robots).items():
+                capacity = self.instance.graph.resource[goal].capacity
+                if robots > capacity:
+                    return f"{robots} robots are to park in {goal}, which has a capacity of {capacity}"
+        return None
+
+    def raise_bound(self) -> Optimum:
+        while True:
+            assumptions = [-literal for literal in (*self.robot_of, *self.sum_of)]
+            if self.solver.satisfiable(assumptions):
+                plans = [plan for plan in self.encoding.plans(self.solver.model()) if plan is not None]
+                conflicts = violated(self.instance, plans)
+                if not conflicts:
+                    return self.optimal(plans)
+                for conflict in conflicts:
+                    self.encoding.forbid(conflict)
+            else:
+                core = self.shrunk([-literal for literal in self.solver.core()])
+                if not core:
+                    return self.unsolvable("robots are in one place, or exchange places, however late they are")
+                self.relax(core)
+                if self.delay == DELAY_OF_DOUBT and self.has_no_end():
+                    return self.unsolvable("a search over all states of the robots together finds no plan set")
+
+    def has_no_end(self) -> bool:
+        """Whether the states of all robots together are few, and none is the end of a plan set."""
+        if joint_states(self.instance) > FEW_STATES:
+            return False
+        return least_total_cost(self.instance, on_step=self.look) is None
+
+    def grow(self, position: int) -> None:
+        """Give a robot a longer horizon, and assume that it comes within it."""
+        self.look()
+        robot = self.encoding.robots[position]
+        robot.grow()
+        self.robot_of[robot.late[robot.horizon]] = position
+
+    def shrunk(self, core: list[Literal]) -> list[Literal]:
+        """A core within the core, from which the solver drops nothing quickly."""
+        kept = 0
+        while kept < len(core) and len(core) > 1:
+            trial = core[:kept] + core[kept + 1 :]
+            if self.solver.satisfiable([-literal for literal in trial], CONFLICTS_TO_SHRINK) is False:
+                named = {-literal for literal in self.solver.core()}
+                core = [literal for literal in trial if literal in named]
+            else:
+                kept += 1
+        return core
+
+    def relax(self, core: Sequence[Literal]) -> None:
+        """One of the core's delays is there: raise the bound, and assume instead that no second one is."""
+        self.delay += 1
+        self.encoding.formula.add(*core)
+        for literal in core:
+            if literal in self.robot_of:
+                position = self.robot_of.pop(literal)
+                self.order.setdefault(position)
+                self.grow(position)
+            else:
+                self.assume_less(*self.sum_of.pop(literal))
+        self.assume_less(self.encoding.formula.at_least([[literal] for literal in core], len(core)), 1)
+
+    def assume_less(self, number: Unary, reached: int) -> None:
+        """Assume that a number which is at least `reached` is no more than that."""
+        if reached < len(number):
+            self.sum_of[number[reached]] = (number, reached + 1)
+
+    def look(self) -> None:
+        """Look at the clock. A long search stops once to plan with heuristics, lest it ends without any plan."""
+        if not self.has_tried_heuristics and self.deadline.is_past(PART_BEFORE_HEURISTICS):
+            self.has_tried_heuristics = True
+            ticks_to_goal = {robot.robot.id: robot.ticks_to_goal for robot in self.encoding.robots}
+            self.best = plans_of_all(self.instance, ticks_to_goal, self.deadline.part(PART_OF_HEURISTICS).check)
+        self.deadline.check()
+
+    @property
+    def evidence(self) -> Evidence:
+        rest = [position for position in range(len(self.encoding.robots)) if position not in self.order]
+        return Evidence(tuple(robot.horizon for robot in self.encoding.robots), (*self.order, *rest))
+
+    @property
+    def lower(self) -> int:
+        return self.encoding.shortest + self.delay
+
+    def optimal(self, plans: Sequence[Plan]) -> Optimum:
+        return Optimum(
+            self.encoding.shortest,
+            self.lower,
+            self.lower,
+            proved=True,
+            solution=_solution(plans),
+            evidence=self.evidence,
+        )
+
+    def unsolvable(self, reason: str) -> Optimum:
+        return Optimum(self.encoding.shortest, None, self.lower, True, None, self.evidence, reason)
+
+    def undecided(self) -> Optimum:
+        if self.best is None:
+            return Optimum(
+                self.encoding.shortest, None, self.lower, proved=False, solution=None, evidence=self.evidence
+            )
+        cost = total_cost(self.instance, self.best)
+        return Optimum(
+            self.encoding.shortest, cost, self.lower, cost == self.lower, _solution(self.best), self.evidence
+        )
+
+
+def _solution(plans: Sequence[Plan]) -> Solution:
+    return Solution(tuple(plans), tuple(plan.robot for plan in plans))

@@ -1,0 +1,38 @@
+"""What can be asked of the search for an optimum: `optimum/...`."""
+
+from typing import Any
+
+from carp_spec import Refusal, Rule
+from carp_spec.rule import DESIGN, rule
+
+LARGEST_FORMULA = 20_000_000
+LARGEST_SEARCH = 2_000_000
+MOST_ORDERED = 9
+
+
+@rule(
+    "optimum/size",
+    f"The formula of an optimum has at most {LARGEST_FORMULA} clauses, a search over the states of all robots together "
+    f"looks at no more than {LARGEST_SEARCH}, and all orders are tried of at most {MOST_ORDERED} robots: "
+    "all this fits into memory and time.",
+    DESIGN,
+)
+def size_is_bounded(size: int, limit: int) -> bool:
+    """Whether the size is within the limit."""
+    return size <= limit
+
+
+@rule("optimum/proof", "A proof is written of an optimum that is proved, and whose formulas bear it out.", DESIGN)
+def is_provable(proved: bool, cost: int | None) -> bool:
+    """Whether there is a cost that is proved."""
+    return proved and cost is not None
+
+
+OPTIMUM_RULES: tuple[Rule[..., Any], ...] = (size_is_bounded, is_provable)
+
+
+def refuse_size(what: str, size: int, limit: int) -> None:
+    """Raise `Refusal` if the size is beyond the limit."""
+    if not size_is_bounded(size, limit):
+        message = f"{what} must be at most {limit}, the limit, and would be more"
+        raise Refusal("limit", "$.robots", size_is_bounded.id, message)

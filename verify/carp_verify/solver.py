@@ -1,0 +1,85 @@
+"""CaDiCaL, through python-sat, under a deadline: it runs a bounded number of conflicts between looks at the clock."""
+
+from collections.abc import Callable, Sequence
+from time import monotonic_ns
+
+from carp_verify.clauses import Formula, Literal
+
+NANOSECONDS = 1_000_000_000
+CONFLICTS_BETWEEN_LOOKS = 300
+
+
+class TimeOver(Exception):  # noqa: N818 - no error: the limit that the user gave
+    """The deadline has passed."""
+
+
+class Deadline:
+    """A moment some seconds from now."""
+
+    __slots__ = ("_end", "_start")
+
+    def __init__(self, seconds: float) -> None:
+        self._start = monotonic_ns()
+        self._end = self._start + int(seconds * NANOSECONDS)
+
+    def check(self) -> None:
+        """Raise `TimeOver` if it has passed."""
+        if monotonic_ns() >= self._end:
+            raise TimeOver
+
+    def is_past(self, part: int) -> bool:
+        """Whether one part of so many, of the time until it, has gone by."""
+        return (monotonic_ns() - self._start) * part >= self._end - self._start
+
+    def part(self, part: int) -> "Deadline":
+        """A deadline after one part of so many of the same time, from now."""
+        return Deadline((self._end - self._start) / NANOSECONDS / part)
+
+
+class Solver:
+    """A solver for a formula that grows. Nothing in its answers depends on the clock.
+
+    `look` is called every few conflicts and may end the search by raising `TimeOver`.
+    """
+
+    def __init__(self, formula: Formula, look: Callable[[], None], with_proof: bool = False) -> None:
+        from pysat.solvers import Cadical195  # noqa: PLC0415 - slow to load
+
+        self.formula = formula
+        self.look = look
+        self._solver = Cadical195(with_proof=with_proof)
+        self._sent = 0
+
+    def satisfiable(self, assumptions: Sequence[Literal], conflicts: int | None = None) -> bool | None:
+        """Whether the formula has a model in which the assumptions hold; `None` if so many conflicts do not tell."""
+        for clause in self.formula.clauses[self._sent :]:
+            self._solver.add_clause(list(clause))
+        self._sent = len(self.formula.clauses)
+        answer = None
+        spent = 0
+        while answer is None and (conflicts is None or spent < conflicts):
+            self.look()
+            self._solver.conf_budget(CONFLICTS_BETWEEN_LOOKS)
+            answer = self._solver.solve_limited(assumptions=list(assumptions))
+            spent += CONFLICTS_BETWEEN_LOOKS
+        return answer
+
+    def model(self) -> list[bool]:
+        """The truth of each variable, from index 1, in the model found last."""
+        model = [False] * (self.formula.variables + 1)
+        for literal in self._solver.get_model() or []:
+            if 0 < literal < len(model):
+                model[literal] = True
+        return model
+
+    def core(self) -> list[Literal]:
+        """Assumptions found last that cannot hold together; none at all if the formula has no model."""
+        return list(self._solver.get_core() or [])
+
+    def proof(self) -> str:
+        """The DRAT proof that the formula has no model, of a solver made to keep one."""
+        return "".join(f"{line}\n" for line in self._solver.get_proof() or [])
+
+    def close(self) -> None:
+        """Free the solver."""
+        self._solver.delete()

@@ -1,0 +1,46 @@
+"""Which rules theorems support, and why the others have none."""
+
+from collections.abc import Mapping
+
+from carp_verify.theorems import MODULES, theorem_named
+
+_READING = "it says how a document is written; there is nothing about it to prove for all whole numbers"
+_DATA = "it is decided by looking at each entry once; its predicate is its own proof, and examples test it"
+
+WITHOUT_THEOREM: Mapping[str, str] = {
+    "document/json": _READING,
+    "document/format": _READING,
+    "document/shape": _READING,
+    "instance/resource-id": _DATA,
+    "instance/capacity": _DATA,
+    "instance/duration": _DATA,
+    "instance/position": _DATA,
+    "instance/edge": _DATA,
+    "instance/robot-id": _DATA,
+    "instance/endpoint": _DATA,
+    "instance/release": _DATA,
+    "instance/pace": _DATA,
+    "instance/after-goal": _DATA,
+    "solution/covers": _DATA,
+    "solution/order": _DATA,
+    "plan/start": _DATA,
+    "plan/goal": _DATA,
+    "plan/resource": _DATA,
+    "plan/move": _DATA,
+    "plan/contiguous": _DATA,
+    "cost/robot": "it is a definition: one difference of two numbers of the plan",
+    "neighbourhood/baseline": "it is a choice: which candidate comes first, not what follows from it",
+    "neighbourhood/nearest": "it is a choice: the least of given fractions, the first of equals",
+    "neighbourhood/distance": "it is a definition; its integer square root is the standard library's",
+    "neighbourhood/update": "it is a choice: which trajectories the next distances see",
+    "planner/options": _DATA,
+}
+
+
+def theorems_of_rules() -> Mapping[str, tuple[str, ...]]:
+    """The modules of the theorems that support each rule, for the rules that have any."""
+    modules: dict[str, tuple[str, ...]] = {}
+    for module in MODULES:
+        for rule in theorem_named(module).rules:
+            modules[rule] = (*modules.get(rule, ()), module)
+    return modules

@@ -1,0 +1,69 @@
+"""A query whose plan is there before anything can come of freed stays returns the same plan again.
+
+Stays of s in [earliest, latest) are taken back. From a resource expanded at the tick `ready`, the robot enters s in a
+new way, or leaves s in a new way, only with a stay that holds a freed tick; what comes of it has an f of at least
+max(ready, earliest - d(s)) + h(s), and nothing comes of it if latest <= ready. If that f is above the arrival of the
+plan found, the search ends before it sees a difference. An exchange freed with the stays is a new way too: at its
+tick the robot taken back left s for the resource expanded, and where it is not after `ready`, the robot taken back
+stood in the way of waiting there, so that the resource expanded counts as freed itself.
+"""
+
+from collections.abc import Iterator, Sequence
+
+from carp_verify.engine import Lemma, Theorem
+from carp_verify.smt import Bool, Int, between, equal, greater, integers, negation
+
+
+def least_f(ready: Int, earliest: Int, duration: Int, h: Int) -> Int:
+    """The least f of what comes of a freed stay."""
+    return greater(ready, earliest - duration) + h
+
+
+def _new_stay() -> Sequence[Bool]:
+    """A stay from `enter` to `leave`, at least a duration long, that holds a tick that was freed."""
+    enter, leave, ready, duration, tick, earliest, latest = integers("enter leave ready duration tick earliest latest")
+    is_stay = [duration >= 1, enter >= ready, leave >= enter + duration]
+    return [*is_stay, between(earliest, tick, latest), between(enter, tick, leave)]
+
+
+def lemmas() -> Iterator[Lemma]:
+    """New entries, new leaves, ticks that are over, and exchanges."""
+    enter, leave, ready, duration, earliest, latest = integers("enter leave ready duration earliest latest")
+    h, h_after, arrival, exchange, tick = integers("h h_after arrival exchange tick")
+    shortest = h <= duration + h_after
+    bound = least_f(ready, earliest, duration, h)
+    entered = [*_new_stay(), equal(leave, enter + duration)]
+    yield Lemma("a new entry has an f of at least the bound", entered, enter + h >= bound)
+    yield Lemma("a new leave has an f of at least the bound", [*_new_stay(), shortest], leave + h_after >= bound)
+    over = [duration >= 1, enter >= ready, latest <= ready, between(earliest, tick, latest)]
+    yield Lemma("a stay from ready on holds no tick freed before", over, negation(between(enter, tick, leave)))
+    late = [enter + h >= bound, bound > arrival]
+    yield Lemma("what has an f of at least the bound is expanded after the goal", late, enter + h > arrival)
+    moved = [duration >= 1, between(earliest + 1, exchange, latest + 1), exchange >= ready]
+    yield Lemma("a freed exchange has an f of at least the bound", moved, exchange + h >= bound)
+    here, h_here, at = integers("duration_here h_here entered_here")
+    waits = [here >= 1, equal(ready, at + here), equal(exchange, ready), at + h_here <= arrival]
+    seen = least_f(at, exchange, here, h_here) <= arrival
+    yield Lemma("an exchange freed at ready is seen from the resource before", waits, seen)
+
+
+def mutants() -> Iterator[Lemma]:
+    """Bounds that are too large."""
+    enter, leave, ready, duration, earliest = integers("enter leave ready duration earliest")
+    h, h_after = integers("h h_after")
+    entered = [*_new_stay(), equal(leave, enter + duration)]
+    too_large = greater(ready, earliest) + h
+    yield Lemma("the robot cannot enter before the freed stay begins", entered, enter + h >= too_large)
+    bound = least_f(ready, earliest, duration, h)
+    yield Lemma("h is not consistent", _new_stay(), leave + h_after >= bound)
+    anywhere = [duration >= 1, enter >= ready, leave >= enter + duration]
+    yield Lemma("the new stay holds no freed tick", anywhere, enter + h >= bound)
+
+
+THEOREM = Theorem(
+    "Freed stays that come too late change no plan",
+    __doc__,
+    ("neighbourhood/replan", "query/optimal", "query/ties"),
+    lemmas,
+    mutants,
+)

@@ -1,0 +1,51 @@
+"""A robot under way that may leave its current visit from max(enter + d, now) on keeps its history and its duration.
+
+The visit is entered at the same tick as before and left no earlier than now, as `fleet/history` wants, and it lasts at
+least the duration. No earlier leave does both, so nothing is lost.
+"""
+
+from collections.abc import Iterator, Sequence
+
+from carp_verify.engine import Lemma, Theorem
+from carp_verify.smt import Bool, Int, all_of, greater, implies, integers
+
+
+def may_leave_from(enter: Int, duration: Int, now: Int) -> Int:
+    """The tick from which the robot may leave the visit in which it is."""
+    return greater(enter + duration, now)
+
+
+def keeps_history(leave: Int, now: Int) -> Bool:
+    """Whether the current visit, entered as before, keeps `fleet/history`."""
+    return leave >= now
+
+
+def _premises() -> Sequence[Bool]:
+    enter, duration, now = integers("enter duration now")
+    return [enter >= 0, duration >= 1, enter <= now]
+
+
+def _both(leave: Int) -> Bool:
+    enter, duration, now = integers("enter duration now")
+    return all_of(keeps_history(leave, now), leave - enter >= duration)
+
+
+def lemmas() -> Iterator[Lemma]:
+    """It is enough, and no more than enough."""
+    enter, duration, now, leave = integers("enter duration now leave")
+    from_then_on = leave >= may_leave_from(enter, duration, now)
+    yield Lemma("every leave from then on keeps both rules", [*_premises(), from_then_on], _both(leave))
+    yield Lemma("every leave that keeps both rules is from then on", [*_premises(), _both(leave)], from_then_on)
+    unreleased = implies(enter > now, may_leave_from(enter, duration, now) <= enter + duration)
+    yield Lemma("a robot not yet released is not held up", [duration >= 1], unreleased)
+
+
+def mutants() -> Iterator[Lemma]:
+    """Half of the formula."""
+    enter, duration, leave = integers("enter duration leave")
+    (now,) = integers("now")
+    yield Lemma("the robot may leave in the past", [*_premises(), leave >= enter + duration], _both(leave))
+    yield Lemma("the robot may leave at once", [*_premises(), leave >= now], _both(leave))
+
+
+THEOREM = Theorem("A robot under way keeps its history", __doc__, ("fleet/history", "plan/duration"), lemmas, mutants)

@@ -1,0 +1,83 @@
+"""Timing a path: when a robot that goes along given resources is in each of them, against committed plans."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from carp_reference.context import Context, context_of
+from carp_spec import Instance, Plan, ResourceGraph, ResourceId, RobotId, Visit
+from carp_spec.windows import Window, stay_fits
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A window of the path's next resource, entered at `enter` from the entry `before`."""
+
+    resource: ResourceId
+    window: Window
+    enter: int
+    before: "Entry | None"
+
+
+def path_between(graph: ResourceGraph, source: ResourceId, target: ResourceId) -> tuple[ResourceId, ...]:
+    """A path of the fewest moves, or no resource at all if there is none."""
+    paths: dict[ResourceId, tuple[ResourceId, ...]] = {source: (source,)}
+    for reached in (queue := [source]):
+        for following in graph.successors[reached]:
+            if following not in paths:
+                paths[following] = (*paths[reached], following)
+                queue.append(following)
+    return paths.get(target, ())
+
+
+def timed_plan(
+    instance: Instance,
+    committed: Sequence[Plan],
+    robot: RobotId,
+    path: Sequence[ResourceId],
+    stays: Sequence[int],
+) -> Plan | None:
+    """The plan along the path that stays at least so long in each resource and arrives first, or `None`.
+
+    The path leads from the robot's start to its goal; the last stay is the robot's duration there.
+    """
+    context = context_of(instance, committed)
+    release = instance.robot[robot].release
+    entries = [
+        Entry(path[0], window, release, None)
+        for window in context.windows(path[0])
+        if stay_fits(window, release, release + stays[0], stays[0])
+    ]
+    for resource, stay_before, stay in zip(path[1:], stays, stays[1:], strict=False):
+        entries = _next_entries(context, entries, resource, stay_before, stay)
+    if instance.after_goal == "park":
+        entries = [entry for entry in entries if entry.window.end is None]
+    if not entries:
+        return None
+    last = min(entries, key=lambda entry: entry.enter)
+    return Plan(robot, _visits(last, None if instance.after_goal == "park" else last.enter + stays[-1]))
+
+
+def _next_entries(
+    context: Context, entries: Sequence[Entry], resource: ResourceId, stay_before: int, stay: int
+) -> list[Entry]:
+    """The earliest entry into each window of the next resource."""
+    following: list[Entry] = []
+    for window in context.windows(resource):
+        possible = []
+        for entry in entries:
+            enter = max(entry.enter + stay_before, window.start)
+            while context.is_exchange(enter, entry.resource, resource):
+                enter += 1
+            if entry.window.lasts_until(enter) and stay_fits(window, enter, enter + stay, stay):
+                possible.append(Entry(resource, window, enter, entry))
+        following.extend(sorted(possible, key=lambda entry: entry.enter)[:1])
+    return following
+
+
+def _visits(last: Entry, leave: int | None) -> tuple[Visit, ...]:
+    visits = [Visit(last.resource, last.enter, leave)]
+    entry = last
+    while entry.before is not None:
+        visits.append(Visit(entry.before.resource, entry.before.enter, entry.enter))
+        entry = entry.before
+    return tuple(reversed(visits))

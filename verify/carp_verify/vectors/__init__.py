@@ -1,0 +1,20 @@
+"""The test vectors' source: `python -m carp_verify.vectors` writes the files of `carp_spec.vectors` anew.
+
+The cases are written by hand, what is expected of them too; `judging` is what carproof itself says of them.
+"""
+
+from collections.abc import Mapping, Sequence
+
+from carp_spec.vectors import Vector
+from carp_verify.vectors import documents, instances, neighbourhoods, optima, plans, queries, together, windows
+
+CASES: Mapping[str, Sequence[Vector]] = {
+    **documents.CASES,
+    **instances.CASES,
+    **plans.CASES,
+    **together.CASES,
+    **windows.CASES,
+    **queries.CASES,
+    **neighbourhoods.CASES,
+    **optima.CASES,
+}

@@ -1,0 +1,225 @@
+"""What carproof itself says of a case: the right answer, and the rules that are violated.
+
+It asks the checker, the rules' predicates and the readable planner; tests hold every case equal to it.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, TypeAlias, cast
+
+from carp_spec import (
+    RULES,
+    Instance,
+    Neighbourhood,
+    Plan,
+    Refusal,
+    ResourceGraph,
+    RobotId,
+    Solution,
+    Visit,
+    check,
+    judge,
+    plan_cost,
+    planner_named,
+    total_cost,
+)
+from carp_spec.documents import is_json
+from carp_spec.instance_rules import after_goal_is_known
+from carp_spec.neighbourhood_rules import (
+    baseline_is_tried,
+    distance,
+    nearest,
+    neighbourhood_orders,
+    next_trajectory,
+    replaces_best,
+    replanned_from,
+)
+from carp_spec.permutations import splitmix64
+from carp_spec.plan_rules import is_plan_cost, is_total_cost, plan_keeps_history
+from carp_spec.query_rules import expansion_key
+from carp_spec.vectors import Fields, Vector
+from carp_spec.windows import Window, free_windows, stay_fits, windows_are_free
+from carp_verify.joint_search import least_total_cost
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """What is violated, in the order of the rules, and the right answer."""
+
+    violated: tuple[str, ...]
+    answer: Fields
+
+
+def finding(subject: str, vector: Vector) -> Finding:
+    """Judge a case about a subject."""
+    if vector.op in _PROTOCOL:
+        violated, answer = _PROTOCOL[vector.op](subject, vector)
+        return Finding(tuple(rule.id for rule in RULES if rule.id in violated), answer)
+    if vector.op in _JUDGED:
+        return Finding(() if _JUDGED[vector.op](vector.input) else (vector.op,), {})
+    answer = _ANSWERED[vector.op](vector)
+    return Finding(() if vector.claim == answer else (vector.op,), answer)
+
+
+Found: TypeAlias = tuple[set[str], Fields]
+
+
+def _check(subject: str, vector: Vector) -> Found:
+    for name, read in (("instance", vector.read_instance), ("solution", vector.read_solution)):
+        try:
+            read()
+        except Refusal as refusal:
+            return {refusal.rule}, {"refused": f"$.{name}{refusal.path[1:]}"}
+    instance, solution = vector.read_instance(), vector.read_solution()
+    verdict = judge(instance, solution)
+    violated = {violation.rule for violation in verdict.violations}
+    if vector.claim is not None:
+        cost = vector.claim["cost"]
+        right = (
+            is_plan_cost(instance, solution.plans[0], cost)
+            if subject == is_plan_cost.id
+            else is_total_cost(instance, solution.plans, cost)
+        )
+        violated |= set() if right else {subject}
+    return violated, {"cost": verdict.cost, "unplanned": verdict.unplanned}
+
+
+def _query(subject: str, vector: Vector) -> Found:
+    import carp_reference  # noqa: PLC0415 - loads networkx
+
+    instance, solution = vector.read_instance(), vector.read_solution()
+    robot, now = vector.input["robot"], vector.input["now"]
+    right = carp_reference.query(instance, solution.plans, robot, now)
+    answer = {"cost": None if right is None else plan_cost(instance, right)}
+    assert vector.claim is not None  # noqa: S101 - every query has a claim
+    visits = vector.claim["plan"]
+    if visits is None:
+        return set() if right is None else {"query/complete"}, answer
+    claimed = _plan(robot, visits)
+    others = [plan for plan in solution.plans if plan.robot != robot]
+    violated = {violation.rule for violation in check(instance, (*others, claimed))}
+    violated |= {"query/sound"} if violated else set()
+    before = [plan for plan in solution.plans if plan.robot == robot]
+    violated |= {violation.rule for plan in before for violation in plan_keeps_history(plan, claimed, now)}
+    if right is not None and plan_cost(instance, claimed) > plan_cost(instance, right):
+        violated |= {"query/optimal"} if "query/sound" not in violated else set()
+    if subject == "query/ties" and claimed != right:
+        violated |= {"query/ties"}
+    return violated, answer
+
+
+def _planned(instance: Instance, solution: Solution) -> Fields:
+    return {"cost": total_cost(instance, solution.plans), "unplanned": len(solution.unplanned)}
+
+
+def _plan_all(subject: str, vector: Vector) -> Found:
+    import carp_reference  # noqa: PLC0415 - loads networkx
+
+    del subject
+    options = dict(vector.input)
+    instance = vector.read_instance()
+    try:
+        planner = planner_named(options.pop("planner"), options)
+    except Refusal as refusal:
+        return {refusal.rule}, {"refused": refusal.path}
+    return set(), _planned(instance, carp_reference.plan(instance, planner))
+
+
+def _add(subject: str, vector: Vector) -> Found:
+    import carp_reference  # noqa: PLC0415 - loads networkx
+
+    del subject
+    options = {name: value for name, value in vector.input.items() if name not in ("solution", "robot")}
+    neighbourhood = cast("Neighbourhood", planner_named(Neighbourhood.name, options))
+    instance, robot = vector.read_instance(), vector.input["robot"]
+    after = carp_reference.add(instance, vector.read_solution(), robot, 0, neighbourhood)
+    return set(), _planned(instance, after)
+
+
+def _optimum(subject: str, vector: Vector) -> Found:
+    """By looking at all states of all robots together: the cases are tiny, and nothing of the encoding is in it."""
+    del subject
+    return set(), {"cost": least_total_cost(vector.read_instance())}
+
+
+_PROTOCOL: Mapping[str, Callable[[str, Vector], Found]] = {
+    "check": _check,
+    "query": _query,
+    "plan": _plan_all,
+    "add": _add,
+    "optimum": _optimum,
+}
+
+
+def _json(input: Fields) -> bool:
+    return is_json(input["text"].encode() if "text" in input else bytes.fromhex(input["hex"]))
+
+
+def _after_goal(input: Fields) -> bool:
+    return not list(after_goal_is_known(Instance(ResourceGraph((), ()), (), input["after_goal"])))
+
+
+def _fits(input: Fields) -> bool:
+    return stay_fits(Window(*input["window"]), input["enter"], input["leave"], input["duration"])
+
+
+_JUDGED: Mapping[str, Callable[[Fields], bool]] = {
+    "document/json": _json,
+    "instance/after-goal": _after_goal,
+    "window/fits": _fits,
+}
+
+
+def _free(vector: Vector) -> Fields:
+    occupations = [(enter, leave) for enter, leave in vector.input["occupations"]]
+    capacity = vector.input["capacity"]
+    windows = free_windows(occupations, capacity)
+    assert windows_are_free(windows, occupations, capacity)  # noqa: S101 - the predicate is the rule
+    return {"windows": [[window.start, window.end] for window in windows]}
+
+
+def _ties(vector: Vector) -> Fields:
+    nodes = vector.input["nodes"]
+    return {"order": sorted(range(len(nodes)), key=lambda position: expansion_key(*nodes[position]))}
+
+
+def _distance(vector: Vector) -> Fields:
+    plans = [_plan(vector.input[name]["robot"], vector.input[name]["visits"]) for name in ("one", "other")]
+    mean = distance(vector.read_instance(), *plans)
+    return {"distance": [mean.numerator, mean.denominator]}
+
+
+def _nearest(vector: Vector) -> Fields:
+    return {"nearest": nearest([[Fraction(*each) for each in robot] for robot in vector.input["distances"]])}
+
+
+def _orders(vector: Vector) -> Fields:
+    orders = neighbourhood_orders(vector.input["size"], vector.input["sample"], splitmix64(vector.input["seed"]))
+    return {"orders": [[*order] for order in orders]}
+
+
+def _update(vector: Vector) -> Fields:
+    before, planned = (
+        each and _plan(each["robot"], each["visits"]) for each in (vector.input["before"], vector.input["planned"])
+    )
+    after = next_trajectory(before, planned)
+    visits = [[visit.resource, visit.enter, visit.leave] for visit in after.visits]
+    return {"trajectory": {"robot": after.robot, "visits": visits}}
+
+
+_ANSWERED: Mapping[str, Callable[[Vector], Fields]] = {
+    "window/free": _free,
+    "query/ties": _ties,
+    "neighbourhood/baseline": lambda vector: {"tried": baseline_is_tried(**vector.input)},
+    "neighbourhood/nearest": _nearest,
+    "neighbourhood/distance": _distance,
+    "neighbourhood/replan": lambda vector: {"from": replanned_from(**vector.input)},
+    "neighbourhood/orders": _orders,
+    "neighbourhood/best": lambda vector: {"replaces": replaces_best(**vector.input)},
+    "neighbourhood/update": _update,
+}
+
+
+def _plan(robot: RobotId, visits: Sequence[Sequence[Any]]) -> Plan:
+    return Plan(robot, tuple(Visit(*visit) for visit in visits))

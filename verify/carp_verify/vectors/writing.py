@@ -1,0 +1,72 @@
+"""The files of the test vectors, and the list of digests that may only grow."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from hashlib import sha256
+
+import msgspec
+
+from carp_spec.vectors import DIGESTS, FLAGS, VECTORS_FORMAT, Vector, VectorsDocument, subjects, vector_file
+from carp_verify.vectors import CASES
+
+
+class ChangedError(Exception):
+    """A case that is on the list has changed or is gone."""
+
+
+def full_id(subject: str, vector: Vector) -> str:
+    """The id under which a case is published: the file's name before its own."""
+    return f"{subject.replace('/', '-')}.{vector.id}"
+
+
+def published() -> Iterator[VectorsDocument]:
+    """Every file's document, in the order of the subjects."""
+    for subject in subjects():
+        cases = tuple(msgspec.structs.replace(each, id=full_id(subject, each)) for each in CASES[subject])
+        yield VectorsDocument(VECTORS_FORMAT, subject, dict(FLAGS), cases)
+
+
+def file_text(document: VectorsDocument) -> str:
+    """A file: each field of a case on its own line, so that a changed case shows as changed lines."""
+    head = {"format": document.format, "subject": document.subject, "flags": document.flags}
+    cases = ["  {\n" + _lines(msgspec.to_builtins(each), "    ") + "\n  }" for each in document.cases]
+    return "{\n" + _lines(head, "  ") + ',\n  "cases": [\n' + ",\n".join(cases) + "\n  ]\n}\n"
+
+
+def _lines(fields: Mapping[str, object], indent: str) -> str:
+    return ",\n".join(f"{indent}{_text(name)}: {_text(value)}" for name, value in fields.items())
+
+
+def _text(value: object) -> str:
+    return msgspec.json.format(msgspec.json.encode(value), indent=0).decode()
+
+
+def digest(vector: Vector) -> str:
+    """A digest of all that must never change: everything but flags and comment."""
+    fixed = msgspec.structs.replace(vector, flags=(), comment="")
+    return sha256(msgspec.json.encode(fixed, order="sorted")).hexdigest()[:16]
+
+
+def digests() -> Mapping[str, str]:
+    """The digest of every case by its id."""
+    return {each.id: digest(each) for document in published() for each in document.cases}
+
+
+def listed(text: str) -> Mapping[str, str]:
+    """The list of digests, as its file holds it."""
+    return dict(line.split() for line in text.splitlines())
+
+
+def list_text(now: Mapping[str, str], before: Mapping[str, str]) -> str:
+    """The list with the new cases at its end; raises `ChangedError` if a listed case is not what it was."""
+    changed: Sequence[str] = [id for id, digest in before.items() if now.get(id) != digest]
+    if changed:
+        raise ChangedError(f"cases never change; give these a new id: {', '.join(changed)}")
+    return "".join(f"{id} {digest}\n" for id, digest in {**before, **now}.items())
+
+
+def write_vectors() -> None:
+    """Write all files, unless a case that was published has changed."""
+    text = list_text(digests(), listed(DIGESTS.read_text()) if DIGESTS.exists() else {})
+    for document in published():
+        vector_file(document.subject).write_text(file_text(document))
+    DIGESTS.write_text(text)
