@@ -1,10 +1,14 @@
-"""What `carproof gap` shows of a gap: rows for people, a document for programs."""
+"""What `carproof gap` shows of gaps: rows for people, documents for programs."""
 
 from collections.abc import Iterator, Sequence
 
 import msgspec
 
+from carp_oracle.gap_family import Cell, Excess
+from carp_spec import Carp, FixedPaths, Greedy, LongestFirst, Neighbourhood, Planner, Shuffled
 from carp_verify.gap import Gap, PlannerGap
+
+PLANNERS: tuple[Planner, ...] = (Carp(), Shuffled(), LongestFirst(), Greedy(), FixedPaths(), Neighbourhood())
 
 
 class PlannerGapDocument(msgspec.Struct, frozen=True):
@@ -23,6 +27,49 @@ class GapDocument(msgspec.Struct, frozen=True):
     proved: bool
     best_order: int | None
     planners: tuple[PlannerGapDocument, ...]
+
+
+class MeanDocument(msgspec.Struct, frozen=True):
+    """A mean in per cent with the ends of its 95 % interval, and over how many instances."""
+
+    instances: int
+    mean: float | None
+    low: float | None
+    high: float | None
+
+
+class PlannerMeansDocument(msgspec.Struct, frozen=True):
+    """How far a planner is from the optimum and from the best order, in per cent of the optimum."""
+
+    planner: str
+    above_optimum: MeanDocument
+    price_of_the_search: MeanDocument
+
+
+class SeedGapDocument(msgspec.Struct, frozen=True):
+    """The gap of the instance of a seed."""
+
+    seed: int
+    gap: GapDocument
+
+
+class CellDocument(msgspec.Struct, frozen=True):
+    """The instances of one size and map: means over those with a known optimum, and the gap of each."""
+
+    size: int
+    map: int
+    robots: int
+    decided: int
+    delay: MeanDocument
+    price_of_an_order: MeanDocument
+    planners: tuple[PlannerMeansDocument, ...]
+    instances: tuple[SeedGapDocument, ...]
+
+
+class FamilyDocument(msgspec.Struct, frozen=True):
+    """The cells of a family."""
+
+    cells: tuple[CellDocument, ...]
 
 
 def gap_document(gap: Gap) -> GapDocument:
@@ -60,3 +107,46 @@ def _difference(total: int | None, least: int | None) -> str:
         return "-"
     tenths = 1000 * (total - least) // least if least else 0
     return f"{total - least:+d} ({tenths // 10}.{tenths % 10} %)" if tenths >= 0 else f"{total - least:+d}"
+
+
+def family_document(cells: Sequence[Cell]) -> FamilyDocument:
+    """The document of a family."""
+    return FamilyDocument(tuple(map(_cell_document, cells)))
+
+
+def _cell_document(cell: Cell) -> CellDocument:
+    planners = (
+        PlannerMeansDocument(
+            planner.name, _mean(cell.above_optimum(position)), _mean(cell.price_of_the_search(position))
+        )
+        for position, planner in enumerate(PLANNERS)
+    )
+    return CellDocument(
+        cell.size,
+        cell.map,
+        cell.robots,
+        len(cell.decided),
+        _mean(cell.delay),
+        _mean(cell.price_of_an_order),
+        tuple(planners),
+        tuple(SeedGapDocument(seed, gap_document(gap)) for seed, gap in zip(cell.seeds, cell.gaps, strict=True)),
+    )
+
+
+def _mean(excess: Excess) -> MeanDocument:
+    interval = excess.per_cent
+    if interval is None:
+        return MeanDocument(excess.instances, None, None, None)
+    return MeanDocument(excess.instances, interval.estimate, interval.low, interval.high)
+
+
+def cell_rows(cell: Cell) -> Iterator[Sequence[object]]:
+    """A row of the optimum, of the best order and of each planner, in per cent of the optimum."""
+    decided, order = cell.decided, cell.price_of_an_order
+    grid = (f"{cell.size} x {cell.size}", cell.map, cell.robots)
+    yield (*grid, "optimum", f"{len(decided)}/{len(cell.gaps)}", "-", "-")
+    yield ("", "", "", "best order", f"{order.instances}/{len(decided)}", order, "-")
+    for position, planner in enumerate(PLANNERS):
+        above = cell.above_optimum(position)
+        found = f"{above.instances}/{len(decided)}"
+        yield ("", "", "", planner.name, found, above, cell.price_of_the_search(position))

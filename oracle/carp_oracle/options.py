@@ -7,11 +7,28 @@ import click
 
 from carp_oracle.engines import DEFAULT_ENGINE, ENGINES
 from carp_oracle.files import InputFile, OutputFile
+from carp_oracle.generate import Range
 from carp_spec import FixedPaths, Neighbourhood, Planner, Shuffled, planner_named
 from carp_spec.planners import PLANNERS
 
 DEFAULT_LIMIT = 60
 F = TypeVar("F", bound=Callable[..., Any])
+
+
+class RangeType(click.ParamType[Range]):
+    """A whole number, or LOW..HIGH."""
+
+    name = "range"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Range:  # noqa: ANN401 - click's own signature
+        """Read `2` or `1..3`."""
+        if isinstance(value, Range):
+            return value
+        low, dots, high = value.partition("..")
+        try:
+            return Range(int(low), int(high if dots else low))
+        except ValueError:
+            self.fail(f"{value!r} must be a whole number or LOW..HIGH, like 1..3.", param, ctx)
 
 
 def examples(*lines: str) -> str:

@@ -7,7 +7,12 @@ import pytest
 from tests.oracle.running import HEAD_ON, TWO, TWO_PLANNED, Document, Run, corridor, line
 
 from carp_oracle import gap_table, optimum_table
+from carp_oracle.gap_family import Cell, Family, measured
+from carp_oracle.gap_report import PLANNERS
 from carp_oracle.generate import Range
+from carp_spec import Carp
+from carp_verify.gap import Gap, PlannerGap
+from carp_verify.optimum import Evidence, Optimum
 
 UNSOLVABLE = corridor([{"id": "r1", "start": "a", "goal": "e"}, HEAD_ON])
 
@@ -159,21 +164,94 @@ def test_the_op_optimum_is_served(carproof: Run) -> None:
     assert answers[3]["error"]["path"] == "$.limit"
 
 
-def test_a_row_of_the_gap_table_tells_means_intervals_and_failures(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(gap_table, "SIZES", (3,))
-    monkeypatch.setattr(gap_table, "MAPS", (0, 20))
-    monkeypatch.setattr(gap_table, "INSTANCES", 4)
-    rows = [gap_table.row(cell) for cell in gap_table.cells(lambda: None)]
+def test_the_gaps_of_a_family_are_shown_with_intervals(carproof: Run) -> None:
+    outcome = carproof("gap", "--size", "3..4", "--map", 0, "--map", 20, "--count", 4)
+    assert outcome.stderr == ""
+    lines = outcome.stdout.splitlines()
+    assert max(map(len, lines)) <= 80
+    rows = [row.split() for row in lines[2:-1]]
+    assert [row[:5] for row in rows if row[1] == "x"] == [
+        [size, "x", size, map, size] for size in ("3", "4") for map in ("0", "20")
+    ]
+    assert [row[0] for row in rows[1:8]] == [
+        "best",
+        "carp",
+        "shuffled",
+        "longest-first",
+        "greedy",
+        "fixed-paths",
+        "neighbourhood",
+    ]
+    assert "±" in lines[4]
+
+
+def test_the_gaps_of_a_family_as_a_document_are_those_of_its_instances(carproof: Run, tmp_path: Path) -> None:
+    options = ["--robots", 4, "--after-goal", "park"]
+    family = carproof("gap", "--size", 3, "--map", 10, *options, "--count", 2, "--seed", 5, "--json")
+    (cell,) = json.loads(family.stdout)["cells"]
+    assert (cell["size"], cell["map"], cell["robots"]) == (3, 10, 4)
+    of_instances = []
+    for seed in (5, 6):
+        path = tmp_path / f"{seed}.json"
+        grid = ["--width", 3, "--height", 3, "--map", 10, "--map-seed", seed, "--seed", seed]
+        carproof("generate", "grid", *grid, *options, "-o", path)
+        of_instances.append({"seed": seed, "gap": json.loads(carproof("gap", path, "--json").stdout)})
+    assert cell["instances"] == of_instances
+    optima = [each["gap"]["optimum"] for each in of_instances]
+    assert cell["decided"] == len(optima) - optima.count(None)
+    assert family.code == (1 if None in optima else 0)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        ([], "Give an INSTANCE or a --size, one of them."),
+        (["TOWN", "--size", 3], "Give an INSTANCE or a --size, one of them."),
+        (["--size", "4..3"], "4..3 must be a range within 1..100."),
+        (["--size", "0..3"], "0..3 must be a range within 1..100."),
+        (["--size", 1000], "1000 must be a range within 1..100."),
+        (["--size", 2, "--robots", 5], "5 robots need as many distinct starts, and the map has 4"),
+        (["--size", 2, "--map", 21], "--map"),
+        (["--size", 2, "--count", 0], "--count"),
+    ],
+)
+def test_a_family_that_cannot_be_made_is_refused(
+    carproof: Run, town: Path, arguments: list[object], reason: str
+) -> None:
+    outcome = carproof("gap", *(town if each == "TOWN" else each for each in arguments))
+    assert (outcome.code, outcome.stdout, outcome.stderr.count("\n")) == (2, "", 1)
+    assert reason in outcome.stderr
+
+
+def small_gap(optimum: int | None, best_order: int | None, *totals: int | None) -> Gap:
+    """A gap with as many planners as totals; `None` is a planner that left a robot unplanned."""
+    best = Optimum(8, optimum, optimum or 9, optimum is not None, None, Evidence((), ()))
+    planners = (PlannerGap(Carp(), total or 0, int(total is None)) for total in totals)
+    return Gap(best, best_order, tuple(planners))
+
+
+def test_means_of_a_family_leave_out_what_is_not_known() -> None:
+    gaps = (small_gap(10, 11, 12), small_gap(10, None, 11), small_gap(10, 10, None), small_gap(None, 9, 9))
+    cell = Cell(3, 0, 2, range(4), gaps)
+    assert (cell.delay.instances, str(cell.delay)) == (3, "25.0 ± 0.0")
+    assert (cell.price_of_an_order.instances, str(cell.price_of_an_order)) == (2, "5.0 ± 9.8")
+    assert (cell.above_optimum(0).instances, str(cell.above_optimum(0))) == (2, "15.0 ± 9.8")
+    assert (cell.price_of_the_search(0).instances, str(cell.price_of_the_search(0))) == (1, "10.0 ± 0.0")
+    assert str(Cell(3, 0, 2, range(0), ()).delay) == "-"
+
+
+def test_a_row_of_the_gap_table_tells_means_intervals_and_failures() -> None:
+    family = Family(Range(3, 3), (0, 20), count=4)
+    rows = [gap_table.row(cell) for cell in measured(family, PLANNERS, 60)]
     assert [row[:3] for row in rows] == [("3 x 3", "0", "3"), ("3 x 3", "20", "3")]
     assert all(len(row) == len(gap_table.COLUMNS) for row in rows)
     assert all("±" in cell or "failed" in cell for row in rows for cell in row[4:])
 
 
-def test_the_gap_table_replaces_what_stands_between_its_marks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(gap_table, "SIZES", ())
+def test_the_gap_table_replaces_what_stands_between_its_marks(tmp_path: Path) -> None:
     page = tmp_path / "README.md"
     page.write_text(f"before\n{gap_table.BEGIN}old\n{gap_table.END}after\n")
-    gap_table.write_table(page)
+    gap_table.write_table(page, Family(Range(3, 3), ()))
     heading = gap_table.table([])
     assert page.read_text() == f"before\n{gap_table.BEGIN}{heading}{gap_table.END}after\n"
 

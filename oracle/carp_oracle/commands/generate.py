@@ -8,31 +8,15 @@ from typing import Any, TypeVar, get_args
 import click
 
 from carp_oracle.answer import Answer
-from carp_oracle.generate import Fleet, Grid, Range, Traits, Warehouse, grid_instance, warehouse_instance
+from carp_oracle.generate import Fleet, Grid, Traits, Warehouse, grid_instance, warehouse_instance
 from carp_oracle.generate.options import JUST_ONE, Distinct, Side
-from carp_oracle.options import examples, json_option, output_option
+from carp_oracle.options import RangeType, examples, json_option, output_option
 from carp_oracle.results import show_instance
 from carp_spec import AfterGoal
 
 T = TypeVar("T", Fleet, Grid, Traits, Warehouse)
 AFTER_GOAL = "What robots do after their goals."
 F = TypeVar("F", bound=Callable[..., Any])
-
-
-class RangeType(click.ParamType[Range]):
-    """A whole number, or LOW..HIGH."""
-
-    name = "range"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Range:  # noqa: ANN401 - click's own signature
-        """Read `2` or `1..3`."""
-        if isinstance(value, Range):
-            return value
-        low, dots, high = value.partition("..")
-        try:
-            return Range(int(low), int(high if dots else low))
-        except ValueError:
-            self.fail(f"{value!r} must be a whole number or LOW..HIGH, like 1..3.", param, ctx)
 
 
 def fleet_options(default: Fleet) -> Callable[[F], F]:
