@@ -8,32 +8,47 @@ depends on the resource alone. For the goal this says that the first plan found 
 from collections.abc import Iterator, Sequence
 
 from carp_verify.engine import Lemma, Theorem
-from carp_verify.smt import Bool, integers
+from carp_verify.smt import Bool, Int, integers
+
+
+def is_taken(g: Int, h: Int, f_queued: Int) -> Bool:
+    """Whether a node may be taken from the queue before one with `f_queued`: `query/ties`."""
+    return g + h <= f_queued
+
+
+def is_ahead(f_queued: Int, g: Int, h: Int) -> Bool:
+    """The invariant of A*: a way that reaches a window at g has a node in the queue, whose f is no more than g + h."""
+    return f_queued <= g + h
+
+
+def is_final(g: Int, g_other: Int) -> Bool:
+    """Whether another way is no earlier than the one taken."""
+    return g <= g_other
 
 
 def _premises() -> Sequence[Bool]:
     """`g` is of the node taken, `g_other` of another way to its window, `f_queued` of that way's node in the queue."""
     g, g_other, h, f_queued = integers("g g_other h f_queued")
-    return [g >= 0, g_other >= 0, h >= 0, f_queued <= g_other + h]
+    return [g >= 0, g_other >= 0, h >= 0, is_ahead(f_queued, g_other, h)]
 
 
 def lemmas() -> Iterator[Lemma]:
     """No other way is earlier; and the invariant that f along a way does not fall."""
     g, g_other, h, f_queued, f_between = integers("g g_other h f_queued f_between")
-    least = g + h <= f_queued
-    yield Lemma("no other way reaches the window earlier", [*_premises(), least], g <= g_other)
-    chain = [f_queued <= f_between, f_between <= g_other + h]
-    yield Lemma("one transition more keeps f from falling below the queue's", chain, f_queued <= g_other + h)
+    taken = [*_premises(), is_taken(g, h, f_queued)]
+    yield Lemma("no other way reaches the window earlier", taken, is_final(g, g_other))
+    chain = [f_queued <= f_between, is_ahead(f_between, g_other, h)]
+    yield Lemma("one transition more keeps f from falling below the queue's", chain, is_ahead(f_queued, g_other, h))
 
 
 def mutants() -> Iterator[Lemma]:
     """Orders of the queue and heuristics under which a first pop is not final."""
     g, g_other, h, h_other, f_queued = integers("g g_other h h_other f_queued")
-    yield Lemma("the queue is not in the order of f", _premises(), g <= g_other)
-    inconsistent = [g >= 0, g_other >= 0, h >= 0, g + h <= f_queued]
-    yield Lemma("h is not consistent", inconsistent, g <= g_other)
-    differs = [g >= 0, g_other >= 0, h >= 0, h_other >= 0, g + h <= f_queued, f_queued <= g_other + h_other]
-    yield Lemma("h depends on the way", differs, g <= g_other)
+    yield Lemma("the queue is not in the order of f", _premises(), is_final(g, g_other))
+    taken = [g >= 0, g_other >= 0, h >= 0, is_taken(g, h, f_queued)]
+    yield Lemma("h is not consistent", taken, is_final(g, g_other))
+    differs = [*taken, h_other >= 0, is_ahead(f_queued, g_other, h_other)]
+    yield Lemma("h depends on the way", differs, is_final(g, g_other))
 
 
 THEOREM = Theorem("The first pop of a window is final", __doc__, ("query/optimal", "query/ties"), lemmas, mutants)

@@ -11,12 +11,17 @@ stood in the way of waiting there, so that the resource expanded counts as freed
 from collections.abc import Iterator, Sequence
 
 from carp_verify.engine import Lemma, Theorem
-from carp_verify.smt import Bool, Int, between, equal, greater, integers, negation
+from carp_verify.smt import Bool, Int, any_of, between, equal, greater, integers, negation
 
 
 def least_f(ready: Int, earliest: Int, duration: Int, h: Int) -> Int:
     """The least f of what comes of a freed stay."""
     return greater(ready, earliest - duration) + h
+
+
+def is_too_late(ready: Int, earliest: Int, latest: Int, duration: Int, h: Int, arrival: Int) -> Bool:
+    """Whether nothing can come, before the arrival, of a stay freed in [earliest, latest)."""
+    return any_of(latest <= ready, least_f(ready, earliest, duration, h) > arrival)
 
 
 def _new_stay() -> Sequence[Bool]:
@@ -37,7 +42,7 @@ def lemmas() -> Iterator[Lemma]:
     yield Lemma("a new leave has an f of at least the bound", [*_new_stay(), shortest], leave + h_after >= bound)
     over = [duration >= 1, enter >= ready, latest <= ready, between(earliest, tick, latest)]
     yield Lemma("a stay from ready on holds no tick freed before", over, negation(between(enter, tick, leave)))
-    late = [enter + h >= bound, bound > arrival]
+    late = [enter + h >= bound, is_too_late(ready, earliest, latest, duration, h, arrival), latest > ready]
     yield Lemma("what has an f of at least the bound is expanded after the goal", late, enter + h > arrival)
     moved = [duration >= 1, between(earliest + 1, exchange, latest + 1), exchange >= ready]
     yield Lemma("a freed exchange has an f of at least the bound", moved, exchange + h >= bound)

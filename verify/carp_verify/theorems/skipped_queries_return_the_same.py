@@ -9,12 +9,18 @@ changed; and they do not depend on the order in which plans were committed, as t
 from collections.abc import Iterator, Sequence
 
 from carp_verify.engine import Lemma, Theorem
-from carp_verify.smt import Bool, equal, implies, int_function, integers, same
+from carp_verify.smt import Bool, Int, equal, implies, int_function, integers, same
+from carp_verify.theorems.reserving_counts_at_any_capacity import is_free
 
 question = int_function("question")
 answer = int_function("answer")
 answer_again = int_function("answer_again")
 following = int_function("next", 2)
+
+
+def as_free(rest: Int, old: Int, new: Int, capacity: Int) -> Bool:
+    """Whether a tick is as free with the new stays of a plan there as with its old ones."""
+    return same(is_free(rest + old, capacity), is_free(rest + new, capacity))
 
 
 def _states() -> tuple[Bool, Bool]:
@@ -44,7 +50,7 @@ def lemmas() -> Iterator[Lemma]:
     before, after = _states()
     yield Lemma("the same answer keeps the states the same", [before, _same_answer()], after)
     rest, old, new, capacity = integers("rest old new capacity")
-    free = same(rest + old < capacity, rest + new < capacity)
+    free = as_free(rest, old, new, capacity)
     yield Lemma("a tick at which no stay changed is as free as it was", _unchanged(), free)
     one, two, three = integers("one two three")
     yield Lemma("the order of committing changes no occupancy", [one >= 0], equal(one + two + three, three + one + two))
@@ -57,8 +63,8 @@ def mutants() -> Iterator[Lemma]:
     elsewhere = implies(equal(other, question(state) + 1), equal(answer(other), answer_again(other)))
     yield Lemma("answers are compared for another question", [before, elsewhere], after)
     rest, old, new, capacity = integers("rest old new capacity")
-    free = same(rest + old < capacity, rest + new < capacity)
-    yield Lemma("a stay that shrank is taken for unchanged", [rest >= 0, old >= 0, new >= 0, new <= old], free)
+    shrank = [rest >= 0, old >= 0, new >= 0, new <= old]
+    yield Lemma("a stay that shrank is taken for unchanged", shrank, as_free(rest, old, new, capacity))
 
 
 THEOREM = Theorem(

@@ -1,0 +1,275 @@
+"""The formulas about whole queries, evaluated at every step of the reference on every query on small graphs."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from heapq import heappop, heappush
+from importlib import import_module
+from itertools import combinations, product
+
+import pytest
+
+from carp_reference.context import Context, context_of
+from carp_reference.problem import Problem, ticks_to_goal
+from carp_reference.query import Node, find_plan
+from carp_spec import Plan, ResourceId
+from carp_spec.query_rules import expansion_key
+from carp_spec.windows import Occupation, Window, free_windows, occupancy
+from carp_verify.enumeration import ASKED, PATTERNS, Pattern, SmallCase, small_cases
+from carp_verify.smt import Bool, Int, any_of, integer, value_of
+from carp_verify.theorems.first_pop_is_final import is_ahead, is_final, is_taken
+from carp_verify.theorems.freed_stays_come_too_late import is_too_late, least_f
+from carp_verify.theorems.skipped_queries_return_the_same import as_free
+
+SEARCH = import_module("carp_reference.query")  # the name of the module is also that of a function
+FOR_EVER = 99
+FEW_RESOURCES = 3
+STRIDE = 61
+Question = tuple[str, object]
+Queue = list[tuple[tuple[int, int, int, int], Node]]
+
+
+def cases(pattern: Pattern) -> Iterator[SmallCase]:
+    """All with few resources, and some of those with more."""
+    for number, case in enumerate(small_cases(pattern)):
+        if len(case.instance.graph.resources) <= FEW_RESOURCES or number % STRIDE == 0:
+            yield case
+
+
+@dataclass(slots=True)
+class Trace:
+    """What a query did: the nodes taken, each with the queue that it was taken from, and the entries found after it."""
+
+    taken: list[tuple[Node, Queue]] = field(default_factory=list)
+    found: list[list[Node]] = field(default_factory=list)
+    answers: list[tuple[Question, object]] = field(default_factory=list)
+
+
+class Watched(Context):
+    """A context that notes what it is asked."""
+
+    trace: Trace
+
+    def windows(self, resource: ResourceId) -> tuple[Window, ...]:
+        answer = Context.windows(self, resource)
+        self.trace.answers.append((("windows", resource), answer))
+        return answer
+
+    def is_exchange(self, tick: int, source: ResourceId, target: ResourceId) -> bool:
+        answer = Context.is_exchange(self, tick, source, target)
+        self.trace.answers.append((("exchange", (tick, source, target)), answer))
+        return answer
+
+
+@pytest.fixture
+def trace(monkeypatch: pytest.MonkeyPatch) -> Trace:
+    """Filled by whatever the reference is asked."""
+    seen = Trace()
+
+    def watched(*arguments: object) -> Context:
+        context = context_of(*arguments)  # type: ignore[arg-type]
+        watching = Watched(context.instance, context.occupations, context.moves)
+        object.__setattr__(watching, "trace", seen)
+        return watching
+
+    def pop(queue: Queue) -> object:
+        before = list(queue)
+        item = heappop(queue)
+        seen.taken.append((item[1], before))
+        seen.found.append([])
+        return item
+
+    def push(queue: Queue, item: tuple[tuple[int, int, int, int], Node]) -> None:
+        heappush(queue, item)
+
+    expand = SEARCH._expand
+
+    def expanded(*arguments: object) -> Iterator[Node]:
+        for node in expand(*arguments):
+            seen.found[-1].append(node)
+            yield node
+
+    for name, replacement in (("context_of", watched), ("heappop", pop), ("heappush", push), ("_expand", expanded)):
+        monkeypatch.setattr(SEARCH, name, replacement)
+    return seen
+
+
+def ask(case: SmallCase, committed: Sequence[Plan], trace: Trace) -> Plan | None:
+    trace.taken, trace.found, trace.answers = [], [], []
+    return find_plan(problem_of(case), committed, ASKED)
+
+
+def problem_of(case: SmallCase) -> Problem:
+    return Problem(case.instance, {ASKED: ticks_to_goal(case.instance, case.instance.robot[ASKED])}, 0)
+
+
+def evaluated(term: Int | Bool, **values: int) -> bool:
+    return bool(value_of(term, dict(values)))
+
+
+g, h, f_queued, g_other = (integer(name) for name in ("g", "h", "f_queued", "g_other"))
+
+
+@cache
+def may_be_taken(enter: int, to_goal: int, queued: int) -> bool:
+    return evaluated(is_taken(g, h, f_queued), g=enter, h=to_goal, f_queued=queued)
+
+
+@cache
+def invariant(queued: int, enter: int, to_goal: int) -> bool:
+    return evaluated(is_ahead(f_queued, g, h), f_queued=queued, g=enter, h=to_goal)
+
+
+@cache
+def no_earlier(enter: int, other: int) -> bool:
+    return evaluated(is_final(g, g_other), g=enter, g_other=other)
+
+
+def test_a_node_may_be_taken_where_the_key_of_the_specification_lets_it() -> None:
+    ties = list(product(range(2), repeat=2))
+    for enter, to_goal, queued in product(range(4), range(4), range(7)):
+        keys = product(
+            (expansion_key(enter + to_goal, enter, *tie) for tie in ties),
+            (expansion_key(queued, other, *tie) for other in range(queued + 1) for tie in ties),
+        )
+        assert may_be_taken(enter, to_goal, queued) == any(one <= another for one, another in keys)
+
+
+@pytest.mark.parametrize("pattern", PATTERNS[1::2], ids=str)
+def test_the_first_entry_taken_is_final_and_every_other_way_has_a_node_in_the_queue(
+    trace: Trace, pattern: Pattern, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The search goes on behind the goal, so that every way is seen."""
+    monkeypatch.setattr(SEARCH, "_can_end", lambda *_: False)
+    ways = 0
+    for case in cases(pattern):
+        ask(case, case.committed, trace)
+        to_goal = problem_of(case).ticks_to_goal[ASKED]
+        done: set[tuple[ResourceId, Window]] = set()
+        for step, (node, queue) in enumerate(trace.taken):
+            key = (node.resource, node.window)
+            if key in done:
+                continue
+            done.add(key)
+            ticks = to_goal[node.resource]
+            fs = [each[0] for each, _ in queue]
+            assert all(may_be_taken(node.enter, ticks, f) for f in fs)
+            others = [each for _, each in queue] + [each for found in trace.found[step:] for each in found]
+            for other in others:
+                if (other.resource, other.window) == key and other is not node:
+                    ways += 1
+                    assert invariant(min(fs), other.enter, ticks)
+                    assert no_earlier(node.enter, other.enter)
+    assert ways > 100, "there are windows with several ways to them"
+
+
+def test_a_tick_is_as_free_as_it_was_where_the_specification_says_so() -> None:
+    names = ("rest", "old", "new", "capacity")
+    term = as_free(*map(integer, names))
+    stays: Sequence[Occupation] = [(0, 1), (0, None), (1, 2), (2, None)]
+    for rest, old, new, capacity, tick in product(
+        [(), ((0, 2),), ((0, 2), (1, None))], stays, stays, (1, 2, 3), range(3)
+    ):
+        values = (occupancy(rest, tick), occupancy([old], tick), occupancy([new], tick), capacity)
+        free = [
+            any(
+                window.start <= tick and window.lasts_until(tick + 1)
+                for window in free_windows((*rest, each), capacity)
+            )
+            for each in (old, new)
+        ]
+        assert evaluated(term, **dict(zip(names, values, strict=True))) == (free[0] == free[1])
+
+
+@pytest.mark.parametrize("pattern", PATTERNS[1::2], ids=str)
+def test_a_query_goes_the_same_way_until_an_answer_differs(trace: Trace, pattern: Pattern) -> None:
+    """So a state is a function of the answers before it, and a query all whose answers stay the same is the same."""
+    same = different = 0
+    for case in cases(pattern):
+        runs = []
+        for count in range(len(case.committed) + 1):
+            for committed in combinations(case.committed, count):
+                plan = ask(case, committed, trace)
+                runs.append((plan, trace.answers))
+        for (plan, answers), (other_plan, other_answers) in combinations(runs, 2):
+            pairs = zip(answers, other_answers, strict=False)
+            at = next((k for k, (one, other) in enumerate(pairs) if one != other), None)
+            if at is not None:
+                different += 1
+                assert answers[at][0] == other_answers[at][0], "the question before which all answers were the same"
+            else:
+                same += 1
+                assert (plan, answers) == (other_plan, other_answers)
+    assert min(same, different) > 100
+
+
+Lateness = Callable[[Int, Int, Int, Int, Int, Int], Bool]
+
+
+def an_end_too_early(ready: Int, earliest: Int, latest: Int, duration: Int, h: Int, arrival: Int) -> Bool:
+    """The formula of the theorem, with a planted error of one tick."""
+    return any_of(latest <= ready + 1, least_f(ready, earliest, duration, h) > arrival)
+
+
+def a_bound_too_large(ready: Int, earliest: Int, latest: Int, duration: Int, h: Int, arrival: Int) -> Bool:
+    """Another planted error."""
+    return any_of(latest <= ready, least_f(ready, earliest, duration, h) + 1 > arrival)
+
+
+@cache
+def too_late(formula: Lateness, *values: int) -> bool:
+    names = ("ready", "earliest", "latest", "duration", "h", "arrival")
+    first, *others = map(integer, names)
+    return evaluated(formula(first, *others), **dict(zip(names, values, strict=True)))
+
+
+def plans_with_and_without(trace: Trace, pattern: Pattern, formula: Lateness) -> Iterator[tuple[Plan, Plan | None]]:
+    """The plans of queries with a plan committed, and without it, where all its stays come too late."""
+    for case in cases(pattern):
+        problem = problem_of(case)
+        to_goal, successors = problem.ticks_to_goal[ASKED], case.instance.graph.successors
+        for freed in case.committed:
+            plan = ask(case, case.committed, trace)
+            if plan is None:
+                continue
+            hulls: dict[ResourceId, tuple[int, int]] = {}
+            for visit in freed.visits:
+                earliest, latest = hulls.get(visit.resource, (visit.enter, 0))
+                leave = FOR_EVER if visit.leave is None else visit.leave
+                hulls[visit.resource] = (earliest, max(latest, leave))
+            arrival = plan.visits[-1].enter
+            start = trace.taken[0][0]
+            looked_at = [(start.enter, start.resource, FOR_EVER)] if start.resource in hulls else []
+            looked_at += [
+                (node.ready, target, hulls[target][1])
+                for node, _ in trace.taken
+                for target in successors[node.resource]
+                if target in hulls and target in to_goal
+            ]
+            if all(
+                too_late(
+                    formula,
+                    ready,
+                    hulls[target][0],
+                    latest,
+                    case.instance.duration(ASKED, target),
+                    to_goal[target],
+                    arrival,
+                )
+                for ready, target, latest in looked_at
+            ):
+                others = [each for each in case.committed if each is not freed]
+                yield plan, ask(case, others, trace)
+
+
+@pytest.mark.parametrize("pattern", PATTERNS[1::2], ids=str)
+def test_stays_that_are_freed_too_late_change_no_plan(trace: Trace, pattern: Pattern) -> None:
+    pairs = list(plans_with_and_without(trace, pattern, is_too_late))
+    assert len(pairs) > 100
+    assert all(plan == without for plan, without in pairs)
+
+
+@pytest.mark.parametrize("formula", [a_bound_too_large, an_end_too_early])
+def test_a_larger_bound_would_be_noticed(trace: Trace, formula: Lateness) -> None:
+    pairs = (pair for pattern in PATTERNS for pair in plans_with_and_without(trace, pattern, formula))
+    assert any(plan != without for plan, without in pairs)
