@@ -4,14 +4,16 @@ Resources and robots are their indices in the instance, plans are the numbers of
 every sum of them is made in 64 bits, and none that is stored exceeds `NEVER`.
 """
 
-from typing import NamedTuple, TypeAlias
+from typing import Annotated, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 Ints: TypeAlias = npt.NDArray[np.int32]
 Longs: TypeAlias = npt.NDArray[np.int64]
-Flags: TypeAlias = npt.NDArray[np.bool_]
+Numbers: TypeAlias = npt.NDArray[np.uint64]
+IntTable: TypeAlias = Annotated[npt.NDArray[np.int32], 2]
+LongTable: TypeAlias = Annotated[npt.NDArray[np.int64], 2]
 
 NEVER = 2**31 - 1  # the end of what lasts for ever
 LARGEST = 2**30 - 1  # of ticks and durations: the sum of two is still below NEVER
@@ -84,7 +86,7 @@ class Guides(NamedTuple):
     to be given away.
     """
 
-    table: Longs
+    table: LongTable
     slot: Ints
     holds: Ints
     next: Longs
@@ -150,8 +152,9 @@ class Freed(NamedTuple):
 class State(NamedTuple):
     """All that a compiled function may need; `reserved[robot]` is the record that the windows hold of it.
 
-    `rank[robot]` is the robot's position in planning order while others are replanned, else `NONE`; so is its last
-    place, `rank[NONE]`. A query for a robot `behind` that rank takes no account of those whose rank is larger.
+    `rank[robot + 1]` is the robot's position in planning order while others are replanned, else `NONE`; so is the
+    first place, that of no robot. A query for a robot `behind` that rank takes no account of those of a larger rank.
+    Terms of `neighbourhood/distance` are split after `split` bits.
     """
 
     graph: Graph
@@ -165,12 +168,15 @@ class State(NamedTuple):
     reserved: Ints
     rank: Ints
     counters: Longs
+    split: int
     parks: bool
 
 
 class Work(NamedTuple):
     """What adding a robot works on: made once for a fleet and a size of neighbourhood, so that adding makes no arrays.
 
+    `queue` holds the robots in planning order, the new one last, and `plans` the plans by robot; afterwards they are
+    those found. `stream[0]` is the state of the random numbers.
     By robot: `before`, the plans followed until now; `ended`, whether they have ended by now; `held`, the plans of the
     robots outside the neighbourhood; `trajectories`, for distances. By position: `outside`, the robots outside the
     neighbourhood in planning order; the order and the plans of the best candidate. By place in the neighbourhood:
@@ -178,6 +184,9 @@ class Work(NamedTuple):
     scratch of the search for it. `rows[index[k]]` are the orders drawn.
     """
 
+    queue: Ints
+    plans: Ints
+    stream: Numbers
     before: Ints
     ended: Ints
     held: Ints
@@ -195,7 +204,7 @@ class Work(NamedTuple):
     least: Longs
     given: Longs
     cost: Longs
-    rows: Ints
+    rows: IntTable
     row_index: Ints
     row_spare: Ints
 

@@ -9,12 +9,13 @@ from typing import Any, ParamSpec, TypeVar, cast
 
 import numba
 
+from carp_optimized.references import Native
+
 F = TypeVar("F", bound=Callable[..., object])
 P = ParamSpec("P")
 R = TypeVar("R")
 
-# No compiled function makes an array, so none counts references: on a state of sixty arrays, that takes longer than a
-# query.
+# No compiled function makes an array, so none counts references.
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "_nrt": False}
 
 
@@ -32,7 +33,7 @@ def compiled(function: F) -> F:
 
 
 def entry(function: Callable[P, R]) -> Callable[P, R]:
-    """Compile a function that Python calls; the machine code is cached on disk, with all that it calls."""
+    """Compile a function that Python calls, by position; the machine code is cached on disk, with all that it calls."""
     dispatcher: Any = numba.njit(cache=True, **OPTIONS)(function)
     if not hasattr(dispatcher, "signatures"):  # compilation is switched off
         return function
@@ -40,12 +41,12 @@ def entry(function: Callable[P, R]) -> Callable[P, R]:
     is_prepared = False
 
     @wraps(function)
-    def call(*arguments: P.args, **named: P.kwargs) -> R:
+    def call(*arguments: P.args, **_: P.kwargs) -> R:
         nonlocal is_prepared
         if not is_prepared:
             is_prepared = True
             _prepare_cache(dispatcher, f"{function.__module__.rpartition('.')[2]}.{function.__qualname__}")
-        return cast("R", dispatcher(*arguments, **named))
+        return cast("R", dispatcher(*[each.address if isinstance(each, Native) else each for each in arguments]))
 
     return call
 

@@ -54,12 +54,13 @@ def apart(records: Records, one: int, other: int) -> int:
 
 
 @compiled
-def distance_below(state: State, one: int, other: int, best: Mean, split: int) -> Mean:
+def distance_below(state: State, one: int, other: int, best: Mean) -> Mean:
     """The distance of two plans if it is less than the best, else the best.
 
     Walks over both plans' visits, not over ticks, and stops as soon as the sum of the first terms is too large.
     """
     records = state.records
+    split = state.split
     if apart(records, one, other) > best.whole:
         return best
     first = min(int(state.robots.release[records.robot[one]]), int(state.robots.release[records.robot[other]]))
@@ -103,19 +104,19 @@ def distance_below(state: State, one: int, other: int, best: Mean, split: int) -
 
 
 @compiled
-def nearest(state: State, work: Work, size: int, count: int, now: int, split: int) -> int:
+def nearest(state: State, work: Work, size: int, count: int, now: int) -> int:
     """The position in `outside` of the robot least distant from the members, the first of such; `NONE`: none is left.
 
     A robot whose plan has ended by now is left alone.
     """
-    best = Mean(1 << (31 + split), 0, 1)  # more than any term
+    best = Mean(1 << (31 + state.split), 0, 1)  # more than any term
     chosen = NONE
     for position in range(size):
         own = int(work.trajectories[work.outside[position]])
         if state.records.leave[own] <= now:
             continue
         for member in range(count):
-            mean = distance_below(state, own, int(work.trajectories[work.members[member]]), best, split)
+            mean = distance_below(state, own, int(work.trajectories[work.members[member]]), best)
             if is_less(mean, best):
                 best = mean
                 chosen = position

@@ -226,6 +226,7 @@ def encode(instance: Instance) -> State:
         reserved=np.full(robots.start.size, NONE, np.int32),
         rank=np.full(robots.start.size + 1, NONE, np.int32),
         counters=np.zeros(COUNTERS, np.int64),
+        split=split_of_terms(graph),
         parks=instance.after_goal == "park",
     )
 
@@ -269,6 +270,9 @@ def no_work(robots: int, members: int, sample: int) -> Work:
         return np.zeros(size, np.int64)
 
     return Work(
+        queue=ints(robots),
+        plans=ints(robots),
+        stream=np.zeros(1, np.uint64),
         before=ints(robots),
         ended=ints(robots),
         held=ints(robots),

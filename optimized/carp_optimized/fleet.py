@@ -1,7 +1,7 @@
 """A fleet that stays up: plans are made and robots added one after the other, on arrays that are kept between."""
 
 from collections.abc import Callable, Sequence
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -15,19 +15,30 @@ from carp_optimized.arrays import (
     PREFIX,
     SHARED,
     UNCHANGED,
+    Answers,
     Ints,
     Longs,
     Options,
+    State,
     Work,
 )
 from carp_optimized.compiling import RoomExhausted, TicksExhausted
 from carp_optimized.neighbourhood import add_robot
 from carp_optimized.recording import enlarged, only, read_plan, write_plan
+from carp_optimized.references import Native
 from carp_optimized.reuse import Queries, Reuse
 from carp_spec import Instance, Neighbourhood, Plan, Refusal, RobotId, Shuffled
 from carp_spec.permutations import shuffle, splitmix64
 
 T = TypeVar("T")
+
+
+class Scratch(NamedTuple):
+    """What the neighbourhood planner works on, for as long as it is asked with the same options."""
+
+    options: Native[Options]
+    work: Native[Work]
+    answers: Native[Answers]
 
 
 class Fleet:
@@ -42,15 +53,12 @@ class Fleet:
         encoding.refuse_what_is_too_large(instance)
         self.instance = instance
         self.reuse = reuse or Reuse()
-        self._state = encoding.encode(instance)
-        self._empty = encoding.without_reservations(self._state)
-        self._split = encoding.split_of_terms(self._state.graph)
+        self._take(encoding.encode(instance))
         self._index = {robot.id: position for position, robot in enumerate(instance.robots)}
         self._order = np.zeros(0, np.int32)
         self._records = np.full(len(instance.robots), NONE, np.int32)
         self._plans: dict[int, Plan] = {}
-        self._work: Work | None = None
-        self._answers = encoding.no_answers(0)
+        self._scratch: Scratch | None = None
 
     @property
     def queries(self) -> Queries:
@@ -81,25 +89,25 @@ class Fleet:
 
     def ticks_to_goal(self, robot: int) -> int:
         """The cost of a robot's shortest path on the empty graph; 0 if there is none."""
-        return self._call(lambda: passes.shortest(self._state, robot))
+        return self._call(lambda: passes.shortest(self._native, robot))
 
     def commit(self, plans: Sequence[Plan]) -> None:
         """Take over plans made elsewhere, which must fit those there are."""
         records = np.array([self._write(plan) for plan in plans], np.int32)
         robots = np.array([self._index[plan.robot] for plan in plans], np.int32)
-        self._call(lambda: passes.reserve_all(self._state, records))
+        self._call(lambda: passes.reserve_all(self._native, records))
         self._hold(np.concatenate([self._order, robots]), np.concatenate([self._records[self._order], records]))
 
     def find(self, robot: int, before: Plan | None, now: int) -> Plan | None:
         """The plan of a robot that is not in the fleet, which has followed the plan `before` until now."""
         encoding.refuse_tick("$.now", now)
         followed = NONE if before is None else self._write(before)
-        record = self._call(lambda: passes.find_one(self._state, robot, followed, now))
+        record = self._call(lambda: passes.find_one(self._native, robot, followed, now))
         return None if record == NONE else self._plan(record)
 
     def repeat_query(self, robot: int, times: int) -> None:
         """Ask the query of a robot without a plan that often; for benchmarks."""
-        self._call(lambda: passes.repeat_query(self._state, robot, times))
+        self._call(lambda: passes.repeat_query(self._native, robot, times))
 
     def carp(self, order: Sequence[int]) -> None:
         """Plan the robots in order, as if there were no plans yet."""
@@ -128,7 +136,7 @@ class Fleet:
             else:
                 self._state.records.used[:] = used
             advance()
-        self._call(lambda: passes.reserve_all(self._state, best[1]))
+        self._call(lambda: passes.reserve_all(self._native, best[1]))
         self._hold(*best)
 
     def greedy(self, advance: Callable[[], None]) -> None:
@@ -139,7 +147,7 @@ class Fleet:
 
         def rounds() -> int:
             waiting, found = np.arange(count, dtype=np.int32), np.full(count, passes.UNASKED, np.int32)
-            return passes.greedy(self._state, waiting, found, robots, plans, self.reuse.unchanged)
+            return passes.greedy(self._native, waiting, found, robots, plans, self.reuse.unchanged)
 
         planned = self._call(rounds)
         self._hold(robots[:planned], plans[:planned])
@@ -150,29 +158,33 @@ class Fleet:
         """Add a robot by the neighbourhood planner; if it stays unplanned, all plans stay as they are."""
         encoding.refuse_tick("$.now", now)
         self._forget_old_records()
-        reuse = self.reuse
-        kinds = (reuse.kept, reuse.unchanged, reuse.prefixes, reuse.shared, reuse.bounds)
-        most = min(options.m, len(self._records) + 1)
-        compiled_options = Options(most, options.sample or 0, options.baseline, *kinds)
-        if self._work is None or self._work.members.size < most or self._work.row_index.size < (options.sample or 0):
-            self._work = encoding.no_work(len(self._records), most, options.sample or 0)
-            self._answers = encoding.no_answers(most)
-        work, answers = self._work, self._answers
-        order = np.append(self._order, np.int32(robot))
-        records = self._records.copy()
+        scratch = self._scratch_for(options)
+        work = scratch.work.fields
+        size = self._order.size
 
         def attempt() -> bool:
-            order[:-1] = self._order
-            order[-1] = robot
-            records[:] = self._records
-            stream = np.array([(options.seed + robot) % 2**64], np.uint64)
-            scratch = (self._state, self._empty, work, answers)
-            return add_robot(*scratch, order, records, now, compiled_options, stream, self._split)
+            work.queue[:size] = self._order
+            work.queue[size] = robot
+            work.plans[:] = self._records
+            work.stream[0] = (options.seed + robot) % 2**64
+            return add_robot(self._native, self._empty, scratch.work, scratch.answers, scratch.options, size, now)
 
         if self._call(attempt):
-            self._hold(order, records[order])
+            order = work.queue[: size + 1].copy()
+            self._hold(order, work.plans[order])
             return True
         return options.fallback is not None and self._fall_back(robot, now, Shuffled(options.fallback, options.seed))
+
+    def _scratch_for(self, options: Neighbourhood) -> Scratch:
+        """The scratch for adding a robot with these options."""
+        reuse = self.reuse
+        kinds = (reuse.kept, reuse.unchanged, reuse.prefixes, reuse.shared, reuse.bounds)
+        members, sample = min(options.m, len(self._records) + 1), options.sample or 0
+        encoded = Options(members, sample, options.baseline, *kinds)
+        if self._scratch is None or self._scratch.options.fields != encoded:
+            work = encoding.no_work(len(self._records), members, sample)
+            self._scratch = Scratch(Native(encoded), Native(work), Native(encoding.no_answers(members)))
+        return self._scratch
 
     def clear(self) -> None:
         """Forget all plans."""
@@ -180,8 +192,14 @@ class Fleet:
         self._withdraw(held)
         self._hold(self._order[:0], held[:0])
 
+    def _take(self, state: State) -> None:
+        """Work on other arrays."""
+        self._state = state
+        self._native = Native(state)
+        self._empty = Native(encoding.without_reservations(state))
+
     def _withdraw(self, records: Ints) -> None:
-        self._call(lambda: passes.withdraw_all(self._state, records))
+        self._call(lambda: passes.withdraw_all(self._native, records))
 
     def _fall_back(self, robot: int, now: int, planner: Shuffled) -> bool:
         order, held = self._order, self._records[self._order]
@@ -189,13 +207,13 @@ class Fleet:
         if self._order.size == order.size + 1:
             return True
         self.clear()
-        self._call(lambda: passes.reserve_all(self._state, held))
+        self._call(lambda: passes.reserve_all(self._native, held))
         self._hold(order, held)
         return False
 
     def _pass(self, robots: Ints, followed: Ints, now: int) -> Ints:
         plans = np.full(robots.size, NONE, np.int32)
-        self._call(lambda: passes.carp(self._state, robots, followed, now, plans))
+        self._call(lambda: passes.carp(self._native, robots, followed, now, plans))
         return plans
 
     def _hold(self, robots: Ints, records: Ints) -> None:
@@ -230,18 +248,16 @@ class Fleet:
         self._state.counters[:] = counters
         places = self._state.windows.start.size
         records = enlarged(self._state.records) if larger else self._state.records
-        self._state = encoding.with_room(self._state, 2 * places if larger else places, records)
-        self._empty = encoding.without_reservations(self._state)
+        self._take(encoding.with_room(self._state, 2 * places if larger else places, records))
         held = self._records[self._order]
-        self._call(lambda: passes.reserve_all(self._state, held))
+        self._call(lambda: passes.reserve_all(self._native, held))
 
     def _forget_old_records(self) -> None:
         """Keep only the records of the plans held, if the others have become many."""
         used = int(self._state.records.used[1])
         held = self._records[self._order]
         if used > 4 * int(self._state.records.visits[held].sum()) + 1024:
-            self._state = self._state._replace(records=only(self._state.records, held))
-            self._empty = self._empty._replace(records=self._state.records)
+            self._take(self._state._replace(records=only(self._state.records, held)))
             renumbered = {int(old): new for new, old in enumerate(held)}
             self._plans = {renumbered[old]: plan for old, plan in self._plans.items() if old in renumbered}
             self._records[self._order] = np.arange(held.size, dtype=np.int32)
@@ -250,7 +266,7 @@ class Fleet:
     def _write(self, plan: Plan) -> int:
         for position, visit in enumerate(plan.visits):
             encoding.refuse_tick(f"$.plans[{self._index[plan.robot]}].visits[{position}]", visit.leave or visit.enter)
-        record = self._call(lambda: write_plan(self._state, self.instance, self._index[plan.robot], plan))
+        record = self._call(lambda: write_plan(self._native, self.instance, self._index[plan.robot], plan))
         self._plans[record] = plan
         return record
 

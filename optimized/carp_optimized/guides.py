@@ -29,7 +29,8 @@ def make_guide(state: State, slot: int, goal: int, pace: int) -> None:
     keys = state.search.keys
     nodes = state.search.nodes
     guide = state.guides.table[slot]
-    guide[:] = UNREACHABLE
+    for resource in range(guide.size):
+        guide[resource] = UNREACHABLE
     keys[0] = goal
     nodes[0] = goal
     size = 1

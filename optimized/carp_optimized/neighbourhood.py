@@ -3,9 +3,11 @@
 from carp_optimized.arrays import NEVER, NO_LIMIT, NONE, UNCHANGED, UNKNOWN, Answers, Ints, Options, State, Work
 from carp_optimized.compiling import compiled, entry
 from carp_optimized.distances import nearest
+from carp_optimized.natives import answers_at, options_at, state_at, work_at
 from carp_optimized.order_search import search_orders
-from carp_optimized.orders import Stream, draw_orders
+from carp_optimized.orders import draw_orders
 from carp_optimized.records import cost_of
+from carp_optimized.references import Native
 from carp_optimized.replanning import could_use_freed, forget_freed, note_freed, replan
 from carp_optimized.search import find_plan
 from carp_optimized.windows import plan_fits, reserve, withdraw
@@ -13,33 +15,35 @@ from carp_optimized.windows import plan_fits, reserve, withdraw
 
 @entry
 def add_robot(  # noqa: C901 - Algorithm 1 from its first line to its last
-    state: State,
-    empty: State,
-    work: Work,
-    answers: Answers,
-    order: Ints,
-    records: Ints,
+    native: Native[State],
+    native_empty: Native[State],
+    native_work: Native[Work],
+    native_answers: Native[Answers],
+    native_options: Native[Options],
+    size: int,
     now: int,
-    options: Options,
-    stream: Stream,
-    split: int,
 ) -> bool:
-    """Add the last robot of `order` to those before it, whose plans are `records`, by robot; whether it got a plan.
+    """Add the last robot of the queue of `work` to the `size` before it; whether it got a plan.
 
-    If so, `order` and `records` become those of the best candidate. The windows hold `records` before and afterwards.
+    If so, the queue and the plans become those of the best candidate. The windows hold the plans before and afterwards.
     """
-    size = order.size - 1
-    new = int(order[size])
+    state = state_at(native)
+    empty = state_at(native_empty)
+    work = work_at(native_work)
+    answers = answers_at(native_answers)
+    options = options_at(native_options)
+    robots = size + 1
+    new = int(work.queue[size])
     shortest = find_plan(empty, new, NONE, now, NEVER)
     if shortest == NONE:
         return False
-    rounds = min(begin(state, work, order, records, shortest, now), options.m - 1)
+    rounds = min(begin(state, work, size, shortest, now), options.m - 1)
     best = NO_LIMIT
     if options.baseline or rounds == 0:
-        best = try_baseline(state, work, order, new, now)
+        best = try_baseline(state, work, size, new, now)
     with_plan = size
     for turn in range(1, rounds + 1):
-        taken = nearest(state, work, size, turn, now, split)
+        taken = nearest(state, work, size, turn, now)
         if taken == NONE:
             break
         take_out(state, work, taken, size, turn)
@@ -51,7 +55,7 @@ def add_robot(  # noqa: C901 - Algorithm 1 from its first line to its last
                 work.alone[member] = NONE
             continue
         limit = best - cost_outside if turn == rounds else NO_LIMIT
-        cost = plan_members(state, work, answers, turn + 1, limit, now, options, stream)
+        cost = plan_members(state, work, answers, turn + 1, limit, now, options)
         if cost == NONE:
             continue
         for k in range(turn + 1):
@@ -60,29 +64,29 @@ def add_robot(  # noqa: C901 - Algorithm 1 from its first line to its last
             best = cost_outside + cost
             keep_candidate(work, size, turn + 1)
     if best == NO_LIMIT:
-        for k in range(order.size - 1):
-            work.best_plans[k] = work.before[order[k]]
-        settle(state, order, work.best_plans, order.size - 1)
+        for k in range(robots - 1):
+            work.best_plans[k] = work.before[work.queue[k]]
+        settle(state, work.queue, work.best_plans, robots - 1)
         return False
-    settle(state, work.best_order, work.best_plans, order.size)
-    for k in range(order.size):
-        order[k] = work.best_order[k]
-        records[order[k]] = work.best_plans[k]
+    settle(state, work.best_order, work.best_plans, robots)
+    for k in range(robots):
+        work.queue[k] = work.best_order[k]
+        work.plans[work.queue[k]] = work.best_plans[k]
     return True
 
 
 @compiled
-def begin(state: State, work: Work, order: Ints, records: Ints, shortest: int, now: int) -> int:
+def begin(state: State, work: Work, size: int, shortest: int, now: int) -> int:
     """Begin with all robots but the new one outside the neighbourhood; how many of them have not ended by now."""
     under_way = 0
-    new = int(order[order.size - 1])
+    new = int(work.queue[size])
     work.before[new] = NONE
     work.trajectories[new] = shortest
     work.members[0] = new
     work.alone[0] = NONE
-    for k in range(order.size - 1):
-        robot = int(order[k])
-        record = int(records[robot])
+    for k in range(size):
+        robot = int(work.queue[k])
+        record = int(work.plans[robot])
         work.outside[k] = robot
         work.before[robot] = record
         work.held[robot] = record
@@ -94,20 +98,19 @@ def begin(state: State, work: Work, order: Ints, records: Ints, shortest: int, n
 
 
 @compiled
-def try_baseline(state: State, work: Work, order: Ints, new: int, now: int) -> int:
+def try_baseline(state: State, work: Work, size: int, new: int, now: int) -> int:
     """Make the plans unchanged, and one for the new robot, the best candidate; its cost."""
     plan = find_plan(state, new, NONE, now, NEVER)
     work.alone[0] = plan
     if plan == NONE:
         return NO_LIMIT
-    last = order.size - 1
     cost = cost_of(state, plan)
-    for k in range(last):
-        work.best_order[k] = order[k]
-        work.best_plans[k] = work.before[order[k]]
+    for k in range(size):
+        work.best_order[k] = work.queue[k]
+        work.best_plans[k] = work.before[work.queue[k]]
         cost += cost_of(state, int(work.best_plans[k]))
-    work.best_order[last] = new
-    work.best_plans[last] = plan
+    work.best_order[size] = new
+    work.best_plans[size] = plan
     return cost
 
 
@@ -145,7 +148,6 @@ def plan_members(
     limit: int,
     now: int,
     options: Options,
-    stream: Stream,
 ) -> int:
     """The cost of the members' best order below the limit, or `NONE`.
 
@@ -162,7 +164,7 @@ def plan_members(
             possible = least < limit
     if not possible and limit < NO_LIMIT:
         return NONE
-    rows = draw_orders(work, count, options.sample, stream)
+    rows = draw_orders(work, count, options.sample, work.stream)
     if not possible:
         return NONE
     return search_orders(state, work, answers, count, rows, limit, now, options)

@@ -1,14 +1,9 @@
 """The orders of a neighbourhood (`neighbourhood/orders`), one after the other in lexicographic order."""
 
-from typing import TypeAlias
-
 import numpy as np
-import numpy.typing as npt
 
-from carp_optimized.arrays import Ints, Work
+from carp_optimized.arrays import Ints, IntTable, Numbers, Work
 from carp_optimized.compiling import compiled
-
-Stream: TypeAlias = npt.NDArray[np.uint64]
 
 GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 FIRST_MIX = np.uint64(0xBF58476D1CE4E5B9)
@@ -16,7 +11,7 @@ SECOND_MIX = np.uint64(0x94D049BB133111EB)
 
 
 @compiled
-def next_number(stream: Stream) -> np.uint64:
+def next_number(stream: Numbers) -> np.uint64:
     """The next number of a SplitMix64 stream, whose state is `stream[0]`."""
     stream[0] += GOLDEN
     mixed = stream[0]
@@ -26,11 +21,11 @@ def next_number(stream: Stream) -> np.uint64:
 
 
 @compiled
-def precedes(rows: Ints, one: int, other: int, size: int) -> int:
+def precedes(rows: IntTable, one: int, other: int, size: int) -> int:
     """-1, 0 or 1 as one order is before, the same as, or after the other."""
     for k in range(size):
-        if rows[one, k] != rows[other, k]:
-            return -1 if rows[one, k] < rows[other, k] else 1
+        if rows[one][k] != rows[other][k]:
+            return -1 if rows[one][k] < rows[other][k] else 1
     return 0
 
 
@@ -71,7 +66,7 @@ def is_sampled(size: int, sample: int) -> bool:
 
 
 @compiled
-def draw_orders(work: Work, size: int, sample: int, stream: Stream) -> int:
+def draw_orders(work: Work, size: int, sample: int, stream: Numbers) -> int:
     """Draw distinct shuffles of 0 .. size - 1 into rows, sorted; how many: 0 if all permutations are to be looked at.
 
     As many as are still missing are drawn at a time, so that none is drawn after the last distinct one.
@@ -87,12 +82,12 @@ def draw_orders(work: Work, size: int, sample: int, stream: Stream) -> int:
         for missing in range(distinct, sample):
             row = int(index[missing])
             for k in range(size):
-                rows[row, k] = k
+                rows[row][k] = k
             for k in range(size - 1, 0, -1):
                 other = int(next_number(stream) % np.uint64(k + 1))
-                swapped = rows[row, k]
-                rows[row, k] = rows[row, other]
-                rows[row, other] = swapped
+                swapped = rows[row][k]
+                rows[row][k] = rows[row][other]
+                rows[row][other] = swapped
         sort_rows(work, sample, size)
         distinct = 1
         for row in range(1, sample):
@@ -138,7 +133,7 @@ def next_row(work: Work, row: int, rows: int, shared: int) -> int:
     """The next row that differs from the order in the first `shared` places; the number of rows if none does."""
     while row < rows:
         for k in range(shared):
-            if work.rows[work.row_index[row], k] != work.order[k]:
+            if work.rows[work.row_index[row]][k] != work.order[k]:
                 return row
         row += 1
     return row
@@ -149,10 +144,10 @@ def take_row(work: Work, row: int, size: int) -> int:
     """Make a row the order; the first place that changed."""
     drawn = int(work.row_index[row])
     place = 0
-    while place < size and work.order[place] == work.rows[drawn, place]:
+    while place < size and work.order[place] == work.rows[drawn][place]:
         place += 1
     for k in range(size):
-        work.order[k] = work.rows[drawn, k]
+        work.order[k] = work.rows[drawn][k]
     return place
 
 

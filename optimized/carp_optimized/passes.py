@@ -3,7 +3,9 @@
 from carp_optimized.arrays import NEVER, NONE, TOO_FAR, UNCHANGED, UNKNOWN, Ints, State
 from carp_optimized.compiling import RoomExhausted, TicksExhausted, entry
 from carp_optimized.guides import guide_slot
+from carp_optimized.natives import state_at
 from carp_optimized.records import close_record, cost_of, start_record
+from carp_optimized.references import Native
 from carp_optimized.search import find_plan
 from carp_optimized.windows import plan_fits, reserve, withdraw
 
@@ -11,37 +13,43 @@ UNASKED = -2
 
 
 @entry
-def find_one(state: State, robot: int, before: int, now: int) -> int:
+def find_one(native: Native[State], robot: int, before: int, now: int) -> int:
     """The record of one robot's plan against the reservations, or `NONE`; nothing is reserved."""
+    state = state_at(native)
     return find_plan(state, robot, before, now, NEVER)
 
 
 @entry
-def shortest(state: State, robot: int) -> int:
+def shortest(native: Native[State], robot: int) -> int:
     """The ticks from the robot's start to its goal on the empty graph; 0 if no moves lead there."""
-    guide = int(state.guides.table[guide_slot(state, int(state.robots.destination[robot])), state.robots.start[robot]])
+    state = state_at(native)
+    slot = guide_slot(state, int(state.robots.destination[robot]))
+    guide = int(state.guides.table[slot][state.robots.start[robot]])
     if guide == TOO_FAR:
         raise TicksExhausted
     return max(guide, 0) >> 32
 
 
 @entry
-def reserve_all(state: State, plans: Ints) -> None:
+def reserve_all(native: Native[State], plans: Ints) -> None:
     """Reserve plans that fit."""
+    state = state_at(native)
     for plan in plans:
         reserve(state, int(plan))
 
 
 @entry
-def withdraw_all(state: State, plans: Ints) -> None:
+def withdraw_all(native: Native[State], plans: Ints) -> None:
     """Withdraw plans that are reserved."""
+    state = state_at(native)
     for plan in plans:
         withdraw(state, int(plan))
 
 
 @entry
-def record_plan(state: State, robot: int, resources: Ints, enters: Ints, leave: int) -> int:
+def record_plan(native: Native[State], robot: int, resources: Ints, enters: Ints, leave: int) -> int:
     """The record of a plan that no query has made."""
+    state = state_at(native)
     records = state.records
     record = start_record(state, robot, 0, 0)
     first = int(records.visits_at[record])
@@ -59,11 +67,12 @@ def record_plan(state: State, robot: int, resources: Ints, enters: Ints, leave: 
 
 
 @entry
-def carp(state: State, order: Ints, before: Ints, now: int, plans: Ints) -> None:
+def carp(native: Native[State], order: Ints, before: Ints, now: int, plans: Ints) -> None:
     """Plan the robots in order, each against those before it, into `plans`; `NONE` for one that finds no plan.
 
     `before` are the plans followed until now, by robot.
     """
+    state = state_at(native)
     for k in range(order.size):
         robot = int(order[k])
         plan = find_plan(state, robot, int(before[robot]), now, NEVER)
@@ -73,12 +82,13 @@ def carp(state: State, order: Ints, before: Ints, now: int, plans: Ints) -> None
 
 
 @entry
-def greedy(state: State, waiting: Ints, found: Ints, order: Ints, plans: Ints, skip_unchanged: bool) -> int:
+def greedy(native: Native[State], waiting: Ints, found: Ints, order: Ints, plans: Ints, skip_unchanged: bool) -> int:
     """Plan, in each round, the robot waiting of the cheapest plan; how many have one, in `order` with their `plans`.
 
     `found` holds what the robots waiting found last, `UNASKED` at first. In later rounds there are only more
     reservations, so a plan that still fits is found again (see `carp_optimized.replanning`), and no plan is none again.
     """
+    state = state_at(native)
     for count in range(waiting.size):
         cheapest = NONE
         least = NEVER
@@ -106,8 +116,9 @@ def greedy(state: State, waiting: Ints, found: Ints, order: Ints, plans: Ints, s
 
 
 @entry
-def repeat_query(state: State, robot: int, times: int) -> int:
+def repeat_query(native: Native[State], robot: int, times: int) -> int:
     """Ask the same query that often, for the benchmark; the records are forgotten."""
+    state = state_at(native)
     records, visits, expansions = int(state.records.used[0]), int(state.records.used[1]), int(state.records.used[2])
     found = NONE
     for _ in range(times):

@@ -5,15 +5,16 @@ import numpy as np
 from carp_optimized.arrays import NEVER, Ints, Records, State
 from carp_optimized.passes import record_plan
 from carp_optimized.records import copy_records
+from carp_optimized.references import Native
 from carp_spec import Instance, Plan, Visit
 
 
-def write_plan(state: State, instance: Instance, robot: int, plan: Plan) -> int:
+def write_plan(native: Native[State], instance: Instance, robot: int, plan: Plan) -> int:
     """The record of a plan that no query of ours has made."""
     leave = plan.visits[-1].leave
     resources = np.array([instance.graph.index[visit.resource] for visit in plan.visits], np.int32)
     enters = np.array([visit.enter for visit in plan.visits], np.int32)
-    return record_plan(state, robot, resources, enters, NEVER if leave is None else leave)
+    return record_plan(native, robot, resources, enters, NEVER if leave is None else leave)
 
 
 def read_plan(state: State, instance: Instance, record: int) -> Plan:
@@ -38,5 +39,5 @@ def enlarged(records: Records) -> Records:
 def only(records: Records, kept: Ints) -> Records:
     """The records kept, renumbered in their order."""
     new = Records._make(np.empty_like(each) for each in records)
-    copy_records(records, new, kept)
+    copy_records(Native(records), Native(new), kept)
     return new

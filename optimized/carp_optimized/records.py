@@ -2,6 +2,8 @@
 
 from carp_optimized.arrays import NEVER, NONE, Ints, Records, State
 from carp_optimized.compiling import RoomExhausted, compiled, entry
+from carp_optimized.natives import records_at
+from carp_optimized.references import Native
 
 
 @compiled
@@ -138,9 +140,12 @@ def clash(records: Records, one: int, other: int) -> bool:
 
 
 @entry
-def copy_records(old: Records, new: Records, kept: Ints) -> None:
+def copy_records(source: Native[Records], destination: Native[Records], kept: Ints) -> None:
     """Fill new records with those kept of the old ones, numbered in their order."""
-    new.used[:] = 0
+    old = records_at(source)
+    new = records_at(destination)
+    for k in range(new.used.size):
+        new.used[k] = 0
     for number in range(kept.size):
         record = int(kept[number])
         new.robot[number] = old.robot[record]

@@ -111,7 +111,7 @@ def replan(  # noqa: C901 - the cases of one robot
     lifted = False
     for position in range(size):
         robot = int(work.outside[position])
-        state.rank[robot] = NONE if work.ended[robot] else position
+        state.rank[robot + 1] = NONE if work.ended[robot] else position
     for position in range(first if options.kept else 0, size):
         robot = int(work.outside[position])
         if work.ended[robot]:

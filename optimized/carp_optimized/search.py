@@ -59,7 +59,7 @@ def stand(state: State, resource: int, enter: int, behind: int) -> int:
     windows.resource[STANDING] = resource
     windows.end[STANDING] = windows.end[last]
     windows.source[STANDING] = windows.source[last]
-    while slot > windows.offset[resource] and state.rank[windows.robot[slot - 1]] > behind:
+    while slot > windows.offset[resource] and state.rank[windows.robot[slot - 1] + 1] > behind:
         slot -= 1
     return slot
 

@@ -227,7 +227,7 @@ def is_exchange(state: State, slot: int, tick: int, target: int) -> bool:
 @compiled
 def end_of_run(state: State, slot: int, behind: int) -> int:
     """The last of the windows that are one to a robot planned behind that rank: only later robots are between them."""
-    while state.rank[state.windows.robot[slot]] > behind:
+    while state.rank[state.windows.robot[slot] + 1] > behind:
         slot += 1
     return slot
 

@@ -1,0 +1,232 @@
+"""Named tuples of arrays as compiled functions see them: one address of a table, instead of some hundred arguments.
+
+Numba passes an array as seven words, and a named tuple of sixty arrays as sixty times that: making them from Python's
+objects takes longer than a query, and so does compiling functions that hand them on. A `Native` keeps a table of the
+addresses and sizes of the arrays, and a compiled function gets the address of the table. `state.windows.start[slot]`
+then means what it means in Python, except that no index counts from the end. With NUMBA_BOUNDSCHECK=1 each is checked.
+"""
+
+# mypy: disable-error-code="misc, no-untyped-call, untyped-decorator, override"
+# ruff: noqa: ANN401, SLF001 - numba is untyped, and made of mixins
+
+import operator
+import typing
+from collections.abc import Callable, Iterator
+from typing import Any, Generic, TypeVar, cast
+
+import numba
+import numpy as np
+from llvmlite import ir
+from numba.core import cgutils, types
+from numba.core.datamodel import models
+from numba.core.imputils import lower_builtin, lower_getattr_generic
+from numba.core.typing.templates import AbstractTemplate, AttributeTemplate, infer_getattr, infer_global, signature
+from numba.extending import intrinsic, register_model
+
+from carp_optimized.arrays import Ints, IntTable, Longs, LongTable, Numbers
+
+F = TypeVar("F", bound=tuple[Any, ...])
+
+WORD = ir.IntType(64)
+ARRAYS: dict[object, tuple[type[np.generic], int]] = {
+    Ints: (np.int32, 1),
+    Longs: (np.int64, 1),
+    Numbers: (np.uint64, 1),
+    IntTable: (np.int32, 2),
+    LongTable: (np.int64, 2),
+}
+
+
+class Native(Generic[F]):
+    """A named tuple of arrays, ints and named tuples, with the table of where compiled functions find them.
+
+    The arrays must live as long as the table is used; ints are those of the time at which it was made.
+    """
+
+    __slots__ = ("address", "fields", "table")
+
+    def __init__(self, fields: F) -> None:
+        """Raises `TypeError` for an array that is not as its field says: numba would not notice."""
+        self.fields = fields
+        self.table = np.array([*_words(fields)], np.int64)
+        self.address = self.table.ctypes.data
+
+
+def _words(fields: tuple[Any, ...]) -> Iterator[int]:
+    for (name, hint), value in zip(_hints(type(fields)), fields, strict=True):
+        if hint in ARRAYS:
+            dtype, dimensions = ARRAYS[hint]
+            if value.dtype != dtype or value.ndim != dimensions or not value.flags.c_contiguous:
+                raise TypeError(f"{type(fields).__name__}.{name} is an array of another kind")
+            yield value.ctypes.data
+            yield from value.shape
+        elif isinstance(value, tuple):
+            yield from _words(value)
+        else:
+            yield int(value)
+
+
+def _hints(kind: type) -> Iterator[tuple[str, Any]]:
+    hints = typing.get_type_hints(kind, include_extras=True)
+    return ((name, hints[name]) for name in kind._fields)  # type: ignore[attr-defined]
+
+
+class View(types.Type):
+    """An array of which only the address and the sizes are known."""
+
+    def __init__(self, dtype: types.Type, dimensions: int) -> None:
+        self.dtype = dtype
+        self.dimensions = dimensions
+        super().__init__(name=f"View({dtype}, {dimensions})")
+
+    @property
+    def item(self) -> types.Type:
+        """What an index leads to: a row, or a number, in as many bits as sums are made in."""
+        if self.dimensions > 1:
+            return View(self.dtype, self.dimensions - 1)
+        return types.uint64 if self.dtype == types.uint64 else types.int64
+
+    @property
+    def words(self) -> int:
+        """How many words of the table it takes."""
+        return 1 + self.dimensions
+
+
+@register_model(View)
+class _ViewModel(models.StructModel):
+    def __init__(self, manager: Any, kind: View) -> None:
+        sizes = [(f"size{axis}", types.intp) for axis in range(kind.dimensions)]
+        super().__init__(manager, kind, [("data", types.CPointer(kind.dtype)), *sizes])
+
+
+class Reference(types.Type):
+    """The address of the table of a named tuple; `fields` gives for each name its type and its first word."""
+
+    def __init__(self, kind: type) -> None:
+        self.fields: dict[str, tuple[types.Type, int]] = {}
+        self.words = 0
+        for name, hint in _hints(kind):
+            field: types.Type = types.boolean if hint is bool else types.int64
+            if hint in ARRAYS:
+                dtype, dimensions = ARRAYS[hint]
+                field = View(numba.from_dtype(np.dtype(dtype)), dimensions)
+            elif hint not in {bool, int}:
+                field = Reference(hint)
+            self.fields[name] = field, self.words
+            self.words += getattr(field, "words", 1)
+        super().__init__(name=f"Reference({kind.__module__}.{kind.__qualname__})")
+
+
+@register_model(Reference)
+class _ReferenceModel(models.PrimitiveModel):
+    def __init__(self, manager: Any, kind: Reference) -> None:
+        super().__init__(manager, kind, WORD.as_pointer())
+
+
+def dereference(kind: type[F]) -> Callable[[Native[F]], F]:
+    """What turns a `Native` handed to a compiled function into the named tuple."""
+    reference = Reference(kind)
+
+    def lower(context: Any, builder: Any, _: Any, arguments: Any) -> Any:
+        return builder.inttoptr(arguments[0], context.get_value_type(reference))
+
+    def at(_: Any, address: Any) -> Any:
+        return reference(address), lower
+
+    if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
+        return lambda native: native.fields
+    return cast("Callable[[Native[F]], F]", intrinsic(at))
+
+
+def _word(builder: Any, table: Any, number: int) -> Any:
+    """Read a word of a table; none changes while a compiled function is at work, so each is read but once."""
+    word = builder.load(builder.gep(table, [WORD(number)]))
+    word.set_metadata("invariant.load", builder.module.add_metadata([]))
+    return word
+
+
+@infer_getattr
+class _ReferenceAttributes(AttributeTemplate):
+    key = Reference
+
+    def generic_resolve(self, reference: Any, name: str) -> Any:
+        return reference.fields[name][0] if name in reference.fields else None
+
+
+@lower_getattr_generic(Reference)
+def _lower_field(context: Any, builder: Any, reference: Reference, table: Any, name: str) -> Any:
+    field, first = reference.fields[name]
+    if isinstance(field, Reference):
+        return builder.gep(table, [WORD(first)])
+    if isinstance(field, View):
+        view = cgutils.create_struct_proxy(field)(context, builder)
+        view.data = builder.inttoptr(_word(builder, table, first), context.get_data_type(field.dtype).as_pointer())
+        for axis in range(field.dimensions):
+            setattr(view, f"size{axis}", _word(builder, table, first + 1 + axis))
+        return view._getvalue()
+    value = _word(builder, table, first)
+    return context.cast(builder, value, types.int64, field)
+
+
+@infer_getattr
+class _ViewAttributes(AttributeTemplate):
+    key = View
+
+    def resolve_size(self, view: View) -> types.Type | None:
+        return types.intp if view.dimensions == 1 else None
+
+
+@lower_getattr_generic(View)
+def _lower_size(context: Any, builder: Any, kind: View, value: Any, _: str) -> Any:
+    return cgutils.create_struct_proxy(kind)(context, builder, value).size0
+
+
+@infer_global(operator.getitem)
+class _ReadItem(AbstractTemplate):
+    def generic(self, arguments: Any, keywords: Any) -> Any:
+        view, index = arguments
+        if not keywords and isinstance(view, View) and isinstance(index, types.Integer):
+            return signature(view.item, view, types.intp)
+        return None
+
+
+@infer_global(operator.setitem)
+class _WriteItem(AbstractTemplate):
+    def generic(self, arguments: Any, keywords: Any) -> Any:
+        view, index, _ = arguments
+        if not keywords and isinstance(view, View) and view.dimensions == 1 and isinstance(index, types.Integer):
+            return signature(types.none, view, types.intp, view.item)
+        return None
+
+
+def _place(context: Any, builder: Any, view: Any, dimensions: int, index: Any) -> Any:
+    """The address of what the index leads to."""
+    if context.enable_boundscheck:
+        with builder.if_then(builder.icmp_unsigned(">=", index, view.size0), likely=False):
+            context.call_conv.return_user_exc(builder, IndexError, ("index is out of bounds",))
+    for axis in range(1, dimensions):
+        index = builder.mul(index, getattr(view, f"size{axis}"))
+    return builder.gep(view.data, [index])
+
+
+@lower_builtin(operator.getitem, View, types.intp)
+def _lower_read(context: Any, builder: Any, signed: Any, arguments: Any) -> Any:
+    kind = signed.args[0]
+    view = cgutils.create_struct_proxy(kind)(context, builder, arguments[0])
+    place = _place(context, builder, view, kind.dimensions, arguments[1])
+    if kind.dimensions == 1:
+        return context.cast(builder, builder.load(place), kind.dtype, kind.item)
+    row = cgutils.create_struct_proxy(kind.item)(context, builder)
+    row.data = place
+    for axis in range(1, kind.dimensions):
+        setattr(row, f"size{axis - 1}", getattr(view, f"size{axis}"))
+    return row._getvalue()
+
+
+@lower_builtin(operator.setitem, View, types.intp, types.Any)
+def _lower_write(context: Any, builder: Any, signed: Any, arguments: Any) -> Any:
+    kind = signed.args[0]
+    view = cgutils.create_struct_proxy(kind)(context, builder, arguments[0])
+    place = _place(context, builder, view, 1, arguments[1])
+    builder.store(context.cast(builder, arguments[2], kind.item, kind.dtype), place)
+    return context.get_dummy_value()
