@@ -2,11 +2,13 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from time import process_time_ns
 from typing import Literal, Protocol, TypeAlias
 
 from carp_experiments.store import Row, Store
 from carp_spec import Refusal
 
+Result: TypeAlias = tuple[str, Row, int]
 Backend: TypeAlias = Literal["loky", "dask"]
 
 
@@ -42,8 +44,8 @@ def run_campaign(cases: Sequence[Case], store: Store, workers: Workers, advance:
             advance()
     missing = [case for case in cases if case.key not in done]
     try:
-        for key, row in _results(missing, workers):
-            store.add(key, row)
+        for key, row, milliseconds in _results(missing, workers):
+            store.add(key, row, milliseconds)
             advance()
     except (OSError, RuntimeError) as error:
         why = str(error).partition(".")[0]
@@ -51,8 +53,8 @@ def run_campaign(cases: Sequence[Case], store: Store, workers: Workers, advance:
         raise Refusal("request", "$", "campaign/workers", message) from error
 
 
-def _results(cases: Sequence[Case], workers: Workers) -> Iterable[tuple[str, Row]]:
-    """The rows as they come."""
+def _results(cases: Sequence[Case], workers: Workers) -> Iterable[Result]:
+    """The results as they come."""
     import joblib  # noqa: PLC0415 - loads numpy
 
     if workers.backend == "dask":
@@ -67,5 +69,7 @@ def _results(cases: Sequence[Case], workers: Workers) -> Iterable[tuple[str, Row
             yield from joblib.Parallel(return_as="generator_unordered")(map(joblib.delayed(_run), cases))
 
 
-def _run(case: Case) -> tuple[str, Row]:
-    return case.key, case.run()
+def _run(case: Case) -> Result:
+    started = process_time_ns()
+    row = case.run()
+    return case.key, row, (process_time_ns() - started) // 1_000_000

@@ -11,7 +11,11 @@ SIZE_IN_INCHES = (9, 5)
 
 
 def line_figure(
-    path: Path, title: str, axes: tuple[str, str], lines: Mapping[str, Sequence[tuple[int, Interval | None]]]
+    path: Path,
+    title: str,
+    axes: tuple[str, str],
+    lines: Mapping[str, Sequence[tuple[int, Interval | None]]],
+    logarithmic: bool = False,
 ) -> None:
     """Draw a line with its band of 95 % for each name; a point without a value is left out."""
     import matplotlib as mpl  # noqa: PLC0415 - loaded only where a figure is drawn
@@ -28,7 +32,7 @@ def line_figure(
             plot.plot(xs, [each.estimate for _, each in known], style, color=colour, label=name, marker=".")
             lows, highs = [each.low for _, each in known], [each.high for _, each in known]
             plot.fill_between(xs, lows, highs, color=colour, alpha=0.12, linewidth=0)
-        plot.set(title=title, xlabel=axes[0], ylabel=axes[1])
+        plot.set(title=title, xlabel=axes[0], ylabel=axes[1], yscale="log" if logarithmic else "linear")
         plot.grid(alpha=0.3)
         figure.legend(loc="outside right upper", frameon=False)
         figure.savefig(path, metadata={"Date": None, "Creator": None})

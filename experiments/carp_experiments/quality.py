@@ -4,8 +4,9 @@
 """
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import msgspec
 
@@ -13,9 +14,14 @@ from carp_experiments.statistics import Interval, mean_interval, proportion_inte
 from carp_experiments.store import Row
 from carp_spec import Carp, LongestFirst, Neighbourhood, Planner, Shuffled, total_cost
 
+if TYPE_CHECKING:
+    from carp_optimized.fleet import Fleet
+
 FULL_MAP = 20
+ROBOTS = 100
 FULL_ASSIGNMENTS = 500
 QUICK_ASSIGNMENTS = 20
+QUICK_ROBOTS = 40
 
 ALGORITHMS: Mapping[str, Planner] = {
     "CARP": Carp(),
@@ -32,6 +38,8 @@ ALGORITHMS: Mapping[str, Planner] = {
     "Proposed_10 + baseline": Neighbourhood(m=10, sample=150),
     "Proposed_4 + CARP100": Neighbourhood(m=4, baseline=False, fallback=100),
 }
+BEFORE_FALLBACK = {"Proposed_4 + CARP100": "Proposed_4"}
+RIVALS = ("CARP", "CARP10", "CARP100")
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,28 +48,68 @@ class QualityCase:
 
     map: int
     assignment: int
-    robots: int = 100
+    robots: int = ROBOTS
     map_seed: int = 0
 
     @property
     def key(self) -> str:
         """Maps and assignments in their order."""
-        return f"map {self.map:02} assignment {self.assignment:03}"
+        return f"assignment {self.assignment:03} map {self.map:02}"
 
     def run(self) -> Row:
-        """For each algorithm the robots left unplanned and the total cost; beside them the sum of shortest paths."""
-        import carp_optimized as engine  # noqa: PLC0415 - each worker loads it
-        from carp_oracle.generate import Fleet, Grid, grid_instance  # noqa: PLC0415
+        """For each algorithm the robots planned and the total cost; beside them the sum of shortest paths.
 
-        fleet = Fleet(robots=self.robots, seed=self.assignment)
-        instance = grid_instance(Grid(map=self.map, map_seed=self.map_seed), fleet)
-        results: dict[str, list[int]] = {}
+        An algorithm that adds robots one by one stops at the first that stays unplanned: the assignment is a failure
+        then, whatever becomes of the others.
+        """
+        fleet = grid_fleet(self.map, self.map_seed, self.robots, self.assignment)
+        results: dict[str, tuple[int, int]] = {}
         for name, planner in ALGORITHMS.items():
-            solution = engine.plan(instance, seeded(planner, self.assignment))
-            results[name] = [len(solution.unplanned), total_cost(instance, solution.plans)]
-        alone = [engine.query(instance, (), robot.id) for robot in instance.robots]
-        shortest = total_cost(instance, [plan for plan in alone if plan is not None])
+            if name not in BEFORE_FALLBACK:
+                plan_all(fleet, seeded(planner, self.assignment))
+                results[name] = outcome(fleet)
+            for fallback in [other for other, before in BEFORE_FALLBACK.items() if before == name]:
+                add_until_failure(fleet, seeded(ALGORITHMS[fallback], self.assignment), results[name][0])
+                results[fallback] = outcome(fleet)
+        shortest = sum(fleet.ticks_to_goal(robot) for robot in range(self.robots))
         return {"map": self.map, "assignment": self.assignment, "shortest": shortest, "results": results}
+
+
+def grid_fleet(map: int, map_seed: int, robots: int, seed: int) -> "Fleet":
+    """A fleet without plans on a map of the paper; raises `Refusal` where there can be no such fleet."""
+    from carp_optimized.fleet import Fleet  # noqa: PLC0415 - each worker loads it
+    from carp_oracle.generate import Fleet as RandomFleet  # noqa: PLC0415
+    from carp_oracle.generate import Grid, grid_instance  # noqa: PLC0415
+
+    return Fleet(grid_instance(Grid(map=map, map_seed=map_seed), RandomFleet(robots=robots, seed=seed)))
+
+
+def plan_all(fleet: "Fleet", planner: Planner) -> None:
+    """Plan the fleet as `carp_optimized.plan` does, up to the first robot that cannot be added."""
+    everyone = range(len(fleet.instance.robots))
+    match planner:
+        case Shuffled():
+            fleet.shuffled(planner, everyone, lambda: None)
+        case LongestFirst():
+            fleet.carp(sorted(everyone, key=lambda robot: -fleet.ticks_to_goal(robot)))
+        case Neighbourhood():
+            fleet.clear()
+            add_until_failure(fleet, planner, 0)
+        case _:
+            fleet.carp(everyone)
+
+
+def add_until_failure(fleet: "Fleet", planner: Planner, first: int) -> None:
+    """Add the robots from the first on, until one stays unplanned."""
+    assert isinstance(planner, Neighbourhood)  # noqa: S101 - a promise of ours
+    for robot in range(first, len(fleet.instance.robots)):
+        if not fleet.add(robot, 0, planner):
+            return
+
+
+def outcome(fleet: "Fleet") -> tuple[int, int]:
+    """How many robots have a plan, and the total cost of these plans."""
+    return len(fleet.order), total_cost(fleet.instance, fleet.plans)
 
 
 def seeded(planner: Planner, seed: int) -> Planner:
@@ -69,9 +117,11 @@ def seeded(planner: Planner, seed: int) -> Planner:
     return replace(planner, seed=seed) if isinstance(planner, Shuffled | Neighbourhood) else planner
 
 
-def quality_cases(assignments: int, maps: Sequence[int] = range(FULL_MAP + 1)) -> tuple[QualityCase, ...]:
+def quality_cases(
+    assignments: int, maps: Sequence[int] = range(FULL_MAP + 1), robots: int = ROBOTS
+) -> tuple[QualityCase, ...]:
     """The cases of the experiment, assignment by assignment, so that a run that is stopped has whole assignments."""
-    return tuple(QualityCase(map, assignment) for assignment in range(assignments) for map in maps)
+    return tuple(QualityCase(map, assignment, robots) for assignment in range(assignments) for map in maps)
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,20 +139,35 @@ class Summary:
     total: Interval | None
 
 
-def summarise(rows: Iterable[Row]) -> list[Summary]:
-    """Summaries by map and algorithm; an assignment with an unplanned robot is a failure."""
-    results: dict[tuple[int, str], list[tuple[int, int]]] = defaultdict(list)
-    for row in rows:
-        measured = msgspec.convert(row, QualityRow)
-        for name, (unplanned, total) in measured.results.items():
-            results[measured.map, name].append((unplanned, total))
-    summaries = []
-    for (map, name), each in sorted(results.items(), key=lambda item: (item[0][0], [*ALGORITHMS].index(item[0][1]))):
-        totals = [total for unplanned, total in each if unplanned == 0]
-        failures = len(each) - len(totals)
-        rate = proportion_interval(failures, len(each))
-        summaries.append(Summary(map, name, failures, len(each), rate, mean_interval(totals) if totals else None))
-    return summaries
+@dataclass(frozen=True, slots=True)
+class Saving:
+    """By how much an algorithm's total is smaller than a rival's, over the assignments on which neither fails."""
+
+    map: int
+    algorithm: str
+    rival: str
+    assignments: int
+    saving: Interval
+
+
+@dataclass(frozen=True, slots=True)
+class FailureDifference:
+    """How much more often an algorithm fails than a rival, over all maps and assignments, as a share."""
+
+    algorithm: str
+    rival: str
+    more: Interval
+
+
+@dataclass(frozen=True, slots=True)
+class QualitySummary:
+    """All numbers of the experiment."""
+
+    robots: int
+    assignments: int
+    algorithms: tuple[Summary, ...]
+    savings: tuple[Saving, ...]
+    failures: tuple[FailureDifference, ...]
 
 
 class QualityRow(msgspec.Struct, frozen=True):
@@ -112,3 +177,52 @@ class QualityRow(msgspec.Struct, frozen=True):
     assignment: int
     shortest: int
     results: dict[str, tuple[int, int]]
+
+    def total(self, algorithm: str, robots: int) -> int | None:
+        """The total cost of an algorithm, or `None` if it failed."""
+        planned, total = self.results[algorithm]
+        return total if planned == robots else None
+
+
+def summarise(rows: Iterable[Row], robots: int = ROBOTS) -> QualitySummary:
+    """Summaries by map and algorithm; an assignment with an unplanned robot is a failure."""
+    by_map: dict[int, list[QualityRow]] = defaultdict(list)
+    for row in rows:
+        measured = msgspec.convert(row, QualityRow)
+        by_map[measured.map].append(measured)
+    maps = sorted(by_map.items())
+    algorithms = [summary_of(map, name, each, robots) for map, each in maps for name in ALGORITHMS]
+    savings = [saving for map, each in maps for saving in savings_on(map, each, robots)]
+    everything = [row for _, each in maps for row in each]
+    failures = [failure_difference(name, rival, everything, robots) for name, rival in pairs_of_rivals()]
+    assignments = max((len(each) for each in by_map.values()), default=0)
+    return QualitySummary(robots, assignments, tuple(algorithms), tuple(savings), tuple(failures))
+
+
+def summary_of(map: int, name: str, rows: Sequence[QualityRow], robots: int) -> Summary:
+    """An algorithm on a map."""
+    totals = [total for row in rows if (total := row.total(name, robots)) is not None]
+    failures = len(rows) - len(totals)
+    rate = proportion_interval(failures, len(rows))
+    return Summary(map, name, failures, len(rows), rate, mean_interval(totals) if totals else None)
+
+
+def pairs_of_rivals() -> Iterator[tuple[str, str]]:
+    """Each algorithm with each rival that it is compared with."""
+    for name in ALGORITHMS:
+        yield from ((name, rival) for rival in RIVALS if rival != name)
+
+
+def savings_on(map: int, rows: Sequence[QualityRow], robots: int) -> Iterator[Saving]:
+    """The savings on a map, where there are assignments on which neither fails."""
+    for name, rival in pairs_of_rivals():
+        both = [(row.total(name, robots), row.total(rival, robots)) for row in rows]
+        saved = [theirs - ours for ours, theirs in both if ours is not None and theirs is not None]
+        if saved:
+            yield Saving(map, name, rival, len(saved), mean_interval(saved))
+
+
+def failure_difference(name: str, rival: str, rows: Sequence[QualityRow], robots: int) -> FailureDifference:
+    """How much more often an algorithm fails than a rival, on the same assignments."""
+    more = [(row.total(name, robots) is None) - (row.total(rival, robots) is None) for row in rows]
+    return FailureDifference(name, rival, mean_interval(more))

@@ -1,47 +1,51 @@
-"""The report of the quality experiment: tables as Markdown, figures as SVG."""
+"""The report of the quality experiment."""
 
-from collections.abc import Sequence
-from pathlib import Path
+from collections.abc import Iterable
 
-from carp_experiments.figures import line_figure
-from carp_experiments.quality import ALGORITHMS, FULL_MAP, Summary
+from carp_experiments.quality import ALGORITHMS, FULL_MAP, QualitySummary, Summary, summarise
+from carp_experiments.report import Figure, Report, Table
 from carp_experiments.statistics import Interval
+from carp_experiments.store import Row
 
 SHOWN_MAPS = (0, 5, 10, 15, 20)
+MAP_AXIS = f"map (0: spanning tree, {FULL_MAP}: full grid)"
 
 
-def write_report(folder: Path, summaries: Sequence[Summary]) -> None:
-    """Write `quality.md`, `quality-failures.svg` and `quality-totals.svg` into the folder."""
-    folder.mkdir(parents=True, exist_ok=True)
-    failures = {
-        name: [(each.map, each.failure_rate) for each in summaries if each.algorithm == name] for name in ALGORITHMS
-    }
-    totals = {name: [(each.map, each.total) for each in summaries if each.algorithm == name] for name in ALGORITHMS}
-    maps = f"map (0: spanning tree, {FULL_MAP}: full grid)"
-    line_figure(folder / "quality-failures.svg", "Assignments that fail", (maps, "failure rate"), failures)
-    line_figure(folder / "quality-totals.svg", "Actions of all robots", (maps, "mean total cost"), totals)
-    (folder / "quality.md").write_text(markdown(summaries), encoding="utf-8")
+def quality_report(rows: Iterable[Row], robots: int) -> Report:
+    """Failure rates in per cent, and mean totals over the assignments that did not fail."""
+    return report_of(summarise(rows, robots))
 
 
-def markdown(summaries: Sequence[Summary]) -> str:
-    """Two tables: failure rates in per cent, and mean totals over the assignments that did not fail."""
-    maps = [map for map in SHOWN_MAPS if any(each.map == map for each in summaries)]
-    by_place = {(each.algorithm, each.map): each for each in summaries}
-    heads = [f"map {map}" for map in maps]
-    rates = [[_percent(by_place[name, map].failure_rate) for map in maps] for name in ALGORITHMS]
-    totals = [[_mean(by_place[name, map].total) for map in maps] for name in ALGORITHMS]
-    return (
-        "Failure rate in per cent, with its 95 % interval:\n\n"
-        + _table(heads, rates)
-        + "\nMean total cost over the assignments that did not fail, with its 95 % interval:\n\n"
-        + _table(heads, totals)
+def report_of(summary: QualitySummary) -> Report:
+    """Two tables over some of the maps, and two figures over all."""
+    by_place = {(each.algorithm, each.map): each for each in summary.algorithms}
+    measured = sorted({each.map for each in summary.algorithms})
+    maps = [map for map in SHOWN_MAPS if map in measured] or measured
+    columns = ("algorithm", *(f"map {map}" for map in maps))
+    rates = tuple((name, *(_percent(by_place[name, map].failure_rate) for map in maps)) for name in ALGORITHMS)
+    totals = tuple((name, *(_mean(by_place[name, map].total) for map in maps)) for name in ALGORITHMS)
+    tables = (
+        Table("quality-failures", "Failure rate in per cent, with its 95 % interval", columns, rates, columns[1:]),
+        Table(
+            "quality-totals",
+            "Mean total cost over the assignments that did not fail, with its 95 % interval",
+            columns,
+            totals,
+            columns[1:],
+        ),
     )
+    failures = {name: [(each.map, each.failure_rate) for each in of(summary, name)] for name in ALGORITHMS}
+    total = {name: [(each.map, each.total) for each in of(summary, name)] for name in ALGORITHMS}
+    figures = (
+        Figure("quality-failures", "Assignments that fail", (MAP_AXIS, "failure rate"), failures),
+        Figure("quality-totals", "Actions of all robots", (MAP_AXIS, "mean total cost"), total),
+    )
+    return Report(summary, tables, figures)
 
 
-def _table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    lines = [["algorithm", *heads], ["---", *("---:" for _ in heads)]]
-    lines += [[name, *row] for name, row in zip(ALGORITHMS, rows, strict=True)]
-    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
+def of(summary: QualitySummary, name: str) -> list[Summary]:
+    """The summaries of one algorithm, by map."""
+    return [each for each in summary.algorithms if each.algorithm == name]
 
 
 def _percent(rate: Interval) -> str:

@@ -2,7 +2,7 @@
 
 import hashlib
 import sqlite3
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from importlib.metadata import version
 from pathlib import Path
@@ -12,55 +12,76 @@ import msgspec
 from carp_spec import Refusal
 
 Row = Mapping[str, object]
+MEASURED = "measured"
+TABLE = (
+    "CREATE TABLE IF NOT EXISTS results (case_key TEXT PRIMARY KEY, version TEXT NOT NULL, digest TEXT NOT NULL, "
+    "milliseconds INTEGER NOT NULL, row TEXT NOT NULL)"
+)
 
 
 class Store:
     """An SQLite file that holds the rows of one campaign, each under the key of its case.
 
-    A row is in the file once `add` has returned, and stays there whatever becomes of the process. The file
+    A row is in the file once `add` has returned, and stays there whatever becomes of the process. With it stand the
+    version of carproof that computed it, its digest, and the processor time that it took. The file
     remembers which campaign it belongs to; opening it for another one is refused.
     """
 
     def __init__(self, path: Path, campaign: str) -> None:
         self._path = path
+        self._version = version("carproof")
+        identity = f"{campaign} by carproof {self._version}"
         try:
             self._connection = sqlite3.connect(path)
             with self._connection:
                 self._connection.execute("CREATE TABLE IF NOT EXISTS campaign (identity TEXT NOT NULL)")
-                self._connection.execute(
-                    "CREATE TABLE IF NOT EXISTS results (case_key TEXT PRIMARY KEY, row TEXT NOT NULL)"
-                )
+                self._connection.execute(TABLE)
                 known = self._connection.execute("SELECT identity FROM campaign").fetchone()
                 if known is None:
-                    self._connection.execute("INSERT INTO campaign VALUES (?)", (campaign,))
+                    self._connection.execute("INSERT INTO campaign VALUES (?)", (identity,))
         except sqlite3.Error as error:
             raise self._refusal(f"it cannot be used as a store of results: {error}") from error
-        if known is not None and known[0] != campaign:
-            raise self._refusal(f"it holds the results of another campaign, {known[0]}, not of {campaign}")
+        if known is not None and known[0] != identity:
+            raise self._refusal(f"it holds the results of another campaign, {known[0]}, not of {identity}")
 
     def keys(self) -> set[str]:
         """The keys of the cases that are done."""
         return {key for (key,) in self._connection.execute("SELECT case_key FROM results")}
 
-    def add(self, key: str, row: Row) -> None:
+    def add(self, key: str, row: Row, milliseconds: int = 0) -> None:
         """Write the row of a case; raises `Refusal` if it cannot be written, and then it is not there at all."""
+        record = (key, self._version, digest_of(row), milliseconds, _encode(row).decode())
         try:
             with self._connection:
-                self._connection.execute("INSERT INTO results VALUES (?, ?)", (key, _encode(row).decode()))
+                self._connection.execute("INSERT INTO results VALUES (?, ?, ?, ?, ?)", record)
         except sqlite3.Error as error:
-            raise self._refusal(f"the result of {key} cannot be written: {error}; what is there is whole") from error
+            message = f"the result of {key} cannot be written: {error}; what is there is whole, and the same command "
+            raise self._refusal(message + "goes on from there once that is put right") from error
 
-    def rows(self) -> Iterator[tuple[str, Row]]:
-        """The rows by key, in the order of the keys."""
-        for key, row in self._connection.execute("SELECT case_key, row FROM results ORDER BY case_key"):
-            yield key, msgspec.json.decode(row)
+    def rows(self, keys: Iterable[str] | None = None) -> Iterator[tuple[str, Row]]:
+        """The rows of these cases, or all, in the order of their keys; raises `Refusal` if one is not as written."""
+        wanted = None if keys is None else set(keys)
+        for key, digest, text in self._connection.execute(
+            "SELECT case_key, digest, row FROM results ORDER BY case_key"
+        ):
+            if wanted is None or key in wanted:
+                row: Row = msgspec.json.decode(text)
+                if digest_of(row) != digest:
+                    raise self._refusal(f"the result of {key} is not the one that was written")
+                yield key, row
 
-    def digest(self) -> str:
-        """A digest of all rows, the same in whatever order they came."""
+    def digest(self, keys: Iterable[str] | None = None) -> str:
+        """A digest of these rows, or all, the same in whatever order they came; what was measured does not count."""
         digest = hashlib.sha256()
-        for key, row in self.rows():
-            digest.update(_encode({"case": key, "row": row}))
+        for key, row in self.rows(keys):
+            digest.update(_encode({"case": key, "row": digest_of(row)}))
         return digest.hexdigest()
+
+    def seconds(self, keys: Iterable[str]) -> float:
+        """The processor time of these cases."""
+        wanted = set(keys)
+        spent = self._connection.execute("SELECT case_key, milliseconds FROM results")
+        return float(sum(milliseconds for key, milliseconds in spent if key in wanted)) / 1000
 
     def close(self) -> None:
         """Close the file."""
@@ -73,11 +94,16 @@ class Store:
 @contextmanager
 def open_store(path: Path | None, campaign: str) -> Iterator[Store]:
     """Open the store of a campaign, or one in memory if there is no path; it belongs to this version of carproof."""
-    store = Store(path or Path(":memory:"), f"{campaign} by carproof {version('carproof')}")
+    store = Store(path or Path(":memory:"), campaign)
     try:
         yield store
     finally:
         store.close()
+
+
+def digest_of(row: Row) -> str:
+    """The digest of a row, but for its field `measured`, which holds times and the like."""
+    return hashlib.sha256(_encode({name: value for name, value in row.items() if name != MEASURED})).hexdigest()
 
 
 def _encode(row: Row) -> bytes:

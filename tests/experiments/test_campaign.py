@@ -1,5 +1,6 @@
 """The campaign engine: the same results whoever computes, and nothing lost or doubled by what goes wrong."""
 
+import resource
 import signal
 import sqlite3
 import subprocess
@@ -71,6 +72,57 @@ def test_a_killed_run_loses_and_doubles_nothing(tmp_path: Path) -> None:
         assert len(store.keys()) == written
         run_campaign([Square(n) for n in range(100)], store, Workers(), nothing)
         assert [(key, row) for key, row in store.rows()] == [(f"{n:04}", {"square": n * n}) for n in range(100)]
+
+
+def test_a_full_disk_is_told_and_the_run_goes_on_once_there_is_room(tmp_path: Path) -> None:
+    path = tmp_path / "store"
+    program = (
+        "import sys; from pathlib import Path\n"
+        "from carp_experiments.campaign import Workers, run_campaign\n"
+        "from carp_experiments.store import open_store\n"
+        "from tests.experiments.cases import Square\n"
+        "from carp_spec import Refusal\n"
+        "try:\n"
+        "    with open_store(Path(sys.argv[1]), 'squares') as store:\n"
+        "        run_campaign([Square(n) for n in range(120)], store, Workers(), lambda: None)\n"
+        "except Refusal as refusal:\n"
+        "    sys.exit(str(refusal))\n"
+    )
+    room = 24 * 1024
+
+    def leave_little_room() -> None:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (room, room))
+
+    run = subprocess.run(
+        [sys.executable, "-c", program, str(path)],
+        cwd=ROOT,
+        check=False,
+        capture_output=True,
+        text=True,
+        preexec_fn=leave_little_room,
+    )
+    assert run.returncode == 1
+    assert "cannot be written" in run.stderr
+    assert "goes on from there" in run.stderr
+    assert run.stderr.count("\n") == 1
+    assert 0 < _rows(path) < 120
+    with open_store(path, "squares") as store:
+        run_campaign([Square(n) for n in range(120)], store, Workers(), nothing)
+        assert [(key, row) for key, row in store.rows()] == [(f"{n:04}", {"square": n * n}) for n in range(120)]
+
+
+def test_a_row_that_was_changed_is_noticed(tmp_path: Path) -> None:
+    with open_store(tmp_path / "store", "squares") as store:
+        store.add("0001", {"square": 1, "measured": {"seconds": 3}})
+        before = store.digest()
+    with sqlite3.connect(tmp_path / "store") as connection:
+        connection.execute("""UPDATE results SET row = '{"square":1,"measured":{"seconds":4}}'""")
+    with open_store(tmp_path / "store", "squares") as store:
+        assert store.digest() == before, "what was measured does not count"
+    with sqlite3.connect(tmp_path / "store") as connection:
+        connection.execute("""UPDATE results SET row = '{"square":2}'""")
+    with open_store(tmp_path / "store", "squares") as store, pytest.raises(Refusal, match="0001 is not the one"):
+        store.digest()
 
 
 def _rows(path: Path) -> int:

@@ -1,0 +1,88 @@
+"""A campaign of random small questions to both engines: the planner to read and the planner to run must agree on all.
+
+A case is a block of questions, so that a row stands for a second of work. Unlike `carproof crosscheck`, which draws by
+hypothesis and makes a difference small, this draws fast, can be stopped and taken up again, and runs on many machines.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import msgspec
+
+from carp_experiments.report import Report, Table
+from carp_experiments.small_questions import question
+from carp_experiments.store import Row
+from carp_spec import total_cost
+
+BLOCK = 1000
+FULL_QUESTIONS = 1_000_000
+QUICK_QUESTIONS = 20_000
+SHOWN = 3
+
+
+@dataclass(frozen=True, slots=True)
+class CrosscheckCase:
+    """The questions of a seed numbered from `first` on."""
+
+    first: int
+    questions: int = BLOCK
+    seed: int = 0
+
+    @property
+    def key(self) -> str:
+        """Blocks in their order."""
+        return f"seed {self.seed} questions {self.first:09} to {self.first + self.questions - 1:09}"
+
+    def run(self) -> Row:
+        """What all answers cost, how many robots have none, and the questions on which the engines differ."""
+        block = Block(self.questions)
+        for number in range(self.first, self.first + self.questions):
+            ask_both(block, self.seed, number)
+        return msgspec.to_builtins(block)  # type: ignore[no-any-return] # a struct becomes a dict
+
+
+class Block(msgspec.Struct):
+    """A row of the campaign."""
+
+    questions: int
+    cost: int = 0
+    planned: int = 0
+    unplanned: int = 0
+    differences: list[dict[str, Any]] = msgspec.field(default_factory=list)
+
+
+def ask_both(block: Block, seed: int, number: int) -> None:
+    """Ask both engines one question; an engine that fails by an exception differs too."""
+    from carp_oracle.commands.crosscheck import document  # noqa: PLC0415 - each worker loads it
+    from carp_verify.crosscheck import ask  # noqa: PLC0415
+
+    subject, planner = question(seed, number)
+    try:
+        answers = ask(subject, planner)
+    except Exception as error:  # noqa: BLE001 - whatever it is, it is no answer
+        block.differences.append({"number": number, "error": repr(error)})
+        return
+    block.cost += total_cost(answers.instance, answers.reference.plans)
+    block.planned += len(answers.reference.plans)
+    block.unplanned += len(answers.reference.unplanned)
+    if answers.reference != answers.optimized:
+        block.differences.append({"number": number, **document(answers)})
+
+
+def crosscheck_cases(questions: int, seed: int) -> tuple[CrosscheckCase, ...]:
+    """So many questions, in blocks."""
+    return tuple(CrosscheckCase(first, min(BLOCK, questions - first), seed) for first in range(0, questions, BLOCK))
+
+
+def crosscheck_report(rows: Iterable[Row]) -> Report:
+    """How many questions were asked, and what differs."""
+    blocks = [msgspec.convert(row, Block) for row in rows]
+    differences = [each for block in blocks for each in block.differences]
+    columns = ("questions", "robots planned", "robots unplanned", "total cost", "differences")
+    sums = [sum(getattr(block, name) for block in blocks) for name in ("questions", "planned", "unplanned", "cost")]
+    told = tuple(f"A DIFFERENCE: {msgspec.json.encode(each).decode()}" for each in differences[:SHOWN])
+    table = Table(
+        "crosscheck", "Both engines, asked the same", columns, ((*map(str, sums), str(len(differences))),), columns
+    )
+    return Report({"differences": differences}, (table,), (), told, holds=not differences)

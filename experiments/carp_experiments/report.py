@@ -1,0 +1,63 @@
+"""What an experiment tells: tables, figures, and its numbers for programs."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import msgspec
+
+from carp_experiments.figures import line_figure
+from carp_experiments.statistics import Interval
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """Rows of text under columns; `numbers` are the columns that are aligned at their right."""
+
+    name: str
+    title: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    numbers: tuple[str, ...] = ()
+
+    @property
+    def markdown(self) -> str:
+        """The table in Markdown."""
+        rule = ["---:" if column in self.numbers else "---" for column in self.columns]
+        return "".join(f"| {' | '.join(line)} |\n" for line in (self.columns, rule, *self.rows))
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """Lines over numbers, each point with its 95 % interval; a point without a value is left out."""
+
+    name: str
+    title: str
+    axes: tuple[str, str]
+    lines: Mapping[str, Sequence[tuple[int, Interval | None]]]
+    logarithmic: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """The summary of an experiment's rows: numbers for programs, tables and figures for people, lines to print.
+
+    `holds` is false if the rows show what must not be.
+    """
+
+    summary: object
+    tables: tuple[Table, ...]
+    figures: tuple[Figure, ...] = ()
+    lines: tuple[str, ...] = ()
+    holds: bool = True
+
+
+def write_report(folder: Path, name: str, report: Report, run: Mapping[str, object]) -> None:
+    """Write `NAME.json`, with the facts of the run and all numbers, `NAME.md`, and a figure of each kind."""
+    folder.mkdir(parents=True, exist_ok=True)
+    document = msgspec.json.encode({"experiment": name, **run, "summary": report.summary}, order="sorted")
+    (folder / f"{name}.json").write_bytes(msgspec.json.format(document, indent=1) + b"\n")
+    text = "\n".join(f"{table.title}:\n\n{table.markdown}" for table in report.tables)
+    (folder / f"{name}.md").write_text(text, encoding="utf-8")
+    for figure in report.figures:
+        line_figure(folder / f"{figure.name}.svg", figure.title, figure.axes, figure.lines, figure.logarithmic)

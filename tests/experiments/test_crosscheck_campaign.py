@@ -1,0 +1,62 @@
+"""The crosscheck campaign: its questions are sound and various, and it finds what differs."""
+
+import pytest
+
+import carp_optimized
+from carp_experiments.crosscheck import CrosscheckCase, crosscheck_cases, crosscheck_report
+from carp_experiments.small_questions import question
+from carp_spec import Instance, Neighbourhood, Planner, Refusal, Solution, judge
+from carp_spec.instance_rules import instance_faults
+
+
+def test_questions_are_sound_and_the_same_every_time() -> None:
+    for number in range(300):
+        subject, planner = question(5, number)
+        assert question(5, number) == (subject, planner)
+        instance = subject if isinstance(subject, Instance) else subject.instance
+        assert instance_faults(instance) == ()
+        if not isinstance(subject, Instance):
+            assert judge(subject.instance, subject.solution).valid
+            assert subject.robot in subject.solution.unplanned
+
+
+def test_questions_mix_everything() -> None:
+    asked = [question(0, number) for number in range(300)]
+    instances = [subject for subject, _ in asked if isinstance(subject, Instance)]
+    assert {instance.after_goal for instance in instances} == {"vanish", "park"}
+    assert {instance.graph.directed for instance in instances} == {False, True}
+    assert {planner.name for _, planner in asked} == {"carp", "shuffled", "longest-first", "greedy", "neighbourhood"}
+    added = [(subject, planner) for subject, planner in asked if not isinstance(subject, Instance)]
+    assert all(isinstance(planner, Neighbourhood) for _, planner in added)
+    assert len({subject.now for subject, _ in added}) > 5
+
+
+def test_the_engines_agree() -> None:
+    report = crosscheck_report(case.run() for case in crosscheck_cases(150, seed=3))
+    assert report.holds
+    assert report.tables[0].rows[0][0] == "150"
+
+
+def test_a_planted_difference_is_told_with_its_question(monkeypatch: pytest.MonkeyPatch) -> None:
+    plan = carp_optimized.plan
+
+    def forgetful(instance: Instance, planner: Planner) -> Solution:
+        right = plan(instance, planner)
+        return Solution(right.plans[::-1], right.order, right.unplanned)
+
+    monkeypatch.setattr(carp_optimized, "plan", forgetful)
+    report = crosscheck_report([CrosscheckCase(0, 30).run()])
+    assert not report.holds
+    assert "A DIFFERENCE" in report.lines[0]
+    assert '"question"' in report.lines[0]
+
+
+def test_an_engine_that_fails_differs(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refusing(instance: Instance, planner: Planner) -> Solution:
+        del instance, planner
+        raise Refusal("limit", "$", "limit/ticks", "too much")
+
+    monkeypatch.setattr(carp_optimized, "plan", refusing)
+    report = crosscheck_report([CrosscheckCase(0, 30).run()])
+    assert not report.holds
+    assert "too much" in report.lines[0]

@@ -1,0 +1,56 @@
+"""Experiment 1: its shortcuts change no result, and its summary counts what failed."""
+
+import pytest
+
+import carp_optimized
+from carp_experiments.quality import ALGORITHMS, QualityCase, QualityRow, grid_fleet, quality_cases, seeded, summarise
+from carp_experiments.quality_report import quality_report
+from carp_experiments.store import Row
+from carp_spec import Refusal, total_cost
+
+
+@pytest.mark.parametrize("case", [QualityCase(map=4, assignment=1, robots=30), QualityCase(17, 2, robots=20)])
+def test_a_case_has_the_totals_of_the_planners_alone(case: QualityCase) -> None:
+    instance = grid_fleet(case.map, 0, case.robots, case.assignment).instance
+    results = case.run()["results"]
+    assert isinstance(results, dict)
+    for name, planner in ALGORITHMS.items():
+        planned, total = results[name]
+        solution = carp_optimized.plan(instance, seeded(planner, case.assignment))
+        assert (planned == case.robots) == (not solution.unplanned), name
+        if planned == case.robots:
+            assert total == total_cost(instance, solution.plans), name
+
+
+def row(map: int, assignment: int, **results: tuple[int, int]) -> Row:
+    every = dict.fromkeys(ALGORITHMS, (2, 10)) | results
+    return {"map": map, "assignment": assignment, "shortest": 8, "results": every}
+
+
+def test_the_summary_counts_failures_and_compares_where_neither_fails() -> None:
+    rows = [row(0, 0, CARP=(2, 14)), row(0, 1, CARP=(1, 3)), row(0, 2, CARP=(2, 18), LF=(0, 0))]
+    summary = summarise(rows, robots=2)
+    carp = summary.algorithms[0]
+    assert (carp.algorithm, carp.failures, carp.assignments) == ("CARP", 1, 3)
+    assert carp.total is not None
+    assert carp.total.estimate == 16
+    savings = {(each.algorithm, each.rival): each for each in summary.savings}
+    assert savings["Proposed_4", "CARP"].saving.estimate == 6
+    assert savings["LF", "CARP"].assignments == 1
+    more = {(each.algorithm, each.rival): each.more.estimate for each in summary.failures}
+    assert more["Proposed_4", "CARP"] == pytest.approx(-1 / 3)
+    assert more["LF", "CARP"] == 0
+    assert "all failed" not in quality_report(rows, 2).tables[1].markdown
+
+
+def test_cases_come_assignment_by_assignment() -> None:
+    assert [(case.assignment, case.map) for case in quality_cases(2, (3, 5))] == [(0, 3), (0, 5), (1, 3), (1, 5)]
+
+
+def test_rows_are_read_as_they_were_written() -> None:
+    assert QualityRow(1, 2, 3, {"CARP": (1, 9)}).total("CARP", 1) == 9
+
+
+def test_more_robots_than_places_are_refused() -> None:
+    with pytest.raises(Refusal, match="401 robots need as many distinct starts, and the map has 400"):
+        QualityCase(0, 0, robots=401).run()
