@@ -50,19 +50,46 @@ class Certificate:
         return not self.breaches
 
 
+class Terms:
+    """What z3 is told of the tick that it is asked for; equal terms are made once, as making them takes so long.
+
+    Over many resources there are far fewer different stays than visits.
+    """
+
+    def __init__(self) -> None:
+        """Begin with a tick of which nothing is known."""
+        self.tick: Int = integer("tick")
+        self._stays: dict[tuple[int, int | None], Bool] = {}
+        self._ticks: dict[int, Bool] = {}
+
+    def in_visit(self, visit: Visit) -> Bool:
+        """Whether the tick is in the visit."""
+        stay = (visit.enter, visit.leave)
+        if stay not in self._stays:
+            within = self.tick >= visit.enter if visit.leave is None else between(visit.enter, self.tick, visit.leave)
+            self._stays[stay] = within
+        return self._stays[stay]
+
+    def is_at(self, tick: int) -> Bool:
+        """Whether the tick is this one."""
+        if tick not in self._ticks:
+            self._ticks[tick] = equal(self.tick, tick)
+        return self._ticks[tick]
+
+
 def certify(instance: Instance, plans: Sequence[Plan], advance: Callable[[], None] = lambda: None) -> Certificate:
     """Ask z3 about every resource that is visited; `advance` is called after each. Raises `smt.Undecided`."""
-    solver = Solver()
+    solver, terms = Solver(), Terms()
     index = instance.graph.index
     stays = stays_by_resource(instance, plans)
     moves = moves_by_pair(instance, plans)
     opposite = [(one, other) for one, other in moves if index[one] < index[other] and (other, one) in moves]
     breaches: list[Breach] = []
     for resource, visitors in stays.items():
-        breaches.extend(overfull(solver, instance.graph.resource[resource], visitors))
+        breaches.extend(overfull(solver, terms, instance.graph.resource[resource], visitors))
         advance()
     for one, other in opposite:
-        breaches.extend(exchanged(solver, (one, other), moves[one, other], moves[other, one]))
+        breaches.extend(exchanged(solver, terms, (one, other), moves[one, other], moves[other, one]))
     return Certificate(len(stays), len(opposite), tuple(breaches))
 
 
@@ -88,35 +115,27 @@ def moves_by_pair(instance: Instance, plans: Sequence[Plan]) -> Mapping[Pair, Ti
     return moves
 
 
-def overfull(solver: Solver, resource: Resource, stays: Stays) -> Iterator[Breach]:
+def overfull(solver: Solver, terms: Terms, resource: Resource, stays: Stays) -> Iterator[Breach]:
     """A tick at which more robots are in the resource than its capacity, if there is one."""
-    tick = integer("tick")
-    occupies = {robot: any_of(*(is_there(tick, visit) for visit in visits)) for robot, visits in stays.items()}
+    occupies = {robot: any_of(*map(terms.in_visit, visits)) for robot, visits in stays.items()}
     model = solver.find_model([at_least(resource.capacity + 1, list(occupies.values()))])
     if model is not None:
         reason = f"capacity {resource.capacity}"
-        yield Breach("joint/capacity", _robots_of(model, occupies), resource.id, int(model.value(tick)), reason)
+        robots = _robots_of(model, occupies)
+        yield Breach("joint/capacity", robots, resource.id, int(model.value(terms.tick)), reason)
 
 
-def is_there(tick: Int, visit: Visit) -> Bool:
-    """Whether the tick is in the visit."""
-    return tick >= visit.enter if visit.leave is None else between(visit.enter, tick, visit.leave)
-
-
-def exchanged(solver: Solver, pair: Pair, there: Ticks, back: Ticks) -> Iterator[Breach]:
+def exchanged(solver: Solver, terms: Terms, pair: Pair, there: Ticks, back: Ticks) -> Iterator[Breach]:
     """A tick at which two robots move opposite ways between the pair, if there is one."""
-    tick = integer("tick")
-    goes, comes = (
-        {robot: any_of(*(equal(tick, each) for each in ticks)) for robot, ticks in ways.items()}
-        for ways in (there, back)
-    )
+    goes, comes = ({robot: any_of(*map(terms.is_at, ticks)) for robot, ticks in ways.items()} for ways in (there, back))
     both = {robot: any_of(goes[robot], comes[robot]) for robot in goes if robot in comes}
     movers = {**goes, **comes, **both}
-    different = at_least(2, list(movers.values()))
-    model = solver.find_model([any_of(*goes.values()), any_of(*comes.values()), different])
+    different = [at_least(2, list(movers.values()))] if both else []  # else who goes is not who comes
+    model = solver.find_model([any_of(*goes.values()), any_of(*comes.values()), *different])
     if model is not None:
         reason = f"they exchange {pair[0]} and {pair[1]}"
-        yield Breach("joint/exchange", _robots_of(model, movers), pair[0], int(model.value(tick)), reason)
+        robots = _robots_of(model, movers)
+        yield Breach("joint/exchange", robots, pair[0], int(model.value(terms.tick)), reason)
 
 
 def _robots_of(model: Model, terms: Mapping[RobotId, Bool]) -> tuple[RobotId, ...]:
