@@ -12,6 +12,7 @@ then means what it means in Python, except that no index counts from the end. Wi
 import operator
 import typing
 from collections.abc import Callable, Iterator
+from functools import cache
 from typing import Any, Generic, TypeVar, cast
 
 import numba
@@ -53,9 +54,9 @@ class Native(Generic[F]):
 
 
 def _words(fields: tuple[Any, ...]) -> Iterator[int]:
-    for (name, hint), value in zip(_hints(type(fields)), fields, strict=True):
-        if hint in ARRAYS:
-            dtype, dimensions = ARRAYS[hint]
+    for (name, array), value in zip(_arrays(type(fields)), fields, strict=True):
+        if array is not None:
+            dtype, dimensions = array
             if value.dtype != dtype or value.ndim != dimensions or not value.flags.c_contiguous:
                 raise TypeError(f"{type(fields).__name__}.{name} is an array of another kind")
             yield value.ctypes.data
@@ -66,9 +67,16 @@ def _words(fields: tuple[Any, ...]) -> Iterator[int]:
             yield int(value)
 
 
-def _hints(kind: type) -> Iterator[tuple[str, Any]]:
+@cache
+def _hints(kind: type) -> tuple[tuple[str, Any], ...]:
     hints = typing.get_type_hints(kind, include_extras=True)
-    return ((name, hints[name]) for name in kind._fields)  # type: ignore[attr-defined]
+    return tuple((name, hints[name]) for name in kind._fields)  # type: ignore[attr-defined]
+
+
+@cache
+def _arrays(kind: type) -> tuple[tuple[str, tuple[type[np.generic], int] | None], ...]:
+    """The fields, and of what kind those that are arrays are."""
+    return tuple((name, ARRAYS.get(hint)) for name, hint in _hints(kind))
 
 
 class View(types.Type):
