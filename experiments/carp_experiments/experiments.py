@@ -4,9 +4,13 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from carp_experiments import quality
+from carp_experiments.adding_time import PAPERS_MAP, time_cases, time_report
 from carp_experiments.campaign import Case
 from carp_experiments.quality_report import quality_report
+from carp_experiments.related_work import related_cases, related_report
 from carp_experiments.report import Report
+from carp_experiments.reuse_counts import reuse_cases, reuse_report
+from carp_experiments.small_gaps import SIDE, gap_cases, gap_report
 from carp_experiments.store import Row
 from carp_spec import Refusal
 
@@ -24,8 +28,9 @@ class Profile:
 
     def __str__(self) -> str:
         """Print in words."""
-        maps = "all maps" if self.maps == ALL_MAPS else f"maps {', '.join(map(str, self.maps))}"
-        return f"{self.assignments} assignments of {self.robots} robots on {maps}"
+        maps = f"map{'s' if len(self.maps) > 1 else ''} {', '.join(map(str, self.maps))}"
+        where = f"all {len(ALL_MAPS)} maps" if self.maps == ALL_MAPS else maps
+        return f"{self.assignments} assignments of {self.robots} robots on {where}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,8 +59,41 @@ EXPERIMENTS = (
         "quality",
         "Experiment 1 of the paper: failures and total cost, over the maps.",
         Profile(500, 100, ALL_MAPS),
-        Profile(20, 50, SOME_MAPS),
+        Profile(20, 30, SOME_MAPS),
         lambda profile: quality.quality_cases(profile.assignments, profile.maps, profile.robots),
         lambda rows, profile: quality_report(rows, profile.robots),
+    ),
+    Experiment(
+        "time",
+        "Experiment 2 of the paper: time to plan when the k-th robot comes.",
+        Profile(500, 100, (PAPERS_MAP,)),
+        Profile(20, 50, (PAPERS_MAP,)),
+        lambda profile: time_cases(profile.assignments, profile.maps, profile.robots),
+        lambda rows, _: time_report(rows),
+    ),
+    Experiment(
+        "reuse",
+        "Queries asked to add a robot, avoided, and why.",
+        Profile(500, 100, (PAPERS_MAP,)),
+        Profile(20, 50, (PAPERS_MAP,)),
+        lambda profile: reuse_cases(profile.assignments, profile.maps, profile.robots),
+        lambda rows, profile: reuse_report(rows, profile.robots),
+    ),
+    Experiment(
+        "gap",
+        f"Small maps, {SIDE} x {SIDE}, against the proved optimum.",
+        Profile(100, 10, ALL_MAPS),
+        Profile(20, 6, SOME_MAPS),
+        lambda profile: gap_cases(profile.assignments, profile.maps, profile.robots),
+        lambda rows, profile: gap_report(rows, profile.robots),
+        places=SIDE * SIDE,
+    ),
+    Experiment(
+        "related",
+        "Fixed paths, k shortest and k disjoint, and greedy best-first, against CARP.",
+        Profile(100, 100, ALL_MAPS),
+        Profile(5, 10, (10, 20)),
+        lambda profile: related_cases(profile.assignments, profile.maps, profile.robots),
+        lambda rows, profile: related_report(rows, profile.robots),
     ),
 )

@@ -1,0 +1,171 @@
+"""Experiment 2 of the paper: the time to find plans when the k-th robot comes to those before it.
+
+The algorithms of the paper that have no way to add a robot (CARP, CARP10, CARP100, LF) plan all k robots again; the
+neighbourhood planner adds one. Times are of the processor, on a fleet that stays up and is warm.
+"""
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from time import thread_time_ns
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from carp_experiments.quality import ALGORITHMS, ROBOTS, grid_fleet, outcome, seeded
+from carp_experiments.report import Figure, Report, Table
+from carp_experiments.statistics import Interval, mean_interval
+from carp_experiments.store import MEASURED, Row
+from carp_spec import Neighbourhood, Planner, Shuffled
+
+if TYPE_CHECKING:
+    from carp_optimized.fleet import Fleet
+
+PAPERS_MAP = 15
+STEP = 5
+SHOWN = (50, 100)
+PAPER: Mapping[str, tuple[float, float]] = {
+    "Proposed_4": (3.23, 7.6),
+    "Proposed_5": (10.86, 19.48),
+    "Proposed_6": (50.58, 75.81),
+    "Proposed_10": (43.84, 54.10),
+    "CARP": (0.63, 1.60),
+    "CARP10": (5.29, 12.15),
+    "CARP100": (52.08, 126.57),
+    "LF": (0.85, 2.59),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class TimeCase:
+    """One assignment on one map, its robots presented one by one to every algorithm of the paper."""
+
+    map: int
+    assignment: int
+    robots: int = ROBOTS
+
+    @property
+    def key(self) -> str:
+        """Assignments and maps in their order."""
+        return f"assignment {self.assignment:03} map {self.map:02}"
+
+    def run(self) -> Row:
+        """Nanoseconds at the first robot, at every fifth and at the last; and how many robots each planned."""
+        fleet = grid_fleet(self.map, 0, self.robots, self.assignment)
+        planners = {name: seeded(ALGORITHMS[name], self.assignment) for name in PAPER}
+        for planner in planners.values():
+            warm_up(fleet, planner)
+        measured, planned = {}, {}
+        for name, planner in planners.items():
+            measured[name] = times_of(fleet, planner)
+            planned[name] = outcome(fleet)[0]
+        return {"map": self.map, "assignment": self.assignment, "planned": planned, MEASURED: measured}
+
+
+def warm_up(fleet: "Fleet", planner: Planner) -> None:
+    """Load machine code and find the distances to all goals."""
+    robots = len(fleet.instance.robots)
+    fleet.carp(range(robots))
+    fleet.clear()
+    if isinstance(planner, Neighbourhood):
+        for robot in range(min(planner.m + 1, robots)):
+            fleet.add(robot, 0, planner)
+    else:
+        plan_first(fleet, planner, 2)
+
+
+def times_of(fleet: "Fleet", planner: Planner) -> dict[str, int]:
+    """The nanoseconds of the k-th robot, by k."""
+    robots = len(fleet.instance.robots)
+    wanted = [k for k in range(1, robots + 1) if k in (1, robots) or k % STEP == 0]
+    fleet.clear()
+    times = {}
+    for k in range(1, robots + 1):
+        if isinstance(planner, Neighbourhood):
+            started = thread_time_ns()
+            fleet.add(k - 1, 0, planner)
+        elif k in wanted:
+            started = thread_time_ns()
+            plan_first(fleet, planner, k)
+        else:
+            continue
+        if k in wanted:
+            times[str(k)] = thread_time_ns() - started
+    return times
+
+
+def plan_first(fleet: "Fleet", planner: Planner, k: int) -> None:
+    """Plan the first k robots from scratch."""
+    match planner:
+        case Shuffled():
+            fleet.shuffled(planner, range(k), lambda: None)
+        case _ if planner == ALGORITHMS["LF"]:
+            fleet.carp(sorted(range(k), key=lambda robot: -fleet.ticks_to_goal(robot)))
+        case _:
+            fleet.carp(range(k))
+
+
+def time_cases(assignments: int, maps: Sequence[int], robots: int) -> tuple[TimeCase, ...]:
+    """The cases of the experiment, assignment by assignment."""
+    return tuple(TimeCase(map, assignment, robots) for assignment in range(assignments) for map in maps)
+
+
+@dataclass(frozen=True, slots=True)
+class Time:
+    """The mean milliseconds of an algorithm at the k-th robot, and their ratio to those of CARP in the same case."""
+
+    algorithm: str
+    k: int
+    milliseconds: Interval
+    ratio: Interval
+
+
+class TimeRow(msgspec.Struct, frozen=True):
+    """A stored row of the experiment."""
+
+    measured: dict[str, dict[int, int]]
+
+
+def time_report(rows: Iterable[Row]) -> Report:
+    """A table for the 50th and 100th robot (or half of them and all) beside the paper's, and a figure over k."""
+    times: dict[tuple[str, int], list[float]] = defaultdict(list)
+    ratios: dict[tuple[str, int], list[float]] = defaultdict(list)
+    for row in rows:
+        measured = msgspec.convert(row, TimeRow, strict=False).measured
+        for name, by_k in measured.items():
+            for k, nanoseconds in by_k.items():
+                times[name, k].append(nanoseconds / 1e6)
+                ratios[name, k].append(nanoseconds / measured["CARP"][k])
+    summary = tuple(
+        Time(name, k, mean_interval(values), mean_interval(ratios[name, k]))
+        for (name, k), values in sorted(times.items())
+    )
+    lines = {name: [(each.k, each.milliseconds) for each in summary if each.algorithm == name] for name in PAPER}
+    axes = ("robot", "milliseconds")
+    figure = Figure("time", "Time to plan when the k-th robot comes", axes, lines, logarithmic=True)
+    return Report(summary, (time_table(summary),), (figure,))
+
+
+def time_table(summary: Sequence[Time]) -> Table:
+    """Times, and ratios to CARP beside the paper's."""
+    by_place = {(each.algorithm, each.k): each for each in summary}
+    last = max(each.k for each in summary)
+    shown = [k for k in SHOWN if k <= last] or [last]
+    columns = ["algorithm"]
+    for k in shown:
+        columns += [f"k = {k}: ms", f"k = {k}: times CARP", f"k = {k}: the paper's"]
+    rows = []
+    for name, paper in PAPER.items():
+        cells = [name]
+        for k in shown:
+            place = SHOWN.index(k) if k in SHOWN else 0
+            each = by_place[name, k]
+            cells += [spread(each.milliseconds), spread(each.ratio), f"{paper[place] / PAPER['CARP'][place]:.1f}"]
+        rows.append(tuple(cells))
+    title = "Time to plan when the k-th robot comes, in milliseconds and as a ratio to CARP, with 95 % intervals"
+    return Table("time", title, tuple(columns), tuple(rows), tuple(columns[1:]))
+
+
+def spread(interval: Interval) -> str:
+    """The estimate and half its interval."""
+    return f"{interval.estimate:.2f} ± {interval.high - interval.estimate:.2f}"

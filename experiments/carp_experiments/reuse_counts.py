@@ -1,0 +1,160 @@
+"""The queries that the neighbourhood planner asks and avoids, and why; beside the paper's 67, 54 and 45 per cent."""
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from math import factorial
+
+import msgspec
+
+from carp_experiments.quality import ROBOTS, grid_fleet
+from carp_experiments.report import Report, Table
+from carp_experiments.statistics import Interval, mean_interval
+from carp_experiments.store import Row
+from carp_optimized.reuse import Reuse
+from carp_spec import Neighbourhood
+
+NOTHING = Reuse(kept=False, unchanged=False, prefixes=False, shared=False, bounds=False)
+SETTINGS: Mapping[str, Reuse] = {
+    "nothing": NOTHING,
+    "kept": Reuse(kept=True, unchanged=False, prefixes=False, shared=False, bounds=False),
+    "prefixes": Reuse(kept=False, unchanged=False, prefixes=True, shared=False, bounds=False),
+    "the paper's": Reuse(kept=True, unchanged=False, prefixes=True, shared=False, bounds=False),
+    "all": Reuse(),
+}
+SIZES = (3, 4, 5, 6)
+SAMPLED = 10
+PAPERS_SHARES = {4: 67, 5: 54, 6: 45}
+
+
+@dataclass(frozen=True, slots=True)
+class ReuseCase:
+    """One assignment on one map: the last robot is added to the others, which CARP has planned."""
+
+    map: int
+    assignment: int
+    robots: int = ROBOTS
+
+    @property
+    def key(self) -> str:
+        """Assignments and maps in their order."""
+        return f"assignment {self.assignment:03} map {self.map:02}"
+
+    def run(self) -> Row:
+        """The queries asked by size of the neighbourhood and kinds of reuse, and those avoided by each kind of ours."""
+        asked: dict[str, dict[str, int]] = {}
+        avoided: dict[str, dict[str, int]] = {}
+        for setting, reuse in SETTINGS.items():
+            fleet = grid_fleet(self.map, 0, self.robots, self.assignment)
+            fleet.reuse = reuse
+            asked[setting] = {}
+            for m in (*SIZES, SAMPLED):
+                fleet.carp(range(self.robots - 1))
+                before = fleet.queries
+                sample = 150 if m == SAMPLED else None
+                fleet.add(self.robots - 1, 0, Neighbourhood(m, sample, self.assignment, baseline=False))
+                after = fleet.queries
+                asked[setting][str(m)] = after.asked - before.asked
+                if setting == "all":
+                    avoided[str(m)] = {kind: getattr(after, kind) - getattr(before, kind) for kind in after.avoided}
+        return {"map": self.map, "assignment": self.assignment, "asked": asked, "avoided": avoided}
+
+
+def reuse_cases(assignments: int, maps: Sequence[int], robots: int) -> tuple[ReuseCase, ...]:
+    """The cases of the experiment, assignment by assignment."""
+    return tuple(ReuseCase(map, assignment, robots) for assignment in range(assignments) for map in maps)
+
+
+@dataclass(frozen=True, slots=True)
+class ReuseOf:
+    """What one size of neighbourhood asks, means over the cases.
+
+    `asked` are the queries by kinds of reuse, `avoided` those that each kind of ours avoids where all are on, `last`
+    the share in per cent of the last round's queries for orders that are left where orders share their beginnings (the
+    paper's second reduction), `replanned` the same for the robots outside where those before the one taken out keep
+    their plans (the first).
+    """
+
+    m: int
+    asked: dict[str, Interval]
+    avoided: dict[str, Interval]
+    last: Interval | None
+    replanned: Interval | None
+
+
+class ReuseRow(msgspec.Struct, frozen=True):
+    """A stored row of the experiment."""
+
+    asked: dict[str, dict[int, int]]
+    avoided: dict[int, dict[str, int]]
+
+
+def reuse_report(rows: Iterable[Row], robots: int) -> Report:
+    """One table of queries asked, one of those avoided."""
+    measured = [msgspec.convert(row, ReuseRow, strict=False) for row in rows]
+    summary = tuple(reuse_of(m, measured, robots) for m in (*SIZES[1:], SAMPLED))
+    asked_columns = (
+        "algorithm",
+        *(f"reuse: {name}" for name in SETTINGS),
+        "orders, left",
+        "the paper",
+        "outside, left",
+    )
+    asked_rows = []
+    avoided_rows = []
+    for each in summary:
+        paper = f"{PAPERS_SHARES[each.m]} %" if each.m in PAPERS_SHARES else "-"
+        cells = (f"{each.asked[name].estimate:.0f}" for name in SETTINGS)
+        asked_rows.append((f"Proposed_{each.m}", *cells, percent(each.last), paper, percent(each.replanned)))
+        counts = {kind: f"{count.estimate:.0f}" for kind, count in each.avoided.items()}
+        if each.m == SAMPLED:
+            counts["bounds"] = "-"  # counted are all orders below a prefix, also those that were not drawn
+        avoided_rows.append((f"Proposed_{each.m}", *counts.values()))
+    avoided_columns = ("algorithm", *summary[0].avoided)
+    tables = (
+        Table("reuse-asked", "Queries asked to add a robot", asked_columns, tuple(asked_rows), asked_columns[1:]),
+        Table(
+            "reuse-avoided",
+            "Queries avoided by each kind of reuse, where all are on",
+            avoided_columns,
+            tuple(avoided_rows),
+            avoided_columns[1:],
+        ),
+    )
+    return Report(summary, tables)
+
+
+def reuse_of(m: int, rows: Sequence[ReuseRow], robots: int) -> ReuseOf:
+    """The means for one size of neighbourhood."""
+    asked = {name: mean_interval([row.asked[name][m] for row in rows]) for name in SETTINGS}
+    avoided: dict[str, list[int]] = defaultdict(list)
+    for row in rows:
+        for kind, count in row.avoided[m].items():
+            avoided[kind].append(count)
+    last = mean_interval([last_round(row, m) for row in rows]) if m in PAPERS_SHARES else None
+    shares = [100 * outside_left(row, m, robots) for row in rows]
+    return ReuseOf(
+        m, asked, {kind: mean_interval(counts) for kind, counts in avoided.items()}, last, mean_interval(shares)
+    )
+
+
+def last_round(row: ReuseRow, m: int) -> float:
+    """The share of the last round's m times m! queries that is left, in per cent.
+
+    The rounds before are those of a neighbourhood smaller by one, and what is asked of the robots outside is the same.
+    """
+    avoided = (row.asked["nothing"][m] - row.asked["prefixes"][m]) - (
+        row.asked["nothing"][m - 1] - row.asked["prefixes"][m - 1]
+    )
+    return 100 * (1 - avoided / (m * factorial(m)))
+
+
+def outside_left(row: ReuseRow, m: int, robots: int) -> float:
+    """The share of the queries for robots outside that is left where those before the one taken out keep plans."""
+    outside = sum(robots - 1 - turn for turn in range(1, m))
+    return 1 - (row.asked["nothing"][m] - row.asked["kept"][m]) / outside
+
+
+def percent(share: Interval | None) -> str:
+    """A share in per cent with its interval."""
+    return "-" if share is None else f"{share.estimate:.1f} ± {share.high - share.estimate:.1f} %"

@@ -1,0 +1,135 @@
+"""Small maps against the proved optimum: how far from it each algorithm is, over the density of the map."""
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import msgspec
+
+from carp_experiments.quality import ALGORITHMS, outcome, plan_all, seeded
+from carp_experiments.quality_report import MAP_AXIS, SHOWN_MAPS
+from carp_experiments.report import Figure, Report, Table
+from carp_experiments.statistics import Interval, mean_interval
+from carp_experiments.store import Row
+from carp_spec import Greedy, Planner
+
+SIDE = 8
+LIMIT_IN_SECONDS = 60
+COMPARED: Mapping[str, Planner] = {
+    **{name: planner for name, planner in ALGORITHMS.items() if name != "Proposed_4 + CARP100"},
+    "greedy": Greedy(),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class GapCase:
+    """One assignment on a small map of its own, by every algorithm and by the search for the optimum."""
+
+    map: int
+    assignment: int
+    robots: int
+
+    @property
+    def key(self) -> str:
+        """Assignments and maps in their order."""
+        return f"assignment {self.assignment:03} map {self.map:02}"
+
+    def run(self) -> Row:
+        """The optimum, or nothing where it was not found in a minute or there is none; robots planned, and total cost.
+
+        Only a search that comes near its minute can end otherwise on another machine.
+        """
+        from carp_optimized.fleet import Fleet  # noqa: PLC0415 - each worker loads it
+        from carp_oracle.generate import Fleet as RandomFleet  # noqa: PLC0415
+        from carp_oracle.generate import Grid, grid_instance  # noqa: PLC0415
+        from carp_verify.optimum import optimum  # noqa: PLC0415
+
+        grid = Grid(SIDE, SIDE, self.map, map_seed=self.assignment)
+        instance = grid_instance(grid, RandomFleet(robots=self.robots, seed=self.assignment))
+        fleet = Fleet(instance)
+        results = {}
+        for name, planner in COMPARED.items():
+            if isinstance(planner, Greedy):
+                fleet.greedy(lambda: None)
+            else:
+                plan_all(fleet, seeded(planner, self.assignment))
+            results[name] = outcome(fleet)
+        best = optimum(instance, LIMIT_IN_SECONDS)
+        return {
+            "map": self.map,
+            "assignment": self.assignment,
+            "shortest": best.shortest,
+            "optimum": best.cost if best.proved else None,
+            "decided": best.proved,
+            "results": results,
+        }
+
+
+def gap_cases(assignments: int, maps: Sequence[int], robots: int) -> tuple[GapCase, ...]:
+    """The cases of the experiment, assignment by assignment."""
+    return tuple(GapCase(map, assignment, robots) for assignment in range(assignments) for map in maps)
+
+
+@dataclass(frozen=True, slots=True)
+class GapOf:
+    """An algorithm on the maps of one density: in per cent above the optimum, over the assignments that it plans.
+
+    `solvable` are the assignments with a known optimum, `failures` those of them that the algorithm fails on.
+    """
+
+    map: int
+    algorithm: str
+    solvable: int
+    failures: int
+    gap: Interval | None
+
+
+class GapRow(msgspec.Struct, frozen=True):
+    """A stored row of the experiment."""
+
+    map: int
+    shortest: int | None
+    optimum: int | None
+    decided: bool
+    results: dict[str, tuple[int, int]]
+
+
+def gap_report(rows: Iterable[Row], robots: int) -> Report:
+    """A table over some of the maps, and a figure over all."""
+    by_map: dict[int, list[GapRow]] = defaultdict(list)
+    for row in rows:
+        measured = msgspec.convert(row, GapRow)
+        by_map[measured.map].append(measured)
+    summary = tuple(gap_of(map, name, each, robots) for map, each in sorted(by_map.items()) for name in COMPARED)
+    lines = {name: [(each.map, each.gap) for each in summary if each.algorithm == name] for name in COMPARED}
+    title = f"Above the proved optimum, {robots} robots on {SIDE} x {SIDE} maps"
+    figure = Figure("gap", title, (MAP_AXIS, "per cent above the optimum"), lines)
+    return Report(summary, (gap_table(summary, by_map, title),), (figure,))
+
+
+def gap_of(map: int, name: str, rows: Sequence[GapRow], robots: int) -> GapOf:
+    """An algorithm on the maps of one density."""
+    reached = [(*row.results[name], row.optimum) for row in rows if row.optimum is not None]
+    gaps = [100 * (total - best) / best for planned, total, best in reached if planned == robots and best]
+    failures = sum(planned < robots for planned, _, _ in reached)
+    return GapOf(map, name, len(reached), failures, mean_interval(gaps) if gaps else None)
+
+
+def gap_table(summary: Sequence[GapOf], by_map: Mapping[int, Sequence[GapRow]], title: str) -> Table:
+    """The gaps on some of the maps, with the failures; above them how many assignments are decided and solvable."""
+    maps = [map for map in SHOWN_MAPS if map in by_map] or sorted(by_map)
+    by_place = {(each.algorithm, each.map): each for each in summary}
+    columns = ("algorithm", *(f"map {map}" for map in maps))
+    decided = ("optimum known", *(f"{by_place['CARP', map].solvable}/{len(by_map[map])}" for map in maps))
+    rows = [(name, *(_cell(by_place[name, map]) for map in maps)) for name in COMPARED]
+    title = f"{title}: in per cent, means with 95 % intervals"
+    return Table("gap", title, columns, (decided, *rows), columns[1:])
+
+
+def _cell(each: GapOf) -> str:
+    failed = f" ({each.failures} failed)" if each.failures else ""
+    return (
+        f"-{failed}"
+        if each.gap is None
+        else f"{each.gap.estimate:.2f} ± {each.gap.high - each.gap.estimate:.2f}{failed}"
+    )

@@ -1,0 +1,79 @@
+"""The experiments beside the first: what they count and compare."""
+
+import pytest
+
+import carp_reference
+from carp_experiments.adding_time import PAPER, TimeCase, time_report
+from carp_experiments.experiments import EXPERIMENTS, Experiment, Profile
+from carp_experiments.quality import grid_fleet
+from carp_experiments.related_work import METHODS, RelatedCase, related_report
+from carp_experiments.reuse_counts import ReuseCase, reuse_report
+from carp_experiments.small_gaps import COMPARED, GapCase, gap_report
+from carp_experiments.store import digest_of
+from carp_spec import FixedPaths, total_cost
+
+
+def test_times_are_measured_and_do_not_count_in_the_digest() -> None:
+    rows = [TimeCase(15, 0, robots=6).run(), TimeCase(15, 0, robots=6).run()]
+    assert rows[0]["measured"] != rows[1]["measured"]
+    assert digest_of(rows[0]) == digest_of(rows[1])
+
+
+def test_the_table_of_times_compares_with_carp() -> None:
+    def row(slower: int) -> dict[str, object]:
+        return {"measured": {name: {"50": 1000, "100": 2000 if name == "CARP" else slower} for name in PAPER}}
+
+    table = time_report([row(8000), row(12000)]).tables[0]
+    cells = {line[0]: line for line in table.rows}
+    assert cells["CARP"][4:] == ("0.00 ± 0.00", "1.00 ± 0.00", "1.0")
+    assert cells["Proposed_4"][5] == "5.00 ± 1.96"
+    assert cells["Proposed_6"][6] == "47.4", "75.81 / 1.60"
+
+
+def test_prefixes_leave_the_papers_shares_of_the_last_round() -> None:
+    report = reuse_report([ReuseCase(20, seed, robots=20).run() for seed in (1, 2)], 20)
+    lines = {line[0]: line for line in report.tables[0].rows}
+    assert lines["Proposed_4"][6] == "66.7 ± 0.0 %"
+    assert lines["Proposed_5"][6] == "54.2 ± 0.0 %"
+    assert lines["Proposed_6"][6] == "45.3 ± 0.0 %"
+
+
+def test_a_gap_is_measured_from_the_optimum() -> None:
+    case = GapCase(map=3, assignment=0, robots=5)
+    row = case.run()
+    assert row["decided"]
+    results = row["results"]
+    assert isinstance(results, dict)
+    assert list(results) == list(COMPARED)
+    assert all(total >= row["optimum"] for planned, total in results.values() if planned == 5)
+    best = {"map": 3, "assignment": 1, "shortest": 8, "optimum": 10, "decided": True}
+    reached = {**dict.fromkeys(COMPARED, (5, 10)), "CARP": (5, 12), "LF": (4, 3)}
+    unsolvable = {**best, "optimum": None, "results": reached}
+    table = gap_report([{**best, "results": reached}, unsolvable], 5).tables[0]
+    cells = {line[0]: line[1] for line in table.rows}
+    assert cells["optimum known"] == "1/2"
+    assert cells["CARP"] == "20.00 ± 0.00"
+    assert cells["LF"] == "- (1 failed)"
+
+
+def test_related_methods_are_those_of_the_reference() -> None:
+    case = RelatedCase(20, 3, robots=5)
+    instance = grid_fleet(20, 0, 5, 3).instance
+    results = case.run()["results"]
+    assert isinstance(results, dict)
+    assert set(results) == set(METHODS)
+    for name, planner in {
+        "3 shortest paths": FixedPaths(3, "shortest"),
+        "3 disjoint paths": FixedPaths(3, "disjoint"),
+    }.items():
+        solution = carp_reference.plan(instance, planner)
+        assert results[name] == (len(solution.plans), total_cost(instance, solution.plans))
+    report = related_report([case.run()], 5)
+    assert [table.name for table in report.tables] == ["related-unplanned", "related-totals"]
+
+
+@pytest.mark.parametrize("experiment", EXPERIMENTS, ids=lambda experiment: experiment.name)
+def test_a_larger_profile_holds_the_cases_of_a_smaller_one(experiment: Experiment) -> None:
+    small, large = experiment.cases(Profile(2, 4, (3, 9))), experiment.cases(Profile(3, 4, (3, 9, 11)))
+    assert {case.key for case in small} <= {case.key for case in large}
+    assert len({case.key for case in large}) == len(large) == 9
