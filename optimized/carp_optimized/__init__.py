@@ -1,10 +1,10 @@
 """The planner to run: the plans of `carp_reference`, visit for visit, from compiled code.
 
-`query`, `plan` and `add` are the same functions; `carp_optimized.fleet` has a fleet that stays up. Importing this
-page loads neither numpy nor numba.
+`query`, `plan`, `add` and `polish` are the same functions; `carp_optimized.fleet` has a fleet that stays up. Importing
+this page loads neither numpy nor numba.
 """
 
-from carp_optimized.planners import PLANNERS, add, plan, query, steps
+from carp_optimized.planners import PLANNERS, add, plan, polish, query, steps
 from carp_optimized.reuse import Queries, Reuse
 
-__all__ = ["PLANNERS", "Queries", "Reuse", "add", "plan", "query", "steps"]
+__all__ = ["PLANNERS", "Queries", "Reuse", "add", "plan", "polish", "query", "steps"]

@@ -30,6 +30,8 @@ PLANS = 62  # plans that a set of plans in 64 bits can hold; the bit PLANS stand
 ANSWERS = 512
 NO_LIMIT = 1 << 62  # of a cost
 
+MOST_MEMBERS = 10  # of a neighbourhood that is polished
+
 
 class Graph(NamedTuple):
     """The resource graph: moves lead from r to `target[first[r]:first[r + 1]]`, and come to it from `source[...]`."""
@@ -207,6 +209,39 @@ class Work(NamedTuple):
     rows: IntTable
     row_index: Ints
     row_spare: Ints
+
+
+class Polish(NamedTuple):
+    """What polishing works on.
+
+    `queue` holds the robots that have a plan in planning order, and `plans` the plans by robot; `counts` how many
+    robots are in the queue, how many rounds are done, and the generation of the marks. `stream[0]` is the state of the
+    random numbers. `alone[robot]` is the record, in `wishes`, of the plan that the robot has alone, `NONE` if it has no
+    path, and `least[robot]` is its cost. `has_path` says how many have one.
+    By resource: the span of a plan, `first` to `last`, where `mark` is the generation of the marks. The candidates are
+    in order; those that are ranked have the rank whole + rest / ticks. By place in the neighbourhood: the members,
+    their plans before and their new ones. `others` is scratch by robot.
+    """
+
+    queue: Ints
+    plans: Ints
+    counts: Longs
+    stream: Numbers
+    wishes: Records
+    alone: Ints
+    least: Longs
+    has_path: int
+    mark: Longs
+    first: Ints
+    last: Ints
+    candidates: Ints
+    whole: Longs
+    rest: Longs
+    ticks: Longs
+    members: Ints
+    before: Ints
+    chosen: Ints
+    others: Ints
 
 
 class Answers(NamedTuple):

@@ -9,6 +9,7 @@ from carp_optimized.arrays import (
     ANSWERS,
     COUNTERS,
     LARGEST,
+    MOST_MEMBERS,
     NEVER,
     NONE,
     PLANS,
@@ -18,6 +19,7 @@ from carp_optimized.arrays import (
     Guides,
     Ints,
     Longs,
+    Polish,
     Records,
     Robots,
     Rows,
@@ -293,6 +295,38 @@ def no_work(robots: int, members: int, sample: int) -> Work:
         rows=np.zeros((sample, members), np.int32),
         row_index=ints(sample),
         row_spare=ints(sample),
+    )
+
+
+def no_polish(wishes: Records, alone: Ints, least: Longs, resources: int) -> Polish:
+    """Room to polish, with the plans that the robots have alone."""
+
+    def ints(size: int) -> Ints:
+        return np.full(size, NONE, np.int32)
+
+    def longs(size: int) -> Longs:
+        return np.zeros(size, np.int64)
+
+    return Polish(
+        queue=ints(alone.size),
+        plans=ints(alone.size),
+        counts=longs(3),
+        stream=np.zeros(1, np.uint64),
+        wishes=wishes,
+        alone=alone,
+        least=least,
+        has_path=int((alone != NONE).sum()),
+        mark=longs(resources),
+        first=ints(resources),
+        last=ints(resources),
+        candidates=ints(max(alone.size, MOST_MEMBERS)),
+        whole=longs(MOST_MEMBERS),
+        rest=longs(MOST_MEMBERS),
+        ticks=longs(MOST_MEMBERS),
+        members=ints(MOST_MEMBERS),
+        before=ints(MOST_MEMBERS),
+        chosen=ints(MOST_MEMBERS),
+        others=ints(alone.size),
     )
 
 

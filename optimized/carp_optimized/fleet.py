@@ -1,6 +1,7 @@
 """A fleet that stays up: plans are made and robots added one after the other, on arrays that are kept between."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -19,11 +20,13 @@ from carp_optimized.arrays import (
     Ints,
     Longs,
     Options,
+    Polish,
     State,
     Work,
 )
 from carp_optimized.compiling import RoomExhausted, TicksExhausted
 from carp_optimized.neighbourhood import add_robot
+from carp_optimized.polishing import QUEUED, TURN, play_rounds
 from carp_optimized.recording import enlarged, only, read_plan, write_plan
 from carp_optimized.references import Native
 from carp_optimized.reuse import Queries, Reuse
@@ -174,6 +177,43 @@ class Fleet:
             self._hold(order, work.plans[order])
             return True
         return options.fallback is not None and self._fall_back(robot, now, Shuffled(options.fallback, options.seed))
+
+    def polishing(self, seed: int) -> Native[Polish]:
+        """What to polish with, for this fleet alone, from the plans that it has."""
+        found = [
+            self._call(partial(passes.find_one, self._empty, robot, NONE, 0)) for robot in range(len(self._records))
+        ]
+        alone = np.array(found, np.int32)
+        has_path = alone != NONE
+        wishes = only(self._state.records, alone[has_path])
+        least = np.zeros(alone.size, np.int64)
+        least[has_path] = [self._cost(alone[robot : robot + 1]) for robot in np.flatnonzero(has_path)]
+        alone[has_path] = np.arange(has_path.sum())
+        polish = encoding.no_polish(wishes, alone, least, self._state.graph.duration.size)
+        polish.stream[0] = seed
+        return Native(polish)
+
+    def polish(self, polishing: Native[Polish], rounds: int) -> int:
+        """Play that many rounds of `polish/...`; how many were played before there was nothing left to do."""
+        self._forget_old_records()
+        work = polishing.fields
+        size, turn, stream = self._order.size, int(work.counts[TURN]), int(work.stream[0])
+
+        def attempt() -> int:
+            work.queue[:size] = self._order
+            work.plans[:] = self._records
+            work.counts[QUEUED], work.counts[TURN], work.stream[0] = size, turn, stream
+            return play_rounds(self._native, polishing, rounds)
+
+        played = self._call(attempt)
+        order = work.queue[: work.counts[QUEUED]].copy()
+        self._hold(order, work.plans[order])
+        return played
+
+    @property
+    def worth(self) -> tuple[int, int]:
+        """How many robots have no plan, and the total cost of the others."""
+        return (self._records.size - self._order.size, self._cost(self._records[self._order]))
 
     def _scratch_for(self, options: Neighbourhood) -> Scratch:
         """The scratch for adding a robot with these options."""

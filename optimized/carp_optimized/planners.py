@@ -4,6 +4,7 @@ Importing it loads neither numpy nor numba; planning does.
 """
 
 from collections.abc import Callable, Sequence
+from time import perf_counter
 from typing import TYPE_CHECKING
 
 from carp_optimized.reuse import Reuse
@@ -20,10 +21,12 @@ from carp_spec import (
     Shuffled,
     Solution,
 )
+from carp_spec.polish_rules import last_round, polishable, require_polish_options
 
 if TYPE_CHECKING:
     from carp_optimized.fleet import Fleet
 
+ROUNDS = 50  # of a polish in one compiled call
 PLANNERS = (Carp, Shuffled, LongestFirst, Greedy, Neighbourhood)
 
 
@@ -98,6 +101,41 @@ def add(
     fleet.commit([by_robot[each] for each in solution.order])
     fleet.add(fleet.index(robot), now, options)
     return _solution(instance, fleet.plans, {*by_robot, *solution.unplanned, robot})
+
+
+def polish(
+    instance: Instance,
+    solution: Solution,
+    *,
+    iterations: int | None = None,
+    seconds: float | None = None,
+    seed: int = 0,
+    advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
+) -> Solution:
+    """Improve a solution for that many rounds or seconds; `advance` is told rounds, unplanned robots and total.
+
+    It ends earlier if no plan can be shorter. All robots are planned from their release on: none is under way. Equal
+    iterations and seed give an equal solution. The time is that of the rounds,
+    looked at between calls of `advance`, `ROUNDS` rounds apart.
+    Raises `Refusal` for wrong options, for a solution that breaks a rule, and for numbers that are too large.
+    """
+    require_polish_options(iterations, seconds, seed)
+    whole = polishable(instance, solution)
+    last = last_round(iterations, seconds)
+    by_robot = {each.robot: each for each in whole.plans}
+    fleet = _fleet(instance)
+    fleet.commit([by_robot[each] for each in whole.order])
+    polishing = fleet.polishing(seed)
+    played = fleet.polish(polishing, 0)
+    started = perf_counter()
+    while played != last and (seconds is None or perf_counter() - started < seconds):
+        rounds = ROUNDS if last is None else min(ROUNDS, last - played)
+        batch = fleet.polish(polishing, rounds)
+        played += batch
+        advance(played, *fleet.worth)
+        if batch < rounds:
+            break
+    return _solution(instance, fleet.plans, set(fleet.instance.robot))
 
 
 def _solution(instance: Instance, plans: tuple[Plan, ...], named: set[RobotId]) -> Solution:

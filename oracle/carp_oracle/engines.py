@@ -25,6 +25,18 @@ class Engine(Protocol):
     def add(self, instance: Instance, solution: Solution, robot: RobotId, now: int, options: Neighbourhood) -> Solution:
         """Plans with one robot more."""
 
+    def polish(
+        self,
+        instance: Instance,
+        solution: Solution,
+        *,
+        iterations: int | None = None,
+        seconds: float | None = None,
+        seed: int = 0,
+        advance: Callable[[int, int, int], None] = ...,
+    ) -> Solution:
+        """Better plans; `advance` is told rounds, unplanned robots and total."""
+
 
 def engine_named(name: str) -> Engine:
     """Load an engine."""

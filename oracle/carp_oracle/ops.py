@@ -26,6 +26,7 @@ from carp_spec.documents import solution_document, verdict_document
 
 Result: TypeAlias = Any
 Handler: TypeAlias = Callable[[Request, Engine], Result]
+POLISH_OPTIONS = {"iterations", "seconds", "seed"}
 
 
 def start(request: Request, engine: Engine) -> Result:
@@ -79,6 +80,18 @@ def add(request: Request, engine: Engine) -> Result:
         return solution_document(engine.add(instance, before, robot, now, options))
 
 
+def polish(request: Request, engine: Engine) -> Result:
+    """Improve a solution."""
+    instance, solution = request.instance(), request.solution()
+    options = request.options()
+    for name in options.keys() - POLISH_OPTIONS:
+        raise Refusal("request", f"$.{name}", fields_are_right.id, "the op has no such field")
+    with inside("$.solution"):
+        before = sound_solution(instance, solution)
+    with inside("$.instance"):
+        return solution_document(engine.polish(instance, before, **options))
+
+
 def optimum(request: Request, engine: Engine) -> Result:
     """Search for the least total cost."""
     from carp_verify.optimum import optimum as search  # noqa: PLC0415 - a server that is not asked need not load it
@@ -106,6 +119,7 @@ OPS: Mapping[str, Handler] = {
     "query": query,
     "plan": plan,
     "add": add,
+    "polish": polish,
     "optimum": optimum,
     "stop": stop,
 }

@@ -3,6 +3,7 @@
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from time import perf_counter
 
 
 @contextmanager
@@ -17,3 +18,32 @@ def progress(label: str, steps: int) -> Iterator[Callable[[], None]]:
     with Progress(console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(label, total=steps)
         yield lambda: bar.advance(task)
+
+
+@contextmanager
+def polish_progress(
+    iterations: int | None, seconds: float | None, bound: int
+) -> Iterator[Callable[[int, int, int], None]]:
+    """Show a bar, and how near the total has come to the bound; what it yields is told rounds, unplanned, total."""
+    if not sys.stderr.isatty():
+        yield lambda _, __, ___: None
+        return
+    from rich.console import Console  # noqa: PLC0415 - loaded only where there is a bar to show
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn  # noqa: PLC0415
+
+    columns = (TextColumn("polishing"), BarColumn(20), TimeRemainingColumn(), TextColumn("{task.description}"))
+    started = perf_counter()
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("", total=iterations if seconds is None else seconds)
+
+        def advance(rounds: int, unplanned: int, total: int) -> None:
+            near = f"{unplanned} unplanned" if unplanned else f"gap {gap(total, bound)}"
+            done = rounds if seconds is None else perf_counter() - started
+            bar.update(task, completed=done, description=f"total {total}, bound {bound}, {near}")
+
+        yield advance
+
+
+def gap(total: int, bound: int) -> str:
+    """By how much the total is above the bound."""
+    return f"{100 * (total - bound) / bound:.2f} %" if bound else "-"

@@ -1,10 +1,11 @@
 """The planner to read: windows, the CARP query, the neighbourhood planner and the baselines.
 
-Read it in this order: `context`, `query`, `orderings`, `neighbourhood`; then, as needed, `problem`,
+Read it in this order: `context`, `query`, `orderings`, `neighbourhood`, `polish`; then, as needed, `problem`,
 `fixed_paths`, `time_expanded`, `reasons`, `planners`.
 """
 
 from carp_reference.planners import add, plan, query, steps
+from carp_reference.polish import polish
 from carp_reference.reasons import why_unplanned
 
-__all__ = ["add", "plan", "query", "steps", "why_unplanned"]
+__all__ = ["add", "plan", "polish", "query", "steps", "why_unplanned"]

@@ -7,6 +7,7 @@ COMMANDS = (
     "demo",
     "plan",
     "add",
+    "polish",
     "query",
     "check",
     "view",

@@ -1,0 +1,353 @@
+"""The rounds of a polish, `polish/...`: one compiled call plays many, from the first draw to what is kept.
+
+A neighbourhood is planned in place: its plans are withdrawn, and those that are not kept are reserved again. An order
+is cut as soon as it leaves more robots unplanned than before, or as many and its cost with the least costs of the
+robots still to come is above that of the plans before: it could not be kept.
+"""
+
+import numpy as np
+
+from carp_optimized.arrays import MOST_MEMBERS, NEVER, NONE, Numbers, Polish, Records, State
+from carp_optimized.compiling import compiled, entry
+from carp_optimized.distances import Mean, distance_below, is_less
+from carp_optimized.natives import polish_at, state_at
+from carp_optimized.orders import next_number
+from carp_optimized.records import cost_of
+from carp_optimized.references import Native
+from carp_optimized.search import find_plan
+from carp_optimized.windows import reserve, withdraw
+
+QUEUED, TURN, MARKS = range(3)  # the counts
+REPAIR, DELAYED, CONTESTED, NEAR = range(4)
+LEAST_MEMBERS = 4
+SIZES = MOST_MEMBERS - LEAST_MEMBERS + 1
+
+
+@entry
+def play_rounds(native: Native[State], native_polish: Native[Polish], rounds: int) -> int:
+    """Play that many rounds; how many were played before there was nothing left to do."""
+    state = state_at(native)
+    polish = polish_at(native_polish)
+    for turn in range(rounds):
+        if not play_round(state, polish):
+            return turn
+        polish.counts[TURN] += 1
+    return rounds
+
+
+@compiled
+def choice(stream: Numbers, among: int) -> int:
+    """A choice among that many (`polish/draws`)."""
+    return int(next_number(stream) % np.uint64(among))
+
+
+@compiled
+def play_round(state: State, polish: Polish) -> bool:
+    """Take out a neighbourhood, plan it anew and keep what is not worse; `False` if there is nothing to do."""
+    waiting = 0
+    delay = 0
+    planned = 0
+    for robot in range(polish.plans.size):
+        waiting += weight(state, polish, REPAIR, robot)
+        delay += weight(state, polish, DELAYED, robot)
+        planned += weight(state, polish, NEAR, robot)
+    if waiting > 0 and (delay == 0 or polish.counts[TURN] % 2 == 0):
+        kind = REPAIR
+        pivot = pivot_of(state, polish, kind, waiting)
+    elif delay == 0:
+        return False
+    else:
+        number = choice(polish.stream, 10)
+        kind = max(DELAYED, number - 6)
+        pivot = pivot_of(state, polish, kind, delay if kind == DELAYED else planned)
+    if kind == CONTESTED:
+        candidates = rank_crossing(state, polish, pivot)
+    elif kind == NEAR:
+        candidates = rank_near(state, polish, pivot)
+    else:
+        candidates = draw_in_way(state, polish, kind, pivot)
+    size = choose_members(polish, pivot, candidates)
+    draw_order(polish, size, kind == REPAIR)
+    replan_members(state, polish, size)
+    return True
+
+
+@compiled
+def weight(state: State, polish: Polish, kind: int, robot: int) -> int:
+    """The weight of a robot in the choice of the pivot (`polish/pivot`)."""
+    if polish.alone[robot] == NONE:
+        return 0
+    record = int(polish.plans[robot])
+    if kind == REPAIR:
+        return 1 if record == NONE else 0
+    if record == NONE:
+        return 0
+    return cost_of(state, record) - int(polish.least[robot]) if kind == DELAYED else 1
+
+
+@compiled
+def pivot_of(state: State, polish: Polish, kind: int, weights: int) -> int:
+    """Choose the pivot; the weights sum up to `weights`."""
+    left = choice(polish.stream, weights)
+    robot = 0
+    while True:
+        left -= weight(state, polish, kind, robot)
+        if left < 0:
+            return robot
+        robot += 1
+
+
+@compiled
+def draw_in_way(state: State, polish: Polish, kind: int, pivot: int) -> int:
+    """Draw all robots in the way of the pivot's plan, or of its plan alone (`polish/way`); how many there are."""
+    if kind == DELAYED and choice(polish.stream, 2) == 1:
+        mark_spans(state, polish, state.records, int(polish.plans[pivot]))
+    else:
+        mark_spans(state, polish, polish.wishes, int(polish.alone[pivot]))
+    count = 0
+    for robot in range(polish.plans.size):
+        if robot != pivot and polish.plans[robot] != NONE and meets_span(state, polish, int(polish.plans[robot])):
+            polish.candidates[count] = robot
+            count += 1
+    for k in range(count):
+        swap_places(polish, k, k + choice(polish.stream, count - k))
+    return count
+
+
+@compiled
+def swap_places(polish: Polish, one: int, other: int) -> None:
+    """Swap two candidates."""
+    robot = int(polish.candidates[one])
+    polish.candidates[one] = polish.candidates[other]
+    polish.candidates[other] = robot
+
+
+@compiled
+def mark_spans(state: State, polish: Polish, records: Records, record: int) -> None:
+    """Mark the resources that the plan visits, and those that a move leads to from there, with their spans."""
+    polish.counts[MARKS] += 1
+    first = int(records.visits_at[record])
+    last = first + int(records.visits[record]) - 1
+    for k in range(first, last + 1):
+        resource = int(records.resource[k])
+        enter = int(records.enter[k])
+        leave = int(records.enter[k + 1]) if k < last else int(records.leave[record])
+        mark_span(polish, resource, enter, leave)
+        for edge in range(int(state.graph.first[resource]), int(state.graph.first[resource + 1])):
+            mark_span(polish, int(state.graph.target[edge]), enter, leave)
+
+
+@compiled
+def mark_span(polish: Polish, resource: int, enter: int, leave: int) -> None:
+    """Make the span of the resource include the stay."""
+    if polish.mark[resource] == polish.counts[MARKS]:
+        polish.first[resource] = min(int(polish.first[resource]), enter)
+        polish.last[resource] = max(int(polish.last[resource]), leave)
+    else:
+        polish.mark[resource] = polish.counts[MARKS]
+        polish.first[resource] = enter
+        polish.last[resource] = leave
+
+
+@compiled
+def meets_span(state: State, polish: Polish, record: int) -> bool:
+    """Whether a stay of the plan meets the span of its resource."""
+    records = state.records
+    first = int(records.visits_at[record])
+    last = first + int(records.visits[record]) - 1
+    for k in range(first, last + 1):
+        resource = int(records.resource[k])
+        if polish.mark[resource] == polish.counts[MARKS]:
+            leave = int(records.enter[k + 1]) if k < last else int(records.leave[record])
+            if polish.first[resource] <= leave and records.enter[k] <= polish.last[resource]:
+                return True
+    return False
+
+
+@compiled
+def rank_crossing(state: State, polish: Polish, pivot: int) -> int:
+    """Rank the robots that visit the resource of a visit of the pivot (`polish/contested`); how many there are."""
+    records = state.records
+    own = int(polish.plans[pivot])
+    chosen = int(records.visits_at[own]) + choice(polish.stream, int(records.visits[own]))
+    resource = int(records.resource[chosen])
+    tick = int(records.enter[chosen])
+    count = 0
+    for robot in range(polish.plans.size):
+        record = int(polish.plans[robot])
+        if robot == pivot or record == NONE:
+            continue
+        least = NEVER
+        first = int(records.visits_at[record])
+        for k in range(first, first + int(records.visits[record])):
+            if records.resource[k] == resource:
+                least = min(least, abs(int(records.enter[k]) - tick))
+        if least < NEVER:
+            count = insert(polish, count, robot, Mean(least, 0, 1))
+    return count
+
+
+@compiled
+def rank_near(state: State, polish: Polish, pivot: int) -> int:
+    """Rank the robots by their distance from the pivot (`polish/near`); how many there are.
+
+    Only those that can become members are ranked.
+    """
+    count = 0
+    for robot in range(polish.plans.size):
+        record = int(polish.plans[robot])
+        if robot == pivot or record == NONE:
+            continue
+        farthest = Mean(1 << (31 + state.split), 0, 1)  # more than any term
+        if count == MOST_MEMBERS - 1:
+            farthest = Mean(int(polish.whole[count - 1]), int(polish.rest[count - 1]), int(polish.ticks[count - 1]))
+        mean = distance_below(state, record, int(polish.plans[pivot]), farthest)
+        if is_less(mean, farthest):
+            count = insert(polish, count, robot, mean)
+    return count
+
+
+@compiled
+def insert(polish: Polish, count: int, robot: int, rank: Mean) -> int:
+    """Insert a candidate behind those of its rank or less; as many are kept as can become members."""
+    place = count
+    while place > 0:
+        before = Mean(int(polish.whole[place - 1]), int(polish.rest[place - 1]), int(polish.ticks[place - 1]))
+        if not is_less(rank, before):
+            break
+        place -= 1
+    count = min(count + 1, MOST_MEMBERS - 1)
+    for k in range(count - 1, place, -1):
+        polish.candidates[k] = polish.candidates[k - 1]
+        polish.whole[k] = polish.whole[k - 1]
+        polish.rest[k] = polish.rest[k - 1]
+        polish.ticks[k] = polish.ticks[k - 1]
+    if place < count:
+        polish.candidates[place] = robot
+        polish.whole[place] = rank.whole
+        polish.rest[place] = rank.rest
+        polish.ticks[place] = rank.ticks
+    return count
+
+
+@compiled
+def choose_members(polish: Polish, pivot: int, candidates: int) -> int:
+    """Choose how many members there are, and which (`polish/members`)."""
+    size = min(LEAST_MEMBERS + choice(polish.stream, SIZES), polish.has_path)
+    polish.members[0] = pivot
+    count = 1
+    while count < size and count <= candidates:
+        polish.members[count] = polish.candidates[count - 1]
+        count += 1
+    if count == size:
+        return size
+    others = 0
+    for robot in range(polish.plans.size):
+        if polish.alone[robot] != NONE and not is_among(polish, count, robot):
+            polish.others[others] = robot
+            others += 1
+    for k in range(size - count):
+        other = k + choice(polish.stream, others - k)
+        robot = int(polish.others[other])
+        polish.others[other] = polish.others[k]
+        polish.members[count + k] = robot
+    return size
+
+
+@compiled
+def is_among(polish: Polish, count: int, robot: int) -> bool:
+    """Whether the robot is one of the first members."""
+    for k in range(count):  # noqa: SIM110 - no generators in compiled code
+        if polish.members[k] == robot:
+            return True
+    return False
+
+
+@compiled
+def draw_order(polish: Polish, size: int, is_repair: bool) -> None:
+    """Bring the members in the order in which they are planned (`polish/order`)."""
+    first = 0
+    if is_repair or choice(polish.stream, 2) == 0:
+        first = 1
+    for k in range(size - 1, first, -1):
+        other = first + choice(polish.stream, k - first + 1)
+        robot = int(polish.members[k])
+        polish.members[k] = polish.members[other]
+        polish.members[other] = robot
+
+
+@compiled
+def replan_members(state: State, polish: Polish, size: int) -> None:
+    """Plan the members in their order, and keep their new plans or go back to those before (`polish/kept`)."""
+    records = state.records
+    used = int(records.used[0])
+    used_visits = int(records.used[1])
+    used_expansions = int(records.used[2])
+    missing = 0
+    limit = 0
+    for k in range(size):
+        record = int(polish.plans[polish.members[k]])
+        polish.before[k] = record
+        if record == NONE:
+            missing += 1
+        else:
+            limit += cost_of(state, record)
+            withdraw(state, record)
+    planned = plan_members(state, polish, size, missing, limit)
+    if planned == size:
+        keep_members(polish, size)
+        return
+    for k in range(planned):
+        if polish.chosen[k] != NONE:
+            withdraw(state, int(polish.chosen[k]))
+    for k in range(size):
+        if polish.before[k] != NONE:
+            reserve(state, int(polish.before[k]))
+    records.used[0] = used
+    records.used[1] = used_visits
+    records.used[2] = used_expansions
+
+
+@compiled
+def plan_members(state: State, polish: Polish, size: int, missing: int, limit: int) -> int:
+    """Plan and reserve the members in their order; how many, `size` if their plans are to be kept.
+
+    They are, if fewer than `missing` are unplanned, or as many and the cost is not above the limit.
+    """
+    rest = 0
+    for k in range(size):
+        rest += int(polish.least[polish.members[k]])
+    unplanned = 0
+    cost = 0
+    for k in range(size):
+        robot = int(polish.members[k])
+        rest -= int(polish.least[robot])
+        record = find_plan(state, robot, NONE, 0, NEVER)
+        polish.chosen[k] = record
+        if record == NONE:
+            unplanned += 1
+        else:
+            cost += cost_of(state, record)
+        if unplanned > missing or (unplanned == missing and cost + rest > limit):
+            return k
+        if record != NONE:
+            reserve(state, record)
+    return size
+
+
+@compiled
+def keep_members(polish: Polish, size: int) -> None:
+    """Make the new plans of the members theirs, and put them behind the robots outside."""
+    count = 0
+    for k in range(int(polish.counts[QUEUED])):
+        robot = int(polish.queue[k])
+        if not is_among(polish, size, robot):
+            polish.queue[count] = robot
+            count += 1
+    for k in range(size):
+        robot = int(polish.members[k])
+        polish.plans[robot] = polish.chosen[k]
+        if polish.chosen[k] != NONE:
+            polish.queue[count] = robot
+            count += 1
+    polish.counts[QUEUED] = count

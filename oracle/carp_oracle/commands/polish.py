@@ -1,0 +1,89 @@
+"""`carproof polish`: improve a solution by planning neighbourhoods anew."""
+
+from pathlib import Path
+from time import perf_counter
+
+import click
+
+from carp_oracle.answer import Answer
+from carp_oracle.engines import ENGINES, engine_named, shortest_path_cost
+from carp_oracle.files import naming, read_instance_file, read_solution_file, refuse_two_standard_inputs
+from carp_oracle.options import examples, instance_argument, json_option, output_option, solution_argument
+from carp_oracle.progress import gap, polish_progress
+from carp_oracle.requests import sound_solution
+from carp_oracle.results import show_unplanned, write_result
+from carp_oracle.tables import print_table
+from carp_spec import Instance, Solution, check, total_cost, write_solution
+from carp_spec.polish_rules import ITERATIONS, last_round, require_polish_options
+
+COLUMNS = ("plans", "unplanned", "total cost", "bound", "gap", "rounds", "time")
+
+
+@click.command(
+    short_help="Improve plans that are there.",
+    epilog=examples(
+        "carproof polish town.json plans.json -o better.json",
+        "carproof polish town.json plans.json --seconds 5 -o better.json",
+        "carproof polish town.json plans.json --iterations 2000 --seed 7",
+    ),
+)
+@instance_argument
+@solution_argument
+@click.option("--iterations", type=int, help=f"How many rounds.  [default: {ITERATIONS}]", show_default=False)
+@click.option("--seconds", type=float, help="For how long, in place of a number of rounds.")
+@click.option("--seed", type=int, default=0, help="The seed of all choices.")
+@click.option("--engine", type=click.Choice(ENGINES), default="optimized", help="The planner to read, or to run.")
+@output_option
+@json_option
+def command(  # noqa: PLR0913 - one parameter for each argument and option
+    *,
+    instance: str,
+    solution: str,
+    iterations: int | None,
+    seconds: float | None,
+    seed: int,
+    engine: str,
+    output: Path | None,
+    as_json: bool,
+) -> Answer:
+    """Improve SOLUTION, plans for INSTANCE, round by round; robots without a plan get one, if it can be found.
+
+    A round takes out a few robots, plans them anew, and keeps what is not worse. Equal --iterations and --seed
+    give equal plans. All robots are planned from their release on: none is under way. The bound is the sum of
+    the shortest paths; no plans of all robots cost less.
+
+    Exit codes: 0 every robot has a plan, 1 some robot has none, 2 bad input.
+    """
+    refuse_two_standard_inputs(instance, solution)
+    require_polish_options(iterations, seconds, seed)
+    problem = read_instance_file(instance)
+    given = read_solution_file(solution)
+    with naming(solution):
+        before = sound_solution(problem, given)
+    bound = sum(shortest_path_cost(problem, robot.id) or 0 for robot in problem.robots)
+    played = 0
+    started = perf_counter()
+    with naming(instance), polish_progress(last_round(iterations, seconds), seconds, bound) as show:
+
+        def advance(rounds: int, unplanned: int, total: int) -> None:
+            nonlocal played
+            played = rounds
+            show(rounds, unplanned, total)
+
+        after = engine_named(engine).polish(
+            problem, before, iterations=iterations, seconds=seconds, seed=seed, advance=advance
+        )
+    time = perf_counter() - started
+    for violation in check(problem, after.plans):
+        raise AssertionError(violation)
+    write_result(write_solution(after), output, as_json)
+    if not as_json:
+        rows = [_row("given", problem, before, bound), _row("polished", problem, after, bound)]
+        print_table(COLUMNS, [[*rows[0], "", ""], [*rows[1], played, f"{time:.2f} s"]], numbers=COLUMNS[1:])
+        show_unplanned(problem, after, after.unplanned)
+    return Answer.of(not after.unplanned)
+
+
+def _row(name: str, instance: Instance, solution: Solution, bound: int) -> list[object]:
+    total = total_cost(instance, solution.plans)
+    return [name, len(solution.unplanned), total, bound, "-" if solution.unplanned else gap(total, bound)]

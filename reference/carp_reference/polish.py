@@ -1,0 +1,136 @@
+"""Polishing: a solution is improved by planning neighbourhoods anew, with the decisions of `polish/...`.
+
+A round takes out a pivot and robots that have to do with it, plans them again one after the other, and keeps what
+is not worse. Robots without a plan are tried first, so that polishing also repairs.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from time import perf_counter
+
+from carp_reference.problem import Problem, prepare
+from carp_reference.query import find_plan
+from carp_spec import Instance, Plan, RobotId, Solution, plan_cost, total_cost
+from carp_spec.neighbourhood_rules import distance
+from carp_spec.permutations import splitmix64
+from carp_spec.polish_rules import (
+    Kind,
+    by_distance,
+    drawn,
+    is_in_way,
+    is_kept,
+    kind_of,
+    last_round,
+    members_of,
+    order_of,
+    pivot_of,
+    polishable,
+    require_polish_options,
+    spans,
+    ticks_apart,
+)
+
+Plans = Mapping[RobotId, Plan]
+
+
+@dataclass(frozen=True, slots=True)
+class Polish:
+    """What stays the same in all rounds: `alone` has the plan that each robot has alone, if it has a path."""
+
+    problem: Problem
+    alone: Plans
+    stream: Iterator[int]
+
+
+def polish(
+    instance: Instance,
+    solution: Solution,
+    *,
+    iterations: int | None = None,
+    seconds: float | None = None,
+    seed: int = 0,
+    advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
+) -> Solution:
+    """Improve a solution for that many rounds or seconds; `advance` is told rounds, unplanned robots and total.
+
+    It ends earlier if no plan can be shorter. All robots are planned from their release on: none is under way. Equal
+    iterations and seed give an equal solution.
+    Raises `Refusal` for wrong options, and for a solution that breaks a rule.
+    """
+    require_polish_options(iterations, seconds, seed)
+    whole = polishable(instance, solution)
+    last = last_round(iterations, seconds)
+    started = perf_counter()
+    problem = prepare(instance, 0)
+    alone = {robot.id: plan for robot in instance.robots if (plan := find_plan(problem, (), robot.id)) is not None}
+    polishing = Polish(problem, alone, splitmix64(seed))
+    by_robot = {plan.robot: plan for plan in whole.plans}
+    plans: Plans = {robot: by_robot[robot] for robot in whole.order}
+    turn = 0
+    while turn != last and (seconds is None or perf_counter() - started < seconds):
+        better = _round(polishing, plans, turn)
+        if better is None:
+            break
+        plans = better
+        turn += 1
+        advance(turn, *_worth(instance, plans))
+    unplanned = tuple(robot.id for robot in instance.robots if robot.id not in plans)
+    return Solution(tuple(plans.values()), tuple(plans), unplanned)
+
+
+def _round(polishing: Polish, plans: Plans, turn: int) -> Plans | None:
+    """The plans after one round, in planning order; `None` if there is nothing to improve."""
+    everyone = [robot.id for robot in polishing.problem.instance.robots if robot.id in polishing.alone]
+    waiting = [robot for robot in everyone if robot not in plans]
+    delays = [_delay(polishing, plans, robot) for robot in everyone]
+    kind = kind_of(turn, len(waiting), sum(delays), polishing.stream)
+    if kind is None:
+        return None
+    weights = {"repair": [int(robot not in plans) for robot in everyone], "delayed": delays}
+    pivot = everyone[pivot_of(weights.get(kind, [int(robot in plans) for robot in everyone]), polishing.stream)]
+    candidates = _candidates(polishing, plans, kind, pivot)
+    members = order_of(members_of(pivot, candidates, everyone, polishing.stream), kind == "repair", polishing.stream)
+    changed = _replan(polishing.problem, plans, members)
+    instance = polishing.problem.instance
+    return changed if is_kept(_worth(instance, plans), _worth(instance, changed)) else plans
+
+
+def _delay(polishing: Polish, plans: Plans, robot: RobotId) -> int:
+    """How much longer the robot takes than alone."""
+    instance = polishing.problem.instance
+    if robot not in plans:
+        return 0
+    return plan_cost(instance, plans[robot]) - plan_cost(instance, polishing.alone[robot])
+
+
+def _candidates(polishing: Polish, plans: Plans, kind: Kind, pivot: RobotId) -> list[RobotId]:
+    """The robots that have to do with the pivot, the first to be taken out first."""
+    instance = polishing.problem.instance
+    others = [plans[robot.id] for robot in instance.robots if robot.id in plans and robot.id != pivot]
+    if kind == "near":
+        distances = [distance(instance, plans[pivot], other) for other in others]
+        return [others[place].robot for place in by_distance(distances)]
+    if kind == "contested":
+        visits = plans[pivot].visits
+        visit = visits[next(polishing.stream) % len(visits)]
+        apart = {other.robot: ticks for other in others if (ticks := ticks_apart(visit, other)) is not None}
+        return sorted(apart, key=apart.__getitem__)
+    is_own = kind == "delayed" and next(polishing.stream) % 2 == 1
+    wished = spans(instance.graph.successors, plans[pivot] if is_own else polishing.alone[pivot])
+    in_way = [other.robot for other in others if is_in_way(wished, other)]
+    return drawn(in_way, len(in_way), polishing.stream)
+
+
+def _replan(problem: Problem, plans: Plans, members: Sequence[RobotId]) -> Plans:
+    """The plans with those of the members made anew, in this order."""
+    changed = {robot: plan for robot, plan in plans.items() if robot not in members}
+    for robot in members:
+        plan = find_plan(problem, tuple(changed.values()), robot)
+        if plan is not None:
+            changed[robot] = plan
+    return changed
+
+
+def _worth(instance: Instance, plans: Plans) -> tuple[int, int]:
+    """Fewer unplanned robots are better, then a smaller total."""
+    return (len(instance.robots) - len(plans), total_cost(instance, tuple(plans.values())))

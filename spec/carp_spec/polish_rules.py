@@ -1,0 +1,231 @@
+"""The rules of polishing: a solution is improved round by round, `polish/...`.
+
+Each round takes out a few robots, the neighbourhood, plans them anew in a drawn order, and keeps what is not worse.
+Each predicate makes one decision of the round; planners call it, or are tested against it. A round draws its
+kind, its pivot, what its candidates need, its members and their order, one after the other.
+
+Polishing plans whole instances: robots are planned from their release on, and none is under way.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from itertools import islice
+from typing import Any, Literal, TypeAlias, TypeVar
+
+from carp_spec.check import judge
+from carp_spec.model import Instance, Plan, ResourceId, Solution, Visit
+from carp_spec.permutations import shuffle
+from carp_spec.planners import LARGEST_SEED
+from carp_spec.refusal import Refusal
+from carp_spec.rule import DESIGN, Fault, Rule, is_whole, rule
+
+T = TypeVar("T")
+Kind: TypeAlias = Literal["repair", "delayed", "contested", "near"]
+Span: TypeAlias = tuple[int, int | None]
+
+EIGHT_DELAYED: tuple[Kind, ...] = ("delayed",) * 8
+KINDS: tuple[Kind, ...] = (*EIGHT_DELAYED, "contested", "near")
+LEAST_MEMBERS = 4
+SIZES = 7
+ITERATIONS = 10_000
+LARGE_NEIGHBOURHOOD = "Li et al. 2021, MAPF-LNS"
+
+
+@rule(
+    "polish/draws",
+    "All choices of a polish come from the SplitMix64 stream of its seed, in the order in which they are made. A "
+    "choice among n is the next number mod n. To draw some of n things, the thing in place k = 0, 1, ... is swapped "
+    "with that in place k plus a choice among n - k; those in the first places are drawn, in that order.",
+    DESIGN,
+)
+def drawn(things: Sequence[T], count: int, stream: Iterator[int]) -> list[T]:
+    places = list(things)
+    for k in range(count):
+        other = k + next(stream) % (len(places) - k)
+        places[k], places[other] = places[other], places[k]
+    return places[:count]
+
+
+@rule(
+    "polish/kind",
+    "While a robot that has a path is unplanned, every other round, the first included, repairs, and so does each "
+    "round if no robot is delayed; if there are neither, the polish ends. Of the others a choice among 10 makes eight "
+    "(0 to 7) rounds for a delayed robot, one (8) for a contested resource, one (9) for near robots.",
+    f"{LARGE_NEIGHBOURHOOD}; {DESIGN}",
+)
+def kind_of(turn: int, waiting: int, delay: int, stream: Iterator[int]) -> Kind | None:
+    """`waiting` robots that have a path are unplanned; the delays sum up to `delay`."""
+    if waiting > 0 and (turn % 2 == 0 or delay == 0):
+        return "repair"
+    if delay == 0:
+        return None
+    return KINDS[next(stream) % len(KINDS)]
+
+
+@rule(
+    "polish/pivot",
+    "The first member, the pivot, is chosen by weight: it is the first robot, in the order of the instance, at which "
+    "the sum of the weights exceeds a choice among their sum. The weight is 1 of each unplanned robot that has a path "
+    "(repair), the delay, the cost less that of the plan alone, of each planned robot (delayed), or 1 of each planned "
+    "robot (contested, near).",
+    f"{LARGE_NEIGHBOURHOOD}; {DESIGN}",
+)
+def pivot_of(weights: Sequence[int], stream: Iterator[int]) -> int:
+    """The robot's place among the weights."""
+    left = next(stream) % sum(weights)
+    for place, weight in enumerate(weights):
+        left -= weight
+        if left < 0:
+            return place
+    raise AssertionError
+
+
+@rule(
+    "polish/members",
+    f"The neighbourhood has {LEAST_MEMBERS} robots and a choice among {SIZES} more, but at most all that have a path: "
+    "the pivot, then the first of the candidates, then, if these are too few, some drawn of the others that have a "
+    "path, in the order of the instance.",
+    DESIGN,
+)
+def members_of(pivot: T, candidates: Sequence[T], everyone: Sequence[T], stream: Iterator[int]) -> list[T]:
+    """Choose the size and the members; `everyone` is all robots that have a path, in the order of the instance."""
+    size = min(LEAST_MEMBERS + next(stream) % SIZES, len(everyone))
+    chosen = [pivot, *islice(candidates, size - 1)]
+    others = [each for each in everyone if each not in chosen]
+    return chosen + drawn(others, size - len(chosen), stream)
+
+
+def spans(successors: Mapping[ResourceId, Sequence[ResourceId]], plan: Plan) -> Mapping[ResourceId, Span]:
+    """The span of each resource that the plan visits or that a move leads to from there (`polish/way`)."""
+    found: dict[ResourceId, Span] = {}
+    for visit in plan.visits:
+        for resource in (visit.resource, *successors[visit.resource]):
+            first, last = found.get(resource, (visit.enter, visit.leave))
+            end = None if last is None or visit.leave is None else max(last, visit.leave)
+            found[resource] = (min(first, visit.enter), end)
+    return found
+
+
+@rule(
+    "polish/way",
+    "In the way of a plan is a robot with a stay, [enter, leave), in a resource whose span, [first, last], it meets: "
+    "first <= leave and enter <= last. The span of a resource is from the first enter to the last leave of the plan's "
+    "visits there and in resources with a move to it. The plan is the pivot's alone (repair; delayed, by a choice of "
+    "0 among 2) or its own (1). The candidates are the robots in its way, drawn.",
+    f"{LARGE_NEIGHBOURHOOD}; {DESIGN}",
+)
+def is_in_way(spans: Mapping[ResourceId, Span], other: Plan) -> bool:
+    return any(_meets(spans[visit.resource], visit) for visit in other.visits if visit.resource in spans)
+
+
+def _meets(span: Span, visit: Visit) -> bool:
+    first, last = span
+    return (visit.leave is None or first <= visit.leave) and (last is None or visit.enter <= last)
+
+
+@rule(
+    "polish/contested",
+    "A choice among the visits of the pivot's plan tells a resource and the tick at which it is entered. The "
+    "candidates are the other robots that visit the resource, by how many ticks earlier or later they enter it, at "
+    "the visit for which these are fewest; a tie goes to the earlier in the instance.",
+    f"{LARGE_NEIGHBOURHOOD}; {DESIGN}",
+)
+def ticks_apart(visit: Visit, other: Plan) -> int | None:
+    """How many ticks; `None` if the robot never visits the resource."""
+    ticks = [abs(each.enter - visit.enter) for each in other.visits if each.resource == visit.resource]
+    return min(ticks, default=None)
+
+
+@rule(
+    "polish/near",
+    "The candidates are all other robots that have a plan, by their distance from the pivot, "
+    "`neighbourhood/distance`; a tie goes to the earlier in the instance.",
+    "paper, Algorithm 1, line 7",
+)
+def by_distance(distances: Sequence[Fraction]) -> list[int]:
+    """The places, the nearest first."""
+    return sorted(range(len(distances)), key=distances.__getitem__)
+
+
+@rule(
+    "polish/order",
+    "The members are planned in the order in which they were chosen, with all but the pivot shuffled, in a repair and "
+    "by a choice of 0 among 2; by 1, all are shuffled. The shuffle is Fisher-Yates, as in `neighbourhood/orders`.",
+    DESIGN,
+)
+def order_of(members: Sequence[T], is_repair: bool, stream: Iterator[int]) -> tuple[T, ...]:
+    first = 1 if is_repair or next(stream) % 2 == 0 else 0
+    return (*members[:first], *shuffle(members[first:], stream))
+
+
+@rule(
+    "polish/kept",
+    "Each member is planned by CARP at tick 0 against the robots outside and the members before it; one that finds no "
+    "plan is unplanned. The new plans are kept if fewer robots are unplanned than before, or as many and the total is "
+    "not larger. The planning order is then that of the robots outside, followed by that of the members.",
+    DESIGN,
+)
+def is_kept(before: tuple[int, int], after: tuple[int, int]) -> bool:
+    """Each the number of unplanned robots and the total."""
+    return after <= before
+
+
+@rule(
+    "polish/options",
+    f"A polish has a number of rounds, iterations, a whole number of at least 0, or a time, seconds, a number above 0, "
+    f"or neither, which is {ITERATIONS} iterations; and a seed between 0 and 2^64 - 1.",
+    DESIGN,
+)
+def options_are_right(iterations: object, seconds: object, seed: object) -> Iterator[Fault]:
+    id = "polish/options"
+    if iterations is not None and seconds is not None:
+        yield Fault(id, "$.seconds", "there must be either iterations or seconds, not both")
+    if iterations is not None and not (is_whole(iterations) and iterations >= 0):
+        yield Fault(id, "$.iterations", f"the iterations must be a whole number of at least 0, not {iterations!r}")
+    if seconds is not None and not _is_time(seconds):
+        yield Fault(id, "$.seconds", f"the seconds must be a number above 0, not {seconds!r}")
+    if not (is_whole(seed) and 0 <= seed <= LARGEST_SEED):
+        yield Fault(id, "$.seed", f"the seed must be a whole number between 0 and {LARGEST_SEED}, not {seed!r}")
+
+
+def _is_time(seconds: object) -> bool:
+    return isinstance(seconds, int | float) and not isinstance(seconds, bool) and 0 < seconds < float("inf")
+
+
+def last_round(iterations: int | None, seconds: float | None) -> int | None:
+    """After how many rounds a polish ends at the latest; `None`: the time tells."""
+    return ITERATIONS if iterations is None and seconds is None else iterations
+
+
+def require_polish_options(iterations: object, seconds: object, seed: object) -> None:
+    """Raise `Refusal` for wrong options."""
+    for fault in options_are_right(iterations, seconds, seed):
+        raise Refusal("option", fault.path, fault.rule, fault.message)
+
+
+def polishable(instance: Instance, solution: Solution) -> Solution:
+    """The solution with every robot that it does not name as an unplanned one.
+
+    Raises `Refusal` with the first rule that the solution breaks.
+    """
+    named = {*solution.unplanned, *(plan.robot for plan in solution.plans)}
+    missing = [robot.id for robot in instance.robots if robot.id not in named]
+    whole = replace(solution, unplanned=(*solution.unplanned, *missing))
+    for violation in judge(instance, whole).violations:
+        raise Refusal("request", "$.plans", violation.rule, violation.message)
+    return whole
+
+
+POLISH_RULES: tuple[Rule[..., Any], ...] = (
+    drawn,
+    kind_of,
+    pivot_of,
+    members_of,
+    is_in_way,
+    ticks_apart,
+    by_distance,
+    order_of,
+    is_kept,
+    options_are_right,
+)

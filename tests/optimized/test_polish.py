@@ -1,0 +1,95 @@
+"""The optimised polish makes the reference's plans, visit for visit, and never worse ones."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import carp_optimized
+import carp_reference
+from carp_oracle.generate import Fleet, Grid, Range, Traits, grid_instance
+from carp_spec import Carp, Instance, Refusal, Solution, judge, total_cost
+from carp_verify.strategies import PlannedInstance, Sizes, planned_instances
+
+SIZES = Sizes(resources=8, robots=12)
+SEEDS = st.integers(0, 2**64 - 1)
+
+
+def both(instance: Instance, solution: Solution, iterations: int, seed: int) -> Solution:
+    """The polished solution, after a look at whether the two engines agree."""
+    last: list[tuple[int, int, int]] = []
+    readable = carp_reference.polish(
+        instance, solution, iterations=iterations, seed=seed, advance=lambda *told: last.append(told)
+    )
+    reference = last[-1:]
+    last.clear()
+    fast = carp_optimized.polish(
+        instance, solution, iterations=iterations, seed=seed, advance=lambda *told: last.append(told)
+    )
+    assert fast == readable
+    assert not reference or last[-1] == reference[0]
+    return fast
+
+
+def worth(instance: Instance, solution: Solution) -> tuple[int, int]:
+    return (len(instance.robots) - len(solution.plans), total_cost(instance, solution.plans))
+
+
+@given(planned_instances(SIZES), st.integers(0, 25), SEEDS)
+def test_both_engines_polish_alike_and_never_make_it_worse(
+    planned: PlannedInstance, iterations: int, seed: int
+) -> None:
+    polished = both(planned.instance, planned.solution, iterations, seed)
+    assert judge(planned.instance, polished).valid
+    assert worth(planned.instance, polished) <= worth(planned.instance, planned.solution)
+
+
+@pytest.mark.parametrize(
+    ("grid", "fleet", "traits"),
+    [
+        (Grid(8, 8, map=8), Fleet(robots=24, seed=1), Traits()),
+        (Grid(7, 7, map=20), Fleet(robots=16, seed=2, after_goal="park"), Traits()),
+        (
+            Grid(6, 6, map=10),
+            Fleet(robots=16, seed=3, distinct="none", release=Range(0, 9), pace=Range(1, 2)),
+            Traits(capacity=Range(1, 2), duration=Range(1, 3)),
+        ),
+    ],
+)
+def test_both_engines_polish_crowded_grids_alike(grid: Grid, fleet: Fleet, traits: Traits) -> None:
+    instance = grid_instance(grid, fleet, traits)
+    given = carp_optimized.plan(instance, Carp())
+    polished = both(instance, given, 120, 7)
+    assert judge(instance, polished).valid
+    assert worth(instance, polished) < worth(instance, given)
+
+
+def test_robots_without_a_plan_get_one() -> None:
+    instance = grid_instance(Grid(map=10), Fleet(seed=6))
+    given = carp_optimized.plan(instance, Carp())
+    assert given.unplanned
+    assert not carp_optimized.polish(instance, given, iterations=2000).unplanned
+
+
+def test_rounds_add_up_however_many_a_compiled_call_plays(monkeypatch: pytest.MonkeyPatch) -> None:
+    instance = grid_instance(Grid(10, 10), Fleet(robots=30, seed=5))
+    given = carp_optimized.plan(instance, Carp())
+    polished = carp_optimized.polish(instance, given, iterations=333, seed=9)
+    monkeypatch.setattr("carp_optimized.planners.ROUNDS", 7)
+    assert carp_optimized.polish(instance, given, iterations=333, seed=9) == polished
+
+
+def test_a_solution_that_breaks_a_rule_is_refused_by_it() -> None:
+    instance = grid_instance(Grid(3, 3), Fleet(robots=2, seed=1))
+    plans = carp_optimized.plan(instance, Carp())
+    broken = Solution((plans.plans[0],) * 2, plans.order)
+    for engine in (carp_reference, carp_optimized):
+        with pytest.raises(Refusal) as refused:
+            engine.polish(instance, broken, iterations=1)
+        assert refused.value.rule == "solution/covers"
+
+
+def test_polishing_for_a_time_ends() -> None:
+    instance = grid_instance(Grid(6, 6), Fleet(robots=12, seed=1))
+    given = carp_optimized.plan(instance, Carp())
+    for engine in (carp_reference, carp_optimized):
+        assert judge(instance, engine.polish(instance, given, seconds=0.01)).valid
