@@ -5,6 +5,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from functools import wraps
 from pathlib import Path
+from types import CodeType
 from typing import Any, ParamSpec, TypeVar, cast
 
 import numba
@@ -45,18 +46,21 @@ def entry(function: Callable[P, R]) -> Callable[P, R]:
         nonlocal is_prepared
         if not is_prepared:
             is_prepared = True
-            _prepare_cache(dispatcher, f"{function.__module__.rpartition('.')[2]}.{function.__qualname__}")
+            _prepare_cache(
+                dispatcher, function.__code__, f"{function.__module__.rpartition('.')[2]}.{function.__qualname__}"
+            )
         return cast("R", dispatcher(*[each.address if isinstance(each, Native) else each for each in arguments]))
 
     return call
 
 
-def _prepare_cache(dispatcher: Any, name: str) -> None:  # noqa: ANN401 - numba is untyped
-    """Say so where there is no machine code yet; forget code that is older than any source.
+def _prepare_cache(dispatcher: Any, code: CodeType, name: str) -> None:  # noqa: ANN401 - numba is untyped
+    """Say so where there is no machine code yet; forget code that is older than any source here or beside the function.
 
     Numba looks at the source of the function alone, not at those of the functions that it calls.
     """
-    newest = max(source.stat().st_mtime for source in Path(__file__).parent.glob("*.py"))
+    folders = {Path(__file__).parent, Path(code.co_filename).parent}
+    newest = max(source.stat().st_mtime for folder in folders for source in folder.glob("*.py"))
     cached = list(Path(dispatcher.stats.cache_path).glob(f"{name}-*.nbi"))
     for index in cached:
         if index.stat().st_mtime < newest:

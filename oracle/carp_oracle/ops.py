@@ -10,7 +10,7 @@ from typing import Any, TypeAlias, cast
 
 from carp_oracle.engines import Engine
 from carp_oracle.optima import optimum_document
-from carp_oracle.options import DEFAULT_LIMIT
+from carp_oracle.options import DEFAULT_LIMIT, DEFAULT_SECONDS
 from carp_oracle.protocol import VERSION, Request, fields_are_right, value_of, version_is_spoken
 from carp_oracle.requests import (
     inside,
@@ -24,6 +24,7 @@ from carp_oracle.results import query_document
 from carp_spec import Neighbourhood, Refusal, Solution, judge, planner_named
 from carp_spec.documents import solution_document, verdict_document
 
+ENDLESS = 2**53
 Result: TypeAlias = Any
 Handler: TypeAlias = Callable[[Request, Engine], Result]
 POLISH_OPTIONS = {"iterations", "seconds", "seed"}
@@ -106,6 +107,24 @@ def optimum(request: Request, engine: Engine) -> Result:
     return optimum_document(search(instance, limit))
 
 
+def bound(request: Request, engine: Engine) -> Result:
+    """Search for a lower bound on the total cost, with a certificate."""
+    from carp_verify.bound import lower_bound  # noqa: PLC0415 - a server that is not asked need not load it
+
+    del engine
+    instance = request.instance()
+    steps: int = request.take("steps", value_of(int), ENDLESS)
+    seconds: float = request.take("seconds", value_of(int | float), DEFAULT_SECONDS if steps == ENDLESS else ENDLESS)
+    request.end()
+    if not limit_is_positive(seconds):
+        message = f"it must be a number of seconds above 0, not {seconds}"
+        raise Refusal("request", "$.seconds", limit_is_positive.id, message)
+    if not limit_is_positive(steps):
+        raise Refusal("request", "$.steps", limit_is_positive.id, f"it must be a number above 0, not {steps}")
+    with inside("$.instance"):
+        return lower_bound(instance, seconds, steps)
+
+
 def stop(request: Request, engine: Engine) -> Result:
     """Say goodbye; `serve` ends after it."""
     del engine
@@ -121,6 +140,7 @@ OPS: Mapping[str, Handler] = {
     "add": add,
     "polish": polish,
     "optimum": optimum,
+    "bound": bound,
     "stop": stop,
 }
 

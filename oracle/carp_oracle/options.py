@@ -12,6 +12,7 @@ from carp_spec import FixedPaths, Neighbourhood, Planner, Shuffled, planner_name
 from carp_spec.planners import PLANNERS
 
 DEFAULT_LIMIT = 60
+DEFAULT_SECONDS = 10
 F = TypeVar("F", bound=Callable[..., Any])
 
 

@@ -35,7 +35,7 @@ def plans_are_sound(instance: Instance, solution: Solution) -> bool:
     return judge(instance, completed(instance, solution)).valid
 
 
-@rule("request/limit", "The limit of a search is a number of seconds above 0.", DESIGN)
+@rule("request/limit", "The limit of a search, in seconds or steps, is a number above 0.", DESIGN)
 def limit_is_positive(limit: float) -> bool:
     """Whether there is time to search."""
     return limit > 0

@@ -90,3 +90,12 @@ class QueryDocument(msgspec.Struct, frozen=True):
 def query_document(plan: Plan | None) -> QueryDocument:
     """The document of a query's result."""
     return QueryDocument(None if plan is None else visits_document(plan))
+
+
+class VerifiedBoundDocument(msgspec.Struct, frozen=True):
+    """The bound that a certificate proves, or null and where, by which rule and why it does not."""
+
+    bound: int | None
+    path: str | None
+    rule: str | None
+    reason: str | None

@@ -12,6 +12,7 @@ from carp_oracle.viewer.limits import VIEW_RULES
 from carp_spec import RULES, Rule
 from carp_spec.limits import LIMIT_RULES
 from carp_spec.polish_rules import POLISH_RULES
+from carp_verify.bound_rules import BOUND_RULES
 from carp_verify.optimum_rules import OPTIMUM_RULES
 
 ALL_RULES: tuple[Rule[..., Any], ...] = (
@@ -26,4 +27,5 @@ ALL_RULES: tuple[Rule[..., Any], ...] = (
     *PROGRAM_RULES,
     *VIEW_RULES,
     *OPTIMUM_RULES,
+    *BOUND_RULES,
 )

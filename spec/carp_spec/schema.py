@@ -9,6 +9,7 @@ from pathlib import Path
 
 import msgspec
 
+from carp_spec.bounds import BoundDocument
 from carp_spec.documents import InstanceDocument, SolutionDocument, VerdictDocument
 from carp_spec.vectors import VectorsDocument
 
@@ -18,6 +19,7 @@ DOCUMENTS: Mapping[str, type[msgspec.Struct]] = {
     "instance": InstanceDocument,
     "solution": SolutionDocument,
     "verdict": VerdictDocument,
+    "bound": BoundDocument,
     "vectors": VectorsDocument,
 }
 

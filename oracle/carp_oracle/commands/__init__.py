@@ -19,6 +19,8 @@ COMMANDS = (
     "conform",
     "optimum",
     "verify-proof",
+    "bound",
+    "verify-bound",
     "gap",
     "crosscheck",
     "bench",

@@ -1,0 +1,61 @@
+"""The document of a lower bound on the total cost, with all that is needed to check it: `carproof-bound/1`.
+
+`carp_verify` makes and checks it; its rules are `bound/...`.
+"""
+
+from hashlib import sha256
+from typing import Annotated, Final, Literal, TypeAlias
+
+import msgspec
+
+from carp_spec.documents import Positive, Tick, decode, write_instance
+from carp_spec.model import Instance, ResourceId, RobotId
+
+BOUND_FORMAT: Final = "carproof-bound/1"
+
+Price: TypeAlias = Annotated[int, msgspec.Meta(extra_json_schema={"minimum": 0})]
+
+
+class CutDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A group of robots whose costs add up to no less than `least`, and how much it counts, in parts of a tick.
+
+    The rest is the proof, of the group as an instance of its own: each robot's horizon and an order of the robots,
+    from which the formula of a smaller total is made, and a DRAT refutation of that formula.
+    """
+
+    robots: tuple[RobotId, ...]
+    least: int
+    multiplier: Price
+    horizons: tuple[int, ...]
+    order: tuple[int, ...]
+    refutation: str
+
+
+class BoundDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A lower bound on the total cost of plans for all robots that can reach their goals, and its certificate.
+
+    `instance` is the digest of the instance's document. Prices, multipliers and least costs are in parts of a tick,
+    `scale` of them. A price of `resources` is [resource, tick, price], one of `exchanges` [resource, other, tick,
+    price]; those not listed are 0, and so are all at or after the tick `horizon`. `robots` gives each robot's least
+    cost with prices, or null where no way leads to its goal.
+    """
+
+    format: Literal["carproof-bound/1"]
+    instance: str
+    bound: int
+    scale: Positive
+    horizon: Tick
+    resources: tuple[tuple[ResourceId, Tick, Price], ...]
+    exchanges: tuple[tuple[ResourceId, ResourceId, Tick, Price], ...]
+    cuts: tuple[CutDocument, ...]
+    robots: tuple[tuple[RobotId, int | None], ...]
+
+
+def digest(instance: Instance) -> str:
+    """The SHA-256 digest of the instance's document as carproof writes it."""
+    return sha256(write_instance(instance)).hexdigest()
+
+
+def read_bound(data: bytes) -> BoundDocument:
+    """Read the document of a bound; raises `Refusal` if it is malformed. Whether it is right, `carp_verify` says."""
+    return decode(data, BoundDocument, BOUND_FORMAT)

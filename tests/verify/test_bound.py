@@ -1,0 +1,272 @@
+"""Lower bounds by prices: they hold, they are checked, and tampering is refused."""
+
+import ast
+import subprocess
+import sys
+from collections.abc import Callable
+from itertools import pairwise, product
+from pathlib import Path
+
+import msgspec
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, Robot
+from carp_spec.bounds import BOUND_FORMAT, BoundDocument, digest, read_bound
+from carp_spec.documents import write
+from carp_spec.plan_rules import plan_cost
+from carp_verify import verify_bound as page
+from carp_verify.bound import Progress, lower_bound
+from carp_verify.joint_search import least_total_cost
+from carp_verify.smt import integers, truth, value_of
+from carp_verify.strategies import PlannedInstance, Sizes, instances, planned_instances
+from carp_verify.theorems.prices_bound_the_total import at_most_paid, paid
+from carp_verify.verify_bound import Search, Tariff, predecessors, verify_bound
+
+TINY = Sizes(resources=4, robots=3, capacity=2, duration=2, release=2, pace=2)
+SCALE = 4
+HORIZON = 6
+
+
+def crossing() -> Instance:
+    """Three robots meet in the middle cell of a plus, and a fourth cannot get anywhere."""
+    cells = tuple(Resource(name) for name in ("north", "east", "south", "west", "middle", "island"))
+    edges = tuple((name, "middle") for name in ("north", "east", "south", "west"))
+    ends = (("north", "south"), ("east", "west"), ("south", "north"))
+    robots = tuple(Robot(f"r{number}", *each) for number, each in enumerate(ends))
+    return Instance(ResourceGraph(cells, edges), robots)
+
+
+def completed(instance: Instance, certificate: BoundDocument) -> BoundDocument:
+    """The certificate with all that its prices prove."""
+    tariff = Tariff(instance, certificate)
+    before = predecessors(instance)
+    robots = tuple(
+        (robot.id, Search(tariff, robot, certificate.scale, before).least_cost()) for robot in instance.robots
+    )
+    parts = sum(least or 0 for _, least in robots) - tariff.worth
+    return msgspec.structs.replace(certificate, robots=robots, bound=-(-parts // certificate.scale))
+
+
+@st.composite
+def certificates(draw: st.DrawFn, instance: Instance) -> BoundDocument:
+    """Certificates with any prices at all, many of them bad."""
+    graph = instance.graph
+    ticks, prices = st.integers(0, HORIZON - 1), st.integers(1, 3 * SCALE)
+    places = st.sampled_from([resource.id for resource in graph.resources])
+    moves = [(source, target) for source in graph.index for target in graph.successors[source]]
+    both = [move for move in moves if graph.has_move(*reversed(move))]
+    resources = draw(st.dictionaries(st.tuples(places, ticks), prices, max_size=8))
+    exchanges = draw(st.dictionaries(st.tuples(st.sampled_from(both), ticks), prices, max_size=8)) if both else {}
+    certificate = BoundDocument(
+        format=BOUND_FORMAT,
+        instance=digest(instance),
+        bound=0,
+        scale=SCALE,
+        horizon=HORIZON,
+        resources=tuple((place, tick, price) for (place, tick), price in resources.items()),
+        exchanges=tuple((*pair, tick, price) for (pair, tick), price in exchanges.items()),
+        cuts=(),
+        robots=(),
+    )
+    return completed(instance, certificate)
+
+
+def payment(certificate: BoundDocument, plan: Plan) -> int:
+    """What a plan pays, tick by tick."""
+    ticks = range(certificate.horizon)
+    at = {
+        tick: visit.resource
+        for visit in plan.visits
+        for tick in ticks
+        if visit.enter <= tick and (visit.leave is None or tick < visit.leave)
+    }
+    moves = {(b.enter, a.resource, b.resource) for a, b in pairwise(plan.visits)}
+    stays = {(t, v.resource) for v in plan.visits for t in ticks if v.enter < t and (v.leave is None or t < v.leave)}
+    paid = sum(price for resource, tick, price in certificate.resources if at.get(tick) == resource)
+    for one, other, tick, price in certificate.exchanges:
+        pays = {(tick, one, other), (tick, other, one)} & moves or (tick, one) in stays
+        paid += price if pays else 0
+    return paid
+
+
+@settings(max_examples=600)
+@given(st.data(), planned_instances(Sizes(resources=4, robots=4, release=2, wait=1)))
+def test_whatever_the_prices_sound_plans_pay_no_more_than_they_are_worth_and_cost_no_less_than_the_least(
+    data: st.DataObject, planned: PlannedInstance
+) -> None:
+    instance, plans = planned.instance, planned.solution.plans
+    certificate = data.draw(certificates(instance))
+    verify_bound(instance, certificate)
+    least = dict(certificate.robots)
+    for plan in plans:
+        own = least[plan.robot]
+        assert own is not None
+        assert own <= SCALE * plan_cost(instance, plan) + payment(certificate, plan)
+    assert sum(payment(certificate, plan) for plan in plans) <= Tariff(instance, certificate).worth
+
+
+@settings(max_examples=150)
+@given(instances(TINY, least_robots=2))
+def test_a_bound_that_was_found_is_what_the_verifier_finds_and_at_most_the_optimum(instance: Instance) -> None:
+    seen: list[Progress] = []
+    certificate = lower_bound(instance, steps=40, on_step=seen.append)
+    assert verify_bound(instance, certificate) == certificate.bound
+    assert completed(instance, certificate) == certificate
+    assert certificate.bound >= seen[0].bound
+    best = least_total_cost(instance)
+    if best is not None:
+        assert certificate.bound <= best
+
+
+def test_prices_find_what_the_shortest_paths_miss() -> None:
+    instance = crossing()
+    seen: list[Progress] = []
+    certificate = lower_bound(instance, steps=200, on_step=seen.append)
+    assert (seen[0].bound, certificate.bound, least_total_cost(instance)) == (6, 9, 11)
+
+
+def test_the_same_steps_give_the_same_certificate() -> None:
+    assert write(lower_bound(crossing(), steps=30)) == write(lower_bound(crossing(), steps=30))
+
+
+def test_a_certificate_is_read_as_it_was_written() -> None:
+    certificate = lower_bound(crossing(), steps=30)
+    assert read_bound(write(certificate)) == certificate
+
+
+def test_a_robot_without_a_way_is_named_and_left_out() -> None:
+    crossed = crossing()
+    lost = Robot("lost", "north", "island")
+    instance = Instance(crossed.graph, (crossed.robots[0], lost))
+    certificate = lower_bound(instance, steps=30)
+    assert certificate.robots[1] == ("lost", None)
+    assert verify_bound(instance, certificate) == 2
+    for wrong in ((("r0", None), ("lost", None)), (certificate.robots[0], ("lost", 0))):
+        with pytest.raises(Refusal, match="bound/robots"):
+            verify_bound(instance, msgspec.structs.replace(certificate, robots=wrong))
+
+
+Tamper = Callable[[BoundDocument], BoundDocument]
+
+
+def change(**fields: object) -> Tamper:
+    return lambda certificate: msgspec.structs.replace(certificate, **fields)
+
+
+def reprice(price: object = None, tick: object = None, place: object = None) -> Tamper:
+    """Change the first price."""
+
+    def tamper(certificate: BoundDocument) -> BoundDocument:
+        first = certificate.resources[0]
+        new = (place or first[0], first[1] if tick is None else tick, first[2] if price is None else price)
+        return msgspec.structs.replace(certificate, resources=(new, *certificate.resources[1:]))
+
+    return tamper
+
+
+def exchange(*row: object) -> Tamper:
+    return lambda certificate: msgspec.structs.replace(certificate, exchanges=(row, *certificate.exchanges))
+
+
+def of_robot(more: int) -> Tamper:
+    """Claim more of the first robot, and of the bound."""
+
+    def tamper(certificate: BoundDocument) -> BoundDocument:
+        (robot, least), *rest = certificate.robots
+        bound = certificate.bound + more // certificate.scale
+        return msgspec.structs.replace(certificate, robots=((robot, (least or 0) + more), *rest), bound=bound)
+
+    return tamper
+
+
+@pytest.mark.parametrize(
+    ("tamper", "path", "rule", "reason"),
+    [
+        (change(instance="0" * 64), "$.instance", "bound/instance", "it is about another instance"),
+        (change(scale=3), "$.scale", "bound/scale", "must be a power of two, and is 3"),
+        (change(scale=0), "$.scale", "bound/scale", "and is 0"),
+        (change(scale=True), "$.scale", "bound/scale", "and is True"),
+        (change(scale=4.0), "$.scale", "bound/scale", r"and is 4\.0"),
+        (reprice(price=-1), "$.resources[0]", "bound/price", "-1 at . must be a price of at least 0"),
+        (reprice(price=1.5), "$.resources[0]", "bound/price", "1.5 at"),
+        (reprice(price=True), "$.resources[0]", "bound/price", "True at"),
+        (reprice(tick=99), "$.resources[0]", "bound/price", "at 99 must be .* at a tick below"),
+        (reprice(tick=-1), "$.resources[0]", "bound/price", "at -1 must be"),
+        (reprice(tick=1.0), "$.resources[0]", "bound/price", r"at 1\.0 must be"),
+        (reprice(place="moon"), "$.resources[0]", "bound/price", "moon must be a resource"),
+        (exchange("north", "moon", 1, 1), "$.exchanges[0]", "bound/price", "north and moon must be"),
+        (exchange("north", "east", 1, 1), "$.exchanges[0]", "bound/price", "with a move each way"),
+        (change(robots=()), "$.robots", "bound/robots", "must name each robot of the instance once"),
+        (lambda each: change(robots=each.robots[1:])(each), "$.robots", "bound/robots", "once, in its order"),
+        (lambda each: change(robots=each.robots[::-1])(each), "$.robots", "bound/robots", "once, in its order"),
+        (lambda each: change(robots=each.robots * 2)(each), "$.robots", "bound/robots", "once, in its order"),
+        (lambda each: change(resources=each.resources * 2)(each), None, "bound/once", "must have one price at tick"),
+        (of_robot(1 << 16), "$.robots[0]", "bound/robots", "robot r0 can have no more than"),
+        (lambda each: change(bound=each.bound + 1)(each), "$.bound", "bound/total", "the bound must be 9,"),
+        (lambda each: change(bound=each.bound - 1)(each), "$.bound", "bound/total", "and is 8"),
+        (change(bound=9.0), "$.bound", "bound/total", r"and is 9\.0"),
+        (change(horizon=10**12), "$.horizon", "bound/size", "would be"),
+    ],
+)
+def test_a_tampered_certificate_is_refused(tamper: Tamper, path: str | None, rule: str, reason: str) -> None:
+    instance = crossing()
+    certificate = lower_bound(instance, steps=200)
+    verify_bound(instance, certificate)
+    with pytest.raises(Refusal, match=reason) as refused:
+        verify_bound(instance, tamper(certificate))
+    assert refused.value.rule == rule
+    assert path in {None, refused.value.path}
+
+
+@pytest.mark.parametrize("price", ["1.5", "true", "1e3", '"1"', "null", "-1.0"])
+def test_a_document_with_anything_but_whole_numbers_is_malformed(price: str) -> None:
+    certificate = write(lower_bound(crossing(), steps=30)).decode()
+    before, after = certificate.split('"resources":[["middle",', 1)
+    tick, _, rest = after.split(",", 1)[0], *after.split("]", 1)
+    malformed = f'{before}"resources":[["middle",{tick},{price}]{rest}'
+    with pytest.raises(Refusal) as refused:
+        read_bound(malformed.encode())
+    assert (refused.value.path, refused.value.rule) == ("$.resources[0][2]", "document/shape")
+
+
+def test_the_verifier_shares_nothing_with_the_finder_and_loads_nothing_compiled() -> None:
+    names = {
+        name
+        for node in ast.walk(ast.parse(Path(page.__file__).read_text()))
+        for name in ([node.module] if isinstance(node, ast.ImportFrom) else [])
+    }
+    ours = {name for name in names if name is not None and name.startswith("carp_")}
+    assert ours == {
+        "carp_spec",
+        "carp_spec.bounds",
+        "carp_spec.rule",
+        "carp_verify.bound_rules",
+        "carp_verify.bound_cuts",
+    }
+    program = "import sys, carp_verify.verify_bound; print(*sys.modules)"
+    loaded = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True).stdout.split()
+    outside = {name.partition(".")[0] for name in loaded} - sys.stdlib_module_names
+    assert {name for name in outside if not name.startswith("_")} <= {
+        "carp_spec",
+        "carp_verify",
+        "msgspec",
+        "typing_extensions",
+    }
+    assert not {"carp_verify.bound", "carp_verify.price_search", "carp_verify.bound_cuts"} & set(loaded)
+
+
+def test_what_the_verifier_lets_robots_pay_is_what_the_theorem_says() -> None:
+    """A robot in a resource at a tick pays its price there once, and all of them at most price times capacity."""
+    occupies, (price, capacity) = truth("occupies"), integers("price capacity")
+    for value, most, enter, leave, tick in product(range(3), (1, 2), range(3), range(1, 4), range(3)):
+        graph = ResourceGraph((Resource("r", capacity=most), Resource("s")), ())
+        instance = Instance(graph, (Robot("robot", "r", "s"),))
+        certificate = BoundDocument(
+            BOUND_FORMAT, digest(instance), 0, SCALE, HORIZON, (("r", tick, value),), (), (), ()
+        )
+        tariff = Tariff(instance, certificate)
+        values = {"price": value, "capacity": most, "occupies": enter <= tick < leave}
+        assert tariff.stay("r", enter, leave) == value_of(paid(occupies, price), values) or leave <= enter
+        assert tariff.worth == value_of(at_most_paid(price, capacity), values)

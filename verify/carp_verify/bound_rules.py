@@ -1,0 +1,93 @@
+"""What a certificate of a lower bound must keep: `bound/...`."""
+
+from typing import Any
+
+from carp_spec import Rule
+from carp_spec.rule import DESIGN, is_whole, rule
+
+LARGEST_TABLE = 20_000_000
+
+
+@rule("bound/instance", "A certificate of a bound names the SHA-256 digest of its instance's document.", DESIGN)
+def is_about(named: str, digest: str) -> bool:
+    """Whether the digest is the instance's."""
+    return named == digest
+
+
+@rule("bound/scale", "The scale is a power of two: so many parts of a tick are counted as 1.", DESIGN)
+def is_scale(scale: object) -> bool:
+    """Whether it is a power of two."""
+    return is_whole(scale) and scale > 0 and scale & (scale - 1) == 0
+
+
+@rule(
+    "bound/price",
+    "A price is a whole number of at least 0, for a resource or a move with a move back, at a tick from 0 up to, not "
+    "including, the horizon.",
+    DESIGN,
+)
+def is_price(price: object, tick: object, horizon: int) -> bool:
+    """Whether price and tick are in their ranges."""
+    return is_whole(price) and price >= 0 and is_whole(tick) and 0 <= tick < horizon
+
+
+@rule("bound/once", "No price is given twice for the same place and tick.", DESIGN)
+def is_new(place: object, known: Any) -> bool:  # noqa: ANN401 - any collection
+    """Whether the place and tick have no price yet."""
+    return place not in known
+
+
+@rule(
+    "bound/robots",
+    "A certificate names each robot once, in the instance's order, with no more than the least of its weighted cost "
+    "and its prices; null just where no way leads to its goal.",
+    DESIGN,
+)
+def is_least(claimed: object, least: int | None) -> bool:
+    """Whether the claim is no more than the least cost."""
+    return claimed is None if least is None else is_whole(claimed) and claimed <= least
+
+
+@rule(
+    "bound/cut",
+    "A cut is a group of distinct robots, a whole multiplier of at least 0, and a refutation of a smaller total of the "
+    "group's costs; the multipliers of a robot's cuts are no more than the scale together.",
+    DESIGN,
+)
+def is_weight(scale: int, multipliers: int) -> bool:
+    """Whether the multipliers of a robot's cuts leave its cost a weight of at least 0."""
+    return multipliers <= scale
+
+
+@rule(
+    "bound/total",
+    "The bound is the sum of the robots' least costs and of the cuts' least totals by their multipliers, less the sum "
+    "of prices by capacities, divided by the scale and rounded up.",
+    DESIGN,
+)
+def is_rounded_up(bound: object, parts: int, scale: int) -> bool:
+    """Whether the bound is the sum, in whole ticks."""
+    return is_whole(bound) and bound == -(-parts // scale)
+
+
+@rule(
+    "bound/size",
+    f"Tables by resource and tick, or by robot and resource, have at most {LARGEST_TABLE} entries: they fit into "
+    "memory.",
+    DESIGN,
+)
+def table_fits(entries: int) -> bool:
+    """Whether the table is small enough."""
+    return entries <= LARGEST_TABLE
+
+
+BOUND_RULES: tuple[Rule[..., Any], ...] = (
+    is_about,
+    is_scale,
+    is_price,
+    is_new,
+    is_least,
+    is_weight,
+    is_rounded_up,
+    table_fits,
+)

@@ -1,0 +1,241 @@
+"""Checks the certificate of a lower bound: whole numbers, the standard library, and nothing of what found it.
+
+Why the bound holds: take any plans of all robots that break no rule together. What they pay in prices is at most the
+prices times the capacities (a row of prices and its capacity are below), and what each costs, weighted, together with
+what it pays, is at least the least that `least_cost` finds for it. With a cut, a part of its robots' costs is counted
+in the cut instead, where their sum is at least what the cut proves. The theorem is `prices_bound_the_total`.
+
+- A price of a resource r at a tick t is paid by all who are in r at t: at most the capacity of r, by `joint/capacity`.
+- An exchange price of (r, s) at t is paid by all who move from r to s or from s to r at t, and by all who are in r both
+  just before t and at t. No more of them than the capacity of r: by `joint/exchange` nobody makes one of the moves;
+  those who make the other are in r just before t, or at t, together with those who stay.
+- At the horizon the prices end, but plans need not: from there on a robot pays no more, so that its cheapest way to
+  the goal is a shortest one. Every plan is bounded, however late it comes.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from heapq import heappop, heappush
+from itertools import accumulate
+from typing import TypeAlias
+
+from carp_spec import Instance, Refusal, ResourceGraph, ResourceId, Robot, Rule
+from carp_spec.bounds import BoundDocument, digest
+from carp_spec.rule import is_whole
+from carp_verify.bound_rules import (
+    is_about,
+    is_least,
+    is_new,
+    is_price,
+    is_rounded_up,
+    is_scale,
+    is_weight,
+    table_fits,
+)
+
+Before: TypeAlias = Mapping[ResourceId, Sequence[ResourceId]]
+
+
+def verify_bound(instance: Instance, certificate: BoundDocument) -> int:
+    """The bound that the certificate proves of the instance; raises `Refusal` with what is wrong with it.
+
+    No plans of all robots that can reach their goals have a smaller total cost. Where one cannot, `robots` has null.
+    """
+    _require(is_about, is_about(certificate.instance, digest(instance)), "$.instance", "it is about another instance")
+    scale = certificate.scale
+    _require(is_scale, is_scale(scale), "$.scale", f"the scale must be a power of two, and is {scale!r}")
+    tariff = Tariff(instance, certificate)
+    weights, proved = _weights(instance, certificate)
+    if [robot for robot, _ in certificate.robots] != list(instance.robot):
+        raise Refusal("document", "$.robots", is_least.id, "it must name each robot of the instance once, in its order")
+    before = predecessors(instance)
+    parts = proved - tariff.worth
+    for position, (robot, (_, claimed)) in enumerate(zip(instance.robots, certificate.robots, strict=True)):
+        least = Search(tariff, robot, weights[position], before).least_cost()
+        message = f"robot {robot.id} can have no more than {least}, the least of its cost and prices, not {claimed!r}"
+        _require(is_least, is_least(claimed, least), f"$.robots[{position}]", message)
+        parts += claimed or 0
+    message = f"the bound must be {-(-parts // scale)}, the sum of all parts rounded up, and is {certificate.bound!r}"
+    _require(is_rounded_up, is_rounded_up(certificate.bound, parts, scale), "$.bound", message)
+    return certificate.bound
+
+
+def _require(rule: Rule[..., bool], kept: bool, path: str, message: str) -> None:
+    if not kept:
+        raise Refusal("document", path, rule.id, message)
+
+
+def _weights(instance: Instance, certificate: BoundDocument) -> tuple[Sequence[int], int]:
+    """What a tick costs each robot apart from its cuts, and what the cuts prove together, each by its multiplier."""
+    left = dict.fromkeys(instance.robot, certificate.scale)
+    proved = 0
+    for number, cut in enumerate(certificate.cuts):
+        path = f"$.cuts[{number}]"
+        message = f"the multiplier must be a whole number of at least 0, and is {cut.multiplier!r}"
+        _require(is_weight, is_whole(cut.multiplier) and cut.multiplier >= 0, f"{path}.multiplier", message)
+        for robot in cut.robots:
+            known = robot in left and cut.robots.count(robot) == 1
+            _require(is_weight, known, f"{path}.robots", f"it must name robots of the instance once, also {robot!r}")
+            left[robot] -= cut.multiplier
+            message = f"the multipliers of robot {robot} must add up to {certificate.scale} at most"
+            _require(is_weight, is_weight(0, -left[robot]), f"{path}.multiplier", message)
+        from carp_verify.bound_cuts import refuted  # noqa: PLC0415 - only a certificate with cuts needs a proof checker
+
+        reason = refuted(instance, cut)
+        _require(is_weight, reason is None, path, f"its proof does not hold: {reason}")
+        proved += cut.multiplier * cut.least
+    return list(left.values()), proved
+
+
+class Tariff:
+    """The prices of a certificate; `worth` is what all robots together pay at most."""
+
+    def __init__(self, instance: Instance, certificate: BoundDocument) -> None:
+        """Raises `Refusal` for a price that is none."""
+        self.instance = instance
+        self.horizon = certificate.horizon
+        self.worth = 0
+        self.moves: dict[tuple[ResourceId, ...], dict[int, int]] = {}
+        present: dict[ResourceId, dict[int, int]] = {}
+        across: dict[ResourceId, dict[int, int]] = {}
+        for place, tick, price in self._prices(certificate):
+            source = place[0]
+            if len(place) == 1:
+                present.setdefault(source, {})[tick] = price
+            else:
+                of_rows = across.setdefault(source, {})
+                of_rows[tick] = of_rows.get(tick, 0) + price
+                self.moves.setdefault(place, {})[tick] = price
+            self.worth += price * instance.graph.resource[source].capacity
+        size = self.horizon * len({*present, *across})
+        _require(table_fits, table_fits(size), "$.horizon", f"prices by resource and tick would be {size} numbers")
+        self.present = {resource: self._sums(prices) for resource, prices in present.items()}
+        self.across = {resource: self._sums(prices) for resource, prices in across.items()}
+
+    def _prices(self, certificate: BoundDocument) -> Iterator[tuple[tuple[ResourceId, ...], int, int]]:
+        """The prices with their places, checked: one resource, or the two of an exchange."""
+        rows: list[tuple[tuple[ResourceId, ...], int, int]] = [
+            ((resource,), tick, price) for resource, tick, price in certificate.resources
+        ]
+        pairs = [((source, target), tick, price) for source, target, tick, price in certificate.exchanges]
+        graph = self.instance.graph
+        known: set[tuple[tuple[ResourceId, ...], int]] = set()
+        for number, (place, tick, price) in enumerate([*rows, *pairs]):
+            path = f"$.resources[{number}]" if number < len(rows) else f"$.exchanges[{number - len(rows)}]"
+            message = f"{price!r} at {tick!r} must be a price of at least 0 at a tick below {self.horizon}"
+            _require(is_price, is_price(price, tick, self.horizon), path, message)
+            exists = place[0] in graph.index if len(place) == 1 else is_both_ways(graph, *place)
+            shown = " and ".join(map(str, place))
+            _require(is_price, exists, path, f"{shown} must be a resource, or two with a move each way")
+            _require(is_new, is_new((place, tick), known), path, f"{shown} must have one price at tick {tick}")
+            known.add((place, tick))
+            yield place, tick, price
+
+    def _sums(self, prices: Mapping[int, int]) -> Sequence[int]:
+        """What the prices before each tick add up to, up to the horizon."""
+        return [0, *accumulate(prices.get(tick, 0) for tick in range(self.horizon))]
+
+    def stay(self, resource: ResourceId, enter: int, leave: int) -> int:
+        """What a stay in [enter, leave) pays."""
+        paid = 0
+        for sums, first in ((self.present.get(resource), enter), (self.across.get(resource), enter + 1)):
+            if sums is not None and first < leave:
+                paid += sums[min(leave, self.horizon)] - sums[min(first, self.horizon)]
+        return paid
+
+    def move(self, source: ResourceId, target: ResourceId, tick: int) -> int:
+        """What a move at the tick pays."""
+        there, back = self.moves.get((source, target), {}), self.moves.get((target, source), {})
+        return there.get(tick, 0) + back.get(tick, 0)
+
+
+def is_both_ways(graph: ResourceGraph, source: ResourceId, target: ResourceId) -> bool:
+    """Whether moves lead from one to the other and back."""
+    return graph.has_move(source, target) and graph.has_move(target, source)
+
+
+class Search:
+    """A* for one robot, over the resources and the ticks at which it is free to leave them.
+
+    What remains is at least a shortest way's weighted ticks, and from the horizon on no more. Who leaves the system
+    with its goal (`vanish`) never gains by going on, as neither ticks nor prices are ever negative.
+    """
+
+    def __init__(self, tariff: Tariff, robot: Robot, weight: int, before: Before) -> None:
+        self.tariff = tariff
+        self.robot = robot
+        self.weight = weight
+        self.parks = tariff.instance.after_goal == "park"
+        self.duration = {resource: tariff.instance.duration(robot.id, resource) for resource in before}
+        self.rest = ticks_after_leaving(robot, self.duration, before)
+        self.queue: list[tuple[int, int, int, ResourceId | None, int]] = []
+
+    def least_cost(self) -> int | None:
+        """The least weighted cost plus prices of all plans of the robot alone, or `None` if it has none."""
+        start, release = self.robot.start, self.robot.release
+        if start == self.robot.goal:
+            self.arrive(release, 0)
+        if start != self.robot.goal or self.parks:
+            self.enter(start, release, 0)
+        settled: set[tuple[int, int]] = set()
+        while self.queue:
+            estimate, minus_tick, number, here, paid = heappop(self.queue)
+            if here is None or -minus_tick >= self.tariff.horizon:
+                return estimate
+            if (number, minus_tick) not in settled:
+                settled.add((number, minus_tick))
+                self.leave(here, -minus_tick, paid)
+        return None
+
+    def leave(self, here: ResourceId, tick: int, paid: int) -> None:
+        """Wait in a resource for a tick, or move on from it."""
+        waiting = self.tariff.stay(here, tick - 1, tick + 1) - self.tariff.stay(here, tick - 1, tick)
+        self.reach(here, tick + 1, paid + waiting)
+        for target in self.tariff.instance.graph.successors[here]:
+            moved = paid + self.tariff.move(here, target, tick)
+            if target == self.robot.goal:
+                self.arrive(tick, moved)
+            if target != self.robot.goal or self.parks:
+                self.enter(target, tick, moved)
+
+    def enter(self, resource: ResourceId, tick: int, paid: int) -> None:
+        """Stay in a resource for as long as it takes."""
+        ready = tick + self.duration[resource]
+        self.reach(resource, ready, paid + self.tariff.stay(resource, tick, ready))
+
+    def reach(self, resource: ResourceId, tick: int, paid: int) -> None:
+        """Be free to leave at the tick."""
+        if resource in self.rest:
+            estimate = paid + self.weight * (tick + self.rest[resource] - self.robot.release)
+            number = self.tariff.instance.graph.index[resource]
+            heappush(self.queue, (estimate, -tick, number, resource, paid))
+
+    def arrive(self, tick: int, paid: int) -> None:
+        """Enter the goal for the last time."""
+        leave = tick + self.duration[self.robot.goal]
+        last = self.tariff.stay(self.robot.goal, tick, max(leave, self.tariff.horizon) if self.parks else leave)
+        total = paid + last + self.weight * (tick - self.robot.release)
+        heappush(self.queue, (total, -tick, -1, None, total))
+
+
+def predecessors(instance: Instance) -> Before:
+    """The resources from which one move leads to a resource."""
+    before: dict[ResourceId, list[ResourceId]] = {resource: [] for resource in instance.graph.index}
+    for source, targets in instance.graph.successors.items():
+        for target in targets:
+            before[target].append(source)
+    return before
+
+
+def ticks_after_leaving(robot: Robot, duration: Mapping[ResourceId, int], before: Before) -> Mapping[ResourceId, int]:
+    """The least ticks from leaving a resource to entering the robot's goal, for those that lead there: Dijkstra."""
+    ticks: dict[ResourceId, int] = {}
+    queue = [(0, number, resource) for number, resource in enumerate(before[robot.goal])]
+    number = len(queue)
+    while queue:
+        rest, _, resource = heappop(queue)
+        if resource not in ticks:
+            ticks[resource] = rest
+            for source in before[resource]:
+                number += 1
+                heappush(queue, (rest + duration[resource], number, source))
+    return ticks
