@@ -3,9 +3,9 @@
 import sys
 from collections.abc import Callable
 from contextlib import suppress
-from functools import wraps
+from functools import cache, wraps
+from inspect import unwrap
 from pathlib import Path
-from types import CodeType
 from typing import Any, ParamSpec, TypeVar, cast
 
 import numba
@@ -46,27 +46,42 @@ def entry(function: Callable[P, R]) -> Callable[P, R]:
         nonlocal is_prepared
         if not is_prepared:
             is_prepared = True
-            _prepare_cache(
-                dispatcher, function.__code__, f"{function.__module__.rpartition('.')[2]}.{function.__qualname__}"
-            )
+            if not is_cached(call):
+                _forget(call)
+                say_that_it_compiles()
         return cast("R", dispatcher(*[each.address if isinstance(each, Native) else each for each in arguments]))
 
+    call.cache = Path(dispatcher.stats.cache_path)  # type: ignore[attr-defined]
     return call
 
 
-def _prepare_cache(dispatcher: Any, code: CodeType, name: str) -> None:  # noqa: ANN401 - numba is untyped
-    """Say so where there is no machine code yet; forget code that is older than any source here or beside the function.
+def is_cached(function: Callable[..., object]) -> bool:
+    """Whether an entry's machine code is on disk; its first call compiles it else.
 
-    Numba looks at the source of the function alone, not at those of the functions that it calls.
+    Code that is older than any source here or beside the function does not count: numba looks at the source of the
+    function alone, not at those of the functions that it calls.
     """
-    folders = {Path(__file__).parent, Path(code.co_filename).parent}
+    folders = {Path(__file__).parent, Path(unwrap(function).__code__.co_filename).parent}
     newest = max(source.stat().st_mtime for folder in folders for source in folder.glob("*.py"))
-    cached = list(Path(dispatcher.stats.cache_path).glob(f"{name}-*.nbi"))
-    for index in cached:
-        if index.stat().st_mtime < newest:
-            with suppress(OSError):
-                index.unlink()
-    if not any(index.is_file() for index in cached):
-        print(  # noqa: T201 - the first call takes long, and whoever waits shall know why
-            f"carproof compiles {name}, once for this installation ...", file=sys.stderr, flush=True
-        )
+    return any(index.stat().st_mtime >= newest for index in _indices(function))
+
+
+def _indices(function: Callable[..., object]) -> list[Path]:
+    """Numba's files about the machine code of an entry; none where compilation is switched off."""
+    cache: Path | None = getattr(function, "cache", None)
+    name = f"{function.__module__.rpartition('.')[2]}.{function.__qualname__}"
+    return [] if cache is None else list(cache.glob(f"{name}-*.nbi"))
+
+
+def _forget(function: Callable[..., object]) -> None:
+    """Remove old machine code, which numba would take for current."""
+    for index in _indices(function):
+        with suppress(OSError):
+            index.unlink()
+
+
+@cache
+def say_that_it_compiles() -> None:
+    """Tell whoever waits why it takes so long, once."""
+    message = "carproof compiles its planner, once for this installation; it takes about half a minute ..."
+    print(message, file=sys.stderr, flush=True)  # noqa: T201 - no command does this, so none can say it

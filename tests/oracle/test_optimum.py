@@ -68,8 +68,12 @@ def test_an_undecided_search_says_so_and_gives_its_bound(carproof: Run, tmp_path
 
 def test_an_undecided_search_tells_its_bound_and_whether_it_has_plans(carproof: Run, tmp_path: Path) -> None:
     path = tmp_path / "crowd.json"
-    for robots, map, known in ((36, 20, "no plans of all robots found yet"), (18, 0, "and the best found ")):
-        options = ["--width", 6, "--height", 6, "--robots", robots, "--map", map, "--seed", 2]
+    for robots, size, map, known in (
+        (48, 8, 20, "no plans of all robots found yet"),
+        (18, 6, 0, "and the best found "),
+    ):
+        options = ["--width", size, "--height", size, "--robots", robots, "--map", map, "--seed", 2]
+        options += ["--after-goal", "park"] if size == 8 else []
         assert carproof("generate", "grid", *options, "-o", path).code == 0
         outcome = carproof("optimum", path, "--limit", 2)
         assert outcome.code == 3

@@ -1,8 +1,11 @@
 import time
+from collections.abc import Iterator
+from itertools import count
 
 import pytest
 from hypothesis import given, settings
 
+from carp_oracle.generate import Fleet, Grid, grid_instance
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, judge
 from carp_verify import robot_clauses
 from carp_verify.joint_search import least_total_cost
@@ -80,18 +83,41 @@ def test_an_unsolvable_instance_is_proved_so_with_the_reason(instance: Instance,
     assert best.reason == reason
 
 
-def test_the_limit_is_kept_and_leaves_the_best_plan_and_a_bound() -> None:
+def clock_of(seconds_a_look: float) -> Iterator[int]:
+    """The nanoseconds that a clock tells which only goes on when it is looked at."""
+    return (round(look * seconds_a_look * 1_000_000_000) for look in count())
+
+
+def test_the_search_ends_with_the_first_look_at_the_clock_behind_the_limit() -> None:
     instance = turned_ring(9)
-    started = time.monotonic()
-    best = optimum(instance, 3)
-    assert time.monotonic() - started < 6
+    told: list[int] = []
+
+    def clock() -> int:
+        told.append(next(ticks))
+        return told[-1]
+
+    ticks = clock_of(0.01)
+    best = optimum(instance, 3, clock)
     assert not best.proved
+    assert [tick >= 3_000_000_000 for tick in told].count(True) <= 2
     shortest = sum(abs(8 - 2 * x) + abs(8 - 2 * y) for x in range(9) for y in range(9))
     assert best.lower >= shortest
-    if best.solution is not None:
-        assert judge(instance, best.solution).valid
-        assert best.cost is not None
-        assert best.cost >= best.lower
+
+
+@pytest.mark.parametrize("engine", ["reference", "optimized"])
+def test_an_undecided_search_leaves_the_best_plans_found_and_a_bound(
+    engine: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("carp_optimized.compiling.is_cached", lambda _: engine == "optimized")
+    instance = grid_instance(Grid(8, 8, 20, map_seed=1), Fleet(32, 1, "park"))
+    ticks = clock_of(0.1)
+    best = optimum(instance, 20, lambda: next(ticks))
+    assert (best.proved, best.reason) == (False, None)
+    assert best.solution is not None
+    assert best.cost is not None
+    verdict = judge(instance, best.solution)
+    assert (verdict.violations, verdict.unplanned, verdict.cost) == ((), 0, best.cost)
+    assert best.cost > best.lower > (best.shortest or 0)
 
 
 def test_a_formula_too_large_is_refused_with_the_limit_named(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,58 +1,107 @@
 """Plans of all robots that need not be the best, for a search that may not end in time.
 
 The robots are planned one after the other, the longest way first; then again and again, with those that found no
-plan moved to the front, or in a random order if all did.
+plan moved to the front, or in a random order if all did. Each is added by the neighbourhood planner of
+`carp_optimized`, which plans near robots again; where its code is not compiled yet, or its arrays do not hold the
+instance's numbers, by CARP of `carp_reference`, as compiling would take longer than many a limit.
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from typing import TypeAlias
 
-from carp_spec import Instance, Plan, ResourceId, RobotId, total_cost
+from carp_spec import Instance, Neighbourhood, Plan, Refusal, ResourceId, RobotId, total_cost
 from carp_spec.permutations import shuffle, splitmix64
 from carp_verify.solver import TimeOver
 
-ATTEMPTS = 30
+ATTEMPTS = 1000
+TOGETHER = 3
+STUBBORN = 20
+
+Attempt: TypeAlias = Callable[[Sequence[RobotId]], tuple[Plan, ...]]
 
 
 def plans_of_all(
-    instance: Instance, ticks_to_goal: Mapping[RobotId, Mapping[ResourceId, int]], check: Callable[[], None]
+    instance: Instance,
+    ticks_to_goal: Mapping[RobotId, Mapping[ResourceId, int]],
+    check: Callable[[], None],
+    enough: int = 0,
+    attempts: int = ATTEMPTS,
+    seed: int = 0,
 ) -> tuple[Plan, ...] | None:
-    """The cheapest plans of all robots found, or `None`; `check` is called before each query and may raise `TimeOver`.
+    """The cheapest plans of all robots found, or `None`; `check` is called before each robot and may raise `TimeOver`.
 
-    `ticks_to_goal` are those of `carp_reference.problem.Problem`.
+    `ticks_to_goal` are those of `carp_reference.problem.Problem`. A total of `enough` ends the search. After
+    `STUBBORN` failures in a row the order is shuffled too; another seed begins with another order.
     """
-    stream = splitmix64(0)
+    stream = splitmix64(seed)
     order = sorted(ticks_to_goal, key=lambda robot: -ticks_to_goal[robot].get(instance.robot[robot].start, 0))
+    if seed:
+        order = list(shuffle(order, stream))
+    attempt = _run(instance, check) or _read(instance, ticks_to_goal, check)
     best: tuple[Plan, ...] | None = None
+    failures = 0
     try:
-        for _ in range(ATTEMPTS):
-            plans = _planned_in(order, instance, ticks_to_goal, check)
+        for _ in range(attempts):
+            try:
+                plans = attempt(order)
+            except Refusal:
+                attempt = _read(instance, ticks_to_goal, check)
+                continue
             planned = {plan.robot for plan in plans}
-            if len(planned) < len(order):
+            failures = 0 if len(planned) == len(order) else failures + 1
+            if 0 < failures < STUBBORN:
                 order.sort(key=planned.__contains__)
                 continue
-            if best is None or total_cost(instance, plans) < total_cost(instance, best):
+            if failures == 0 and (best is None or total_cost(instance, plans) < total_cost(instance, best)):
                 best = plans
+                if total_cost(instance, best) <= enough:
+                    break
+            failures = 0
             order = list(shuffle(order, stream))
     except TimeOver:
         pass
     return best
 
 
-def _planned_in(
-    order: Sequence[RobotId],
-    instance: Instance,
-    ticks_to_goal: Mapping[RobotId, Mapping[ResourceId, int]],
-    check: Callable[[], None],
-) -> tuple[Plan, ...]:
-    """The plans of CARP in this order, without the robots that find none."""
+def _run(instance: Instance, check: Callable[[], None]) -> Attempt | None:
+    """The plans of the neighbourhood planner in an order, without the robots that find none; `None`: not at hand."""
+    from carp_optimized.compiling import is_cached  # noqa: PLC0415 - slow to load
+    from carp_optimized.fleet import Fleet  # noqa: PLC0415
+    from carp_optimized.neighbourhood import add_robot  # noqa: PLC0415
+
+    if not is_cached(add_robot):
+        return None
+    try:
+        fleet = Fleet(instance)
+    except Refusal:
+        return None
+
+    def attempt(order: Sequence[RobotId]) -> tuple[Plan, ...]:
+        fleet.clear()
+        for robot in order:
+            check()
+            fleet.add(fleet.index(robot), 0, Neighbourhood(m=TOGETHER))
+        return fleet.plans
+
+    return attempt
+
+
+def _read(
+    instance: Instance, ticks_to_goal: Mapping[RobotId, Mapping[ResourceId, int]], check: Callable[[], None]
+) -> Attempt:
+    """The plans of CARP in an order, without the robots that find none."""
     from carp_reference.problem import Problem  # noqa: PLC0415 - slow to load
     from carp_reference.query import find_plan  # noqa: PLC0415
 
     problem = Problem(instance, ticks_to_goal, 0)
-    plans: list[Plan] = []
-    for robot in order:
-        check()
-        plan = find_plan(problem, plans, robot)
-        if plan is not None:
-            plans.append(plan)
-    return tuple(plans)
+
+    def attempt(order: Sequence[RobotId]) -> tuple[Plan, ...]:
+        plans: list[Plan] = []
+        for robot in order:
+            check()
+            plan = find_plan(problem, plans, robot)
+            if plan is not None:
+                plans.append(plan)
+        return tuple(plans)
+
+    return attempt

@@ -17,8 +17,9 @@ Where no plan set exists, the search is told so by one of these facts:
 """
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from time import monotonic_ns
 
 from carp_spec import Instance, Plan, Solution, total_cost
 from carp_verify.clauses import Literal, Unary
@@ -30,8 +31,8 @@ from carp_verify.solver import Deadline, Solver, TimeOver
 CONFLICTS_TO_SHRINK = 900
 DELAY_OF_DOUBT = 20
 FEW_STATES = 1_000_000
-PART_BEFORE_HEURISTICS = 5
-PART_OF_HEURISTICS = 5
+PARTS = 5
+PARTS_BEFORE_HEURISTICS = (1, 3)
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,12 +62,12 @@ class Optimum:
     reason: str | None = None
 
 
-def optimum(instance: Instance, limit: float) -> Optimum:
+def optimum(instance: Instance, limit: float, clock: Callable[[], int] = monotonic_ns) -> Optimum:
     """Search for the optimum for at most `limit` seconds. Raises `Refusal` if the formula outgrows the memory.
 
-    What is proved does not depend on the clock: the same instance gives the same solution.
+    What is proved does not depend on the clock, which tells nanoseconds: the same instance gives the same solution.
     """
-    deadline = Deadline(limit)
+    deadline = Deadline(limit, clock)
     try:
         encoding = Encoding(instance, deadline.check)
     except TimeOver:
@@ -97,7 +98,7 @@ class _Search:
         self.solver = Solver(encoding.formula, self.look)
         self.delay = 0
         self.best: Sequence[Plan] | None = None
-        self.has_tried_heuristics = False
+        self.tries_of_heuristics = 0
         self.order: dict[int, None] = {}
         self.robot_of: dict[Literal, int] = {}
         self.sum_of: dict[Literal, tuple[Unary, int]] = {}
@@ -189,11 +190,14 @@ class _Search:
             self.sum_of[number[reached]] = (number, reached + 1)
 
     def look(self) -> None:
-        """Look at the clock. A long search stops once to plan with heuristics, lest it ends without any plan."""
-        if not self.has_tried_heuristics and self.deadline.is_past(PART_BEFORE_HEURISTICS):
-            self.has_tried_heuristics = True
+        """Look at the clock. A long search stops to plan with heuristics, and again if they find nothing."""
+        tries = self.tries_of_heuristics
+        parts = PARTS_BEFORE_HEURISTICS[tries:]
+        if self.best is None and parts and self.deadline.is_past(parts[0], PARTS):
+            self.tries_of_heuristics += 1
             ticks_to_goal = {robot.robot.id: robot.ticks_to_goal for robot in self.encoding.robots}
-            self.best = plans_of_all(self.instance, ticks_to_goal, self.deadline.part(PART_OF_HEURISTICS).check)
+            check = self.deadline.part(PARTS).check
+            self.best = plans_of_all(self.instance, ticks_to_goal, check, self.lower, seed=tries)
         self.deadline.check()
 
     @property

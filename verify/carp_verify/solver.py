@@ -16,24 +16,26 @@ class TimeOver(Exception):  # noqa: N818 - no error: the limit that the user gav
 class Deadline:
     """A moment some seconds from now."""
 
-    __slots__ = ("_end", "_start")
+    __slots__ = ("_clock", "_end", "_start")
 
-    def __init__(self, seconds: float) -> None:
-        self._start = monotonic_ns()
+    def __init__(self, seconds: float, clock: Callable[[], int] = monotonic_ns) -> None:
+        """Begin now; `clock` tells nanoseconds."""
+        self._clock = clock
+        self._start = clock()
         self._end = self._start + int(seconds * NANOSECONDS)
 
     def check(self) -> None:
         """Raise `TimeOver` if it has passed."""
-        if monotonic_ns() >= self._end:
+        if self._clock() >= self._end:
             raise TimeOver
 
-    def is_past(self, part: int) -> bool:
-        """Whether one part of so many, of the time until it, has gone by."""
-        return (monotonic_ns() - self._start) * part >= self._end - self._start
+    def is_past(self, parts: int, of: int) -> bool:
+        """Whether so many parts, of the time until it in equal parts, have gone by."""
+        return (self._clock() - self._start) * of >= (self._end - self._start) * parts
 
-    def part(self, part: int) -> "Deadline":
-        """A deadline after one part of so many of the same time, from now."""
-        return Deadline((self._end - self._start) / NANOSECONDS / part)
+    def part(self, of: int) -> "Deadline":
+        """A deadline after one of so many equal parts of the same time, from now."""
+        return Deadline((self._end - self._start) / NANOSECONDS / of, self._clock)
 
 
 class Solver:

@@ -1,0 +1,30 @@
+"""`python -m carp_optimized` compiles the planner, so that no later call has to; once done, it does nothing."""
+
+import numpy as np
+
+from carp_optimized import encoding
+from carp_optimized.fleet import Fleet
+from carp_optimized.recording import only
+from carp_spec import Instance, Neighbourhood, Resource, ResourceGraph, Robot, Shuffled
+
+
+def compile_all() -> None:
+    """Call each entry once."""
+    graph = ResourceGraph((Resource("a"), Resource("b"), Resource("c")), (("a", "b"), ("b", "c")))
+    instance = Instance(graph, (Robot("r", "a", "b"), Robot("s", "b", "c"), Robot("t", "c", "c", 9)), "vanish")
+    fleet = Fleet(instance)
+    fleet.greedy(lambda: None)
+    fleet.shuffled(Shuffled(2), range(2), lambda: None)
+    fleet.carp(range(2))
+    fleet.ticks_to_goal(0)
+    fleet.add(2, 0, Neighbourhood(m=2))
+    plans = fleet.plans
+    fleet.clear()
+    fleet.repeat_query(0, 1)
+    fleet.find(0, None, 0)
+    fleet.commit(plans)
+    only(encoding.no_records(1, 1, 1), np.zeros(0, np.int32))
+
+
+if __name__ == "__main__":
+    compile_all()
