@@ -11,13 +11,11 @@ from carp_oracle.requests import REQUEST_RULES
 from carp_oracle.viewer.limits import VIEW_RULES
 from carp_spec import RULES, Rule
 from carp_spec.limits import LIMIT_RULES
-from carp_spec.polish_rules import POLISH_RULES
 from carp_verify.bound_rules import BOUND_RULES
 from carp_verify.optimum_rules import OPTIMUM_RULES
 
 ALL_RULES: tuple[Rule[..., Any], ...] = (
     *RULES,
-    *POLISH_RULES,
     *LIMIT_RULES,
     *REQUEST_RULES,
     *GENERATE_RULES,

@@ -16,6 +16,7 @@ from carp_spec.neighbourhood_rules import (
 )
 from carp_spec.plan_rules import PLAN_RULES, is_plan_cost, is_total_cost, plan_keeps_history
 from carp_spec.planners import options_are_right
+from carp_spec.polish_rules import POLISH_RULES
 from carp_spec.query_rules import absence_is_true, expansion_key, plan_is_optimal, plan_is_sound
 from carp_spec.rule import Rule
 from carp_spec.windows import stay_fits, windows_are_free
@@ -43,6 +44,7 @@ RULES: tuple[Rule[..., Any], ...] = (
     neighbourhood_orders,
     replaces_best,
     next_trajectory,
+    *POLISH_RULES,
     plan_keeps_history,
     options_are_right,
 )

@@ -328,6 +328,81 @@ EXAMPLES: Mapping[str, Examples] = {
         (claim(WALK, STEP, WALK), claim(STEP, STEP, None)),
         (claim(STEP, STEP, WALK), claim(None, STEP, None)),
     ),
+    "polish/draws": Examples(
+        (claim(["c", "a"], "abc", 2, iter([2, 1])), claim([], "abc", 0, iter(()))),
+        (claim(["a", "c"], "abc", 2, iter([2, 1])), claim(["b", "a"], "abc", 2, iter([2, 1]))),
+    ),
+    "polish/kind": Examples(
+        (
+            claim("repair", 0, 1, 5, iter(())),
+            claim("repair", 1, 1, 0, iter(())),
+            claim("contested", 1, 1, 5, iter([18])),
+            claim(None, 2, 0, 0, iter(())),
+        ),
+        (claim("repair", 1, 1, 5, iter([0])), claim("near", 0, 0, 5, iter([8])), claim("delayed", 0, 1, 5, iter([0]))),
+    ),
+    "polish/pivot": Examples(
+        (claim(2, [2, 0, 3], iter([7])), claim(0, [2, 0, 3], iter([6]))),
+        (claim(1, [2, 0, 3], iter([2])), claim(2, [2, 0, 3], iter([1]))),
+    ),
+    "polish/members": Examples(
+        (
+            claim(["p", "c", "a", "b"], "p", "cabd", "abcdp", iter([0])),
+            claim(["p", "c", "b", "a"], "p", "c", "abcp", iter([6, 1, 0])),
+        ),
+        (
+            claim(["p", "a", "b", "c"], "p", "cabd", "abcdp", iter([0])),
+            claim(["p", "c"], "p", "c", "abcp", iter([0] * 3)),
+        ),
+    ),
+    "polish/way": Examples(
+        (
+            claim(True, {"b": (2, 4)}, plan_of("r", ("a", 0, 4), ("b", 4, 9))),
+            claim(True, {"b": (2, None)}, plan_of("r", ("b", 0, 2))),
+            claim(False, {"b": (2, 4)}, plan_of("r", ("b", 0, 1), ("a", 1, 5), ("b", 5, None))),
+        ),
+        (
+            claim(False, {"b": (2, 4)}, plan_of("r", ("b", 0, None))),
+            claim(True, {"b": (2, 4)}, plan_of("r", ("a", 0, 9), ("c", 9, 10))),
+        ),
+    ),
+    "polish/contested": Examples(
+        (
+            claim(1, WALK.visits[1], plan_of("r", ("b", 0, 1), ("c", 1, 7), ("b", 7, 8))),
+            claim(None, WALK.visits[1], plan_of("r", ("a", 0, 1))),
+        ),
+        (
+            claim(6, WALK.visits[1], plan_of("r", ("b", 0, 1), ("c", 1, 7), ("b", 7, 8))),
+            claim(0, WALK.visits[1], plan_of("r", ("a", 0, 1))),
+        ),
+    ),
+    "polish/near": Examples(
+        (claim([1, 0, 2], [Fraction(2), Fraction(1), Fraction(2)]), claim([], [])),
+        (claim([1, 2, 0], [Fraction(2), Fraction(1), Fraction(2)]), claim([0, 1], [Fraction(2), Fraction(1)])),
+    ),
+    "polish/order": Examples(
+        (
+            claim(("p", "b", "a"), "pab", True, iter([0])),
+            claim(("p", "b", "a"), "pab", False, iter([4, 0])),
+            claim(("b", "a", "p"), "pab", False, iter([1, 0, 1])),
+        ),
+        (claim(("b", "p", "a"), "pab", True, iter([0])), claim(("p", "a", "b"), "pab", False, iter([1, 0, 1]))),
+    ),
+    "polish/kept": Examples(
+        (example((1, 5), (0, 9)), example((0, 5), (0, 5)), example((0, 5), (0, 4))),
+        (example((0, 5), (1, 1)), example((0, 5), (0, 6))),
+    ),
+    "polish/options": Examples(
+        (example(None, None, 0), example(0, None, 2**64 - 1), example(None, 0.5, 7)),
+        (
+            example(1, 1, 0),
+            example(-1, None, 0),
+            example(True, None, 0),
+            example(None, 0, 0),
+            example(None, float("inf"), 0),
+            example(None, None, -1),
+        ),
+    ),
     "fleet/history": Examples(
         (
             example(SOLVED[0], SOLVED[0], 3),

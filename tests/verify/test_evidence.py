@@ -18,6 +18,7 @@ _TICKS = "spec/test_check.py::test_the_checker_agrees_with_the_rules_spelt_out_t
 _RULES = "verify/test_rules_as_properties.py"
 _TWINS = "reference/test_twins.py"
 _NEIGHBOURS = "reference/test_neighbourhood_properties.py"
+_POLISH = "spec/test_polish_rules.py"
 PROPERTIES: Mapping[str, str] = {
     "document/json": f"{_RULES}::test_a_document_cut_short_is_no_json",
     "document/format": f"{_RULES}::test_any_other_format_is_refused",
@@ -60,6 +61,16 @@ PROPERTIES: Mapping[str, str] = {
     "::test_sampled_orders_are_the_first_distinct_shuffles_of_the_stream",
     "neighbourhood/best": f"{_RULES}::test_the_best_of_all_candidates_is_the_first_of_the_cheapest",
     "neighbourhood/update": f"{_RULES}::test_a_trajectory_is_the_last_plan_that_was_found",
+    "polish/draws": f"{_POLISH}::test_some_are_drawn_as_all_are_and_each_once",
+    "polish/kind": f"{_POLISH}::test_rounds_repair_in_turn_and_end_when_nothing_is_left",
+    "polish/pivot": f"{_POLISH}::test_a_pivot_is_chosen_by_as_many_numbers_as_its_weight",
+    "polish/members": f"{_POLISH}::test_members_are_the_pivot_the_first_candidates_and_others",
+    "polish/way": f"{_POLISH}::test_in_the_way_is_who_is_near_between_the_first_tick_and_the_last",
+    "polish/contested": f"{_POLISH}::test_robots_that_cross_a_resource_are_apart_by_ticks",
+    "polish/near": f"{_POLISH}::test_near_robots_come_by_distance_and_equals_in_their_order",
+    "polish/order": f"{_POLISH}::test_an_order_has_each_member_once_and_a_repair_begins_with_the_pivot",
+    "polish/kept": f"{_POLISH}::test_what_is_kept_leaves_fewer_unplanned_or_as_many_at_no_larger_total",
+    "polish/options": f"{_POLISH}::test_options_are_numbers_within_their_bounds",
     "fleet/history": "spec/test_plan_rules.py::test_history_is_kept_if_the_robot_was_tick_by_tick_where_it_was",
     "planner/options": f"{_RULES}::test_options_are_whole_numbers_within_their_bounds",
 }

@@ -6,6 +6,7 @@ from carp_verify.theorems import MODULES, theorem_named
 
 _READING = "it says how a document is written; there is nothing about it to prove for all whole numbers"
 _DATA = "it is decided by looking at each entry once; its predicate is its own proof, and examples test it"
+_CHANCE = "it is a choice by numbers of a stream: which one is made decides how soon plans get better, not whether"
 
 WITHOUT_THEOREM: Mapping[str, str] = {
     "document/json": _READING,
@@ -33,6 +34,16 @@ WITHOUT_THEOREM: Mapping[str, str] = {
     "neighbourhood/nearest": "it is a choice: the least of given fractions, the first of equals",
     "neighbourhood/distance": "it is a definition; its integer square root is the standard library's",
     "neighbourhood/update": "it is a choice: which trajectories the next distances see",
+    "polish/draws": _CHANCE,
+    "polish/kind": _CHANCE,
+    "polish/pivot": _CHANCE,
+    "polish/members": _CHANCE,
+    "polish/way": "it is a choice: which robots are taken out; any choice of them is right",
+    "polish/contested": "it is a choice: which robots are taken out; any choice of them is right",
+    "polish/near": "it is a choice: which robots are taken out; any choice of them is right",
+    "polish/order": _CHANCE,
+    "polish/kept": "it is a comparison of pairs of numbers; that plans never get worse is tested round by round",
+    "polish/options": _DATA,
     "planner/options": _DATA,
 }
 

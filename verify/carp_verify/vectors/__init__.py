@@ -6,7 +6,17 @@ The cases are written by hand, what is expected of them too; `judging` is what c
 from collections.abc import Mapping, Sequence
 
 from carp_spec.vectors import Vector
-from carp_verify.vectors import documents, instances, neighbourhoods, optima, plans, queries, together, windows
+from carp_verify.vectors import (
+    documents,
+    instances,
+    neighbourhoods,
+    optima,
+    plans,
+    polishing,
+    queries,
+    together,
+    windows,
+)
 
 CASES: Mapping[str, Sequence[Vector]] = {
     **documents.CASES,
@@ -16,5 +26,6 @@ CASES: Mapping[str, Sequence[Vector]] = {
     **windows.CASES,
     **queries.CASES,
     **neighbourhoods.CASES,
+    **polishing.CASES,
     **optima.CASES,
 }

@@ -37,6 +37,19 @@ from carp_spec.neighbourhood_rules import (
 )
 from carp_spec.permutations import splitmix64
 from carp_spec.plan_rules import is_plan_cost, is_total_cost, plan_keeps_history
+from carp_spec.polish_rules import (
+    by_distance,
+    drawn,
+    is_in_way,
+    is_kept,
+    kind_of,
+    members_of,
+    options_are_right,
+    order_of,
+    pivot_of,
+    spans,
+    ticks_apart,
+)
 from carp_spec.query_rules import expansion_key
 from carp_spec.vectors import Fields, Vector
 from carp_spec.windows import Window, free_windows, stay_fits, windows_are_free
@@ -208,6 +221,48 @@ def _update(vector: Vector) -> Fields:
     return {"trajectory": {"robot": after.robot, "visits": visits}}
 
 
+def _draws(vector: Vector) -> Fields:
+    return {"drawn": drawn(vector.input["things"], vector.input["count"], splitmix64(vector.input["seed"]))}
+
+
+def _kind(vector: Vector) -> Fields:
+    turn, waiting, delay = (vector.input[name] for name in ("turn", "waiting", "delay"))
+    return {"kind": kind_of(turn, waiting, delay, splitmix64(vector.input["seed"]))}
+
+
+def _pivot(vector: Vector) -> Fields:
+    return {"pivot": pivot_of(vector.input["weights"], splitmix64(vector.input["seed"]))}
+
+
+def _members(vector: Vector) -> Fields:
+    pivot, candidates, everyone = (vector.input[name] for name in ("pivot", "candidates", "everyone"))
+    return {"members": members_of(pivot, candidates, everyone, splitmix64(vector.input["seed"]))}
+
+
+def _way(vector: Vector) -> Fields:
+    plan, other = (_plan(each["robot"], each["visits"]) for each in (vector.input["plan"], vector.input["other"]))
+    return {"in_way": is_in_way(spans(vector.read_instance().graph.successors, plan), other)}
+
+
+def _contested(vector: Vector) -> Fields:
+    other = _plan(vector.input["other"]["robot"], vector.input["other"]["visits"])
+    return {"apart": ticks_apart(Visit(*vector.input["visit"]), other)}
+
+
+def _near(vector: Vector) -> Fields:
+    return {"order": by_distance([Fraction(*each) for each in vector.input["distances"]])}
+
+
+def _order(vector: Vector) -> Fields:
+    order = order_of(vector.input["members"], vector.input["repair"], splitmix64(vector.input["seed"]))
+    return {"order": [*order]}
+
+
+def _kept(vector: Vector) -> Fields:
+    before, after = ((each[0], each[1]) for each in (vector.input["before"], vector.input["after"]))
+    return {"kept": is_kept(before, after)}
+
+
 _ANSWERED: Mapping[str, Callable[[Vector], Fields]] = {
     "window/free": _free,
     "query/ties": _ties,
@@ -218,6 +273,16 @@ _ANSWERED: Mapping[str, Callable[[Vector], Fields]] = {
     "neighbourhood/orders": _orders,
     "neighbourhood/best": lambda vector: {"replaces": replaces_best(**vector.input)},
     "neighbourhood/update": _update,
+    "polish/draws": _draws,
+    "polish/kind": _kind,
+    "polish/pivot": _pivot,
+    "polish/members": _members,
+    "polish/way": _way,
+    "polish/contested": _contested,
+    "polish/near": _near,
+    "polish/order": _order,
+    "polish/kept": _kept,
+    "polish/options": lambda vector: {"right": not [*options_are_right(**vector.input)]},
 }
 
 
