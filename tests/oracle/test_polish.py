@@ -71,6 +71,18 @@ def test_plans_that_break_a_rule_are_refused_by_it(carproof: Run, tmp_path: Path
     assert "[joint/capacity]" in outcome.stderr
 
 
+def test_the_gap_is_that_of_a_certificate_which_is_verified(carproof: Run, tmp_path: Path) -> None:
+    files = write(tmp_path, instance=TWO, late=LATE)
+    certificate = tmp_path / "certificate"
+    assert carproof("bound", files[0], "--steps", "0", "-o", certificate).code == 0
+    outcome = carproof("polish", *files, "--iterations", "0", "--bound", certificate)
+    assert outcome.stdout.splitlines()[2].split() == ["given", "0", "7", "5", "40.00", "%"]
+    certificate.write_text(certificate.read_text().replace('"bound":5', '"bound":6'))
+    refused = carproof("polish", *files, "--iterations", "0", "--bound", certificate)
+    assert refused.code == 2
+    assert "$.bound" in refused.stderr
+
+
 def test_the_op_gives_a_solution() -> None:
     response, _ = respond(line(id=1, op="polish", instance=TWO, solution=LATE, iterations=9), engine_named("reference"))
     assert [plan.robot for plan in response.result.plans] == list(response.result.order)

@@ -7,7 +7,14 @@ import click
 
 from carp_oracle.answer import Answer
 from carp_oracle.engines import ENGINES, engine_named, shortest_path_cost
-from carp_oracle.files import naming, read_instance_file, read_solution_file, refuse_two_standard_inputs
+from carp_oracle.files import (
+    InputFile,
+    naming,
+    read_bytes,
+    read_instance_file,
+    read_solution_file,
+    refuse_two_standard_inputs,
+)
 from carp_oracle.options import examples, instance_argument, json_option, output_option, solution_argument
 from carp_oracle.progress import gap, polish_progress
 from carp_oracle.requests import sound_solution
@@ -25,6 +32,7 @@ COLUMNS = ("plans", "unplanned", "total cost", "bound", "gap", "rounds", "time")
         "carproof polish town.json plans.json -o better.json",
         "carproof polish town.json plans.json --seconds 5 -o better.json",
         "carproof polish town.json plans.json --iterations 2000 --seed 7",
+        "carproof polish town.json plans.json --bound certificate.json",
     ),
 )
 @instance_argument
@@ -32,6 +40,7 @@ COLUMNS = ("plans", "unplanned", "total cost", "bound", "gap", "rounds", "time")
 @click.option("--iterations", type=int, help=f"How many rounds.  [default: {ITERATIONS}]", show_default=False)
 @click.option("--seconds", type=float, help="For how long, in place of a number of rounds.")
 @click.option("--seed", type=int, default=0, help="The seed of all choices.")
+@click.option("--bound", type=InputFile(), help="The certificate of a lower bound, of `carproof bound`.")
 @click.option("--engine", type=click.Choice(ENGINES), default="optimized", help="The planner to read, or to run.")
 @output_option
 @json_option
@@ -42,6 +51,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     iterations: int | None,
     seconds: float | None,
     seed: int,
+    bound: str | None,
     engine: str,
     output: Path | None,
     as_json: bool,
@@ -49,21 +59,21 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     """Improve SOLUTION, plans for INSTANCE, round by round; robots without a plan get one, if it can be found.
 
     A round takes out a few robots, plans them anew, and keeps what is not worse. Equal --iterations and --seed
-    give equal plans. All robots are planned from their release on: none is under way. The bound is the sum of
-    the shortest paths; no plans of all robots cost less.
+    give equal plans. All robots are planned from their release on: none is under way. The bound, which no plans
+    of all robots are below, is the sum of the shortest paths, or that of --bound, which is verified first.
 
     Exit codes: 0 every robot has a plan, 1 some robot has none, 2 bad input.
     """
-    refuse_two_standard_inputs(instance, solution)
+    refuse_two_standard_inputs(instance, solution, bound or "")
     require_polish_options(iterations, seconds, seed)
     problem = read_instance_file(instance)
     given = read_solution_file(solution)
     with naming(solution):
         before = sound_solution(problem, given)
-    bound = sum(shortest_path_cost(problem, robot.id) or 0 for robot in problem.robots)
+    least = bound_of(problem, bound)
     played = 0
     started = perf_counter()
-    with naming(instance), polish_progress(last_round(iterations, seconds), seconds, bound) as show:
+    with naming(instance), polish_progress(last_round(iterations, seconds), seconds, least) as show:
 
         def advance(rounds: int, unplanned: int, total: int) -> None:
             nonlocal played
@@ -78,10 +88,22 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
         raise AssertionError(violation)
     write_result(write_solution(after), output, as_json)
     if not as_json:
-        rows = [_row("given", problem, before, bound), _row("polished", problem, after, bound)]
+        rows = [_row("given", problem, before, least), _row("polished", problem, after, least)]
         print_table(COLUMNS, [[*rows[0], "", ""], [*rows[1], played, f"{time:.2f} s"]], numbers=COLUMNS[1:])
         show_unplanned(problem, after, after.unplanned)
     return Answer.of(not after.unplanned)
+
+
+def bound_of(instance: Instance, certificate: str | None) -> int:
+    """What all plans together cost at least: by the certificate, if there is one, else by the shortest paths."""
+    if certificate is None:
+        return sum(shortest_path_cost(instance, robot.id) or 0 for robot in instance.robots)
+    from carp_spec.bounds import read_bound  # noqa: PLC0415 - only for those who have a certificate
+    from carp_verify.verify_bound import verify_bound  # noqa: PLC0415
+
+    data = read_bytes(certificate)
+    with naming(certificate):
+        return verify_bound(instance, read_bound(data))
 
 
 def _row(name: str, instance: Instance, solution: Solution, bound: int) -> list[object]:
