@@ -6,7 +6,7 @@ export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 .DELETE_ON_ERROR:
-.PHONY: install demo test nightly coverage mutation conform lint format gap optimum-figures generated clean
+.PHONY: install demo test nightly coverage mutation conform lint format gap optimum-figures experiments-page generated clean
 
 install: .venv/installed
 
@@ -37,6 +37,10 @@ gap: install
 # Measure how long the search for an optimum takes, and put the table into verify/README.md; takes up to five minutes.
 optimum-figures: install
 	$(BIN)/python -m carp_oracle.optimum_table
+
+# Put the results of stored runs, in experiments/results, into experiments/README.md.
+experiments-page: install
+	$(BIN)/python -m carp_experiments.page
 
 generated: install
 	$(BIN)/python -m carp_spec.schema

@@ -7,6 +7,7 @@ neighbourhood planner adds one. Times are of the processor, on a fleet that stay
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from statistics import fmean
 from time import thread_time_ns
 from typing import TYPE_CHECKING
 
@@ -112,7 +113,7 @@ def time_cases(assignments: int, maps: Sequence[int], robots: int) -> tuple[Time
 
 @dataclass(frozen=True, slots=True)
 class Time:
-    """The mean milliseconds of an algorithm at the k-th robot, and their ratio to those of CARP in the same case."""
+    """The mean milliseconds of an algorithm at the k-th robot, and their ratio to the mean of CARP."""
 
     algorithm: str
     k: int
@@ -129,15 +130,13 @@ class TimeRow(msgspec.Struct, frozen=True):
 def time_report(rows: Iterable[Row]) -> Report:
     """A table for the 50th and 100th robot (or half of them and all) beside the paper's, and a figure over k."""
     times: dict[tuple[str, int], list[float]] = defaultdict(list)
-    ratios: dict[tuple[str, int], list[float]] = defaultdict(list)
     for row in rows:
-        measured = msgspec.convert(row, TimeRow, strict=False).measured
-        for name, by_k in measured.items():
+        for name, by_k in msgspec.convert(row, TimeRow, strict=False).measured.items():
             for k, nanoseconds in by_k.items():
                 times[name, k].append(nanoseconds / 1e6)
-                ratios[name, k].append(nanoseconds / measured["CARP"][k])
+    carp = {k: fmean(values) for (name, k), values in times.items() if name == "CARP"}
     summary = tuple(
-        Time(name, k, mean_interval(values), mean_interval(ratios[name, k]))
+        Time(name, k, mean_interval(values), mean_interval([value / carp[k] for value in values]))
         for (name, k), values in sorted(times.items())
     )
     lines = {name: [(each.k, each.milliseconds) for each in summary if each.algorithm == name] for name in PAPER}
@@ -162,7 +161,7 @@ def time_table(summary: Sequence[Time]) -> Table:
             each = by_place[name, k]
             cells += [spread(each.milliseconds), spread(each.ratio), f"{paper[place] / PAPER['CARP'][place]:.1f}"]
         rows.append(tuple(cells))
-    title = "Time to plan when the k-th robot comes, in milliseconds and as a ratio to CARP, with 95 % intervals"
+    title = "Time to plan when the k-th robot comes, in milliseconds and as a ratio to CARP's mean, with 95 % intervals"
     return Table("time", title, tuple(columns), tuple(rows), tuple(columns[1:]))
 
 

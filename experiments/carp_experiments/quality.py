@@ -6,6 +6,7 @@
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from statistics import fmean
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -39,7 +40,7 @@ ALGORITHMS: Mapping[str, Planner] = {
     "Proposed_4 + CARP100": Neighbourhood(m=4, baseline=False, fallback=100),
 }
 BEFORE_FALLBACK = {"Proposed_4 + CARP100": "Proposed_4"}
-RIVALS = ("CARP", "CARP10", "CARP100")
+RIVALS = ("CARP", "CARP10", "CARP100", "Proposed_10")
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,18 +142,26 @@ class Summary:
 
 @dataclass(frozen=True, slots=True)
 class Saving:
-    """By how much an algorithm's total is smaller than a rival's, over the assignments on which neither fails."""
+    """By how much an algorithm's total is smaller than a rival's, over the cases on which neither fails.
 
-    map: int
+    Over all maps (`map` is `None`), the interval is that of the assignments' means over their maps. `total` is the
+    rival's mean total in these cases.
+    """
+
+    map: int | None
     algorithm: str
     rival: str
-    assignments: int
+    cases: int
     saving: Interval
+    total: float
 
 
 @dataclass(frozen=True, slots=True)
 class FailureDifference:
-    """How much more often an algorithm fails than a rival, over all maps and assignments, as a share."""
+    """How much more often an algorithm fails than a rival, over all maps, as a share.
+
+    The interval is that of the assignments' means over their maps.
+    """
 
     algorithm: str
     rival: str
@@ -191,11 +200,12 @@ def summarise(rows: Iterable[Row], robots: int = ROBOTS) -> QualitySummary:
         measured = msgspec.convert(row, QualityRow)
         by_map[measured.map].append(measured)
     maps = sorted(by_map.items())
-    algorithms = [summary_of(map, name, each, robots) for map, each in maps for name in ALGORITHMS]
-    savings = [saving for map, each in maps for saving in savings_on(map, each, robots)]
     everything = [row for _, each in maps for row in each]
+    algorithms = [summary_of(map, name, each, robots) for map, each in maps for name in ALGORITHMS]
+    places: list[tuple[int | None, list[QualityRow]]] = [*maps, (None, everything)]
+    savings = [saving for map, each in places for saving in savings_on(map, each, robots)]
     failures = [failure_difference(name, rival, everything, robots) for name, rival in pairs_of_rivals()]
-    assignments = max((len(each) for each in by_map.values()), default=0)
+    assignments = len({row.assignment for row in everything})
     return QualitySummary(robots, assignments, tuple(algorithms), tuple(savings), tuple(failures))
 
 
@@ -213,16 +223,28 @@ def pairs_of_rivals() -> Iterator[tuple[str, str]]:
         yield from ((name, rival) for rival in RIVALS if rival != name)
 
 
-def savings_on(map: int, rows: Sequence[QualityRow], robots: int) -> Iterator[Saving]:
-    """The savings on a map, where there are assignments on which neither fails."""
+def savings_on(map: int | None, rows: Sequence[QualityRow], robots: int) -> Iterator[Saving]:
+    """The savings on a map, or on all, where there are cases on which neither fails."""
     for name, rival in pairs_of_rivals():
-        both = [(row.total(name, robots), row.total(rival, robots)) for row in rows]
-        saved = [theirs - ours for ours, theirs in both if ours is not None and theirs is not None]
+        saved: dict[int, list[int]] = defaultdict(list)
+        totals = []
+        for row in rows:
+            ours, theirs = row.total(name, robots), row.total(rival, robots)
+            if ours is not None and theirs is not None:
+                saved[row.assignment].append(theirs - ours)
+                totals.append(theirs)
         if saved:
-            yield Saving(map, name, rival, len(saved), mean_interval(saved))
+            yield Saving(map, name, rival, len(totals), interval_of_means(saved.values()), fmean(totals))
 
 
 def failure_difference(name: str, rival: str, rows: Sequence[QualityRow], robots: int) -> FailureDifference:
     """How much more often an algorithm fails than a rival, on the same assignments."""
-    more = [(row.total(name, robots) is None) - (row.total(rival, robots) is None) for row in rows]
-    return FailureDifference(name, rival, mean_interval(more))
+    more: dict[int, list[int]] = defaultdict(list)
+    for row in rows:
+        more[row.assignment].append((row.total(name, robots) is None) - (row.total(rival, robots) is None))
+    return FailureDifference(name, rival, interval_of_means(more.values()))
+
+
+def interval_of_means(groups: Iterable[Sequence[float]]) -> Interval:
+    """The mean of the groups' means: what is measured on the same assignment is not independent."""
+    return mean_interval([fmean(group) for group in groups])

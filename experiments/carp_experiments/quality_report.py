@@ -34,11 +34,18 @@ def report_of(summary: QualitySummary) -> Report:
             columns[1:],
         ),
     )
+    savings = {
+        name: [(each.map, each.saving) for each in summary.savings if (each.algorithm, each.rival) == (name, "CARP")]
+        for name in ALGORITHMS
+        if name != "CARP"
+    }
+    on_maps = {name: [(map, saved) for map, saved in line if map is not None] for name, line in savings.items()}
     failures = {name: [(each.map, each.failure_rate) for each in of(summary, name)] for name in ALGORITHMS}
     total = {name: [(each.map, each.total) for each in of(summary, name)] for name in ALGORITHMS}
     figures = (
         Figure("quality-failures", "Assignments that fail", (MAP_AXIS, "failure rate"), failures),
         Figure("quality-totals", "Actions of all robots", (MAP_AXIS, "mean total cost"), total),
+        Figure("quality-savings", "Fewer actions than CARP, where neither fails", (MAP_AXIS, "actions"), on_maps),
     )
     return Report(summary, tables, figures)
 

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import msgspec
 
@@ -55,9 +56,19 @@ class Report:
 def write_report(folder: Path, name: str, report: Report, run: Mapping[str, object]) -> None:
     """Write `NAME.json`, with the facts of the run and all numbers, `NAME.md`, and a figure of each kind."""
     folder.mkdir(parents=True, exist_ok=True)
-    document = msgspec.json.encode({"experiment": name, **run, "summary": report.summary}, order="sorted")
-    (folder / f"{name}.json").write_bytes(msgspec.json.format(document, indent=1) + b"\n")
+    summary = rounded(msgspec.to_builtins(report.summary))
+    document = msgspec.json.encode({"experiment": name, **run, "summary": summary}, order="sorted")
+    (folder / f"{name}.json").write_bytes(document + b"\n")
     text = "\n".join(f"{table.title}:\n\n{table.markdown}" for table in report.tables)
     (folder / f"{name}.md").write_text(text, encoding="utf-8")
     for figure in report.figures:
         line_figure(folder / f"{figure.name}.svg", figure.title, figure.axes, figure.lines, figure.logarithmic)
+
+
+def rounded(value: Any) -> Any:  # noqa: ANN401 - whatever JSON holds
+    """The same with no more digits than tell anything."""
+    if isinstance(value, float):
+        return round(value, 5)
+    if isinstance(value, dict):
+        return {name: rounded(each) for name, each in value.items()}
+    return [rounded(each) for each in value] if isinstance(value, list | tuple) else value

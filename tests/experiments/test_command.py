@@ -38,6 +38,7 @@ def test_a_report_holds_tables_figures_and_numbers(tmp_path: Path) -> None:
     document("quality", *SMALL, "--report", str(tmp_path))
     assert sorted(path.name for path in tmp_path.iterdir()) == [
         "quality-failures.svg",
+        "quality-savings.svg",
         "quality-totals.svg",
         "quality.json",
         "quality.md",

@@ -34,13 +34,24 @@ def test_the_summary_counts_failures_and_compares_where_neither_fails() -> None:
     assert (carp.algorithm, carp.failures, carp.assignments) == ("CARP", 1, 3)
     assert carp.total is not None
     assert carp.total.estimate == 16
-    savings = {(each.algorithm, each.rival): each for each in summary.savings}
-    assert savings["Proposed_4", "CARP"].saving.estimate == 6
-    assert savings["LF", "CARP"].assignments == 1
+    savings = {(each.map, each.algorithm, each.rival): each for each in summary.savings}
+    assert savings[0, "Proposed_4", "CARP"].saving.estimate == 6
+    assert savings[0, "Proposed_4", "CARP"].total == 16
+    assert savings[0, "LF", "CARP"].cases == 1
     more = {(each.algorithm, each.rival): each.more.estimate for each in summary.failures}
     assert more["Proposed_4", "CARP"] == pytest.approx(-1 / 3)
     assert more["LF", "CARP"] == 0
     assert "all failed" not in quality_report(rows, 2).tables[1].markdown
+
+
+def test_what_is_measured_on_one_assignment_counts_as_one_over_all_maps() -> None:
+    rows = [row(map, assignment, CARP=(2, 12 + 2 * assignment)) for map in (0, 1) for assignment in (0, 1)]
+    one, all = (
+        next(each for each in summarise(rows, 2).savings if (each.map, each.algorithm) == (map, "LF"))
+        for map in (0, None)
+    )
+    assert (one.saving, one.cases) == (all.saving, 2)
+    assert all.cases == 4
 
 
 def test_cases_come_assignment_by_assignment() -> None:

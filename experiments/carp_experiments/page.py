@@ -1,0 +1,110 @@
+"""The page experiments/README.md, from the results of stored runs in experiments/results; `make experiments-page`.
+
+`carproof experiment NAME --store FILE --report experiments/results` writes the results of a run there.
+"""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TypeVar
+
+import msgspec
+
+from carp_experiments.adding_time import Time
+from carp_experiments.claims import Claim, quality_claims, reuse_claims, time_claims
+from carp_experiments.quality import QualitySummary
+from carp_experiments.reuse_counts import ReuseOf
+
+T = TypeVar("T")
+PAGE = Path(__file__).parents[1] / "README.md"
+RESULTS = PAGE.parent / "results"
+BEGIN, END = "<!-- results: begin -->\n", "<!-- results: end -->\n"
+TITLES = {
+    "quality": "Experiment 1: failures and total cost",
+    "time": "Experiment 2: the time to plan when the k-th robot comes",
+    "reuse": "Queries asked and avoided",
+    "gap": "Small maps against the proved optimum",
+    "related": "Fixed paths and greedy best-first",
+    "polish": "The distance to the optimum at the paper's size, and the polish",
+}
+EXPLANATIONS = """\
+Numbers of actions are means over the assignments on which neither of the two fails, so what they are to be compared
+with is the same for both; a claim with a number is reproduced where the number lies in the interval of 95 %, any other
+where the intervals say so for all that it names, and undecided where they hold zero.
+
+Where our conventions may make the difference:
+
+- when a robot appears at its start and leaves its goal, which the paper does not say: ours is at its start from tick 0
+  on, and vanishes one tick after it has entered its goal (`plan/start`, `plan/goal`);
+- whether two robots may swap places: ours may not (`joint/exchange`);
+- how ties are broken, in a query, among nearest robots, and among orders of equal cost (`query/ties`,
+  `neighbourhood/nearest`, `neighbourhood/best`): totals of the variants differ by less than a tie rule can;
+- what Algorithm 1 does where CARP fails at its line 10, on which the failures of Proposed depend
+  (`neighbourhood/replan`), and that keeping all plans is no candidate (`neighbourhood/baseline`);
+- whether starts and goals are distinct (ours are), and which trees and edges the maps have;
+- over which assignments the paper's means are: an algorithm that fails on the hard ones looks better without them;
+- times depend on the program: ours never asks most queries of the neighbourhood planner, which the paper's asks.
+"""
+
+
+class Run(msgspec.Struct, frozen=True):
+    """What is known of a run beside its summary."""
+
+    experiment: str
+    size: str
+    cases: int
+    digest: str
+    processor_seconds: int
+    note: str
+    summary: msgspec.Raw
+
+
+def read_run(name: str) -> Run | None:
+    """The results of an experiment, if there are any."""
+    path = RESULTS / f"{name}.json"
+    return msgspec.json.decode(path.read_bytes(), type=Run) if path.exists() else None
+
+
+def claims_of(run: Run) -> Iterator[Claim]:
+    """The paper's claims that a run speaks of."""
+    if run.experiment == "quality":
+        yield from quality_claims(summary_of(run, QualitySummary))
+    elif run.experiment == "time":
+        yield from time_claims(summary_of(run, tuple[Time, ...]))
+    elif run.experiment == "reuse":
+        yield from reuse_claims(summary_of(run, tuple[ReuseOf, ...]))
+
+
+def summary_of(run: Run, type: type[T]) -> T:
+    """The summary of a run, as what it is."""
+    return msgspec.json.decode(run.summary, type=type)
+
+
+def results() -> str:
+    """Everything between the marks: the claims, then each experiment with its run, tables and figures."""
+    runs = {name: run for name in TITLES if (run := read_run(name)) is not None}
+    claims = [claim for run in runs.values() for claim in claims_of(run)]
+    lines = [f"| {claim.claim} | **{claim.verdict}** | {claim.found} |\n" for claim in claims]
+    head = "| the paper says | | we find |\n| --- | --- | --- |\n"
+    parts = [f"## The paper's claims\n\n{head}{''.join(lines)}\n{EXPLANATIONS}"]
+    parts += [section(name, run) for name, run in runs.items()]
+    return "\n".join(parts)
+
+
+def section(name: str, run: Run) -> str:
+    """An experiment: the run, its tables, its figures."""
+    made = f"{run.size.capitalize()}; {run.cases} cases took {run.processor_seconds} s of processor time. {run.note}".strip()
+    digest = f"Digest: `{run.digest}`."
+    tables = (RESULTS / f"{name}.md").read_text(encoding="utf-8")
+    figures = "".join(f"\n![{path.stem}](results/{path.name})\n" for path in sorted(RESULTS.glob(f"{name}*.svg")))
+    return f"## {TITLES[name]}\n\n{made}\n{digest}\n\n{tables}{figures}"
+
+
+def page() -> str:
+    """The page with the results between its marks."""
+    before, _, rest = PAGE.read_text(encoding="utf-8").partition(BEGIN)
+    _, _, after = rest.partition(END)
+    return f"{before}{BEGIN}{results()}{END}{after}"
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page(), encoding="utf-8")

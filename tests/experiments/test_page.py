@@ -1,0 +1,49 @@
+"""The page says what the stored results say, and a claim is judged by its intervals."""
+
+import re
+
+import pytest
+
+from carp_experiments.claims import above_zero, below_zero, up_to, verdict_of
+from carp_experiments.page import PAGE, RESULTS, page
+from carp_experiments.quality import Saving
+from carp_experiments.statistics import Interval
+
+
+def test_the_page_is_that_of_the_results() -> None:
+    assert PAGE.read_text() == page()
+
+
+def test_every_figure_on_the_page_is_there_and_every_result_is_on_it() -> None:
+    shown = {PAGE.parent / name for name in re.findall(r"!\[.*?\]\((.*?)\)", PAGE.read_text())}
+    assert shown == set(RESULTS.glob("*.svg"))
+
+
+@pytest.mark.parametrize(
+    ("parts", "verdict"),
+    [
+        ([True, True], "reproduced"),
+        ([True, None], "in part"),
+        ([True, False], "in part"),
+        ([None, False], "undecided"),
+        ([False, False], "not reproduced"),
+    ],
+)
+def test_a_claim_of_several_parts(parts: list[bool | None], verdict: str) -> None:
+    assert verdict_of(parts) == verdict
+
+
+def test_an_interval_that_holds_zero_says_nothing() -> None:
+    assert above_zero(Interval(1, -1, 3)) is None
+    assert above_zero(Interval(2, 1, 3)) is True
+    assert below_zero(Interval(2, 1, 3)) is False
+    assert below_zero(Interval(-2, -3, -1)) is True
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "verdict"), [(50, 70, "reproduced"), (10, 20, "in part"), (-5, 5, "not reproduced")]
+)
+def test_a_claim_with_a_number_holds_where_the_interval_holds_it(low: int, high: int, verdict: str) -> None:
+    saving = Saving(10, "Proposed_6", "CARP", 20, Interval((low + high) / 2, low, high), 1000)
+    claim = up_to({(10, "Proposed_6", "CARP"): saving}, 10, ("Proposed_6",), 65, "up to 65 fewer")
+    assert claim.verdict == verdict
