@@ -88,7 +88,8 @@ def up_to(
     ]
     known = [each for each in every if 4 * each.cases >= max(other.cases for other in every)]
     most = max(known, key=lambda each: each.saving.estimate)
-    found = f"map {map}: {listed(here)}; the most is on map {most.map}, {most.algorithm} {plain(most.saving)} ({most.cases} cases)"
+    there = f"{most.algorithm} {plain(most.saving)} ({most.cases} cases)"
+    found = f"map {map}: {listed(here)}; the most is on map {most.map}: {there}"
     verdicts: list[bool | None] = [each.low <= paper <= each.high for each in here.values()]
     more = [each.low > paper for each in here.values()]
     verdict = verdict_of(verdicts)

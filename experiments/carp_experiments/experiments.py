@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from carp_experiments import quality
 from carp_experiments.adding_time import PAPERS_MAP, time_cases, time_report
 from carp_experiments.campaign import Case
+from carp_experiments.polishing import polish_cases, polish_report
 from carp_experiments.quality_report import quality_report
 from carp_experiments.related_work import related_cases, related_report
 from carp_experiments.report import Report
@@ -95,5 +96,13 @@ EXPERIMENTS = (
         Profile(5, 10, (10, 20)),
         lambda profile: related_cases(profile.assignments, profile.maps, profile.robots),
         lambda rows, profile: related_report(rows, profile.robots),
+    ),
+    Experiment(
+        "polish",
+        "How far the planner is from a proved lower bound, and the polished planner.",
+        Profile(100, 100, ALL_MAPS),
+        Profile(20, 20, (10, 20)),
+        lambda profile: polish_cases(profile.assignments, profile.maps, profile.robots),
+        lambda rows, profile: polish_report(rows, profile.robots),
     ),
 )

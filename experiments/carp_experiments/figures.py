@@ -1,6 +1,7 @@
 """Figures as SVG, the same bytes for the same numbers."""
 
 from collections.abc import Mapping, Sequence
+from itertools import zip_longest
 from pathlib import Path
 
 from carp_experiments.statistics import Interval
@@ -17,6 +18,7 @@ COLOURS = (
     "#8a8a8a",
     "#a5aa22",
 )
+FAMILIES = ("CARP", "CARP10", "CARP100", "LF", "Proposed_4", "Proposed_5", "Proposed_6", "Proposed_10", "greedy")
 STYLES = ("-", "--", ":")
 SIZE_IN_INCHES = (9, 5)
 
@@ -58,12 +60,15 @@ def line_figure(
 
 
 def strokes_of(names: Sequence[str]) -> dict[str, tuple[str, str]]:
-    """The colour and the style of each line."""
+    """The colour and the style of each line; the families that are known have theirs in every figure."""
     strokes = {}
-    families: dict[str, int] = {}
-    for name in names:
-        family = name.partition(" + ")[0]
-        number = families[family] = families.get(family, -1) + 1
-        colour = [*families].index(family)
-        strokes[name] = COLOURS[colour % len(COLOURS)], STYLES[number % len(STYLES)]
+    family_of = {name: name.partition(" + ")[0] for name in names}
+    used = set(family_of.values())
+    others = [family for family in dict.fromkeys(family_of.values()) if family not in FAMILIES]
+    free = [colour for family, colour in zip_longest(FAMILIES, COLOURS) if family not in used]
+    colours = {**dict(zip(FAMILIES, COLOURS, strict=False)), **dict(zip(others, free, strict=False))}
+    members: dict[str, int] = {}
+    for name, family in family_of.items():
+        members[family] = members.get(family, -1) + 1
+        strokes[name] = colours[family], STYLES[members[family] % len(STYLES)]
     return strokes

@@ -92,7 +92,7 @@ def results() -> str:
 
 def section(name: str, run: Run) -> str:
     """An experiment: the run, its tables, its figures."""
-    made = f"{run.size.capitalize()}; {run.cases} cases took {run.processor_seconds} s of processor time. {run.note}".strip()
+    made = f"{run.size}; {run.cases} cases took {run.processor_seconds} s of processor time. {run.note}".strip()
     digest = f"Digest: `{run.digest}`."
     tables = (RESULTS / f"{name}.md").read_text(encoding="utf-8")
     figures = "".join(f"\n![{path.stem}](results/{path.name})\n" for path in sorted(RESULTS.glob(f"{name}*.svg")))

@@ -8,6 +8,7 @@ from carp_experiments.statistics import Interval
 from carp_experiments.store import Row
 
 SHOWN_MAPS = (0, 5, 10, 15, 20)
+FEWEST_SHOWN = 4  # a mean over less than a quarter of the assignments is no point in a figure
 MAP_AXIS = f"map (0: spanning tree, {FULL_MAP}: full grid)"
 
 
@@ -35,13 +36,24 @@ def report_of(summary: QualitySummary) -> Report:
         ),
     )
     savings = {
-        name: [(each.map, each.saving) for each in summary.savings if (each.algorithm, each.rival) == (name, "CARP")]
+        name: [
+            (each.map, each.saving)
+            for each in summary.savings
+            if (each.algorithm, each.rival) == (name, "CARP") and each.cases * FEWEST_SHOWN >= summary.assignments
+        ]
         for name in ALGORITHMS
         if name != "CARP"
     }
     on_maps = {name: [(map, saved) for map, saved in line if map is not None] for name, line in savings.items()}
     failures = {name: [(each.map, each.failure_rate) for each in of(summary, name)] for name in ALGORITHMS}
-    total = {name: [(each.map, each.total) for each in of(summary, name)] for name in ALGORITHMS}
+    total = {
+        name: [
+            (each.map, each.total)
+            for each in of(summary, name)
+            if (each.assignments - each.failures) * FEWEST_SHOWN >= each.assignments
+        ]
+        for name in ALGORITHMS
+    }
     figures = (
         Figure("quality-failures", "Assignments that fail", (MAP_AXIS, "failure rate"), failures),
         Figure("quality-totals", "Actions of all robots", (MAP_AXIS, "mean total cost"), total),

@@ -1,8 +1,10 @@
 """The experiments beside the first: what they count and compare."""
 
+import msgspec
 import pytest
 
 import carp_reference
+from carp_experiments import polishing
 from carp_experiments.adding_time import PAPER, TimeCase, time_report
 from carp_experiments.experiments import EXPERIMENTS, Experiment, Profile
 from carp_experiments.quality import grid_fleet
@@ -70,6 +72,24 @@ def test_related_methods_are_those_of_the_reference() -> None:
         assert results[name] == (len(solution.plans), total_cost(instance, solution.plans))
     report = related_report([case.run()], 5)
     assert [table.name for table in report.tables] == ["related-unplanned", "related-totals"]
+
+
+def test_polished_plans_lie_between_the_bound_and_the_planner(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(polishing, "ROUNDS", 200)
+    monkeypatch.setattr(polishing, "STEPS", 20)
+    row = polishing.PolishCase(12, 0, robots=10).run()
+    told = msgspec.convert(row, polishing.PolishRow)
+    polished, planned = told.results["Proposed_4 + polish"][1], told.results["Proposed_4"][1]
+    assert told.shortest <= told.bound <= polished <= planned
+
+
+def test_polish_is_summed_up_over_the_assignments_that_do_not_fail() -> None:
+    reached = {**dict.fromkeys(polishing.METHODS, (5, 110)), "Proposed_10 + polish": (5, 100)}
+    failed = {**reached, "Proposed_4": (3, 40)}
+    rows = [{"map": 7, "shortest": 90, "bound": 100, "results": results} for results in (reached, failed)]
+    gaps, failures = polishing.polish_report(rows, 5).tables
+    assert gaps.rows == (("7", "90", "100", *["110: 10.00 ± 0.00"] * 3, "100: 0.00 ± 0.00", "2/2", "2/2"),)
+    assert failures.rows == (("7", "1/2 (1.00)", *["0/2 (0.00)"] * 3),)
 
 
 @pytest.mark.parametrize("experiment", EXPERIMENTS, ids=lambda experiment: experiment.name)
