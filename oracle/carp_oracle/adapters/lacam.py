@@ -8,7 +8,7 @@ Semantics: `walks`.
 import re
 
 from carp_oracle.adapters.adapter import Adapter
-from carp_oracle.adapters.walks import Cell, Walk, solution_of_walks, tick_by_tick, walks_of_solution
+from carp_oracle.adapters.walks import Cell, Walk, last_arrival, solution_of_walks, tick_by_tick, walks_of_solution
 from carp_spec import Instance, Refusal, RobotId, Solution, total_cost
 from carp_spec.rule import rule
 
@@ -71,7 +71,7 @@ def read(text: str, instance: Instance, file: str) -> Solution:
 def write(instance: Instance, solution: Solution) -> str:
     """Write a solution of all robots."""
     cells = tick_by_tick(walks_of_solution(instance, solution, partial=False))
-    makespan = max((len(each) - 1 for each in cells.values()), default=0)
+    makespan = last_arrival(cells)
     starts = "".join(f"({each[0][0]},{each[0][1]})," for each in cells.values())
     goals = "".join(f"({each[-1][0]},{each[-1][1]})," for each in cells.values())
     lines = [

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from carp_oracle.adapters.adapter import Adapter
-from carp_oracle.adapters.walks import Walk, solution_of_walks, tick_by_tick, walks_of_solution
+from carp_oracle.adapters.walks import Walk, last_arrival, solution_of_walks, tick_by_tick, walks_of_solution
 from carp_spec import Instance, Refusal, RobotId, Solution, total_cost
 from carp_spec.rule import rule
 
@@ -160,7 +160,7 @@ def read(text: str, instance: Instance, file: str) -> Solution:
 def write(instance: Instance, solution: Solution) -> str:
     """Write a solution; agents are numbered as the instance's robots are."""
     cells = tick_by_tick(walks_of_solution(instance, solution, partial=True))
-    makespan = max((len(each) - 1 for each in cells.values()), default=0)
+    makespan = last_arrival(cells)
     cost = total_cost(instance, solution.plans)
     lines = ["statistics:", f"  cost: {cost}", f"  makespan: {makespan}", "schedule:" if cells else "schedule: {}"]
     for number, robot in enumerate(instance.robot):

@@ -115,3 +115,8 @@ def tick_by_tick(walks: Mapping[RobotId, Walk]) -> Mapping[RobotId, Sequence[Cel
         robot: [*(cell for (cell, enter), (_, leave) in pairwise(walk) for _ in range(enter, leave)), walk[-1][0]]
         for robot, walk in walks.items()
     }
+
+
+def last_arrival(cells: Mapping[RobotId, Sequence[Cell]]) -> int:
+    """The tick at which the last robot arrives, 0 without robots; `cells` are those of each robot tick by tick."""
+    return max((len(each) - 1 for each in cells.values()), default=0)
