@@ -23,6 +23,7 @@ def compile_all() -> None:
     fleet.repeat_query(0, 1)
     fleet.find(0, None, 0)
     fleet.commit(plans)
+    fleet.polish(fleet.polishing(0), 1)
     only(encoding.no_records(1, 1, 1), np.zeros(0, np.int32))
 
 

@@ -32,18 +32,21 @@ from carp_spec import Fault, Instance, Refusal
 ROOM = 8  # of a new row
 GUIDE_PLACES = 1 << 24  # how many entries all guides together have at most, if that is room for 64 of them
 LARGEST_COORDINATE = 2**29
+NO_LIMIT_THERE = "the reference engine has no such limit"
 
 
 def refuse_what_is_too_large(instance: Instance) -> None:
     """Raise `Refusal` where a number of the instance does not fit."""
     for fault in _too_large(instance):
-        raise Refusal("limit", fault.path, fault.rule, fault.message)
+        raise Refusal("limit", fault.path, fault.rule, f"{fault.message}; {NO_LIMIT_THERE}")
 
 
 def refuse_tick(path: str, tick: int) -> None:
     """Raise `Refusal` for a tick that does not fit."""
     if tick > LARGEST:
-        raise Refusal("limit", path, "limit/ticks", f"the tick must be at most {LARGEST}, and is {tick}")
+        raise Refusal(
+            "limit", path, "limit/ticks", f"the tick must be at most {LARGEST}, and is {tick}; {NO_LIMIT_THERE}"
+        )
 
 
 def _too_large(instance: Instance) -> Iterator[Fault]:

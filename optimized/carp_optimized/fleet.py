@@ -279,7 +279,7 @@ class Fleet:
                 self._rebuild(used, counters, larger=True)
             except TicksExhausted:
                 self._rebuild(used, counters, larger=False)
-                message = f"a plan would need ticks beyond {LARGEST}"
+                message = f"a plan would need ticks beyond {LARGEST}; {encoding.NO_LIMIT_THERE}"
                 raise Refusal("limit", "$.robots", "limit/ticks", message) from None
 
     def _rebuild(self, used: Longs, counters: Longs, larger: bool) -> None:

@@ -6,8 +6,7 @@ from typing import Protocol, cast
 
 from carp_spec import Instance, Neighbourhood, Plan, Planner, RobotId, Solution, plan_cost
 
-ENGINES = ("reference", "optimized")
-DEFAULT_ENGINE = "reference"
+ENGINES = ("optimized", "reference")
 
 
 class Engine(Protocol):
@@ -38,9 +37,49 @@ class Engine(Protocol):
         """Better plans; `advance` is told rounds, unplanned robots and total."""
 
 
-def engine_named(name: str) -> Engine:
-    """Load an engine."""
-    return cast("Engine", import_module(f"carp_{name}"))
+class FastestEngine:
+    """The engine to run, and for planners that it does not have the one to read."""
+
+    def query(self, instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0) -> Plan | None:
+        """The plan of one robot against committed plans."""
+        return engine_named("optimized").query(instance, committed, robot, now)
+
+    def plan(self, instance: Instance, planner: Planner, advance: Callable[[], None] = lambda: None) -> Solution:
+        """Plans of all robots; `advance` is called at each step."""
+        return _engine_with(planner).plan(instance, planner, advance)
+
+    def steps(self, instance: Instance, planner: Planner) -> int:
+        """How many steps `plan` takes at most."""
+        return _engine_with(planner).steps(instance, planner)
+
+    def add(self, instance: Instance, solution: Solution, robot: RobotId, now: int, options: Neighbourhood) -> Solution:
+        """Plans with one robot more."""
+        return engine_named("optimized").add(instance, solution, robot, now, options)
+
+    def polish(
+        self,
+        instance: Instance,
+        solution: Solution,
+        *,
+        iterations: int | None = None,
+        seconds: float | None = None,
+        seed: int = 0,
+        advance: Callable[[int, int, int], None] = lambda _rounds, _unplanned, _total: None,
+    ) -> Solution:
+        """Better plans; `advance` is told rounds, unplanned robots and total."""
+        run = engine_named("optimized").polish
+        return run(instance, solution, iterations=iterations, seconds=seconds, seed=seed, advance=advance)
+
+
+def engine_named(name: str | None) -> Engine:
+    """Load an engine; without a name, the fastest that has what is asked."""
+    return FastestEngine() if name is None else cast("Engine", import_module(f"carp_{name}"))
+
+
+def _engine_with(planner: Planner) -> Engine:
+    from carp_optimized import PLANNERS  # noqa: PLC0415 - loaded when it is first used
+
+    return engine_named("optimized" if isinstance(planner, PLANNERS) else "reference")
 
 
 def shortest_path_cost(instance: Instance, robot: RobotId) -> int | None:

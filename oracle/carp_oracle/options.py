@@ -5,7 +5,7 @@ from typing import Any, TypeVar
 
 import click
 
-from carp_oracle.engines import DEFAULT_ENGINE, ENGINES
+from carp_oracle.engines import ENGINES
 from carp_oracle.files import InputFile, OutputFile
 from carp_oracle.generate import Range
 from carp_spec import FixedPaths, Neighbourhood, Planner, Shuffled, planner_named
@@ -61,8 +61,11 @@ def json_option(function: F) -> F:
 
 def engine_option(function: F) -> F:
     """`--engine`: whose planner."""
-    help = "The planner to read or the one to run; their plans are the same."
-    return click.option("--engine", type=click.Choice(ENGINES), default=DEFAULT_ENGINE, help=help)(function)
+    help = (
+        "The compiled planner, or the one to read; their plans are the same.  [default: optimized, and reference for "
+        "planners that only it has]"
+    )
+    return click.option("--engine", type=click.Choice(ENGINES), help=help)(function)
 
 
 def now_option(function: F) -> F:

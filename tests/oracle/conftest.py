@@ -11,6 +11,17 @@ from tests.oracle.running import Outcome, Run
 from carp_oracle.cli import main
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _compiled() -> None:
+    """Compile before the first test, whose output would tell of it."""
+    from carp_optimized.__main__ import compile_all
+    from carp_optimized.compiling import is_cached
+    from carp_optimized.neighbourhood import add_robot
+
+    if not is_cached(add_robot):
+        compile_all()
+
+
 @pytest.fixture
 def carproof() -> Run:
     """Run `carproof` in this process."""

@@ -2,7 +2,9 @@
 
 import json
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 from tests.oracle.running import (
@@ -125,6 +127,28 @@ def test_a_refusal_of_the_engine_names_the_file_or_the_option(carproof: Run, fil
     outcome = carproof("plan", instance, "--engine", "optimized", "--planner", "time-expanded")
     assert outcome.code == 2
     assert outcome.stderr.startswith("Error: --planner: ")
+
+
+def test_without_an_engine_asked_for_the_fastest_plans_that_has_the_planner(
+    carproof: Run, file: Write, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = []
+
+    def watched(name: str) -> ModuleType:
+        asked.append(name)
+        return import_module(name)
+
+    monkeypatch.setattr("carp_oracle.engines.import_module", watched)
+    for planner, engine in (("neighbourhood", "carp_optimized"), ("fixed-paths", "carp_reference")):
+        asked.clear()
+        outcome = carproof("plan", file(TWO), "--planner", planner, "--json")
+        assert (outcome.code, outcome.stderr, set(asked)) == (0, "", {engine})
+    asked.clear()
+    assert carproof("add", file(TWO), file(ONE_PLANNED, "one.json"), "r2", "--json").code == 0
+    assert asked == ["carp_optimized"]
+    asked.clear()
+    assert carproof("add", file(TWO), file(ONE_PLANNED, "one.json"), "r2", "--engine", "reference", "--json").code == 0
+    assert asked == ["carp_reference"]
 
 
 def test_check_prints_each_violation_and_counts_them(carproof: Run, file: Write) -> None:

@@ -46,7 +46,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     solution: str,
     robot: str,
     now: int,
-    engine: str,
+    engine: str | None,
     output: Path | None,
     as_json: bool,
     **options: Any,  # noqa: ANN401 - `planner_named` checks them

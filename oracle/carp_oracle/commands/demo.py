@@ -8,7 +8,7 @@ from time import perf_counter
 import click
 
 from carp_oracle.answer import Answer
-from carp_oracle.engines import DEFAULT_ENGINE, engine_named
+from carp_oracle.engines import engine_named
 from carp_oracle.files import OutputFile, write_whole
 from carp_oracle.generate import Fleet, Grid, grid_instance
 from carp_oracle.movingai import movingai_instance, read_map, read_scenario
@@ -71,7 +71,7 @@ def depot(folder: Path) -> Instance:
 
 def planned(folder: Path, name: str, instance: Instance, planner: str) -> Result:
     """Plan an instance, check the plans and write them."""
-    engine = engine_named(DEFAULT_ENGINE)
+    engine = engine_named(None)
     started = perf_counter()
     with progress(f"{name}, {planner}", engine.steps(instance, PLANNERS[planner])) as advance:
         solution = engine.plan(instance, PLANNERS[planner], advance)

@@ -41,7 +41,14 @@ from carp_spec import write_solution
 @engine_option
 @output_option
 @json_option
-def command(instance: str, planner: str, engine: str, output: Path | None, as_json: bool, **options: Any) -> Answer:  # noqa: ANN401 - `planner_named` checks them
+def command(
+    instance: str,
+    planner: str,
+    engine: str | None,
+    output: Path | None,
+    as_json: bool,
+    **options: Any,  # noqa: ANN401 - `planner_named` checks them
+) -> Answer:
     """Plan all robots of INSTANCE, a document or - for standard input.
 
     An option that is not given keeps the planner's default; one that the planner does not have is refused.

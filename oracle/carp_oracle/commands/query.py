@@ -38,7 +38,7 @@ from carp_spec.documents import write
 @output_option
 @json_option
 def command(  # noqa: PLR0913 - one parameter for each argument and option
-    *, instance: str, solution: str, robot: str, now: int, engine: str, output: Path | None, as_json: bool
+    *, instance: str, solution: str, robot: str, now: int, engine: str | None, output: Path | None, as_json: bool
 ) -> Answer:
     """Find the plan with which ROBOT arrives earliest beside the plans of SOLUTION.
 

@@ -19,7 +19,7 @@ from carp_oracle.server import serve
     ),
 )
 @engine_option
-def command(engine: str) -> Answer:
+def command(engine: str | None) -> Answer:
     """Answer requests, one a line, until stop or the end of the input.
 
     Each line of standard input is a JSON object with id and op (start, check, query, plan, add, stop) and the

@@ -1,0 +1,85 @@
+"""What is compiled is compiled once, says so, and is compiled anew when any source has changed."""
+
+import ast
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from carp_optimized import compiling
+from carp_optimized.compiling import is_cached
+from carp_optimized.neighbourhood import add_robot
+
+ENTRIES = """
+from carp_optimized.compiling import entry
+
+@entry
+def twice(number: int) -> int:
+    return 2 * number
+
+@entry
+def thrice(number: int) -> int:
+    return 3 * number
+"""
+CALLS = "import entries; print(entries.twice(2), entries.thrice(2))"
+NOTICE = "carproof compiles its planner, once for this installation; it takes about half a minute ...\n"
+
+
+def call_entries(folder: Path) -> tuple[str, str]:
+    """What a new process writes that calls both entries."""
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("NUMBA_")}
+    done = subprocess.run(
+        [sys.executable, "-c", CALLS],
+        env={**environment, "PYTHONPATH": str(folder)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return done.stdout, done.stderr
+
+
+def test_compiling_is_told_once_and_done_again_only_after_a_change(tmp_path: Path) -> None:
+    source = tmp_path / "entries.py"
+    source.write_text(ENTRIES)
+    assert call_entries(tmp_path) == ("4 6\n", NOTICE)
+    assert call_entries(tmp_path) == ("4 6\n", "")
+    later = source.stat().st_mtime + 100
+    other = tmp_path / "beside.py"
+    other.touch()
+    os.utime(other, (later, later))
+    assert call_entries(tmp_path) == ("4 6\n", NOTICE)
+
+
+def test_a_function_that_is_not_compiled_is_not_cached() -> None:
+    assert not is_cached(add_robot.__wrapped__ if hasattr(add_robot, "__wrapped__") else add_robot)
+
+
+def entries() -> set[str]:
+    """The names of all functions that Python calls."""
+    folder = Path(compiling.__file__).parent
+    functions = (
+        node
+        for source in folder.glob("*.py")
+        for node in ast.walk(ast.parse(source.read_text()))
+        if isinstance(node, ast.FunctionDef)
+    )
+    return {
+        node.name for node in functions if any(isinstance(d, ast.Name) and d.id == "entry" for d in node.decorator_list)
+    }
+
+
+def test_the_installation_compiles_every_entry() -> None:
+    watched = """
+import sys
+called = set()
+sys.setprofile(lambda frame, event, _: called.add(frame.f_code.co_name) if event == "call" else None)
+from carp_optimized.__main__ import compile_all
+compile_all()
+sys.setprofile(None)
+print(*called)
+"""
+    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1"}
+    command = [sys.executable, "-W", "ignore", "-c", watched]
+    called = subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout.split()
+    assert len(entries()) > 8
+    assert entries() <= set(called)
