@@ -1,15 +1,17 @@
 """Each claim of the paper's experiments: what it says, what we measured, and whether that reproduces it."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 from carp_experiments.adding_time import PAPER, SHOWN, Time
-from carp_experiments.quality import FULL_MAP, QualitySummary, Saving
+from carp_experiments.quality import FULL_MAP, RIVALS, QualitySummary, Saving
 from carp_experiments.reuse_counts import PAPERS_SHARES, ReuseOf
 from carp_experiments.statistics import Interval
 
 Verdict: TypeAlias = Literal["reproduced", "in part", "not reproduced", "undecided"]
+Savings: TypeAlias = Mapping[tuple[int | None, str, str], Saving]
+BASELINE = " + baseline"
 PROPOSED = ("Proposed_4", "Proposed_5", "Proposed_6", "Proposed_10")
 TENTH_MAP = 10
 COMPARABLE_PER_CENT = 1.0
@@ -17,31 +19,29 @@ COMPARABLE_PER_CENT = 1.0
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """A claim of the paper, what we find, and the verdict on it."""
+    """A claim of the paper, what we find, and the verdict on it; and that on our variant, whose baseline is on."""
 
     claim: str
     found: str
     verdict: Verdict
+    with_baseline: Verdict | None = None
 
 
 def quality_claims(summary: QualitySummary) -> Iterator[Claim]:
     """The claims about failures and totals."""
-    more = {(each.algorithm, each.rival): each.more for each in summary.failures}
+    more = {(each.algorithm, each.rival): scaled(each.more, 100) for each in summary.failures}
     saved = {(each.map, each.algorithm, each.rival): each for each in summary.savings}
-    than_carp = {name: more[name, "CARP"] for name in PROPOSED}
-    than_carp10 = {name: more[name, "CARP10"] for name in PROPOSED}
-    based = {rival: {name: more[f"{name} + baseline", rival] for name in PROPOSED} for rival in ("CARP", "CARP10")}
-    yield Claim(
+    yield judged(
         "Proposed fails less often than CARP",
-        "share of failures above CARP's, all maps: "
-        f"{listed(than_carp, 100, 'points')}; with the baseline {listed(based['CARP'], 100, 'points')}",
-        verdict_of([below_zero(each) for each in than_carp.values()]),
+        "its share of failures above that of CARP, in points, all maps",
+        lambda name: more[name, "CARP"],
+        below_zero,
     )
-    yield Claim(
+    yield judged(
         "Proposed fails more often than CARP10",
-        "share of failures above CARP10's, all maps: "
-        f"{listed(than_carp10, 100, 'points')}; with the baseline {listed(based['CARP10'], 100, 'points')}",
-        verdict_of([above_zero(each) for each in than_carp10.values()]),
+        "its share of failures above that of CARP10, in points, all maps",
+        lambda name: more[name, "CARP10"],
+        above_zero,
     )
     yield up_to(saved, TENTH_MAP, ("Proposed_6",), 65, "up to 65 fewer actions than CARP on the 10th map (Proposed_6)")
     both = ("Proposed_6", "Proposed_10")
@@ -49,54 +49,82 @@ def quality_claims(summary: QualitySummary) -> Iterator[Claim]:
     yield from comparisons(saved)
 
 
-def comparisons(saved: Mapping[tuple[int | None, str, str], Saving]) -> Iterator[Claim]:
+def comparisons(saved: Savings) -> Iterator[Claim]:
     """The claims about which algorithm has the smaller total, over all maps and where neither fails."""
-    best = {name: saved[None, name, "Proposed_10"].saving for name in PROPOSED[:-1]}
-    yield Claim(
+    yield judged(
         "Proposed_10 has the best results of the variants",
-        "fewer actions than Proposed_10, all maps: " + listed(best),
-        verdict_of([below_zero(each) for each in best.values()]),
+        "fewer actions than Proposed_10, all maps",
+        lambda name: saved[None, name, "Proposed_10"].saving,
+        below_zero,
+        PROPOSED[:-1],
+        has_baseline=False,
     )
-    than_carp10 = {name: saved[None, name, "CARP10"].saving for name in PROPOSED}
-    yield Claim(
+    yield judged(
         "all variants outperform CARP10",
-        "fewer actions than CARP10, all maps: " + listed(than_carp10),
-        verdict_of([above_zero(each) for each in than_carp10.values()]),
+        "fewer actions than CARP10, all maps",
+        lambda name: saved[None, name, "CARP10"].saving,
+        above_zero,
     )
-    than_carp100 = {name: share_of_total(saved[None, name, "CARP100"]) for name in PROPOSED}
-    yield Claim(
+    yield judged(
         "all variants are at least comparable to CARP100",
-        f"fewer actions than CARP100, in per cent of its total (comparable: at most {COMPARABLE_PER_CENT:g} % more): "
-        + listed(than_carp100, unit="%"),
-        verdict_of([above_zero(shifted(each, COMPARABLE_PER_CENT)) for each in than_carp100.values()]),
+        "fewer actions than CARP100, in per cent of its total, all maps "
+        f"(comparable: at most {COMPARABLE_PER_CENT:g} % more)",
+        lambda name: share_of_total(saved[None, name, "CARP100"]),
+        lambda each: above_zero(shifted(each, COMPARABLE_PER_CENT)),
     )
-    longest = {rival: saved[None, "LF", rival].saving for rival in ("CARP", "CARP10", "CARP100", "Proposed_10")}
-    yield Claim(
+    yield judged(
         "LF generates the worst results",
-        "fewer actions of LF than of the others, all maps: " + listed(longest),
-        verdict_of([below_zero(each) for each in longest.values()]),
+        "fewer actions of LF than of the others, all maps",
+        lambda name: saved[None, "LF", name].saving,
+        below_zero,
+        RIVALS,
+        has_baseline=False,
     )
 
 
-def up_to(
-    saved: Mapping[tuple[int | None, str, str], Saving], map: int, names: Sequence[str], paper: int, claim: str
+def judged(
+    claim: str,
+    what: str,
+    measured: Callable[[str], Interval],
+    holds: Callable[[Interval], bool | None],
+    names: Sequence[str] = PROPOSED,
+    has_baseline: bool = True,
 ) -> Claim:
-    """A claim of so many fewer actions than CARP on a map; where another map has more, it is told too."""
-    here = {name: saved[map, name, "CARP"].saving for name in names if (map, name, "CARP") in saved}
+    """A claim that holds of all the algorithms, or of their variants with the baseline."""
+    of_paper = {name: measured(name) for name in names}
+    verdict = verdict_of([holds(each) for each in of_paper.values()])
+    found = f"{what}: {listed(of_paper)}"
+    if not has_baseline:
+        return Claim(claim, found, verdict)
+    based = {name: measured(name + BASELINE) for name in names}
+    found += f"; with the baseline: {listed(based)}"
+    return Claim(claim, found, verdict, verdict_of([holds(each) for each in based.values()]))
+
+
+def up_to(saved: Savings, map: int, names: Sequence[str], paper: int, claim: str) -> Claim:
+    """A claim of so many fewer actions than CARP on a map; on which map we find the most is told too."""
+    based = [name + BASELINE for name in names]
+    here = {name: saved[map, name, "CARP"].saving for name in (*names, *based) if (map, name, "CARP") in saved}
     every = [
-        each for (place, name, rival), each in saved.items() if place is not None and name in names and rival == "CARP"
+        each for (place, name, rival), each in saved.items() if place is not None and name in here and rival == "CARP"
     ]
-    known = [each for each in every if 4 * each.cases >= max(other.cases for other in every)]
-    most = max(known, key=lambda each: each.saving.estimate)
-    there = f"{most.algorithm} {plain(most.saving)} ({most.cases} cases)"
-    found = f"map {map}: {listed(here)}; the most is on map {most.map}: {there}"
-    verdicts: list[bool | None] = [each.low <= paper <= each.high for each in here.values()]
-    more = [each.low > paper for each in here.values()]
-    verdict = verdict_of(verdicts)
-    if verdict != "reproduced" and all(above_zero(each) for each in here.values()):
-        verdict = "in part"
-        found += "; fewer than CARP, and " + ("more so than in the paper" if all(more) else "not by as many")
-    return Claim(claim, found, verdict)
+    known = [each for each in every if 4 * each.cases >= max((other.cases for other in every), default=0)]
+    found = f"map {map}: {listed(here)}"
+    if known:
+        most = max(known, key=lambda each: each.saving.estimate)
+        found += f"; the most is on map {most.map}: {most.algorithm} {plain(most.saving)} ({most.cases} cases)"
+    of_paper = [here[name] for name in names if name in here]
+    with_baseline = [here[name] for name in based if name in here]
+    return Claim(claim, found, number_verdict(of_paper, paper), number_verdict(with_baseline, paper))
+
+
+def number_verdict(found: Sequence[Interval], paper: int) -> Verdict:
+    """Reproduced if the intervals hold the paper's number, in part if they say at least that there are fewer."""
+    if not found:
+        return "undecided"
+    if all(each.low <= paper <= each.high for each in found):
+        return "reproduced"
+    return "in part" if all(above_zero(each) for each in found) else "not reproduced"
 
 
 def reuse_claims(summary: Sequence[ReuseOf]) -> Iterator[Claim]:
