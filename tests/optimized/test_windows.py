@@ -1,0 +1,80 @@
+"""The windows of the arrays are the free windows of the specification, and withdrawing a plan undoes reserving it."""
+
+from collections.abc import Sequence
+from random import Random
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from carp_optimized import passes
+from carp_optimized.arrays import NEVER, Rows
+from carp_optimized.fleet import Fleet
+from carp_spec import Instance, Plan
+from carp_spec.windows import Occupation, Window, free_windows
+from carp_verify.strategies import PlannedInstance, Sizes, planned_instances
+
+SIZES = Sizes(resources=5, robots=6)
+
+
+def rows(table: Rows, resource: int) -> list[tuple[int, int, int, int]]:
+    """The entries of a resource's row."""
+    slots = range(table.offset[resource], table.offset[resource] + table.size[resource])
+    columns = (table.start, table.end, table.source, table.robot)
+    return [tuple(int(column[slot]) for column in columns) for slot in slots]  # type: ignore[misc]
+
+
+def held(fleet: Fleet) -> list[object]:
+    """All that is reserved; stays that begin, or end, at a tick are in no order."""
+    windows, stays = fleet._state.windows, fleet._state.stays
+    told: list[object] = []
+    for resource, each in enumerate(fleet.instance.graph.resources):
+        told.append(rows(windows, resource))
+        if each.capacity > 1:
+            entries = rows(stays, resource)
+            told.append((sorted((start, source) for start, _, source, _ in entries), [end for _, end, *_ in entries]))
+    return told
+
+
+def occupations(plans: Sequence[Plan], resource: object) -> list[Occupation]:
+    return [(visit.enter, visit.leave) for plan in plans for visit in plan.visits if visit.resource == resource]
+
+
+def assert_windows_are(fleet: Fleet, instance: Instance, plans: Sequence[Plan]) -> None:
+    for position, resource in enumerate(instance.graph.resources):
+        windows = tuple(
+            Window(start, None if end == NEVER else end)
+            for start, end, *_ in rows(fleet._state.windows, position)
+            if start < end  # between two stays without a tick between, too, there is a window, of no length
+        )
+        assert windows == free_windows(occupations(plans, resource.id), resource.capacity)
+
+
+@settings(max_examples=300)
+@given(planned_instances(SIZES), st.randoms(use_true_random=False))
+def test_withdrawing_undoes_reserving_in_any_order(planned: PlannedInstance, random: Random) -> None:
+    plans = list(planned.solution.plans)
+    fleet = Fleet(planned.instance)
+    records = [fleet._write(plan) for plan in plans]
+    there: list[int] = []
+    empty = held(fleet)
+    for _ in range(2 * len(plans)):
+        absent = [position for position in range(len(plans)) if position not in there]
+        before = held(fleet)
+        if absent and (not there or random.random() < 0.6):
+            position = random.choice(absent)
+            record = np.array([records[position]], np.int32)
+            passes.reserve_all(fleet._native, record)
+            after = held(fleet)
+            passes.withdraw_all(fleet._native, record)
+            assert held(fleet) == before
+            passes.reserve_all(fleet._native, record)
+            assert held(fleet) == after
+            there.append(position)
+        elif there:
+            position = there.pop(random.randrange(len(there)))
+            passes.withdraw_all(fleet._native, np.array([records[position]], np.int32))
+        assert_windows_are(fleet, planned.instance, [plans[position] for position in there])
+    for position in there:
+        passes.withdraw_all(fleet._native, np.array([records[position]], np.int32))
+    assert held(fleet) == empty
