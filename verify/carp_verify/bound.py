@@ -1,18 +1,28 @@
 """Finds a good lower bound on the total cost, with a certificate that `carp_verify.verify_bound` checks.
 
 Prices are raised where the robots' cheapest ways need more than there is, and lowered where they need less, step by
-step (`carp_verify.price_steps`). The search aims a little above the best bound known, less and less so as it fails to
-get there. Source: the target level method of Goffin and Kiwiel 1999, over the Lagrangian relaxation of all rules of
-plans together.
+step (`carp_verify.price_steps`); where that gains no more, cuts are added (`carp_verify.cut_search`). The search aims a
+little above the best bound known, less and less so as it fails to get there. Source: the target level method of Goffin
+and Kiwiel 1999, over the Lagrangian relaxation of all rules of plans together.
 """
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
 
 from carp_spec import Instance
 from carp_spec.bounds import BOUND_FORMAT, BoundDocument, digest
+from carp_verify.solver import Deadline, TimeOver
+
+if TYPE_CHECKING:
+    from carp_verify.cut_search import CutSearch
+    from carp_verify.price_search import PriceSearch
 
 SCALE = 1 << 16
+FIRST_AIM = 50  # one part of the sum of shortest paths
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,27 +39,54 @@ def lower_bound(
     steps: int | None = None,
     on_step: Callable[[Progress], None] = lambda _: None,
 ) -> BoundDocument:
-    """Search for so many seconds or steps, whichever is over first, or until no step gains anything.
+    """Search for so many seconds or steps, whichever is over first, or until nothing is gained any more.
 
     With steps alone, the same instance gives the same certificate. `on_step` is called after each step. Raises
     `Refusal` for numbers that are too large.
     """
-    from carp_verify.price_search import PriceSearch  # noqa: PLC0415 - numba is slow to load
+    from carp_verify.cut_search import CutSearch  # noqa: PLC0415 - numba is slow to load
+    from carp_verify.price_search import PriceSearch  # noqa: PLC0415
 
+    deadline = None if seconds is None else Deadline(seconds)
     search = PriceSearch(instance, SCALE)
-    on_step(Progress(0, -(-search.best // SCALE)))
-    search.run(seconds, steps, lambda count, best: on_step(Progress(count, -(-best // SCALE))))
+    cuts = CutSearch(search)
+
+    def check() -> None:
+        if deadline is not None:
+            deadline.check()
+        if steps is not None and search.count >= steps:
+            raise TimeOver
+
+    def told(count: int, best: int) -> None:
+        on_step(Progress(count, -(-best // SCALE)))
+
+    told(0, search.best)
+    with suppress(TimeOver):
+        gain = search.best // FIRST_AIM
+        while gain > 0:
+            search.climb(gain, check, told)
+            gain = cuts.round(check)
+    search.finish()
+    return _certificate(search, cuts)
+
+
+def _certificate(search: "PriceSearch", cuts: "CutSearch") -> BoundDocument:
     prices = search.prices()
     robots = search.least_costs()
-    parts = sum(least or 0 for _, least in robots) - search.worth
+    used = tuple(
+        replace(cut.document, multiplier=int(multiplier))
+        for cut, multiplier in zip(cuts.cuts, search.multipliers, strict=True)
+        if multiplier > 0
+    )
+    parts = sum(least or 0 for _, least in robots) + sum(cut.multiplier * cut.least for cut in used) - search.worth
     return BoundDocument(
         format=BOUND_FORMAT,
-        instance=digest(instance),
+        instance=digest(search.instance),
         bound=-(-parts // SCALE),
         scale=SCALE,
         horizon=search.horizon,
         resources=prices.resources,
         exchanges=prices.exchanges,
-        cuts=(),
+        cuts=used,
         robots=robots,
     )

@@ -1,17 +1,16 @@
 """The search for good prices: what is done between the compiled steps of `carp_verify.price_steps`."""
 
-from collections.abc import Callable, Mapping
-from contextlib import suppress
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from carp_optimized.arrays import LARGEST, NONE, Graph, Longs
+from carp_optimized.arrays import LARGEST, NONE, Graph, Ints, Longs, LongTable
 from carp_optimized.encoding import encode_graph, refuse_tick, refuse_what_is_too_large
 from carp_optimized.references import Native
 from carp_spec import Instance, Refusal, ResourceId, RobotId
 from carp_verify.bound_rules import LARGEST_TABLE, table_fits
-from carp_verify.price_steps import LARGEST_GAIN, take_step
+from carp_verify.price_steps import KEPT, LARGEST_GAIN, PARTS, UNIT, turn_all, walk_all
 from carp_verify.priced_ways import (
     Market,
     Prices,
@@ -23,13 +22,11 @@ from carp_verify.priced_ways import (
     find_ways,
     least_cost,
 )
-from carp_verify.solver import Deadline, TimeOver
 
 TICKS_BEYOND = 32  # of the horizon beyond the last arrival of a robot that nothing delays
 DELAYS = 64
 MOST_NODES = 1 << 21
 PATIENCE = 60
-FIRST_AIM = 50  # one part of the sum of shortest paths
 LEAST_AIM = 64  # in parts of a tick
 
 
@@ -47,8 +44,19 @@ def refuse_table(path: str, what: str, entries: int) -> None:
         raise Refusal("limit", path, table_fits.id, message)
 
 
+class Point(NamedTuple):
+    """Prices and multipliers of cuts."""
+
+    resource: LongTable
+    exchange: LongTable
+    multipliers: Longs
+
+
 class PriceSearch:
-    """Prices of an instance; `best` is the bound, in parts of a tick, of the best that were found."""
+    """Prices of an instance and multipliers of cuts; `best` is the best bound found with them, in parts of a tick.
+
+    A cut says that the costs of its members, robots by position, add up to no less than `least`.
+    """
 
     def __init__(self, instance: Instance, scale: int) -> None:
         refuse_what_is_too_large(instance)
@@ -67,52 +75,112 @@ class PriceSearch:
         refuse_tick("$.graph", last)
         rows = resources + graph.target.size
         self.horizon = min(max(last, 0) + longest + TICKS_BEYOND, LARGEST_TABLE // max(rows, 1))
-        delays = max(1, min(DELAYS * longest, MOST_NODES // max(resources, 1), LARGEST - last))
-        self.market = _sized(market, self.horizon, delays)
+        wanted = max(DELAYS * longest, self.horizon + longest)
+        self.market = _sized(market, self.horizon, max(1, min(wanted, MOST_NODES // max(resources, 1), LARGEST - last)))
         self.native = Native(self.market)
+        self.cuts: list[Ints] = []
+        self.least = np.zeros(0, np.int64)
+        self.multipliers = np.zeros(0, np.int64)
+        self._course = np.zeros(0, np.int64)
         self.best = find_ways(self.native)
-        self._kept = self._copy()
+        self._kept = self._point()
         self.count = 0
 
-    def _copy(self) -> tuple[Longs, Longs]:
-        return self.market.prices.resource.copy(), self.market.prices.exchange.copy()
+    def _point(self) -> Point:
+        return Point(self.market.prices.resource.copy(), self.market.prices.exchange.copy(), self.multipliers.copy())
+
+    def _bound(self) -> int:
+        """The bound that the prices and multipliers prove; gives each robot a cheapest way."""
+        weight = self.market.requests.weight
+        weight[:] = self.scale
+        for members, multiplier in zip(self.cuts, self.multipliers, strict=True):
+            weight[members] -= multiplier
+        return find_ways(self.native) + int((self.multipliers * self.least).sum())
 
     def _restore(self) -> int:
         """Go back to the best prices, without a course: their bound."""
-        self.market.prices.resource[:], self.market.prices.exchange[:] = self._kept
+        self.market.prices.resource[:], self.market.prices.exchange[:], self.multipliers = self._kept
+        self.multipliers = self.multipliers.copy()
         self.market.usage.course[:] = 0
         self.market.usage.course_of_exchange[:] = 0
-        return find_ways(self.native)
+        self._course[:] = 0
+        return self._bound()
 
-    def run(self, seconds: float | None, steps: int | None, on_step: Callable[[int, int], None]) -> None:
-        """Take steps until the time or their number is over, or none gains anything."""
-        deadline = None if seconds is None else Deadline(seconds)
-        with suppress(TimeOver):
-            self._climb(steps, deadline, on_step)
-        self._restore()
+    def add_cuts(self, cuts: Sequence[tuple[Sequence[int], int]]) -> None:
+        """Add cuts, each its members and their least total, with multipliers of 0."""
+        self.cuts.extend(np.array(members, np.int32) for members, _ in cuts)
+        none = np.zeros(len(cuts), np.int64)
+        self.least = np.concatenate([self.least, np.array([least for _, least in cuts], np.int64)])
+        self.multipliers = np.concatenate([self.multipliers, none])
+        self._course = np.concatenate([self._course, none])
+        self._kept = self._kept._replace(multipliers=np.concatenate([self._kept.multipliers, none]))
 
-    def _climb(self, steps: int | None, deadline: Deadline | None, on_step: Callable[[int, int], None]) -> None:
-        bound = self.best
-        aim = max(bound // FIRST_AIM, LEAST_AIM)
+    def costs(self) -> Longs:
+        """What the cheapest ways cost the robots, in ticks without prices."""
+        ways = self.market.ways
+        last = np.maximum(ways.length - 1, 0)
+        return np.where(ways.length > 0, ways.enter[np.arange(len(last)), last] - self.market.requests.release, 0)
+
+    def _step(self, gain: int) -> bool:
+        """Change prices and multipliers to gain so much; false if there is nothing to be gained."""
+        costs = self.costs()
+        lacking = self.least - np.array([costs[members].sum() for members in self.cuts], np.int64)
+        self._course = self._course * KEPT // PARTS + UNIT * lacking
+        self._course[(self._course < 0) & (self.multipliers == 0)] = 0
+        square = turn_all(self.native) + int((self._course * self._course).sum())
+        if square == 0:
+            return False
+        walk_all(self.native, gain, square)
+        self.multipliers = np.maximum(self.multipliers + gain * UNIT * self._course // square, 0)
+        self._limit_multipliers()
+        self.count += 1
+        return True
+
+    def _limit_multipliers(self) -> None:
+        """Lower the multipliers of robots whose cuts would outweigh their costs."""
+        total = np.zeros(len(self.instance.robots), np.int64)
+        for members, multiplier in zip(self.cuts, self.multipliers, strict=True):
+            total[members] += multiplier
+        if (total > self.scale).any():
+            for number, members in enumerate(self.cuts):
+                self.multipliers[number] = self.multipliers[number] * self.scale // max(self.scale, *total[members])
+
+    def climb(self, first_aim: int, check: Callable[[], None], on_step: Callable[[int, int], None]) -> None:
+        """Take steps until none gains anything; `check` is called before each, and may raise `TimeOver`."""
+        bound = self._restore()
+        self.best = max(self.best, bound)
+        aim = max(first_aim, LEAST_AIM)
         failures = 0
-        while aim >= LEAST_AIM and (steps is None or self.count < steps):
-            if deadline is not None:
-                deadline.check()
-            gain = min(max(self.best + aim - bound, 0), LARGEST_GAIN)
-            if take_step(self.native, gain) == 0:
-                return
-            self.count += 1
-            bound = find_ways(self.native)
+        while aim >= LEAST_AIM:
+            check()
+            if not self._step(min(max(self.best + aim - bound, 0), LARGEST_GAIN)):
+                break
+            bound = self._bound()
             failures += 1
             if bound > self.best:
                 failures = 0 if bound > self.best + aim // 8 else failures
                 self.best = bound
-                self._kept = self._copy()
+                self._kept = self._point()
             if failures > PATIENCE:
                 failures = 0
                 aim = aim * 3 // 4
                 bound = self._restore()
             on_step(self.count, self.best)
+
+    def finish(self) -> None:
+        """Go back to the best prices."""
+        self._restore()
+
+    def wander(self, steps: int, aim: int, on_step: Callable[[], None]) -> Longs:
+        """Take so many steps near the best prices: the robots' costs, summed over the steps."""
+        bound = self._restore()
+        total = np.zeros(len(self.instance.robots), np.int64)
+        for _ in range(steps):
+            self._step(min(max(self.best + aim - bound, 0), LARGEST_GAIN))
+            bound = self._bound()
+            total += self.costs()
+            on_step()
+        return total
 
     def prices(self) -> PriceLists:
         """The prices that are not 0."""

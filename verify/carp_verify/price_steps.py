@@ -17,27 +17,30 @@ LARGEST_PRICE = 1 << 40
 
 
 @entry
-def take_step(native: Native[Market], gain: int) -> int:
-    """Change the prices in order to gain so much: the square of the course, 0 if nothing is to be gained."""
+def turn_all(native: Native[Market]) -> int:
+    """Turn the course of all prices: its square."""
     market = market_at(native)
     graph = market.graph
-    back = market.prices.back
     square = 0
     for here in range(graph.duration.size):
         capacity = int(graph.capacity[here])
         course = market.usage.course[here]
         square += turn(market.prices.resource[here], course, market.usage.present[here], capacity, market.horizon)
         for move in range(int(graph.first[here]), int(graph.first[here + 1])):
-            if back[move] != NONE:
+            if market.prices.back[move] != NONE:
                 square += turn_exchange(market, here, move)
-    if square == 0:
-        return 0
-    for here in range(graph.duration.size):
-        walk(market.prices.resource[here], market.usage.course[here], gain, square, market.horizon)
-    for move in range(graph.target.size):
-        if back[move] != NONE:
-            walk(market.prices.exchange[move], market.usage.course_of_exchange[move], gain, square, market.horizon)
     return square
+
+
+@entry
+def walk_all(native: Native[Market], gain: int, square: int) -> None:
+    """Change all prices along their course, of that square together with whatever else is changed, to gain so much."""
+    market = market_at(native)
+    for here in range(market.graph.duration.size):
+        walk(market.prices.resource[here], market.usage.course[here], gain, square, market.horizon)
+    for move in range(market.graph.target.size):
+        if market.prices.back[move] != NONE:
+            walk(market.prices.exchange[move], market.usage.course_of_exchange[move], gain, square, market.horizon)
 
 
 @compiled

@@ -109,7 +109,7 @@ def write_proof(instance: Instance, best: Optimum, directory: Path, limit: float
         "reach.model": _model_text(model).encode(),
         "variables.json": _variables(reach),
         "beat.cnf": dimacs(beat.formula).encode(),
-        "beat.drat": _refutation(beat.formula, deadline).encode(),
+        "beat.drat": refutation(beat.formula, deadline).encode(),
     }
     digests = {name: sha256(content).hexdigest() for name, content in files.items()}
     manifest = Manifest(PROOF_FORMAT, best.cost, best.evidence.horizons, best.evidence.order, digests)
@@ -130,7 +130,8 @@ def _model(formula: Formula, deadline: Deadline) -> Sequence[bool]:
         solver.close()
 
 
-def _refutation(formula: Formula, deadline: Deadline) -> str:
+def refutation(formula: Formula, deadline: Deadline) -> str:
+    """The DRAT proof that the formula has no model; raises `TimeOver`, and `Refusal` if it has one."""
     if () in formula.clauses:
         return "0\n"
     solver = Solver(formula, deadline.check, with_proof=True)

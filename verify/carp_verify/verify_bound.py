@@ -78,9 +78,9 @@ def _weights(instance: Instance, certificate: BoundDocument) -> tuple[Sequence[i
             left[robot] -= cut.multiplier
             message = f"the multipliers of robot {robot} must add up to {certificate.scale} at most"
             _require(is_weight, is_weight(0, -left[robot]), f"{path}.multiplier", message)
-        from carp_verify.bound_cuts import refuted  # noqa: PLC0415 - only a certificate with cuts needs a proof checker
+        from carp_verify.bound_cuts import why_unproved  # noqa: PLC0415 - only a certificate with cuts needs a proof checker
 
-        reason = refuted(instance, cut)
+        reason = why_unproved(instance, cut)
         _require(is_weight, reason is None, path, f"its proof does not hold: {reason}")
         proved += cut.multiplier * cut.least
     return list(left.values()), proved
