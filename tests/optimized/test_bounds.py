@@ -1,0 +1,29 @@
+"""Compiled so that every index is checked, the planner makes the same plans, and none is out of bounds."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+CACHE = Path(__file__).parents[2] / "build" / "bounds-checked"
+
+CROSSCHECK = """
+from carp_optimized import passes
+from carp_optimized.fleet import Fleet
+from carp_spec import Instance, Resource, ResourceGraph, Robot
+from carp_verify.crosscheck import first_difference
+
+fleet = Fleet(Instance(ResourceGraph((Resource("a"),), ()), (Robot("r", "a", "a"),)))
+try:
+    passes.shortest(fleet._native, 1)
+except IndexError:
+    print("an index out of bounds is noticed")
+print(first_difference(300, seed=5))
+"""
+
+
+def test_no_index_is_out_of_bounds() -> None:
+    checked = {**os.environ, "NUMBA_BOUNDSCHECK": "1", "NUMBA_CACHE_DIR": str(CACHE)}
+    checked.pop("NUMBA_DISABLE_JIT", None)
+    done = subprocess.run([sys.executable, "-c", CROSSCHECK], env=checked, capture_output=True, text=True, check=False)
+    assert done.stdout == "an index out of bounds is noticed\nNone\n", done.stderr
