@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 SCALE = 1 << 16
 FIRST_AIM = 50  # one part of the sum of shortest paths
+ROUGH_AIM = SCALE >> 4
+FINE_AIM = SCALE >> 10
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,8 +66,9 @@ def lower_bound(
     with suppress(TimeOver):
         gain = search.best // FIRST_AIM
         while gain > 0:
-            search.climb(gain, check, told)
+            search.climb(gain, ROUGH_AIM, check, told)
             gain = cuts.round(check)
+        search.climb(ROUGH_AIM, FINE_AIM, check, told)
     search.finish()
     return _certificate(search, cuts)
 

@@ -26,8 +26,7 @@ from carp_verify.priced_ways import (
 TICKS_BEYOND = 32  # of the horizon beyond the last arrival of a robot that nothing delays
 DELAYS = 64
 MOST_NODES = 1 << 21
-PATIENCE = 60
-LEAST_AIM = 64  # in parts of a tick
+PATIENCE = 35
 
 
 class PriceLists(NamedTuple):
@@ -145,13 +144,18 @@ class PriceSearch:
             for number, members in enumerate(self.cuts):
                 self.multipliers[number] = self.multipliers[number] * self.scale // max(self.scale, *total[members])
 
-    def climb(self, first_aim: int, check: Callable[[], None], on_step: Callable[[int, int], None]) -> None:
-        """Take steps until none gains anything; `check` is called before each, and may raise `TimeOver`."""
+    def climb(
+        self, first_aim: int, last_aim: int, check: Callable[[], None], on_step: Callable[[int, int], None]
+    ) -> None:
+        """Take steps that aim less and less above the best bound, from the first aim to the last, in parts of a tick.
+
+        `check` is called before each and may raise `TimeOver`; `on_step` is told the steps and the best bound.
+        """
         bound = self._restore()
         self.best = max(self.best, bound)
-        aim = max(first_aim, LEAST_AIM)
+        aim = max(first_aim, last_aim)
         failures = 0
-        while aim >= LEAST_AIM:
+        while aim >= last_aim:
             check()
             if not self._step(min(max(self.best + aim - bound, 0), LARGEST_GAIN)):
                 break
