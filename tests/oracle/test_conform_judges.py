@@ -16,8 +16,10 @@ from carp_oracle.conform.levels import Level
 from carp_oracle.conform.run import Options, Report, conform
 from carp_oracle.conform.saving import save
 from carp_spec import Carp, Plan, Solution, judge
+from carp_spec.bounds import BoundDocument
 from carp_spec.documents import VerdictDocument, verdict_document
 from carp_spec.vectors import VectorsDocument
+from carp_verify.bound import lower_bound
 from carp_verify.optimum import optimum
 
 LATE = {"query/optimal", "joint/capacity", "joint/exchange", "fleet/history"}
@@ -31,6 +33,8 @@ def right_reply(case: Case) -> Reply:
     if case.op == "optimum":
         best = optimum(instance, 5)
         return OptimumAnswer(best.cost, best.lower, best.proved, best.solution)
+    if case.op == "bound":
+        return lower_bound(instance, steps=20)
     if case.op == "plan":
         assert case.planner is not None
         return carp_reference.plan(instance, case.planner)
@@ -130,6 +134,12 @@ def optimum_without_plans(case: Case, reply: Reply) -> Reply:
     return replace(reply, solution=None)
 
 
+def bound_too_high(case: Case, reply: Reply) -> Reply:
+    del case
+    assert isinstance(reply, BoundDocument)
+    return msgspec.structs.replace(reply, bound=reply.bound + 1)
+
+
 def as_it_is(case: Case, reply: Reply) -> Reply:
     del case
     return reply
@@ -155,6 +165,7 @@ def test_right_answers_conform_to_every_level(level: Level) -> None:
         (reverses_order, "add", Level.EXACT, {"query/ties"}),
         (optimum_too_high, "optimum", Level.OPTIMAL, {"program/optimal"}),
         (optimum_without_plans, "optimum", Level.OPTIMAL, {"cost/total"}),
+        (bound_too_high, "bound", Level.SOUND, {"bound/total"}),
     ],
 )
 def test_one_wrong_thing_is_refused_by_its_rule(tamper: Tamper, op: str, level: Level, rules: set[str]) -> None:

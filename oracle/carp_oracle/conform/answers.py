@@ -8,6 +8,7 @@ import msgspec
 from carp_oracle.conform.cases import Case
 from carp_oracle.conform.findings import Category, Fault, Finding, is_accepted, is_response, is_result
 from carp_spec import Plan, Refusal, ResourceId, Solution, Visit, read_solution
+from carp_spec.bounds import BoundDocument
 from carp_spec.documents import VerdictDocument
 
 T = TypeVar("T")
@@ -38,7 +39,7 @@ class OptimumAnswer:
     solution: Solution | None
 
 
-Answer: TypeAlias = QueryAnswer | Solution | VerdictDocument | OptimumAnswer
+Answer: TypeAlias = QueryAnswer | Solution | VerdictDocument | OptimumAnswer | BoundDocument
 Reply: TypeAlias = Answer | Skipped
 
 
@@ -120,6 +121,8 @@ def decode_answer(case: Case, data: msgspec.Raw) -> Answer:
     what = f"the result of {case.op} is not as it must be"
     if case.op == "check":
         return _decoded(data, VerdictDocument, is_result.id, what)
+    if case.op == "bound":
+        return _decoded(data, BoundDocument, is_result.id, what)
     if case.op == "query":
         visits = _decoded(data, _QueryResult, is_result.id, what).plan
         robot = case.instance.robots[0].id if case.robot is None else case.robot

@@ -6,10 +6,11 @@ from typing import Any, Literal, TypeAlias, get_args
 from carp_spec import Instance, Neighbourhood, Planner, RobotId, Solution
 from carp_spec.documents import instance_document, solution_document
 
-Op: TypeAlias = Literal["check", "query", "plan", "add", "optimum"]
+Op: TypeAlias = Literal["check", "query", "plan", "add", "optimum", "bound"]
 OPS: tuple[Op, ...] = get_args(Op)
 Stage: TypeAlias = Literal["smoke", "vectors", "random"]
 OPTIMUM_SECONDS = 3
+BOUND_STEPS = 100
 NO_PLANS = Solution((), ())
 
 
@@ -59,6 +60,8 @@ def case_input(case: Case) -> dict[str, Any]:
             return {} if case.planner is None else {"planner": case.planner.name, **asdict(case.planner)}
         case "optimum":
             return {"limit": OPTIMUM_SECONDS}
+        case "bound":
+            return {"steps": BOUND_STEPS}
 
 
 def request_fields(case: Case) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from carp_oracle.conform.answers import Answer, OptimumAnswer, QueryAnswer
 from carp_oracle.conform.cases import Case
 from carp_oracle.conform.findings import Finding, wrong
 from carp_oracle.conform.levels import Level
-from carp_oracle.conform.optimum import complete_findings, optimum_findings, plan_cost_findings
+from carp_oracle.conform.optimum import bound_findings, complete_findings, optimum_findings, plan_cost_findings
 from carp_oracle.engines import engine_named
 from carp_spec import (
     Carp,
@@ -21,6 +21,7 @@ from carp_spec import (
     plan_cost,
     total_cost,
 )
+from carp_spec.bounds import BoundDocument
 from carp_spec.documents import VerdictDocument, verdict_document
 from carp_spec.rule import interval
 
@@ -38,6 +39,8 @@ def _findings(case: Case, answer: Answer, level: Level) -> Iterator[Finding]:
             yield from _check_findings(case, answer, level)
         case OptimumAnswer():
             yield from optimum_findings(case.instance, answer, level)
+        case BoundDocument():
+            yield from bound_findings(case.instance, answer, level)
         case Solution() if case.op == "add":
             yield from _add_findings(case, answer, level)
         case Solution():

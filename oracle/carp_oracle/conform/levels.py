@@ -34,7 +34,7 @@ CLASSICAL_LEVELS = (Level.SOUND, Level.COMPLETE, Level.OPTIMAL)
 """The levels of planners whose answers do not tell in which order the plans were made."""
 LEVELS = {level.label: level for level in Level}
 JUDGED_OPS = {
-    Level.SOUND: ("check", "query", "plan", "add", "optimum"),
+    Level.SOUND: ("check", "query", "plan", "add", "optimum", "bound"),
     Level.COMPLETE: ("query", "plan", "add", "optimum"),
     Level.CONTEXT_OPTIMAL: ("query", "plan"),
     Level.OPTIMAL: ("optimum",),

@@ -7,7 +7,8 @@ from carp_oracle.conform.answers import OptimumAnswer
 from carp_oracle.conform.cases import OPTIMUM_SECONDS
 from carp_oracle.conform.findings import Finding, is_complete, is_optimal, wrong
 from carp_oracle.conform.levels import Level
-from carp_spec import Instance, Solution, judge, total_cost
+from carp_spec import Instance, Refusal, Solution, judge, total_cost
+from carp_spec.bounds import BoundDocument
 
 
 @lru_cache(maxsize=1)
@@ -33,6 +34,21 @@ def optimum_findings(instance: Instance, answer: OptimumAnswer, level: Level) ->
         yield wrong("cost/total", f"a cost of {answer.cost} needs a solution that has it")
     if level >= Level.OPTIMAL:
         yield from _against_proof(instance, answer)
+
+
+def bound_findings(instance: Instance, certificate: BoundDocument, level: Level) -> Iterator[Finding]:
+    """What is wrong with an answer to `bound`: its certificate, or a bound above the proved optimum."""
+    from carp_verify.verify_bound import verify_bound  # noqa: PLC0415 - only programs that have bounds need it
+
+    try:
+        bound = verify_bound(instance, certificate)
+    except Refusal as refusal:
+        yield wrong(refusal.rule, f"{refusal.path}: {refusal.message}")
+        return
+    if level >= Level.OPTIMAL:
+        is_proved, least = proved_cost(instance)
+        if is_proved and least is not None and bound > least:
+            raise RuntimeError(f"carproof verifies a bound of {bound}, and there are plans with a total of {least}")
 
 
 def _against_proof(instance: Instance, answer: OptimumAnswer) -> Iterator[Finding]:

@@ -126,6 +126,7 @@ def random_cases(ops: Sequence[str], level: Level, whole: bool) -> st.SearchStra
         return _plans([None])
     planners = EXACT_PLANNERS if level >= Level.EXACT else (Carp(),)
     by_op = {"query": _queries(), "plan": _plans(planners), "add": _additions(), "check": _checks()}
+    by_op["bound"] = instances(OPTIMUM_SIZES).map(lambda instance: Case("random", "bound", "bound", instance))
     if level >= Level.OPTIMAL:
         small = st.one_of(instances(OPTIMUM_SIZES), _busy_instances(), _busy_instances())
         optimal = small.map(lambda instance: Case("random", "optimum", "optimum", instance))

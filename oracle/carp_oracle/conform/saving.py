@@ -15,6 +15,7 @@ from carp_oracle.files import write_whole
 from carp_oracle.movingai_writer import MAP_NAME, write_movingai
 from carp_oracle.rules import ALL_RULES
 from carp_spec import Refusal, Solution, write_instance, write_solution
+from carp_spec.bounds import BoundDocument
 from carp_spec.documents import VerdictDocument, instance_document, solution_document, visits_document
 
 NO_PICTURE = '<svg xmlns="http://www.w3.org/2000/svg" width="900" height="40"><text x="8" y="24">{}</text></svg>\n'
@@ -114,7 +115,7 @@ def claim(answer: Answer) -> dict[str, Any]:
         return {"plan": None if answer.plan is None else visits_document(answer.plan)}
     if isinstance(answer, Solution):
         return cast("dict[str, Any]", msgspec.to_builtins(solution_document(answer)))
-    if isinstance(answer, VerdictDocument):
+    if isinstance(answer, VerdictDocument | BoundDocument):
         return cast("dict[str, Any]", msgspec.to_builtins(answer))
     solution = None if answer.solution is None else solution_document(answer.solution)
     return {"cost": answer.cost, "lower": answer.lower, "proved": answer.proved, "solution": solution}
