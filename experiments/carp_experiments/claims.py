@@ -6,6 +6,7 @@ from typing import Literal, TypeAlias
 
 from carp_experiments.adding_time import PAPER, SHOWN, Time
 from carp_experiments.quality import FULL_MAP, RIVALS, QualitySummary, Saving
+from carp_experiments.related_work import FIXED, Related
 from carp_experiments.reuse_counts import PAPERS_SHARES, ReuseOf
 from carp_experiments.statistics import Interval
 
@@ -166,6 +167,33 @@ def time_claims(summary: Sequence[Time]) -> Iterator[Claim]:
         f"CARP100's time at robot {last} over theirs: "
         + ", ".join(f"{name} {each:.0f}" for name, each in faster.items()),
         verdict_of([each > 1 for each in faster.values()]),
+    )
+
+
+def related_claims(summary: Sequence[Related]) -> Iterator[Claim]:
+    """The claims about others' work that the paper cites, map by map."""
+    by_place = {(each.method, each.map): each for each in summary}
+    maps = sorted({each.map for each in summary})
+    fewer, cheaper = {}, {}
+    for name in FIXED:
+        fewer[name] = [by_place["CARP", map].unplanned.high < by_place[name, map].unplanned.low for map in maps]
+        both = [(by_place["CARP", map].above, by_place[name, map].above) for map in maps]
+        cheaper[name] = [ours.high < theirs.low for ours, theirs in both if ours is not None and theirs is not None]
+    yield Claim(
+        "CARP is superior in all measured qualities to fixed paths, k shortest and k disjoint (ter Mors' comparison)",
+        "maps on which CARP leaves fewer robots without a plan, with disjoint intervals: "
+        + ", ".join(f"{name} {sum(each)} of {len(each)}" for name, each in fewer.items())
+        + "; on which its total is smaller, of those on which both plan all robots: "
+        + ", ".join(f"{name} {sum(each)} of {len(each)}" for name, each in cheaper.items()),
+        verdict_of([all(each) for each in (*fewer.values(), *cheaper.values())]),
+    )
+    totals = [(by_place["greedy", map].above, by_place["CARP", map].above) for map in maps]
+    known = [(greedy, carp) for greedy, carp in totals if greedy is not None and carp is not None]
+    yield Claim(
+        "greedy best-first has the best joint plan cost of the orders by priority (ter Mors' heuristics)",
+        "totals of greedy and of CARP above the sum of shortest paths in per cent, by map: "
+        + ", ".join(f"{plain(greedy)} and {plain(carp)}" for greedy, carp in known),
+        verdict_of([greedy.estimate < carp.estimate for greedy, carp in known]),
     )
 
 

@@ -27,6 +27,12 @@ class Profile:
     robots: int
     maps: tuple[int, ...]
 
+    @property
+    def options(self) -> str:
+        """The options of the command line that ask for it."""
+        maps = () if self.maps == ALL_MAPS else (f"--map {map}" for map in self.maps)
+        return " ".join([f"--assignments {self.assignments}", f"--robots {self.robots}", *maps])
+
     def __str__(self) -> str:
         """Print in words."""
         maps = f"map{'s' if len(self.maps) > 1 else ''} {', '.join(map(str, self.maps))}"

@@ -10,8 +10,9 @@ from typing import TypeVar
 import msgspec
 
 from carp_experiments.adding_time import Time
-from carp_experiments.claims import Claim, quality_claims, reuse_claims, time_claims
+from carp_experiments.claims import Claim, quality_claims, related_claims, reuse_claims, time_claims
 from carp_experiments.quality import QualitySummary
+from carp_experiments.related_work import Related
 from carp_experiments.reuse_counts import ReuseOf
 
 T = TypeVar("T")
@@ -52,6 +53,7 @@ class Run(msgspec.Struct, frozen=True):
     """What is known of a run beside its summary."""
 
     experiment: str
+    command: str
     size: str
     cases: int
     digest: str
@@ -74,6 +76,8 @@ def claims_of(run: Run) -> Iterator[Claim]:
         yield from time_claims(summary_of(run, tuple[Time, ...]))
     elif run.experiment == "reuse":
         yield from reuse_claims(summary_of(run, tuple[ReuseOf, ...]))
+    elif run.experiment == "related":
+        yield from related_claims(summary_of(run, tuple[Related, ...]))
 
 
 def summary_of(run: Run, type: type[T]) -> T:
@@ -96,11 +100,11 @@ def results() -> str:
 
 def section(name: str, run: Run) -> str:
     """An experiment: the run, its tables, its figures."""
-    made = f"{run.size}; {run.cases} cases took {run.processor_seconds} s of processor time. {run.note}".strip()
-    digest = f"Digest: `{run.digest}`."
+    made = f"`{run.command}`: {run.size}; {run.cases} cases took {run.processor_seconds} s of processor time."
+    note = f"{run.note} Digest: `{run.digest}`.".strip()
     tables = (RESULTS / f"{name}.md").read_text(encoding="utf-8")
     figures = "".join(f"\n![{path.stem}](results/{path.name})\n" for path in sorted(RESULTS.glob(f"{name}*.svg")))
-    return f"## {TITLES[name]}\n\n{made}\n{digest}\n\n{tables}{figures}"
+    return f"## {TITLES[name]}\n\n{made}\n{note}\n\n{tables}{figures}"
 
 
 def page() -> str:

@@ -100,6 +100,7 @@ def command_of(experiment: Experiment) -> click.Command:
         return go(
             experiment.name,
             identity,
+            f"carproof experiment {experiment.name} {profile.options}",
             str(profile),
             experiment.cases(profile),
             lambda rows: experiment.report(rows, profile),
@@ -121,12 +122,14 @@ def crosscheck(quick: bool, questions: int, seed: int, **campaign: Any) -> Answe
     """
     size = QUICK_QUESTIONS if quick else questions
     cases = crosscheck_cases(size, seed)
-    return go("crosscheck", "crosscheck", f"{size} questions", cases, crosscheck_report, **campaign)
+    command = f"carproof experiment crosscheck --questions {size} --seed {seed}"
+    return go("crosscheck", "crosscheck", command, f"{size} questions", cases, crosscheck_report, **campaign)
 
 
 def go(  # noqa: PLR0913 - the campaign's options
     name: str,
     identity: str,
+    command: str,
     size: str,
     cases: "Sequence[Case]",
     report_of: "Callable[[Iterable[Row]], Report]",
@@ -153,6 +156,7 @@ def go(  # noqa: PLR0913 - the campaign's options
             run_campaign(cases, results, who, advance)
         told = report_of(row for _, row in results.rows(keys))
         facts = {
+            "command": command,
             "size": size,
             "cases": len(cases),
             "digest": results.digest(keys),
