@@ -6,7 +6,7 @@ export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 .DELETE_ON_ERROR:
-.PHONY: install compiled demo test nightly coverage mutation conform lint format gap optimum-figures experiments-page generated clean
+.PHONY: install compiled demo test paper-sized nightly coverage mutation conform lint format gap optimum-figures experiments-page generated clean
 
 install: .venv/installed
 
@@ -54,6 +54,11 @@ generated: install
 	$(BIN)/python -m carp_spec.readme
 	$(BIN)/python -m carp_oracle.viewer.samples
 
+# Ask the reference questions of the paper's size, and write digests of its answers, with which the gate compares the
+# compiled planner's: about a quarter of an hour.
+paper-sized: compiled
+	$(BIN)/python -m tests.optimized.paper_sized
+
 # All tests with many more examples, and CrossHair on the integer leaf functions: hours.
 nightly: install
 	HYPOTHESIS_PROFILE=nightly $(BIN)/pytest
@@ -71,7 +76,11 @@ coverage: install
 
 # Break the specification and the reference in one place after the other, and list what no test noticed.
 # Works on a copy; `make mutation-carp_spec` for one package. tests/mutation/survivors.md explains what is left.
-mutation: mutation-carp_spec mutation-carp_reference
+mutation: mutation-carp_spec mutation-carp_reference mutation-carp_optimized
+
+# The compiled planner's reuse, run uncompiled, by a driver of its own that forks for each mutant; half an hour.
+mutation-carp_optimized: install
+	nice $(BIN)/python -m tests.mutation.forking
 
 mutation-%: install
 	rm -rf build/mutation/$* build/mutation/$*-original

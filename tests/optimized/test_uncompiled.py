@@ -3,12 +3,26 @@
 import os
 import subprocess
 import sys
+from pathlib import Path
 
+ROOT = Path(__file__).parents[2]
 CROSSCHECK = "from carp_verify.crosscheck import first_difference; print(first_difference(60, seed=3))"
 
 
+def uncompiled(*arguments: str) -> subprocess.CompletedProcess[str]:
+    """What Python does with the arguments; numbers that wrap around as they shall are no news."""
+    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1"}
+    command = [sys.executable, "-W", "ignore::RuntimeWarning", *arguments]
+    return subprocess.run(command, env=environment, capture_output=True, text=True, check=False, cwd=ROOT)
+
+
 def test_the_engines_agree_with_compilation_switched_off() -> None:
-    uncompiled = {**os.environ, "NUMBA_DISABLE_JIT": "1"}
-    command = [sys.executable, "-W", "ignore", "-c", CROSSCHECK]
-    done = subprocess.run(command, env=uncompiled, capture_output=True, text=True, check=False)
+    done = uncompiled("-c", CROSSCHECK)
     assert done.stdout == "None\n", done.stderr
+
+
+def test_the_tests_that_only_run_uncompiled_pass() -> None:
+    quietly = ["-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-W", "ignore::RuntimeWarning"]
+    done = uncompiled("-m", "pytest", *quietly, "tests/optimized/test_replanning.py")
+    assert done.returncode == 0, done.stdout
+    assert "1 passed" in done.stdout

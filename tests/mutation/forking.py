@@ -1,0 +1,163 @@
+"""Mutants of the compiled planner, run uncompiled, each in a process forked from one that has loaded all but it.
+
+`python -m tests.mutation.forking` lists the mutants that no check notices; with names of modules, of these alone. The
+checks are those of tests/optimized that fit into a second: random small questions, whose answers by the reference are
+known before the first fork, under every choice of what is reused; and the counts of tests/optimized/test_reuse.py.
+Starting pytest and numba for each mutant would take ten times as long.
+"""
+
+import os
+import resource
+import sys
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from difflib import ndiff
+from functools import partial
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
+from importlib.util import spec_from_loader
+from itertools import product
+from pathlib import Path
+from types import ModuleType
+
+os.environ["NUMBA_DISABLE_JIT"] = "1"  # numba looks when it is loaded
+
+import numpy as np
+from cosmic_ray.commands.init import _all_work_items
+from cosmic_ray.mutating import mutate_code
+from cosmic_ray.plugins import get_operator
+
+import carp_reference
+from carp_experiments.small_questions import question
+from carp_spec import Instance, Neighbourhood, Planner, Solution
+
+ROOT = Path(__file__).parents[2]
+FOLDER = ROOT / "optimized" / "carp_optimized"
+MODULES = ("replanning", "order_search", "answers", "neighbourhood", "orders", "distances", "passes")
+LEFT_OUT = ("_BitAnd", "_BitOr", "_BitXor", "_Div", "_FloorDiv", "_LShift", "_Mod", "_Pow", "_RShift", "_Is", "_IsNot")
+QUESTIONS = 400
+SECONDS = 60
+KINDS = ("kept", "unchanged", "prefixes", "shared", "bounds")
+CHOICES = list(product((True, False), repeat=len(KINDS)))
+
+
+@dataclass(frozen=True, slots=True)
+class Mutant:
+    """One change of one module."""
+
+    module: str
+    operator: str
+    occurrence: int
+    line: int
+
+    def source(self, original: str) -> str | None:
+        """The changed source."""
+        mutated: str | None = mutate_code(original, get_operator(self.operator)(), self.occurrence)
+        return mutated
+
+    def change(self, original: str) -> str:
+        """The lines that differ, on one line."""
+        lines = ndiff(original.splitlines(), (self.source(original) or "").splitlines())
+        return "  ".join(" ".join(line.split()) for line in lines if line[0] in "+-")
+
+
+class Changed(MetaPathFinder, Loader):
+    """Loads a module from another source than its file."""
+
+    def __init__(self, name: str, source: str) -> None:
+        self.name, self.source = name, source
+
+    def find_spec(self, name: str, path: object, target: object = None) -> ModuleSpec | None:
+        del path, target
+        return spec_from_loader(name, self) if name == self.name else None
+
+    def exec_module(self, module: ModuleType) -> None:
+        module.__file__ = str(FOLDER / f"{self.name.rpartition('.')[2]}.py")
+        exec(compile(self.source, module.__file__, "exec"), module.__dict__)  # noqa: S102 - a mutant is to be run
+
+
+def mutants(module: str) -> Iterator[Mutant]:
+    for item in _all_work_items([FOLDER / f"{module}.py"], {}):
+        for each in item.mutations:
+            if not each.operator_name.endswith(LEFT_OUT) and "BitOr_" not in each.operator_name:
+                yield Mutant(module, each.operator_name, each.occurrence, each.start_pos[0])
+
+
+def known_answers() -> list[tuple[object, Planner, Solution]]:
+    """Questions that both planners can be asked, with the reference's answers."""
+    answers: list[tuple[object, Planner, Solution]] = []
+    for number in range(QUESTIONS):
+        subject, planner = question(1, number)
+        answers.append((subject, planner, ask(carp_reference.plan, carp_reference.add, subject, planner)))
+    return answers
+
+
+def ask(plan: Callable[..., Solution], add: Callable[..., Solution], subject: object, planner: Planner) -> Solution:
+    if isinstance(subject, Instance):
+        return plan(subject, planner)
+    fleet = subject
+    return add(fleet.instance, fleet.solution, fleet.robot, fleet.now, planner)  # type: ignore[attr-defined]
+
+
+def check(answers: Sequence[tuple[object, Planner, Solution]]) -> None:
+    """What a right planner passes; loads the planner first."""
+    import carp_optimized
+    from carp_optimized import Reuse
+
+    for number, (subject, planner, expected) in enumerate(answers):
+        choices = {CHOICES[0], CHOICES[number % len(CHOICES)]} if isinstance(planner, Neighbourhood) else {CHOICES[0]}
+        for choice in choices:
+            reuse = Reuse(*choice)
+            plan, add = partial(carp_optimized.plan, reuse=reuse), partial(carp_optimized.add, reuse=reuse)
+            assert ask(plan, add, subject, planner) == expected
+    from tests.optimized import test_reuse
+
+    test_reuse.test_orders_that_begin_alike_share_the_queries_of_their_beginning(4, 64, 96)
+    test_reuse.test_without_reuse_every_query_is_asked()
+    for kind in KINDS:
+        test_reuse.test_each_kind_avoids_queries_and_counts_them(kind)
+    test_reuse.test_sampled_orders_share_their_beginnings_too()
+
+
+def survives(mutant: Mutant | None, answers: Sequence[tuple[object, Planner, Solution]]) -> bool:
+    """Whether no check notices, in a process of its own, which is ended after so many seconds of processor time."""
+    child = os.fork()
+    if child:
+        return os.waitpid(child, 0)[1] == 0
+    code = 1
+    try:
+        resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS + 1))
+        sys.stderr = sys.stdout = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 - until the end
+        for name in [name for name in sys.modules if name.startswith(("carp_optimized", "tests.optimized"))]:
+            del sys.modules[name]
+        if mutant is not None:
+            source = mutant.source((FOLDER / f"{mutant.module}.py").read_text(encoding="utf-8"))
+            sys.meta_path.insert(0, Changed(f"carp_optimized.{mutant.module}", source or ""))
+        check(answers)
+        code = 0
+    finally:
+        os._exit(code)
+
+
+def main(names: Sequence[str]) -> int:
+    warnings.simplefilter("ignore")
+    np.seterr(all="ignore")
+    answers = known_answers()
+    check(answers)
+    if not survives(None, answers):
+        sys.exit("the planner fails the checks without any mutation")
+    count = survivors = 0
+    for module in names or MODULES:
+        original = (FOLDER / f"{module}.py").read_text(encoding="utf-8")
+        for mutant in mutants(module):
+            count += 1
+            if survives(mutant, answers):
+                survivors += 1
+                print(f"{module}:{mutant.line}  {mutant.change(original)}", flush=True)  # noqa: T201 - a report
+    print(f"{survivors} of {count} mutants survived")  # noqa: T201
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,105 @@
+"""When a query need not be repeated: exactly where the theorem says, and then it would find the same plan.
+
+The functions are called one by one, so these tests run uncompiled: see test_uncompiled.py.
+"""
+
+import os
+from functools import cache
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from carp_optimized import passes
+from carp_optimized.arrays import NEVER, NONE, UNKNOWN
+from carp_optimized.fleet import Fleet
+from carp_optimized.replanning import could_use_freed, forget_freed, note_freed
+from carp_reference.problem import ticks_to_goal
+from carp_spec import Instance, Plan, ResourceId, RobotId
+from carp_verify.smt import integers, value_of
+from carp_verify.strategies import FleetUnderWay, Sizes, fleets_under_way
+from carp_verify.theorems.freed_stays_come_too_late import least_f
+
+pytestmark = pytest.mark.skipif(os.environ.get("NUMBA_DISABLE_JIT") != "1", reason="it runs uncompiled")
+
+SIZES = Sizes(resources=6, robots=5)
+Hulls = dict[ResourceId, tuple[int, int]]
+
+
+@cache
+def least(ready: int, earliest: int, duration: int, h: int) -> int:
+    """The bound of the theorem."""
+    names = "ready earliest duration h"
+    values = dict(zip(names.split(), (ready, earliest, duration, h), strict=True))
+    return int(value_of(least_f(*integers(names)), dict(values)))
+
+
+def hulls(plan: Plan) -> Hulls:
+    """From its first to its last tick in each resource."""
+    freed: Hulls = {}
+    for visit in plan.visits:
+        earliest, latest = freed.get(visit.resource, (visit.enter, 0))
+        freed[visit.resource] = (earliest, max(latest, NEVER if visit.leave is None else visit.leave))
+    return freed
+
+
+def may_differ(fleet: Fleet, robot: RobotId, record: int, freed: Hulls) -> bool:
+    """What the theorem says of a query, by what it has expanded."""
+    instance, records = fleet.instance, fleet._state.records
+    first, count = int(records.expansions_at[record]), int(records.expansions[record])
+    if count == UNKNOWN:
+        return True
+    resources = [instance.graph.resources[k].id for k in records.expanded[first : first + count].tolist()]
+    expanded = list(zip(resources, records.ready[first : first + count].tolist(), strict=True))
+    to_goal = ticks_to_goal(instance, instance.robot[robot])
+    arrival = fleet._plan(record).visits[-1].enter
+
+    def in_time(ready: int, target: ResourceId) -> bool:
+        return least(ready, freed[target][0], instance.duration(robot, target), to_goal[target]) <= arrival
+
+    start = expanded[0][0]
+    return (start in freed and in_time(-NEVER, start)) or any(
+        in_time(ready, target)
+        for resource, ready in expanded
+        for target in instance.graph.successors[resource]
+        if target in freed and target in to_goal and freed[target][1] > ready
+    )
+
+
+def fleet_of(instance: Instance, plans: tuple[Plan, ...]) -> Fleet:
+    fleet = Fleet(instance)
+    fleet.commit(plans)
+    return fleet
+
+
+@settings(max_examples=100)
+@given(fleets_under_way(SIZES), st.data())
+def test_a_query_is_repeated_just_where_the_theorem_says_and_else_finds_the_same(
+    under_way: FleetUnderWay, data: st.DataObject
+) -> None:
+    instance, plans = under_way.instance, under_way.solution.plans
+    robot = data.draw(st.sampled_from([under_way.robot, *under_way.solution.order]))
+    followed = {plan.robot: plan for plan in plans}.get(robot)
+    others = tuple(plan for plan in plans if plan.robot != robot)
+    assume(others)
+    freed = data.draw(st.lists(st.sampled_from(others), min_size=1, unique=True))
+    fleet = fleet_of(instance, others)
+    state = fleet._state
+    before = NONE if followed is None else fleet._write(followed)
+    record = passes.find_one(fleet._native, fleet.index(robot), before, under_way.now)
+    assume(record != NONE)
+    forget_freed(state.freed)
+    whole: Hulls = {}
+    for plan in freed:
+        withdrawn = int(fleet._records[fleet.index(plan.robot)])
+        passes.withdraw_all(fleet._native, np.array([withdrawn], np.int32))
+        note_freed(state, withdrawn)
+        for resource, (earliest, latest) in hulls(plan).items():
+            known = whole.get(resource, (earliest, latest))
+            whole[resource] = (min(earliest, known[0]), max(latest, known[1]))
+    expected = may_differ(fleet, robot, record, whole)
+    assert could_use_freed(state, record) == expected
+    if not expected:
+        again = fleet_of(instance, tuple(plan for plan in others if plan not in freed))
+        assert again.find(again.index(robot), followed, under_way.now) == fleet._plan(record)

@@ -1,0 +1,95 @@
+"""Each kind of reuse changes the number of queries and nothing else."""
+
+from dataclasses import replace
+from itertools import combinations
+from math import factorial, perm
+
+import pytest
+from tests.optimized.paper_sized import FOUR, MAPS, Question, read_digests
+
+import carp_optimized
+from carp_optimized import Reuse
+from carp_optimized.fleet import Fleet
+from carp_oracle.generate import Fleet as Robots
+from carp_oracle.generate import Grid, grid_instance
+from carp_spec import Instance, Neighbourhood, Solution
+
+KINDS = ("kept", "unchanged", "prefixes", "shared", "bounds")
+ALL_OFF = Reuse(**dict.fromkeys(KINDS, False))
+ONE_OFF = [Reuse(**{kind: False}) for kind in KINDS]
+ONE_ON = [replace(ALL_OFF, **{kind: True}) for kind in KINDS]
+COMMITTED = 9
+
+
+@pytest.mark.parametrize("reuse", [ALL_OFF, *ONE_OFF, *ONE_ON], ids=str)
+def test_paper_sized_plans_are_the_same_whatever_is_reused(reuse: Reuse) -> None:
+    digests = read_digests()
+
+    def plan(instance: Instance, options: Neighbourhood) -> Solution:
+        return carp_optimized.plan(instance, options, reuse=reuse)
+
+    def add(instance: Instance, before: Solution, robot: str, now: int, options: Neighbourhood) -> Solution:
+        return carp_optimized.add(instance, before, robot, now, options, reuse)
+
+    for map in MAPS:
+        for options in FOUR:
+            question = Question("add", map, 0, options)
+            assert question.answer(plan, add) == digests[str(question)]
+    whole = Question("plan", MAPS[-1], 0, FOUR[0])
+    assert whole.answer(plan, add) == whole.answer(carp_optimized.plan, carp_optimized.add)
+
+
+def counted(m: int, reuse: Reuse, sample: int | None = None) -> carp_optimized.Queries:
+    """The queries of adding a robot to nine on a grid with so much room that every query finds a plan."""
+    fleet = Fleet(grid_instance(Grid(8, 8), Robots(COMMITTED + 1, seed=4)), reuse)
+    fleet.carp(range(COMMITTED))
+    before = fleet.queries.asked
+    assert before == COMMITTED
+    assert fleet.add(COMMITTED, 0, Neighbourhood(m=m, sample=sample))
+    queries = fleet.queries
+    return replace(queries, asked=queries.asked - before)
+
+
+def replanned(rounds: int) -> int:
+    """All robots outside the neighbourhood, in each round."""
+    return sum(COMMITTED - taken for taken in range(1, rounds + 1))
+
+
+@pytest.mark.parametrize(("m", "shared", "alone"), [(4, 64, 96), (5, 325, 600), (6, 1956, 4320)])
+def test_orders_that_begin_alike_share_the_queries_of_their_beginning(m: int, shared: int, alone: int) -> None:
+    """Of the last neighbourhood: the others' queries are those of a run with one robot less."""
+    assert (shared, alone) == (sum(perm(m, k) for k in range(1, m + 1)), m * factorial(m))
+    for reuse, expected in ((ALL_OFF, alone), (replace(ALL_OFF, prefixes=True), shared)):
+        whole, less = (counted(size, reuse) for size in (m, m - 1))
+        outside = COMMITTED - (m - 1)
+        assert whole.asked - less.asked == outside + expected
+        assert whole.prefixes - less.prefixes == alone - expected
+
+
+def test_without_reuse_every_query_is_asked() -> None:
+    rounds = 3
+    orders = sum(size * factorial(size) for size in range(2, rounds + 2))
+    queries = counted(rounds + 1, ALL_OFF)
+    first_path_and_baseline = 2
+    assert queries.asked == first_path_and_baseline + replanned(rounds) + orders
+    assert [getattr(queries, kind) for kind in KINDS] == [0] * len(KINDS)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_each_kind_avoids_queries_and_counts_them(kind: str) -> None:
+    without, with_it = counted(4, ALL_OFF), counted(4, replace(ALL_OFF, **{kind: True}))
+    assert with_it.asked < without.asked
+    assert getattr(with_it, kind) > 0
+    assert all(getattr(with_it, other) == 0 for other in KINDS if other != kind)
+
+
+def test_more_reuse_never_asks_more() -> None:
+    for one, other in combinations(range(len(KINDS)), 2):
+        both = replace(ALL_OFF, **{KINDS[one]: True, KINDS[other]: True})
+        alone = (counted(4, replace(ALL_OFF, **{KINDS[kind]: True})).asked for kind in (one, other))
+        assert counted(4, both).asked <= min(alone)
+
+
+def test_sampled_orders_share_their_beginnings_too() -> None:
+    without, with_it = counted(5, ALL_OFF, 60), counted(5, replace(ALL_OFF, prefixes=True), 60)
+    assert without.asked - with_it.asked == with_it.prefixes > 0
