@@ -152,7 +152,7 @@ def test_a_bound_that_was_found_is_verified_and_at_most_the_optimum(instance: In
 def test_prices_find_what_the_shortest_paths_miss() -> None:
     instance = crossing()
     seen: list[Progress] = []
-    certificate = lower_bound(instance, steps=200, on_step=seen.append)
+    certificate = lower_bound(instance, steps=500, on_step=seen.append)
     assert (seen[0].bound, certificate.bound, least_total_cost(instance)) == (6, 9, 11)
 
 
@@ -302,7 +302,7 @@ def of_robot(more: int) -> Tamper:
 )
 def test_a_tampered_certificate_is_refused(tamper: Tamper, path: str | None, rule: str, reason: str) -> None:
     instance = crossing()
-    certificate = lower_bound(instance, steps=200)
+    certificate = lower_bound(instance, steps=500)
     verify_bound(instance, certificate)
     with pytest.raises(Refusal, match=reason) as refused:
         verify_bound(instance, tamper(certificate))

@@ -25,6 +25,7 @@ SCALE = 1 << 16
 FIRST_AIM = 50  # one part of the sum of shortest paths
 ROUGH_AIM = SCALE >> 4
 FINE_AIM = SCALE >> 10
+ROUGH_PARTS, PARTS = 7, 8  # of the time: cuts are searched for, then prices alone are refined
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,15 +50,10 @@ def lower_bound(
     from carp_verify.cut_search import CutSearch  # noqa: PLC0415 - numba is slow to load
     from carp_verify.price_search import PriceSearch  # noqa: PLC0415
 
-    deadline = None if seconds is None else Deadline(seconds)
+    rough = _limit(seconds, steps, ROUGH_PARTS)
+    end = _limit(seconds, steps, PARTS)
     search = PriceSearch(instance, SCALE)
     cuts = CutSearch(search)
-
-    def check() -> None:
-        if deadline is not None:
-            deadline.check()
-        if steps is not None and search.count >= steps:
-            raise TimeOver
 
     def told(count: int, best: int) -> None:
         on_step(Progress(count, -(-best // SCALE)))
@@ -65,12 +61,26 @@ def lower_bound(
     told(0, search.best)
     with suppress(TimeOver):
         gain = search.best // FIRST_AIM
-        while gain > 0:
-            search.climb(gain, ROUGH_AIM, check, told)
-            gain = cuts.round(check)
-        search.climb(ROUGH_AIM, FINE_AIM, check, told)
+        while gain > 0 or not cuts.is_exhausted:
+            search.climb(gain, ROUGH_AIM, lambda: rough(search.count), told)
+            gain = cuts.round(lambda: rough(search.count))
+    with suppress(TimeOver):
+        search.climb(ROUGH_AIM, FINE_AIM, lambda: end(search.count), told)
     search.finish()
     return _certificate(search, cuts)
+
+
+def _limit(seconds: float | None, steps: int | None, parts: int) -> Callable[[int], None]:
+    """What raises `TimeOver` once so many parts of the time, or of the steps, are over; it is told the steps taken."""
+    deadline = None if seconds is None else Deadline(seconds * parts / PARTS)
+
+    def check(count: int) -> None:
+        if deadline is not None:
+            deadline.check()
+        if steps is not None and count >= steps * parts // PARTS:
+            raise TimeOver
+
+    return check
 
 
 def _certificate(search: "PriceSearch", cuts: "CutSearch") -> BoundDocument:

@@ -22,7 +22,8 @@ LOOKS = 400  # of the search for a group's optimum at its clock
 STEPS = 120
 EVERY = 6
 LARGEST_GROUP = 8
-TRIED = 200  # groups in a round
+TRIED_PAIRS = 150  # groups in a round
+TRIED_LARGER = 50
 LONGEST_REPLAY = 100_000_000  # lines of a refutation times clauses
 LEAST_SURPLUS = 20  # one part of a tick
 
@@ -45,9 +46,14 @@ class CutSearch:
         self.instance = search.instance
         self.known: dict[Members, Cut | None] = {}
         self.cuts: list[Cut] = []
+        self.is_exhausted = False
 
     def round(self, check: Callable[[], None]) -> int:
-        """Add the cuts that the average costs near the best prices break: by how many parts of a tick, together."""
+        """Add the cuts that the average costs near the best prices break: by how many parts of a tick, together.
+
+        `is_exhausted` tells afterwards whether all groups that offered themselves have been tried.
+        """
+        self.is_exhausted = True
         meetings: Counter[Members] = Counter()
         steps = count()
 
@@ -95,8 +101,10 @@ class CutSearch:
             for robot in dict.fromkeys(other for member in cut.members for other in near[member][:4])
             if robot not in cut.members
         ]
-        fresh = [members for members in dict.fromkeys([*pairs, *larger]) if members not in self.known]
-        yield from fresh[:TRIED]
+        for groups, most in ((pairs, TRIED_PAIRS), (larger, TRIED_LARGER)):
+            fresh = [members for members in dict.fromkeys(groups) if members not in self.known]
+            self.is_exhausted &= len(fresh) <= most
+            yield from fresh[:most]
 
     def _cut(self, members: Members, check: Callable[[], None]) -> Cut | None:
         if members not in self.known:
