@@ -2,7 +2,7 @@
 
 `python -m tests.mutation.forking` lists the mutants that no check notices; with names of modules, of these alone. The
 checks are those of tests/optimized that fit into a second: random small questions, whose answers by the reference are
-known before the first fork, under every choice of what is reused; and the counts of tests/optimized/test_reuse.py.
+known before the first fork, under every choice of what is reused; crowds; and test_replanning.py and test_reuse.py.
 Starting pytest and numba for each mutant would take ten times as long.
 """
 
@@ -22,8 +22,10 @@ from pathlib import Path
 from types import ModuleType
 
 os.environ["NUMBA_DISABLE_JIT"] = "1"  # numba looks when it is loaded
+os.environ["HYPOTHESIS_PROFILE"] = "mutation"
 
 import numpy as np
+import tests.conftest  # noqa: F401 - the profile
 from cosmic_ray.commands.init import _all_work_items
 from cosmic_ray.mutating import mutate_code
 from cosmic_ray.plugins import get_operator
@@ -111,8 +113,10 @@ def check(answers: Sequence[tuple[object, Planner, Solution]]) -> None:
             reuse = Reuse(*choice)
             plan, add = partial(carp_optimized.plan, reuse=reuse), partial(carp_optimized.add, reuse=reuse)
             assert ask(plan, add, subject, planner) == expected
-    from tests.optimized import test_reuse
+    from tests.optimized import test_replanning, test_reuse, test_same_plans
 
+    test_same_plans.test_crowds_are_planned_alike()
+    test_replanning.test_a_query_is_repeated_just_where_the_theorem_says_and_else_finds_the_same()
     test_reuse.test_orders_that_begin_alike_share_the_queries_of_their_beginning(4, 64, 96)
     test_reuse.test_without_reuse_every_query_is_asked()
     for kind in KINDS:

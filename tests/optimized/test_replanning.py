@@ -73,7 +73,7 @@ def fleet_of(instance: Instance, plans: tuple[Plan, ...]) -> Fleet:
     return fleet
 
 
-@settings(max_examples=100)
+@settings(max_examples=min(100, settings().max_examples))
 @given(fleets_under_way(SIZES), st.data())
 def test_a_query_is_repeated_just_where_the_theorem_says_and_else_finds_the_same(
     under_way: FleetUnderWay, data: st.DataObject
