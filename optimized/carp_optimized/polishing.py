@@ -14,7 +14,7 @@ from carp_optimized.natives import polish_at, state_at
 from carp_optimized.orders import next_number
 from carp_optimized.records import cost_of
 from carp_optimized.references import Native
-from carp_optimized.search import find_plan
+from carp_optimized.search import find_plan_by
 from carp_optimized.windows import reserve, withdraw
 
 QUEUED, TURN, MARKS = range(3)  # the counts
@@ -312,7 +312,8 @@ def replan_members(state: State, polish: Polish, size: int) -> None:
 def plan_members(state: State, polish: Polish, size: int, missing: int, limit: int) -> int:
     """Plan and reserve the members in their order; how many, `size` if their plans are to be kept.
 
-    They are, if fewer than `missing` are unplanned, or as many and the cost is not above the limit.
+    They are, if fewer than `missing` are unplanned, or as many and the cost is not above the limit. A member that must
+    be planned is not planned if its plan would cost more than that leaves.
     """
     rest = 0
     for k in range(size):
@@ -322,7 +323,8 @@ def plan_members(state: State, polish: Polish, size: int, missing: int, limit: i
     for k in range(size):
         robot = int(polish.members[k])
         rest -= int(polish.least[robot])
-        record = find_plan(state, robot, NONE, 0, NEVER)
+        latest = NEVER if unplanned < missing else int(state.robots.release[robot]) + limit - cost - rest
+        record = find_plan_by(state, robot, NONE, 0, NEVER, latest)
         polish.chosen[k] = record
         if record == NONE:
             unplanned += 1

@@ -12,7 +12,17 @@ STANDING = 0  # the slot of no row: a copy of the window in which the robot is w
 
 @compiled
 def find_plan(state: State, robot: int, before: int, now: int, behind: int) -> int:
+    """The record of the robot's plan, whenever it arrives: see `find_plan_by`."""
+    return find_plan_by(state, robot, before, now, behind, NEVER)
+
+
+@compiled
+def find_plan_by(  # noqa: PLR0913 - one compiled function calls the other
+    state: State, robot: int, before: int, now: int, behind: int, latest: int
+) -> int:
     """The record of the robot's plan against the reservations, or `NONE`; `before` is the plan followed until now.
+
+    A plan that is to be found must arrive by the tick `latest`.
 
     Only robots of a rank up to `behind` count. A plan that has ended stays as it is. Otherwise the visits entered by
     now are kept, and must fit the windows; a robot without a plan stands at its start since its release.
@@ -42,7 +52,7 @@ def find_plan(state: State, robot: int, before: int, now: int, behind: int) -> i
     if not fits(state, resource, enter, ready, NONE, behind):
         return NONE
     slot = guide_slot(state, int(request.destination[robot]))
-    expansions = search(state, robot, slot, resource, enter, ready, behind)
+    expansions = search(state, robot, slot, resource, enter, ready, behind, latest)
     if expansions == 0:
         return NONE
     record = start_record(state, robot, first, max(history - 1, 0))
@@ -66,9 +76,11 @@ def stand(state: State, resource: int, enter: int, behind: int) -> int:
 
 @compiled
 def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
-    state: State, robot: int, slot: int, resource: int, enter: int, ready: int, behind: int
+    state: State, robot: int, slot: int, resource: int, enter: int, ready: int, behind: int, latest: int
 ) -> int:
     """A* from the resource, entered at `enter` and left from `ready` on; the number of expansions, 0: no plan.
+
+    No plan arrives before the least f in the queue, so that the search ends where that is later than `latest`.
 
     The window in which the plan ends is then `nodes[0]`. The window in which the robot stands can be entered again
     if it has stayed at its goal for too long to end there; otherwise entering it again leads nowhere new.
@@ -111,6 +123,8 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
                 break
             replace_root(keys, nodes, size, int(keys[size]), int(nodes[size]))
         root_is_spent = True
+        if keys[0] >> 32 > latest:
+            return 0
         node = int(nodes[0])
         resource = int(windows.resource[node])
         enter = label - int(reached[node])
