@@ -17,9 +17,7 @@ def find_plan(state: State, robot: int, before: int, now: int, behind: int) -> i
 
 
 @compiled
-def find_plan_by(  # noqa: PLR0913 - one compiled function calls the other
-    state: State, robot: int, before: int, now: int, behind: int, latest: int
-) -> int:
+def find_plan_by(state: State, robot: int, before: int, now: int, behind: int, latest: int) -> int:
     """The record of the robot's plan against the reservations, or `NONE`; `before` is the plan followed until now.
 
     A plan that is to be found must arrive by the tick `latest`.
