@@ -6,7 +6,7 @@ from time import perf_counter
 import click
 
 from carp_oracle.answer import Answer
-from carp_oracle.engines import ENGINES, engine_named, shortest_path_cost
+from carp_oracle.engines import engine_named, shortest_path_cost
 from carp_oracle.files import (
     InputFile,
     naming,
@@ -15,7 +15,14 @@ from carp_oracle.files import (
     read_solution_file,
     refuse_two_standard_inputs,
 )
-from carp_oracle.options import examples, instance_argument, json_option, output_option, solution_argument
+from carp_oracle.options import (
+    engine_option,
+    examples,
+    instance_argument,
+    json_option,
+    output_option,
+    solution_argument,
+)
 from carp_oracle.progress import gap, polish_progress
 from carp_oracle.requests import sound_solution
 from carp_oracle.results import show_unplanned, write_result
@@ -41,7 +48,7 @@ COLUMNS = ("plans", "unplanned", "total cost", "bound", "gap", "rounds", "time")
 @click.option("--seconds", type=float, help="For how long, in place of a number of rounds.")
 @click.option("--seed", type=int, default=0, help="The seed of all choices.")
 @click.option("--bound", type=InputFile(), help="The certificate of a lower bound, of `carproof bound`.")
-@click.option("--engine", type=click.Choice(ENGINES), default="optimized", help="The planner to read, or to run.")
+@engine_option
 @output_option
 @json_option
 def command(  # noqa: PLR0913 - one parameter for each argument and option
@@ -52,7 +59,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     seconds: float | None,
     seed: int,
     bound: str | None,
-    engine: str,
+    engine: str | None,
     output: Path | None,
     as_json: bool,
 ) -> Answer:
