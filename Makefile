@@ -6,7 +6,7 @@ export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 .DELETE_ON_ERROR:
-.PHONY: install compiled demo test paper-sized nightly coverage mutation conform lint format gap optimum-figures experiments-page generated clean
+.PHONY: bench install compiled demo test paper-sized nightly coverage mutation conform lint format gap optimum-figures experiments-page generated clean
 
 install: .venv/installed
 
@@ -34,6 +34,10 @@ format: install
 
 test: lint compiled
 	$(BIN)/pytest --numprocesses 2 --dist worksteal
+
+# How fast the optimised planner is, beside C++ written by hand and the reference; needs g++, takes two minutes.
+bench: install
+	$(BIN)/pytest -o addopts= -o filterwarnings= --import-mode=importlib -q -s tests/bench/bench_speed.py
 
 # Measure how far planners are from the optimum, and put the table into verify/README.md; takes a few minutes.
 gap: install

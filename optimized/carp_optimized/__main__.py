@@ -1,10 +1,6 @@
 """`python -m carp_optimized` compiles the planner, so that no later call has to; once done, it does nothing."""
 
-import numpy as np
-
-from carp_optimized import encoding
 from carp_optimized.fleet import Fleet
-from carp_optimized.recording import only
 from carp_spec import Instance, Neighbourhood, Resource, ResourceGraph, Robot, Shuffled
 
 
@@ -24,7 +20,7 @@ def compile_all() -> None:
     fleet.find(0, None, 0)
     fleet.commit(plans)
     fleet.polish(fleet.polishing(0), 1)
-    only(encoding.no_records(1, 1, 1), np.zeros(0, np.int32))
+    fleet.forget()
 
 
 if __name__ == "__main__":

@@ -26,19 +26,16 @@ def number_plan(state: State, answers: Answers, member: int, record: int) -> int
     answers.record[used] = record
     answers.owner[used] = member
     answers.clashes[used] = 1 << PLANS
-    for plan in range(used):
-        if answers.owner[plan] != member and clash(state.records, int(answers.record[plan]), record):
-            answers.clashes[plan] |= 1 << used
-            answers.clashes[used] |= 1 << plan
+    answers.compared[used] = 1 << PLANS
     answers.used[0] += 1
     return used
 
 
 @compiled
 def learn(answers: Answers, member: int, given: int, plan: int) -> None:
-    """Remember an answer."""
+    """Remember an answer, if its plans have numbers."""
     used = int(answers.used[1])
-    if plan < PLANS and used < ANSWERS:
+    if plan < PLANS and given < 1 << PLANS and used < ANSWERS:
         answers.given[used] = given
         answers.plan[used] = plan
         answers.older[used] = answers.newest[member]
@@ -47,13 +44,26 @@ def learn(answers: Answers, member: int, given: int, plan: int) -> None:
 
 
 @compiled
-def known_answer(answers: Answers, member: int, given: int) -> int:
+def has_clash(state: State, answers: Answers, plan: int, given: int) -> bool:
+    """Whether the plan clashes with one of the set; two plans are compared when first asked for."""
+    new = given & ~int(answers.compared[plan])
+    other = 0
+    while new >> other != 0:
+        if (new >> other) & 1 == 1 and clash(state.records, int(answers.record[plan]), int(answers.record[other])):
+            answers.clashes[plan] |= 1 << other
+        other += 1
+    answers.compared[plan] |= new
+    return int(answers.clashes[plan]) & given != 0
+
+
+@compiled
+def known_answer(state: State, answers: Answers, member: int, given: int) -> int:
     """A known answer that holds for the member against the set of plans, or `NONE`."""
     answer = int(answers.newest[member])
     while answer != NONE:
         if int(answers.given[answer]) & ~given == 0:
             plan = int(answers.plan[answer])
-            if plan == NONE or int(answers.clashes[plan]) & given == 0:
+            if plan == NONE or not has_clash(state, answers, plan, given):
                 return answer
         answer = int(answers.older[answer])
     return NONE

@@ -20,6 +20,9 @@ LARGEST = 2**30 - 1  # of ticks and durations: the sum of two is still below NEV
 NONE = -1  # no resource, no record, no slot
 UNKNOWN = -1  # the number of expansions of a plan that no query of ours has made
 
+SEVERAL = -2  # sources
+BLOCK = 8  # windows are looked at in blocks
+
 UNREACHABLE = -1  # a guide: the goal cannot be reached from the resource
 TOO_FAR = -2  # a guide: it can, in more than LARGEST ticks
 
@@ -49,11 +52,12 @@ class Graph(NamedTuple):
 class Rows(NamedTuple):
     """For each resource a row of intervals [start, end), in order of time, in a pool that all rows share.
 
-    The row of r has `size[r]` intervals in the slots from `offset[r]` on and room for `room[r]`. A full row moves
-    to the end of the pool, at `used[0]`, with twice the room. `resource` says whose row a slot is in.
+    The row of r has `size[r]` intervals in the slots from `offset[r]` on and room for `room[r]`, blocks of `BLOCK`
+    whose other slots start and end at `NEVER`. A full row moves to the end of the pool, at `used[0]`, with twice the
+    room. `resource` says whose row a slot is in.
 
-    Of windows, where the capacity is 1, `robot` is the robot that ends the window, and `source` the resource from which
-    it came (`NONE`: from none).
+    Of windows, where the capacity is 1, `robot` is the robot that ends the window, `rank` its rank, and `source` the
+    resource from which it came (`NONE`: from none).
     Of stays, which only resources of capacity above 1 have, `source` goes with `start`, and `end` is in order by
     itself.
     """
@@ -65,6 +69,7 @@ class Rows(NamedTuple):
     end: Ints
     source: Ints
     robot: Ints
+    rank: Ints
     resource: Ints
     used: Longs
 
@@ -100,48 +105,56 @@ class Search(NamedTuple):
     """The scratch of a query, never cleared: what an earlier query wrote is of an earlier generation.
 
     `reached[slot]` is the generation times 2^32 minus the tick at which the window is entered, so that a larger
-    label is an earlier entry or a newer query; `parent[slot]` is the window it is entered from. `keys` and `nodes`
-    are the heap. `expanded` and `ready` tell which resources were expanded, and from which tick on they were left.
+    label is an earlier entry or a newer query; `parent[slot]` is the window it is entered from, and `goal[0]` the one
+    in which the plan found ends. `keys` and `nodes` are the heap. `expanded`, `ready` and `popped` tell which resources
+    were expanded, from which tick on they were left, and by which key.
     """
 
     generation: Longs
+    goal: Longs
     reached: Longs
     parent: Ints
     keys: Longs
     nodes: Ints
     expanded: Ints
     ready: Ints
+    popped: Longs
 
 
 class Records(NamedTuple):
     """Plans, each with its robot, its visits and what its query read.
 
     The visits of a record are `visits[record]` entries of `resource` and `enter` from `visits_at[record]` on; each
-    ends where the next begins, the last at `leave[record]`. Its expansions are entries of `expanded` and `ready`.
-    `left`, `right`, `low` and `high` bound its positions. `used` counts records, visits and expansions.
+    ends where the next begins, the last at `leave[record]`; that begins at `arrival[record]`. `spots[record]` holds
+    what bounds distances: the first tick and the arrival, the sums of x and y at all ticks between, x and y of the
+    start and of the goal. The expansions are entries of `expanded`, `ready`, `until` and
+    `largest` from `expansions_at[record]` on: a resource, the first and last tick at which leaving it could matter, and
+    the largest key popped after it. `used` counts records, visits and expansions.
     """
 
     robot: Ints
     visits_at: Longs
     visits: Ints
     leave: Ints
+    arrival: Ints
     expansions_at: Longs
     expansions: Ints
-    left: Longs
-    right: Longs
-    low: Longs
-    high: Longs
+    spots: LongTable
     resource: Ints
     enter: Ints
     expanded: Ints
     ready: Ints
+    until: Ints
+    largest: Longs
     used: Longs
 
 
 class Freed(NamedTuple):
     """What has been taken back since a mark was set: the hull of the stays in a resource, and where it can be read.
 
-    The entries of a resource count only where `mark` is `now[0]`; `near` marks the resources that lead to one.
+    `source` is the resource from which the robot came, `SEVERAL` if several stays were taken back.
+    The entries of a resource count only where `mark` is `now[0]`; `near` marks them and the resources that lead to one,
+    with the hull of all those stays, `near_earliest` to `near_latest`.
     """
 
     now: Longs
@@ -149,14 +162,18 @@ class Freed(NamedTuple):
     near: Longs
     earliest: Ints
     latest: Ints
+    source: Ints
+    near_earliest: Ints
+    near_latest: Ints
 
 
 class State(NamedTuple):
     """All that a compiled function may need; `reserved[robot]` is the record that the windows hold of it.
 
-    `rank[robot + 1]` is the robot's position in planning order while others are replanned, else `NONE`; so is the
-    first place, that of no robot. A query for a robot `behind` that rank takes no account of those of a larger rank.
-    Terms of `neighbourhood/distance` are split after `split` bits.
+    `rank` grows in planning order when a robot is added. A query for a robot `behind` a rank takes no account of those
+    of a larger rank.
+    No duration is above `longest`, and none below, if they `last_alike`. `roots` are the terms of
+    `neighbourhood/distance` of small squares; all are split after `split` bits.
     """
 
     graph: Graph
@@ -170,6 +187,9 @@ class State(NamedTuple):
     reserved: Ints
     rank: Ints
     counters: Longs
+    longest: int
+    last_alike: bool
+    roots: Longs
     split: int
     parks: bool
 
@@ -183,7 +203,7 @@ class Work(NamedTuple):
     robots outside the neighbourhood; `trajectories`, for distances. By position: `outside`, the robots outside the
     neighbourhood in planning order; the order and the plans of the best candidate. By place in the neighbourhood:
     the members, their plans `alone` against the robots outside, the best order of the round and its plans, and the
-    scratch of the search for it. `rows[index[k]]` are the orders drawn.
+    scratch of the search for it. `rows[row_index[k]]` are the orders drawn, `row_key` their first places.
     """
 
     queue: Ints
@@ -207,6 +227,7 @@ class Work(NamedTuple):
     given: Longs
     cost: Longs
     rows: IntTable
+    row_key: Longs
     row_index: Ints
     row_spare: Ints
 
@@ -247,7 +268,8 @@ class Polish(NamedTuple):
 class Answers(NamedTuple):
     """The answers known in a round: of a member against the set `given`, the plan `plan` (`NONE`: there is none).
 
-    Plans are numbered; `record[plan]` is the plan's record, `clashes[plan]` the set of plans that it clashes with.
+    Plans are numbered; `record[plan]` is the plan's record, `clashes[plan]` the set of plans that it clashes with, of
+    those with which it has been `compared`.
     The answers of a member are chained from `newest[member]` on by `older`. `used` counts plans and answers.
     What does not fit is forgotten, which costs time alone.
     """
@@ -255,6 +277,7 @@ class Answers(NamedTuple):
     record: Ints
     owner: Ints
     clashes: Longs
+    compared: Longs
     given: Longs
     plan: Ints
     older: Ints

@@ -1,12 +1,15 @@
 """From an instance to the arrays of a state; what they cannot hold is refused."""
 
+import math
 from collections.abc import Iterator
+from functools import cache
 
 import numpy as np
 import numpy.typing as npt
 
 from carp_optimized.arrays import (
     ANSWERS,
+    BLOCK,
     COUNTERS,
     LARGEST,
     MOST_MEMBERS,
@@ -29,8 +32,8 @@ from carp_optimized.arrays import (
 )
 from carp_spec import Fault, Instance, Refusal
 
-ROOM = 8  # of a new row
 GUIDE_PLACES = 1 << 24  # how many entries all guides together have at most, if that is room for 64 of them
+ROOTS = 1024
 LARGEST_COORDINATE = 2**29
 NO_LIMIT_THERE = "the reference engine has no such limit"
 
@@ -131,37 +134,42 @@ def no_guides(resources: int, goals: Ints, paces: Ints) -> Guides:
 
 
 def empty_rows(has_row: npt.NDArray[np.bool_], filled: bool, places: int) -> Rows:
-    """Rows of the resources that have one, with one interval for ever if they are to be filled; slot 0 is no row's."""
+    """Rows of the resources that have one, filled with one interval for ever or empty; the first block is no row's."""
     rows = int(has_row.sum())
     offset = np.zeros(has_row.size, np.int32)
-    offset[has_row] = 1 + ROOM * np.arange(rows)
+    offset[has_row] = BLOCK * (1 + np.arange(rows))
     resource = np.zeros(places, np.int32)
-    resource[1 : 1 + ROOM * rows] = np.repeat(np.flatnonzero(has_row), ROOM)
-    end = np.full(places, NEVER, np.int32)
+    resource[BLOCK : BLOCK * (1 + rows)] = np.repeat(np.flatnonzero(has_row), BLOCK)
+    start = np.full(places, NEVER, np.int32)
+    if filled:
+        start[offset[has_row]] = 0
     return Rows(
         offset=offset,
-        room=np.where(has_row, ROOM, 0).astype(np.int32),
+        room=np.where(has_row, BLOCK, 0).astype(np.int32),
         size=np.full(has_row.size, int(filled), np.int32),
-        start=np.zeros(places, np.int32),
-        end=end,
+        start=start,
+        end=np.full(places, NEVER, np.int32),
         source=np.full(places, NONE, np.int32),
         robot=np.full(places, NONE, np.int32),
+        rank=np.full(places, NONE, np.int32),
         resource=resource,
-        used=np.array([1 + ROOM * rows], np.int64),
+        used=np.array([BLOCK * (1 + rows)], np.int64),
     )
 
 
 def no_search(windows: int, edges: int) -> Search:
     """The scratch of a query over that many window slots."""
-    entries = max(windows, edges + 1)
+    entries = windows // 4 + edges + 1
     return Search(
         generation=np.zeros(1, np.int64),
+        goal=np.zeros(1, np.int64),
         reached=np.zeros(windows, np.int64),
         parent=np.zeros(windows, np.int32),
         keys=np.zeros(entries, np.int64),
         nodes=np.zeros(entries, np.int32),
         expanded=np.zeros(entries, np.int32),
         ready=np.zeros(entries, np.int32),
+        popped=np.zeros(entries, np.int64),
     )
 
 
@@ -179,16 +187,16 @@ def no_records(records: int, visits: int, expansions: int) -> Records:
         visits_at=longs(records),
         visits=ints(records),
         leave=ints(records),
+        arrival=ints(records),
         expansions_at=longs(records),
         expansions=ints(records),
-        left=longs(records),
-        right=longs(records),
-        low=longs(records),
-        high=longs(records),
+        spots=np.zeros((records, 8), np.int64),
         resource=ints(visits),
         enter=ints(visits),
         expanded=ints(expansions),
         ready=ints(expansions),
+        until=ints(expansions),
+        largest=longs(expansions),
         used=longs(3),
     )
 
@@ -201,7 +209,16 @@ def nothing_freed(resources: int) -> Freed:
         near=np.zeros(resources, np.int64),
         earliest=np.zeros(resources, np.int32),
         latest=np.zeros(resources, np.int32),
+        source=np.zeros(resources, np.int32),
+        near_earliest=np.zeros(resources, np.int32),
+        near_latest=np.zeros(resources, np.int32),
     )
+
+
+@cache
+def roots_of_small_squares() -> Longs:
+    """The terms of `neighbourhood/distance` by the square of the distance."""
+    return np.array([math.isqrt(squared << 32) for squared in range(ROOTS)], np.int64)
 
 
 def split_of_terms(graph: Graph) -> int:
@@ -217,7 +234,7 @@ def encode(instance: Instance) -> State:
     graph = encode_graph(instance)
     robots, goals, paces = encode_robots(instance)
     resources = graph.duration.size
-    places = 1 + 2 * ROOM * resources
+    places = BLOCK * (1 + 2 * resources)
     visits = 64 * max(64, robots.start.size)
     return State(
         graph=graph,
@@ -229,8 +246,11 @@ def encode(instance: Instance) -> State:
         records=no_records(max(256, 8 * robots.start.size), visits, visits),
         freed=nothing_freed(resources),
         reserved=np.full(robots.start.size, NONE, np.int32),
-        rank=np.full(robots.start.size + 1, NONE, np.int32),
+        rank=np.zeros(robots.start.size, np.int32),
         counters=np.zeros(COUNTERS, np.int64),
+        longest=int(graph.duration.max(initial=1)),
+        last_alike=bool((graph.duration == graph.duration.max(initial=1)).all()),
+        roots=roots_of_small_squares(),
         split=split_of_terms(graph),
         parks=instance.after_goal == "park",
     )
@@ -250,8 +270,8 @@ def with_room(state: State, places: int, records: Records) -> State:
 def without_reservations(state: State) -> State:
     """The state on the empty graph; all else is shared."""
     return state._replace(
-        windows=_all_free(state.graph, 1 + ROOM * state.graph.duration.size),
-        stays=_no_stays(state.graph, 1 + ROOM * state.graph.duration.size),
+        windows=_all_free(state.graph, BLOCK * (1 + state.graph.duration.size)),
+        stays=_no_stays(state.graph, BLOCK * (1 + state.graph.duration.size)),
         reserved=np.full(state.reserved.size, NONE, np.int32),
     )
 
@@ -262,7 +282,7 @@ def _all_free(graph: Graph, places: int) -> Rows:
 
 def _no_stays(graph: Graph, places: int) -> Rows:
     several = graph.capacity > 1
-    return empty_rows(several, filled=False, places=places if several.any() else 1)
+    return empty_rows(several, filled=False, places=places if several.any() else BLOCK)
 
 
 def no_work(robots: int, members: int, sample: int) -> Work:
@@ -296,6 +316,7 @@ def no_work(robots: int, members: int, sample: int) -> Work:
         given=longs(members + 1),
         cost=longs(members + 1),
         rows=np.zeros((sample, members), np.int32),
+        row_key=longs(sample),
         row_index=ints(sample),
         row_spare=ints(sample),
     )
@@ -339,6 +360,7 @@ def no_answers(members: int) -> Answers:
         record=np.zeros(PLANS, np.int32),
         owner=np.zeros(PLANS, np.int32),
         clashes=np.zeros(PLANS, np.int64),
+        compared=np.zeros(PLANS, np.int64),
         given=np.zeros(ANSWERS, np.int64),
         plan=np.zeros(ANSWERS, np.int32),
         older=np.zeros(ANSWERS, np.int32),

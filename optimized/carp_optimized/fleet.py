@@ -27,13 +27,17 @@ from carp_optimized.arrays import (
 from carp_optimized.compiling import RoomExhausted, TicksExhausted
 from carp_optimized.neighbourhood import add_robot
 from carp_optimized.polishing import QUEUED, TURN, play_rounds
-from carp_optimized.recording import enlarged, only, read_plan, write_plan
+from carp_optimized.recording import copied, enlarged, read_plan, write_plan
+from carp_optimized.records import keep_records
 from carp_optimized.references import Native
 from carp_optimized.reuse import Queries, Reuse
 from carp_spec import Instance, Neighbourhood, Plan, Refusal, RobotId, Shuffled
 from carp_spec.permutations import shuffle, splitmix64
 
 T = TypeVar("T")
+
+PART = 512  # robots of a pass
+MANY = 1 << 16  # visits and expansions of records that are no longer held
 
 
 class Scratch(NamedTuple):
@@ -61,7 +65,9 @@ class Fleet:
         self._order = np.zeros(0, np.int32)
         self._records = np.full(len(instance.robots), NONE, np.int32)
         self._plans: dict[int, Plan] = {}
+        self._many = MANY
         self._scratch: Scratch | None = None
+        self._options: Neighbourhood | None = None
 
     @property
     def queries(self) -> Queries:
@@ -115,9 +121,10 @@ class Fleet:
     def carp(self, order: Sequence[int]) -> None:
         """Plan the robots in order, as if there were no plans yet."""
         self.clear()
+        self._state.records.used[:] = 0
+        self._plans.clear()
         robots = np.array(order, np.int32)
-        plans = self._pass(robots, self._records, 0)
-        self._hold(robots[plans != NONE], plans[plans != NONE])
+        self._pass(robots, self._records, 0)
 
     def shuffled(self, planner: Shuffled, order: Sequence[int], advance: Callable[[], None], now: int = 0) -> None:
         """The best of several passes of CARP; robots that have a plan keep what they did until now."""
@@ -133,7 +140,7 @@ class Fleet:
             plans = self._pass(robots, followed, now)
             found = plans != NONE
             worth = (-int(found.sum()), self._cost(plans[found]))
-            self._withdraw(plans[found])
+            self.clear()
             if best_worth is None or worth < best_worth:
                 best_worth, best = worth, (robots[found], plans[found])
             else:
@@ -173,8 +180,8 @@ class Fleet:
             return add_robot(self._native, self._empty, scratch.work, scratch.answers, scratch.options, size, now)
 
         if self._call(attempt):
-            order = work.queue[: size + 1].copy()
-            self._hold(order, work.plans[order])
+            self._order = work.queue[: size + 1].copy()
+            self._records = work.plans.copy()
             return True
         return options.fallback is not None and self._fall_back(robot, now, Shuffled(options.fallback, options.seed))
 
@@ -185,11 +192,9 @@ class Fleet:
         ]
         alone = np.array(found, np.int32)
         has_path = alone != NONE
-        wishes = only(self._state.records, alone[has_path])
         least = np.zeros(alone.size, np.int64)
         least[has_path] = [self._cost(alone[robot : robot + 1]) for robot in np.flatnonzero(has_path)]
-        alone[has_path] = np.arange(has_path.sum())
-        polish = encoding.no_polish(wishes, alone, least, self._state.graph.duration.size)
+        polish = encoding.no_polish(copied(self._state.records), alone, least, self._state.graph.duration.size)
         polish.stream[0] = seed
         return Native(polish)
 
@@ -217,6 +222,9 @@ class Fleet:
 
     def _scratch_for(self, options: Neighbourhood) -> Scratch:
         """The scratch for adding a robot with these options."""
+        if self._scratch is not None and self._options is options:
+            return self._scratch
+        self._options = options
         reuse = self.reuse
         kinds = (reuse.kept, reuse.unchanged, reuse.prefixes, reuse.shared, reuse.bounds)
         members, sample = min(options.m, len(self._records) + 1), options.sample or 0
@@ -252,8 +260,20 @@ class Fleet:
         return False
 
     def _pass(self, robots: Ints, followed: Ints, now: int) -> Ints:
+        """Plan robots in order, where there are no plans yet, and hold the plans found.
+
+        A part at a time, so that little is done again where there was too little room.
+        """
         plans = np.full(robots.size, NONE, np.int32)
-        self._call(lambda: passes.carp(self._native, robots, followed, now, plans))
+        for first in range(0, robots.size, PART):
+            part, found = robots[first : first + PART], plans[first : first + PART]
+
+            def attempt(part: Ints = part, found: Ints = found, first: int = first) -> None:
+                passes.carp(self._native, part, followed, now, found, first)
+
+            self._call(attempt)
+            held = plans[: first + PART]
+            self._hold(robots[: first + PART][held != NONE], held[held != NONE])
         return plans
 
     def _hold(self, robots: Ints, records: Ints) -> None:
@@ -284,24 +304,35 @@ class Fleet:
 
     def _rebuild(self, used: Longs, counters: Longs, larger: bool) -> None:
         """Go back to the plans held before a call that was broken off."""
+        records, places = self._state.records, self._state.windows.start.size
+        if larger:
+            # what was full is more than half full, or no array is, and it is the scratch of a query
+            sizes = records.robot.size, records.resource.size, records.expanded.size
+            few_records = any(2 * int(count) > size for count, size in zip(records.used, sizes, strict=True))
+            few_places = 2 * max(int(self._state.windows.used[0]), int(self._state.stays.used[0])) > places
+            places = 2 * places if few_places or not few_records else places
+            records = enlarged(records) if few_records else records
         self._state.records.used[:] = used
+        records.used[:] = used
         self._state.counters[:] = counters
-        places = self._state.windows.start.size
-        records = enlarged(self._state.records) if larger else self._state.records
-        self._take(encoding.with_room(self._state, 2 * places if larger else places, records))
+        self._take(encoding.with_room(self._state, places, records))
         held = self._records[self._order]
         self._call(lambda: passes.reserve_all(self._native, held))
 
     def _forget_old_records(self) -> None:
-        """Keep only the records of the plans held, if the others have become many."""
-        used = int(self._state.records.used[1])
-        held = self._records[self._order]
-        if used > 4 * int(self._state.records.visits[held].sum()) + 1024:
-            self._take(self._state._replace(records=only(self._state.records, held)))
-            renumbered = {int(old): new for new, old in enumerate(held)}
-            self._plans = {renumbered[old]: plan for old, plan in self._plans.items() if old in renumbered}
-            self._records[self._order] = np.arange(held.size, dtype=np.int32)
-            self._state.reserved[self._order] = self._records[self._order]
+        """Forget records of plans that are no longer held, if they have become many."""
+        used = self._state.records.used
+        if int(used[1]) + int(used[2]) > self._many:
+            self.forget()
+
+    def forget(self) -> None:
+        """Keep only the records of the plans held."""
+        used = self._state.records.used
+        kept = np.sort(self._records[self._order])
+        keep_records(self._native, kept)
+        self._plans = {new: self._plans[int(old)] for new, old in enumerate(kept) if int(old) in self._plans}
+        self._records = self._state.reserved.copy()
+        self._many = 4 * (int(used[1]) + int(used[2])) + MANY
 
     def _write(self, plan: Plan) -> int:
         for position, visit in enumerate(plan.visits):

@@ -1,4 +1,7 @@
-"""The h of A*, exact on the empty graph: Dijkstra from the goal along the moves backwards, one per destination."""
+"""The h of A*, exact on the empty graph: from the goal along the moves backwards, one per destination.
+
+Where all durations are alike, the resources are reached level by level; otherwise by Dijkstra's algorithm.
+"""
 
 from carp_optimized.arrays import LARGEST, NONE, TOO_FAR, UNREACHABLE, State
 from carp_optimized.compiling import compiled
@@ -18,8 +21,50 @@ def guide_slot(state: State, destination: int) -> int:
         guides.slot[guides.holds[slot]] = NONE
     guides.slot[destination] = slot
     guides.holds[slot] = destination
-    make_guide(state, slot, int(guides.goal[destination]), int(guides.pace[destination]))
+    goal = int(guides.goal[destination])
+    pace = int(guides.pace[destination])
+    if state.last_alike:
+        make_level_guide(state, slot, goal, pace * state.longest)
+    else:
+        make_guide(state, slot, goal, pace)
     return slot
+
+
+@compiled
+def make_level_guide(state: State, slot: int, goal: int, step: int) -> None:
+    """Reach the resources level by level, each `step` ticks from the one before; then rank them by level and index."""
+    graph = state.graph
+    first = state.search.keys  # by level: the next rank
+    queue = state.search.nodes
+    guide = state.guides.table[slot]
+    for resource in range(guide.size):
+        guide[resource] = UNREACHABLE
+    guide[goal] = 0
+    queue[0] = goal
+    first[0] = 0
+    count = 1
+    done = 0
+    while done < count:
+        resource = int(queue[done])
+        level = int(guide[resource]) + 1
+        done += 1
+        for edge in range(int(graph.backward_first[resource]), int(graph.backward_first[resource + 1])):
+            source = int(graph.source[edge])
+            if guide[source] != UNREACHABLE:
+                continue
+            if level * step > LARGEST:
+                guide[source] = TOO_FAR
+                continue
+            if level > guide[queue[count - 1]]:
+                first[level] = count
+            guide[source] = level
+            queue[count] = source
+            count += 1
+    for resource in range(guide.size):
+        level = int(guide[resource])
+        if level >= 0:
+            guide[resource] = ((level * step) << 32) + first[level]
+            first[level] += 1
 
 
 @compiled

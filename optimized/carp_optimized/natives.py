@@ -1,11 +1,10 @@
 """What compiled functions that Python calls make of the natives handed to them."""
 
-from carp_optimized.arrays import Answers, Options, Polish, Records, State, Work
+from carp_optimized.arrays import Answers, Options, Polish, State, Work
 from carp_optimized.references import dereference
 
 state_at = dereference(State)
 work_at = dereference(Work)
 answers_at = dereference(Answers)
 options_at = dereference(Options)
-records_at = dereference(Records)
 polish_at = dereference(Polish)

@@ -1,16 +1,28 @@
 """The neighbourhood planner, the paper's Algorithm 1: one compiled call adds a robot."""
 
-from carp_optimized.arrays import NEVER, NO_LIMIT, NONE, UNCHANGED, UNKNOWN, Answers, Ints, Options, State, Work
+from carp_optimized.arrays import (
+    LARGEST,
+    NEVER,
+    NO_LIMIT,
+    NONE,
+    UNCHANGED,
+    UNKNOWN,
+    Answers,
+    Ints,
+    Options,
+    State,
+    Work,
+)
 from carp_optimized.compiling import compiled, entry
 from carp_optimized.distances import nearest
 from carp_optimized.natives import answers_at, options_at, state_at, work_at
 from carp_optimized.order_search import search_orders
 from carp_optimized.orders import draw_orders
-from carp_optimized.records import cost_of
+from carp_optimized.records import cost_of, same_plan
 from carp_optimized.references import Native
 from carp_optimized.replanning import could_use_freed, forget_freed, note_freed, replan
 from carp_optimized.search import find_plan
-from carp_optimized.windows import plan_fits, reserve, withdraw
+from carp_optimized.windows import give_rank, plan_fits, reserve, withdraw
 
 
 @entry
@@ -78,6 +90,7 @@ def add_robot(  # noqa: C901 - Algorithm 1 from its first line to its last
 @compiled
 def begin(state: State, work: Work, size: int, shortest: int, now: int) -> int:
     """Begin with all robots but the new one outside the neighbourhood; how many of them have not ended by now."""
+    give_ranks(state, work.queue, size + 1)
     under_way = 0
     new = int(work.queue[size])
     work.before[new] = NONE
@@ -95,6 +108,17 @@ def begin(state: State, work: Work, size: int, shortest: int, now: int) -> int:
         if not work.ended[robot]:
             under_way += 1
     return under_way
+
+
+@compiled
+def give_ranks(state: State, robots: Ints, count: int) -> None:
+    """Make ranks grow in the order of the robots; those that stay in order keep theirs."""
+    before = NONE
+    for k in range(count):
+        robot = int(robots[k])
+        if state.rank[robot] <= before or state.rank[robot] > LARGEST:
+            give_rank(state, robot, before + 1)
+        before = int(state.rank[robot])
 
 
 @compiled
@@ -181,7 +205,7 @@ def plan_alone(state: State, work: Work, count: int, now: int, skip_unchanged: b
         record = int(work.alone[member])
         is_last = member == count - 1
         is_known = record != NONE and skip_unchanged and state.records.expansions[record] != UNKNOWN
-        if is_known and (is_last or not could_use_freed(state, record)) and plan_fits(state, record):
+        if is_known and (is_last or not could_use_freed(state, record, NEVER)) and plan_fits(state, record):
             state.counters[UNCHANGED] += 1
             continue
         robot = int(work.members[member])
@@ -209,8 +233,13 @@ def settle(state: State, robots: Ints, plans: Ints, count: int) -> None:
     """Make the windows hold just these plans of these robots."""
     for k in range(count):
         held = int(state.reserved[robots[k]])
-        if held != NONE and held != plans[k]:
+        if held == NONE or held == plans[k]:
+            continue
+        if plans[k] != NONE and same_plan(state.records, held, int(plans[k])):
+            state.reserved[robots[k]] = plans[k]
+        else:
             withdraw(state, held)
+    give_ranks(state, robots, count)
     for k in range(count):
         if plans[k] != NONE and state.reserved[robots[k]] == NONE:
             reserve(state, int(plans[k]))

@@ -7,8 +7,9 @@ Three kinds of reuse, each of which leaves the best order and its plans as they 
   found then clashes with none of the others: stays that leave room for it do not change it (see
   `carp_optimized.replanning`). No plan against fewer is no plan against more. So the plans of two prefixes that left
   the same plans are shared, too.
-- Bounds. A robot costs at least what it costs against the robots outside alone: more plans leave fewer ways. A prefix
-  whose cost and those of the robots still to come are not below the limit has no order that is strictly better.
+- Bounds. A robot costs at least what it costs against the robots outside alone, or against some of the plans of the
+  prefix: more plans leave fewer ways. A prefix whose cost and those of the robots still to come are not below the
+  limit has no order that is strictly better. All answers known are looked at only before a query would be asked.
 """
 
 from carp_optimized.answers import answer_of, known_answer, learn, number_plan, start_answers
@@ -104,7 +105,15 @@ def plan_order(
             state.counters[BOUND] += queries_below(count - place)
             return place
         member = int(work.order[place])
-        record = plan_member(state, work, answers, place, now, options.shared)
+        answer = known_answer(state, answers, member, int(work.given[place])) if options.shared else NONE
+        if (
+            answer == NONE
+            and (options.shared and options.bounds)
+            and work.cost[place] + least_rest(state, work, answers, place, count, limit) >= limit
+        ):
+            state.counters[BOUND] += queries_below(count - place)
+            return place
+        record = plan_member(state, work, answers, place, answer, now, options.shared)
         if record == NONE:
             return place + 1
         work.chosen[place] = record
@@ -115,12 +124,34 @@ def plan_order(
 
 
 @compiled
-def plan_member(state: State, work: Work, answers: Answers, place: int, now: int, shared: bool) -> int:
-    """The record of the plan of the member in that place of the order against those before it, or `NONE`."""
+def least_rest(state: State, work: Work, answers: Answers, place: int, count: int, limit: int) -> int:
+    """A lower bound, at most the limit, of the cost of the members from that place on, by all answers known."""
+    given = int(work.given[place])
+    cost = 0
+    for k in range(place, count):
+        member = int(work.order[k])
+        least = int(work.least[member])
+        answer = int(answers.newest[member])
+        while answer != NONE:
+            if int(answers.given[answer]) & ~given == 0:
+                record = answer_of(answers, answer)
+                if record == NONE:
+                    return limit
+                least = max(least, cost_of(state, record))
+            answer = int(answers.older[answer])
+        cost += least
+    return min(cost, limit)
+
+
+@compiled
+def plan_member(state: State, work: Work, answers: Answers, place: int, answer: int, now: int, shared: bool) -> int:
+    """The record of the plan of the member in that place of the order against those before it, or `NONE`.
+
+    `answer` is the known answer, or `NONE`.
+    """
     member = int(work.order[place])
     given = int(work.given[place])
     plan = NONE
-    answer = known_answer(answers, member, given) if shared else NONE
     if answer != NONE:
         state.counters[SHARED] += 1
         plan = int(answers.plan[answer])

@@ -2,11 +2,12 @@
 
 import numpy as np
 
-from carp_optimized.arrays import Ints, IntTable, Numbers, Work
+from carp_optimized.arrays import Ints, Numbers, Work
 from carp_optimized.compiling import compiled
 
 GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 FIRST_MIX = np.uint64(0xBF58476D1CE4E5B9)
+KEY_BITS = 62
 SECOND_MIX = np.uint64(0x94D049BB133111EB)
 
 
@@ -21,8 +22,23 @@ def next_number(stream: Numbers) -> np.uint64:
 
 
 @compiled
-def precedes(rows: IntTable, one: int, other: int, size: int) -> int:
+def key_of(row: Ints, size: int) -> int:
+    """The first places of an order as one number: those of small neighbourhoods are all places."""
+    bits = 1
+    while size > 1 << bits:
+        bits += 1
+    key = 0
+    for k in range(min(size, KEY_BITS // bits)):
+        key = (key << bits) + int(row[k])
+    return key
+
+
+@compiled
+def precedes(work: Work, one: int, other: int, size: int) -> int:
     """-1, 0 or 1 as one order is before, the same as, or after the other."""
+    if work.row_key[one] != work.row_key[other]:
+        return -1 if work.row_key[one] < work.row_key[other] else 1
+    rows = work.rows
     for k in range(size):
         if rows[one][k] != rows[other][k]:
             return -1 if rows[one][k] < rows[other][k] else 1
@@ -41,7 +57,7 @@ def sort_rows(work: Work, count: int, size: int) -> None:
             j = middle
             end = min(start + 2 * width, count)
             for k in range(start, end):
-                if j >= end or (i < middle and precedes(work.rows, int(index[i]), int(index[j]), size) <= 0):
+                if j >= end or (i < middle and precedes(work, int(index[i]), int(index[j]), size) <= 0):
                     work.row_spare[k] = index[i]
                     i += 1
                 else:
@@ -88,10 +104,11 @@ def draw_orders(work: Work, size: int, sample: int, stream: Numbers) -> int:
                 swapped = rows[row][k]
                 rows[row][k] = rows[row][other]
                 rows[row][other] = swapped
+            work.row_key[row] = key_of(rows[row], size)
         sort_rows(work, sample, size)
         distinct = 1
         for row in range(1, sample):
-            if precedes(rows, int(index[distinct - 1]), int(index[row]), size) != 0:
+            if precedes(work, int(index[distinct - 1]), int(index[row]), size) != 0:
                 swapped = index[distinct]
                 index[distinct] = index[row]
                 index[row] = swapped

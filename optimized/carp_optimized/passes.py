@@ -67,14 +67,15 @@ def record_plan(native: Native[State], robot: int, resources: Ints, enters: Ints
 
 
 @entry
-def carp(native: Native[State], order: Ints, before: Ints, now: int, plans: Ints) -> None:
+def carp(native: Native[State], order: Ints, before: Ints, now: int, plans: Ints, rank: int) -> None:
     """Plan the robots in order, each against those before it, into `plans`; `NONE` for one that finds no plan.
 
-    `before` are the plans followed until now, by robot.
+    `before` are the plans followed until now, by robot. The first robot gets the rank.
     """
     state = state_at(native)
     for k in range(order.size):
         robot = int(order[k])
+        state.rank[robot] = rank + k
         plan = find_plan(state, robot, int(before[robot]), now, NEVER)
         plans[k] = plan
         if plan != NONE:

@@ -2,7 +2,7 @@
 
 from carp_optimized.arrays import NEVER, NONE, Ints, Records, State
 from carp_optimized.compiling import RoomExhausted, compiled, entry
-from carp_optimized.natives import records_at
+from carp_optimized.natives import state_at
 from carp_optimized.references import Native
 
 
@@ -36,8 +36,7 @@ def write_record(state: State, record: int, last: int, expansions: int) -> None:
         length += 1
         node = int(search.parent[node])
     end = int(records.visits_at[record]) + int(records.visits[record]) + length
-    read_at = int(records.used[2])
-    if end > records.resource.size or read_at + expansions > records.expanded.size:
+    if end > records.resource.size or int(records.used[2]) + expansions > records.expanded.size:
         raise RoomExhausted
     node = last
     for k in range(end - 1, end - 1 - length, -1):
@@ -52,48 +51,67 @@ def write_record(state: State, record: int, last: int, expansions: int) -> None:
         else int(records.enter[end - 1]) + int(state.robots.pace[robot]) * int(state.graph.duration[goal])
     )
     records.visits[record] += length
-    records.expansions_at[record] = read_at
-    records.expansions[record] = expansions
-    for k in range(expansions):
-        records.expanded[read_at + k] = search.expanded[k]
-        records.ready[read_at + k] = search.ready[k]
-    records.used[2] = read_at + expansions
     close_record(state, record)
+    write_expansions(state, record, expansions)
+
+
+@compiled
+def write_expansions(state: State, record: int, expansions: int) -> None:
+    """Note what the query has read, clipped to what could matter (`carp_optimized.replanning`).
+
+    Leaving r at t costs f >= t + h(r) - d(r), as h is consistent, and more than the plan's f does not matter.
+    """
+    records = state.records
+    search = state.search
+    robot = int(records.robot[record])
+    pace = int(state.robots.pace[robot])
+    guide = state.guides.table[state.guides.slot[state.robots.destination[robot]]]
+    f = int(records.arrival[record])
+    first = int(records.used[2])
+    records.expansions_at[record] = first
+    records.expansions[record] = expansions
+    records.used[2] = first + expansions
+    largest = 0
+    for k in range(expansions - 1, -1, -1):
+        resource = int(search.expanded[k])
+        records.expanded[first + k] = resource
+        records.ready[first + k] = search.ready[k]
+        records.until[first + k] = f - (int(guide[resource]) >> 32) + pace * int(state.graph.duration[resource])
+        records.largest[first + k] = largest
+        largest = max(largest, int(search.popped[k]))
 
 
 @compiled
 def close_record(state: State, record: int) -> None:
-    """Bound the positions of a record and count it in."""
+    """Sum the positions of a record and count it in."""
     records = state.records
+    graph = state.graph
     first = int(records.visits_at[record])
-    resource = int(records.resource[first])
-    left = right = int(state.graph.x[resource])
-    low = high = int(state.graph.y[resource])
-    for k in range(first + 1, first + int(records.visits[record])):
-        x = int(state.graph.x[records.resource[k]])
-        y = int(state.graph.y[records.resource[k]])
-        left = min(left, x)
-        right = max(right, x)
-        low = min(low, y)
-        high = max(high, y)
-    records.left[record] = left
-    records.right[record] = right
-    records.low[record] = low
-    records.high[record] = high
+    last = first + int(records.visits[record]) - 1
+    sum_x = 0
+    sum_y = 0
+    for k in range(first, last):
+        ticks = int(records.enter[k + 1]) - int(records.enter[k])
+        sum_x += ticks * int(graph.x[records.resource[k]])
+        sum_y += ticks * int(graph.y[records.resource[k]])
+    records.arrival[record] = records.enter[last]
+    spots = records.spots[record]
+    spots[0] = records.enter[first]
+    spots[1] = records.enter[last]
+    spots[2] = sum_x
+    spots[3] = sum_y
+    spots[4] = graph.x[records.resource[first]]
+    spots[5] = graph.y[records.resource[first]]
+    spots[6] = graph.x[records.resource[last]]
+    spots[7] = graph.y[records.resource[last]]
     records.used[0] = record + 1
-    records.used[1] = first + int(records.visits[record])
-
-
-@compiled
-def arrival(records: Records, record: int) -> int:
-    """The tick at which the plan enters its last visit."""
-    return int(records.enter[int(records.visits_at[record]) + int(records.visits[record]) - 1])
+    records.used[1] = last + 1
 
 
 @compiled
 def cost_of(state: State, record: int) -> int:
     """The cost of a plan."""
-    return arrival(state.records, record) - int(state.robots.release[state.records.robot[record]])
+    return int(state.records.arrival[record]) - int(state.robots.release[state.records.robot[record]])
 
 
 @compiled
@@ -140,30 +158,39 @@ def clash(records: Records, one: int, other: int) -> bool:
 
 
 @entry
-def copy_records(source: Native[Records], destination: Native[Records], kept: Ints) -> None:
-    """Fill new records with those kept of the old ones, numbered in their order."""
-    old = records_at(source)
-    new = records_at(destination)
-    for k in range(new.used.size):
-        new.used[k] = 0
+def keep_records(native: Native[State], kept: Ints) -> None:
+    """Forget all records but those kept, which are reserved; they are numbered anew, in their order.
+
+    `kept` is in order, so each record moves to a place that is its own or that of one forgotten.
+    """
+    state = state_at(native)
+    records = state.records
+    visits = 0
+    expansions = 0
     for number in range(kept.size):
         record = int(kept[number])
-        new.robot[number] = old.robot[record]
-        new.leave[number] = old.leave[record]
-        new.left[number] = old.left[record]
-        new.right[number] = old.right[record]
-        new.low[number] = old.low[record]
-        new.high[number] = old.high[record]
-        new.visits[number] = old.visits[record]
-        new.visits_at[number] = new.used[1]
-        for k in range(int(old.visits[record])):
-            new.resource[new.used[1]] = old.resource[old.visits_at[record] + k]
-            new.enter[new.used[1]] = old.enter[old.visits_at[record] + k]
-            new.used[1] += 1
-        new.expansions[number] = old.expansions[record]
-        new.expansions_at[number] = new.used[2]
-        for k in range(int(old.expansions[record])):
-            new.expanded[new.used[2]] = old.expanded[old.expansions_at[record] + k]
-            new.ready[new.used[2]] = old.ready[old.expansions_at[record] + k]
-            new.used[2] += 1
-    new.used[0] = kept.size
+        records.robot[number] = records.robot[record]
+        records.leave[number] = records.leave[record]
+        records.arrival[number] = records.arrival[record]
+        for k in range(8):
+            records.spots[number][k] = records.spots[record][k]
+        records.visits[number] = records.visits[record]
+        first = int(records.visits_at[record])
+        records.visits_at[number] = visits
+        for k in range(first, first + int(records.visits[record])):
+            records.resource[visits] = records.resource[k]
+            records.enter[visits] = records.enter[k]
+            visits += 1
+        records.expansions[number] = records.expansions[record]
+        first = int(records.expansions_at[record])
+        records.expansions_at[number] = expansions
+        for k in range(first, first + int(records.expansions[record])):
+            records.expanded[expansions] = records.expanded[k]
+            records.ready[expansions] = records.ready[k]
+            records.until[expansions] = records.until[k]
+            records.largest[expansions] = records.largest[k]
+            expansions += 1
+        state.reserved[records.robot[number]] = number
+    records.used[0] = kept.size
+    records.used[1] = visits
+    records.used[2] = expansions

@@ -38,6 +38,11 @@ ARRAYS: dict[object, tuple[type[np.generic], int]] = {
 }
 
 
+def is_uncompiled() -> bool:
+    """Whether compilation is switched off."""
+    return bool(numba.config.DISABLE_JIT)  # type: ignore[attr-defined]
+
+
 class Native(Generic[F]):
     """A named tuple of arrays, ints and named tuples, with the table of where compiled functions find them.
 
@@ -141,7 +146,7 @@ def dereference(kind: type[F]) -> Callable[[Native[F]], F]:
     def at(_: Any, address: Any) -> Any:
         return reference(address), lower
 
-    if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
+    if is_uncompiled():
         return lambda native: native.fields
     return cast("Callable[[Native[F]], F]", intrinsic(at))
 
@@ -207,12 +212,13 @@ class _WriteItem(AbstractTemplate):
         return None
 
 
-def _place(context: Any, builder: Any, view: Any, dimensions: int, index: Any) -> Any:
+def place_in(context: Any, builder: Any, kind: View, value: Any, index: Any) -> Any:
     """The address of what the index leads to."""
+    view = cgutils.create_struct_proxy(kind)(context, builder, value)
     if context.enable_boundscheck:
         with builder.if_then(builder.icmp_unsigned(">=", index, view.size0), likely=False):
             context.call_conv.return_user_exc(builder, IndexError, ("index is out of bounds",))
-    for axis in range(1, dimensions):
+    for axis in range(1, kind.dimensions):
         index = builder.mul(index, getattr(view, f"size{axis}"))
     return builder.gep(view.data, [index])
 
@@ -220,10 +226,10 @@ def _place(context: Any, builder: Any, view: Any, dimensions: int, index: Any) -
 @lower_builtin(operator.getitem, View, types.intp)
 def _lower_read(context: Any, builder: Any, signed: Any, arguments: Any) -> Any:
     kind = signed.args[0]
-    view = cgutils.create_struct_proxy(kind)(context, builder, arguments[0])
-    place = _place(context, builder, view, kind.dimensions, arguments[1])
+    place = place_in(context, builder, kind, arguments[0], arguments[1])
     if kind.dimensions == 1:
         return context.cast(builder, builder.load(place), kind.dtype, kind.item)
+    view = cgutils.create_struct_proxy(kind)(context, builder, arguments[0])
     row = cgutils.create_struct_proxy(kind.item)(context, builder)
     row.data = place
     for axis in range(1, kind.dimensions):
@@ -234,7 +240,6 @@ def _lower_read(context: Any, builder: Any, signed: Any, arguments: Any) -> Any:
 @lower_builtin(operator.setitem, View, types.intp, types.Any)
 def _lower_write(context: Any, builder: Any, signed: Any, arguments: Any) -> Any:
     kind = signed.args[0]
-    view = cgutils.create_struct_proxy(kind)(context, builder, arguments[0])
-    place = _place(context, builder, view, 1, arguments[1])
+    place = place_in(context, builder, kind, arguments[0], arguments[1])
     builder.store(context.cast(builder, arguments[2], kind.item, kind.dtype), place)
     return context.get_dummy_value()

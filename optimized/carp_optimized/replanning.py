@@ -2,26 +2,29 @@
 
 A query need not be repeated if the windows it would see differ from those it saw as follows.
 
-- Stays were taken back that it could not use. It saw a window of s only from a resource r that it expanded, at ticks
-  from `ready` on. A stay taken back in [earliest, latest) lets it enter s no earlier than max(ready, earliest - d(s)),
-  or leave s, d(s) or more ticks later than that, in a way that it could not before. All that comes of it has
-  f >= max(ready, earliest - d(s)) + h(s), as h is consistent; where that is above f of the plan found, the search
-  pops the goal first and never sees a difference. Nor does it where latest <= ready.
+- Stays were taken back that it could not use. What the search does not insert into its queue anew changes nothing,
+  nor does what is inserted with a larger key than all that is popped afterwards, up to the goal: it is never popped.
+  A stay of s taken back in [earliest, latest) lets a resource r that was expanded lead into s at a tick of
+  (earliest - d(s), latest), and, if it is s that was expanded, lead out of it at a tick after earliest, or at
+  earliest to the resource from which the robot came, as it is not met on the way. Where no such tick is one at which
+  r was left, or can be entered now, or has a key that is small enough, nothing changes.
+  A plan that ends in a goal for ever may end there earlier, too.
 - Stays were added that leave room for the plan found. Then it is found again: each window on its path is still
   entered at the same tick from the same parent, because any other way to a window was a way before, no later, and
   was refused then; and two entries of the queue are popped in the same order as before, because each is in it as
   early as its own ancestors are popped, which by induction are popped in the same order. What the query now reads
-  it would have read before too, so that the first case still applies later on.
+  it would have read before too, at ticks no later and with keys no larger popped behind it, so that the first case
+  still applies later on.
 
 A plan made earlier and now under way is the same query with fewer ways to begin, so the second case holds for it.
 """
 
-from carp_optimized.arrays import KEPT, NONE, UNCHANGED, UNKNOWN, Freed, Options, State, Work
+from carp_optimized.arrays import BLOCK, KEPT, NONE, SEVERAL, UNCHANGED, UNKNOWN, Freed, Options, State, Work
 from carp_optimized.compiling import compiled
 from carp_optimized.guides import guide_slot
-from carp_optimized.records import arrival, same_plan
+from carp_optimized.records import same_plan
 from carp_optimized.search import find_plan
-from carp_optimized.windows import evict, plan_fits, reserve, withdraw
+from carp_optimized.windows import end_of_run, evict, last_by, plan_fits, reserve, withdraw
 
 
 @compiled
@@ -39,6 +42,7 @@ def note_freed(state: State, record: int) -> None:
     mark = int(freed.now[0])
     first = int(records.visits_at[record])
     last = first + int(records.visits[record]) - 1
+    source = NONE
     for k in range(first, last + 1):
         resource = int(records.resource[k])
         enter = int(records.enter[k])
@@ -46,44 +50,125 @@ def note_freed(state: State, record: int) -> None:
         if freed.mark[resource] == mark:
             freed.earliest[resource] = min(int(freed.earliest[resource]), enter)
             freed.latest[resource] = max(int(freed.latest[resource]), leave)
-            continue
-        freed.mark[resource] = mark
-        freed.earliest[resource] = enter
-        freed.latest[resource] = leave
+            freed.source[resource] = SEVERAL
+        else:
+            freed.mark[resource] = mark
+            freed.earliest[resource] = enter
+            freed.latest[resource] = leave
+            freed.source[resource] = source
+        source = resource
+        note_near(freed, resource, enter, leave)
         for edge in range(int(graph.backward_first[resource]), int(graph.backward_first[resource + 1])):
-            freed.near[graph.source[edge]] = mark
+            note_near(freed, int(graph.source[edge]), enter, leave)
 
 
 @compiled
-def could_use_freed(state: State, record: int) -> bool:
-    """Whether the query that found the plan could find another now; of a plan that no query found, always."""
+def note_near(freed: Freed, resource: int, enter: int, leave: int) -> None:
+    """Note that a stay there, or one move away, has been taken back."""
+    if freed.near[resource] == freed.now[0]:
+        freed.near_earliest[resource] = min(int(freed.near_earliest[resource]), enter)
+        freed.near_latest[resource] = max(int(freed.near_latest[resource]), leave)
+    else:
+        freed.near[resource] = freed.now[0]
+        freed.near_earliest[resource] = enter
+        freed.near_latest[resource] = leave
+
+
+@compiled
+def could_use_freed(state: State, record: int, behind: int) -> bool:
+    """Whether the query that found the plan could find another now; of a plan that no query found, always.
+
+    Robots of a rank above `behind` do not count, among which is the plan's own, for its stays are free to it.
+    """
     freed = state.freed
-    graph = state.graph
     records = state.records
     if records.expansions[record] == UNKNOWN:
         return True
     mark = int(freed.now[0])
-    robot = int(records.robot[record])
-    pace = int(state.robots.pace[robot])
-    f = arrival(records, record)
+    reach = int(state.robots.pace[records.robot[record]]) * state.longest
     first = int(records.expansions_at[record])
-    start = int(records.expanded[first])
-    guide = state.guides.table[guide_slot(state, int(state.robots.destination[robot]))]
-    if freed.mark[start] == mark:
-        entered = int(freed.earliest[start]) - pace * int(graph.duration[start])
-        if entered + (int(guide[start]) >> 32) <= f:
-            return True
-    for k in range(first, first + int(records.expansions[record])):
+    last = first + int(records.expansions[record]) - 1
+    for k in range(first, last + 1):
         resource = int(records.expanded[k])
-        if freed.near[resource] != mark:
-            continue
-        ready = int(records.ready[k])
-        for edge in range(int(graph.first[resource]), int(graph.first[resource + 1])):
-            target = int(graph.target[edge])
-            if freed.mark[target] == mark and freed.latest[target] > ready and guide[target] >= 0:
-                entered = max(ready, int(freed.earliest[target]) - pace * int(graph.duration[target]))
-                if entered + (int(guide[target]) >> 32) <= f:
+        if freed.near[resource] == mark and (
+            records.ready[k] < freed.near_latest[resource] and freed.near_earliest[resource] - reach < records.until[k]
+        ):
+            if freed.mark[resource] == mark:
+                if state.parks and k < last and resource == records.expanded[last]:
                     return True
+                if leads_out(state, record, k, behind):
+                    return True
+            if leads_in(state, record, k, behind):
+                return True
+    return False
+
+
+@compiled
+def leads_out(state: State, record: int, k: int, behind: int) -> bool:
+    """Whether the resource of the expansion, of which a stay was taken back, could be left anew so that it matters."""
+    graph = state.graph
+    records = state.records
+    resource = int(records.expanded[k])
+    ready = int(records.ready[k])
+    earliest = int(state.freed.earliest[resource])
+    source = int(state.freed.source[resource])
+    if state.freed.latest[resource] <= ready:
+        return False
+    last_use = int(records.until[k])
+    for edge in range(int(graph.first[resource]), int(graph.first[resource + 1])):
+        target = int(graph.target[edge])
+        exit = max(ready, earliest if source in (target, SEVERAL) else earliest + 1)
+        if exit <= last_use and matters(state, record, k, target, exit, last_use, behind):
+            return True
+    return False
+
+
+@compiled
+def leads_in(state: State, record: int, k: int, behind: int) -> bool:
+    """Whether the resource of the expansion leads anew into one of which a stay was taken back, so that it matters."""
+    graph = state.graph
+    freed = state.freed
+    records = state.records
+    mark = int(freed.now[0])
+    resource = int(records.expanded[k])
+    ready = int(records.ready[k])
+    until = int(records.until[k])
+    pace = int(state.robots.pace[records.robot[record]])
+    for edge in range(int(graph.first[resource]), int(graph.first[resource + 1])):
+        target = int(graph.target[edge])
+        if freed.mark[target] == mark:
+            entry = max(ready, int(freed.earliest[target]) - pace * int(graph.duration[target]) + 1)
+            last_entry = min(until, int(freed.latest[target]) - 1)
+            if entry <= last_entry and matters(state, record, k, target, entry, last_entry, behind):
+                return True
+    return False
+
+
+@compiled
+def matters(state: State, record: int, k: int, target: int, entry: int, last_entry: int, behind: int) -> bool:
+    """Whether the target can be entered between the two ticks with a key that would be popped.
+
+    Exchanges are allowed, and windows of resources with room for several not looked at: no harm but a query.
+    """
+    robot = int(state.records.robot[record])
+    toll = int(state.guides.table[guide_slot(state, int(state.robots.destination[robot]))][target])
+    largest = int(state.records.largest[k])
+    if toll < 0 or (entry << 32) + toll > largest:
+        return False
+    if state.graph.capacity[target] > 1:
+        return True
+    windows = state.windows
+    need = int(state.robots.pace[robot]) * int(state.graph.duration[target])
+    row_end = int(windows.offset[target]) + int(windows.size[target])
+    slot = max(last_by(windows, target, entry), int(windows.offset[target]))
+    while slot < row_end:
+        entry = max(entry, int(windows.start[slot]))
+        slot = end_of_run(state, slot, behind)
+        if entry > last_entry:
+            return False
+        if entry + need <= windows.end[slot]:
+            return (entry << 32) + toll <= largest
+        slot += 1
     return False
 
 
@@ -97,21 +182,16 @@ def lift(state: State, work: Work, first: int, size: int) -> None:
 
 
 @compiled
-def replan(  # noqa: C901 - the cases of one robot
-    state: State, work: Work, size: int, first: int, now: int, options: Options
-) -> int:
+def replan(state: State, work: Work, size: int, first: int, now: int, options: Options) -> int:
     """Replan the robots outside from the position `first` on and reserve their plans; how many robots have one.
 
-    A query takes no account of the robots behind its own, whose plans stay reserved until they change or are run
+    A query takes no account of its own robot and those behind, whose plans stay reserved until they change or are run
     into; only where resources have room for several, whose windows do not tell robots apart, are they lifted first.
     Robots before the position keep their plans; where `kept` is off they are planned anew too, to the same effect, if
     their plans came from queries.
     """
-    several = state.stays.start.size > 1
+    several = state.stays.start.size > BLOCK
     lifted = False
-    for position in range(size):
-        robot = int(work.outside[position])
-        state.rank[robot + 1] = NONE if work.ended[robot] else position
     for position in range(first if options.kept else 0, size):
         robot = int(work.outside[position])
         if work.ended[robot]:
@@ -124,22 +204,33 @@ def replan(  # noqa: C901 - the cases of one robot
         if several and not lifted:
             lift(state, work, position, size)
             lifted = True
-        elif state.reserved[robot] != NONE:
-            withdraw(state, int(state.reserved[robot]))
-        plan = find_plan(state, robot, int(work.before[robot]), now, position)
+        plan = find_plan(state, robot, int(work.before[robot]), now, int(state.rank[robot]) - 1)
         if plan == NONE:
             lift(state, work, position, size)
             leave_without_plan(work, position, size)
             return position
-        if record != NONE and not same_plan(state.records, record, plan):
-            note_freed(state, record)
         work.held[robot] = plan
-        if not lifted:
-            evict(state, plan)
-        reserve(state, plan)
+        exchange_plan(state, robot, record, plan, lifted)
     if options.kept:
         state.counters[KEPT] += min(first, size)
     return size
+
+
+@compiled
+def exchange_plan(state: State, robot: int, record: int, plan: int, lifted: bool) -> None:
+    """Reserve the plan just found instead of that of the record, which may be none, and may be reserved still."""
+    changed = record == NONE or not same_plan(state.records, record, plan)
+    if changed and record != NONE:
+        note_freed(state, record)
+    held = int(state.reserved[robot])
+    if held != NONE and (changed or held != record):
+        withdraw(state, held)
+        held = NONE
+    if held == NONE:
+        if not lifted:
+            evict(state, plan)
+        reserve(state, plan)
+    state.reserved[robot] = plan
 
 
 @compiled
@@ -148,7 +239,11 @@ def stands(state: State, record: int, is_before: bool, lifted: bool, skip_unchan
     if is_before and state.records.expansions[record] == UNKNOWN:
         return True
     still_fits = plan_fits(state, record) if lifted else state.reserved[state.records.robot[record]] == record
-    if skip_unchanged and still_fits and not could_use_freed(state, record):
+    if (
+        skip_unchanged
+        and still_fits
+        and not could_use_freed(state, record, int(state.rank[state.records.robot[record]]) - 1)
+    ):
         state.counters[UNCHANGED] += 1
         return True
     return False

@@ -1,12 +1,14 @@
 """The CARP query: A* over free windows in the order of `query/ties`."""
 
-from carp_optimized.arrays import ASKED, LARGEST, NEVER, NONE, TOO_FAR, State
+from carp_optimized.arrays import ASKED, BLOCK, LARGEST, NEVER, NO_LIMIT, NONE, TOO_FAR, State
+from carp_optimized.blocks import below, lowest, width
 from carp_optimized.compiling import RoomExhausted, TicksExhausted, compiled
 from carp_optimized.guides import guide_slot
 from carp_optimized.heap import push, replace_root
 from carp_optimized.records import start_record, write_record
-from carp_optimized.windows import end_of_run, fits, is_exchange, last_by, plan_fits
+from carp_optimized.windows import end_of_run, fits, is_exchange, last_by, plan_fits, skip_below, start_of_run
 
+EVERY = (1 << BLOCK) - 1
 STANDING = 0  # the slot of no row: a copy of the window in which the robot is when it sets out
 
 
@@ -54,7 +56,7 @@ def find_plan_by(state: State, robot: int, before: int, now: int, behind: int, l
     if expansions == 0:
         return NONE
     record = start_record(state, robot, first, max(history - 1, 0))
-    write_record(state, record, int(state.search.nodes[0]), expansions)
+    write_record(state, record, int(state.search.goal[0]), expansions)
     return record
 
 
@@ -67,9 +69,7 @@ def stand(state: State, resource: int, enter: int, behind: int) -> int:
     windows.resource[STANDING] = resource
     windows.end[STANDING] = windows.end[last]
     windows.source[STANDING] = windows.source[last]
-    while slot > windows.offset[resource] and state.rank[windows.robot[slot - 1] + 1] > behind:
-        slot -= 1
-    return slot
+    return start_of_run(state, slot, behind)
 
 
 @compiled
@@ -80,8 +80,10 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
 
     No plan arrives before the least f in the queue, so that the search ends where that is later than `latest`.
 
-    The window in which the plan ends is then `nodes[0]`. The window in which the robot stands can be entered again
+    The window in which the plan ends is then `goal[0]`. The window in which the robot stands can be entered again
     if it has stayed at its goal for too long to end there; otherwise entering it again leads nowhere new.
+    The best of the windows reached last waits outside the heap, for it is often the next. Windows between which there
+    are only robots behind are one: from `window`, by which it is known, to `tail`.
     """
     graph = state.graph
     windows = state.windows
@@ -94,6 +96,7 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
     goal = int(state.robots.goal[robot])
     pace = int(state.robots.pace[robot])
     parks = state.parks
+    counts_all = behind == NEVER
 
     if guide[resource] < 0:
         if guide[resource] == TOO_FAR:
@@ -108,27 +111,34 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
         reached[own_slot] = label - enter
     reached[STANDING] = label - enter
     parent[STANDING] = NONE
-    keys[0] = (enter << 32) + int(guide[resource])
-    nodes[0] = STANDING
-    size = 1
+    best = STANDING
+    best_key = (enter << 32) + int(guide[resource])
+    size = 0
     expansions = 0
     beyond = False
-    root_is_spent = False
     while True:
-        if root_is_spent:
-            size -= 1
-            if size == 0:
-                break
-            replace_root(keys, nodes, size, int(keys[size]), int(nodes[size]))
-        root_is_spent = True
-        if keys[0] >> 32 > latest:
+        if size > 0 and keys[0] < best_key:
+            key = int(keys[0])
+            node = int(nodes[0])
+            if best == NONE:
+                size -= 1
+                best_key = int(keys[size])
+                best = int(nodes[size])
+            replace_root(keys, nodes, size, best_key, best)
+        elif best == NONE:
+            break
+        else:
+            key = best_key
+            node = best
+        if key >> 32 > latest:
             return 0
-        node = int(nodes[0])
+        best = NONE
+        best_key = NO_LIMIT
         resource = int(windows.resource[node])
         enter = label - int(reached[node])
-        if keys[0] != (enter << 32) + guide[resource]:
+        if key != (enter << 32) + int(guide[resource]):
             continue  # entered earlier since this entry was made
-        last = end_of_run(state, node, behind)
+        last = node if counts_all else end_of_run(state, node, behind)
         end = int(windows.end[last])
         if expansions > 0:
             ready = enter + pace * int(graph.duration[resource])
@@ -136,10 +146,13 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
             raise RoomExhausted
         expanded[expansions] = resource
         state.search.ready[expansions] = ready
+        state.search.popped[expansions] = key
         expansions += 1
         if resource == goal and (end == NEVER if parks else not (overstayed and node == STANDING)):
+            state.search.goal[0] = node
             return expansions
         exchanges = graph.capacity[resource] > 1
+        source = int(windows.source[last])
         for edge in range(int(graph.first[resource]), int(graph.first[resource + 1])):
             target = int(graph.target[edge])
             toll = int(guide[target])
@@ -149,17 +162,38 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
             need = pace * int(graph.duration[target])
             first = int(windows.offset[target])
             row_end = first + int(windows.size[target])
-            while first < row_end:
-                window = first
+            is_block = row_end <= first + BLOCK
+            ends = EVERY
+            usable = 0
+            if is_block:
+                if not counts_all:
+                    ends = below(windows.rank, first, behind + 1)
+                late = EVERY - below(windows.end, first, min(ready + need, NEVER))
+                usable = late & ends & ((1 << (row_end - first)) - 1)
+                tail = first + lowest(usable) if usable > 0 else row_end
+            else:
+                tail = skip_below(windows.end, first, row_end, ready + need)
+                tail = tail if counts_all or tail == row_end else end_of_run(state, tail, behind)
+            while tail < row_end:
+                if counts_all:
+                    window = tail
+                elif is_block:
+                    window = first + width(ends & ((1 << (tail - first)) - 1))
+                else:
+                    window = start_of_run(state, tail, behind)
                 entry = max(ready, int(windows.start[window]))
                 if entry > end:
                     break
-                first = end_of_run(state, window, behind)
-                until = int(windows.end[first])
-                first += 1
+                until = int(windows.end[tail])
+                if is_block:
+                    usable &= usable - 1
+                    tail = first + lowest(usable) if usable > 0 else row_end
+                else:
+                    tail += 1
+                    tail = tail if counts_all or tail == row_end else end_of_run(state, tail, behind)
                 if entry + need > until or label - entry <= reached[window]:
                     continue
-                if exchanges or (entry == end and windows.source[last] == target):
+                if exchanges or (entry == end and source == target):
                     while entry <= end and is_exchange(state, last, entry, target):
                         entry += 1
                     if entry > end or entry + need > until or label - entry <= reached[window]:
@@ -169,11 +203,15 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
                     continue
                 reached[window] = label - entry
                 parent[window] = node
-                if root_is_spent:
-                    replace_root(keys, nodes, size, (entry << 32) + toll, window)
-                    root_is_spent = False
+                key = (entry << 32) + toll
+                if key < best_key:
+                    if best != NONE:
+                        push(keys, nodes, size, best_key, best)
+                        size += 1
+                    best = window
+                    best_key = key
                 else:
-                    push(keys, nodes, size, (entry << 32) + toll, window)
+                    push(keys, nodes, size, key, window)
                     size += 1
     if beyond:
         raise TicksExhausted

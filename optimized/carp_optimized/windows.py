@@ -5,23 +5,31 @@ short for any stay: a reservation splits the gap in which it falls, and its with
 other resources are made anew from their stays.
 """
 
-from carp_optimized.arrays import NEVER, NONE, Records, Rows, State
+from carp_optimized.arrays import BLOCK, NEVER, NONE, Ints, Records, Rows, State
+from carp_optimized.blocks import below, width
 from carp_optimized.compiling import RoomExhausted, compiled
 
 
 @compiled
 def last_by(rows: Rows, resource: int, tick: int) -> int:
     """The slot of the last interval of the resource that starts by the tick, or `NONE`."""
-    low = int(rows.offset[resource])
-    first = low
-    high = low + int(rows.size[resource])
-    while low < high:
-        middle = (low + high) >> 1
-        if rows.start[middle] <= tick:
-            low = middle + 1
-        else:
-            high = middle
-    return low - 1 if low > first else NONE
+    first = int(rows.offset[resource])
+    slot = skip_below(rows.start, first, first + int(rows.size[resource]), tick + 1)
+    return slot - 1 if slot > first else NONE
+
+
+@compiled
+def skip_below(ticks: Ints, slot: int, row_end: int, limit: int) -> int:
+    """From the first slot of a row to the first whose tick is not below the limit, or to the end of the row.
+
+    Ticks are in order, and a block at a time is compared.
+    """
+    limit = min(limit, NEVER)
+    while True:
+        count = width(below(ticks, slot, limit))
+        slot += count
+        if count < BLOCK or slot >= row_end:
+            return slot
 
 
 @compiled
@@ -40,6 +48,7 @@ def make_room(rows: Rows, resource: int) -> None:
         rows.end[new + k] = rows.end[old + k]
         rows.source[new + k] = rows.source[old + k]
         rows.robot[new + k] = rows.robot[old + k]
+        rows.rank[new + k] = rows.rank[old + k]
     for k in range(room):
         rows.resource[new + k] = resource
     rows.offset[resource] = new
@@ -48,7 +57,7 @@ def make_room(rows: Rows, resource: int) -> None:
 
 
 @compiled
-def split_window(windows: Rows, resource: int, enter: int, leave: int, source: int, robot: int) -> None:
+def split_window(windows: Rows, resource: int, enter: int, leave: int, source: int, robot: int, rank: int) -> None:
     """Take [enter, leave) out of the window that holds it, for the robot, which comes from `source`."""
     make_room(windows, resource)
     slot = last_by(windows, resource, enter)
@@ -57,8 +66,10 @@ def split_window(windows: Rows, resource: int, enter: int, leave: int, source: i
         windows.end[k] = windows.end[k - 1]
         windows.source[k] = windows.source[k - 1]
         windows.robot[k] = windows.robot[k - 1]
+        windows.rank[k] = windows.rank[k - 1]
     windows.end[slot] = enter
     windows.robot[slot] = robot
+    windows.rank[slot] = rank
     windows.source[slot] = source
     windows.start[slot + 1] = leave
     windows.size[resource] += 1
@@ -73,11 +84,15 @@ def join_windows(windows: Rows, resource: int, enter: int) -> None:
     windows.end[slot] = windows.end[slot + 1]
     windows.source[slot] = windows.source[slot + 1]
     windows.robot[slot] = windows.robot[slot + 1]
+    windows.rank[slot] = windows.rank[slot + 1]
     for k in range(slot + 1, last):
         windows.start[k] = windows.start[k + 1]
         windows.end[k] = windows.end[k + 1]
         windows.source[k] = windows.source[k + 1]
         windows.robot[k] = windows.robot[k + 1]
+        windows.rank[k] = windows.rank[k + 1]
+    windows.start[last] = NEVER
+    windows.end[last] = NEVER
 
 
 @compiled
@@ -117,6 +132,18 @@ def drop_stay(stays: Rows, resource: int, enter: int, leave: int, source: int) -
         slot += 1
     for k in range(slot, last):
         stays.end[k] = stays.end[k + 1]
+    stays.start[last] = NEVER
+    stays.end[last] = NEVER
+
+
+@compiled
+def clear_row(rows: Rows, resource: int) -> None:
+    """Drop all intervals of the resource."""
+    first = int(rows.offset[resource])
+    for slot in range(first, first + int(rows.size[resource])):
+        rows.start[slot] = NEVER
+        rows.end[slot] = NEVER
+    rows.size[resource] = 0
 
 
 @compiled
@@ -129,13 +156,14 @@ def append_window(windows: Rows, resource: int, start: int, end: int) -> None:
         windows.end[slot] = end
         windows.source[slot] = NONE
         windows.robot[slot] = NONE
+        windows.rank[slot] = NONE
         windows.size[resource] += 1
 
 
 @compiled
 def sweep_windows(windows: Rows, stays: Rows, resource: int, capacity: int) -> None:
     """Make the windows of the resource anew from its stays."""
-    windows.size[resource] = 0
+    clear_row(windows, resource)
     into = int(stays.offset[resource])
     out = into
     last = into + int(stays.size[resource])
@@ -169,7 +197,9 @@ def sweep_windows(windows: Rows, stays: Rows, resource: int, capacity: int) -> N
 def reserve(state: State, record: int) -> None:
     """Take the stays of the plan out of the windows; the plan must fit."""
     records = state.records
-    state.reserved[records.robot[record]] = record
+    robot = int(records.robot[record])
+    rank = int(state.rank[robot])
+    state.reserved[robot] = record
     first = int(records.visits_at[record])
     last = first + int(records.visits[record]) - 1
     source = NONE
@@ -178,7 +208,7 @@ def reserve(state: State, record: int) -> None:
         enter = int(records.enter[k])
         leave = int(records.enter[k + 1]) if k < last else int(records.leave[record])
         if state.graph.capacity[resource] == 1:
-            split_window(state.windows, resource, enter, leave, source, int(records.robot[record]))
+            split_window(state.windows, resource, enter, leave, source, robot, rank)
         else:
             add_stay(state.stays, resource, enter, leave, source)
             sweep_windows(state.windows, state.stays, resource, int(state.graph.capacity[resource]))
@@ -227,8 +257,18 @@ def is_exchange(state: State, slot: int, tick: int, target: int) -> bool:
 @compiled
 def end_of_run(state: State, slot: int, behind: int) -> int:
     """The last of the windows that are one to a robot planned behind that rank: only later robots are between them."""
-    while state.rank[state.windows.robot[slot] + 1] > behind:
+    while state.windows.rank[slot] > behind:
         slot += 1
+    return slot
+
+
+@compiled
+def start_of_run(state: State, slot: int, behind: int) -> int:
+    """The first of the windows that are one to a robot planned behind that rank."""
+    windows = state.windows
+    first = int(windows.offset[windows.resource[slot]])
+    while slot > first and windows.rank[slot - 1] > behind:
+        slot -= 1
     return slot
 
 
@@ -272,3 +312,20 @@ def evict(state: State, record: int) -> None:
         while not fits(state, resource, int(records.enter[k]), leave, target, NEVER):
             slot = last_by(windows, resource, int(records.enter[k]))
             withdraw(state, int(state.reserved[windows.robot[slot]]))
+
+
+@compiled
+def give_rank(state: State, robot: int, rank: int) -> None:
+    """Give a robot a rank, in the windows too if its plan is reserved."""
+    state.rank[robot] = rank
+    record = int(state.reserved[robot])
+    if record == NONE:
+        return
+    first = int(state.records.visits_at[record])
+    for k in range(first, first + int(state.records.visits[record])):
+        resource = int(state.records.resource[k])
+        if state.graph.capacity[resource] == 1:
+            stay = last_by(state.windows, resource, int(state.records.enter[k]))
+            while state.windows.robot[stay] != robot:
+                stay -= 1
+            state.windows.rank[stay] = rank

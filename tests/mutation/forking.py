@@ -116,7 +116,7 @@ def check(answers: Sequence[tuple[object, Planner, Solution]]) -> None:
     from tests.optimized import test_replanning, test_reuse, test_same_plans
 
     test_same_plans.test_crowds_are_planned_alike()
-    test_replanning.test_a_query_is_repeated_just_where_the_theorem_says_and_else_finds_the_same()
+    test_replanning.test_a_query_is_repeated_only_where_the_theorem_says_and_else_finds_the_same()
     test_reuse.test_orders_that_begin_alike_share_the_queries_of_their_beginning(4, 64, 96)
     test_reuse.test_without_reuse_every_query_is_asked()
     for kind in KINDS:

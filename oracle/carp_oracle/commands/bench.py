@@ -65,11 +65,23 @@ def show(maps: Sequence[OnMap], grids: Sequence[OnGrid]) -> None:
     print_table(columns, added, numbers=columns)
     if grids:
         click.echo()
-        columns = ["grid", "robots", "query", "add"]
+        columns = ["grid", "robots", "query", "pass", "add"]
         rows_of_grids = [
-            (f"{each.side}^2", each.robots, f"{each.query_us:.1f} us", f"{each.add_us:.0f} us") for each in grids
+            (
+                f"{each.side}^2",
+                each.robots,
+                f"{each.query_us:.1f} us",
+                milliseconds(each.pass_us),
+                milliseconds(each.add_us),
+            )
+            for each in grids
         ]
         print_table(columns, rows_of_grids, numbers=columns)
+
+
+def milliseconds(time_us: float) -> str:
+    """A time for people."""
+    return f"{time_us / 1000:.2f} ms"
 
 
 def row_of(map: int, one: Added) -> tuple[object, ...]:

@@ -1,0 +1,118 @@
+"""How fast the optimised planner is, by pytest-benchmark: `make bench`. No part of the tests."""
+
+import subprocess
+from pathlib import Path
+from statistics import median
+from time import perf_counter_ns
+from typing import Any
+
+import pytest
+
+import carp_reference
+from carp_optimized import passes
+from carp_optimized.arrays import NEVER
+from carp_optimized.fleet import Fleet
+from carp_oracle.bench import PROPOSED, ROBOTS
+from carp_oracle.generate import Fleet as RandomFleet
+from carp_oracle.generate import Grid, grid_instance
+
+HERE = Path(__file__).parent
+ASSIGNMENTS = range(20)
+TIMES = 2_000
+
+
+def fleet_of(seed: int, robots: int = ROBOTS) -> Fleet:
+    """A fleet on map 20 of which all robots but the last are planned."""
+    fleet = Fleet(grid_instance(Grid(map=20), RandomFleet(robots=robots, seed=seed)))
+    fleet.carp(range(robots - 1))
+    return fleet
+
+
+def dump(fleet: Fleet, robots: list[int]) -> str:
+    """The windows and the guides as numbers, for `query.cpp`."""
+    state = fleet._state
+    windows, graph = state.windows, state.graph
+    numbers = [graph.duration.size, graph.target.size, len(robots), TIMES]
+    for offset, size in zip(windows.offset.tolist(), windows.size.tolist(), strict=True):
+        numbers.append(size)
+        for slot in range(offset, offset + size):
+            numbers += [int(windows.start[slot]), int(windows.end[slot]), int(windows.source[slot])]
+    for resource in range(graph.duration.size):
+        targets = graph.target[graph.first[resource] : graph.first[resource + 1]].tolist()
+        numbers += [len(targets), *targets]
+    for robot in robots:
+        passes.shortest(fleet._native, robot)
+        guide = state.guides.table[state.guides.slot[state.robots.destination[robot]]]
+        numbers += [int(state.robots.start[robot]), int(state.robots.release[robot]), int(state.robots.goal[robot])]
+        for each in guide.tolist():
+            numbers += [-1, 0] if each < 0 else [each >> 32, each & (NEVER * 2 + 1)]
+    return " ".join(map(str, numbers))
+
+
+def by_hand(program: Path, fleet: Fleet, robot: int) -> tuple[int, float]:
+    """The arrival by `query.cpp`, and the nanoseconds that it takes."""
+    done = subprocess.run([program], input=dump(fleet, [robot]), capture_output=True, text=True, check=True)
+    arrival, nanoseconds = done.stdout.split()
+    return int(arrival), float(nanoseconds)
+
+
+def ours(fleet: Fleet, robot: int) -> tuple[int, float]:
+    """The same by the optimised planner."""
+    plan = fleet.find(robot, None, 0)
+    fleet.repeat_query(robot, 10)
+    began = perf_counter_ns()
+    fleet.repeat_query(robot, TIMES)
+    return -1 if plan is None else plan.visits[-1].enter, (perf_counter_ns() - began) / TIMES
+
+
+@pytest.fixture(scope="module")
+def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("query") / "query"
+    subprocess.run(["g++", "-O3", "-march=native", "-std=c++17", "-o", path, HERE / "query.cpp"], check=True)  # noqa: S607
+    return path
+
+
+def test_a_query_takes_at_most_1_3_times_what_it_takes_by_hand(program: Path) -> None:
+    hand, own = [], []
+    for seed in ASSIGNMENTS:
+        fleet = fleet_of(seed)
+        (arrival, by_hand_ns), (own_arrival, own_ns) = by_hand(program, fleet, ROBOTS - 1), ours(fleet, ROBOTS - 1)
+        assert arrival == own_arrival
+        hand.append(by_hand_ns)
+        own.append(own_ns)
+    ratio = median(one / other for one, other in zip(own, hand, strict=True))
+    print(f"a query: {median(own):.0f} ns, by hand {median(hand):.0f} ns, ratio {ratio:.2f}")  # noqa: T201
+    assert ratio <= 1.3
+
+
+def test_a_query_is_at_least_a_hundred_times_as_fast_as_the_reference() -> None:
+    ratios = []
+    for seed in ASSIGNMENTS[:5]:
+        fleet = fleet_of(seed)
+        began = perf_counter_ns()
+        carp_reference.query(fleet.instance, fleet.plans, fleet.instance.robots[-1].id)
+        reference_ns = perf_counter_ns() - began
+        ratios.append(reference_ns / ours(fleet, ROBOTS - 1)[1])
+    print(f"the reference takes {median(ratios):.0f} times as long for a query")  # noqa: T201
+    assert median(ratios) >= 100
+
+
+def test_query(benchmark: Any) -> None:  # noqa: ANN401
+    fleet = fleet_of(0)
+    benchmark(lambda: fleet.repeat_query(ROBOTS - 1, 100))
+
+
+def test_pass(benchmark: Any) -> None:  # noqa: ANN401
+    fleet = fleet_of(0)
+    benchmark.pedantic(lambda: fleet.carp(range(ROBOTS)), setup=fleet.clear, rounds=200, warmup_rounds=5)
+
+
+@pytest.mark.parametrize("name", PROPOSED)
+def test_add(benchmark: Any, name: str) -> None:  # noqa: ANN401
+    fleet = fleet_of(0)
+    benchmark.pedantic(
+        lambda: fleet.add(ROBOTS - 1, 0, PROPOSED[name]),
+        setup=lambda: fleet.carp(range(ROBOTS - 1)),
+        rounds=100,
+        warmup_rounds=5,
+    )
