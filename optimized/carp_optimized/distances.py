@@ -117,17 +117,18 @@ def distance_below(state: State, one: int, other: int, best: Mean) -> Mean:
 
 
 @compiled
-def nearest(state: State, work: Work, size: int, count: int, now: int) -> int:
+def nearest(state: State, work: Work, size: int, count: int) -> int:
     """The position in `outside` of the robot least distant from the members, the first of such; `NONE`: none is left.
 
-    A robot whose plan has ended by now is left alone.
+    A robot whose plan had ended by now before any was replanned is left alone.
     """
     best = guess(state, work, size, count, now)
     chosen = NONE
     for position in range(size):
-        own = int(work.trajectories[work.outside[position]])
-        if state.records.leave[own] <= now:
+        robot = int(work.outside[position])
+        if work.ended[robot]:
             continue
+        own = int(work.trajectories[robot])
         for member in range(count):
             mean = distance_below(state, own, int(work.trajectories[work.members[member]]), best)
             if is_less(mean, best):

@@ -55,7 +55,7 @@ def add_robot(  # noqa: C901 - Algorithm 1 from its first line to its last
         best = try_baseline(state, work, size, new, now)
     with_plan = size
     for turn in range(1, rounds + 1):
-        taken = nearest(state, work, size, turn, now)
+        taken = nearest(state, work, size, turn)
         if taken == NONE:
             break
         take_out(state, work, taken, size, turn)
