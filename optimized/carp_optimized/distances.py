@@ -122,7 +122,7 @@ def nearest(state: State, work: Work, size: int, count: int) -> int:
 
     A robot whose plan had ended by now before any was replanned is left alone.
     """
-    best = guess(state, work, size, count, now)
+    best = guess(state, work, size, count)
     chosen = NONE
     for position in range(size):
         robot = int(work.outside[position])
@@ -138,7 +138,7 @@ def nearest(state: State, work: Work, size: int, count: int) -> int:
 
 
 @compiled
-def guess(state: State, work: Work, size: int, count: int, now: int) -> Mean:
+def guess(state: State, work: Work, size: int, count: int) -> Mean:
     """A little more than the distance of a robot that is likely to be near, by its start and its goal.
 
     To begin with that saves most walks. The robot itself is nearer than that, so it is found if no other is.
@@ -147,9 +147,10 @@ def guess(state: State, work: Work, size: int, count: int, now: int) -> Mean:
     likely = NONE
     least = NEVER << 3
     for position in range(size):
-        own = int(work.trajectories[work.outside[position]])
-        if state.records.leave[own] <= now:
+        robot = int(work.outside[position])
+        if work.ended[robot]:
             continue
+        own = int(work.trajectories[robot])
         a = state.records.spots[own]
         for member in range(count):
             b = state.records.spots[int(work.trajectories[work.members[member]])]
