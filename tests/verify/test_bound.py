@@ -23,7 +23,7 @@ from carp_verify.cut_search import prove
 from carp_verify.joint_search import least_total_cost
 from carp_verify.smt import integers, truth, value_of
 from carp_verify.strategies import PlannedInstance, Sizes, instances, planned_instances
-from carp_verify.theorems.prices_bound_the_total import at_most_paid, paid
+from carp_verify.theorems.prices_bound_the_total import at_most_paid, in_exchange, paid
 from carp_verify.verify_bound import Search, Tariff, predecessors, verify_bound
 
 TINY = Sizes(resources=4, robots=3, capacity=2, duration=2, release=2, pace=2)
@@ -220,6 +220,21 @@ def test_a_cut_of_a_robot_without_a_way_is_refused() -> None:
         verify_bound(instance, msgspec.structs.replace(certificate, cuts=(cut,)))
 
 
+def test_stays_too_long_to_be_searched_are_refused_with_the_limit_named() -> None:
+    lane = ResourceGraph((Resource("a", duration=200_000), Resource("b")), (("a", "b"),))
+    with pytest.raises(Refusal, match="must be at most 100000, the limit, and is 200000") as refused:
+        lower_bound(Instance(lane, (Robot("r", "a", "b"),)), steps=3)
+    assert refused.value.rule == "bound/stay"
+
+
+def test_prices_end_early_where_ticks_are_many_and_the_bound_holds_all_the_same() -> None:
+    lane = ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),))
+    robots = (Robot("r", "a", "b", release=10**8), Robot("s", "b", "a", release=10**8))
+    certificate = lower_bound(Instance(lane, robots), steps=30)
+    assert certificate.horizon == 20_000
+    assert verify_bound(Instance(lane, robots), certificate) == certificate.bound >= 2
+
+
 def test_the_same_steps_give_the_same_certificate() -> None:
     assert write(lower_bound(crossing(), steps=30)) == write(lower_bound(crossing(), steps=30))
 
@@ -360,3 +375,20 @@ def test_what_the_verifier_lets_robots_pay_is_what_the_theorem_says() -> None:
         values = {"price": value, "capacity": most, "occupies": enter <= tick < leave}
         assert tariff.stay("r", enter, leave) == value_of(paid(occupies, price), values) or leave <= enter
         assert tariff.worth == value_of(at_most_paid(price, capacity), values)
+
+
+def test_who_pays_for_an_exchange_in_the_verifier_is_who_the_theorem_says() -> None:
+    """Who leaves r for s at the tick, comes from there, or stays in r pays the price once; nobody else does."""
+    counted = in_exchange(*integers("leaving coming staying"))
+    graph = ResourceGraph((Resource("r"), Resource("s"), Resource("q")), (("r", "s"), ("r", "q")))
+    instance = Instance(graph, (Robot("robot", "r", "s"),))
+    certificate = BoundDocument(BOUND_FORMAT, digest(instance), 0, SCALE, HORIZON, (), (("r", "s", 2, 1),), (), ())
+    tariff = Tariff(instance, certificate)
+    for source, target, tick in product("rsq", "rsq", range(4)):
+        values = {"leaving": 0, "coming": 0, "staying": 0}
+        values["leaving"] = int((source, target, tick) == ("r", "s", 2))
+        values["coming"] = int((source, target, tick) == ("s", "r", 2))
+        assert tariff.move(source, target, tick) == value_of(counted, values)
+    for resource, enter, leave in product("rs", range(4), range(5)):
+        staying = int(resource == "r" and enter < 2 < leave)
+        assert tariff.stay(resource, enter, leave) == value_of(counted, {"leaving": 0, "coming": 0, "staying": staying})

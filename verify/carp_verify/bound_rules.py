@@ -6,6 +6,7 @@ from carp_spec import Rule
 from carp_spec.rule import DESIGN, is_whole, rule
 
 LARGEST_TABLE = 20_000_000
+LONGEST_STAY = 100_000
 
 
 @rule("bound/instance", "A certificate of a bound names the SHA-256 digest of its instance's document.", DESIGN)
@@ -81,6 +82,16 @@ def table_fits(entries: int) -> bool:
     return entries <= LARGEST_TABLE
 
 
+@rule(
+    "bound/stay",
+    f"A search for prices goes from tick to tick, and so through no stay that takes more than {LONGEST_STAY} of them.",
+    DESIGN,
+)
+def stay_is_searched(ticks: int) -> bool:
+    """Whether the longest stay that a robot needs is short enough."""
+    return ticks <= LONGEST_STAY
+
+
 BOUND_RULES: tuple[Rule[..., Any], ...] = (
     is_about,
     is_scale,
@@ -90,4 +101,5 @@ BOUND_RULES: tuple[Rule[..., Any], ...] = (
     is_weight,
     is_rounded_up,
     table_fits,
+    stay_is_searched,
 )

@@ -9,7 +9,7 @@ from carp_optimized.arrays import LARGEST, NONE, Graph, Ints, Longs, LongTable
 from carp_optimized.encoding import encode_graph, refuse_tick, refuse_what_is_too_large
 from carp_optimized.references import Native
 from carp_spec import Instance, Refusal, ResourceId, RobotId
-from carp_verify.bound_rules import LARGEST_TABLE, table_fits
+from carp_verify.bound_rules import LARGEST_TABLE, LONGEST_STAY, stay_is_searched, table_fits
 from carp_verify.price_steps import KEPT, LARGEST_GAIN, PARTS, UNIT, turn_all, walk_all
 from carp_verify.priced_ways import (
     Market,
@@ -26,6 +26,7 @@ from carp_verify.priced_ways import (
 TICKS_BEYOND = 32  # of the horizon beyond the last arrival of a robot that nothing delays
 DELAYS = 64
 MOST_NODES = 1 << 21
+LAST_TICK = 20_000  # of prices, so that a step does not take long
 PATIENCE = 35
 
 
@@ -67,13 +68,16 @@ class PriceSearch:
         graph = graph._replace(capacity=np.minimum(graph.capacity, robots).astype(np.int32))
         requests = _requests(instance, scale)
         longest = max((robot.pace for robot in instance.robots), default=1) * int(graph.duration.max(initial=1))
+        if not stay_is_searched(longest):
+            message = f"the pace times the duration must be at most {LONGEST_STAY}, the limit, and is {longest}"
+            raise Refusal("limit", "$.graph", stay_is_searched.id, message)
         market = _market(instance, graph, requests, longest)
         native = Native(market)
         find_rests(native)
         last = max(requests.earliest.tolist(), default=0)
         refuse_tick("$.graph", last)
         rows = resources + graph.target.size
-        self.horizon = min(max(last, 0) + longest + TICKS_BEYOND, LARGEST_TABLE // max(rows, 1))
+        self.horizon = min(max(last, 0) + longest + TICKS_BEYOND, LARGEST_TABLE // max(rows, 1), LAST_TICK)
         wanted = max(DELAYS * longest, self.horizon + longest)
         self.market = _sized(market, self.horizon, max(1, min(wanted, MOST_NODES // max(resources, 1), LARGEST - last)))
         self.native = Native(self.market)

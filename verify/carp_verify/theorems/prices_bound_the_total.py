@@ -1,16 +1,19 @@
 """Weak duality: with prices on resources, cheapest priced plans bound the total cost of all plan sets from below.
 
-Let each pair of a resource and a tick (and each pair of opposite moves at a tick, with capacity 1) have a price of at
-least 0, and let m(i) be the least of cost plus prices over all plans of robot i alone. Then every set of plans that
-keeps the capacities costs at least the sum of all m(i), minus the sum of price times capacity over all pairs.
-For any number of robots and of pairs, by induction: over robots for the two ways of counting what they pay, over
+Let each pair of a resource and a tick have a price of at least 0, and so each exchange of a resource r with another
+one at a tick: that is paid by the robots that make one of the two opposite moves then, and by those that are in r
+before and at the tick, no more of them together than the capacity of r. Let m(i) be the least of cost plus prices over
+all plans of robot i alone. Then every set of plans that keeps the rules costs at least the sum of all m(i), minus the
+sum of price times capacity over all pairs. With a cut, a group of robots whose costs are known to add up to a least
+total, a part of their costs is counted in m(i) and the other part by the cut.
+For any number of robots, pairs and cuts, by induction: over robots for the two ways of counting what they pay, over
 pairs for what is paid at most.
 """
 
 from collections.abc import Iterator, Sequence
 
 from carp_verify.engine import Lemma, Theorem
-from carp_verify.smt import Bool, Int, between, choose, counted, equal, integers, truth
+from carp_verify.smt import Bool, Int, any_of, between, choose, counted, equal, integers, truth
 
 FEW = 5
 
@@ -23,6 +26,18 @@ def paid(occupies: Bool, price: Int) -> Int:
 def at_most_paid(price: Int, capacity: Int) -> Int:
     """What all robots together pay at most for one pair."""
     return price * capacity
+
+
+def in_exchange(leaving: Int, coming: Int, staying: Int) -> Int:
+    """How many robots pay for an exchange of r with s: who moves from r to s, who back, and who stays in r."""
+    return leaving + coming + staying
+
+
+def _exchange() -> Sequence[Bool]:
+    """Numbers of robots that keep the capacity of r just before the tick and at it."""
+    leaving, coming, staying, capacity = integers("leaving coming staying capacity")
+    counts = [leaving >= 0, coming >= 0, staying >= 0]
+    return [*counts, leaving + staying <= capacity, coming + staying <= capacity]
 
 
 def _pair() -> Sequence[Bool]:
@@ -45,6 +60,14 @@ def lemmas() -> Iterator[Lemma]:
     yield Lemma("a robot more pays as much as an occupant more is worth", [equal(payments, price * occupants)], more)
     pair = [*_pair(), price >= 0]
     yield Lemma("for a pair no more is paid than price times capacity", pair, payments <= at_most_paid(price, capacity))
+    leaving, coming, staying = integers("leaving coming staying")
+    one_way = any_of(equal(leaving, 0), equal(coming, 0))
+    few = in_exchange(leaving, coming, staying) <= capacity
+    yield Lemma("an exchange is paid by no more robots than the capacity", [*_exchange(), one_way], few)
+    together, total, multiplier, scale = integers("together total multiplier scale")
+    cut = [together >= total, multiplier >= 0, multiplier <= scale]
+    split = (scale - multiplier) * together + multiplier * total <= scale * together
+    yield Lemma("a cut counts no more than the part of the costs that it stands for", cut, split)
     costs, least, most, cost, own, priced, worth = integers("costs least most cost own priced worth")
     robot = [costs + payments >= least, cost + own >= priced]
     claim = (costs + cost) + (payments + own) >= least + priced
@@ -63,6 +86,13 @@ def mutants() -> Iterator[Lemma]:
     yield Lemma("a price is negative (numbers below 5)", negative, bounded)
     full = [occupants >= 0, equal(payments, price * occupants), *small, between(0, price, FEW)]
     yield Lemma("the capacity is not kept (numbers below 5)", full, bounded)
+    leaving, coming, staying = integers("leaving coming staying")
+    few = in_exchange(leaving, coming, staying) <= capacity
+    yield Lemma("robots make both moves of an exchange", _exchange(), few)
+    together, total, multiplier, scale = integers("together total multiplier scale")
+    cut = [between(0, together, FEW), between(0, total, FEW), together >= total, between(-FEW, multiplier, 0)]
+    split = (scale - multiplier) * together + multiplier * total <= scale * together
+    yield Lemma("a multiplier is negative (numbers below 5)", [*cut, equal(scale, 1)], split)
     costs, least, most = integers("costs least most")
     yield Lemma("the worth of the capacities is added", _sums(), costs >= least + most)
 
