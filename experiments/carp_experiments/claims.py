@@ -174,6 +174,7 @@ def related_claims(summary: Sequence[Related]) -> Iterator[Claim]:
     """The claims about others' work that the paper cites, map by map."""
     by_place = {(each.method, each.map): each for each in summary}
     maps = sorted({each.map for each in summary})
+    is_known = all(each.assignments > 1 for each in summary)
     fewer, cheaper = {}, {}
     for name in FIXED:
         fewer[name] = [by_place["CARP", map].unplanned.high < by_place[name, map].unplanned.low for map in maps]
@@ -185,7 +186,7 @@ def related_claims(summary: Sequence[Related]) -> Iterator[Claim]:
         + ", ".join(f"{name} {sum(each)} of {len(each)}" for name, each in fewer.items())
         + "; on which its total is smaller, of those on which both plan all robots: "
         + ", ".join(f"{name} {sum(each)} of {len(each)}" for name, each in cheaper.items()),
-        verdict_of([all(each) for each in (*fewer.values(), *cheaper.values())]),
+        verdict_of([all(each) for each in (*fewer.values(), *cheaper.values())]) if is_known else "undecided",
     )
     totals = [(by_place["greedy", map].above, by_place["CARP", map].above) for map in maps]
     known = [(greedy, carp) for greedy, carp in totals if greedy is not None and carp is not None]
@@ -193,7 +194,7 @@ def related_claims(summary: Sequence[Related]) -> Iterator[Claim]:
         "greedy best-first has the best joint plan cost of the orders by priority (ter Mors' heuristics)",
         "totals of greedy and of CARP above the sum of shortest paths in per cent, by map: "
         + ", ".join(f"{plain(greedy)} and {plain(carp)}" for greedy, carp in known),
-        verdict_of([greedy.estimate < carp.estimate for greedy, carp in known]),
+        verdict_of([greedy.estimate < carp.estimate for greedy, carp in known]) if is_known else "undecided",
     )
 
 
