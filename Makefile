@@ -14,11 +14,11 @@ install: .venv/installed
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --editable '.[dev]'
 	touch $@
-	$(BIN)/python -m carp_optimized
+	$(BIN)/python -m carp_verify
 
-# Compile the planner to run, if its source has changed: half a minute, in place of some test's or the demo's.
+# Compile what bounds and the planner run, if a source has changed: half a minute, in place of some test's or the demo's.
 compiled: install
-	$(BIN)/python -m carp_optimized
+	$(BIN)/python -m carp_verify
 
 demo: compiled
 	$(BIN)/carproof demo
@@ -74,9 +74,13 @@ conform: install
 	    $(BIN)/carproof conform --level context-optimal --examples 2000 -- .venv/foreign/$$language || exit 1; \
 	done
 
-# Every line and branch of the specification and the reference, by their own tests.
+# Every line and branch of the specification and the reference, by their own tests; then of the compiled planner, run
+# uncompiled, without the tests that start processes of their own or take long that way.
 coverage: install
 	$(BIN)/pytest --cov --cov-fail-under=100 tests/spec tests/reference
+	NUMBA_DISABLE_JIT=1 HYPOTHESIS_PROFILE=mutation $(BIN)/pytest -W ignore::RuntimeWarning \
+	    --cov --cov-config=tests/optimized/coverage.toml tests/optimized \
+	    -k "not paper_sized and not every_small and not compiling and not uncompiled and not bounds and not planted"
 
 # Break the specification and the reference in one place after the other, and list what no test noticed.
 # Works on a copy; `make mutation-carp_spec` for one package. tests/mutation/survivors.md explains what is left.

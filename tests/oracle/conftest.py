@@ -14,12 +14,9 @@ from carp_oracle.cli import main
 @pytest.fixture(scope="session", autouse=True)
 def _compiled() -> None:
     """Compile before the first test, whose output would tell of it."""
-    from carp_optimized.__main__ import compile_all
-    from carp_optimized.compiling import is_cached
-    from carp_optimized.neighbourhood import add_robot
+    from carp_verify.__main__ import compile_all
 
-    if not is_cached(add_robot):
-        compile_all()
+    compile_all()
 
 
 @pytest.fixture

@@ -12,8 +12,9 @@ SERVE = [sys.executable, "-m", "carp_oracle", "serve"]
 
 
 @pytest.mark.usefixtures("elsewhere")
-def test_carproof_conforms_to_its_strictest_level(process: Run) -> None:
-    outcome = process("conform", "--level", "exact", "--examples", "60", "--", *SERVE, "--engine", "reference")
+@pytest.mark.parametrize("engine", [["--engine", "reference"], []])
+def test_carproof_conforms_to_its_strictest_level(process: Run, engine: list[str]) -> None:
+    outcome = process("conform", "--level", "exact", "--examples", "60", "--", *SERVE, *engine)
     assert outcome.code == 0, outcome
     assert outcome.stdout.splitlines()[-1].startswith("CONFORMS: carproof ")
 

@@ -1,0 +1,142 @@
+"""What random instances seldom reach: full arrays, far goals, plans that have ended, too many plans to remember."""
+
+from dataclasses import fields, replace
+from itertools import count
+from math import isqrt
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from tests.optimized.test_same_plans import crowds
+
+import carp_optimized
+import carp_reference
+from carp_optimized import Queries, Reuse, answers, encoding
+from carp_optimized.__main__ import compile_all
+from carp_optimized.arrays import Search
+from carp_optimized.distances import term
+from carp_optimized.fleet import Fleet
+from carp_oracle.generate import Fleet as Robots
+from carp_oracle.generate import Grid, grid_instance
+from carp_spec import (
+    Carp,
+    Greedy,
+    Instance,
+    LongestFirst,
+    Neighbourhood,
+    Plan,
+    Planner,
+    Refusal,
+    Resource,
+    ResourceGraph,
+    Robot,
+    Shuffled,
+    Solution,
+    Visit,
+)
+from carp_spec.permutations import splitmix64
+
+LARGEST = 2**30 - 1
+LINE = ResourceGraph((Resource("a"), Resource("b"), Resource("c")), (("a", "b"), ("b", "c")))
+PLANNERS: tuple[Planner, ...] = (Carp(), LongestFirst(), Greedy(), Shuffled(3), Neighbourhood(m=3))
+
+
+def assert_alike(instance: Instance, planner: Planner) -> None:
+    assert carp_optimized.plan(instance, planner) == carp_reference.plan(instance, planner)
+
+
+@pytest.mark.parametrize("planner", PLANNERS, ids=str)
+def test_nothing_to_plan(planner: Planner) -> None:
+    assert_alike(Instance(ResourceGraph((), ()), ()), planner)
+    assert_alike(Instance(LINE, ()), planner)
+
+
+def test_both_engines_take_as_many_steps() -> None:
+    instance = grid_instance(Grid(3, 3), Robots(4))
+    for planner in PLANNERS:
+        assert carp_optimized.steps(instance, planner) == carp_reference.steps(instance, planner)
+
+
+def test_what_an_installation_calls_runs() -> None:
+    compile_all()
+
+
+def test_every_kind_of_reuse_has_a_count() -> None:
+    queries = Queries(asked=1, kept=2, unchanged=3, prefixes=4, shared=5, bounds=6)
+    assert list(queries.avoided) == [each.name for each in fields(Reuse)]
+
+
+def test_rows_of_windows_grow() -> None:
+    convoy = tuple(Robot(k, "ac"[k % 2], "ca"[k % 2], 9 * k) for k in range(70))
+    for planner in (Carp(), Neighbourhood(m=2)):
+        assert_alike(Instance(LINE, convoy), planner)
+
+
+def test_records_grow(monkeypatch: pytest.MonkeyPatch) -> None:
+    no_records = encoding.no_records
+    monkeypatch.setattr(encoding, "no_records", lambda *_: no_records(4, 16, 16))
+    instance = grid_instance(Grid(4, 4), Robots(9))
+    assert_alike(instance, Neighbourhood(m=3))
+    plans = carp_reference.plan(instance, Carp()).plans
+    fleet = Fleet(instance)
+    fleet.commit(plans)
+    assert fleet.plans == plans
+
+
+@pytest.mark.parametrize("cut", [("keys", "nodes"), ("expanded", "ready")])
+def test_the_scratch_of_a_query_grows(monkeypatch: pytest.MonkeyPatch, cut: tuple[str, str]) -> None:
+    no_search, calls = encoding.no_search, count()
+
+    def search(windows: int, edges: int) -> Search:
+        whole = no_search(windows, edges)
+        if next(calls):
+            return whole
+        return whole._replace(**{name: getattr(whole, name)[:2].copy() for name in cut})
+
+    monkeypatch.setattr(encoding, "no_search", search)
+    assert_alike(grid_instance(Grid(4, 4), Robots(9)), Neighbourhood(m=3))
+
+
+def test_guides_that_do_not_all_fit_are_made_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(encoding, "GUIDE_PLACES", 1)
+    instance = grid_instance(Grid(9, 9), Robots(70, distinct="goals"))
+    for planner in (Carp(), Greedy()):
+        assert_alike(instance, planner)
+
+
+def test_a_goal_that_is_too_far_is_refused() -> None:
+    far = ResourceGraph((Resource("a", duration=LARGEST), Resource("b", duration=LARGEST), Resource("c")), LINE.edges)
+    for planner in PLANNERS:
+        with pytest.raises(Refusal, match="the reference engine has no such limit"):
+            carp_optimized.plan(Instance(far, (Robot("r", "a", "c"),)), planner)
+
+
+def test_robots_whose_plans_have_ended_are_left_alone() -> None:
+    robots = (Robot("r", "a", "b"), Robot("s", "b", "c", 5), Robot("t", "a", "c", 40))
+    instance = Instance(LINE, robots)
+    plans = (
+        Plan("r", (Visit("a", 0, 1), Visit("b", 1, 2))),
+        Plan("s", (Visit("b", 5, 6), Visit("c", 6, 7))),
+    )
+    for now in (0, 2, 6, 7, 40):
+        question = (instance, Solution(plans, ("r", "s"), ("t",)), "t", now, Neighbourhood(m=3))
+        assert carp_optimized.add(*question) == carp_reference.add(*question)
+
+
+@settings(max_examples=min(60, settings().max_examples), suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(crowds())
+def test_what_does_not_fit_into_the_memory_of_a_round_is_forgotten(
+    monkeypatch: pytest.MonkeyPatch, instance: Instance
+) -> None:
+    """It shows where the source runs uncompiled: compiled code has the numbers in it."""
+    monkeypatch.setattr(answers, "PLANS", 3)
+    monkeypatch.setattr(answers, "ANSWERS", 4)
+    room = replace(instance, robots=instance.robots[:6])
+    assert_alike(room, Neighbourhood(m=4, baseline=False))
+
+
+def test_terms_of_distances_are_whole_roots() -> None:
+    stream = splitmix64(1)
+    for _ in range(2000):
+        most = 2 ** (1 + next(stream) % 29)
+        dx, dy = next(stream) % most, next(stream) % most
+        assert term(dx, dy) == isqrt((dx * dx + dy * dy) << 32)
