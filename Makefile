@@ -35,7 +35,7 @@ format: install
 test: lint compiled
 	$(BIN)/pytest --numprocesses 2 --dist worksteal
 
-# How fast the optimised planner is, beside C++ written by hand and the reference; needs g++, takes two minutes.
+# How fast the optimised planner is, beside C++ written by hand and the reference; needs g++.
 bench: install
 	$(BIN)/pytest -o addopts= -o filterwarnings= --import-mode=importlib -q -s tests/bench/bench_speed.py
 

@@ -3,7 +3,7 @@
 import subprocess
 from pathlib import Path
 from statistics import median
-from time import perf_counter_ns
+from time import thread_time_ns
 from typing import Any
 
 import pytest
@@ -18,7 +18,7 @@ from carp_oracle.generate import Grid, grid_instance
 
 HERE = Path(__file__).parent
 ASSIGNMENTS = range(20)
-TIMES = 2_000
+TIMES = 5_000
 
 
 def fleet_of(seed: int, robots: int = ROBOTS) -> Fleet:
@@ -60,9 +60,9 @@ def ours(fleet: Fleet, robot: int) -> tuple[int, float]:
     """The same by the optimised planner."""
     plan = fleet.find(robot, None, 0)
     fleet.repeat_query(robot, 10)
-    began = perf_counter_ns()
+    began = thread_time_ns()
     fleet.repeat_query(robot, TIMES)
-    return -1 if plan is None else plan.visits[-1].enter, (perf_counter_ns() - began) / TIMES
+    return -1 if plan is None else plan.visits[-1].enter, (thread_time_ns() - began) / TIMES
 
 
 @pytest.fixture(scope="module")
@@ -89,9 +89,9 @@ def test_a_query_is_at_least_a_hundred_times_as_fast_as_the_reference() -> None:
     ratios = []
     for seed in ASSIGNMENTS[:5]:
         fleet = fleet_of(seed)
-        began = perf_counter_ns()
+        began = thread_time_ns()
         carp_reference.query(fleet.instance, fleet.plans, fleet.instance.robots[-1].id)
-        reference_ns = perf_counter_ns() - began
+        reference_ns = thread_time_ns() - began
         ratios.append(reference_ns / ours(fleet, ROBOTS - 1)[1])
     print(f"the reference takes {median(ratios):.0f} times as long for a query")  # noqa: T201
     assert median(ratios) >= 100
