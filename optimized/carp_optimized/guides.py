@@ -4,7 +4,7 @@ Where all durations are alike, the resources are reached level by level; otherwi
 """
 
 from carp_optimized.arrays import LARGEST, NONE, TOO_FAR, UNREACHABLE, State
-from carp_optimized.compiling import compiled
+from carp_optimized.compiling import RoomExhausted, compiled
 from carp_optimized.heap import push, replace_root
 
 
@@ -19,14 +19,15 @@ def guide_slot(state: State, destination: int) -> int:
     guides.next[0] = (slot + 1) % guides.holds.size
     if guides.holds[slot] != NONE:
         guides.slot[guides.holds[slot]] = NONE
-    guides.slot[destination] = slot
-    guides.holds[slot] = destination
+    guides.holds[slot] = NONE
     goal = int(guides.goal[destination])
     pace = int(guides.pace[destination])
     if state.last_alike:
         make_level_guide(state, slot, goal, pace * state.longest)
     else:
         make_guide(state, slot, goal, pace)
+    guides.slot[destination] = slot
+    guides.holds[slot] = destination
     return slot
 
 
@@ -37,6 +38,8 @@ def make_level_guide(state: State, slot: int, goal: int, step: int) -> None:
     first = state.search.keys  # by level: the next rank
     queue = state.search.nodes
     guide = state.guides.table[slot]
+    if min(first.size, queue.size) < guide.size:
+        raise RoomExhausted
     for resource in range(guide.size):
         guide[resource] = UNREACHABLE
     guide[goal] = 0
