@@ -392,3 +392,18 @@ def test_who_pays_for_an_exchange_in_the_verifier_is_who_the_theorem_says() -> N
     for resource, enter, leave in product("rs", range(4), range(5)):
         staying = int(resource == "r" and enter < 2 < leave)
         assert tariff.stay(resource, enter, leave) == value_of(counted, {"leaving": 0, "coming": 0, "staying": staying})
+
+
+@pytest.mark.parametrize(
+    ("prices", "least"),
+    [
+        ((("b", 1, 12), ("a", 1, 1)), 2 * SCALE + 1),
+        ((*(("a", tick, 50) for tick in range(1, 6)), *(("b", tick, 50) for tick in range(2, 6))), 6 * SCALE),
+    ],
+    ids=["it waits where waiting has a price", "it passes the place where it parks later"],
+)
+def test_the_cheapest_plan_is_found_where(prices: tuple[tuple[str, int, int], ...], least: int) -> None:
+    lane = ResourceGraph((Resource("a"), Resource("b"), Resource("c")), (("a", "b"), ("b", "c")))
+    instance = Instance(lane, (Robot("robot", "a", "b"),), "park")
+    empty = BoundDocument(BOUND_FORMAT, digest(instance), 0, SCALE, HORIZON, prices, (), (), ())
+    assert completed(instance, empty).robots == (("robot", least),)
