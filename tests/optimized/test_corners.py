@@ -1,6 +1,7 @@
 """What random instances seldom reach: full arrays, far goals, plans that have ended, too many plans to remember."""
 
 from dataclasses import fields, replace
+from itertools import count
 from math import isqrt
 
 import pytest
@@ -11,6 +12,7 @@ import carp_optimized
 import carp_reference
 from carp_optimized import Queries, Reuse, answers, encoding
 from carp_optimized.__main__ import compile_all
+from carp_optimized.arrays import Search
 from carp_optimized.distances import term
 from carp_optimized.fleet import Fleet
 from carp_oracle.generate import Fleet as Robots
@@ -78,6 +80,20 @@ def test_records_grow(monkeypatch: pytest.MonkeyPatch) -> None:
     fleet = Fleet(instance)
     fleet.commit(plans)
     assert fleet.plans == plans
+
+
+@pytest.mark.parametrize("cut", [("keys", "nodes"), ("expanded", "ready")])
+def test_the_scratch_of_a_query_grows(monkeypatch: pytest.MonkeyPatch, cut: tuple[str, str]) -> None:
+    no_search, calls = encoding.no_search, count()
+
+    def search(windows: int, edges: int) -> Search:
+        whole = no_search(windows, edges)
+        if next(calls):
+            return whole
+        return whole._replace(**{name: getattr(whole, name)[:2].copy() for name in cut})
+
+    monkeypatch.setattr(encoding, "no_search", search)
+    assert_alike(grid_instance(Grid(4, 4), Robots(9)), Neighbourhood(m=3))
 
 
 def test_guides_that_do_not_all_fit_are_made_again(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -123,11 +123,11 @@ def test_an_interrupt_ends_with_one_word_and_no_output_file(tmp_path: Path) -> N
     command = [sys.executable, "-m", "carp_oracle"]
     large = subprocess.run([*command, "generate", "grid", "--map", "10"], check=True, capture_output=True).stdout
     (tmp_path / "town.json").write_bytes(large)
-    arguments = ["plan", "town.json", "--m", "6", "-o", "out.json"]
+    arguments = ["plan", "town.json", "--planner", "shuffled", "--attempts", "1000000", "-o", "out.json"]
     with subprocess.Popen(
         [*command, *arguments], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE
     ) as process:
-        time.sleep(1.5)
+        time.sleep(3)
         os.kill(process.pid, signal.SIGINT)
         try:
             output, errors = process.communicate(timeout=20)
