@@ -7,10 +7,11 @@ kind, its pivot, what its candidates need, its members and their order, one afte
 Polishing plans whole instances: robots are planned from their release on, and none is under way.
 """
 
+from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from itertools import islice
+from itertools import accumulate, islice
 from typing import Any, Literal, TypeAlias, TypeVar
 
 from carp_spec.check import judge
@@ -73,12 +74,8 @@ def kind_of(turn: int, waiting: int, delay: int, stream: Iterator[int]) -> Kind 
 )
 def pivot_of(weights: Sequence[int], stream: Iterator[int]) -> int:
     """The robot's place among the weights."""
-    left = next(stream) % sum(weights)
-    for place, weight in enumerate(weights):
-        left -= weight
-        if left < 0:
-            return place
-    raise AssertionError
+    drawn_weight = next(stream) % sum(weights)
+    return bisect_right(list(accumulate(weights)), drawn_weight)
 
 
 @rule(

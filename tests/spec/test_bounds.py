@@ -1,0 +1,20 @@
+"""The document of a lower bound, and the digest that ties it to its instance."""
+
+import json
+from hashlib import sha256
+
+import pytest
+from tests.spec.making import instance_on, line
+
+from carp_spec import Refusal, Robot, write_instance
+from carp_spec.bounds import BOUND_FORMAT, digest, read_bound
+
+
+def test_the_digest_is_that_of_the_document() -> None:
+    instance = instance_on(line("ab"), Robot("r", "a", "b"))
+    assert digest(instance) == sha256(write_instance(instance)).hexdigest()
+
+
+def test_a_document_with_a_field_too_few_is_refused() -> None:
+    with pytest.raises(Refusal, match="instance"):
+        read_bound(json.dumps({"format": BOUND_FORMAT}).encode())
