@@ -15,7 +15,7 @@ Three kinds of reuse, each of which leaves the best order and its plans as they 
 from carp_optimized.answers import answer_of, known_answer, learn, number_plan, start_answers
 from carp_optimized.arrays import BOUND, NEVER, NONE, PREFIX, SHARED, Answers, Options, State, Work
 from carp_optimized.compiling import compiled
-from carp_optimized.orders import next_permutation, next_row, queries_below, take_row
+from carp_optimized.orders import next_permutation, next_row, queries_after, queries_of_rows, take_row
 from carp_optimized.records import cost_of
 from carp_optimized.search import find_plan
 from carp_optimized.windows import reserve, withdraw
@@ -42,6 +42,7 @@ def search_orders(
     while True:
         state.counters[PREFIX] += place
         withdraw_members(state, work, place)
+        cut = int(state.counters[BOUND])
         shared = plan_order(state, work, answers, count, place, limit, rest, now, options)
         if shared > count:
             limit = int(work.cost[count])
@@ -50,10 +51,14 @@ def search_orders(
                 work.found_order[k] = work.members[work.order[k]]
                 work.found_plans[k] = work.chosen[k]
         shared = min(shared, count) if options.prefixes else count
+        is_cut = state.counters[BOUND] > cut
         if rows == 0:
+            state.counters[BOUND] += queries_after(work.order, shared if is_cut else count, count)
             place = next_permutation(work.order, count, shared)
         else:
+            before = row
             row = next_row(work, row + 1, rows, shared)
+            state.counters[BOUND] += queries_of_rows(work, before if is_cut else row, row, count)
             place = take_row(work, row, count) if row < rows else NONE
         if place == NONE:
             break
@@ -102,7 +107,7 @@ def plan_order(
         rest -= int(work.least[work.order[k]])
     while place < count:
         if options.bounds and work.cost[place] + rest >= limit:
-            state.counters[BOUND] += queries_below(count - place)
+            state.counters[BOUND] += count - place
             return place
         member = int(work.order[place])
         answer = known_answer(state, answers, member, int(work.given[place])) if options.shared else NONE
@@ -111,7 +116,7 @@ def plan_order(
             and (options.shared and options.bounds)
             and work.cost[place] + least_rest(state, work, answers, place, count, limit) >= limit
         ):
-            state.counters[BOUND] += queries_below(count - place)
+            state.counters[BOUND] += count - place
             return place
         record = plan_member(state, work, answers, place, answer, now, options.shared)
         if record == NONE:

@@ -169,9 +169,27 @@ def take_row(work: Work, row: int, size: int) -> int:
 
 
 @compiled
-def queries_below(rest: int) -> int:
-    """How many queries the orders of `rest` robots take where beginnings are shared."""
+def queries_after(order: Ints, shared: int, size: int) -> int:
+    """How many queries the orders behind this one take that share its first places, where beginnings are shared."""
+    below = 0
+    for k in range(1, size - shared):
+        below = k * (1 + below)
+    queries = shared - size
+    for k in range(shared, size):
+        if order[k] >= order[shared]:
+            queries += 1 + below
+    return queries
+
+
+@compiled
+def queries_of_rows(work: Work, first: int, end: int, size: int) -> int:
+    """How many queries the rows between two, neither included, take where beginnings are shared."""
     queries = 0
-    for k in range(1, rest + 1):
-        queries = k * (1 + queries)
+    for row in range(first + 1, end):
+        one = work.rows[work.row_index[row - 1]]
+        other = work.rows[work.row_index[row]]
+        place = 0
+        while one[place] == other[place]:
+            place += 1
+        queries += size - place
     return queries

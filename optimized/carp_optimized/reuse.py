@@ -23,7 +23,11 @@ class Reuse:
 
 @dataclass(frozen=True, slots=True)
 class Queries:
-    """How many queries were asked, and how many each kind of reuse avoided."""
+    """How many queries were asked, and how many each kind of reuse avoided.
+
+    `bounds` counts what orders that were cut would have asked, with beginnings shared if `prefixes` is on; of orders
+    drawn, only those drawn. A last neighbourhood that is left out before its orders are drawn is not counted.
+    """
 
     asked: int
     kept: int

@@ -1,13 +1,15 @@
 """Mutants of the compiled planner, run uncompiled, each in a process forked from one that has loaded all but it.
 
 `python -m tests.mutation.forking` lists the mutants that no check notices; with names of modules, of these alone. The
-checks are those of tests/optimized that fit into a second: random small questions, whose answers by the reference are
-known before the first fork, under every choice of what is reused; crowds; and test_replanning.py and test_reuse.py.
-Starting pytest and numba for each mutant would take ten times as long.
+checks are those of tests/optimized that fit into a few seconds: random small questions and fleets to which robots are
+added, whose answers by the reference are known before the first fork; crowds; and test_replanning.py and
+test_reuse.py. Beside a mutant that survives stands how many queries it asks of the fleets, where it asks other ones:
+more cost time alone, fewer want a reason. Starting pytest and numba for each mutant would take ten times as long.
 """
 
 import os
 import resource
+import signal
 import sys
 import warnings
 from collections.abc import Callable, Iterator, Sequence
@@ -20,6 +22,7 @@ from importlib.util import spec_from_loader
 from itertools import product
 from pathlib import Path
 from types import ModuleType
+from typing import NamedTuple
 
 os.environ["NUMBA_DISABLE_JIT"] = "1"  # numba looks when it is loaded
 os.environ["HYPOTHESIS_PROFILE"] = "mutation"
@@ -29,6 +32,7 @@ import tests.conftest  # noqa: F401 - the profile
 from cosmic_ray.commands.init import _all_work_items
 from cosmic_ray.mutating import mutate_code
 from cosmic_ray.plugins import get_operator
+from tests.optimized.arrivals import Arrivals, arrivals
 
 import carp_reference
 from carp_experiments.small_questions import question
@@ -36,10 +40,13 @@ from carp_spec import Instance, Neighbourhood, Planner, Solution
 
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "optimized" / "carp_optimized"
-MODULES = ("replanning", "order_search", "answers", "neighbourhood", "orders", "distances", "passes")
+MODULES = ("replanning", "order_search", "answers", "neighbourhood", "orders", "distances", "passes", "windows")
 LEFT_OUT = ("_BitAnd", "_BitOr", "_BitXor", "_Div", "_FloorDiv", "_LShift", "_Mod", "_Pow", "_RShift", "_Is", "_IsNot")
 QUESTIONS = 400
+FLEETS = 300
 SECONDS = 60
+SECONDS_OF_A_QUESTION = 2
+BYTES = 4 << 30
 KINDS = ("kept", "unchanged", "prefixes", "shared", "bounds")
 CHOICES = list(product((True, False), repeat=len(KINDS)))
 
@@ -86,13 +93,20 @@ def mutants(module: str) -> Iterator[Mutant]:
                 yield Mutant(module, each.operator_name, each.occurrence, each.start_pos[0])
 
 
-def known_answers() -> list[tuple[object, Planner, Solution]]:
+class Known(NamedTuple):
     """Questions that both planners can be asked, with the reference's answers."""
-    answers: list[tuple[object, Planner, Solution]] = []
-    for number in range(QUESTIONS):
-        subject, planner = question(1, number)
-        answers.append((subject, planner, ask(carp_reference.plan, carp_reference.add, subject, planner)))
-    return answers
+
+    questions: list[tuple[object, Planner, Solution]]
+    fleets: list[tuple[Arrivals, Solution]]
+
+
+def known_answers() -> Known:
+    subjects = (question(1, number) for number in range(QUESTIONS))
+    fleets = (arrivals(number) for number in range(FLEETS))
+    return Known(
+        [(*each, ask(carp_reference.plan, carp_reference.add, *each)) for each in subjects],
+        [(each, each.by_reference()) for each in fleets],
+    )
 
 
 def ask(plan: Callable[..., Solution], add: Callable[..., Solution], subject: object, planner: Planner) -> Solution:
@@ -102,17 +116,25 @@ def ask(plan: Callable[..., Solution], add: Callable[..., Solution], subject: ob
     return add(fleet.instance, fleet.solution, fleet.robot, fleet.now, planner)  # type: ignore[attr-defined]
 
 
-def check(answers: Sequence[tuple[object, Planner, Solution]]) -> None:
-    """What a right planner passes; loads the planner first."""
+def check(known: Known) -> int:
+    """What a right planner passes; loads the planner first. How many queries it asks of the fleets."""
     import carp_optimized
     from carp_optimized import Reuse
 
-    for number, (subject, planner, expected) in enumerate(answers):
+    for number, (subject, planner, expected) in enumerate(known.questions):
         choices = {CHOICES[0], CHOICES[number % len(CHOICES)]} if isinstance(planner, Neighbourhood) else {CHOICES[0]}
         for choice in choices:
             reuse = Reuse(*choice)
             plan, add = partial(carp_optimized.plan, reuse=reuse), partial(carp_optimized.add, reuse=reuse)
+            hurry()
             assert ask(plan, add, subject, planner) == expected
+    asked = 0
+    for fleet, expected in known.fleets:
+        hurry()
+        solution, queries = fleet.by_fleet()
+        assert solution == expected
+        asked += queries.asked
+    hurry(SECONDS)
     from tests.optimized import test_replanning, test_reuse, test_same_plans
 
     test_same_plans.test_crowds_are_planned_alike()
@@ -122,43 +144,55 @@ def check(answers: Sequence[tuple[object, Planner, Solution]]) -> None:
     for kind in KINDS:
         test_reuse.test_each_kind_avoids_queries_and_counts_them(kind)
     test_reuse.test_sampled_orders_share_their_beginnings_too()
+    return asked
 
 
-def survives(mutant: Mutant | None, answers: Sequence[tuple[object, Planner, Solution]]) -> bool:
-    """Whether no check notices, in a process of its own, which is ended after so many seconds of processor time."""
+def hurry(seconds: int = SECONDS_OF_A_QUESTION) -> None:
+    """End this process if it takes so many seconds of the processor from now on."""
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+
+
+def asked_by(mutant: Mutant | None, known: Known) -> int | None:
+    """How many queries are asked of the fleets, `None` if a check notices the mutant; in a process of its own."""
+    reader, writer = os.pipe()
     child = os.fork()
     if child:
-        return os.waitpid(child, 0)[1] == 0
-    code = 1
+        os.close(writer)
+        with os.fdopen(reader) as answer:
+            asked = answer.read()
+        os.waitpid(child, 0)
+        return int(asked) if asked else None
     try:
-        resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS + 1))
+        resource.setrlimit(resource.RLIMIT_AS, (BYTES, BYTES))
         sys.stderr = sys.stdout = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 - until the end
-        for name in [name for name in sys.modules if name.startswith(("carp_optimized", "tests.optimized"))]:
+        for name in [name for name in sys.modules if name.startswith(("carp_optimized", "tests.optimized.test_"))]:
             del sys.modules[name]
         if mutant is not None:
             source = mutant.source((FOLDER / f"{mutant.module}.py").read_text(encoding="utf-8"))
             sys.meta_path.insert(0, Changed(f"carp_optimized.{mutant.module}", source or ""))
-        check(answers)
-        code = 0
+        os.write(writer, str(check(known)).encode())
     finally:
-        os._exit(code)
+        os._exit(0)
 
 
 def main(names: Sequence[str]) -> int:
     warnings.simplefilter("ignore")
     np.seterr(all="ignore")
-    answers = known_answers()
-    check(answers)
-    if not survives(None, answers):
+    known = known_answers()
+    check(known)
+    usual = asked_by(None, known)
+    if usual is None:
         sys.exit("the planner fails the checks without any mutation")
     count = survivors = 0
     for module in names or MODULES:
         original = (FOLDER / f"{module}.py").read_text(encoding="utf-8")
         for mutant in mutants(module):
             count += 1
-            if survives(mutant, answers):
+            asked = asked_by(mutant, known)
+            if asked is not None:
                 survivors += 1
-                print(f"{module}:{mutant.line}  {mutant.change(original)}", flush=True)  # noqa: T201 - a report
+                queries = "" if asked == usual else f"  ({asked - usual:+} queries)"
+                print(f"{module}:{mutant.line}  {mutant.change(original)}{queries}", flush=True)  # noqa: T201 - a report
     print(f"{survivors} of {count} mutants survived")  # noqa: T201
     return 0
 

@@ -39,13 +39,13 @@ def test_paper_sized_plans_are_the_same_whatever_is_reused(reuse: Reuse) -> None
     assert whole.answer(plan, add) == whole.answer(carp_optimized.plan, carp_optimized.add)
 
 
-def counted(m: int, reuse: Reuse, sample: int | None = None) -> carp_optimized.Queries:
+def counted(m: int, reuse: Reuse, sample: int | None = None, *, baseline: bool = True) -> carp_optimized.Queries:
     """The queries of adding a robot to nine on a grid with so much room that every query finds a plan."""
-    fleet = Fleet(grid_instance(Grid(8, 8), Robots(COMMITTED + 1, seed=4)), reuse)
+    fleet = Fleet(grid_instance(Grid(8, 8), Robots(COMMITTED + 1, seed=4 if baseline else 7)), reuse)
     fleet.carp(range(COMMITTED))
     before = fleet.queries.asked
     assert before == COMMITTED
-    assert fleet.add(COMMITTED, 0, Neighbourhood(m=m, sample=sample))
+    assert fleet.add(COMMITTED, 0, Neighbourhood(m=m, sample=sample, baseline=baseline))
     queries = fleet.queries
     return replace(queries, asked=queries.asked - before)
 
@@ -93,3 +93,14 @@ def test_more_reuse_never_asks_more() -> None:
 def test_sampled_orders_share_their_beginnings_too() -> None:
     without, with_it = counted(5, ALL_OFF, 60), counted(5, replace(ALL_OFF, prefixes=True), 60)
     assert without.asked - with_it.asked == with_it.prefixes > 0
+
+
+@pytest.mark.parametrize("sample", [None, 60])
+@pytest.mark.parametrize("prefixes", [False, True])
+def test_bounds_count_the_queries_that_would_have_been_asked(sample: int | None, prefixes: bool) -> None:
+    """On a grid where the last neighbourhood is not left out whole."""
+    without = counted(5, replace(ALL_OFF, prefixes=prefixes), sample, baseline=False)
+    with_it = counted(5, replace(ALL_OFF, prefixes=prefixes, bounds=True), sample, baseline=False)
+    alone = sum(range(2, 5 + 1))
+    assert with_it.bounds > 0
+    assert with_it.asked - alone + with_it.bounds == without.asked
