@@ -1,4 +1,7 @@
-"""Small maps against the proved optimum: how far from it each algorithm is, over the density of the map."""
+"""Small maps against the proved optimum: how far from it each algorithm is, over the density of the map.
+
+Also what a polish of Proposed_4 leaves, and how far below the optimum the lower bound of `carp_verify.bound` is.
+"""
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
@@ -11,7 +14,7 @@ from carp_experiments.quality_report import MAP_AXIS, SHOWN_MAPS
 from carp_experiments.report import Figure, Report, Table
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import Row
-from carp_spec import Greedy, Planner
+from carp_spec import Greedy, Planner, total_cost
 
 SIDE = 8
 LIMIT_IN_SECONDS = 60
@@ -19,6 +22,12 @@ COMPARED: Mapping[str, Planner] = {
     **{name: planner for name, planner in ALGORITHMS.items() if name != "Proposed_4 + CARP100"},
     "greedy": Greedy(),
 }
+GIVEN = "Proposed_4"
+POLISHED = f"{GIVEN} + polish"
+BOUND = "lower bound"
+TOLD = (*COMPARED, POLISHED, BOUND)
+ROUNDS = 2_000
+STEPS = 1_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,9 +48,11 @@ class GapCase:
 
         Only a search that comes near its minute can end otherwise on another machine.
         """
-        from carp_optimized.fleet import Fleet  # noqa: PLC0415 - each worker loads it
+        import carp_optimized as engine  # noqa: PLC0415 - each worker loads it
+        from carp_optimized.fleet import Fleet  # noqa: PLC0415
         from carp_oracle.generate import Fleet as RandomFleet  # noqa: PLC0415
         from carp_oracle.generate import Grid, grid_instance  # noqa: PLC0415
+        from carp_verify.bound import lower_bound  # noqa: PLC0415
         from carp_verify.optimum import optimum  # noqa: PLC0415
 
         grid = Grid(SIDE, SIDE, self.map, map_seed=self.assignment)
@@ -54,11 +65,15 @@ class GapCase:
             else:
                 plan_all(fleet, seeded(planner, self.assignment))
             results[name] = outcome(fleet)
+        solution = engine.plan(instance, seeded(COMPARED[GIVEN], self.assignment))
+        polished = engine.polish(instance, solution, iterations=ROUNDS, seed=self.assignment)
+        results[POLISHED] = len(polished.plans), total_cost(instance, polished.plans)
         best = optimum(instance, LIMIT_IN_SECONDS)
         return {
             "map": self.map,
             "assignment": self.assignment,
             "shortest": best.shortest,
+            "bound": lower_bound(instance, steps=STEPS).bound,
             "optimum": best.cost if best.proved else None,
             "decided": best.proved,
             "results": results,
@@ -89,6 +104,7 @@ class GapRow(msgspec.Struct, frozen=True):
 
     map: int
     shortest: int | None
+    bound: int
     optimum: int | None
     decided: bool
     results: dict[str, tuple[int, int]]
@@ -100,16 +116,20 @@ def gap_report(rows: Iterable[Row], robots: int) -> Report:
     for row in rows:
         measured = msgspec.convert(row, GapRow)
         by_map[measured.map].append(measured)
-    summary = tuple(gap_of(map, name, each, robots) for map, each in sorted(by_map.items()) for name in COMPARED)
-    lines = {name: [(each.map, each.gap) for each in summary if each.algorithm == name] for name in COMPARED}
+    summary = tuple(gap_of(map, name, each, robots) for map, each in sorted(by_map.items()) for name in TOLD)
+    lines = {name: [(each.map, each.gap) for each in summary if each.algorithm == name] for name in TOLD}
     title = f"Above the proved optimum, {robots} robots on {SIDE} x {SIDE} maps"
     figure = Figure("gap", title, (MAP_AXIS, "per cent above the optimum"), lines)
     return Report(summary, (gap_table(summary, by_map, title),), (figure,))
 
 
 def gap_of(map: int, name: str, rows: Sequence[GapRow], robots: int) -> GapOf:
-    """An algorithm on the maps of one density."""
-    reached = [(*row.results[name], row.optimum) for row in rows if row.optimum is not None]
+    """An algorithm, or the bound, on the maps of one density."""
+    reached = [
+        (*((robots, row.bound) if name == BOUND else row.results[name]), row.optimum)
+        for row in rows
+        if row.optimum is not None
+    ]
     gaps = [100 * (total - best) / best for planned, total, best in reached if planned == robots and best]
     failures = sum(planned < robots for planned, _, _ in reached)
     return GapOf(map, name, len(reached), failures, mean_interval(gaps) if gaps else None)
@@ -121,7 +141,7 @@ def gap_table(summary: Sequence[GapOf], by_map: Mapping[int, Sequence[GapRow]], 
     by_place = {(each.algorithm, each.map): each for each in summary}
     columns = ("algorithm", *(f"map {map}" for map in maps))
     decided = ("optimum known", *(f"{by_place['CARP', map].solvable}/{len(by_map[map])}" for map in maps))
-    rows = [(name, *(_cell(by_place[name, map]) for map in maps)) for name in COMPARED]
+    rows = [(name, *(_cell(by_place[name, map]) for map in maps)) for name in TOLD]
     title = f"{title}: in per cent, means with 95 % intervals"
     return Table("gap", title, columns, (decided, *rows), columns[1:])
 

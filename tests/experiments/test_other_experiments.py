@@ -3,6 +3,7 @@
 import msgspec
 import pytest
 
+import carp_optimized
 import carp_reference
 from carp_experiments import polishing
 from carp_experiments.adding_time import PAPER, TimeCase, time_report
@@ -10,9 +11,9 @@ from carp_experiments.experiments import EXPERIMENTS, Experiment, Profile
 from carp_experiments.quality import grid_fleet
 from carp_experiments.related_work import METHODS, RelatedCase, related_report
 from carp_experiments.reuse_counts import ReuseCase, reuse_report
-from carp_experiments.small_gaps import COMPARED, GapCase, gap_report
+from carp_experiments.small_gaps import COMPARED, POLISHED, GapCase, GapRow, gap_report
 from carp_experiments.store import digest_of
-from carp_spec import FixedPaths, total_cost
+from carp_spec import Carp, FixedPaths, total_cost
 
 
 def test_times_are_measured_and_do_not_count_in_the_digest() -> None:
@@ -46,16 +47,22 @@ def test_a_gap_is_measured_from_the_optimum() -> None:
     assert row["decided"]
     results = row["results"]
     assert isinstance(results, dict)
-    assert list(results) == list(COMPARED)
+    assert list(results) == [*COMPARED, POLISHED]
     assert all(total >= row["optimum"] for planned, total in results.values() if planned == 5)
-    best = {"map": 3, "assignment": 1, "shortest": 8, "optimum": 10, "decided": True}
-    reached = {**dict.fromkeys(COMPARED, (5, 10)), "CARP": (5, 12), "LF": (4, 3)}
+    told = msgspec.convert(row, GapRow)
+    assert told.shortest is not None
+    assert told.optimum is not None
+    assert told.shortest <= told.bound <= told.optimum
+    assert results[POLISHED][1] <= results["Proposed_4"][1]
+    best = {"map": 3, "assignment": 1, "shortest": 8, "bound": 9, "optimum": 10, "decided": True}
+    reached = {**dict.fromkeys((*COMPARED, POLISHED), (5, 10)), "CARP": (5, 12), "LF": (4, 3)}
     unsolvable = {**best, "optimum": None, "results": reached}
     table = gap_report([{**best, "results": reached}, unsolvable], 5).tables[0]
     cells = {line[0]: line[1] for line in table.rows}
     assert cells["optimum known"] == "1/2"
     assert cells["CARP"] == "20.00 ± 0.00"
     assert cells["LF"] == "- (1 failed)"
+    assert cells["lower bound"] == "-10.00 ± 0.00"
 
 
 def test_related_methods_are_those_of_the_reference() -> None:
@@ -75,21 +82,66 @@ def test_related_methods_are_those_of_the_reference() -> None:
 
 
 def test_polished_plans_lie_between_the_bound_and_the_planner(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(polishing, "ROUNDS", 200)
+    monkeypatch.setattr(
+        polishing, "POLISHED", {"Proposed_4": {"polish": 100, "long polish": 300}, "Proposed_10": {"polish": 100}}
+    )
     monkeypatch.setattr(polishing, "STEPS", 20)
     row = polishing.PolishCase(12, 0, robots=10).run()
     told = msgspec.convert(row, polishing.PolishRow)
-    polished, planned = told.results["Proposed_4 + polish"][1], told.results["Proposed_4"][1]
-    assert told.shortest <= told.bound <= polished <= planned
+    planned, polished, longer = (told.results[name][1] for name in polishing.METHODS[:3])
+    assert told.shortest <= told.bound <= longer <= polished <= planned
+    assert row["left"] == {"Proposed_4": (), "Proposed_10": ()}
+    again = dict(polishing.PolishCase(12, 0, robots=10).run())
+    assert digest_of(row) == digest_of(again)
+
+
+def test_what_a_polish_reaches_on_its_way_is_what_a_shorter_one_reaches() -> None:
+    instance = grid_fleet(3, 0, 20, 1).instance
+    solution = carp_optimized.plan(instance, Carp())
+    lengths = [50, 100, 400]
+    _, (before, *after) = polishing.polish_to(instance, solution, lengths, 9)
+    assert before == polishing.reached(instance, solution)
+    assert after == [
+        polishing.reached(instance, carp_optimized.polish(instance, solution, iterations=length, seed=9))
+        for length in lengths
+    ]
+    assert after[0] != after[-1]
+
+
+def test_a_polish_with_nothing_to_do_reaches_what_was_there() -> None:
+    instance = grid_fleet(20, 0, 1, 1).instance
+    solution = carp_optimized.plan(instance, Carp())
+    assert len(set(polishing.polish_to(instance, solution, [50, 100], 9)[1])) == 1
 
 
 def test_polish_is_summed_up_over_the_assignments_that_do_not_fail() -> None:
-    reached = {**dict.fromkeys(polishing.METHODS, (5, 110)), "Proposed_10 + polish": (5, 100)}
+    reached = {**dict.fromkeys(polishing.METHODS, (5, 110)), polishing.LONGEST: (5, 100)}
     failed = {**reached, "Proposed_4": (3, 40)}
-    rows = [{"map": 7, "shortest": 90, "bound": 100, "results": results} for results in (reached, failed)]
-    gaps, failures = polishing.polish_report(rows, 5).tables
-    assert gaps.rows == (("7", "90", "100", *["110: 10.00 ± 0.00"] * 3, "100: 0.00 ± 0.00", "2/2", "2/2"),)
-    assert failures.rows == (("7", "1/2 (1.00)", *["0/2 (0.00)"] * 3),)
+    measured = {"bound": 2_000_000_000, "Proposed_4": 500_000_000}
+    rows = [
+        {"map": 7, "shortest": 80, "bound": 100, "results": results, "measured": measured}
+        for results in (reached, failed)
+    ]
+    gaps, bounds, failures = polishing.polish_report(rows, 5).tables
+    assert gaps.rows == (("7", *["110: 10.00 ± 0.00"] * 2, "100: 0.00 ± 0.00", *["110: 10.00 ± 0.00"] * 2),)
+    assert bounds.rows == (("7", "80", "100", "25.00 ± 0.00", "2/2", "2/2", "2.0", "0.5"),)
+    assert failures.rows == (("7", "1/2 (1.00)", *["0/2 (0.00)"] * 4),)
+
+
+def test_a_method_that_fails_everywhere_has_no_gap() -> None:
+    rows = [
+        {
+            "map": 0,
+            "shortest": 80,
+            "bound": 100,
+            "results": dict.fromkeys(polishing.METHODS, (4, 90)),
+            "measured": {"bound": 1, "Proposed_4": 1},
+        }
+    ]
+    gaps, bounds, failures = polishing.polish_report(rows, 5).tables
+    assert set(gaps.rows[0][1:]) == {"all failed"}
+    assert bounds.rows[0][4:6] == ("0/0", "0/0")
+    assert set(failures.rows[0][1:]) == {"1/1 (1.00)"}
 
 
 @pytest.mark.parametrize("experiment", EXPERIMENTS, ids=lambda experiment: experiment.name)
