@@ -11,7 +11,7 @@ import pytest
 
 import carp_reference
 from carp_oracle.conform.answers import OptimumAnswer, QueryAnswer, Reply
-from carp_oracle.conform.cases import OPS, Case, request_fields
+from carp_oracle.conform.cases import OPS, POLISH_ROUNDS, Case, request_fields
 from carp_oracle.conform.levels import Level
 from carp_oracle.conform.run import Options, Report, conform
 from carp_oracle.conform.saving import save
@@ -28,13 +28,10 @@ Tamper = Callable[[Case, Reply], Reply]
 
 def right_reply(case: Case) -> Reply:
     instance, solution = case.instance, case.solution
-    if case.op == "check":
-        return verdict_document(judge(instance, solution))
-    if case.op == "optimum":
-        best = optimum(instance, 5)
-        return OptimumAnswer(best.cost, best.lower, best.proved, best.solution)
-    if case.op == "bound":
-        return lower_bound(instance, steps=20)
+    if case.op in ("check", "optimum", "bound"):
+        return right_proof(case)
+    if case.op == "polish":
+        return carp_reference.polish(instance, solution, iterations=POLISH_ROUNDS)
     if case.op == "plan":
         assert case.planner is not None
         return carp_reference.plan(instance, case.planner)
@@ -42,6 +39,15 @@ def right_reply(case: Case) -> Reply:
     if case.op == "query":
         return QueryAnswer(carp_reference.query(instance, solution.plans, case.robot, case.now))
     return carp_reference.add(instance, solution, case.robot, case.now, case.options)
+
+
+def right_proof(case: Case) -> Reply:
+    if case.op == "check":
+        return verdict_document(judge(case.instance, case.solution))
+    if case.op == "bound":
+        return lower_bound(case.instance, steps=20)
+    best = optimum(case.instance, 5)
+    return OptimumAnswer(best.cost, best.lower, best.proved, best.solution)
 
 
 class Tampered:
@@ -121,6 +127,42 @@ def reverses_order(case: Case, reply: Reply) -> Reply:
     return replace(reply, order=reply.order[::-1])
 
 
+def polishes_into_each_other(case: Case, reply: Reply) -> Reply:
+    """Every robot goes as if it were alone."""
+    del reply
+    alone = [carp_reference.query(case.instance, (), robot) for robot in case.instance.robot]
+    plans = tuple(plan for plan in alone if plan is not None)
+    planned = tuple(plan.robot for plan in plans)
+    return Solution(plans, planned, tuple(robot for robot in case.instance.robot if robot not in planned))
+
+
+def polishes_to_more(case: Case, reply: Reply) -> Reply:
+    """The robot that was planned last gets there a tick later, if that breaks no rule."""
+    del reply
+    given = case.solution
+    if not given.plans:
+        return given
+    slower = replace(given, plans=(*given.plans[:-1], later(given.plans[-1])))
+    return slower if judge(case.instance, slower).valid else given
+
+
+def polishes_by_dropping_the_longest(case: Case, reply: Reply) -> Reply:
+    """The total falls, as fewer robots are in it."""
+    del reply
+    given = case.solution
+    if not given.plans:
+        return given
+    longest = max(given.plans, key=lambda plan: plan.visits[-1].enter)
+    kept = tuple(plan for plan in given.plans if plan is not longest)
+    order = tuple(robot for robot in given.order if robot != longest.robot)
+    return Solution(kept, order, (*given.unplanned, longest.robot))
+
+
+def polishes_nothing(case: Case, reply: Reply) -> Reply:
+    del reply
+    return case.solution
+
+
 def optimum_too_high(case: Case, reply: Reply) -> Reply:
     assert isinstance(reply, OptimumAnswer)
     solution = carp_reference.plan(case.instance, Carp())
@@ -166,6 +208,11 @@ def test_right_answers_conform_to_every_level(level: Level) -> None:
         (optimum_too_high, "optimum", Level.OPTIMAL, {"program/optimal"}),
         (optimum_without_plans, "optimum", Level.OPTIMAL, {"cost/total"}),
         (bound_too_high, "bound", Level.SOUND, {"bound/total"}),
+        (polishes_into_each_other, "polish", Level.SOUND, {"joint/capacity", "joint/exchange"}),
+        (polishes_to_more, "polish", Level.SOUND, {"polish/kept"}),
+        (polishes_by_dropping_the_longest, "polish", Level.SOUND, {"polish/kept"}),
+        (drops_others, "polish", Level.SOUND, {"polish/kept"}),
+        (polishes_nothing, "polish", Level.EXACT, {"query/ties"}),
     ],
 )
 def test_one_wrong_thing_is_refused_by_its_rule(tamper: Tamper, op: str, level: Level, rules: set[str]) -> None:
@@ -180,6 +227,10 @@ def test_one_wrong_thing_is_refused_by_its_rule(tamper: Tamper, op: str, level: 
 def test_a_level_does_not_ask_what_a_higher_one_asks(tamper: Tamper, level: Level) -> None:
     findings = [finding.rule for finding in run(tamper, level, ("query",)).findings]
     assert not [rule for rule in findings if rule.startswith("query/")]
+
+
+def test_polished_plans_need_not_be_better_below_the_exact_level() -> None:
+    assert run(polishes_nothing, Level.SOUND, ("polish",)).conforms
 
 
 def test_who_offers_only_check_is_sound_and_no_more() -> None:
@@ -205,7 +256,7 @@ def test_an_interruption_keeps_what_was_found() -> None:
 
 def test_a_program_that_is_wrong_only_now_and_then_is_refused_all_the_same() -> None:
     subject = Tampered(as_it_is)
-    subject.tamper = lambda case, reply: no_plan(case, reply) if subject.asked["query"] % 61 == 0 else reply
+    subject.tamper = lambda case, reply: no_plan(case, reply) if subject.asked["query"] % 29 == 0 else reply
     report = conform(subject, Options(Level.COMPLETE, examples=200, shrink_seconds=1))
     assert report.conforms is False
 

@@ -6,11 +6,13 @@ from typing import Any, Literal, TypeAlias, get_args
 from carp_spec import Instance, Neighbourhood, Planner, RobotId, Solution
 from carp_spec.documents import instance_document, solution_document
 
-Op: TypeAlias = Literal["check", "query", "plan", "add", "optimum", "bound"]
+Op: TypeAlias = Literal["check", "query", "plan", "add", "polish", "optimum", "bound"]
 OPS: tuple[Op, ...] = get_args(Op)
+WITH_SOLUTION: tuple[Op, ...] = ("check", "query", "add", "polish")
 Stage: TypeAlias = Literal["smoke", "vectors", "random"]
 OPTIMUM_SECONDS = 3
 BOUND_STEPS = 100
+POLISH_ROUNDS = 30
 NO_PLANS = Solution((), ())
 
 
@@ -18,9 +20,10 @@ NO_PLANS = Solution((), ())
 class Case:
     """A question: an op of the protocol with its fields.
 
-    `check` needs the solution, `query` and `add` the solution, the robot and the tick `now`. A planner of `None`
-    for `plan` leaves the choice to the program: that is what programs are asked that only plan whole instances.
-    A `classical` one is answered in a format of classical planners, which does not tell the order of the plans.
+    `check` and `polish` need the solution, `query` and `add` the solution, the robot and the tick `now`. A planner of
+    `None` for `plan` leaves the choice to the program: that is what programs are asked that only plan whole
+    instances. A `classical` one is answered in a format of classical planners, which does not tell the order of the
+    plans.
     """
 
     stage: Stage
@@ -48,20 +51,21 @@ class Case:
 
 def case_input(case: Case) -> dict[str, Any]:
     """The fields of the request besides the op and the instance."""
-    solution = {"solution": solution_document(case.solution)}
+    fields: dict[str, Any] = {"solution": solution_document(case.solution)} if case.op in WITH_SOLUTION else {}
     match case.op:
-        case "check":
-            return solution
         case "query":
-            return {**solution, "robot": case.robot, "now": case.now}
+            fields |= {"robot": case.robot, "now": case.now}
         case "add":
-            return {**solution, "robot": case.robot, "now": case.now, **asdict(case.options)}
-        case "plan":
-            return {} if case.planner is None else {"planner": case.planner.name, **asdict(case.planner)}
+            fields |= {"robot": case.robot, "now": case.now, **asdict(case.options)}
+        case "polish":
+            fields |= {"iterations": POLISH_ROUNDS}
+        case "plan" if case.planner is not None:
+            fields |= {"planner": case.planner.name, **asdict(case.planner)}
         case "optimum":
-            return {"limit": OPTIMUM_SECONDS}
+            fields |= {"limit": OPTIMUM_SECONDS}
         case "bound":
-            return {"steps": BOUND_STEPS}
+            fields |= {"steps": BOUND_STEPS}
+    return fields
 
 
 def request_fields(case: Case) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 from carp_oracle.conform.answers import Answer, OptimumAnswer, QueryAnswer
-from carp_oracle.conform.cases import Case
+from carp_oracle.conform.cases import POLISH_ROUNDS, Case
 from carp_oracle.conform.findings import Finding, wrong
 from carp_oracle.conform.levels import Level
 from carp_oracle.conform.optimum import bound_findings, complete_findings, optimum_findings, plan_cost_findings
@@ -23,6 +23,7 @@ from carp_spec import (
 )
 from carp_spec.bounds import BoundDocument
 from carp_spec.documents import VerdictDocument, verdict_document
+from carp_spec.polish_rules import is_kept
 from carp_spec.rule import interval
 
 
@@ -43,6 +44,8 @@ def _findings(case: Case, answer: Answer, level: Level) -> Iterator[Finding]:
             yield from bound_findings(case.instance, answer, level)
         case Solution() if case.op == "add":
             yield from _add_findings(case, answer, level)
+        case Solution() if case.op == "polish":
+            yield from _polish_findings(case, answer, level)
         case Solution():
             yield from _plan_findings(case, answer, level)
 
@@ -163,6 +166,23 @@ def _against_keeping(case: Case, after: Solution) -> Iterator[Finding]:
     least, cost = total_cost(case.instance, (*kept, one_more)), total_cost(case.instance, after.plans)
     if cost > least:
         yield wrong("neighbourhood/baseline", f"the total cost is {cost}, and {least} if all plans are kept")
+
+
+def _polish_findings(case: Case, after: Solution, level: Level) -> Iterator[Finding]:
+    """A polished solution breaks no rule, leaves no more robots unplanned, and if as many, has no larger total."""
+    for violation in judge(case.instance, after).violations:
+        yield wrong(violation.rule, violation.message)
+    (missing, total), (missing_before, total_before) = (_worth(case, each.plans) for each in (after, case.solution))
+    if not is_kept((missing_before, total_before), (missing, total)):
+        worse = f"{missing} robots are unplanned with a total of {total}"
+        yield wrong(is_kept.id, f"{worse}, and {missing_before} with {total_before} were in the solution to polish")
+    if level >= Level.EXACT:
+        expected = engine_named("reference").polish(case.instance, case.solution, iterations=POLISH_ROUNDS)
+        yield from _same_solution(after, expected, "polish")
+
+
+def _worth(case: Case, plans: Sequence[Plan]) -> tuple[int, int]:
+    return len(case.instance.robots) - len(plans), total_cost(case.instance, plans)
 
 
 def _check_findings(case: Case, verdict: VerdictDocument, level: Level) -> Iterator[Finding]:

@@ -34,10 +34,10 @@ CLASSICAL_LEVELS = (Level.SOUND, Level.COMPLETE, Level.OPTIMAL)
 """The levels of planners whose answers do not tell in which order the plans were made."""
 LEVELS = {level.label: level for level in Level}
 JUDGED_OPS = {
-    Level.SOUND: ("check", "query", "plan", "add", "optimum", "bound"),
+    Level.SOUND: ("check", "query", "plan", "add", "polish", "optimum", "bound"),
     Level.COMPLETE: ("query", "plan", "add", "optimum"),
     Level.CONTEXT_OPTIMAL: ("query", "plan"),
     Level.OPTIMAL: ("optimum",),
-    Level.EXACT: ("query", "plan", "add"),
+    Level.EXACT: ("query", "plan", "add", "polish"),
 }
 """The ops by which a level is shown: a program that answers none of them has not reached it."""

@@ -112,6 +112,16 @@ def _additions(draw: st.DrawFn) -> Case:
 
 
 @st.composite
+def _polishes(draw: st.DrawFn) -> Case:
+    """Plans of some or all robots, most of them slower than they must be."""
+    instance = draw(_instances())
+    plans = draw(committed_plans(instance, SIZES))
+    order = tuple(plan.robot for plan in plans)
+    solution = Solution(plans, order, tuple(each for each in instance.robot if each not in order))
+    return Case("random", "polish", "polish", instance, solution)
+
+
+@st.composite
 def _checks(draw: st.DrawFn) -> Case:
     if draw(st.booleans()):
         broken = draw(broken_solutions(SIZES))
@@ -126,6 +136,7 @@ def random_cases(ops: Sequence[str], level: Level, whole: bool) -> st.SearchStra
         return _plans([None])
     planners = EXACT_PLANNERS if level >= Level.EXACT else (Carp(),)
     by_op = {"query": _queries(), "plan": _plans(planners), "add": _additions(), "check": _checks()}
+    by_op["polish"] = _polishes()
     by_op["bound"] = instances(OPTIMUM_SIZES).map(lambda instance: Case("random", "bound", "bound", instance))
     if level >= Level.OPTIMAL:
         small = st.one_of(instances(OPTIMUM_SIZES), _busy_instances(), _busy_instances())

@@ -8,7 +8,7 @@ import click
 import msgspec
 
 from carp_oracle.conform.answers import Answer, OptimumAnswer, QueryAnswer
-from carp_oracle.conform.cases import Case, case_input, request_fields
+from carp_oracle.conform.cases import POLISH_ROUNDS, Case, case_input, request_fields
 from carp_oracle.conform.drawing import drawing
 from carp_oracle.conform.outcome import Outcome
 from carp_oracle.files import write_whole
@@ -135,5 +135,7 @@ def right_answer(case: Case) -> dict[str, Any]:
         solution = engine.plan(case.instance, case.planner or Carp())
     if case.op == "add" and case.robot is not None:
         solution = engine.add(case.instance, solution, case.robot, case.now, case.options)
+    if case.op == "polish":
+        solution = engine.polish(case.instance, solution, iterations=POLISH_ROUNDS)
     verdict = judge(case.instance, solution)
     return {"cost": verdict.cost, "unplanned": verdict.unplanned}

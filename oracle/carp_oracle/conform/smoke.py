@@ -157,12 +157,32 @@ def _additions() -> Iterator[Case]:
         yield Case("smoke", f"add at {now}", "add", instance, before, "new", now, Neighbourhood())
 
 
+def _polishes() -> Iterator[Case]:
+    """Plans that can be better, plans to keep, and robots to plan."""
+    waits = [("a", 0, 4), ("b", 4, 5), ("c", 5, 6), ("d", 6, 7)]
+    slowly = [("d", 0, 4), ("c", 4, 5), ("b", 5, 6), ("a", 6, 7)]
+    alone = row([FIRST])
+    meeting = passing_place([FIRST, WEST])
+    blocked = row([FIRST, WEST])
+    plans = {
+        "waits for nothing": (alone, committed(alone, first=waits)),
+        "as good as can be": (alone, committed(alone, first=FIRST_GOES)),
+        "one has no plan": (meeting, committed(meeting, first=FIRST_GOES)),
+        "nobody has a plan": (meeting, committed(meeting)),
+        "the slow one has a plan": (meeting, committed(meeting, new=slowly)),
+        "not all can have plans": (blocked, committed(blocked, first=waits)),
+        "nobody": (row([]), committed(row([]))),
+    }
+    for name, (instance, solution) in plans.items():
+        yield Case("smoke", f"polish: {name}", "polish", instance, solution)
+
+
 def smoke_cases(ops: Sequence[str], level: Level, whole: bool) -> Iterator[Case]:
     """The smoke cases; `whole`: of a program that plans whole instances by a planner of its own."""
     if whole:
         yield from _whole(None)
         return
-    each = (*_alone(), *_with_others(), *_under_way(), *_whole(Carp()), *_checks(), *_additions())
+    each = (*_alone(), *_with_others(), *_under_way(), *_whole(Carp()), *_checks(), *_additions(), *_polishes())
     yield from (case for case in each if case.op in ops)
     if "optimum" in ops and level >= Level.OPTIMAL:
         yield from (Case("smoke", f"optimum: {case.name[6:]}", "optimum", case.instance) for case in _whole(None))
