@@ -5,6 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import carp_optimized
+import carp_optimized.fleet
 import carp_reference
 from carp_oracle.generate import Fleet, Grid, Range, Traits, grid_instance
 from carp_spec import Carp, Instance, Refusal, Solution, judge, total_cost
@@ -61,6 +62,26 @@ def test_both_engines_polish_crowded_grids_alike(grid: Grid, fleet: Fleet, trait
     polished = both(instance, given, 120, 7)
     assert judge(instance, polished).valid
     assert worth(instance, polished) < worth(instance, given)
+
+
+@pytest.mark.parametrize(
+    ("grid", "fleet", "rounds"),
+    [(Grid(7, 7, map=0), Fleet(robots=12, seed=4), 400), (Grid(8, 8, map=12), Fleet(robots=24, seed=4), 400)],
+    ids=["on a tree, where robots come by a place twice", "among more robots than can be members"],
+)
+def test_both_engines_rank_the_same_robots(grid: Grid, fleet: Fleet, rounds: int) -> None:
+    instance = grid_instance(grid, fleet)
+    both(instance, carp_optimized.plan(instance, Carp()), rounds, 3)
+
+
+def test_plans_that_are_not_kept_take_no_room() -> None:
+    instance = grid_instance(Grid(6, 6, map=3), Fleet(robots=8, seed=2))
+    best = carp_optimized.polish(instance, carp_optimized.plan(instance, Carp()), iterations=3000)
+    fleet = carp_optimized.fleet.Fleet(instance)
+    fleet.commit(best.plans)
+    before = int(fleet._state.records.used[0])
+    rounds = fleet.polish(fleet.polishing(1), 200)
+    assert fleet._state.records.used[0] - before < rounds, "a round plans several members"
 
 
 def test_robots_without_a_plan_get_one() -> None:
