@@ -83,5 +83,5 @@ def _forget(function: Callable[..., object]) -> None:
 @cache
 def say_that_it_compiles() -> None:
     """Tell whoever waits why it takes so long, once."""
-    message = "carproof compiles its planner, once for this installation; it takes about half a minute ..."
+    message = "carproof compiles its planner, once: it takes about half a minute ..."
     print(message, file=sys.stderr, flush=True)  # noqa: T201 - no command does this, so none can say it

@@ -8,7 +8,7 @@ machine.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from statistics import median
+from statistics import fmean, median
 from time import thread_time_ns
 from typing import TYPE_CHECKING
 
@@ -29,6 +29,8 @@ PROPOSED = {
     "10": Neighbourhood(m=10, sample=150),
 }
 GROWTH = (20, 40, 80, 160)
+QUERIED = 20
+PARTS = 3 + GROWTH_REPETITIONS
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,13 +57,18 @@ class OnMap:
 
 @dataclass(frozen=True, slots=True)
 class OnGrid:
-    """The times on a full grid with a robot to every four nodes."""
+    """The times on a full grid with a robot to every four nodes; of the queries the mean over the last robots.
+
+    The more robots there are, the more queries run into them: most are as fast as on an empty grid, and a few take most
+    of the time. `asked` counts the queries of adding the last robot.
+    """
 
     side: int
     robots: int
     query_us: float
     pass_us: float
     add_us: float
+    asked: int
 
 
 def microseconds(work: Callable[[], object], prepare: Callable[[], object] = lambda: None) -> float:
@@ -123,21 +130,34 @@ def medians(all_added: Sequence[Added]) -> Added:
 def on_grid(side: int, advance: Callable[[], None]) -> OnGrid:
     """Measure how times grow with the grid."""
     robots = side * side // 4
-    fleet = fleet_of(grid_instance(Grid(width=side, height=side), RandomFleet(robots=robots)))
     last = robots - 1
-    fleet.carp(range(last))
-    query_us = query_time(fleet, last, 10)
-    started = thread_time_ns()
-    fleet.carp(range(last))
-    pass_us = (thread_time_ns() - started) / 1000
-    times = []
+    fleet = fleet_of(grid_instance(Grid(width=side, height=side), RandomFleet(robots=robots)))
+
+    def timed(work: Callable[[], object]) -> float:
+        started = thread_time_ns()
+        work()
+        time_us = (thread_time_ns() - started) / 1000
+        for _ in range(weight(side)):
+            advance()
+        return time_us
+
+    timed(partial(fleet.carp, range(last)))
+    pass_us = timed(partial(fleet.carp, range(last)))
+    fleet.carp(range(robots - QUERIED))
+    queries: list[float] = []
+    timed(lambda: queries.extend(query_time(fleet, robot, 10) for robot in range(robots - QUERIED, robots)))
+    times, asked = [], 0
     for _ in range(GROWTH_REPETITIONS):
         fleet.carp(range(last))
-        started = thread_time_ns()
-        fleet.add(last, 0, PROPOSED["4"])
-        times.append((thread_time_ns() - started) / 1000)
-    advance()
-    return OnGrid(side, robots, query_us, pass_us, median(times))
+        before = fleet.queries.asked
+        times.append(timed(partial(fleet.add, last, 0, PROPOSED["4"])))
+        asked = fleet.queries.asked - before
+    return OnGrid(side, robots, fmean(queries), pass_us, median(times), asked)
+
+
+def weight(side: int) -> int:
+    """How many assignments on a map take about as long as one of the `PARTS` of measuring a grid."""
+    return max(1, (side // 40) ** 3)
 
 
 def fleet_of(instance: Instance) -> "Fleet":

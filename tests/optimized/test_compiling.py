@@ -23,7 +23,7 @@ def thrice(number: int) -> int:
     return 3 * number
 """
 CALLS = "import entries; print(entries.twice(2), entries.thrice(2))"
-NOTICE = "carproof compiles its planner, once for this installation; it takes about half a minute ...\n"
+NOTICE = "carproof compiles its planner, once: it takes about half a minute ...\n"
 
 
 def call_entries(folder: Path) -> tuple[str, str]:

@@ -1,0 +1,69 @@
+"""What `carproof bench` prints, from figures made up, and its progress."""
+
+import json
+from collections.abc import Callable
+from types import SimpleNamespace
+
+import pytest
+from tests.oracle.running import Run
+
+from carp_oracle import bench
+from carp_oracle.bench import GROWTH, PARTS, Added, OnGrid, OnMap, on_grid, on_map, weight
+from carp_oracle.commands import bench as command
+
+KINDS = ("kept", "unchanged", "prefixes", "shared", "bounds")
+
+
+def large_figures(map: int, assignments: int, advance: Callable[[], None]) -> OnMap:
+    """More than was ever measured."""
+    for _ in range(assignments):
+        advance()
+    added = [
+        Added(k, name, 123_456.7, 23.45, 12_345, dict.fromkeys(KINDS, 54_321))
+        for k in (50, 100)
+        for name in ("4", "10")
+    ]
+    return OnMap(map, 12.34, 1234.5, added)
+
+
+def large_grid(side: int, advance: Callable[[], None]) -> OnGrid:
+    for _ in range(PARTS * weight(side)):
+        advance()
+    return OnGrid(side, side * side // 4, 123.4, 54_321_000, 43_210_000, 12_345)
+
+
+@pytest.fixture
+def made_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(command, "on_map", large_figures)
+    monkeypatch.setattr(command, "on_grid", large_grid)
+
+
+@pytest.mark.usefixtures("made_up")
+def test_tables_fit_eighty_columns(carproof: Run) -> None:
+    outcome = carproof("bench")
+    assert outcome.code == 0
+    assert max(map(len, outcome.stdout.splitlines())) <= 80
+    assert "160^2    6400" in outcome.stdout
+
+
+@pytest.mark.usefixtures("made_up")
+def test_the_document_has_the_ratios_of_the_last_robot_on_the_full_map(carproof: Run) -> None:
+    outcome = carproof("bench", "--assignments", "3", "--no-growth", "--json")
+    document = json.loads(outcome.stdout)
+    assert document["ratios"] == {"4": 23.45, "10": 23.45}
+    assert (document["query_us"], document["pass_us"], document["growth"]) == (12.34, 1234.5, [])
+
+
+def test_progress_ends_when_all_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bench, "PROPOSED", {"4": bench.PROPOSED["4"]})
+    done = SimpleNamespace(steps=0)
+
+    def advance() -> None:
+        done.steps += 1
+
+    assert on_map(20, 1, advance).added[-1].asked > 0
+    assert done.steps == 1
+    grid = on_grid(20, advance)
+    assert done.steps == 1 + PARTS * weight(20)
+    assert (grid.robots, grid.asked > 0) == (100, True)
+    assert [weight(side) for side in GROWTH] == sorted(weight(side) for side in GROWTH)
