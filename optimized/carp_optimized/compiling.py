@@ -21,7 +21,11 @@ OPTIONS: dict[str, Any] = {"error_model": "numpy", "_nrt": False}
 
 
 class RoomExhausted(Exception):  # noqa: N818 - nothing went wrong: the caller makes larger arrays and asks again
-    """An array of the state is full."""
+    """The places for windows, or the scratch of a query, are full."""
+
+
+class RecordsExhausted(Exception):  # noqa: N818 - the same
+    """The records are full."""
 
 
 class TicksExhausted(Exception):  # noqa: N818 - the caller refuses the input

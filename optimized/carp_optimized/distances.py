@@ -29,17 +29,15 @@ def is_less(one: Mean, other: Mean) -> bool:
 
 @compiled
 def term(dx: int, dy: int) -> int:
-    """floor(2^16 * sqrt(dx^2 + dy^2)): the float is a guess, at most one off, that whole numbers put right.
+    """floor(2^16 * sqrt(dx^2 + dy^2)): the float is that or one more, which whole numbers put right.
 
-    Squares of whole numbers beyond 64 bits wrap around when compiled, and their small difference comes out right.
+    It is never less: 2^-16 times the result is a float, and rounding, of the squares too, moves their root by less than
+    half the way to the next one. Squares of whole numbers beyond 64 bits wrap around when compiled, and their small
+    difference comes out right.
     """
     squared = dx * dx + dy * dy
     root = int(math.sqrt(squared) * 65536.0)
-    while (squared << 32) - root * root < 0:
-        root -= 1
-    while (squared << 32) - (root + 1) * (root + 1) >= 0:
-        root += 1
-    return root
+    return root - 1 if (squared << 32) - root * root < 0 else root
 
 
 @compiled

@@ -21,10 +21,11 @@ from carp_optimized.arrays import (
     Longs,
     Options,
     Polish,
+    Records,
     State,
     Work,
 )
-from carp_optimized.compiling import RoomExhausted, TicksExhausted
+from carp_optimized.compiling import RecordsExhausted, RoomExhausted, TicksExhausted
 from carp_optimized.neighbourhood import add_robot
 from carp_optimized.polishing import QUEUED, TURN, play_rounds
 from carp_optimized.recording import copied, enlarged, read_plan, write_plan
@@ -293,28 +294,22 @@ class Fleet:
         while True:
             used = self._state.records.used.copy()
             counters = self._state.counters.copy()
+            records, places = self._state.records, self._state.windows.start.size
             try:
                 return function()
+            except RecordsExhausted:
+                self._rebuild(used, counters, enlarged(records), places)
             except RoomExhausted:
-                self._rebuild(used, counters, larger=True)
+                self._rebuild(used, counters, records, 2 * places)
             except TicksExhausted:
-                self._rebuild(used, counters, larger=False)
+                self._rebuild(used, counters, records, places)
                 message = f"a plan would need ticks beyond {LARGEST}; {encoding.NO_LIMIT_THERE}"
                 raise Refusal("limit", "$.robots", "limit/ticks", message) from None
 
-    def _rebuild(self, used: Longs, counters: Longs, larger: bool) -> None:
-        """Go back to the plans held before a call that was broken off."""
-        records, places = self._state.records, self._state.windows.start.size
-        if larger:
-            # what was full is more than half full, or no array is, and it is the scratch of a query
-            sizes = records.robot.size, records.resource.size, records.expanded.size
-            few_records = any(2 * int(count) > size for count, size in zip(records.used, sizes, strict=True))
-            few_places = 2 * max(int(self._state.windows.used[0]), int(self._state.stays.used[0])) > places
-            places = 2 * places if few_places or not few_records else places
-            records = enlarged(records) if few_records else records
-        self._state.records.used[:] = used
-        records.used[:] = used
+    def _rebuild(self, used: Longs, counters: Longs, records: Records, places: int) -> None:
+        """Go back to the plans held before a call that was broken off, with that room."""
         self._state.counters[:] = counters
+        records.used[:] = used
         self._take(encoding.with_room(self._state, places, records))
         held = self._records[self._order]
         self._call(lambda: passes.reserve_all(self._native, held))

@@ -1,7 +1,7 @@
 """Planning many robots one after the other: CARP, and greedy best-first."""
 
 from carp_optimized.arrays import NEVER, NONE, TOO_FAR, UNCHANGED, UNKNOWN, Ints, State
-from carp_optimized.compiling import RoomExhausted, TicksExhausted, entry
+from carp_optimized.compiling import RecordsExhausted, TicksExhausted, entry
 from carp_optimized.guides import guide_slot
 from carp_optimized.natives import state_at
 from carp_optimized.records import close_record, cost_of, start_record
@@ -55,7 +55,7 @@ def record_plan(native: Native[State], robot: int, resources: Ints, enters: Ints
     first = int(records.visits_at[record])
     end = first + resources.size
     if end > records.resource.size:
-        raise RoomExhausted
+        raise RecordsExhausted
     for k in range(resources.size):
         records.resource[first + k] = resources[k]
         records.enter[first + k] = enters[k]

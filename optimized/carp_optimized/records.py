@@ -1,7 +1,7 @@
 """Records of plans: writing what a search found, and comparing."""
 
 from carp_optimized.arrays import NEVER, NONE, Ints, Records, State
-from carp_optimized.compiling import RoomExhausted, compiled, entry
+from carp_optimized.compiling import RecordsExhausted, compiled, entry
 from carp_optimized.natives import state_at
 from carp_optimized.references import Native
 
@@ -13,7 +13,7 @@ def start_record(state: State, robot: int, first: int, history: int) -> int:
     record = int(records.used[0])
     at = int(records.used[1])
     if record == records.robot.size or at + history > records.resource.size:
-        raise RoomExhausted
+        raise RecordsExhausted
     records.robot[record] = robot
     records.visits_at[record] = at
     records.visits[record] = history
@@ -37,7 +37,7 @@ def write_record(state: State, record: int, last: int, expansions: int) -> None:
         node = int(search.parent[node])
     end = int(records.visits_at[record]) + int(records.visits[record]) + length
     if end > records.resource.size or int(records.used[2]) + expansions > records.expanded.size:
-        raise RoomExhausted
+        raise RecordsExhausted
     node = last
     for k in range(end - 1, end - 1 - length, -1):
         records.resource[k] = windows.resource[node]

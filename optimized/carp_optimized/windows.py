@@ -316,7 +316,7 @@ def evict(state: State, record: int) -> None:
 
 @compiled
 def give_rank(state: State, robot: int, rank: int) -> None:
-    """Give a robot a rank, in the windows too if its plan is reserved."""
+    """Give a robot a rank, in the windows too if its plan is reserved: those that end where one of its stays begins."""
     state.rank[robot] = rank
     record = int(state.reserved[robot])
     if record == NONE:
@@ -325,7 +325,4 @@ def give_rank(state: State, robot: int, rank: int) -> None:
     for k in range(first, first + int(state.records.visits[record])):
         resource = int(state.records.resource[k])
         if state.graph.capacity[resource] == 1:
-            stay = last_by(state.windows, resource, int(state.records.enter[k]))
-            while state.windows.robot[stay] != robot:
-                stay -= 1
-            state.windows.rank[stay] = rank
+            state.windows.rank[last_by(state.windows, resource, int(state.records.enter[k]))] = rank

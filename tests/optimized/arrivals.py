@@ -5,12 +5,24 @@ another; rooms for several, paces, durations, one-way moves, detours, ended plan
 and every choice of what is reused are mixed. A question takes the reference a few milliseconds.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import carp_reference
 from carp_experiments.small_questions import Draw, draw_edges, draw_plan
 from carp_optimized import Queries, Reuse
-from carp_spec import AfterGoal, Instance, Neighbourhood, Plan, Resource, ResourceGraph, Robot, RobotId, Solution
+from carp_spec import (
+    AfterGoal,
+    Instance,
+    Neighbourhood,
+    Plan,
+    Resource,
+    ResourceGraph,
+    ResourceId,
+    Robot,
+    RobotId,
+    Solution,
+    Visit,
+)
 from carp_spec.permutations import shuffle, splitmix64
 
 POLICIES: tuple[AfterGoal, ...] = ("vanish", "vanish", "park")
@@ -45,6 +57,30 @@ class Arrivals:
         named = {*(plan.robot for plan in self.before), *(robot for robot, _ in self.robots)}
         unplanned = (robot.id for robot in self.instance.robots if robot.id in named and robot.id not in order)
         return Solution(fleet.plans, order, tuple(unplanned)), fleet.queries
+
+
+def scaled(question: Arrivals, space: int, time: int) -> Arrivals:
+    """The same question with all coordinates and all ticks multiplied."""
+    graph = question.instance.graph
+    resources = tuple(
+        replace(each, duration=time * each.duration, x=space * (each.x or 0), y=space * (each.y or 0))
+        for each in graph.resources
+    )
+    robots = tuple(replace(each, release=time * each.release) for each in question.instance.robots)
+    before = tuple(
+        Plan(plan.robot, tuple(Visit(at, time * enter, leave and time * leave) for at, enter, leave in visits_of(plan)))
+        for plan in question.before
+    )
+    return replace(
+        question,
+        instance=replace(question.instance, graph=replace(graph, resources=resources), robots=robots),
+        before=before,
+        robots=tuple((robot, time * now) for robot, now in question.robots),
+    )
+
+
+def visits_of(plan: Plan) -> list[tuple[ResourceId, int, int | None]]:
+    return [(visit.resource, visit.enter, visit.leave) for visit in plan.visits]
 
 
 def arrivals(number: int) -> Arrivals:
@@ -103,7 +139,8 @@ def draw_options(draw: Draw) -> Neighbourhood:
     m = draw.one_of((2, 3, 3, 4, 5, 6))
     sample = draw.between(1, 30) if m > 3 or draw.happens(4) else None
     seed, baseline = draw.between(0, 999), draw.happens(2)
-    return Neighbourhood(m=m, sample=sample, seed=seed, baseline=baseline)
+    fallback = draw.between(1, 3) if draw.happens(6) else None
+    return Neighbourhood(m=m, sample=sample, seed=seed, baseline=baseline, fallback=fallback)
 
 
 def draw_reuse(draw: Draw) -> Reuse:

@@ -1,7 +1,7 @@
 """Robots that are added one after the other to a fleet that stays up get the reference's plans, whatever is reused."""
 
 import pytest
-from tests.optimized.arrivals import arrivals
+from tests.optimized.arrivals import arrivals, scaled
 
 QUESTIONS = 600
 PARTS = 6
@@ -11,4 +11,11 @@ PARTS = 6
 def test_robots_that_arrive_while_time_passes_are_planned_alike(part: int) -> None:
     for number in range(part, QUESTIONS, PARTS):
         question = arrivals(number)
+        assert question.by_fleet()[0] == question.by_reference(), number
+
+
+@pytest.mark.parametrize(("space", "time"), [(2**11, 2**17), (2**26, 1), (2**26, 2**17)])
+def test_nearest_robots_are_the_same_however_far_and_slow(space: int, time: int) -> None:
+    for number in range(QUESTIONS, QUESTIONS + 40):
+        question = scaled(arrivals(number), space, time)
         assert question.by_fleet()[0] == question.by_reference(), number

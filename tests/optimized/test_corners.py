@@ -2,7 +2,7 @@
 
 from dataclasses import fields, replace
 from itertools import count
-from math import isqrt
+from math import isqrt, sqrt
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -36,6 +36,7 @@ from carp_spec import (
 from carp_spec.permutations import splitmix64
 
 LARGEST = 2**30 - 1
+ROUNDED_UP = ((400500, 89496552), (615752, 494798881), (973787, 88743213))  # where a float root is one too large
 LINE = ResourceGraph((Resource("a"), Resource("b"), Resource("c")), (("a", "b"), ("b", "c")))
 PLANNERS: tuple[Planner, ...] = (Carp(), LongestFirst(), Greedy(), Shuffled(3), Neighbourhood(m=3))
 
@@ -82,6 +83,23 @@ def test_records_grow(monkeypatch: pytest.MonkeyPatch) -> None:
     assert fleet.plans == plans
 
 
+def test_visits_of_plans_made_elsewhere_grow(monkeypatch: pytest.MonkeyPatch) -> None:
+    no_records = encoding.no_records
+    monkeypatch.setattr(encoding, "no_records", lambda *_: no_records(64, 4, 4))
+    instance = grid_instance(Grid(4, 4), Robots(9))
+    plans = carp_reference.plan(instance, Carp()).plans
+    fleet = Fleet(instance)
+    fleet.commit(plans)
+    assert fleet.plans == plans
+
+
+def test_a_plan_longer_than_the_records_that_a_fleet_begins_with_is_planned() -> None:
+    cells = tuple(Resource(k) for k in range(10_000))
+    line = ResourceGraph(cells, tuple((k, k + 1) for k in range(len(cells) - 1)))
+    (plan,) = carp_optimized.plan(Instance(line, (Robot("r", 0, cells[-1].id),)), Carp()).plans
+    assert [visit.enter for visit in plan.visits] == [cell.id for cell in cells]
+
+
 @pytest.mark.parametrize("cut", [("keys", "nodes"), ("expanded", "ready")])
 def test_the_scratch_of_a_query_grows(monkeypatch: pytest.MonkeyPatch, cut: tuple[str, str]) -> None:
     no_search, calls = encoding.no_search, count()
@@ -96,6 +114,19 @@ def test_the_scratch_of_a_query_grows(monkeypatch: pytest.MonkeyPatch, cut: tupl
     assert_alike(grid_instance(Grid(4, 4), Robots(9)), Neighbourhood(m=3))
 
 
+def test_the_queue_of_a_guide_grows(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where durations differ, a resource can wait in it several times."""
+    no_search, calls = encoding.no_search, count()
+
+    def search(windows: int, edges: int) -> Search:
+        whole = no_search(windows, edges)
+        return whole if next(calls) else whole._replace(keys=whole.keys[:2].copy(), nodes=whole.nodes[:2].copy())
+
+    monkeypatch.setattr(encoding, "no_search", search)
+    graph = ResourceGraph((*LINE.resources[:2], Resource("c", duration=2), Resource("d")), (*LINE.edges, ("b", "d")))
+    assert_alike(Instance(graph, (Robot("r", "a", "b"), Robot("s", "d", "c"))), Carp())
+
+
 def test_guides_that_do_not_all_fit_are_made_again(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(encoding, "GUIDE_PLACES", 1)
     instance = grid_instance(Grid(9, 9), Robots(70, distinct="goals"))
@@ -103,11 +134,20 @@ def test_guides_that_do_not_all_fit_are_made_again(monkeypatch: pytest.MonkeyPat
         assert_alike(instance, planner)
 
 
-def test_a_goal_that_is_too_far_is_refused() -> None:
-    far = ResourceGraph((Resource("a", duration=LARGEST), Resource("b", duration=LARGEST), Resource("c")), LINE.edges)
+@pytest.mark.parametrize("last", [1, LARGEST])
+def test_a_goal_that_is_too_far_is_refused(last: int) -> None:
+    cells = (Resource("a", duration=LARGEST), Resource("b", duration=LARGEST), Resource("c", duration=last))
+    far = ResourceGraph(cells, LINE.edges)
     for planner in PLANNERS:
         with pytest.raises(Refusal, match="the reference engine has no such limit"):
             carp_optimized.plan(Instance(far, (Robot("r", "a", "c"),)), planner)
+
+
+def test_options_that_differ_only_in_what_follows_share_their_arrays() -> None:
+    fleet = Fleet(grid_instance(Grid(4, 4), Robots(3)))
+    for robot, options in enumerate((Neighbourhood(m=3), Neighbourhood(m=3, seed=1), Neighbourhood(m=2))):
+        assert fleet.add(robot, 0, options)
+    assert fleet.order == (0, 1, 2)
 
 
 def test_robots_whose_plans_have_ended_are_left_alone() -> None:
@@ -140,3 +180,5 @@ def test_terms_of_distances_are_whole_roots() -> None:
         most = 2 ** (1 + next(stream) % 29)
         dx, dy = next(stream) % most, next(stream) % most
         assert term(dx, dy) == isqrt((dx * dx + dy * dy) << 32)
+    for dx, dy in ROUNDED_UP:
+        assert term(dx, dy) == isqrt((dx * dx + dy * dy) << 32) < int(sqrt(dx * dx + dy * dy) * 2**16)
