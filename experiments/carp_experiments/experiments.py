@@ -13,10 +13,12 @@ from carp_experiments.report import Report
 from carp_experiments.reuse_counts import reuse_cases, reuse_report
 from carp_experiments.small_gaps import SIDE, gap_cases, gap_report
 from carp_experiments.store import Row
+from carp_experiments.unplanned import unplanned_cases, unplanned_report
 from carp_spec import Refusal
 
 ALL_MAPS = tuple(range(quality.FULL_MAP + 1))
 SOME_MAPS = (0, 5, 10, 15, 20)
+SPARSE_MAPS = tuple(range(8))
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,5 +112,13 @@ EXPERIMENTS = (
         Profile(20, 20, (10, 20)),
         lambda profile: polish_cases(profile.assignments, profile.maps, profile.robots),
         lambda rows, profile: polish_report(rows, profile.robots),
+    ),
+    Experiment(
+        "unplanned",
+        "What polish leaves unplanned on the sparse maps, and whether it could be planned.",
+        Profile(20, 100, SPARSE_MAPS),
+        Profile(5, 60, (0, 5)),
+        lambda profile: unplanned_cases(profile.assignments, profile.maps, profile.robots),
+        lambda rows, _: unplanned_report(rows),
     ),
 )
