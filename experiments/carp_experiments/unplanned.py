@@ -272,8 +272,8 @@ def maps_table(maps: Sequence[Unplanned]) -> Table:
     title = (
         f"Assignments with an unplanned robot, after {GIVEN} (and the mean number of such robots) and after so many "
         "rounds of polish; of the last, in how many a few robots by themselves can be planned in no order one after "
-        "the other, in how many it is proved that they cannot be planned at all, and for how many plans of all robots were "
-        "found around the optimum of these few"
+        "the other, in how many it is proved that they cannot be planned at all, and for how many plans of all robots "
+        "were found around the optimum of these few"
     )
     return Table("unplanned", title, columns, tuple(rows), columns)
 

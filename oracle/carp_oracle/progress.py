@@ -5,6 +5,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from time import perf_counter
 
+WIDTH = 16  # of a bar beside words, so that totals of seven digits fit into eighty columns
+
 
 @contextmanager
 def progress(label: str, steps: int) -> Iterator[Callable[[], None]]:
@@ -21,27 +23,32 @@ def progress(label: str, steps: int) -> Iterator[Callable[[], None]]:
 
 
 @contextmanager
-def polish_progress(
-    iterations: int | None, seconds: float | None, bound: int
-) -> Iterator[Callable[[int, int, int], None]]:
-    """Show a bar, and how near the total has come to the bound; what it yields is told rounds, unplanned, total."""
+def search_progress(label: str, most: int | None, seconds: float | None) -> Iterator[Callable[[int, str], None]]:
+    """Show a bar up to so many steps, or seconds if they are given; what it yields is told steps and what was found."""
     if not sys.stderr.isatty():
-        yield lambda _, __, ___: None
+        yield lambda _, __: None
         return
     from rich.console import Console  # noqa: PLC0415 - loaded only where there is a bar to show
     from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn  # noqa: PLC0415
 
-    columns = (TextColumn("polishing"), BarColumn(20), TimeRemainingColumn(), TextColumn("{task.description}"))
+    columns = (TextColumn(label), BarColumn(WIDTH), TimeRemainingColumn(), TextColumn("{task.description}"))
     started = perf_counter()
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("", total=iterations if seconds is None else seconds)
+        task = bar.add_task("", total=most if seconds is None else seconds)
 
-        def advance(rounds: int, unplanned: int, total: int) -> None:
-            near = f"{unplanned} unplanned" if unplanned else f"gap {gap(total, bound)}"
-            done = rounds if seconds is None else perf_counter() - started
-            bar.update(task, completed=done, description=f"total {total}, bound {bound}, {near}")
+        def advance(steps: int, found: str) -> None:
+            done = steps if seconds is None else perf_counter() - started
+            bar.update(task, completed=done, description=found)
 
         yield advance
+
+
+def found_so_far(total: int | None, bound: int, unplanned: int = 0) -> str:
+    """The best total that is known, if any is, the bound, and how far apart they are, in a few words."""
+    if total is None:
+        return f"bound {bound}"
+    near = f"{unplanned} unplanned" if unplanned else f"gap {gap(total, bound)}"
+    return f"total {total}, bound {bound}, {near}"
 
 
 def gap(total: int, bound: int) -> str:

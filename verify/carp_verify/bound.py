@@ -44,8 +44,8 @@ def lower_bound(
 ) -> BoundDocument:
     """Search for so many seconds or steps, whichever is over first, or until nothing is gained any more.
 
-    With steps alone, the same instance gives the same certificate. `on_step` is called after each step. Raises
-    `Refusal` for numbers that are too large.
+    With steps alone, the same instance gives the same certificate. `on_step` is called after each step, and now and
+    then while cuts are searched for. Raises `Refusal` for numbers that are too large.
     """
     from carp_verify.cut_search import CutSearch  # noqa: PLC0415 - numba is slow to load
     from carp_verify.price_search import PriceSearch  # noqa: PLC0415
@@ -58,12 +58,16 @@ def lower_bound(
     def told(count: int, best: int) -> None:
         on_step(Progress(count, -(-best // SCALE)))
 
+    def look() -> None:
+        told(search.count, search.best)
+        rough(search.count)
+
     told(0, search.best)
     with suppress(TimeOver):
         gain = search.best // FIRST_AIM
         while gain > 0 or not cuts.is_exhausted:
             search.climb(gain, ROUGH_AIM, lambda: rough(search.count), told)
-            gain = cuts.round(lambda: rough(search.count))
+            gain = cuts.round(look)
     with suppress(TimeOver):
         search.climb(ROUGH_AIM, FINE_AIM, lambda: end(search.count), told)
     search.finish()

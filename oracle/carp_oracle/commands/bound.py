@@ -7,8 +7,8 @@ import click
 
 from carp_oracle.answer import Answer
 from carp_oracle.files import InputFile, print_document, read_instance_file, read_solution_file, write_whole
-from carp_oracle.gauge import gauge
 from carp_oracle.options import DEFAULT_SECONDS, examples, instance_argument, json_option, output_option
+from carp_oracle.progress import found_so_far, gap, search_progress
 from carp_oracle.tables import print_line, print_table
 from carp_spec import Instance, judge, total_cost
 from carp_spec.documents import write
@@ -52,13 +52,10 @@ def command(
 
     def keep(progress: Progress) -> None:
         seen[1:] = [progress]
-        show(f"step {progress.steps}: at least {progress.bound}, best known {known or '-'}, gap {gap(progress.bound)}")
-
-    def gap(bound: int) -> str:
-        return "-" if known is None or not bound else f"{100 * (known - bound) / bound:.2f} %"
+        show(progress.steps, found_so_far(known, progress.bound))
 
     started = perf_counter()
-    with gauge() as show:
+    with search_progress("bounding", steps, limit) as show:
         certificate = lower_bound(problem, limit, steps, keep)
     took = perf_counter() - started
     document = write(certificate)
@@ -69,7 +66,7 @@ def command(
         print_document(document)
     else:
         numbers = [len(problem.robots), seen[0].bound, certificate.bound, "-" if known is None else known]
-        row = [*numbers, gap(certificate.bound), seen[-1].steps, f"{took:.2f} s"]
+        row = [*numbers, "-" if known is None else gap(known, certificate.bound), seen[-1].steps, f"{took:.2f} s"]
         print_table(COLUMNS, [row], numbers=COLUMNS)
         for robot in lost:
             print_line(f"unplanned: no way leads from {robot.start} to {robot.goal}, the goal of robot {robot.id}")

@@ -23,7 +23,7 @@ from carp_oracle.options import (
     output_option,
     solution_argument,
 )
-from carp_oracle.progress import gap, polish_progress
+from carp_oracle.progress import found_so_far, gap, search_progress
 from carp_oracle.requests import sound_solution
 from carp_oracle.results import show_unplanned, write_result
 from carp_oracle.tables import print_table
@@ -80,12 +80,12 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     least = bound_of(problem, bound)
     played = 0
     started = perf_counter()
-    with naming(instance), polish_progress(last_round(iterations, seconds), seconds, least) as show:
+    with naming(instance), search_progress("polishing", last_round(iterations, seconds), seconds) as show:
 
         def advance(rounds: int, unplanned: int, total: int) -> None:
             nonlocal played
             played = rounds
-            show(rounds, unplanned, total)
+            show(rounds, found_so_far(total, least, unplanned))
 
         after = engine_named(engine).polish(
             problem, before, iterations=iterations, seconds=seconds, seed=seed, advance=advance
