@@ -5,6 +5,7 @@ import os
 import pty
 import re
 import struct
+import subprocess
 import sys
 import termios
 from pathlib import Path
@@ -21,16 +22,19 @@ CODES = re.compile(r"\x1b\[[0-9;?]*[a-zA-Z]")
 
 def on_a_terminal(*arguments: object, columns: int = 80) -> list[str]:
     """What carproof shows on a terminal, each line as often as it is written anew."""
-    child, terminal = pty.fork()
-    if child == 0:
-        environment = {name: value for name, value in os.environ.items() if name not in ("CI", "COLUMNS", "NO_COLOR")}
-        command = [sys.executable, "-m", "carp_oracle", *map(str, arguments)]
-        os.execve(sys.executable, command, {**environment, "TERM": "xterm"})  # noqa: S606 - no shell is wanted
-    fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
-    shown = b""
-    while data := read(terminal):
-        shown += data
-    os.waitpid(child, 0)
+    ours, theirs = pty.openpty()
+    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
+    environment = {name: value for name, value in os.environ.items() if name not in ("CI", "COLUMNS", "NO_COLOR")}
+    command = [sys.executable, "-m", "carp_oracle", *map(str, arguments)]
+    with subprocess.Popen(
+        command, stdin=theirs, stdout=theirs, stderr=theirs, env={**environment, "TERM": "xterm"}
+    ) as child:
+        os.close(theirs)
+        shown = b""
+        while data := read(ours):
+            shown += data
+        assert child.wait() in (0, 1)
+    os.close(ours)
     return [line for line in re.split(r"[\r\n]+", CODES.sub("", shown.decode())) if line.strip()]
 
 
