@@ -1,6 +1,6 @@
 """The answers known in a round, by the plans against which they were asked."""
 
-from carp_optimized.arrays import ANSWERS, NONE, PLANS, Answers, State
+from carp_optimized.arrays import ANSWERS, LATE, NONE, PLANS, Answers, State
 from carp_optimized.compiling import compiled
 from carp_optimized.records import clash, same_plan
 
@@ -32,12 +32,13 @@ def number_plan(state: State, answers: Answers, member: int, record: int) -> int
 
 
 @compiled
-def learn(answers: Answers, member: int, given: int, plan: int) -> None:
-    """Remember an answer, if its plans have numbers."""
+def learn(answers: Answers, member: int, given: int, plan: int, least: int) -> None:
+    """Remember an answer, whose plan costs at least so much, if its plans have numbers."""
     used = int(answers.used[1])
     if plan < PLANS and given < 1 << PLANS and used < ANSWERS:
         answers.given[used] = given
         answers.plan[used] = plan
+        answers.least[used] = least
         answers.older[used] = answers.newest[member]
         answers.newest[member] = used
         answers.used[1] += 1
@@ -61,12 +62,24 @@ def known_answer(state: State, answers: Answers, member: int, given: int) -> int
     """A known answer that holds for the member against the set of plans, or `NONE`."""
     answer = int(answers.newest[member])
     while answer != NONE:
-        if int(answers.given[answer]) & ~given == 0:
+        if int(answers.given[answer]) & ~given == 0 and answers.plan[answer] != LATE:
             plan = int(answers.plan[answer])
             if plan == NONE or not has_clash(state, answers, plan, given):
                 return answer
         answer = int(answers.older[answer])
     return NONE
+
+
+@compiled
+def least_of(answers: Answers, member: int, given: int) -> int:
+    """What the member costs at least against the set of plans, by all answers known; `NO_LIMIT`: it has no plan."""
+    least = 0
+    answer = int(answers.newest[member])
+    while answer != NONE:
+        if int(answers.given[answer]) & ~given == 0:
+            least = max(least, int(answers.least[answer]))
+        answer = int(answers.older[answer])
+    return least
 
 
 @compiled

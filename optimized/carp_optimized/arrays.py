@@ -32,12 +32,16 @@ COUNTERS = 6
 PLANS = 62  # plans that a set of plans in 64 bits can hold; the bit PLANS stands for all others
 ANSWERS = 512
 NO_LIMIT = 1 << 62  # of a cost
+LATE = -2  # the plan of an answer is not below the limit
 
 MOST_MEMBERS = 10  # of a neighbourhood that is polished
 
 
 class Graph(NamedTuple):
-    """The resource graph: moves lead from r to `target[first[r]:first[r + 1]]`, and come to it from `source[...]`."""
+    """The resource graph: moves lead from r to `target[first[r]:first[r + 1]]`, and come to it from `source[...]`.
+
+    `region[r]` is a number with one bit set, the same for resources that are near one another.
+    """
 
     first: Ints
     target: Ints
@@ -47,6 +51,7 @@ class Graph(NamedTuple):
     capacity: Ints
     x: Longs
     y: Longs
+    region: Longs
 
 
 class Rows(NamedTuple):
@@ -129,7 +134,8 @@ class Records(NamedTuple):
     what bounds distances: the first tick and the arrival, the sums of x and y at all ticks between, x and y of the
     start and of the goal. The expansions are entries of `expanded`, `ready`, `until` and
     `largest` from `expansions_at[record]` on: a resource, the first and last tick at which leaving it could matter, and
-    the largest key popped after it. `used` counts records, visits and expansions.
+    the largest key popped after it; `regions[record]` has the bits of their regions. `used` counts records, visits
+    and expansions.
     """
 
     robot: Ints
@@ -139,6 +145,7 @@ class Records(NamedTuple):
     arrival: Ints
     expansions_at: Longs
     expansions: Ints
+    regions: Longs
     spots: LongTable
     resource: Ints
     enter: Ints
@@ -154,7 +161,7 @@ class Freed(NamedTuple):
 
     `source` is the resource from which the robot came, `SEVERAL` if several stays were taken back.
     The entries of a resource count only where `mark` is `now[0]`; `near` marks them and the resources that lead to one,
-    with the hull of all those stays, `near_earliest` to `near_latest`.
+    with the hull of all those stays, `near_earliest` to `near_latest`; `regions[0]` has the bits of their regions.
     """
 
     now: Longs
@@ -165,6 +172,7 @@ class Freed(NamedTuple):
     source: Ints
     near_earliest: Ints
     near_latest: Ints
+    regions: Longs
 
 
 class State(NamedTuple):
@@ -197,8 +205,7 @@ class State(NamedTuple):
 class Work(NamedTuple):
     """What adding a robot works on: made once for a fleet and a size of neighbourhood, so that adding makes no arrays.
 
-    `queue` holds the robots in planning order, the new one last, and `plans` the plans by robot; afterwards they are
-    those found. `stream[0]` is the state of the random numbers.
+    `queue` holds the robots in planning order, the new one last. `stream[0]` is the state of the random numbers.
     By robot: `before`, the plans followed until now; `ended`, whether they have ended by now; `held`, the plans of the
     robots outside the neighbourhood; `trajectories`, for distances. By position: `outside`, the robots outside the
     neighbourhood in planning order; the order and the plans of the best candidate. By place in the neighbourhood:
@@ -207,7 +214,6 @@ class Work(NamedTuple):
     """
 
     queue: Ints
-    plans: Ints
     stream: Numbers
     before: Ints
     ended: Ints
@@ -268,6 +274,7 @@ class Polish(NamedTuple):
 class Answers(NamedTuple):
     """The answers known in a round: of a member against the set `given`, the plan `plan` (`NONE`: there is none).
 
+    Its cost is at least `least`, which is all that is known where the plan is `LATE`.
     Plans are numbered; `record[plan]` is the plan's record, `clashes[plan]` the set of plans that it clashes with, of
     those with which it has been `compared`.
     The answers of a member are chained from `newest[member]` on by `older`. `used` counts plans and answers.
@@ -280,6 +287,7 @@ class Answers(NamedTuple):
     compared: Longs
     given: Longs
     plan: Ints
+    least: Longs
     older: Ints
     newest: Ints
     used: Longs

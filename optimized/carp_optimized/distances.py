@@ -137,26 +137,25 @@ def nearest(state: State, work: Work, size: int, count: int) -> int:
 
 @compiled
 def guess(state: State, work: Work, size: int, count: int) -> Mean:
-    """A little more than the distance of a robot that is likely to be near, by its start and its goal.
+    """A little more than the distance of a robot that is likely to be near the newest member, by start and goal.
 
     To begin with that saves most walks. The robot itself is nearer than that, so it is found if no other is.
     """
     most = Mean(1 << (31 + state.split), 0, 1)  # more than any term
     likely = NONE
     least = NEVER << 3
+    b = state.records.spots[int(work.trajectories[work.members[count - 1]])]
     for position in range(size):
         robot = int(work.outside[position])
         if work.ended[robot]:
             continue
         own = int(work.trajectories[robot])
         a = state.records.spots[own]
-        for member in range(count):
-            b = state.records.spots[int(work.trajectories[work.members[member]])]
-            away = abs(int(a[4]) - int(b[4])) + abs(int(a[5]) - int(b[5]))
-            away += abs(int(a[6]) - int(b[6])) + abs(int(a[7]) - int(b[7])) + abs(int(a[0]) - int(b[0]))
-            if away < least:
-                least = away
-                likely = own
+        away = abs(int(a[4]) - int(b[4])) + abs(int(a[5]) - int(b[5]))
+        away += abs(int(a[6]) - int(b[6])) + abs(int(a[7]) - int(b[7])) + abs(int(a[0]) - int(b[0]))
+        if away < least:
+            least = away
+            likely = own
     if likely == NONE:
         return most
     best = most

@@ -34,6 +34,7 @@ from carp_spec import Fault, Instance, Refusal
 
 GUIDE_PLACES = 1 << 24  # how many entries all guides together have at most, if that is room for 64 of them
 ROOTS = 1024
+STRIPS = 7  # whose product with itself is the number of regions, of which a number of 64 bits has room for 63
 LARGEST_COORDINATE = 2**29
 NO_LIMIT_THERE = "the reference engine has no such limit"
 
@@ -92,14 +93,26 @@ def encode_graph(instance: Instance) -> Graph:
         for target in targets:
             forward[source].append(graph.index[target])
             backward[graph.index[target]].append(source)
+    x = np.array([each.x or 0 for each in graph.resources], np.int64)
+    y = np.array([each.y or 0 for each in graph.resources], np.int64)
     return Graph(
         *_edges(forward),
         *_edges(backward),
         duration=np.array([each.duration for each in graph.resources], np.int32),
         capacity=np.array([min(each.capacity, NEVER) for each in graph.resources], np.int32),
-        x=np.array([each.x or 0 for each in graph.resources], np.int64),
-        y=np.array([each.y or 0 for each in graph.resources], np.int64),
+        x=x,
+        y=y,
+        region=np.left_shift(np.int64(1), strips(x) * STRIPS + strips(y)),
     )
+
+
+def strips(places: Longs) -> Longs:
+    """Which of `STRIPS` strips of equal width each place is in."""
+    if places.size == 0:
+        return places
+    first = int(places.min())
+    width = (int(places.max()) - first) // STRIPS + 1
+    return (places - first) // width
 
 
 def encode_robots(instance: Instance) -> tuple[Robots, Ints, Ints]:
@@ -190,6 +203,7 @@ def no_records(records: int, visits: int, expansions: int) -> Records:
         arrival=ints(records),
         expansions_at=longs(records),
         expansions=ints(records),
+        regions=longs(records),
         spots=np.zeros((records, 8), np.int64),
         resource=ints(visits),
         enter=ints(visits),
@@ -212,6 +226,7 @@ def nothing_freed(resources: int) -> Freed:
         source=np.zeros(resources, np.int32),
         near_earliest=np.zeros(resources, np.int32),
         near_latest=np.zeros(resources, np.int32),
+        regions=np.zeros(1, np.int64),
     )
 
 
@@ -296,7 +311,6 @@ def no_work(robots: int, members: int, sample: int) -> Work:
 
     return Work(
         queue=ints(robots),
-        plans=ints(robots),
         stream=np.zeros(1, np.uint64),
         before=ints(robots),
         ended=ints(robots),
@@ -363,6 +377,7 @@ def no_answers(members: int) -> Answers:
         compared=np.zeros(PLANS, np.int64),
         given=np.zeros(ANSWERS, np.int64),
         plan=np.zeros(ANSWERS, np.int32),
+        least=np.zeros(ANSWERS, np.int64),
         older=np.zeros(ANSWERS, np.int32),
         newest=np.zeros(members, np.int32),
         used=np.zeros(2, np.int64),

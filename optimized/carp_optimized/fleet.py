@@ -18,7 +18,6 @@ from carp_optimized.arrays import (
     UNCHANGED,
     Answers,
     Ints,
-    Longs,
     Options,
     Polish,
     Records,
@@ -176,13 +175,12 @@ class Fleet:
         def attempt() -> bool:
             work.queue[:size] = self._order
             work.queue[size] = robot
-            work.plans[:] = self._records
             work.stream[0] = (options.seed + robot) % 2**64
             return add_robot(self._native, self._empty, scratch.work, scratch.answers, scratch.options, size, now)
 
         if self._call(attempt):
             self._order = work.queue[: size + 1].copy()
-            self._records = work.plans.copy()
+            self._records = self._state.reserved.copy()
             return True
         return options.fallback is not None and self._fall_back(robot, now, Shuffled(options.fallback, options.seed))
 
@@ -292,8 +290,8 @@ class Fleet:
     def _call(self, function: Callable[[], T]) -> T:
         """Call a compiled function, again with more room if there was too little; refuse ticks that are too large."""
         while True:
-            used = self._state.records.used.copy()
-            counters = self._state.counters.copy()
+            used = self._state.records.used.tolist()
+            counters = self._state.counters.tolist()
             records, places = self._state.records, self._state.windows.start.size
             try:
                 return function()
@@ -306,7 +304,7 @@ class Fleet:
                 message = f"a plan would need ticks beyond {LARGEST}; {encoding.NO_LIMIT_THERE}"
                 raise Refusal("limit", "$.robots", "limit/ticks", message) from None
 
-    def _rebuild(self, used: Longs, counters: Longs, records: Records, places: int) -> None:
+    def _rebuild(self, used: Sequence[int], counters: Sequence[int], records: Records, places: int) -> None:
         """Go back to the plans held before a call that was broken off, with that room."""
         self._state.counters[:] = counters
         records.used[:] = used

@@ -21,7 +21,7 @@ from carp_optimized.orders import draw_orders
 from carp_optimized.records import cost_of, same_plan
 from carp_optimized.references import Native
 from carp_optimized.replanning import could_use_freed, forget_freed, note_freed, replan
-from carp_optimized.search import find_plan
+from carp_optimized.search import find_plan, find_plan_by
 from carp_optimized.windows import give_rank, plan_fits, reserve, withdraw
 
 
@@ -37,7 +37,7 @@ def add_robot(  # noqa: C901 - Algorithm 1 from its first line to its last
 ) -> bool:
     """Add the last robot of the queue of `work` to the `size` before it; whether it got a plan.
 
-    If so, the queue and the plans become those of the best candidate. The windows hold the plans before and afterwards.
+    If so, the queue becomes that of the best candidate. The windows hold the plans before and afterwards.
     """
     state = state_at(native)
     empty = state_at(native_empty)
@@ -83,7 +83,6 @@ def add_robot(  # noqa: C901 - Algorithm 1 from its first line to its last
     settle(state, work.best_order, work.best_plans, robots)
     for k in range(robots):
         work.queue[k] = work.best_order[k]
-        work.plans[work.queue[k]] = work.best_plans[k]
     return True
 
 
@@ -99,7 +98,7 @@ def begin(state: State, work: Work, size: int, shortest: int, now: int) -> int:
     work.alone[0] = NONE
     for k in range(size):
         robot = int(work.queue[k])
-        record = int(work.plans[robot])
+        record = int(state.reserved[robot])
         work.outside[k] = robot
         work.before[robot] = record
         work.held[robot] = record
@@ -200,16 +199,19 @@ def plan_alone(state: State, work: Work, count: int, now: int, skip_unchanged: b
 
     The member taken in last comes with its plan among the robots outside. It saw those before it, none of which has
     changed in this round, so what was taken back does not touch it; those behind it were added since.
+    A plan that still fits can be found again, so none that arrives later is.
     """
     for member in range(count):
         record = int(work.alone[member])
         is_last = member == count - 1
-        is_known = record != NONE and skip_unchanged and state.records.expansions[record] != UNKNOWN
-        if is_known and (is_last or not could_use_freed(state, record, NEVER)) and plan_fits(state, record):
+        still_fits = record != NONE and plan_fits(state, record)
+        is_known = still_fits and skip_unchanged and state.records.expansions[record] != UNKNOWN
+        if is_known and (is_last or not could_use_freed(state, record, NEVER)):
             state.counters[UNCHANGED] += 1
             continue
         robot = int(work.members[member])
-        work.alone[member] = find_plan(state, robot, int(work.before[robot]), now, NEVER)
+        latest = int(state.records.arrival[record]) if still_fits else NEVER
+        work.alone[member] = find_plan_by(state, robot, int(work.before[robot]), now, NEVER, latest)
         if work.alone[member] == NONE:
             for k in range(count):
                 work.alone[k] = NONE

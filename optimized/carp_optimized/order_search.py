@@ -9,15 +9,30 @@ Three kinds of reuse, each of which leaves the best order and its plans as they 
   the same plans are shared, too.
 - Bounds. A robot costs at least what it costs against the robots outside alone, or against some of the plans of the
   prefix: more plans leave fewer ways. A prefix whose cost and those of the robots still to come are not below the
-  limit has no order that is strictly better. All answers known are looked at only before a query would be asked.
+  limit has no order that is strictly better. All answers known are looked at only before a query would be asked. It
+  is asked for a plan that leaves less than the limit to the others, for with another the prefix is cut at once; that
+  there is none tells what the robot costs at least.
 """
 
-from carp_optimized.answers import answer_of, known_answer, learn, number_plan, start_answers
-from carp_optimized.arrays import BOUND, NEVER, NONE, PREFIX, SHARED, Answers, Options, State, Work
+from carp_optimized.answers import answer_of, known_answer, learn, least_of, number_plan, start_answers
+from carp_optimized.arrays import (
+    BOUND,
+    LARGEST,
+    LATE,
+    NEVER,
+    NO_LIMIT,
+    NONE,
+    PREFIX,
+    SHARED,
+    Answers,
+    Options,
+    State,
+    Work,
+)
 from carp_optimized.compiling import compiled
 from carp_optimized.orders import next_permutation, next_row, queries_after, queries_of_rows, take_row
 from carp_optimized.records import cost_of
-from carp_optimized.search import find_plan
+from carp_optimized.search import find_plan_by
 from carp_optimized.windows import reserve, withdraw
 
 
@@ -82,7 +97,8 @@ def start_search(state: State, work: Work, answers: Answers, count: int, options
             work.least[member] = cost_of(state, int(work.alone[member]))
             total += int(work.least[member])
         if options.shared:
-            learn(answers, member, 0, number_plan(state, answers, member, int(work.alone[member])))
+            plan = number_plan(state, answers, member, int(work.alone[member]))
+            learn(answers, member, 0, plan, int(work.least[member]))
     return total
 
 
@@ -110,49 +126,45 @@ def plan_order(
             state.counters[BOUND] += count - place
             return place
         member = int(work.order[place])
+        rest -= int(work.least[member])
         answer = known_answer(state, answers, member, int(work.given[place])) if options.shared else NONE
-        if (
-            answer == NONE
-            and (options.shared and options.bounds)
-            and work.cost[place] + least_rest(state, work, answers, place, count, limit) >= limit
-        ):
-            state.counters[BOUND] += count - place
-            return place
-        record = plan_member(state, work, answers, place, answer, now, options.shared)
+        spare = NO_LIMIT
+        if answer == NONE and options.bounds and limit < NO_LIMIT:
+            others = least_rest(work, answers, place, count) if options.shared else rest
+            spare = limit - int(work.cost[place]) - others
+            if spare <= (least_of(answers, member, int(work.given[place])) if options.shared else work.least[member]):
+                state.counters[BOUND] += count - place
+                return place
+        record = plan_member(state, work, answers, place, answer, spare, now, options.shared)
         if record == NONE:
+            if spare < NO_LIMIT:
+                state.counters[BOUND] += count - place - 1
             return place + 1
         work.chosen[place] = record
         work.cost[place + 1] = work.cost[place] + cost_of(state, record)
-        rest -= int(work.least[member])
         place += 1
     return count + 1 if work.cost[count] < limit else count
 
 
 @compiled
-def least_rest(state: State, work: Work, answers: Answers, place: int, count: int, limit: int) -> int:
-    """A lower bound, at most the limit, of the cost of the members from that place on, by all answers known."""
-    given = int(work.given[place])
+def least_rest(work: Work, answers: Answers, place: int, count: int) -> int:
+    """What the members behind that place cost at least, by all answers known; `NO_LIMIT`: one has no plan."""
     cost = 0
-    for k in range(place, count):
-        member = int(work.order[k])
-        least = int(work.least[member])
-        answer = int(answers.newest[member])
-        while answer != NONE:
-            if int(answers.given[answer]) & ~given == 0:
-                record = answer_of(answers, answer)
-                if record == NONE:
-                    return limit
-                least = max(least, cost_of(state, record))
-            answer = int(answers.older[answer])
+    for k in range(place + 1, count):
+        least = least_of(answers, int(work.order[k]), int(work.given[place]))
+        if least == NO_LIMIT:
+            return NO_LIMIT
         cost += least
-    return min(cost, limit)
+    return cost
 
 
 @compiled
-def plan_member(state: State, work: Work, answers: Answers, place: int, answer: int, now: int, shared: bool) -> int:
+def plan_member(
+    state: State, work: Work, answers: Answers, place: int, answer: int, spare: int, now: int, shared: bool
+) -> int:
     """The record of the plan of the member in that place of the order against those before it, or `NONE`.
 
-    `answer` is the known answer, or `NONE`.
+    `answer` is the known answer, or `NONE`. A plan that is asked for must cost less than `spare`.
     """
     member = int(work.order[place])
     given = int(work.given[place])
@@ -166,10 +178,15 @@ def plan_member(state: State, work: Work, answers: Answers, place: int, answer: 
             reserve(state, int(work.chosen[k]))
         work.reserved[0] = max(int(work.reserved[0]), place)
         robot = int(work.members[member])
-        record = find_plan(state, robot, int(work.before[robot]), now, NEVER)
-        if shared:
-            plan = NONE if record == NONE else number_plan(state, answers, member, record)
-            learn(answers, member, given, plan)
+        latest = min(spare - 1 + int(state.robots.release[robot]), NEVER)
+        record = find_plan_by(state, robot, int(work.before[robot]), now, NEVER, latest)
+        if shared and record != NONE:
+            plan = number_plan(state, answers, member, record)
+            learn(answers, member, given, plan, cost_of(state, record))
+        elif shared and latest > LARGEST:
+            learn(answers, member, given, NONE, NO_LIMIT)
+        elif shared:
+            learn(answers, member, given, LATE, spare)
     work.given[place + 1] = given if plan == NONE else given | (1 << plan)
     return record
 

@@ -72,13 +72,16 @@ def write_expansions(state: State, record: int, expansions: int) -> None:
     records.expansions[record] = expansions
     records.used[2] = first + expansions
     largest = 0
+    regions = 0
     for k in range(expansions - 1, -1, -1):
         resource = int(search.expanded[k])
+        regions |= int(state.graph.region[resource])
         records.expanded[first + k] = resource
         records.ready[first + k] = search.ready[k]
         records.until[first + k] = f - (int(guide[resource]) >> 32) + pace * int(state.graph.duration[resource])
         records.largest[first + k] = largest
         largest = max(largest, int(search.popped[k]))
+    records.regions[record] = regions
 
 
 @compiled
@@ -182,6 +185,7 @@ def keep_records(native: Native[State], kept: Ints) -> None:
             records.enter[visits] = records.enter[k]
             visits += 1
         records.expansions[number] = records.expansions[record]
+        records.regions[number] = records.regions[record]
         first = int(records.expansions_at[record])
         records.expansions_at[number] = expansions
         for k in range(first, first + int(records.expansions[record])):

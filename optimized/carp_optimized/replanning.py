@@ -19,11 +19,11 @@ A query need not be repeated if the windows it would see differ from those it sa
 A plan made earlier and now under way is the same query with fewer ways to begin, so the second case holds for it.
 """
 
-from carp_optimized.arrays import BLOCK, KEPT, NONE, SEVERAL, UNCHANGED, UNKNOWN, Freed, Options, State, Work
+from carp_optimized.arrays import BLOCK, KEPT, NEVER, NONE, SEVERAL, UNCHANGED, UNKNOWN, Freed, Options, State, Work
 from carp_optimized.compiling import compiled
 from carp_optimized.guides import guide_slot
 from carp_optimized.records import same_plan
-from carp_optimized.search import find_plan
+from carp_optimized.search import find_plan_by
 from carp_optimized.windows import end_of_run, evict, last_by, plan_fits, reserve, withdraw
 
 
@@ -31,6 +31,7 @@ from carp_optimized.windows import end_of_run, evict, last_by, plan_fits, reserv
 def forget_freed(freed: Freed) -> None:
     """Set a new mark: nothing has been taken back since."""
     freed.now[0] += 1
+    freed.regions[0] = 0
 
 
 @compiled
@@ -57,14 +58,16 @@ def note_freed(state: State, record: int) -> None:
             freed.latest[resource] = leave
             freed.source[resource] = source
         source = resource
-        note_near(freed, resource, enter, leave)
+        note_near(state, resource, enter, leave)
         for edge in range(int(graph.backward_first[resource]), int(graph.backward_first[resource + 1])):
-            note_near(freed, int(graph.source[edge]), enter, leave)
+            note_near(state, int(graph.source[edge]), enter, leave)
 
 
 @compiled
-def note_near(freed: Freed, resource: int, enter: int, leave: int) -> None:
+def note_near(state: State, resource: int, enter: int, leave: int) -> None:
     """Note that a stay there, or one move away, has been taken back."""
+    freed = state.freed
+    freed.regions[0] |= state.graph.region[resource]
     if freed.near[resource] == freed.now[0]:
         freed.near_earliest[resource] = min(int(freed.near_earliest[resource]), enter)
         freed.near_latest[resource] = max(int(freed.near_latest[resource]), leave)
@@ -79,11 +82,14 @@ def could_use_freed(state: State, record: int, behind: int) -> bool:
     """Whether the query that found the plan could find another now; of a plan that no query found, always.
 
     Robots of a rank above `behind` do not count, among which is the plan's own, for its stays are free to it.
+    Most plans have read nothing in a region where stays were taken back, or next to it.
     """
     freed = state.freed
     records = state.records
     if records.expansions[record] == UNKNOWN:
         return True
+    if records.regions[record] & freed.regions[0] == 0:
+        return False
     mark = int(freed.now[0])
     reach = int(state.robots.pace[records.robot[record]]) * state.longest
     first = int(records.expansions_at[record])
@@ -187,6 +193,7 @@ def replan(state: State, work: Work, size: int, first: int, now: int, options: O
 
     A query takes no account of its own robot and those behind, whose plans stay reserved until they change or are run
     into; only where resources have room for several, whose windows do not tell robots apart, are they lifted first.
+    A plan that still fits can be found again, so none that arrives later is.
     Robots before the position keep their plans; where `kept` is off they are planned anew too, to the same effect, if
     their plans came from queries.
     """
@@ -197,14 +204,16 @@ def replan(state: State, work: Work, size: int, first: int, now: int, options: O
         if work.ended[robot]:
             continue
         record = int(work.held[robot])
-        if record != NONE and stands(state, record, position < first, lifted, options.unchanged):
+        still_fits = record != NONE and is_free(state, record, lifted)
+        if record != NONE and stands(state, record, position < first, still_fits, options.unchanged):
             if lifted:
                 reserve(state, record)
             continue
         if several and not lifted:
             lift(state, work, position, size)
             lifted = True
-        plan = find_plan(state, robot, int(work.before[robot]), now, int(state.rank[robot]) - 1)
+        latest = int(state.records.arrival[record]) if still_fits else NEVER
+        plan = find_plan_by(state, robot, int(work.before[robot]), now, int(state.rank[robot]) - 1, latest)
         if plan == NONE:
             lift(state, work, position, size)
             leave_without_plan(work, position, size)
@@ -234,11 +243,16 @@ def exchange_plan(state: State, robot: int, record: int, plan: int, lifted: bool
 
 
 @compiled
-def stands(state: State, record: int, is_before: bool, lifted: bool, skip_unchanged: bool) -> bool:
-    """Whether the plan need not be asked for again; if none is `lifted`, one that is reserved still fits."""
+def is_free(state: State, record: int, lifted: bool) -> bool:
+    """Whether the plan still fits; if none is `lifted`, one that is reserved does."""
+    return plan_fits(state, record) if lifted else bool(state.reserved[state.records.robot[record]] == record)
+
+
+@compiled
+def stands(state: State, record: int, is_before: bool, still_fits: bool, skip_unchanged: bool) -> bool:
+    """Whether the plan need not be asked for again."""
     if is_before and state.records.expansions[record] == UNKNOWN:
         return True
-    still_fits = plan_fits(state, record) if lifted else state.reserved[state.records.robot[record]] == record
     if (
         skip_unchanged
         and still_fits

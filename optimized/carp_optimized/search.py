@@ -9,6 +9,7 @@ from carp_optimized.records import start_record, write_record
 from carp_optimized.windows import end_of_run, fits, is_exchange, last_by, plan_fits, skip_below, start_of_run
 
 EVERY = (1 << BLOCK) - 1
+LOW = (1 << 32) - 1
 STANDING = 0  # the slot of no row: a copy of the window in which the robot is when it sets out
 
 
@@ -78,8 +79,8 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
 ) -> int:
     """A* from the resource, entered at `enter` and left from `ready` on; the number of expansions, 0: no plan.
 
-    No plan arrives before the least f in the queue, so that the search ends where that is later than `latest`.
-
+    A window of a larger f than `latest` is in no plan that arrives by then, nor is one expanded before the goal of such
+    a plan is: no window of that kind is put into the queue, and the windows expanded stay the same.
     The window in which the plan ends is then `goal[0]`. The window in which the robot stands can be entered again
     if it has stayed at its goal for too long to end there; otherwise entering it again leads nowhere new.
     The best of the windows reached last waits outside the heap, for it is often the next. Windows between which there
@@ -97,6 +98,8 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
     pace = int(state.robots.pace[robot])
     parks = state.parks
     counts_all = behind == NEVER
+    is_bounded = latest <= LARGEST
+    largest_key = (latest << 32) + LOW
 
     if guide[resource] < 0:
         if guide[resource] == TOO_FAR:
@@ -113,6 +116,8 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
     parent[STANDING] = NONE
     best = STANDING
     best_key = (enter << 32) + int(guide[resource])
+    if best_key > largest_key:
+        return 0
     size = 0
     expansions = 0
     beyond = False
@@ -130,8 +135,6 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
         else:
             key = best_key
             node = best
-        if key >> 32 > latest:
-            return 0
         best = NONE
         best_key = NO_LIMIT
         resource = int(windows.resource[node])
@@ -158,6 +161,8 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
             toll = int(guide[target])
             if toll < 0:
                 beyond |= toll == TOO_FAR
+                continue
+            if is_bounded and (ready << 32) + toll > largest_key:
                 continue
             need = pace * int(graph.duration[target])
             first = int(windows.offset[target])
@@ -201,9 +206,11 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
                 if entry > LARGEST or entry + (toll >> 32) > LARGEST:
                     beyond = True
                     continue
+                key = (entry << 32) + toll
+                if key > largest_key:
+                    break
                 reached[window] = label - entry
                 parent[window] = node
-                key = (entry << 32) + toll
                 if key < best_key:
                     if best != NONE:
                         push(keys, nodes, size, best_key, best)
@@ -213,6 +220,6 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
                 else:
                     push(keys, nodes, size, key, window)
                     size += 1
-    if beyond:
+    if beyond and not is_bounded:
         raise TicksExhausted
     return 0
