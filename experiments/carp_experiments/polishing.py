@@ -219,7 +219,7 @@ def gaps_table(methods: Sequence[Polished]) -> Table:
     """What the totals are above the bound."""
     title = (
         "Of each method the mean total over the assignments without an unplanned robot, and by how many per cent it is "
-        "above the lower bound, with its 95 % interval"
+        "above the lower bound, with its 95 % interval if there are several"
     )
     return methods_table("polish-gaps", title, methods, _gap)
 
@@ -271,8 +271,13 @@ def totals_figure(floors: Sequence[Floor], methods: Sequence[Polished]) -> Figur
     """What the methods and the bound are above the sum of shortest paths: the optimum lies between."""
     lines = {name: [(each.map, each.above) for each in methods if each.method == name] for name in METHODS}
     lines["lower bound"] = [(each.map, each.above) for each in floors]
-    title = "Total above the sum of shortest paths: the optimum lies between the bound and the polished plans"
-    return Figure("polish-totals", title, (MAP_AXIS, "per cent"), lines, logarithmic=True)
+    return Figure(
+        "polish-totals",
+        "Total and bound above the sum of shortest paths",
+        (MAP_AXIS, "per cent"),
+        lines,
+        logarithmic=True,
+    )
 
 
 def _gap(each: Polished) -> str:
@@ -280,4 +285,5 @@ def _gap(each: Polished) -> str:
 
 
 def _per_cent(interval: Interval) -> str:
-    return f"{interval.estimate:.2f} ± {interval.high - interval.estimate:.2f}"
+    spread = interval.high - interval.estimate
+    return f"{interval.estimate:.2f} ± {spread:.2f}" if spread else f"{interval.estimate:.2f}"

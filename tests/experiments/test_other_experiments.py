@@ -123,8 +123,8 @@ def test_polish_is_summed_up_over_the_assignments_that_do_not_fail() -> None:
         for results in (reached, failed)
     ]
     gaps, bounds, failures = polishing.polish_report(rows, 5).tables
-    assert gaps.rows == (("7", *["110: 10.00 ± 0.00"] * 2, "100: 0.00 ± 0.00", *["110: 10.00 ± 0.00"] * 2),)
-    assert bounds.rows == (("7", "80", "100", "25.00 ± 0.00", "2/2", "2/2", "2.0", "0.5"),)
+    assert gaps.rows == (("7", *["110: 10.00"] * 2, "100: 0.00", *["110: 10.00"] * 2),)
+    assert bounds.rows == (("7", "80", "100", "25.00", "2/2", "2/2", "2.0", "0.5"),)
     assert failures.rows == (("7", "1/2 (1.00)", *["0/2 (0.00)"] * 4),)
 
 
