@@ -186,9 +186,11 @@ class Fleet:
 
     def polishing(self, seed: int) -> Native[Polish]:
         """What to polish with, for this fleet alone, from the plans that it has."""
-        found = [
-            self._call(partial(passes.find_one, self._empty, robot, NONE, 0)) for robot in range(len(self._records))
-        ]
+
+        def find_alone(robot: int) -> int:
+            return passes.find_one(self._empty, robot, NONE, 0)  # another one, if there was too little room
+
+        found = [self._call(partial(find_alone, robot)) for robot in range(len(self._records))]
         alone = np.array(found, np.int32)
         has_path = alone != NONE
         least = np.zeros(alone.size, np.int64)

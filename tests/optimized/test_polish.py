@@ -7,6 +7,9 @@ from hypothesis import strategies as st
 import carp_optimized
 import carp_optimized.fleet
 import carp_reference
+from carp_optimized import encoding
+from carp_optimized.arrays import Records
+from carp_optimized.recording import enlarged
 from carp_oracle.generate import Fleet, Grid, Range, Traits, grid_instance
 from carp_spec import Carp, Instance, Refusal, Solution, judge, total_cost
 from carp_verify.strategies import PlannedInstance, Sizes, planned_instances
@@ -82,6 +85,30 @@ def test_plans_that_are_not_kept_take_no_room() -> None:
     before = int(fleet._state.records.used[0])
     rounds = fleet.polish(fleet.polishing(1), 200)
     assert fleet._state.records.used[0] - before < rounds, "a round plans several members"
+
+
+def test_plans_alone_for_which_there_is_too_little_room_get_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    instance = grid_instance(Grid(), Fleet(robots=12, seed=1))
+    fleet = carp_optimized.fleet.Fleet(instance)
+    fleet.carp(range(12))
+    made = fleet.polish(fleet.polishing(1), 50), fleet.plans
+
+    enlargements: list[Records] = []
+
+    def enlarged_seldom(records: Records) -> Records:
+        enlargements.append(records)
+        assert len(enlargements) < 20, "the room is not used"
+        return enlarged(records)
+
+    monkeypatch.setattr("carp_optimized.fleet.enlarged", enlarged_seldom)
+    narrow = carp_optimized.fleet.Fleet(instance)
+    narrow._take(encoding.with_room(narrow._state, narrow._state.windows.start.size, encoding.no_records(2, 30, 30)))
+    narrow.carp(range(12))
+    assert enlargements
+    before = len(enlargements)
+    polishing = narrow.polishing(1)
+    assert len(enlargements) > before
+    assert (narrow.polish(polishing, 50), narrow.plans) == made
 
 
 def test_robots_without_a_plan_get_one() -> None:
