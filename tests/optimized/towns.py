@@ -12,12 +12,11 @@ from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot
 
 @dataclass(frozen=True, slots=True)
 class Town:
-    """Robots, each with start, goal, release and pace; durations and capacities that are not 1."""
+    """Robots, each with start, goal, release and pace; durations that are not 1."""
 
     edges: str
     robots: Sequence[tuple[str, str, int, int]]
     durations: Mapping[str, int] = field(default_factory=dict)
-    capacities: Mapping[str, int] = field(default_factory=dict)
     after_goal: AfterGoal = "vanish"
     now: int = 0
     m: int = 2
@@ -28,7 +27,7 @@ class Town:
         """The robots have numbers in the order of their planning; the last one stands on `z`."""
         edges = tuple((pair[0], pair[1]) for pair in self.edges.split())
         names = sorted({name for edge in edges for name in edge} | {"z"})
-        cells = tuple(Resource(name, self.capacities.get(name, 1), self.durations.get(name, 1)) for name in names)
+        cells = tuple(Resource(name, duration=self.durations.get(name, 1)) for name in names)
         robots = [Robot(number, *each) for number, each in enumerate((*self.robots, ("z", "z", self.now, 1)))]
         return Instance(ResourceGraph(cells, edges, self.is_directed), tuple(robots), self.after_goal)
 
