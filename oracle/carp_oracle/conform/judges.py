@@ -174,8 +174,8 @@ def _polish_findings(case: Case, after: Solution, level: Level) -> Iterator[Find
         yield wrong(violation.rule, violation.message)
     (missing, total), (missing_before, total_before) = (_worth(case, each.plans) for each in (after, case.solution))
     if not is_kept((missing_before, total_before), (missing, total)):
-        worse = f"{missing} robots are unplanned with a total of {total}"
-        yield wrong(is_kept.id, f"{worse}, and {missing_before} with {total_before} were in the solution to polish")
+        given = f"the solution to polish leaves {missing_before} robots unplanned, with a total of {total_before}"
+        yield wrong(is_kept.id, f"{given}, and the answer leaves {missing}, with {total}")
     if level >= Level.EXACT:
         expected = engine_named("reference").polish(case.instance, case.solution, iterations=POLISH_ROUNDS)
         yield from _same_solution(after, expected, "polish")
