@@ -52,7 +52,7 @@ def add_robot(  # noqa: C901 - Algorithm 1 from its first line to its last
     rounds = min(begin(state, work, size, shortest, now), options.m - 1)
     best = NO_LIMIT
     if options.baseline or rounds == 0:
-        best = try_baseline(state, work, size, new, now)
+        best = try_baseline(state, work, size, shortest, now, options.unchanged)
     with_plan = size
     for turn in range(1, rounds + 1):
         taken = nearest(state, work, size, turn)
@@ -121,9 +121,17 @@ def give_ranks(state: State, robots: Ints, count: int) -> None:
 
 
 @compiled
-def try_baseline(state: State, work: Work, size: int, new: int, now: int) -> int:
-    """Make the plans unchanged, and one for the new robot, the best candidate; its cost."""
-    plan = find_plan(state, new, NONE, now, NEVER)
+def try_baseline(state: State, work: Work, size: int, shortest: int, now: int, skip_unchanged: bool) -> int:
+    """Make the plans unchanged, and one for the new robot, the best candidate; its cost.
+
+    If they leave room for its plan on the empty graph, that is found again (`carp_optimized.replanning`).
+    """
+    new = int(work.queue[size])
+    if skip_unchanged and plan_fits(state, shortest):
+        state.counters[UNCHANGED] += 1
+        plan = shortest
+    else:
+        plan = find_plan(state, new, NONE, now, NEVER)
     work.alone[0] = plan
     if plan == NONE:
         return NO_LIMIT
