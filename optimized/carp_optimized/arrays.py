@@ -131,8 +131,10 @@ class Records(NamedTuple):
 
     The visits of a record are `visits[record]` entries of `resource` and `enter` from `visits_at[record]` on; each
     ends where the next begins, the last at `leave[record]`; that begins at `arrival[record]`. `spots[record]` holds
-    what bounds distances: the first tick and the arrival, the sums of x and y at all ticks between, x and y of the
-    start and of the goal. The expansions are entries of `expanded`, `ready`, `until` and
+    what bounds distances: the first tick and the arrival; what to add, for x and for y, to (goal * t - start * s) to
+    have the sum of the places at all ticks from s, by the first, to t, after the arrival; x and y of the start and of
+    the goal.
+    The expansions are entries of `expanded`, `ready`, `until` and
     `largest` from `expansions_at[record]` on: a resource, the first and last tick at which leaving it could matter, and
     the largest key popped after it; `regions[record]` has the bits of their regions. `used` counts records, visits
     and expansions.

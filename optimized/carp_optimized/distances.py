@@ -41,8 +41,8 @@ def term(dx: int, dy: int) -> int:
 
 
 @compiled
-def is_apart(state: State, one: int, other: int, best: Mean) -> bool:
-    """Whether the distance of two plans cannot be below the best, by their mean positions alone.
+def is_apart(state: State, one: int, other: int, whole: int) -> bool:
+    """Whether the distance of two plans cannot be below whole + 1, by their mean positions alone.
 
     The mean of distances is no less than the distance of the means, and each term is less than 1 below what it rounds.
     Both sides are multiplied by the ticks, and not compared where their squares might not fit.
@@ -53,11 +53,9 @@ def is_apart(state: State, one: int, other: int, best: Mean) -> bool:
     b = state.records.spots[other]
     first = min(int(a[0]), int(b[0]))
     end = max(int(a[1]), int(b[1])) + 1
-    x = int(a[4]) * (int(a[0]) - first) + int(a[2]) + int(a[6]) * (end - int(a[1]))
-    y = int(a[5]) * (int(a[0]) - first) + int(a[3]) + int(a[7]) * (end - int(a[1]))
-    x -= int(b[4]) * (int(b[0]) - first) + int(b[2]) + int(b[6]) * (end - int(b[1]))
-    y -= int(b[5]) * (int(b[0]) - first) + int(b[3]) + int(b[7]) * (end - int(b[1]))
-    limit = ((best.whole + 2) * (end - first) >> 16) + 1
+    x = int(a[2]) - int(b[2]) + (int(a[6]) - int(b[6])) * end - (int(a[4]) - int(b[4])) * first
+    y = int(a[3]) - int(b[3]) + (int(a[7]) - int(b[7])) * end - (int(a[5]) - int(b[5])) * first
+    limit = ((whole + 2) * (end - first) >> 16) + 1
     if max(abs(x), abs(y), limit) >= 1 << 31:
         return False
     return x * x + y * y >= limit * limit
@@ -71,8 +69,6 @@ def distance_below(state: State, one: int, other: int, best: Mean) -> Mean:
     """
     records = state.records
     split = state.split
-    if is_apart(state, one, other, best):
-        return best
     end = max(int(records.arrival[one]), int(records.arrival[other])) + 1
     i = int(records.visits_at[one])
     j = int(records.visits_at[other])
@@ -128,7 +124,10 @@ def nearest(state: State, work: Work, size: int, count: int) -> int:
             continue
         own = int(work.trajectories[robot])
         for member in range(count):
-            mean = distance_below(state, own, int(work.trajectories[work.members[member]]), best)
+            other = int(work.trajectories[work.members[member]])
+            if is_apart(state, own, other, best.whole):
+                continue
+            mean = distance_below(state, own, other, best)
             if is_less(mean, best):
                 best = mean
                 chosen = position

@@ -9,7 +9,7 @@ import numpy as np
 
 from carp_optimized.arrays import MOST_MEMBERS, NEVER, NONE, Numbers, Polish, Records, State
 from carp_optimized.compiling import compiled, entry
-from carp_optimized.distances import Mean, distance_below, is_less
+from carp_optimized.distances import Mean, distance_below, is_apart, is_less
 from carp_optimized.natives import polish_at, state_at
 from carp_optimized.orders import next_number
 from carp_optimized.records import cost_of
@@ -201,6 +201,8 @@ def rank_near(state: State, polish: Polish, pivot: int) -> int:
         farthest = Mean(1 << (31 + state.split), 0, 1)  # more than any term
         if count == MOST_MEMBERS - 1:
             farthest = Mean(int(polish.whole[count - 1]), int(polish.rest[count - 1]), int(polish.ticks[count - 1]))
+        if is_apart(state, record, int(polish.plans[pivot]), farthest.whole):
+            continue
         mean = distance_below(state, record, int(polish.plans[pivot]), farthest)
         if is_less(mean, farthest):
             count = insert(polish, count, robot, mean)

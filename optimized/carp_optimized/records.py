@@ -99,14 +99,16 @@ def close_record(state: State, record: int) -> None:
         sum_y += ticks * int(graph.y[records.resource[k]])
     records.arrival[record] = records.enter[last]
     spots = records.spots[record]
+    start = int(records.resource[first])
+    goal = int(records.resource[last])
     spots[0] = records.enter[first]
     spots[1] = records.enter[last]
-    spots[2] = sum_x
-    spots[3] = sum_y
-    spots[4] = graph.x[records.resource[first]]
-    spots[5] = graph.y[records.resource[first]]
-    spots[6] = graph.x[records.resource[last]]
-    spots[7] = graph.y[records.resource[last]]
+    spots[2] = sum_x + int(graph.x[start]) * int(spots[0]) - int(graph.x[goal]) * int(spots[1])
+    spots[3] = sum_y + int(graph.y[start]) * int(spots[0]) - int(graph.y[goal]) * int(spots[1])
+    spots[4] = graph.x[start]
+    spots[5] = graph.y[start]
+    spots[6] = graph.x[goal]
+    spots[7] = graph.y[goal]
     records.used[0] = record + 1
     records.used[1] = last + 1
 
