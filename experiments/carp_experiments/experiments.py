@@ -109,7 +109,7 @@ EXPERIMENTS = (
         "polish",
         "How far the planner is from a proved lower bound, and the polished planner.",
         Profile(100, 100, ALL_MAPS),
-        Profile(20, 20, (10, 20)),
+        Profile(8, 20, (10, 20)),
         lambda profile: polish_cases(profile.assignments, profile.maps, profile.robots),
         lambda rows, profile: polish_report(rows, profile.robots),
     ),
