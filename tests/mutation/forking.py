@@ -36,7 +36,7 @@ import tests.conftest  # noqa: F401 - the profile
 from cosmic_ray.commands.init import _all_work_items
 from cosmic_ray.mutating import mutate_code
 from cosmic_ray.plugins import get_operator
-from tests.optimized.arrivals import Arrivals, arrivals
+from tests.optimized.arrivals import Arrivals, arrivals, convoy
 from tests.optimized.towns import TOWNS
 
 import carp_reference
@@ -49,6 +49,7 @@ MODULES = ("replanning", "order_search", "answers", "neighbourhood", "orders", "
 LEFT_OUT = ("_BitAnd", "_BitOr", "_BitXor", "_Div", "_FloorDiv", "_LShift", "_Mod", "_Pow", "_RShift", "_Is", "_IsNot")
 QUESTIONS = 150
 FLEETS = (*range(120), 157, 202, 209, 307, 330, 381, 435, 466, 596, 935)  # the last ones notice what others do not
+CONVOYS = 10
 SECONDS = 4  # of the processor, for one case
 BYTES = 4 << 30
 KINDS = ("kept", "unchanged", "prefixes", "shared", "bounds")
@@ -117,7 +118,7 @@ def cases() -> list[Case]:
         expected = ask(carp_reference.plan, carp_reference.add, subject, planner)
         choices = {CHOICES[0], CHOICES[number % len(CHOICES)]} if isinstance(planner, Neighbourhood) else {CHOICES[0]}
         asked += [partial(ask_question, subject, planner, choice, expected) for choice in choices]
-    fleets = (arrivals(number) for number in FLEETS)
+    fleets = (*map(arrivals, FLEETS), *map(convoy, range(CONVOYS)))
     return [*asked, *(partial(ask_fleet, fleet, fleet.by_reference()) for fleet in fleets), *map(as_case, TESTS)]
 
 

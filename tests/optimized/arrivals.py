@@ -103,6 +103,22 @@ def arrivals(number: int) -> Arrivals:
     return Arrivals(instance, tuple(before), tuple(added), draw_options(draw), draw_reuse(draw))
 
 
+def convoy(number: int) -> Arrivals:
+    """Many robots pass few resources one behind the other, so that there are more windows than are compared at once."""
+    draw = Draw(splitmix64(next(splitmix64(12)) + number))
+    size = draw.between(6, 9)
+    cells = tuple(Resource(k, duration=draw.between(1, 2), x=k, y=draw.between(0, 1)) for k in range(size))
+    tree = tuple((draw.between(max(0, k - 2), k - 1), k) for k in range(1, size))
+    robots = tuple(
+        Robot(k, draw.between(0, size - 1), draw.between(0, size - 1), draw.between(0, 90), draw.between(1, 2))
+        for k in range(30)
+    )
+    options = Neighbourhood(m=draw.between(2, 3), baseline=draw.happens(2))
+    return Arrivals(
+        Instance(ResourceGraph(cells, tree), robots), (), tuple((each.id, 0) for each in robots), options, Reuse()
+    )
+
+
 def draw_instance(draw: Draw) -> Instance:
     """As many robots as resources, or half as many."""
     size = draw.between(4, 9) if draw.happens(3) else draw.between(9, 16)

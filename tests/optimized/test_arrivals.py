@@ -1,7 +1,7 @@
 """Robots that are added one after the other to a fleet that stays up get the reference's plans, whatever is reused."""
 
 import pytest
-from tests.optimized.arrivals import arrivals, scaled
+from tests.optimized.arrivals import arrivals, convoy, scaled
 
 QUESTIONS = 600
 PARTS = 6
@@ -18,4 +18,10 @@ def test_robots_that_arrive_while_time_passes_are_planned_alike(part: int) -> No
 def test_nearest_robots_are_the_same_however_far_and_slow(space: int, time: int) -> None:
     for number in range(QUESTIONS, QUESTIONS + 40):
         question = scaled(arrivals(number), space, time)
+        assert question.by_fleet()[0] == question.by_reference(), number
+
+
+def test_robots_of_a_convoy_are_planned_alike() -> None:
+    for number in range(40):
+        question = convoy(number)
         assert question.by_fleet()[0] == question.by_reference(), number

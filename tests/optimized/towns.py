@@ -55,6 +55,12 @@ TOWNS = {
         now=1,
         m=3,
     ),
+    # when 0 is gone, 1 goes straight to t, from where 2 comes at the same tick
+    "one behind that would be passed through": Town(
+        "at tb tg tw au uv vg",
+        [("b", "t", 2, 1), ("a", "g", 2, 1), ("t", "a", 0, 1)],
+        durations={"t": 3, "u": 3},
+    ),
     # 3 may go by i or by j, where 1 and 2 keep it from going on, and turns to c at tick 3; from i it would meet 0, and
     # without 0 it comes from i, whose index is smaller, with the key that it had from j, the largest until its goal
     "a way that is as good": Town(
