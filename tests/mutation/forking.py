@@ -36,7 +36,7 @@ import tests.conftest  # noqa: F401 - the profile
 from cosmic_ray.commands.init import _all_work_items
 from cosmic_ray.mutating import mutate_code
 from cosmic_ray.plugins import get_operator
-from tests.optimized.arrivals import Arrivals, arrivals, convoy
+from tests.optimized.arrivals import Arrivals, arrivals, convoy, scaled
 from tests.optimized.towns import TOWNS
 
 import carp_reference
@@ -118,7 +118,7 @@ def cases() -> list[Case]:
         expected = ask(carp_reference.plan, carp_reference.add, subject, planner)
         choices = {CHOICES[0], CHOICES[number % len(CHOICES)]} if isinstance(planner, Neighbourhood) else {CHOICES[0]}
         asked += [partial(ask_question, subject, planner, choice, expected) for choice in choices]
-    fleets = (*map(arrivals, FLEETS), *map(convoy, range(CONVOYS)))
+    fleets = (*map(arrivals, FLEETS), *map(convoy, range(CONVOYS)), *(scaled(arrivals(k), 2**26, 1) for k in range(5)))
     return [*asked, *(partial(ask_fleet, fleet, fleet.by_reference()) for fleet in fleets), *map(as_case, TESTS)]
 
 
