@@ -53,7 +53,7 @@ def entry(function: Callable[P, R]) -> Callable[P, R]:
             if not is_cached(call):
                 _forget(call)
                 say_that_it_compiles()
-        return cast("R", dispatcher(*[each.address if isinstance(each, Native) else each for each in arguments]))
+        return cast("R", dispatcher(*[each.address if type(each) is Native else each for each in arguments]))
 
     call.cache = Path(dispatcher.stats.cache_path)  # type: ignore[attr-defined]
     return call

@@ -316,8 +316,8 @@ class Fleet:
 
     def _forget_old_records(self) -> None:
         """Forget records of plans that are no longer held, if they have become many."""
-        used = self._state.records.used
-        if int(used[1]) + int(used[2]) > self._many:
+        _, visits, expansions = self._state.records.used.tolist()
+        if visits + expansions > self._many:
             self.forget()
 
     def forget(self) -> None:
