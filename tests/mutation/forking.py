@@ -56,6 +56,11 @@ KINDS = ("kept", "unchanged", "prefixes", "shared", "bounds")
 CHOICES = list(product((True, False), repeat=len(KINDS)))
 TESTS: Sequence[tuple[str, str, tuple[object, ...]]] = (
     *(("test_replanned_robots", "test_the_robots_behind_get_the_plans_of_the_reference", (name,)) for name in TOWNS),
+    (
+        "test_replanned_robots",
+        "test_a_plan_alone_is_not_taken_over_from_before_a_round_that_left_a_robot_outside_without_a_plan",
+        (),
+    ),
     ("test_same_plans", "test_crowds_are_planned_alike", ()),
     ("test_replanning", "test_a_query_is_repeated_only_where_the_theorem_says_and_else_finds_the_same", ()),
     ("test_reuse", "test_orders_that_begin_alike_share_the_queries_of_their_beginning", (4, 64, 96)),

@@ -3,8 +3,11 @@
 import pytest
 from tests.optimized.towns import TOWNS
 
+import carp_optimized
 import carp_reference
 from carp_optimized.fleet import Fleet
+from carp_oracle.generate import Fleet as Robots
+from carp_oracle.generate import Grid, grid_instance
 from carp_spec import Neighbourhood, Solution
 
 ALONE = Neighbourhood(m=1)
@@ -22,3 +25,10 @@ def test_the_robots_behind_get_the_plans_of_the_reference(name: str) -> None:
         solution = carp_reference.add(instance, solution, robot, now, options)
         fleet.add(robot, now, options)
         assert fleet.plans == solution.plans
+
+
+def test_a_plan_alone_is_not_taken_over_from_before_a_round_that_left_a_robot_outside_without_a_plan() -> None:
+    """What was freed in that round is forgotten; 1 of 3,000 fleets like this one has another plan if that is not."""
+    instance = grid_instance(Grid(5, 4, map=1, map_seed=244), Robots(9, seed=244))
+    planner = Neighbourhood(m=5)
+    assert carp_optimized.plan(instance, planner) == carp_reference.plan(instance, planner)
