@@ -61,6 +61,7 @@ TESTS: Sequence[tuple[str, str, tuple[object, ...]]] = (
         "test_a_plan_alone_is_not_taken_over_from_before_a_round_that_left_a_robot_outside_without_a_plan",
         (),
     ),
+    ("test_replanned_robots", "test_orders_are_drawn_in_a_round_too_in_which_a_member_has_no_plan", ()),
     ("test_same_plans", "test_crowds_are_planned_alike", ()),
     ("test_replanning", "test_a_query_is_repeated_only_where_the_theorem_says_and_else_finds_the_same", ()),
     ("test_reuse", "test_orders_that_begin_alike_share_the_queries_of_their_beginning", (4, 64, 96)),

@@ -32,3 +32,10 @@ def test_a_plan_alone_is_not_taken_over_from_before_a_round_that_left_a_robot_ou
     instance = grid_instance(Grid(5, 4, map=1, map_seed=244), Robots(9, seed=244))
     planner = Neighbourhood(m=5)
     assert carp_optimized.plan(instance, planner) == carp_reference.plan(instance, planner)
+
+
+def test_orders_are_drawn_in_a_round_too_in_which_a_member_has_no_plan() -> None:
+    """The next round draws the numbers that follow."""
+    instance = grid_instance(Grid(5, 4, map=2, map_seed=11), Robots(8, seed=11))
+    planner = Neighbourhood(m=5, sample=9, baseline=False, seed=11)
+    assert carp_optimized.plan(instance, planner) == carp_reference.plan(instance, planner)
