@@ -9,6 +9,7 @@ from tests.optimized.paper_sized import FOUR, MAPS, Question, read_digests
 
 import carp_optimized
 from carp_optimized import Reuse
+from carp_optimized.arrays import ANSWERS, PLANS
 from carp_optimized.fleet import Fleet
 from carp_oracle.generate import Fleet as Robots
 from carp_oracle.generate import Grid, grid_instance
@@ -104,3 +105,16 @@ def test_bounds_count_the_queries_that_would_have_been_asked(sample: int | None,
     alone = sum(range(2, 5 + 1))
     assert with_it.bounds > 0
     assert with_it.asked - alone + with_it.bounds == without.asked
+
+
+def test_more_plans_and_answers_than_there_is_room_for_change_no_plan() -> None:
+    instance = grid_instance(Grid(6, 6, map=0, map_seed=34), Robots(14, seed=34))
+    planner = Neighbourhood(m=7)
+    fleet = Fleet(instance)
+    most = [0, 0]
+    for robot in range(14):
+        fleet.add(robot, 0, planner)
+        assert fleet._scratch is not None
+        most = [max(pair) for pair in zip(most, fleet._scratch.answers.fields.used.tolist(), strict=True)]
+    assert most == [PLANS, ANSWERS]
+    assert fleet.plans == carp_optimized.plan(instance, planner, reuse=replace(Reuse(), shared=False)).plans
