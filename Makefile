@@ -86,7 +86,7 @@ coverage: install
 # Works on a copy; `make mutation-carp_spec` for one package. tests/mutation/survivors.md explains what is left.
 mutation: mutation-carp_spec mutation-carp_reference mutation-carp_optimized
 
-# The compiled planner's reuse, run uncompiled, by a driver of its own that forks for each mutant; half an hour.
+# The compiled planner's reuse, run uncompiled, by a driver of its own that forks for each mutant.
 mutation-carp_optimized: install
 	nice $(BIN)/python -m tests.mutation.forking
 
@@ -97,11 +97,11 @@ mutation-%: install
 	cp -r build/mutation/$* build/mutation/$*-original
 	cd build/mutation/$* && export ORIGINAL=$(CURDIR)/build/mutation/$*-original PATH=$(CURDIR)/$(BIN):$$PATH PYTHONPATH=spec:reference:verify \
 	    PYTHONDONTWRITEBYTECODE=1 HYPOTHESIS_PROFILE=mutation && \
-	cosmic-ray init tests/mutation/$*.toml session.sqlite && \
-	cr-filter-operators session.sqlite tests/mutation/$*.toml && \
+	cosmic-ray init tests/mutation/$*.toml mutants.sqlite && \
+	cr-filter-operators mutants.sqlite tests/mutation/$*.toml && \
 	cosmic-ray baseline tests/mutation/$*.toml && \
-	nice cosmic-ray exec tests/mutation/$*.toml session.sqlite && \
-	cr-report --surviving-only session.sqlite
+	nice cosmic-ray exec tests/mutation/$*.toml mutants.sqlite && \
+	cr-report --surviving-only mutants.sqlite
 
 clean:
 	rm -rf .venv
