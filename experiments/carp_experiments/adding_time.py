@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
+from carp_experiments.campaign import key_on_map
 from carp_experiments.quality import ALGORITHMS, ROBOTS, grid_fleet, outcome, seeded
 from carp_experiments.report import Figure, Report, Table
 from carp_experiments.statistics import Interval, mean_interval
@@ -48,7 +49,7 @@ class TimeCase:
     @property
     def key(self) -> str:
         """Assignments and maps in their order."""
-        return f"assignment {self.assignment:03} map {self.map:02}"
+        return key_on_map(self.map, self.assignment)
 
     def run(self) -> Row:
         """Nanoseconds at the first robot, at every fifth and at the last; and how many robots each planned."""
@@ -104,11 +105,6 @@ def plan_first(fleet: "Fleet", planner: Planner, k: int) -> None:
             fleet.carp(sorted(range(k), key=lambda robot: -fleet.ticks_to_goal(robot)))
         case _:
             fleet.carp(range(k))
-
-
-def time_cases(assignments: int, maps: Sequence[int], robots: int) -> tuple[TimeCase, ...]:
-    """The cases of the experiment, assignment by assignment."""
-    return tuple(TimeCase(map, assignment, robots) for assignment in range(assignments) for map in maps)
 
 
 @dataclass(frozen=True, slots=True)

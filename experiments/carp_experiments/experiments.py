@@ -4,16 +4,16 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from carp_experiments import quality
-from carp_experiments.adding_time import PAPERS_MAP, time_cases, time_report
-from carp_experiments.campaign import Case
-from carp_experiments.polishing import polish_cases, polish_report
+from carp_experiments.adding_time import PAPERS_MAP, TimeCase, time_report
+from carp_experiments.campaign import Case, over_maps
+from carp_experiments.polishing import PolishCase, polish_report
 from carp_experiments.quality_report import quality_report
-from carp_experiments.related_work import related_cases, related_report
+from carp_experiments.related_work import RelatedCase, related_report
 from carp_experiments.report import Report
-from carp_experiments.reuse_counts import reuse_cases, reuse_report
-from carp_experiments.small_gaps import SIDE, gap_cases, gap_report
+from carp_experiments.reuse_counts import ReuseCase, reuse_report
+from carp_experiments.small_gaps import SIDE, GapCase, gap_report
 from carp_experiments.store import Row
-from carp_experiments.unplanned import unplanned_cases, unplanned_report
+from carp_experiments.unplanned import UnplannedCase, unplanned_report
 from carp_spec import Refusal
 
 ALL_MAPS = tuple(range(quality.FULL_MAP + 1))
@@ -69,7 +69,7 @@ EXPERIMENTS = (
         "Experiment 1 of the paper: failures and total cost, over the maps.",
         Profile(500, 100, ALL_MAPS),
         Profile(20, 30, SOME_MAPS),
-        lambda profile: quality.quality_cases(profile.assignments, profile.maps, profile.robots),
+        lambda profile: over_maps(quality.QualityCase, profile.assignments, profile.maps, profile.robots),
         lambda rows, profile: quality_report(rows, profile.robots),
     ),
     Experiment(
@@ -77,7 +77,7 @@ EXPERIMENTS = (
         "Experiment 2 of the paper: time to plan when the k-th robot comes.",
         Profile(500, 100, (PAPERS_MAP,)),
         Profile(20, 50, (PAPERS_MAP,)),
-        lambda profile: time_cases(profile.assignments, profile.maps, profile.robots),
+        lambda profile: over_maps(TimeCase, profile.assignments, profile.maps, profile.robots),
         lambda rows, _: time_report(rows),
     ),
     Experiment(
@@ -85,7 +85,7 @@ EXPERIMENTS = (
         "Queries asked to add a robot, avoided, and why.",
         Profile(500, 100, (PAPERS_MAP,)),
         Profile(20, 50, (PAPERS_MAP,)),
-        lambda profile: reuse_cases(profile.assignments, profile.maps, profile.robots),
+        lambda profile: over_maps(ReuseCase, profile.assignments, profile.maps, profile.robots),
         lambda rows, profile: reuse_report(rows, profile.robots),
     ),
     Experiment(
@@ -93,7 +93,7 @@ EXPERIMENTS = (
         f"Small maps, {SIDE} x {SIDE}, against the proved optimum.",
         Profile(100, 10, ALL_MAPS),
         Profile(20, 6, SOME_MAPS),
-        lambda profile: gap_cases(profile.assignments, profile.maps, profile.robots),
+        lambda profile: over_maps(GapCase, profile.assignments, profile.maps, profile.robots),
         lambda rows, profile: gap_report(rows, profile.robots),
         places=SIDE * SIDE,
     ),
@@ -102,7 +102,7 @@ EXPERIMENTS = (
         "Fixed paths, k shortest and k disjoint, and greedy best-first, against CARP.",
         Profile(100, 100, ALL_MAPS),
         Profile(5, 10, (10, 20)),
-        lambda profile: related_cases(profile.assignments, profile.maps, profile.robots),
+        lambda profile: over_maps(RelatedCase, profile.assignments, profile.maps, profile.robots),
         lambda rows, profile: related_report(rows, profile.robots),
     ),
     Experiment(
@@ -110,7 +110,7 @@ EXPERIMENTS = (
         "How far the planner is from a proved lower bound, and the polished planner.",
         Profile(100, 100, ALL_MAPS),
         Profile(8, 20, (10, 20)),
-        lambda profile: polish_cases(profile.assignments, profile.maps, profile.robots),
+        lambda profile: over_maps(PolishCase, profile.assignments, profile.maps, profile.robots),
         lambda rows, profile: polish_report(rows, profile.robots),
     ),
     Experiment(
@@ -118,7 +118,7 @@ EXPERIMENTS = (
         "What polish leaves unplanned on the sparse maps, and whether it could be planned.",
         Profile(20, 100, SPARSE_MAPS),
         Profile(5, 60, (0, 5)),
-        lambda profile: unplanned_cases(profile.assignments, profile.maps, profile.robots),
+        lambda profile: over_maps(UnplannedCase, profile.assignments, profile.maps, profile.robots),
         lambda rows, _: unplanned_report(rows),
     ),
 )

@@ -13,6 +13,7 @@ from time import process_time_ns
 
 import msgspec
 
+from carp_experiments.campaign import key_on_map
 from carp_experiments.quality import ALGORITHMS, ROBOTS, seeded
 from carp_experiments.quality_report import MAP_AXIS
 from carp_experiments.report import Figure, Report, Table
@@ -44,7 +45,7 @@ class PolishCase:
     @property
     def key(self) -> str:
         """Assignments and maps in their order."""
-        return f"assignment {self.assignment:03} map {self.map:02}"
+        return key_on_map(self.map, self.assignment)
 
     def run(self) -> Row:
         """The sum of shortest paths, the bound, and of each method the robots planned and the total cost.
@@ -104,11 +105,6 @@ def polish_to(
 def reached(instance: Instance, solution: Solution) -> tuple[int, int]:
     """How many robots have a plan, and the total cost of these plans."""
     return len(solution.plans), total_cost(instance, solution.plans)
-
-
-def polish_cases(assignments: int, maps: Sequence[int], robots: int) -> tuple[PolishCase, ...]:
-    """The cases of the experiment, assignment by assignment."""
-    return tuple(PolishCase(map, assignment, robots) for assignment in range(assignments) for map in maps)
 
 
 class PolishRow(msgspec.Struct, frozen=True):

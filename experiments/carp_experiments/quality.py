@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
+from carp_experiments.campaign import key_on_map
 from carp_experiments.statistics import Interval, mean_interval, proportion_interval
 from carp_experiments.store import Row
 from carp_spec import Carp, LongestFirst, Neighbourhood, Planner, Shuffled, total_cost
@@ -55,7 +56,7 @@ class QualityCase:
     @property
     def key(self) -> str:
         """Maps and assignments in their order."""
-        return f"assignment {self.assignment:03} map {self.map:02}"
+        return key_on_map(self.map, self.assignment)
 
     def run(self) -> Row:
         """For each algorithm the robots planned and the total cost; beside them the sum of shortest paths.
@@ -116,13 +117,6 @@ def outcome(fleet: "Fleet") -> tuple[int, int]:
 def seeded(planner: Planner, seed: int) -> Planner:
     """The planner with a seed of its own, if it draws orders."""
     return replace(planner, seed=seed) if isinstance(planner, Shuffled | Neighbourhood) else planner
-
-
-def quality_cases(
-    assignments: int, maps: Sequence[int] = range(FULL_MAP + 1), robots: int = ROBOTS
-) -> tuple[QualityCase, ...]:
-    """The cases of the experiment, assignment by assignment, so that a run that is stopped has whole assignments."""
-    return tuple(QualityCase(map, assignment, robots) for assignment in range(assignments) for map in maps)
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import msgspec
 
+from carp_experiments.campaign import key_on_map
 from carp_experiments.quality import ROBOTS, grid_fleet, outcome
 from carp_experiments.quality_report import MAP_AXIS, SHOWN_MAPS
 from carp_experiments.report import Figure, Report, Table
@@ -36,7 +37,7 @@ class RelatedCase:
     @property
     def key(self) -> str:
         """Assignments and maps in their order."""
-        return f"assignment {self.assignment:03} map {self.map:02}"
+        return key_on_map(self.map, self.assignment)
 
     def run(self) -> Row:
         """For each method the robots planned and the total cost; beside them the cost of each planned robot alone."""
@@ -79,11 +80,6 @@ def schedule(instance: Instance, paths: Sequence[Sequence[Path]]) -> tuple[int, 
         if found:
             plans.append(min(found, key=lambda plan: plan_cost(instance, plan)))
     return len(plans), total_cost(instance, plans)
-
-
-def related_cases(assignments: int, maps: Sequence[int], robots: int) -> tuple[RelatedCase, ...]:
-    """The cases of the experiment, assignment by assignment."""
-    return tuple(RelatedCase(map, assignment, robots) for assignment in range(assignments) for map in maps)
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,7 @@ from math import factorial
 
 import msgspec
 
+from carp_experiments.campaign import key_on_map
 from carp_experiments.quality import ROBOTS, grid_fleet
 from carp_experiments.report import Report, Table
 from carp_experiments.statistics import Interval, mean_interval
@@ -38,7 +39,7 @@ class ReuseCase:
     @property
     def key(self) -> str:
         """Assignments and maps in their order."""
-        return f"assignment {self.assignment:03} map {self.map:02}"
+        return key_on_map(self.map, self.assignment)
 
     def run(self) -> Row:
         """The queries asked by size of the neighbourhood and kinds of reuse, and those avoided by each kind of ours."""
@@ -58,11 +59,6 @@ class ReuseCase:
                 if setting == "all":
                     avoided[str(m)] = {kind: getattr(after, kind) - getattr(before, kind) for kind in after.avoided}
         return {"map": self.map, "assignment": self.assignment, "asked": asked, "avoided": avoided}
-
-
-def reuse_cases(assignments: int, maps: Sequence[int], robots: int) -> tuple[ReuseCase, ...]:
-    """The cases of the experiment, assignment by assignment."""
-    return tuple(ReuseCase(map, assignment, robots) for assignment in range(assignments) for map in maps)
 
 
 @dataclass(frozen=True, slots=True)

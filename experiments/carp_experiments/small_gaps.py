@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import msgspec
 
+from carp_experiments.campaign import key_on_map
 from carp_experiments.quality import ALGORITHMS, outcome, plan_all, seeded
 from carp_experiments.quality_report import MAP_AXIS, SHOWN_MAPS
 from carp_experiments.report import Figure, Report, Table
@@ -41,7 +42,7 @@ class GapCase:
     @property
     def key(self) -> str:
         """Assignments and maps in their order."""
-        return f"assignment {self.assignment:03} map {self.map:02}"
+        return key_on_map(self.map, self.assignment)
 
     def run(self) -> Row:
         """The optimum, or nothing where it was not found in a minute or there is none; robots planned, and total cost.
@@ -78,11 +79,6 @@ class GapCase:
             "decided": best.proved,
             "results": results,
         }
-
-
-def gap_cases(assignments: int, maps: Sequence[int], robots: int) -> tuple[GapCase, ...]:
-    """The cases of the experiment, assignment by assignment."""
-    return tuple(GapCase(map, assignment, robots) for assignment in range(assignments) for map in maps)
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,6 +14,7 @@ from statistics import fmean
 
 import msgspec
 
+from carp_experiments.campaign import key_on_map
 from carp_experiments.quality import ALGORITHMS, ROBOTS, seeded
 from carp_experiments.report import Report, Table
 from carp_experiments.store import Row
@@ -40,7 +41,7 @@ class UnplannedCase:
     @property
     def key(self) -> str:
         """Assignments and maps in their order."""
-        return f"assignment {self.assignment:03} map {self.map:02}"
+        return key_on_map(self.map, self.assignment)
 
     def run(self) -> Row:
         """How many robots are unplanned before; after how many rounds none is; what became of those that stay so.
@@ -173,11 +174,6 @@ def one_by_one(instance: Instance, plans: Sequence[Plan], robots: Sequence[Robot
     made = fleet.plans
     order = tuple(plan.robot for plan in made)
     return Solution(made, order, tuple(robot for robot in instance.robot if robot not in order))
-
-
-def unplanned_cases(assignments: int, maps: Sequence[int], robots: int) -> tuple[UnplannedCase, ...]:
-    """The cases of the experiment, assignment by assignment."""
-    return tuple(UnplannedCase(map, assignment, robots) for assignment in range(assignments) for map in maps)
 
 
 class UnplannedRow(msgspec.Struct, frozen=True):

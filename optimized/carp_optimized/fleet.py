@@ -68,6 +68,7 @@ class Fleet:
         self._many = MANY
         self._scratch: Scratch | None = None
         self._options: Neighbourhood | None = None
+        self._reuse: Reuse | None = None
 
     @property
     def queries(self) -> Queries:
@@ -223,10 +224,10 @@ class Fleet:
 
     def _scratch_for(self, options: Neighbourhood) -> Scratch:
         """The scratch for adding a robot with these options."""
-        if self._scratch is not None and self._options is options:
-            return self._scratch
-        self._options = options
         reuse = self.reuse
+        if self._scratch is not None and self._options is options and self._reuse is reuse:
+            return self._scratch
+        self._options, self._reuse = options, reuse
         kinds = (reuse.kept, reuse.unchanged, reuse.prefixes, reuse.shared, reuse.bounds)
         members, sample = min(options.m, len(self._records) + 1), options.sample or 0
         encoded = Options(members, sample, options.baseline, *kinds)

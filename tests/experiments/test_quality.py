@@ -3,7 +3,8 @@
 import pytest
 
 import carp_optimized
-from carp_experiments.quality import ALGORITHMS, QualityCase, QualityRow, grid_fleet, quality_cases, seeded, summarise
+from carp_experiments.campaign import over_maps
+from carp_experiments.quality import ALGORITHMS, QualityCase, QualityRow, grid_fleet, seeded, summarise
 from carp_experiments.quality_report import quality_report
 from carp_experiments.store import Row
 from carp_spec import Refusal, total_cost
@@ -55,7 +56,12 @@ def test_what_is_measured_on_one_assignment_counts_as_one_over_all_maps() -> Non
 
 
 def test_cases_come_assignment_by_assignment() -> None:
-    assert [(case.assignment, case.map) for case in quality_cases(2, (3, 5))] == [(0, 3), (0, 5), (1, 3), (1, 5)]
+    assert [(case.assignment, case.map) for case in over_maps(QualityCase, 2, (3, 5), 30)] == [
+        (0, 3),
+        (0, 5),
+        (1, 3),
+        (1, 5),
+    ]
 
 
 def test_rows_are_read_as_they_were_written() -> None:

@@ -118,3 +118,17 @@ def test_more_plans_and_answers_than_there_is_room_for_change_no_plan() -> None:
         most = [max(pair) for pair in zip(most, fleet._scratch.answers.fields.used.tolist(), strict=True)]
     assert most == [PLANS, ANSWERS]
     assert fleet.plans == carp_optimized.plan(instance, planner, reuse=replace(Reuse(), shared=False)).plans
+
+
+def test_a_fleet_that_stays_up_minds_which_reuse_is_on() -> None:
+    """With the same options, asked again."""
+    fleet = Fleet(grid_instance(Grid(8, 8), Robots(COMMITTED + 1, seed=4)))
+    planner = Neighbourhood(m=4)
+    asked = []
+    for reuse in (Reuse(), ALL_OFF):
+        fleet.reuse = reuse
+        fleet.carp(range(COMMITTED))
+        before = fleet.queries.asked
+        assert fleet.add(COMMITTED, 0, planner)
+        asked.append(fleet.queries.asked - before)
+    assert asked[0] < asked[1]
