@@ -1,6 +1,8 @@
 """The campaign engine: independent cases, each a pure function of its data, mapped over workers."""
 
-from collections.abc import Callable, Iterable, Sequence
+import warnings
+from collections.abc import Callable, Generator, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from time import process_time_ns
 from typing import Literal, Protocol, TypeAlias, TypeVar
@@ -11,6 +13,7 @@ from carp_spec import Refusal
 T = TypeVar("T")
 Result: TypeAlias = tuple[str, Row, int]
 Backend: TypeAlias = Literal["loky", "dask"]
+UNUSED = ".*You could benefit from adjusting the input task"
 
 
 class Case(Protocol):
@@ -58,16 +61,18 @@ def run_campaign(cases: Sequence[Case], store: Store, workers: Workers, advance:
             advance()
     missing = [case for case in cases if case.key not in done]
     try:
-        for key, row, milliseconds in _results(missing, workers):
-            store.add(key, row, milliseconds)
-            advance()
+        with warnings.catch_warnings(), closing(_results(missing, workers)) as results:
+            warnings.filterwarnings("ignore", UNUSED, UserWarning)  # joblib's, beside the refusal that says why
+            for key, row, milliseconds in results:
+                store.add(key, row, milliseconds)
+                advance()
     except (OSError, RuntimeError) as error:
         why = str(error).partition(".")[0]
         message = f"a worker was lost ({why}); run the same command again, and it goes on where it stopped"
         raise Refusal("request", "$", "campaign/workers", message) from error
 
 
-def _results(cases: Sequence[Case], workers: Workers) -> Iterable[Result]:
+def _results(cases: Sequence[Case], workers: Workers) -> Generator[Result, None, None]:
     """The results as they come."""
     import joblib  # noqa: PLC0415 - loads numpy
 

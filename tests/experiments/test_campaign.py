@@ -74,7 +74,8 @@ def test_a_killed_run_loses_and_doubles_nothing(tmp_path: Path) -> None:
         assert [(key, row) for key, row in store.rows()] == [(f"{n:04}", {"square": n * n}) for n in range(100)]
 
 
-def test_a_full_disk_is_told_and_the_run_goes_on_once_there_is_room(tmp_path: Path) -> None:
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_full_disk_is_told_and_the_run_goes_on_once_there_is_room(tmp_path: Path, workers: int) -> None:
     path = tmp_path / "store"
     program = (
         "import sys; from pathlib import Path\n"
@@ -84,7 +85,8 @@ def test_a_full_disk_is_told_and_the_run_goes_on_once_there_is_room(tmp_path: Pa
         "from carp_spec import Refusal\n"
         "try:\n"
         "    with open_store(Path(sys.argv[1]), 'squares') as store:\n"
-        "        run_campaign([Square(n) for n in range(120)], store, Workers(), lambda: None)\n"
+        "        cases = [Square(n, 0.01) for n in range(120)]\n"
+        "        run_campaign(cases, store, Workers(int(sys.argv[2])), lambda: None)\n"
         "except Refusal as refusal:\n"
         "    sys.exit(str(refusal))\n"
     )
@@ -94,7 +96,7 @@ def test_a_full_disk_is_told_and_the_run_goes_on_once_there_is_room(tmp_path: Pa
         resource.setrlimit(resource.RLIMIT_FSIZE, (room, room))
 
     run = subprocess.run(
-        [sys.executable, "-c", program, str(path)],
+        [sys.executable, "-c", program, str(path), str(workers)],
         cwd=ROOT,
         check=False,
         capture_output=True,
