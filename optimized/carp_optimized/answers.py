@@ -32,12 +32,13 @@ def number_plan(state: State, answers: Answers, member: int, record: int) -> int
 
 
 @compiled
-def learn(answers: Answers, member: int, given: int, plan: int, least: int) -> None:
+def learn(answers: Answers, member: int, given: int, plan: int, record: int, least: int) -> None:
     """Remember an answer, whose plan costs at least so much, if its plans have numbers."""
     used = int(answers.used[1])
     if plan < PLANS and given < 1 << PLANS and used < ANSWERS:
         answers.given[used] = given
         answers.plan[used] = plan
+        answers.found[used] = record
         answers.least[used] = least
         answers.older[used] = answers.newest[member]
         answers.newest[member] = used
@@ -80,10 +81,3 @@ def least_of(answers: Answers, member: int, given: int) -> int:
             least = max(least, int(answers.least[answer]))
         answer = int(answers.older[answer])
     return least
-
-
-@compiled
-def answer_of(answers: Answers, answer: int) -> int:
-    """The record of the plan of an answer, or `NONE`."""
-    plan = int(answers.plan[answer])
-    return NONE if plan == NONE else int(answers.record[plan])

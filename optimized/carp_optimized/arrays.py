@@ -276,6 +276,7 @@ class Polish(NamedTuple):
 class Answers(NamedTuple):
     """The answers known in a round: of a member against the set `given`, the plan `plan` (`NONE`: there is none).
 
+    `found` is the plan's record as the query for just this answer made it: what the query read depends on the set.
     Its cost is at least `least`, which is all that is known where the plan is `LATE`.
     Plans are numbered; `record[plan]` is the plan's record, `clashes[plan]` the set of plans that it clashes with, of
     those with which it has been `compared`.
@@ -289,6 +290,7 @@ class Answers(NamedTuple):
     compared: Longs
     given: Longs
     plan: Ints
+    found: Ints
     least: Longs
     older: Ints
     newest: Ints

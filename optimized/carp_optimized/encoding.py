@@ -378,6 +378,7 @@ def no_answers(members: int) -> Answers:
         given=np.zeros(ANSWERS, np.int64),
         plan=np.zeros(ANSWERS, np.int32),
         least=np.zeros(ANSWERS, np.int64),
+        found=np.zeros(ANSWERS, np.int32),
         older=np.zeros(ANSWERS, np.int32),
         newest=np.zeros(members, np.int32),
         used=np.zeros(2, np.int64),

@@ -6,7 +6,8 @@ Three kinds of reuse, each of which leaves the best order and its plans as they 
 - Shared answers. A query of a robot against `given` plans is answered by one asked against fewer of them, if the plan
   found then clashes with none of the others: stays that leave room for it do not change it (see
   `carp_optimized.replanning`). No plan against fewer is no plan against more. So the plans of two prefixes that left
-  the same plans are shared, too.
+  the same plans are shared, too. An answer keeps the record of its own query, also where another has found the same
+  plan: what that one read is no measure, for it may have been asked against plans that are not there now.
 - Bounds. A robot costs at least what it costs against the robots outside alone, or against some of the plans of the
   prefix: more plans leave fewer ways. A prefix whose cost and those of the robots still to come are not below the
   limit has no order that is strictly better. All answers known are looked at only before a query would be asked. It
@@ -14,7 +15,7 @@ Three kinds of reuse, each of which leaves the best order and its plans as they 
   there is none tells what the robot costs at least.
 """
 
-from carp_optimized.answers import answer_of, known_answer, learn, least_of, number_plan, start_answers
+from carp_optimized.answers import known_answer, learn, least_of, number_plan, start_answers
 from carp_optimized.arrays import (
     BOUND,
     LARGEST,
@@ -97,8 +98,8 @@ def start_search(state: State, work: Work, answers: Answers, count: int, options
             work.least[member] = cost_of(state, int(work.alone[member]))
             total += int(work.least[member])
         if options.shared:
-            plan = number_plan(state, answers, member, int(work.alone[member]))
-            learn(answers, member, 0, plan, int(work.least[member]))
+            record = int(work.alone[member])
+            learn(answers, member, 0, number_plan(state, answers, member, record), record, int(work.least[member]))
     return total
 
 
@@ -172,7 +173,7 @@ def plan_member(
     if answer != NONE:
         state.counters[SHARED] += 1
         plan = int(answers.plan[answer])
-        record = answer_of(answers, answer)
+        record = int(answers.found[answer])
     else:
         for k in range(int(work.reserved[0]), place):
             reserve(state, int(work.chosen[k]))
@@ -182,11 +183,11 @@ def plan_member(
         record = find_plan_by(state, robot, int(work.before[robot]), now, NEVER, latest)
         if shared and record != NONE:
             plan = number_plan(state, answers, member, record)
-            learn(answers, member, given, plan, cost_of(state, record))
+            learn(answers, member, given, plan, record, cost_of(state, record))
         elif shared and latest > LARGEST:
-            learn(answers, member, given, NONE, NO_LIMIT)
+            learn(answers, member, given, NONE, NONE, NO_LIMIT)
         elif shared:
-            learn(answers, member, given, LATE, spare)
+            learn(answers, member, given, LATE, NONE, spare)
     work.given[place + 1] = given if plan == NONE else given | (1 << plan)
     return record
 

@@ -132,3 +132,11 @@ def test_a_fleet_that_stays_up_minds_which_reuse_is_on() -> None:
         assert fleet.add(COMMITTED, 0, planner)
         asked.append(fleet.queries.asked - before)
     assert asked[0] < asked[1]
+
+
+@pytest.mark.parametrize(("robots", "baseline"), [(33, False), (49, True)])
+def test_a_plan_found_against_other_plans_is_judged_by_what_its_own_query_read(robots: int, baseline: bool) -> None:
+    """Found by experiment 1: the answer to a query came with what another had read, which had found the same plan."""
+    instance = grid_instance(Grid(map=6), Robots(robots, seed=16))
+    options = Neighbourhood(m=10, sample=150, seed=16, baseline=baseline)
+    assert carp_optimized.plan(instance, options) == carp_optimized.plan(instance, options, reuse=ALL_OFF)
