@@ -1,18 +1,24 @@
-"""The methods that the paper compares by citation: fixed paths, as in ter Mors' comparison, and greedy best-first."""
+"""The methods that the paper compares by citation: fixed paths, as in ter Mors' comparison, and greedy best-first.
+
+Of 100 robots, fixed paths nearly always leave some without a plan, so their totals are compared over the first robots,
+up to the first that one of the two methods leaves without. As each robot is planned after those before it, these plans
+are those of an instance with no more robots.
+"""
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import takewhile
 
 import msgspec
 
 from carp_experiments.campaign import key_on_map
-from carp_experiments.quality import ROBOTS, grid_fleet, outcome
+from carp_experiments.quality import ROBOTS, grid_fleet, plan_all
 from carp_experiments.quality_report import MAP_AXIS, SHOWN_MAPS
 from carp_experiments.report import Figure, Report, Table
 from carp_experiments.statistics import Interval, mean_interval, proportion_interval
 from carp_experiments.store import Row
-from carp_spec import Instance, Plan, ResourceId, Robot, plan_cost, total_cost
+from carp_spec import Instance, LongestFirst, Plan, ResourceId, Robot, plan_cost
 
 Path = tuple[ResourceId, ...]
 MOST_SHORTEST = 10
@@ -23,12 +29,14 @@ FIXED: Mapping[str, tuple[str, int]] = {
     "10 shortest paths": ("shortest", MOST_SHORTEST),
     "3 disjoint paths": ("disjoint", MOST_DISJOINT),
 }
-METHODS = (*FIXED, "CARP", "greedy")
+ONE_BY_ONE = (*FIXED, "CARP")
+ORDERED = ("LF", "greedy")
+METHODS = (*ONE_BY_ONE, *ORDERED)
 
 
 @dataclass(frozen=True, slots=True)
 class RelatedCase:
-    """One assignment on one map, by every method; robots are planned in the order given, greedy chooses its own."""
+    """One assignment on one map, by every method; robots are planned in the order given, but by LF and greedy."""
 
     map: int
     assignment: int
@@ -40,19 +48,27 @@ class RelatedCase:
         return key_on_map(self.map, self.assignment)
 
     def run(self) -> Row:
-        """For each method the robots planned and the total cost; beside them the cost of each planned robot alone."""
+        """For each method the cost of each robot's plan, or `None` for a robot without one."""
         fleet = grid_fleet(self.map, 0, self.robots, self.assignment)
-        results = fixed_results(fleet.instance)
+        plans = fixed_plans(fleet.instance)
         fleet.carp(range(self.robots))
-        results["CARP"] = outcome(fleet)
+        plans["CARP"] = fleet.plans
+        plan_all(fleet, LongestFirst())
+        plans["LF"] = fleet.plans
         fleet.greedy(lambda: None)
-        results["greedy"] = outcome(fleet)
-        shortest = sum(fleet.ticks_to_goal(robot) for robot in range(self.robots))
-        return {"map": self.map, "assignment": self.assignment, "shortest": shortest, "results": results}
+        plans["greedy"] = fleet.plans
+        costs = {name: costs_of(fleet.instance, found) for name, found in plans.items()}
+        return {"map": self.map, "assignment": self.assignment, "costs": costs}
 
 
-def fixed_results(instance: Instance) -> dict[str, tuple[int, int]]:
-    """What each kind of fixed paths reaches; the k shortest paths are the first k of the most."""
+def costs_of(instance: Instance, plans: Sequence[Plan]) -> list[int | None]:
+    """The cost of the plan of each robot, in the order of the instance."""
+    cost = {plan.robot: plan_cost(instance, plan) for plan in plans}
+    return [cost.get(robot.id) for robot in instance.robots]
+
+
+def fixed_plans(instance: Instance) -> dict[str, Sequence[Plan]]:
+    """The plans by each kind of fixed paths; the k shortest paths are the first k of the most."""
     from carp_reference.fixed_paths import disjoint_paths, shortest_paths  # noqa: PLC0415 - each worker loads it
     from carp_reference.problem import prepare  # noqa: PLC0415
 
@@ -64,8 +80,8 @@ def fixed_results(instance: Instance) -> dict[str, tuple[int, int]]:
     return {name: schedule(instance, [of_robot[:k] for of_robot in paths[kind]]) for name, (kind, k) in FIXED.items()}
 
 
-def schedule(instance: Instance, paths: Sequence[Sequence[Path]]) -> tuple[int, int]:
-    """Plan each robot on the path on which it arrives first; how many get a plan, and the total cost."""
+def schedule(instance: Instance, paths: Sequence[Sequence[Path]]) -> list[Plan]:
+    """Plan each robot on the path on which it arrives first."""
     from carp_reference.fixed_paths import find_on_path  # noqa: PLC0415
     from carp_reference.problem import prepare  # noqa: PLC0415
 
@@ -79,31 +95,34 @@ def schedule(instance: Instance, paths: Sequence[Sequence[Path]]) -> tuple[int, 
         found = [plan for plan in map(on_path(robot), of_robot) if plan is not None]
         if found:
             plans.append(min(found, key=lambda plan: plan_cost(instance, plan)))
-    return len(plans), total_cost(instance, plans)
+    return plans
 
 
 @dataclass(frozen=True, slots=True)
 class Related:
     """A method on one map.
 
-    `unplanned` is the mean number of robots without a plan, `failure_rate` the share of assignments with such a robot,
-    `above` the total above the sum of shortest paths in per cent, over the assignments without one.
+    `unplanned` is the mean number of robots without a plan, `more_unplanned` how many more than by CARP, `failure_rate`
+    the share of assignments with such a robot.
+    `above_carp` is by how many per cent its total is above CARP's for the same robots (`same_robots`), over the
+    `compared` assignments in which there are some.
     """
 
     map: int
     method: str
     assignments: int
     unplanned: Interval
+    more_unplanned: Interval
     failure_rate: Interval
-    above: Interval | None
+    compared: int
+    above_carp: Interval | None
 
 
 class RelatedRow(msgspec.Struct, frozen=True):
     """A stored row of the experiment."""
 
     map: int
-    shortest: int
-    results: dict[str, tuple[int, int]]
+    costs: dict[str, list[int | None]]
 
 
 def related_report(rows: Iterable[Row], robots: int) -> Report:
@@ -112,12 +131,12 @@ def related_report(rows: Iterable[Row], robots: int) -> Report:
     for row in rows:
         measured = msgspec.convert(row, RelatedRow)
         by_map[measured.map].append(measured)
-    summary = tuple(related_of(map, name, each, robots) for map, each in sorted(by_map.items()) for name in METHODS)
+    summary = tuple(related_of(map, name, each) for map, each in sorted(by_map.items()) for name in METHODS)
     maps = [map for map in SHOWN_MAPS if map in by_map] or sorted(by_map)
     by_place = {(each.method, each.map): each for each in summary}
     columns = ("method", *(f"map {map}" for map in maps))
     unplanned = [(name, *(_plain(by_place[name, map].unplanned) for map in maps)) for name in METHODS]
-    above = [(name, *(_plain(by_place[name, map].above) for map in maps)) for name in METHODS]
+    above = [(name, *(_compared(by_place[name, map]) for map in maps)) for name in METHODS if name != "CARP"]
     tables = (
         Table(
             "related-unplanned",
@@ -128,7 +147,8 @@ def related_report(rows: Iterable[Row], robots: int) -> Report:
         ),
         Table(
             "related-totals",
-            "Total above the sum of shortest paths in per cent, over the assignments without such a robot",
+            "Total above CARP's for the same robots in per cent: for fixed paths, of the first robots up to the one "
+            "that either leaves without a plan; for LF and greedy, of all, in the assignments in which both plan all",
             columns,
             tuple(above),
             columns[1:],
@@ -139,14 +159,37 @@ def related_report(rows: Iterable[Row], robots: int) -> Report:
     return Report(summary, tables, (figure,))
 
 
-def related_of(map: int, name: str, rows: Sequence[RelatedRow], robots: int) -> Related:
+def related_of(map: int, name: str, rows: Sequence[RelatedRow]) -> Related:
     """A method on a map."""
-    reached = [(*row.results[name], row.shortest) for row in rows]
-    missing = [robots - planned for planned, _, _ in reached]
-    above = [100 * (total - alone) / alone for planned, total, alone in reached if planned == robots and alone]
+    missing = [row.costs[name].count(None) for row in rows]
+    above = [
+        100 * (sum(ours) - sum(carps)) / sum(carps)
+        for row in rows
+        for ours, carps in [same_robots(row.costs[name], row.costs["CARP"], name in ONE_BY_ONE)]
+        if sum(carps)
+    ]
     rate = proportion_interval(sum(count > 0 for count in missing), len(rows))
-    return Related(map, name, len(rows), mean_interval(missing), rate, mean_interval(above) if above else None)
+    interval = mean_interval(above) if above else None
+    more = mean_interval([count - row.costs["CARP"].count(None) for count, row in zip(missing, rows, strict=True)])
+    return Related(map, name, len(rows), mean_interval(missing), more, rate, len(above), interval)
 
 
-def _plain(interval: Interval | None) -> str:
-    return "-" if interval is None else f"{interval.estimate:.1f} ± {interval.high - interval.estimate:.1f}"
+def same_robots(
+    ours: Sequence[int | None], theirs: Sequence[int | None], one_by_one: bool
+) -> tuple[list[int], list[int]]:
+    """The costs of both for the first robots, up to one without a plan; of all or of none if not `one_by_one`."""
+    both = list(takewhile(lambda pair: None not in pair, zip(ours, theirs, strict=True)))
+    if not one_by_one and len(both) < len(ours):
+        return [], []
+    return [our for our, _ in both if our is not None], [their for _, their in both if their is not None]
+
+
+def _plain(interval: Interval) -> str:
+    return f"{interval.estimate:.1f} ± {interval.high - interval.estimate:.1f}"
+
+
+def _compared(related: Related) -> str:
+    if related.above_carp is None:
+        return "-"
+    of = "" if related.compared == related.assignments else f" ({related.compared} of {related.assignments})"
+    return _plain(related.above_carp) + of

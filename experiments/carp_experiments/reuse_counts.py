@@ -68,14 +68,17 @@ class ReuseOf:
     `asked` are the queries by kinds of reuse, `avoided` those that each kind of ours avoids where all are on, `last`
     the share in per cent of the last round's queries for orders that are left where orders share their beginnings (the
     paper's second reduction), `replanned` the same for the robots outside where those before the one taken out keep
-    their plans (the first).
+    their plans (the first). With both of the paper's reductions, `orders` are asked for orders, `outside` for robots
+    outside.
     """
 
     m: int
     asked: dict[str, Interval]
     avoided: dict[str, Interval]
     last: Interval | None
-    replanned: Interval | None
+    replanned: Interval
+    orders: Interval
+    outside: Interval
 
 
 class ReuseRow(msgspec.Struct, frozen=True):
@@ -103,8 +106,6 @@ def reuse_report(rows: Iterable[Row], robots: int) -> Report:
         cells = (f"{each.asked[name].estimate:.0f}" for name in SETTINGS)
         asked_rows.append((f"Proposed_{each.m}", *cells, percent(each.last), paper, percent(each.replanned)))
         counts = {kind: f"{count.estimate:.0f}" for kind, count in each.avoided.items()}
-        if each.m == SAMPLED:
-            counts["bounds"] = "-"  # counted are all orders below a prefix, also those that were not drawn
         avoided_rows.append((f"Proposed_{each.m}", *counts.values()))
     avoided_columns = ("algorithm", *summary[0].avoided)
     tables = (
@@ -128,9 +129,15 @@ def reuse_of(m: int, rows: Sequence[ReuseRow], robots: int) -> ReuseOf:
         for kind, count in row.avoided[m].items():
             avoided[kind].append(count)
     last = mean_interval([last_round(row, m) for row in rows]) if m in PAPERS_SHARES else None
-    shares = [100 * outside_left(row, m, robots) for row in rows]
+    left = [outside_left(row, m, robots) for row in rows]
     return ReuseOf(
-        m, asked, {kind: mean_interval(counts) for kind, counts in avoided.items()}, last, mean_interval(shares)
+        m,
+        asked,
+        {kind: mean_interval(counts) for kind, counts in avoided.items()},
+        last,
+        replanned=mean_interval([100 * count / queries_outside(m, robots) for count in left]),
+        orders=mean_interval([row.asked["the paper's"][m] - count for row, count in zip(rows, left, strict=True)]),
+        outside=mean_interval(left),
     )
 
 
@@ -145,10 +152,14 @@ def last_round(row: ReuseRow, m: int) -> float:
     return 100 * (1 - avoided / (m * factorial(m)))
 
 
-def outside_left(row: ReuseRow, m: int, robots: int) -> float:
-    """The share of the queries for robots outside that is left where those before the one taken out keep plans."""
-    outside = sum(robots - 1 - turn for turn in range(1, m))
-    return 1 - (row.asked["nothing"][m] - row.asked["kept"][m]) / outside
+def queries_outside(m: int, robots: int) -> int:
+    """The queries for the robots outside, in all rounds, where each is planned again."""
+    return sum(robots - 1 - turn for turn in range(1, m))
+
+
+def outside_left(row: ReuseRow, m: int, robots: int) -> int:
+    """How many of them are left where those before the one taken out keep their plans."""
+    return queries_outside(m, robots) - (row.asked["nothing"][m] - row.asked["kept"][m])
 
 
 def percent(share: Interval | None) -> str:

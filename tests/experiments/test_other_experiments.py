@@ -1,5 +1,7 @@
 """The experiments beside the first: what they count and compare."""
 
+from dataclasses import replace
+
 import msgspec
 import pytest
 
@@ -7,13 +9,15 @@ import carp_optimized
 import carp_reference
 from carp_experiments import polishing
 from carp_experiments.adding_time import PAPER, TimeCase, time_report
+from carp_experiments.claims import related_claims, reuse_claims
 from carp_experiments.experiments import EXPERIMENTS, Experiment, Profile
 from carp_experiments.quality import grid_fleet
-from carp_experiments.related_work import METHODS, RelatedCase, related_report
-from carp_experiments.reuse_counts import ReuseCase, reuse_report
+from carp_experiments.related_work import FIXED, METHODS, Related, RelatedCase, related_report
+from carp_experiments.reuse_counts import ReuseCase, ReuseOf, reuse_report
 from carp_experiments.small_gaps import COMPARED, POLISHED, GapCase, GapRow, gap_report
+from carp_experiments.statistics import Interval
 from carp_experiments.store import digest_of
-from carp_spec import Carp, FixedPaths, total_cost
+from carp_spec import Carp, FixedPaths, Greedy, LongestFirst, Planner, plan_cost
 
 
 def test_times_are_measured_and_do_not_count_in_the_digest() -> None:
@@ -41,6 +45,22 @@ def test_prefixes_leave_the_papers_shares_of_the_last_round() -> None:
     assert lines["Proposed_6"][6] == "45.3 ± 0.0 %"
 
 
+def test_queries_are_told_apart_by_what_they_are_for() -> None:
+    asked = {"nothing": 100, "kept": 70, "prefixes": 80, "the paper's": 50, "all": 9}
+    row = {
+        "asked": {name: dict.fromkeys(("3", "4", "5", "6", "10"), count) for name, count in asked.items()},
+        "avoided": {size: {"kept": 30} for size in ("4", "5", "6", "10")},
+    }
+    summary = msgspec.convert(reuse_report([row], 20).summary, tuple[ReuseOf, ...])
+    of_four = summary[0]
+    assert of_four.outside.estimate == (18 + 17 + 16) - (100 - 70)
+    assert of_four.orders.estimate == 50 - of_four.outside.estimate
+    assert of_four.replanned.estimate == pytest.approx(100 * 21 / 51)
+    assert [claim.verdict for claim in reuse_claims(summary)][-1] == "not reproduced"
+    fewer = [replace(each, outside=Interval(20, 19, 21), orders=Interval(30, 22, 38)) for each in summary]
+    assert [claim.verdict for claim in reuse_claims(fewer)][-1] == "reproduced"
+
+
 def test_a_gap_is_measured_from_the_optimum() -> None:
     case = GapCase(map=3, assignment=0, robots=5)
     row = case.run()
@@ -66,19 +86,69 @@ def test_a_gap_is_measured_from_the_optimum() -> None:
 
 
 def test_related_methods_are_those_of_the_reference() -> None:
-    case = RelatedCase(20, 3, robots=5)
-    instance = grid_fleet(20, 0, 5, 3).instance
-    results = case.run()["results"]
-    assert isinstance(results, dict)
-    assert set(results) == set(METHODS)
-    for name, planner in {
+    case = RelatedCase(5, 2, robots=20)
+    instance = grid_fleet(5, 0, 20, 2).instance
+    costs = case.run()["costs"]
+    assert isinstance(costs, dict)
+    assert set(costs) == set(METHODS)
+    planners: dict[str, Planner] = {
         "3 shortest paths": FixedPaths(3, "shortest"),
         "3 disjoint paths": FixedPaths(3, "disjoint"),
-    }.items():
-        solution = carp_reference.plan(instance, planner)
-        assert results[name] == (len(solution.plans), total_cost(instance, solution.plans))
-    report = related_report([case.run()], 5)
+        "CARP": Carp(),
+        "LF": LongestFirst(),
+        "greedy": Greedy(),
+    }
+    for name, planner in planners.items():
+        plans = {each.robot: each for each in carp_reference.plan(instance, planner).plans}
+        expected = [plan_cost(instance, plans[robot.id]) if robot.id in plans else None for robot in instance.robots]
+        assert costs[name] == expected
+    assert len({tuple(costs[name]) for name in planners}) == len(planners)
+    report = related_report([case.run()], 20)
     assert [table.name for table in report.tables] == ["related-unplanned", "related-totals"]
+
+
+def related_row(fixed: list[int | None], **ordered: list[int | None]) -> dict[str, object]:
+    orders: dict[str, list[int | None]] = {name: [10, 10, 10] for name in ("CARP", "LF", "greedy")}
+    return {"map": 7, "costs": {**dict.fromkeys(FIXED, fixed), **orders, **ordered}}
+
+
+def test_fixed_paths_are_compared_over_the_first_robots_and_orders_over_all() -> None:
+    rows = [
+        related_row([11, 12, None], greedy=[8, None, 8], LF=[9, 9, 9]),
+        related_row([None, 4, 5], greedy=[9, 9, 9]),
+    ]
+    unplanned, totals = ({line[0]: line[1] for line in table.rows} for table in related_report(rows, 3).tables)
+    assert unplanned["3 disjoint paths"] == "1.0 ± 0.0"
+    assert totals["3 disjoint paths"] == "15.0 ± 0.0 (1 of 2)"
+    assert totals["greedy"] == "-10.0 ± 0.0 (1 of 2)"
+    assert totals["LF"] == "-5.0 ± 9.8"
+    assert "CARP" not in totals
+
+
+@pytest.mark.parametrize(
+    ("carp", "greedy", "longest", "verdicts"),
+    [
+        (10, 9, 11, ["reproduced", "reproduced"]),
+        (10, 9, 8, ["reproduced", "in part"]),
+        (10, 11, 12, ["reproduced", "in part"]),
+        (10, 11, 9, ["reproduced", "not reproduced"]),
+        (None, 9, 11, ["in part", "undecided"]),
+    ],
+)
+def test_what_the_paper_cites_is_judged_by_intervals(
+    carp: int | None, greedy: int, longest: int, verdicts: list[str]
+) -> None:
+    row = related_row([10, 11, None], CARP=[10, 10, carp], greedy=[greedy] * 3, LF=[longest] * 3)
+    assert related_verdicts([row, row]) == verdicts
+
+
+def test_one_assignment_decides_no_claim() -> None:
+    assert related_verdicts([related_row([10, 11, None], greedy=[9, 9, 9])]) == ["undecided", "undecided"]
+
+
+def related_verdicts(rows: list[dict[str, object]]) -> list[str]:
+    summary = msgspec.convert(related_report(rows, 3).summary, tuple[Related, ...])
+    return [claim.verdict for claim in related_claims(summary)]
 
 
 def test_polished_plans_lie_between_the_bound_and_the_planner(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -45,5 +45,7 @@ def test_an_interval_that_holds_zero_says_nothing() -> None:
 )
 def test_a_claim_with_a_number_holds_where_the_interval_holds_it(low: int, high: int, verdict: str) -> None:
     saving = Saving(10, "Proposed_6", "CARP", 20, Interval((low + high) / 2, low, high), 1000)
-    claim = up_to({(10, "Proposed_6", "CARP"): saving}, 10, ("Proposed_6",), 65, "up to 65 fewer")
+    own = {(10, "CARP"): Interval(1680, 1660, 1700), (10, "Proposed_6"): Interval(1618, 1600, 1636)}
+    claim = up_to({(10, "Proposed_6", "CARP"): saving}, own, 10, ("Proposed_6",), 65, "up to 65 fewer")
     assert claim.verdict == verdict
+    assert claim.found.endswith("between each one's own means: Proposed_6 62.0")
