@@ -5,6 +5,8 @@ from itertools import combinations
 from math import factorial, perm
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from tests.optimized.paper_sized import FOUR, MAPS, Question, read_digests
 
 import carp_optimized
@@ -17,6 +19,10 @@ from carp_spec import Instance, Neighbourhood, Solution
 
 KINDS = ("kept", "unchanged", "prefixes", "shared", "bounds")
 ALL_OFF = Reuse(**dict.fromkeys(KINDS, False))
+WHOLE_FLEETS = [
+    *(Neighbourhood(m=m, baseline=baseline) for m in (4, 5, 6) for baseline in (True, False)),
+    *(Neighbourhood(m=10, sample=150, baseline=baseline) for baseline in (True, False)),
+]
 ONE_OFF = [Reuse(**{kind: False}) for kind in KINDS]
 ONE_ON = [replace(ALL_OFF, **{kind: True}) for kind in KINDS]
 COMMITTED = 9
@@ -132,6 +138,16 @@ def test_a_fleet_that_stays_up_minds_which_reuse_is_on() -> None:
         assert fleet.add(COMMITTED, 0, planner)
         asked.append(fleet.queries.asked - before)
     assert asked[0] < asked[1]
+
+
+@settings(max_examples=max(5, settings().max_examples // 100))
+@given(st.integers(0, 20), st.integers(20, 60), st.integers(0, 2**32 - 1), st.sampled_from(WHOLE_FLEETS))
+def test_fleets_added_one_by_one_have_the_same_plans_without_reuse(
+    map: int, robots: int, seed: int, options: Neighbourhood
+) -> None:
+    instance = grid_instance(Grid(map=map), Robots(robots, seed=seed))
+    drawn = replace(options, seed=seed)
+    assert carp_optimized.plan(instance, drawn) == carp_optimized.plan(instance, drawn, reuse=ALL_OFF)
 
 
 @pytest.mark.parametrize(("robots", "baseline"), [(33, False), (49, True)])
