@@ -20,6 +20,7 @@ from carp_experiments.report import Figure, Report, Table
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import MEASURED, Row
 from carp_spec import Instance, RobotId, Solution, total_cost
+from carp_verify.bound_rules import require_kept
 
 STEPS = 2000
 POLISHED = {"Proposed_4": {"polish": 20_000, "long polish": 60_000}, "Proposed_10": {"polish": 20_000}}
@@ -71,6 +72,9 @@ class PolishCase:
         started = process_time_ns()
         certificate = lower_bound(instance, steps=STEPS)
         measured["bound"] = process_time_ns() - started
+        for planned, total in results.values():
+            if planned == len(instance.robots):
+                require_kept(certificate.bound, total)
         return {
             "map": self.map,
             "assignment": self.assignment,

@@ -16,6 +16,7 @@ from carp_experiments.report import Figure, Report, Table
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import Row
 from carp_spec import Greedy, Planner, total_cost
+from carp_verify.bound_rules import require_kept
 
 SIDE = 8
 LIMIT_IN_SECONDS = 60
@@ -70,11 +71,15 @@ class GapCase:
         polished = engine.polish(instance, solution, iterations=ROUNDS, seed=self.assignment)
         results[POLISHED] = len(polished.plans), total_cost(instance, polished.plans)
         best = optimum(instance, LIMIT_IN_SECONDS)
+        bound = lower_bound(instance, steps=STEPS).bound
+        for planned, total in results.values():
+            if planned == len(instance.robots):
+                require_kept(max(best.lower, bound), total)
         return {
             "map": self.map,
             "assignment": self.assignment,
             "shortest": best.shortest,
-            "bound": lower_bound(instance, steps=STEPS).bound,
+            "bound": bound,
             "optimum": best.cost if best.proved else None,
             "decided": best.proved,
             "results": results,

@@ -13,6 +13,7 @@ from carp_oracle.answer import INTERNAL_ERROR, INTERRUPTED, PIPE_CLOSED, Answer
 from carp_oracle.commands import COMMANDS
 from carp_oracle.tables import printable
 from carp_spec import Refusal
+from carp_verify.bound_rules import ContradictionError
 
 SETTINGS = {"help_option_names": ["-h", "--help"], "show_default": True}
 EPILOG = """\b
@@ -71,6 +72,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except OSError as error:
         _forget_output()
         return _complain(f"the output cannot be written: {error.strerror}")
+    except ContradictionError as error:
+        click.echo(f"Internal contradiction: {error}. A checker of carproof is wrong; please report both.", err=True)
+        return INTERNAL_ERROR
     except Exception:  # noqa: BLE001 - a fault of ours must not look like the answer no
         traceback.print_exc()
         click.echo("carproof failed by a fault of its own; the lines above say where.", err=True)

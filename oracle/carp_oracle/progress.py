@@ -5,6 +5,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from time import perf_counter
 
+from carp_verify.bound_rules import require_kept
+
 WIDTH = 16  # of a bar beside words, so that totals of seven digits fit into eighty columns
 
 
@@ -52,5 +54,6 @@ def found_so_far(total: int | None, bound: int, unplanned: int = 0) -> str:
 
 
 def gap(total: int, bound: int) -> str:
-    """By how much the total is above the bound."""
+    """By how much the total is above the bound; raises `ContradictionError` if it is below."""
+    require_kept(bound, total)
     return f"{100 * (total - bound) / bound:.2f} %" if bound else "-"

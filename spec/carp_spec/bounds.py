@@ -10,6 +10,7 @@ import msgspec
 
 from carp_spec.documents import Positive, Tick, decode, write_instance
 from carp_spec.model import Instance, ResourceId, RobotId
+from carp_spec.refusal import Refusal
 
 BOUND_FORMAT: Final = "carproof-bound/1"
 
@@ -20,7 +21,7 @@ class CutDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A group of robots whose costs add up to no less than `least`, and how much it counts, in parts of a tick.
 
     The rest is the proof, of the group as an instance of its own: each robot's horizon and an order of the robots,
-    from which the formula of a smaller total is made, and a DRAT refutation of that formula.
+    from which the formula of a smaller total is made, and a refutation of that formula: LRAT without RAT steps.
     """
 
     robots: tuple[RobotId, ...]
@@ -58,4 +59,7 @@ def digest(instance: Instance) -> str:
 
 def read_bound(data: bytes) -> BoundDocument:
     """Read the document of a bound; raises `Refusal` if it is malformed. Whether it is right, `carp_verify` says."""
-    return decode(data, BoundDocument, BOUND_FORMAT)
+    document = decode(data, BoundDocument, BOUND_FORMAT)
+    if document.horizon < 0:
+        raise Refusal("document", "$.horizon", "document/shape", "the horizon must be at least 0")
+    return document

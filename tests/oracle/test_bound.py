@@ -1,12 +1,17 @@
 """`bound`, `verify-bound` and the op `bound`."""
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from msgspec import to_builtins
 from tests.oracle.running import HEAD_ON, TWO, TWO_PLANNED, Run, corridor, line
 
-from carp_spec.bounds import read_bound
+from carp_spec.bounds import BOUND_FORMAT, BoundDocument, read_bound
+from carp_verify.bound import Progress
+
+EMPTY = BoundDocument(BOUND_FORMAT, "", 0, 1, 0, (), (), (), ())
 
 
 @pytest.fixture
@@ -101,3 +106,23 @@ def test_the_op_bound_is_served(carproof: Run) -> None:
     assert (answers[2]["error"]["path"], answers[2]["error"]["rule"]) == ("$.steps", "request/limit")
     assert answers[3]["error"]["path"] == "$.steps"
     assert answers[4]["result"]["bound"] == 5
+
+
+@pytest.mark.parametrize("command", ["bound", "polish"])
+def test_plans_that_cost_less_than_the_bound_are_a_contradiction(
+    carproof: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str
+) -> None:
+    def too_much(_: object, __: object, ___: object, keep: Callable[[Progress], None]) -> BoundDocument:
+        keep(Progress(1, 1_000_000))
+        return EMPTY
+
+    monkeypatch.setattr("carp_verify.verify_bound.verify_bound", lambda *_: 1_000_000)
+    monkeypatch.setattr("carp_verify.bound.lower_bound", too_much)
+    town, plans = written(tmp_path / "town.json", TWO), written(tmp_path / "plans.json", TWO_PLANNED)
+    if command == "bound":
+        outcome = carproof("bound", town, "--steps", 1, "--plans", plans)
+    else:
+        outcome = carproof("polish", town, plans, "--bound", written(tmp_path / "bound.json", to_builtins(EMPTY)))
+    assert outcome.code == 70
+    assert outcome.stderr.startswith("Internal contradiction: plans that break no rule cost 5, less than the lower")
+    assert "Traceback" not in outcome.stderr

@@ -87,9 +87,21 @@ def test_a_proof_is_written_and_checked(carproof: Run, town: Path, tmp_path: Pat
     assert carproof("optimum", town, "--proof", folder).code == 0
     outcome = carproof("verify-proof", folder, "--instance", town)
     assert (outcome.code, outcome.stderr) == (0, "")
-    assert outcome.stdout.splitlines()[-1].split() == ["5", "2", "replayed", "sat", "unsat"]
+    assert outcome.stdout.splitlines()[-1].split() == ["5", "2", "checked", "sat", "unsat"]
     document = json.loads(carproof("verify-proof", folder, "--json").stdout)
     assert document == {"proved": True, "cost": 5, "solution": TWO_PLANNED, "reason": None}
+
+
+def test_a_proof_about_which_z3_does_not_answer_is_undecided(
+    carproof: Run, town: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert carproof("optimum", town, "--proof", tmp_path / "proof").code == 0
+    monkeypatch.setattr("carp_verify.proof._ask_z3", lambda _: "unknown")
+    outcome = carproof("verify-proof", tmp_path / "proof")
+    assert outcome.code == 3
+    assert outcome.stdout.splitlines()[-1] == "undecided: z3 did not answer in time about one of the formulas"
+    document = json.loads(carproof("verify-proof", tmp_path / "proof", "--json").stdout)
+    assert (document["proved"], document["cost"]) == (False, 5)
 
 
 def test_a_proof_that_does_not_hold_is_refused_with_its_reason(carproof: Run, town: Path, tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from functools import cache
 from itertools import pairwise, product
 from pathlib import Path
+from time import process_time
 
 import msgspec
 import pytest
@@ -24,11 +25,13 @@ from carp_verify.joint_search import least_total_cost
 from carp_verify.smt import integers, truth, value_of
 from carp_verify.strategies import PlannedInstance, Sizes, instances, planned_instances
 from carp_verify.theorems.prices_bound_the_total import at_most_paid, in_exchange, paid
-from carp_verify.verify_bound import Search, Tariff, predecessors, verify_bound
+from carp_verify.verify_bound import Budget, Search, Tariff, predecessors, verify_bound
 
 TINY = Sizes(resources=4, robots=3, capacity=2, duration=2, release=2, pace=2)
 SCALE = 4
 HORIZON = 6
+UNSOUND_DRAT = "91 0\n92 -91 0\nd 92 -91 0\n-92 0\n0\n"
+"""Refuted every formula by a checker that forgets a unit clause and keeps what it implied."""
 Tamper = Callable[[BoundDocument], BoundDocument]
 
 
@@ -46,7 +49,7 @@ def completed(instance: Instance, certificate: BoundDocument) -> BoundDocument:
     tariff = Tariff(instance, certificate)
     before = predecessors(instance)
     robots = tuple(
-        (robot.id, Search(tariff, robot, certificate.scale, before).least_cost()) for robot in instance.robots
+        (robot.id, Search(tariff, robot, certificate.scale, before, Budget()).least_cost()) for robot in instance.robots
     )
     parts = sum(least or 0 for _, least in robots) - tariff.worth
     return msgspec.structs.replace(certificate, robots=robots, bound=-(-parts // certificate.scale))
@@ -183,15 +186,17 @@ def with_cut(**fields: object) -> Tamper:
         (with_cut(robots=("r0", "r0")), "$.cuts[0].robots", "must name robots of the instance once, also 'r0'"),
         (with_cut(robots=("r0", "moon")), "$.cuts[0].robots", "also 'moon'"),
         (with_cut(robots=("r1",)), "$.cuts[0]", "it must have a horizon of each of 1 robots"),
-        (with_cut(robots=("r1", "r2")), "$.cuts[0]", "the refutation"),
-        (with_cut(least=99), "$.cuts[0]", "the refutation does not show"),
+        (with_cut(robots=("r1", "r2")), "$.cuts[0]", "its proof does not hold: line"),
+        (with_cut(robots=(), horizons=(), order=()), "$.cuts[0].robots", "it must name at least one robot"),
+        (with_cut(least=99), "$.cuts[0]", "its proof does not hold: line"),
         (with_cut(least=7.0), "$.cuts[0]", "must be whole numbers"),
         (with_cut(least=True), "$.cuts[0]", "must be whole numbers"),
         (with_cut(horizons=(1,)), "$.cuts[0]", "it must have a horizon of each of 2 robots"),
         (with_cut(horizons=(-1, 1)), "$.cuts[0]", "a horizon must be between 0 and the least total"),
         (with_cut(order=(0, 0)), "$.cuts[0]", "and an order of them"),
-        (with_cut(refutation=""), "$.cuts[0]", "the refutation does not show"),
-        (with_cut(refutation="hello"), "$.cuts[0]", "the refutation must be a DRAT proof"),
+        (with_cut(refutation=""), "$.cuts[0]", "it does not end with the empty clause"),
+        (with_cut(refutation="hello"), "$.cuts[0]", "line 1 must be a clause with its hints"),
+        (with_cut(refutation=UNSOUND_DRAT), "$.cuts[0]", "line 1 has no hints: refutations without hints"),
     ],
 )
 def test_a_tampered_cut_is_refused(tamper: Tamper, path: str, reason: str) -> None:
@@ -211,11 +216,60 @@ def cut_certificate() -> BoundDocument:
     return with_it
 
 
+def test_the_multipliers_of_all_cuts_of_a_robot_count_together() -> None:
+    (cut,) = cut_certificate().cuts
+    half = msgspec.structs.replace(cut, multiplier=cut_certificate().scale * 3 // 4)
+    with pytest.raises(Refusal, match="the multipliers of robot r0 must add up to 65536 at most") as refused:
+        verify_bound(crossing(), msgspec.structs.replace(cut_certificate(), cuts=(half, half)))
+    assert refused.value.path == "$.cuts[1].multiplier"
+
+
+def test_a_horizon_far_beyond_the_last_price_costs_nothing() -> None:
+    certificate = lower_bound(crossing(), steps=500)
+    for horizon in (10**9, 10**99):
+        assert verify_bound(crossing(), msgspec.structs.replace(certificate, horizon=horizon)) == certificate.bound
+
+
+def test_a_horizon_below_zero_is_malformed() -> None:
+    with pytest.raises(Refusal, match="the horizon must be at least 0") as refused:
+        read_bound(write(msgspec.structs.replace(lower_bound(crossing(), steps=1), resources=(), horizon=-1)))
+    assert (refused.value.path, refused.value.rule) == ("$.horizon", "document/shape")
+
+
+def test_a_search_for_least_costs_that_takes_too_long_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(page, "LARGEST_SEARCH", 2)
+    with pytest.raises(Refusal, match="takes more than 2 steps") as refused:
+        verify_bound(crossing(), lower_bound(crossing(), steps=500))
+    assert refused.value.rule == "bound/size"
+
+
+def test_prices_that_keep_a_robot_waiting_for_long_are_refused_after_a_bounded_search() -> None:
+    lane = ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),))
+    instance = Instance(lane, (Robot("r", "a", "b"),))
+    prices = (*(("b", tick, 10**12) for tick in range(1000)), ("b", 9_999_999, 1))
+    certificate = BoundDocument(BOUND_FORMAT, digest(instance), 0, 1, 10**7, prices, (), (), (("r", 0),))
+    started = process_time()
+    with pytest.raises(Refusal, match="bound"):
+        verify_bound(instance, certificate)
+    assert process_time() - started < 30
+
+
+@pytest.mark.parametrize(("horizons", "least"), [((3000, 3000), 3007), ((10**9, 0), 10**9), ((0, 10**99), 10**99)])
+def test_a_cut_with_a_large_formula_is_refused_at_once(horizons: tuple[int, int], least: int) -> None:
+    (cut,) = cut_certificate().cuts
+    large = msgspec.structs.replace(cut, horizons=horizons, least=least)
+    started = process_time()
+    with pytest.raises(Refusal, match="must have at most 5000000 clauses together") as refused:
+        verify_bound(crossing(), msgspec.structs.replace(cut_certificate(), cuts=(large,)))
+    assert (refused.value.path, refused.value.rule) == ("$.cuts[0]", "bound/size")
+    assert process_time() - started < 20
+
+
 def test_a_cut_of_a_robot_without_a_way_is_refused() -> None:
     crossed = crossing()
     instance = Instance(crossed.graph, (*crossed.robots, Robot("lost", "north", "island")))
     certificate = lower_bound(instance, steps=2)
-    cut = CutDocument(("r0", "lost"), 0, 1, (0, 0), (0, 1), "0\n")
+    cut = CutDocument(("r0", "lost"), 0, 1, (0, 0), (0, 1), "1 0 1 0\n")
     with pytest.raises(Refusal, match="a robot of the group has no way to its goal"):
         verify_bound(instance, msgspec.structs.replace(certificate, cuts=(cut,)))
 
@@ -312,7 +366,7 @@ def of_robot(more: int) -> Tamper:
         (lambda each: change(bound=each.bound + 1)(each), "$.bound", "bound/total", "the bound must be 9,"),
         (lambda each: change(bound=each.bound - 1)(each), "$.bound", "bound/total", "and is 8"),
         (change(bound=9.0), "$.bound", "bound/total", r"and is 9\.0"),
-        (change(horizon=10**12), "$.horizon", "bound/size", "would be"),
+        (lambda each: reprice(tick=10**12)(change(horizon=10**13)(each)), "$.resources", "bound/size", "would be"),
     ],
 )
 def test_a_tampered_certificate_is_refused(tamper: Tamper, path: str | None, rule: str, reason: str) -> None:
@@ -349,6 +403,7 @@ def test_the_verifier_shares_nothing_with_the_finder_and_loads_nothing_compiled(
         "carp_spec.rule",
         "carp_verify.bound_rules",
         "carp_verify.bound_cuts",
+        "carp_verify.refutation",
     }
     program = "import sys, carp_verify.verify_bound; print(*sys.modules)"
     loaded = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True).stdout.split()

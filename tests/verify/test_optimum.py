@@ -7,7 +7,7 @@ from hypothesis import given, settings
 
 from carp_oracle.generate import Fleet, Grid, grid_instance
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, judge
-from carp_verify import robot_clauses
+from carp_verify.encoding import Encoding
 from carp_verify.joint_search import least_total_cost
 from carp_verify.optimum import optimum
 from carp_verify.strategies import Sizes, instances
@@ -120,11 +120,13 @@ def test_an_undecided_search_leaves_the_best_plans_found_and_a_bound(
     assert best.cost > best.lower > (best.shortest or 0)
 
 
-def test_a_formula_too_large_is_refused_with_the_limit_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(robot_clauses, "LARGEST_FORMULA", 20)
+@pytest.mark.parametrize("most", [20, 200], ids=["at once", "while it grows"])
+def test_a_formula_too_large_is_refused_with_the_limit_named(most: int) -> None:
     instance = grid(6, Robot("a", "0,0", "5,5"), Robot("b", "5,5", "0,0"))
-    with pytest.raises(Refusal, match="clauses of the formula must be at most 20, the limit"):
-        optimum(instance, LONG)
+    encoding = Encoding(instance, most=most)
+    with pytest.raises(Refusal, match=f"clauses of the formula must be at most {most}, the limit"):
+        encoding.grow_to([1, 1])
+    assert len(encoding.formula.clauses) == (0 if most == 20 else most + 1)
 
 
 @pytest.mark.parametrize("limit", [0, 1])

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
+from tests.verify.test_bound import UNSOUND_DRAT
 
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, judge, write_instance
 from carp_verify.optimum import optimum
@@ -138,15 +139,21 @@ def test_a_file_that_was_changed_has_another_digest(proof: Path, name: str) -> N
         (change_text("reach.model", lambda text: text.split(" ", 1)[1]), "reach.model: it must give each"),
         (change_text("reach.model", lambda text: text.replace("-", "")), "reach.model: it breaks clause"),
         (change_text("variables.json", lambda text: text.replace("0,1", "1,0", 1)), "variables.json: line"),
-        (change_text("beat.drat", lambda _: ""), "beat.drat: it does not prove"),
-        (change_text("beat.drat", lambda _: "hello\n"), "beat.drat: it must be a DRAT proof"),
-        (change_text("beat.drat", lambda _: "0\n"), "beat.drat: it does not prove"),
+        (change_text("reach.model", lambda text: "-" + text), "reach.model: it must be whole numbers"),
+        (change_text("reach.model", lambda text: "9" * 5000 + text), "reach.model: it must be whole numbers"),
+        (change_text("beat.lrat", lambda _: ""), "beat.lrat: it does not show .* the empty clause"),
+        (change_text("beat.lrat", lambda _: "hello\n"), "beat.lrat: .* line 1 must be a clause with its hints"),
+        (change_text("beat.lrat", lambda _: "0\n"), "beat.lrat: .* line 1 has no hints"),
+        (change_text("beat.lrat", lambda _: UNSOUND_DRAT), "beat.lrat: .* line 1 has no hints"),
         (change_text("instance.json", lambda text: text.replace('"vanish"', '"park"')), "reach.cnf: line"),
-        (change_manifest(format="carproof-proof/9"), "manifest.json: the format must be carproof-proof/1"),
+        (change_manifest(format="carproof-proof/9"), "manifest.json: .* the format must be carproof-proof/2"),
+        (change_manifest(format="carproof-proof/1"), "manifest.json: carproof-proof/1 has a refutation without hints"),
+        (change_manifest(cost=10**99), "manifest.json: the cost must be .* at most all horizons above it"),
+        (change_manifest(cost=10**9, horizons=[10**9] * 4), "the formula must be at most 5000000"),
         (change_manifest(cost="12"), "manifest.json: it must be a manifest"),
         (change_manifest(more=1), "manifest.json: it must be a manifest"),
-        (change_manifest(cost=7), r"manifest.json: a horizon must be between|reach.cnf: line"),
-        (change_manifest(cost=40), "reach.cnf: line"),
+        (change_manifest(cost=7), r"manifest.json: the cost must be at least that of the shortest paths"),
+        (change_manifest(cost=40), "manifest.json: the cost must be .* at most all horizons above it"),
         (change_manifest(horizons=[1, 1]), "manifest.json: it must have a horizon of each of 4 robots"),
         (change_manifest(horizons=[99, 1, 1, 1]), "manifest.json: a horizon must be between 0 and the cost"),
         (change_manifest(order=[0, 1, 2, 2]), "manifest.json: it must have a horizon of each of 4 robots"),
@@ -162,11 +169,18 @@ def test_tampering_is_refused_though_the_digests_are_right(
         verify_proof(proof)
 
 
+def test_a_manifest_with_a_name_twice_is_refused(proof: Path) -> None:
+    manifest = (proof / "manifest.json").read_text()
+    (proof / "manifest.json").write_text(manifest.replace("{", '{"cost":1,', 1))
+    with pytest.raises(ProofError, match=r"^manifest\.json: .* has the name 'cost' 2 times"):
+        verify_proof(proof)
+
+
 def test_a_truncated_refutation_is_refused(proof: Path) -> None:
-    lines = (proof / "beat.drat").read_text().splitlines(keepends=True)
-    (proof / "beat.drat").write_text("".join(lines[: len(lines) // 2]))
+    lines = (proof / "beat.lrat").read_text().splitlines(keepends=True)
+    (proof / "beat.lrat").write_text("".join(lines[: len(lines) // 2]))
     with_digests(proof)
-    with pytest.raises(ProofError, match=r"beat\.drat: it does not prove"):
+    with pytest.raises(ProofError, match=r"beat\.lrat: it does not show"):
         verify_proof(proof)
 
 

@@ -1,8 +1,8 @@
 """Cuts: groups of robots whose costs add up to more than prices can show, with proofs that others can check.
 
 The proof of a cut is that of an optimum's lower half, of the group as an instance of its own (`carp_verify.proof`):
-the formula of a total below `least` is made anew from the instance, and a DRAT refutation of it is replayed. No plans
-of the group cost less in the whole instance either, where there are more robots in the way.
+the formula of a total below `least` is made again from the instance, and a refutation of it is checked. No plans of the
+group cost less in the whole instance either, where more robots are in the way.
 """
 
 from collections.abc import Sequence
@@ -10,10 +10,11 @@ from collections.abc import Sequence
 from carp_spec import Instance, RobotId
 from carp_spec.bounds import CutDocument
 from carp_spec.rule import is_whole
-from carp_verify.clauses import dimacs
+from carp_verify.clauses import Formula
 from carp_verify.encoding import Encoding
 from carp_verify.optimum import Evidence
 from carp_verify.proof import beat_formula
+from carp_verify.refutation import NotRefutedError, require_refutation
 
 
 def group_of(instance: Instance, robots: Sequence[RobotId]) -> Instance:
@@ -21,30 +22,26 @@ def group_of(instance: Instance, robots: Sequence[RobotId]) -> Instance:
     return Instance(instance.graph, tuple(instance.robot[robot] for robot in robots), instance.after_goal)
 
 
-def why_unproved(instance: Instance, cut: CutDocument) -> str | None:
-    """Why the cut's proof does not hold, or `None` if it does; its robots must be known.
+def formula_of(instance: Instance, cut: CutDocument, most: int) -> Formula:
+    """The formula that a cut's refutation is of; its robots must be known.
 
-    Raises `Refusal` if its formula would not fit into memory.
+    Raises `NotRefutedError` if the cut has no such formula, and `Refusal` if that has more than `most` clauses.
     """
     group = group_of(instance, cut.robots)
     count = len(group.robots)
     if Encoding(group).wayless:
-        return "a robot of the group has no way to its goal"
+        raise NotRefutedError("a robot of the group has no way to its goal")
     if not all(map(is_whole, (cut.least, *cut.horizons, *cut.order))):
-        return "its least total, horizons and order must be whole numbers"
+        raise NotRefutedError("its least total, horizons and order must be whole numbers")
     if len(cut.horizons) != count or sorted(cut.order) != list(range(count)):
-        return f"it must have a horizon of each of {count} robots, and an order of them"
+        raise NotRefutedError(f"it must have a horizon of each of {count} robots, and an order of them")
     if any(not 0 <= horizon <= cut.least for horizon in cut.horizons):
-        return "a horizon must be between 0 and the least total"
-    formula = beat_formula(group, cut.least, Evidence(cut.horizons, cut.order)).formula
-    return _why_not_refuted(dimacs(formula), cut.refutation)
+        raise NotRefutedError("a horizon must be between 0 and the least total")
+    return beat_formula(group, cut.least, Evidence(cut.horizons, cut.order), most).formula
 
 
-def _why_not_refuted(formula: str, refutation: str) -> str | None:
-    from dratify import check_proof, parse_dimacs  # noqa: PLC0415 - only for certificates with cuts
-
-    try:
-        result = check_proof(parse_dimacs(formula), refutation)
-    except ValueError as error:
-        return f"the refutation must be a DRAT proof: {error}"
-    return None if result.ok else f"the refutation does not show that the group cannot cost less: {result}"
+def require_cut(instance: Instance, cut: CutDocument, most: int) -> int:
+    """Check a cut's refutation, and return how many clauses its formula has; raises as `formula_of` does."""
+    formula = formula_of(instance, cut, most)
+    require_refutation(formula.clauses, cut.refutation)
+    return len(formula.clauses)

@@ -6,6 +6,8 @@ from carp_spec import Rule
 from carp_spec.rule import DESIGN, is_whole, rule
 
 LARGEST_TABLE = 20_000_000
+LARGEST_SEARCH = 5_000_000
+LARGEST_FORMULA = 5_000_000
 LONGEST_STAY = 100_000
 
 
@@ -51,8 +53,8 @@ def is_least(claimed: object, least: int | None) -> bool:
 
 @rule(
     "bound/cut",
-    "A cut is a group of distinct robots, a whole multiplier of at least 0, and a refutation of a smaller total of the "
-    "group's costs; the multipliers of a robot's cuts are no more than the scale together.",
+    "A cut is a group of one or more distinct robots, a whole multiplier of at least 0, and a refutation of a smaller "
+    "total of the group's costs; the multipliers of a robot's cuts are no more than the scale together.",
     DESIGN,
 )
 def is_weight(scale: int, multipliers: int) -> bool:
@@ -73,13 +75,14 @@ def is_rounded_up(bound: object, parts: int, scale: int) -> bool:
 
 @rule(
     "bound/size",
-    f"Tables by resource and tick, or by robot and resource, have at most {LARGEST_TABLE} entries: they fit into "
-    "memory.",
+    "Tables by resource and tick, by robot and resource, or by a cut's robot and resource, have at most "
+    f"{LARGEST_TABLE} entries; the search for the robots' least costs takes at most {LARGEST_SEARCH} steps, and the "
+    f"formulas of all cuts have at most {LARGEST_FORMULA} clauses together.",
     DESIGN,
 )
-def table_fits(entries: int) -> bool:
-    """Whether the table is small enough."""
-    return entries <= LARGEST_TABLE
+def size_fits(size: int, limit: int) -> bool:
+    """Whether a size is within its limit."""
+    return size <= limit
 
 
 @rule(
@@ -92,6 +95,16 @@ def stay_is_searched(ticks: int) -> bool:
     return ticks <= LONGEST_STAY
 
 
+class ContradictionError(RuntimeError):
+    """Plans that break no rule cost less than a bound: one of the two checkers is wrong."""
+
+
+def require_kept(bound: int, cost: int) -> None:
+    """Raise `ContradictionError` if plans of all robots, which break no rule, cost less than the bound."""
+    if cost < bound:
+        raise ContradictionError(f"plans that break no rule cost {cost}, less than the lower bound {bound}")
+
+
 BOUND_RULES: tuple[Rule[..., Any], ...] = (
     is_about,
     is_scale,
@@ -100,6 +113,6 @@ BOUND_RULES: tuple[Rule[..., Any], ...] = (
     is_least,
     is_weight,
     is_rounded_up,
-    table_fits,
+    size_fits,
     stay_is_searched,
 )

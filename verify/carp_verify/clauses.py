@@ -7,17 +7,20 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import TypeAlias
 
+from carp_verify.optimum_rules import LARGEST_FORMULA, refuse_size
+
 Literal: TypeAlias = int
 Clause: TypeAlias = tuple[Literal, ...]
 Unary: TypeAlias = Sequence[Literal]
 
 
 class Formula:
-    """Clauses over the variables 1 .. `variables`, in the order in which they were added."""
+    """Clauses over the variables 1 .. `variables`, in the order in which they were added; at most `most` of them."""
 
-    __slots__ = ("clauses", "variables")
+    __slots__ = ("clauses", "most", "variables")
 
-    def __init__(self) -> None:
+    def __init__(self, most: int = LARGEST_FORMULA) -> None:
+        self.most = most
         self.variables = 0
         self.clauses: list[Clause] = []
 
@@ -27,8 +30,14 @@ class Formula:
         return self.variables
 
     def add(self, *literals: Literal) -> None:
-        """Demand that one of the literals holds."""
+        """Demand that one of the literals holds; raises `Refusal` if the formula gets too large."""
         self.clauses.append(literals)
+        if len(self.clauses) > self.most:
+            self.require(len(self.clauses))
+
+    def require(self, size: int) -> None:
+        """Raise `Refusal` if so many clauses are too many."""
+        refuse_size("the clauses of the formula", size, self.most)
 
     def at_least(self, addends: Sequence[Unary], most: int) -> Unary:
         """A unary number of up to `most` that is at least the sum of the addends, or at least `most`.
@@ -43,6 +52,7 @@ class Formula:
         return numbers[0] if numbers else ()
 
     def _sum(self, left: Unary, right: Unary, most: int) -> Unary:
+        self.require(len(self.clauses) + len(left) * len(right))
         total = [self.variable() for _ in range(min(len(left) + len(right), most))]
         for smaller, larger in pairwise(total):
             self.add(-larger, smaller)

@@ -15,6 +15,7 @@ from itertools import pairwise
 
 from carp_spec import Instance, Move, Plan, ResourceId, Robot
 from carp_verify.clauses import Clause, Formula, Literal
+from carp_verify.optimum_rules import LARGEST_FORMULA
 from carp_verify.robot_clauses import RobotClauses, predecessors
 
 
@@ -30,12 +31,15 @@ class Conflict:
 class Encoding:
     """The clauses of all robots of an instance, each with a horizon of 0 at first; every robot must have a way.
 
-    `check` is called before each robot, whose distances on a large map take a while; it may raise `TimeOver`.
+    `check` is called before each robot, whose distances on a large map take a while; it may raise `TimeOver`. A formula
+    of more than `most` clauses is refused.
     """
 
-    def __init__(self, instance: Instance, check: Callable[[], None] = lambda: None) -> None:
+    def __init__(
+        self, instance: Instance, check: Callable[[], None] = lambda: None, most: int = LARGEST_FORMULA
+    ) -> None:
         self.instance = instance
-        self.formula = Formula()
+        self.formula = Formula(most)
         before = predecessors(instance)
         self.robots: list[RobotClauses] = []
         for robot in instance.robots:
@@ -119,7 +123,9 @@ class Encoding:
             self.forbid(conflict)
 
     def grow_to(self, horizons: Sequence[int]) -> None:
-        """Give each robot its horizon."""
+        """Give each robot its horizon; raises `Refusal` at once if the nodes alone need too many clauses."""
+        nodes = sum(robot.nodes_within(horizon) for robot, horizon in zip(self.robots, horizons, strict=True))
+        self.formula.require(nodes + sum(horizons))
         for robot, horizon in zip(self.robots, horizons, strict=True):
             while robot.horizon < horizon:
                 robot.grow()

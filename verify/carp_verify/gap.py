@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from carp_reference import plan, query
 from carp_spec import Instance, Plan, Planner, RobotId, plan_cost, total_cost
+from carp_verify.bound_rules import require_kept
 from carp_verify.encoding import Encoding
 from carp_verify.optimum import Optimum, optimum
 from carp_verify.optimum_rules import MOST_ORDERED, refuse_size
@@ -41,7 +42,10 @@ def gap(instance: Instance, planners: Sequence[Planner], limit: float) -> Gap:
     reached = []
     for planner in planners:
         solution = plan(instance, planner)
-        reached.append(PlannerGap(planner, total_cost(instance, solution.plans), len(solution.unplanned)))
+        total = total_cost(instance, solution.plans)
+        if not solution.unplanned:
+            require_kept(best.lower, total)
+        reached.append(PlannerGap(planner, total, len(solution.unplanned)))
     order = None
     if len(instance.robots) <= MOST_ORDERED:
         try:

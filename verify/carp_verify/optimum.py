@@ -22,6 +22,7 @@ from dataclasses import dataclass
 from time import monotonic_ns
 
 from carp_spec import Instance, Plan, Solution, total_cost
+from carp_verify.bound_rules import require_kept
 from carp_verify.clauses import Literal, Unary
 from carp_verify.encoding import Encoding, violated
 from carp_verify.heuristics import plans_of_all
@@ -228,6 +229,7 @@ class _Search:
                 self.encoding.shortest, None, self.lower, proved=False, solution=None, evidence=self.evidence
             )
         cost = total_cost(self.instance, self.best)
+        require_kept(self.lower, cost)
         return Optimum(
             self.encoding.shortest, cost, self.lower, cost == self.lower, _solution(self.best), self.evidence
         )

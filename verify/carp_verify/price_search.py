@@ -9,7 +9,7 @@ from carp_optimized.arrays import LARGEST, NONE, Graph, Ints, Longs, LongTable
 from carp_optimized.encoding import encode_graph, refuse_tick, refuse_what_is_too_large
 from carp_optimized.references import Native
 from carp_spec import Instance, Refusal, ResourceId, RobotId
-from carp_verify.bound_rules import LARGEST_TABLE, LONGEST_STAY, stay_is_searched, table_fits
+from carp_verify.bound_rules import LARGEST_TABLE, LONGEST_STAY, size_fits, stay_is_searched
 from carp_verify.price_steps import KEPT, LARGEST_GAIN, PARTS, UNIT, turn_all, walk_all
 from carp_verify.priced_ways import (
     Market,
@@ -39,9 +39,9 @@ class PriceLists(NamedTuple):
 
 def refuse_table(path: str, what: str, entries: int) -> None:
     """Raise `Refusal` if a table would be too large."""
-    if not table_fits(entries):
+    if not size_fits(entries, LARGEST_TABLE):
         message = f"{what} must be at most {LARGEST_TABLE}, the limit, and would be {entries}"
-        raise Refusal("limit", path, table_fits.id, message)
+        raise Refusal("limit", path, size_fits.id, message)
 
 
 class Point(NamedTuple):

@@ -15,11 +15,11 @@ from bisect import bisect_right, insort
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from heapq import heappop, heappush
+from itertools import count
 from typing import TypeAlias
 
 from carp_spec import Instance, Plan, ResourceId, Robot, Visit
 from carp_verify.clauses import Clause, Formula, Literal
-from carp_verify.optimum_rules import LARGEST_FORMULA, refuse_size
 
 Node: TypeAlias = tuple[ResourceId, int]
 
@@ -111,9 +111,25 @@ class RobotClauses:
         ]
         return [(resource, tick + 1), *moves]
 
+    def nodes_within(self, horizon: int) -> int:
+        """How many nodes the robot has at a horizon."""
+        if self._stands_still:
+            return 1
+        if self.robot.start not in self._rest:
+            return 0
+        first: dict[ResourceId, int] = {}
+        number = count()
+        queue = [(self._start[1], next(number), self._start[0])]
+        while queue:
+            tick, _, resource = heappop(queue)
+            if resource not in first:
+                first[resource] = tick
+                for following, later in self.leads_to((resource, tick))[1:]:
+                    heappush(queue, (later, next(number), following))
+        return sum(max(0, horizon + 1 - self.least_delay(node)) for node in first.items())
+
     def grow(self) -> None:
         """Raise the horizon by one tick of delay and add the clauses of all nodes that this brings."""
-        refuse_size("the clauses of the formula", len(self._formula.clauses), LARGEST_FORMULA)
         self.horizon += 1
         self.late.append(self._formula.variable())
         if self.horizon > 0:

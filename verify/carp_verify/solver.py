@@ -78,9 +78,9 @@ class Solver:
         """Assumptions found last that cannot hold together; none at all if the formula has no model."""
         return list(self._solver.get_core() or [])
 
-    def proof(self) -> str:
-        """The DRAT proof that the formula has no model, of a solver made to keep one."""
-        return "".join(f"{line}\n" for line in self._solver.get_proof() or [])
+    def proof(self) -> list[str]:
+        """The lines of a DRUP proof that the formula has no model, of a solver made to keep one."""
+        return list(self._solver.get_proof() or [])
 
     def close(self) -> None:
         """Free the solver."""

@@ -10,7 +10,11 @@ in the cut instead, where their sum is at least what the cut proves. The theorem
   just before t and at t. No more of them than the capacity of r: by `joint/exchange` nobody makes one of the moves;
   those who make the other are in r just before t, or at t, together with those who stay.
 - At the horizon the prices end, but plans need not: from there on a robot pays no more, so that its cheapest way to
-  the goal is a shortest one. Every plan is bounded, however late it comes.
+  the goal is a shortest one. Every plan is bounded, however late it comes. The prices end after the last of them too,
+  which is the horizon that counts here.
+
+Tables that would be too large are refused before the first is made. The search for the least costs takes a bounded
+number of steps.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -18,10 +22,13 @@ from heapq import heappop, heappush
 from itertools import accumulate
 from typing import TypeAlias
 
-from carp_spec import Instance, Refusal, ResourceGraph, ResourceId, Robot, Rule
-from carp_spec.bounds import BoundDocument, digest
+from carp_spec import Instance, Refusal, ResourceGraph, ResourceId, Robot, RobotId, Rule
+from carp_spec.bounds import BoundDocument, CutDocument, digest
 from carp_spec.rule import is_whole
 from carp_verify.bound_rules import (
+    LARGEST_FORMULA,
+    LARGEST_SEARCH,
+    LARGEST_TABLE,
     is_about,
     is_least,
     is_new,
@@ -29,7 +36,7 @@ from carp_verify.bound_rules import (
     is_rounded_up,
     is_scale,
     is_weight,
-    table_fits,
+    size_fits,
 )
 
 Before: TypeAlias = Mapping[ResourceId, Sequence[ResourceId]]
@@ -43,20 +50,27 @@ def verify_bound(instance: Instance, certificate: BoundDocument) -> int:
     _require(is_about, is_about(certificate.instance, digest(instance)), "$.instance", "it is about another instance")
     scale = certificate.scale
     _require(is_scale, is_scale(scale), "$.scale", f"the scale must be a power of two, and is {scale!r}")
-    tariff = Tariff(instance, certificate)
-    weights, proved = _weights(instance, certificate)
     if [robot for robot, _ in certificate.robots] != list(instance.robot):
         raise Refusal("document", "$.robots", is_least.id, "it must name each robot of the instance once, in its order")
+    table = len(instance.robots) * len(instance.graph.resources)
+    _require_size(table, LARGEST_TABLE, "$.robots", "the table of robots by resources")
+    tariff = Tariff(instance, certificate)
+    weights, proved = _weights(instance, certificate)
     before = predecessors(instance)
     parts = proved - tariff.worth
+    budget = Budget()
     for position, (robot, (_, claimed)) in enumerate(zip(instance.robots, certificate.robots, strict=True)):
-        least = Search(tariff, robot, weights[position], before).least_cost()
+        least = Search(tariff, robot, weights[position], before, budget).least_cost()
         message = f"robot {robot.id} can have no more than {least}, the least of its cost and prices, not {claimed!r}"
         _require(is_least, is_least(claimed, least), f"$.robots[{position}]", message)
         parts += claimed or 0
     message = f"the bound must be {-(-parts // scale)}, the sum of all parts rounded up, and is {certificate.bound!r}"
     _require(is_rounded_up, is_rounded_up(certificate.bound, parts, scale), "$.bound", message)
     return certificate.bound
+
+
+def _require_size(size: int, limit: int, path: str, what: str) -> None:
+    _require(size_fits, size_fits(size, limit), path, f"{what} would be {size}, and at most {limit} are allowed")
 
 
 def _require(rule: Rule[..., bool], kept: bool, path: str, message: str) -> None:
@@ -67,23 +81,40 @@ def _require(rule: Rule[..., bool], kept: bool, path: str, message: str) -> None
 def _weights(instance: Instance, certificate: BoundDocument) -> tuple[Sequence[int], int]:
     """What a tick costs each robot apart from its cuts, and what the cuts prove together, each by its multiplier."""
     left = dict.fromkeys(instance.robot, certificate.scale)
-    proved = 0
+    resources = len(instance.graph.resources)
+    members = sum(len(cut.robots) for cut in certificate.cuts)
+    _require_size(members * resources, LARGEST_TABLE, "$.cuts", "the resources that robots of cuts are searched in")
+    proved = clauses = 0
     for number, cut in enumerate(certificate.cuts):
         path = f"$.cuts[{number}]"
         message = f"the multiplier must be a whole number of at least 0, and is {cut.multiplier!r}"
         _require(is_weight, is_whole(cut.multiplier) and cut.multiplier >= 0, f"{path}.multiplier", message)
+        _require(is_weight, len(cut.robots) > 0, f"{path}.robots", "it must name at least one robot")
+        seen: set[RobotId] = set()
         for robot in cut.robots:
-            known = robot in left and cut.robots.count(robot) == 1
+            known = robot in left and robot not in seen
+            seen.add(robot)
             _require(is_weight, known, f"{path}.robots", f"it must name robots of the instance once, also {robot!r}")
             left[robot] -= cut.multiplier
             message = f"the multipliers of robot {robot} must add up to {certificate.scale} at most"
             _require(is_weight, is_weight(0, -left[robot]), f"{path}.multiplier", message)
-        from carp_verify.bound_cuts import why_unproved  # noqa: PLC0415 - only a certificate with cuts needs a proof checker
-
-        reason = why_unproved(instance, cut)
-        _require(is_weight, reason is None, path, f"its proof does not hold: {reason}")
+        clauses += _clauses_of(instance, cut, LARGEST_FORMULA - clauses, path)
         proved += cut.multiplier * cut.least
     return list(left.values()), proved
+
+
+def _clauses_of(instance: Instance, cut: CutDocument, most: int, path: str) -> int:
+    """How many clauses the formula of a cut has, which its refutation refutes; raises `Refusal` otherwise."""
+    from carp_verify.bound_cuts import require_cut  # noqa: PLC0415 - only a certificate with cuts needs the encoder
+    from carp_verify.refutation import NotRefutedError  # noqa: PLC0415
+
+    try:
+        return require_cut(instance, cut, most)
+    except NotRefutedError as error:
+        raise Refusal("document", path, is_weight.id, f"its proof does not hold: {error}") from error
+    except Refusal as refusal:
+        message = f"the formulas of the cuts must have at most {LARGEST_FORMULA} clauses together, and would have more"
+        raise Refusal("document", path, size_fits.id, message) from refusal
 
 
 class Tariff:
@@ -92,13 +123,14 @@ class Tariff:
     def __init__(self, instance: Instance, certificate: BoundDocument) -> None:
         """Raises `Refusal` for a price that is none."""
         self.instance = instance
-        self.horizon = certificate.horizon
         self.worth = 0
+        self.horizon = 0
         self.moves: dict[tuple[ResourceId, ...], dict[int, int]] = {}
         present: dict[ResourceId, dict[int, int]] = {}
         across: dict[ResourceId, dict[int, int]] = {}
         for place, tick, price in self._prices(certificate):
             source = place[0]
+            self.horizon = max(self.horizon, tick + 1)
             if len(place) == 1:
                 present.setdefault(source, {})[tick] = price
             else:
@@ -107,7 +139,7 @@ class Tariff:
                 self.moves.setdefault(place, {})[tick] = price
             self.worth += price * instance.graph.resource[source].capacity
         size = self.horizon * len({*present, *across})
-        _require(table_fits, table_fits(size), "$.horizon", f"prices by resource and tick would be {size} numbers")
+        _require_size(size, LARGEST_TABLE, "$.resources", "the prices by resource and tick, up to the last,")
         self.present = {resource: self._sums(prices) for resource, prices in present.items()}
         self.across = {resource: self._sums(prices) for resource, prices in across.items()}
 
@@ -121,8 +153,8 @@ class Tariff:
         known: set[tuple[tuple[ResourceId, ...], int]] = set()
         for number, (place, tick, price) in enumerate([*rows, *pairs]):
             path = f"$.resources[{number}]" if number < len(rows) else f"$.exchanges[{number - len(rows)}]"
-            message = f"{price!r} at {tick!r} must be a price of at least 0 at a tick below {self.horizon}"
-            _require(is_price, is_price(price, tick, self.horizon), path, message)
+            message = f"{price!r} at {tick!r} must be a price of at least 0 at a tick below {certificate.horizon}"
+            _require(is_price, is_price(price, tick, certificate.horizon), path, message)
             exists = place[0] in graph.index if len(place) == 1 else is_both_ways(graph, *place)
             shown = " and ".join(map(str, place))
             _require(is_price, exists, path, f"{shown} must be a resource, or two with a move each way")
@@ -153,6 +185,19 @@ def is_both_ways(graph: ResourceGraph, source: ResourceId, target: ResourceId) -
     return graph.has_move(source, target) and graph.has_move(target, source)
 
 
+class Budget:
+    """The steps that the searches of all robots may still take."""
+
+    def __init__(self) -> None:
+        self.left = LARGEST_SEARCH
+
+    def spend(self) -> None:
+        """Take one step; raises `Refusal` if that is one too many."""
+        self.left -= 1
+        message = f"the search for the least costs takes more than {LARGEST_SEARCH} steps"
+        _require(size_fits, self.left >= 0, "$.robots", message)
+
+
 class Search:
     """A* for one robot, over the resources and the ticks at which it is free to leave them.
 
@@ -160,8 +205,9 @@ class Search:
     with its goal (`vanish`) never gains by going on, as neither ticks nor prices are ever negative.
     """
 
-    def __init__(self, tariff: Tariff, robot: Robot, weight: int, before: Before) -> None:
+    def __init__(self, tariff: Tariff, robot: Robot, weight: int, before: Before, budget: Budget) -> None:
         self.tariff = tariff
+        self.budget = budget
         self.robot = robot
         self.weight = weight
         self.parks = tariff.instance.after_goal == "park"
@@ -188,6 +234,7 @@ class Search:
 
     def leave(self, here: ResourceId, tick: int, paid: int) -> None:
         """Wait in a resource for a tick, or move on from it."""
+        self.budget.spend()
         waiting = self.tariff.stay(here, tick - 1, tick + 1) - self.tariff.stay(here, tick - 1, tick)
         self.reach(here, tick + 1, paid + waiting)
         for target in self.tariff.instance.graph.successors[here]:

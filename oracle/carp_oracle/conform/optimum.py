@@ -9,6 +9,7 @@ from carp_oracle.conform.findings import Finding, is_complete, is_optimal, wrong
 from carp_oracle.conform.levels import Level
 from carp_spec import Instance, Refusal, Solution, judge, total_cost
 from carp_spec.bounds import BoundDocument
+from carp_verify.bound_rules import require_kept
 
 
 @lru_cache(maxsize=1)
@@ -47,8 +48,8 @@ def bound_findings(instance: Instance, certificate: BoundDocument, level: Level)
         return
     if level >= Level.OPTIMAL:
         is_proved, least = proved_cost(instance)
-        if is_proved and least is not None and bound > least:
-            raise RuntimeError(f"carproof verifies a bound of {bound}, and there are plans with a total of {least}")
+        if is_proved and least is not None:
+            require_kept(bound, least)
 
 
 def _against_proof(instance: Instance, answer: OptimumAnswer) -> Iterator[Finding]:
