@@ -1,17 +1,20 @@
-"""The checker: all violations of a set of plans, in a fixed order."""
+"""The checker: the violations of a set of plans, in a fixed order."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import islice
 
 from carp_spec.joint_rules import JOINT_RULES, SOLUTION_RULES
 from carp_spec.model import Instance, Plan, Solution
 from carp_spec.plan_rules import PLAN_RULES, plan_keeps_history, total_cost
 from carp_spec.rule import Violation
 
+MOST_LISTED = 100
+
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """What the checker says of a solution; `cost` is the total of the plans there are."""
+    """The checker's answer for a solution; `cost` is the total of the plans there are."""
 
     cost: int
     unplanned: int
@@ -23,25 +26,32 @@ class Verdict:
         return not self.violations
 
 
-def check(instance: Instance, plans: Sequence[Plan]) -> tuple[Violation, ...]:
-    """All violations of plans of the instance's robots: rule by rule, each in the order of the plans or of time.
+def check(instance: Instance, plans: Sequence[Plan], most: int | None = MOST_LISTED) -> tuple[Violation, ...]:
+    """The violations of plans of the instance's robots: rule by rule, each in the order of the plans or of time.
 
-    The instance must have no faults and know every plan's robot.
+    At most the first `most` of each rule are returned, or all if it is `None`. The instance must have no faults and
+    know every plan's robot.
     """
-    of_plans = [violation for each in PLAN_RULES for plan in plans for violation in each(instance, plan)]
-    together = [violation for each in JOINT_RULES for violation in each(instance, plans)]
-    return (*of_plans, *together)
+    violations: list[Violation] = []
+    for each in PLAN_RULES:
+        violations += islice((violation for plan in plans for violation in each(instance, plan)), most)
+    for together in JOINT_RULES:
+        violations += islice(together(instance, plans), most)
+    return tuple(violations)
 
 
-def judge(instance: Instance, solution: Solution) -> Verdict:
-    """Check a whole solution; plans of robots that the instance does not have break `solution/covers` alone."""
+def judge(instance: Instance, solution: Solution, most: int | None = MOST_LISTED) -> Verdict:
+    """Check a whole solution, with at most the first `most` violations of each rule, or all if it is `None`.
+
+    Plans of robots that the instance does not have break `solution/covers` alone.
+    """
     plans = [plan for plan in solution.plans if plan.robot in instance.robot]
-    of_solution = [violation for each in SOLUTION_RULES for violation in each(instance, solution)]
+    of_solution = [violation for each in SOLUTION_RULES for violation in islice(each(instance, solution), most)]
     planned = {plan.robot for plan in plans}
     return Verdict(
         cost=total_cost(instance, [plan for plan in plans if plan.visits]),
         unplanned=sum(robot.id not in planned for robot in instance.robots),
-        violations=(*of_solution, *check(instance, plans)),
+        violations=(*of_solution, *check(instance, plans, most)),
     )
 
 

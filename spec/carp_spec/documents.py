@@ -123,7 +123,7 @@ class ViolationDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True,
 
 
 class VerdictDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What the checker says of a solution."""
+    """The checker's answer for a solution, with at most the first 100 violations of each rule."""
 
     format: Literal["carproof-verdict/1"]
     valid: bool

@@ -3,9 +3,13 @@
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
+from typing import TypeAlias
 
 from carp_spec.model import Instance, Move, Plan, ResourceId, RobotId, Solution
 from carp_spec.rule import DESIGN, MORS, Rule, Violation, rule, violation_of_robots
+
+Changes: TypeAlias = dict[int, Counter[RobotId]]
+"""By tick and robot, how many of its stays begin at the tick, less those that end."""
 
 
 @rule(
@@ -15,26 +19,40 @@ from carp_spec.rule import DESIGN, MORS, Rule, Violation, rule, violation_of_rob
     f"paper, section II; {MORS}",
 )
 def capacity_is_kept(instance: Instance, plans: Sequence[Plan]) -> Iterator[Violation]:
-    arrivals: dict[ResourceId, dict[int, list[RobotId]]] = defaultdict(lambda: defaultdict(list))
-    departures: dict[ResourceId, dict[int, list[RobotId]]] = defaultdict(lambda: defaultdict(list))
+    changes: dict[ResourceId, Changes] = defaultdict(lambda: defaultdict(Counter))
     for plan in plans:
         for visit in plan.visits:
             if visit.leave is None or visit.enter < visit.leave:
-                arrivals[visit.resource][visit.enter].append(plan.robot)
-            if visit.leave is not None and visit.enter < visit.leave:
-                departures[visit.resource][visit.leave].append(plan.robot)
-    arrival_order = list(instance.robot)
+                changes[visit.resource][visit.enter][plan.robot] += 1
+                if visit.leave is not None:
+                    changes[visit.resource][visit.leave][plan.robot] -= 1
+    arrival = {robot: position for position, robot in enumerate(instance.robot)}
     for resource in instance.graph.resources:
-        ticks = sorted(arrivals[resource.id].keys() | departures[resource.id].keys())
-        stays: list[RobotId] = []
-        for start, end in zip(ticks, [*ticks[1:], None], strict=False):
-            for robot in departures[resource.id].get(start, ()):
-                stays.remove(robot)
-            stays.extend(arrivals[resource.id].get(start, ()))
-            occupants = set(stays)
-            if len(occupants) > resource.capacity:
-                robots = tuple(sorted(occupants, key=arrival_order.index))
-                yield Violation("joint/capacity", robots, resource.id, start, end, f"capacity {resource.capacity}")
+        for start, end, crowd in _crowds(resource.capacity, changes[resource.id]):
+            robots = tuple(sorted(crowd, key=arrival.__getitem__))
+            yield Violation("joint/capacity", robots, resource.id, start, end, f"capacity {resource.capacity}")
+
+
+def _crowds(capacity: int, changes: Changes) -> Iterator[tuple[int, int | None, set[RobotId]]]:
+    """The maximal intervals with too many robots at each tick, and all robots that are there at one of the ticks."""
+    present: Counter[RobotId] = Counter()
+    crowd: set[RobotId] = set()
+    start: int | None = None
+    for tick in sorted(changes):
+        for robot, change in changes[tick].items():
+            present[robot] += change
+            if not present[robot]:
+                del present[robot]
+        if len(present) <= capacity:
+            if start is not None:
+                yield start, tick, crowd
+            start = None
+        elif start is None:
+            start, crowd = tick, set(present)
+        else:
+            crowd |= changes[tick].keys()
+    if start is not None:
+        yield start, None, crowd
 
 
 @rule(

@@ -38,8 +38,8 @@ class ResourceGraph:
     """The resources and the edges between them.
 
     An edge (r, s) of a directed graph is the move from r to s; of an undirected one, that and the move back.
-    The order of `resources` breaks ties. The last three fields are look-ups, made from the others: a resource
-    by its id, its index in the order, and the resources that one move leads to, in that order.
+    The order of `resources` breaks ties. The last four fields are look-ups, made from the others: a resource
+    by its id, its index in the order, the resources that one move leads to, in that order, and all moves.
     """
 
     resources: tuple[Resource, ...]
@@ -48,6 +48,7 @@ class ResourceGraph:
     resource: Mapping[ResourceId, Resource] = field(init=False, repr=False, compare=False)
     index: Mapping[ResourceId, int] = field(init=False, repr=False, compare=False)
     successors: Mapping[ResourceId, tuple[ResourceId, ...]] = field(init=False, repr=False, compare=False)
+    moves: frozenset[Move] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Make the look-ups; an edge to or from an unknown resource is left to the rules."""
@@ -62,10 +63,12 @@ class ResourceGraph:
         object.__setattr__(self, "resource", {each.id: each for each in self.resources})
         object.__setattr__(self, "index", index)
         object.__setattr__(self, "successors", {source: tuple(each) for source, each in successors.items()})
+        moves = frozenset((source, target) for source, targets in successors.items() for target in targets)
+        object.__setattr__(self, "moves", moves)
 
     def has_move(self, source: ResourceId, target: ResourceId) -> bool:
         """Whether a robot can move from one resource to the other."""
-        return target in self.successors.get(source, ())
+        return (source, target) in self.moves
 
 
 @dataclass(frozen=True, slots=True)

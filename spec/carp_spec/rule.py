@@ -15,6 +15,7 @@ R = TypeVar("R")
 
 DESIGN = "decision of carproof"
 MORS = "ter Mors 2010"
+MOST_NAMED = 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +49,8 @@ class Violation:
     """A broken rule of a plan or of a set of plans.
 
     It happened at `resource` in the ticks [start, end); an end of `None` is for ever, and a start of `None`
-    says that no resource or tick is to blame. `reason` says what is wrong and what would be right.
+    says that no resource or tick is to blame. A resource that is too full is one violation as long as it stays so;
+    `robots` are all that are in it at one of the ticks. `reason` says what is wrong and what would be right.
     """
 
     rule: str
@@ -60,8 +62,10 @@ class Violation:
 
     @property
     def message(self) -> str:
-        """The violation as one sentence, without the rule's id."""
-        robots = ("robot " if len(self.robots) == 1 else "robots ") + ", ".join(map(str, self.robots))
+        """The violation as one sentence, without the rule's id; it names the first robots and counts the others."""
+        robots = ("robot " if len(self.robots) == 1 else "robots ") + ", ".join(map(str, self.robots[:MOST_NAMED]))
+        if len(self.robots) > MOST_NAMED:
+            robots += f" and {len(self.robots) - MOST_NAMED} more"
         if self.start is None:
             return f"{robots} ({self.reason})"
         return f"resource {self.resource} in {interval(self.start, self.end)}: {robots} ({self.reason})"

@@ -166,6 +166,20 @@ def test_check_prints_each_violation_and_counts_them(carproof: Run, file: Write)
     ]
 
 
+def test_check_prints_the_first_hundred_violations_of_a_rule_and_all_of_them_if_asked(
+    carproof: Run, file: Write
+) -> None:
+    instance = file(corridor([{"id": "r1", "start": "a", "goal": "c"}]))
+    plans = file(solution({"r1": [["b", 3 * tick, 3 * tick - 1] for tick in range(150)]}), "plans.json")
+    first, everything = carproof("check", instance, plans), carproof("check", instance, plans, "--all")
+    for outcome, shown, count in ((first, 100, "100 or more"), (everything, 150, "150")):
+        lines = outcome.stdout.splitlines()
+        assert sum(line.startswith("[plan/duration]") for line in lines) == shown
+        assert [line.split(maxsplit=1)[1] for line in lines if line.startswith("plan/duration")] == [count]
+    verdict = json.loads(carproof("check", instance, plans, "--json").stdout)
+    assert sum(violation["rule"] == "plan/duration" for violation in verdict["violations"]) == 100
+
+
 def test_check_writes_a_verdict(carproof: Run, file: Write, tmp_path: Path) -> None:
     outcome = carproof("check", file(TWO), file(BROKEN, "plans.json"), "--json", "-o", tmp_path / "verdict.json")
     assert outcome.code == 1

@@ -1,6 +1,7 @@
 """The checker as a whole: silent on correct plans, and exactly right about each planted violation."""
 
 from collections import Counter
+from time import process_time
 
 import pytest
 from hypothesis import given
@@ -20,6 +21,8 @@ from carp_spec import (
     Neighbourhood,
     Plan,
     Planner,
+    Resource,
+    ResourceGraph,
     Robot,
     Shuffled,
     Solution,
@@ -28,6 +31,7 @@ from carp_spec import (
     check_update,
     judge,
 )
+from carp_spec.check import MOST_LISTED
 
 PLANNERS: tuple[Planner, ...] = (
     Carp(),
@@ -160,7 +164,7 @@ def test_the_checker_agrees_with_the_rules_spelt_out_plan_by_plan(case: tuple[In
     instance, plans = case
     told = Counter(
         (each.rule, each.robots, each.resource, each.start, each.end)
-        for each in check(instance, plans)
+        for each in check(instance, plans, most=None)
         if each.rule.startswith("plan/")
     )
     spelt_out = Counter(
@@ -175,14 +179,20 @@ def test_the_checker_agrees_with_the_rules_spelt_out_plan_by_plan(case: tuple[In
 @given(case=instances_with_plans())
 def test_the_checker_agrees_with_the_rules_spelt_out_tick_by_tick(case: tuple[Instance, tuple[Plan, ...]]) -> None:
     instance, plans = case
-    violations = check(instance, plans)
-    crowded = [
-        (each.resource, tick, frozenset(each.robots))
+    violations = check(instance, plans, most=None)
+    told = [
+        (each, range(each.start, HORIZON if each.end is None else each.end))
         for each in violations
         if each.rule == "joint/capacity" and each.start is not None
-        for tick in range(each.start, HORIZON if each.end is None else each.end)
     ]
-    assert Counter(crowded) == Counter(crowds(instance, plans))
+    crowded: dict[tuple[object, int], frozenset[object]] = {
+        (resource, tick): robots for resource, tick, robots in crowds(instance, plans)
+    }
+    assert Counter((each.resource, tick) for each, ticks in told for tick in ticks) == Counter(crowded.keys())
+    for each, ticks in told:
+        assert (each.resource, ticks.start - 1) not in crowded
+        assert (each.resource, ticks.stop) not in crowded
+        assert set(each.robots) == frozenset[object]().union(*(crowded[each.resource, tick] for tick in ticks))
     exchanged = [
         (each.start, each.resource, other)
         for each in violations
@@ -193,6 +203,64 @@ def test_the_checker_agrees_with_the_rules_spelt_out_tick_by_tick(case: tuple[In
     index = instance.graph.index
     spelt_out = {(tick, *sorted(pair, key=index.__getitem__)) for tick, pair in exchanges(instance, plans)}
     assert Counter(exchanged) == Counter(spelt_out)
+
+
+MANY = 3_000
+
+
+def robots_in_one_cell(count: int, capacity: int = 1) -> Instance:
+    graph = ResourceGraph((Resource("a", capacity), Resource("b")), (("a", "b"),))
+    return Instance(graph, tuple(Robot(name, "a", "a", name) for name in range(count)), "park")
+
+
+def test_very_many_robots_in_one_cell_are_one_violation_in_a_short_message() -> None:
+    instance = robots_in_one_cell(MANY)
+    (violation,) = check(instance, [plan_of(name, ("a", name, None)) for name in range(MANY)])
+    assert violation.robots == tuple(range(MANY))
+    assert violation.message == "resource a in [1,for ever): robots 0, 1, 2, 3, 4 and 2995 more (capacity 1)"
+
+
+def test_a_robot_that_overfills_a_full_cell_again_and_again_is_reported_a_bounded_number_of_times() -> None:
+    instance = robots_in_one_cell(MANY, MANY - 1)
+    parked = [plan_of(name, ("a", name, None)) for name in range(MANY - 1)]
+    visits = [
+        visit for tick in range(MANY - 1, 3 * MANY, 2) for visit in (("a", tick, tick + 1), ("b", tick + 1, tick + 2))
+    ]
+    violations = check(instance, [*parked, plan_of(MANY - 1, *visits)])
+    assert Counter(each.rule for each in violations) == {"plan/goal": 1, "joint/capacity": MOST_LISTED}
+
+
+def test_at_most_so_many_violations_of_each_rule_are_listed_and_all_on_demand() -> None:
+    broken = plan_of("r1", *(("x", 3 * tick, 3 * tick - 1) for tick in range(MANY)))
+    rules = {"plan/resource": MANY, "plan/contiguous": MANY - 1, "plan/start": 1, "plan/goal": 1}
+    assert Counter(rules_broken(VANISHING, (broken,))) == {rule: min(n, MOST_LISTED) for rule, n in rules.items()}
+    assert Counter(each.rule for each in check(VANISHING, [broken], most=None)) == rules
+    assert Counter(each.rule for each in check(VANISHING, [broken], most=2))["plan/contiguous"] == 2
+    assert (
+        Counter(each.rule for each in judge(VANISHING, solution_of([broken]), most=2).violations)["plan/contiguous"]
+        == 2
+    )
+    strangers = Solution((), tuple(range(MANY)), tuple(range(MANY)))
+    listed = Counter(each.rule for each in judge(VANISHING, strangers).violations)
+    assert listed == {"solution/covers": MOST_LISTED, "solution/order": MOST_LISTED}
+    everything = Counter(each.rule for each in judge(VANISHING, strangers, most=None).violations)
+    assert everything == {"solution/covers": MANY + 3, "solution/order": MANY}
+
+
+def test_a_plan_through_a_hub_of_very_many_moves_is_checked_in_time() -> None:
+    spokes = 10 * MANY
+    graph = ResourceGraph(
+        (Resource("hub"), *map(Resource, range(spokes))), tuple(("hub", spoke) for spoke in range(spokes))
+    )
+    instance = Instance(graph, (Robot("r1", "hub", spokes - 1),))
+    there = [
+        visit
+        for tick in range(spokes)
+        for visit in (("hub", 2 * tick, 2 * tick + 1), (tick, 2 * tick + 1, 2 * tick + 2))
+    ]
+    started = process_time()
+    assert check(instance, [plan_of("r1", *there)]) == ()
+    assert process_time() - started < 2
 
 
 def test_a_verdict_sums_the_costs_and_counts_the_unplanned() -> None:

@@ -19,13 +19,20 @@ def crowd(start: int, end: int | None, *robots: str, capacity: int = 1, resource
     return Violation("joint/capacity", robots, resource, start, end, f"capacity {capacity}")
 
 
-def test_a_crowd_is_told_anew_whenever_it_changes() -> None:
+def test_a_crowd_is_one_violation_from_when_it_begins_until_it_ends() -> None:
     plans = [plan_of("r3", ("a", 0, 6)), plan_of("r1", ("a", 2, None)), plan_of("r2", ("a", 4, 9))]
-    assert list(capacity_is_kept(ROW, plans)) == [
-        crowd(2, 4, "r1", "r3"),
-        crowd(4, 6, "r1", "r2", "r3"),
-        crowd(6, 9, "r1", "r2"),
-    ]
+    assert list(capacity_is_kept(ROW, plans)) == [crowd(2, 9, "r1", "r2", "r3")]
+
+
+def test_robots_that_change_places_at_a_tick_keep_a_crowd_up() -> None:
+    plans = [plan_of("r1", ("a", 0, 9)), plan_of("r2", ("a", 1, 4)), plan_of("r3", ("a", 4, 6))]
+    assert list(capacity_is_kept(ROW, plans)) == [crowd(1, 6, "r1", "r2", "r3")]
+
+
+def test_a_crowd_names_nobody_who_left_before_it_began_or_came_after_it_ended() -> None:
+    plans = [plan_of("r1", ("a", 0, 2), ("a", 8, 9)), plan_of("r2", ("a", 2, 5)), plan_of("r3", ("a", 3, 5))]
+    again = plan_of("r4", ("a", 8, 9))
+    assert list(capacity_is_kept(ROW, [*plans, again])) == [crowd(3, 5, "r2", "r3"), crowd(8, 9, "r1", "r4")]
 
 
 def test_a_crowd_for_ever_has_no_end() -> None:
@@ -38,8 +45,7 @@ def test_capacity_counts_robots_and_not_visits() -> None:
     assert list(capacity_is_kept(WIDE, [twice, plan_of("r2", ("a", 3, 9))])) == []
     three = [twice, plan_of("r2", ("a", 3, 9)), plan_of("r3", ("a", 1, 9))]
     assert list(capacity_is_kept(WIDE, three)) == [
-        crowd(3, 4, "r1", "r2", "r3", capacity=2),
-        crowd(4, 5, "r1", "r2", "r3", capacity=2),
+        crowd(3, 5, "r1", "r2", "r3", capacity=2),
     ]
 
 
@@ -50,6 +56,11 @@ def test_who_leaves_at_a_tick_makes_room_for_who_enters_at_it() -> None:
 def test_a_visit_of_no_ticks_takes_no_room() -> None:
     plans = [plan_of("r1", ("a", 0, 9)), plan_of("r2", ("a", 5, 5)), plan_of("r3", ("a", 7, 3))]
     assert list(capacity_is_kept(ROW, plans)) == []
+
+
+def test_a_visit_of_no_ticks_is_no_part_of_a_crowd() -> None:
+    plans = [plan_of("r1", ("a", 0, 9)), plan_of("r2", ("a", 5, 5)), plan_of("r3", ("a", 1, 9))]
+    assert list(capacity_is_kept(ROW, plans)) == [crowd(1, 9, "r1", "r3")]
 
 
 def test_crowds_come_in_the_order_of_the_resources() -> None:

@@ -12,6 +12,13 @@ def test_a_violation_prints_rule_place_time_robots_and_reason() -> None:
     assert str(violation) == "[joint/capacity] resource 3,4 in [5,7): robots r1, r9 (capacity 1)"
 
 
+def test_a_violation_of_many_robots_names_the_first_five_and_counts_the_others() -> None:
+    six = Violation("joint/capacity", tuple(range(6)), "a", 5, 7, "capacity 1")
+    assert str(six) == "[joint/capacity] resource a in [5,7): robots 0, 1, 2, 3, 4 and 1 more (capacity 1)"
+    five = Violation("joint/capacity", tuple(range(5)), "a", 5, 7, "capacity 1")
+    assert str(five) == "[joint/capacity] resource a in [5,7): robots 0, 1, 2, 3, 4 (capacity 1)"
+
+
 def test_a_violation_for_ever_prints_so() -> None:
     violation = violation_at_visit("plan/goal", 7, Visit("d", 4, None), "the last visit must be to c")
     assert str(violation) == "[plan/goal] resource d in [4,for ever): robot 7 (the last visit must be to c)"

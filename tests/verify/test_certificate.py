@@ -43,7 +43,7 @@ def agree(instance: Instance, plans: tuple[Plan, ...]) -> None:
     for breach in certified.breaches:
         assert any(
             violation.rule == breach.rule
-            and set(violation.robots) == set(breach.robots)
+            and set(violation.robots) >= set(breach.robots)
             and violation.resource == breach.resource
             and (violation.start or 0) <= breach.tick
             and (violation.end is None or breach.tick < violation.end)

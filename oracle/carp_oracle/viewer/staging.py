@@ -38,7 +38,7 @@ def make_scene(instance: Instance, solution: Solution, title: str) -> Scene:
     """Judge a solution and work out its scene; raises `Refusal` where it is too large to show."""
     refuse_large_pictures(instance, solution)
     stage = make_stage(instance, solution)
-    verdict = judge(instance, solution)
+    verdict = judge(instance, solution, most=None)
     robots = tuple(robots_with_plans(instance, solution))
     first, last = span(instance, solution)
     return Scene(
