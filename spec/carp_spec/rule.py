@@ -63,9 +63,7 @@ class Violation:
     @property
     def message(self) -> str:
         """The violation as one sentence, without the rule's id; it names the first robots and counts the others."""
-        robots = ("robot " if len(self.robots) == 1 else "robots ") + ", ".join(map(str, self.robots[:MOST_NAMED]))
-        if len(self.robots) > MOST_NAMED:
-            robots += f" and {len(self.robots) - MOST_NAMED} more"
+        robots = named(self.robots)
         if self.start is None:
             return f"{robots} ({self.reason})"
         return f"resource {self.resource} in {interval(self.start, self.end)}: {robots} ({self.reason})"
@@ -92,6 +90,13 @@ def is_whole(value: object) -> TypeGuard[int]:
 def interval(start: int, end: int | None) -> str:
     """Print a half-open interval of ticks; `None` is for ever."""
     return f"[{start},{'for ever' if end is None else end})"
+
+
+def named(robots: Sequence[RobotId]) -> str:
+    """Print like `robot r1` or `robots r1, r2`: the first robots by name, and how many there are besides."""
+    names = ", ".join(map(str, robots[:MOST_NAMED]))
+    others = f" and {len(robots) - MOST_NAMED} more" if len(robots) > MOST_NAMED else ""
+    return f"{'robot' if len(robots) == 1 else 'robots'} {names}{others}"
 
 
 def violation_at_visit(rule: str, robot: RobotId, visit: Visit, reason: str) -> Violation:

@@ -21,7 +21,7 @@ from carp_spec import (
     write_solution,
 )
 from carp_verify import certificate
-from carp_verify.certificate import certify
+from carp_verify.certificate import certify, certify_together
 from carp_verify.smt import Solver, Undecided
 from carp_verify.strategies import BrokenSolution, PlannedInstance, broken_solutions, planned_instances
 
@@ -36,7 +36,7 @@ STANDING = Plan("r3", (Visit("b", 1, 2),))
 
 def agree(instance: Instance, plans: tuple[Plan, ...]) -> None:
     """Both find fault with the same resources; the certificate's tick and robots are among the checker's."""
-    certified = certify(instance, plans)
+    certified = certify_together(instance, plans)
     told = [violation for violation in check(instance, plans) if violation.rule.startswith("joint/")]
     blamed = {(violation.rule, violation.resource) for violation in told}
     assert {(breach.rule, breach.resource) for breach in certified.breaches} == blamed
@@ -54,7 +54,42 @@ def agree(instance: Instance, plans: tuple[Plan, ...]) -> None:
 @given(planned_instances())
 @settings(max_examples=200)
 def test_sound_solutions_are_certified(planned: PlannedInstance) -> None:
-    assert certify(planned.instance, planned.solution.plans).accepted
+    assert certify(planned.instance, planned.solution).accepted
+
+
+@given(broken_solutions())
+def test_no_broken_solution_is_certified(broken: BrokenSolution) -> None:
+    assert not certify(broken.instance, broken.solution).accepted
+
+
+@pytest.mark.parametrize("capacity", [2, 2**31 - 2, 2**31 - 1, 2**31, 2**32 - 1, 2**32, 10**99])
+def test_a_capacity_of_any_size_is_never_exceeded_by_two_robots(capacity: int) -> None:
+    graph = ResourceGraph((Resource("a", capacity),), ())
+    pair = (Plan("r1", (Visit("a", 0, 1),)), Plan("r2", (Visit("a", 0, 1),)))
+    instance = Instance(graph, (Robot("r1", "a", "a"), Robot("r2", "a", "a")))
+    assert certify(instance, Solution(pair, ("r1", "r2"))).accepted
+
+
+@pytest.mark.parametrize(
+    ("plans", "rule"),
+    [
+        ((Plan("r1", (Visit("a", 0, 1), Visit("c", 1, 2))),), "plan/move"),
+        ((EASTWARD, EASTWARD), "solution/covers"),
+        ((EASTWARD, Plan("r9", (Visit("a", 7, 8),))), "solution/covers"),
+    ],
+)
+def test_teleports_second_plans_and_strangers_are_refused(plans: tuple[Plan, ...], rule: str) -> None:
+    others = tuple(robot for robot in ("r1", "r2", "r3") if robot not in {plan.robot for plan in plans})
+    order = tuple(dict.fromkeys(plan.robot for plan in plans))
+    certified = certify(INSTANCE, Solution(plans, order, others))
+    assert not certified.accepted
+    assert [violation.rule for violation in certified.violations] == [rule]
+
+
+def test_a_checker_and_z3_that_contradict_each_other_are_a_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(certificate, "overfull", lambda *_: [])
+    with pytest.raises(RuntimeError, match="the checker and z3 differ"):
+        certify(INSTANCE, Solution((EASTWARD, WESTWARD, STANDING), ("r1", "r2", "r3")))
 
 
 @given(broken_solutions())
@@ -65,18 +100,18 @@ def test_certificate_and_checker_agree_on_broken_solutions(broken: BrokenSolutio
 
 def test_plans_that_follow_each_other_are_certified() -> None:
     behind = Plan("r2", (Visit("c", 0, 1),))
-    assert certify(INSTANCE, (EASTWARD, behind)).accepted
+    assert certify_together(INSTANCE, (EASTWARD, behind)).accepted
 
 
 def test_a_resource_that_is_too_full_is_refused_with_rule_robots_and_tick() -> None:
-    (breach,) = certify(INSTANCE, (EASTWARD, WESTWARD, STANDING)).breaches
+    (breach,) = certify_together(INSTANCE, (EASTWARD, WESTWARD, STANDING)).breaches
     assert (breach.rule, breach.robots, breach.resource, breach.tick) == ("joint/capacity", ("r1", "r2", "r3"), "b", 1)
     assert str(breach) == "[joint/capacity] resource b at tick 1: robots r1, r2, r3 (capacity 2)"
 
 
 def test_an_exchange_is_refused_with_rule_robots_and_tick() -> None:
     meeting = Plan("r2", (Visit("b", 0, 1), Visit("a", 1, 2)))
-    (breach,) = certify(INSTANCE, (EASTWARD, meeting)).breaches
+    (breach,) = certify_together(INSTANCE, (EASTWARD, meeting)).breaches
     assert (breach.rule, set(breach.robots), breach.tick) == ("joint/exchange", {"r1", "r2"}, 1)
     assert "they exchange a and b" in str(breach)
 
@@ -84,7 +119,7 @@ def test_an_exchange_is_refused_with_rule_robots_and_tick() -> None:
 def test_a_robot_in_a_resource_for_ever_is_met_at_any_later_tick() -> None:
     parked = Plan("r2", (Visit("c", 0, None),))
     late = Plan("r1", (Visit("c", 10**12, 10**12 + 1),))
-    (breach,) = certify(INSTANCE, (parked, late)).breaches
+    (breach,) = certify_together(INSTANCE, (parked, late)).breaches
     assert breach.tick == 10**12
 
 
@@ -94,24 +129,32 @@ def test_a_robot_that_moves_both_ways_at_a_tick_exchanges_with_nobody() -> None:
 
 
 def test_visits_to_no_resource_of_the_graph_are_none_of_its_business() -> None:
-    assert certify(INSTANCE, (Plan("r1", (Visit("elsewhere", 0, 1), Visit("a", 1, 2))),)).resources == 1
+    assert certify_together(INSTANCE, (Plan("r1", (Visit("elsewhere", 0, 1), Visit("a", 1, 2))),)).resources == 1
 
 
 def write(folder: Path, *plans: Plan) -> tuple[Path, Path]:
     files = folder / "instance.json", folder / "solution.json"
     files[0].write_bytes(write_instance(INSTANCE))
-    files[1].write_bytes(write_solution(Solution(plans, tuple(plan.robot for plan in plans))))
+    planned = tuple(plan.robot for plan in plans)
+    unplanned = tuple(robot for robot in INSTANCE.robot if robot not in planned)
+    files[1].write_bytes(write_solution(Solution(plans, planned, unplanned)))
     return files
 
 
 def test_the_command_certifies_and_refuses(carproof: Run, tmp_path: Path) -> None:
     accepted = carproof("certify", *write(tmp_path, EASTWARD, STANDING))
     assert (accepted.code, accepted.stderr) == (0, "")
-    assert accepted.stdout.startswith("certified: no tick is too full and no exchange happens in 3 resources")
+    assert accepted.stdout.startswith(
+        "certified: check finds no rule broken, and z3 no tick too full and no exchange in 3 "
+    )
     refused = carproof("certify", *write(tmp_path, EASTWARD, WESTWARD, STANDING))
     assert refused.code == 1
     assert "[joint/capacity] resource b at tick 1" in refused.stdout
-    assert "REFUSED: 1 of 3 resources" in refused.stdout
+    assert "REFUSED: z3 finds 1 ticks at which a rule is broken in 3 resources" in refused.stdout
+    teleport = carproof("certify", *write(tmp_path, Plan("r1", (Visit("a", 0, 1), Visit("c", 1, 2)))))
+    assert teleport.code == 1
+    assert teleport.stdout.startswith("[plan/move] resource c in [1,2): robot r1 (")
+    assert "REFUSED: check finds a rule broken, and z3 was not asked" in teleport.stdout
 
 
 def test_the_command_prints_one_document(carproof: Run, tmp_path: Path) -> None:

@@ -1,10 +1,10 @@
-"""The capacity certificate: z3 shows, resource by resource, that plans keep `joint/capacity` and `joint/exchange`.
+"""The certificate of a solution: `carp_spec` finds no rule broken, and z3 confirms the rules of robots together.
 
 For each resource z3 is asked for a tick, any whole number, at which more robots occupy it than its capacity; for each
 pair of resources between which robots move both ways, for a tick at which two robots make opposite moves. Each
 robot's stays are one tracked term, so that an answer names the robots. Where there is no answer, there is no such
-tick; the theorem "An accepted certificate bounds every tick" says why. Nothing here is shared with
-`carp_spec.check`, which sweeps over events instead.
+tick; the lemma "An accepted certificate bounds every tick" says why. That part shares nothing with `carp_spec.check`,
+which sweeps over events instead. The rules of single plans and of the list of plans have no second opinion here.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TypeAlias
 
-from carp_spec import Instance, Plan, Resource, ResourceId, RobotId, Visit
+from carp_spec import Instance, Plan, Resource, ResourceId, RobotId, Solution, Violation, Visit, judge
+from carp_spec.rule import named
 from carp_verify.smt import Bool, Int, Model, Solver, any_of, at_least, between, equal, integer
 
 Stays: TypeAlias = dict[RobotId, list[Visit]]
@@ -32,22 +33,25 @@ class Breach:
 
     def __str__(self) -> str:
         """Print like `[joint/capacity] resource 3,4 at tick 5: robots r1, r9 (capacity 1)`."""
-        robots = ", ".join(map(str, self.robots))
-        return f"[{self.rule}] resource {self.resource} at tick {self.tick}: robots {robots} ({self.reason})"
+        return f"[{self.rule}] resource {self.resource} at tick {self.tick}: {named(self.robots)} ({self.reason})"
 
 
 @dataclass(frozen=True, slots=True)
 class Certificate:
-    """How many resources z3 was asked about, and pairs between which robots move both ways; a bad tick of each."""
+    """What z3 was asked about, visited resources and pairs between which robots move both ways; a bad tick of each.
+
+    Where `carp_spec` finds another rule broken, there are violations, and z3 is not asked.
+    """
 
     resources: int
     pairs: int
     breaches: tuple[Breach, ...]
+    violations: tuple[Violation, ...] = ()
 
     @property
     def accepted(self) -> bool:
-        """Whether there is no bad tick at all."""
-        return not self.breaches
+        """Whether no rule is broken."""
+        return not self.breaches and not self.violations
 
 
 class Terms:
@@ -77,8 +81,25 @@ class Terms:
         return self._ticks[tick]
 
 
-def certify(instance: Instance, plans: Sequence[Plan], advance: Callable[[], None] = lambda: None) -> Certificate:
-    """Ask z3 about every resource that is visited; `advance` is called after each. Raises `smt.Undecided`."""
+def certify(instance: Instance, solution: Solution, advance: Callable[[], None] = lambda: None) -> Certificate:
+    """Check the solution, and have z3 confirm the rules of robots together; `advance` is called for each resource.
+
+    Raises `smt.Undecided`, and `RuntimeError` if the checker and z3 contradict each other.
+    """
+    verdict = judge(instance, solution)
+    violations = tuple(each for each in verdict.violations if not each.rule.startswith("joint/"))
+    if violations:
+        return Certificate(0, 0, (), violations)
+    certificate = certify_together(instance, solution.plans, advance)
+    if certificate.accepted != verdict.valid:
+        raise RuntimeError(f"the checker and z3 differ: {(*verdict.violations, *certificate.breaches)[0]}")
+    return certificate
+
+
+def certify_together(
+    instance: Instance, plans: Sequence[Plan], advance: Callable[[], None] = lambda: None
+) -> Certificate:
+    """Ask z3 about every resource that is visited: `joint/capacity` and `joint/exchange` alone."""
     solver, terms = Solver(), Terms()
     index = instance.graph.index
     stays = stays_by_resource(instance, plans)

@@ -1,4 +1,4 @@
-"""z3 with types: the few terms that theorems and certificates need, and one question, `find_model`.
+"""z3 with types: the few terms that lemmas and certificates need, and one question, `find_model`.
 
 Importing this module loads z3. Comparisons of terms give terms, so Python's `==` and chained comparisons have
 no meaning here: say `equal` and `between`.
@@ -149,7 +149,12 @@ def greater(one: Int | int, other: Int | int) -> Int:
 
 
 def at_least(count: int, terms: Sequence[Bool]) -> Bool:
-    """Whether at least so many of the terms hold."""
+    """Whether at least `count` of the terms hold.
+
+    More than there are never do. z3 need not be asked about that, and its C interface takes no count from 2^31 on.
+    """
+    if count > len(terms):
+        return never()
     return Bool(z3.AtLeast(*terms, count))
 
 
