@@ -63,7 +63,7 @@ TESTS: Sequence[tuple[str, str, tuple[object, ...]]] = (
     ),
     ("test_replanned_robots", "test_orders_are_drawn_in_a_round_too_in_which_a_member_has_no_plan", ()),
     ("test_same_plans", "test_crowds_are_planned_alike", ()),
-    ("test_replanning", "test_a_query_is_repeated_only_where_the_theorem_says_and_else_finds_the_same", ()),
+    ("test_replanning", "test_a_query_is_repeated_only_where_the_lemma_says_and_else_finds_the_same", ()),
     ("test_reuse", "test_orders_that_begin_alike_share_the_queries_of_their_beginning", (4, 64, 96)),
     ("test_reuse", "test_without_reuse_every_query_is_asked", ()),
     *(("test_reuse", "test_each_kind_avoids_queries_and_counts_them", (kind,)) for kind in KINDS),

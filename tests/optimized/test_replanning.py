@@ -1,4 +1,4 @@
-"""When a query need not be repeated: at least where the theorem says, and then it would find the same plan.
+"""When a query need not be repeated: at least where the lemma says, and then it would find the same plan.
 
 The functions are called one by one, so these tests run uncompiled: see test_uncompiled.py.
 """
@@ -17,9 +17,9 @@ from carp_optimized.fleet import Fleet
 from carp_optimized.replanning import could_use_freed, forget_freed, note_freed
 from carp_reference.problem import ticks_to_goal
 from carp_spec import Instance, Plan, ResourceId, RobotId
+from carp_verify.lemmas.freed_stays_come_too_late import least_f
 from carp_verify.smt import integers, value_of
 from carp_verify.strategies import FleetUnderWay, Sizes, fleets_under_way
-from carp_verify.theorems.freed_stays_come_too_late import least_f
 
 pytestmark = pytest.mark.skipif(os.environ.get("NUMBA_DISABLE_JIT") != "1", reason="it runs uncompiled")
 
@@ -29,7 +29,7 @@ Hulls = dict[ResourceId, tuple[int, int]]
 
 @cache
 def least(ready: int, earliest: int, duration: int, h: int) -> int:
-    """The bound of the theorem."""
+    """The bound of the lemma."""
     names = "ready earliest duration h"
     values = dict(zip(names.split(), (ready, earliest, duration, h), strict=True))
     return int(value_of(least_f(*integers(names)), dict(values)))
@@ -45,7 +45,7 @@ def hulls(plan: Plan) -> Hulls:
 
 
 def may_differ(fleet: Fleet, robot: RobotId, record: int, freed: Hulls) -> bool:
-    """What the theorem says of a query, by what it has expanded."""
+    """What the lemma says of a query, by what it has expanded."""
     instance, records = fleet.instance, fleet._state.records
     first, count = int(records.expansions_at[record]), int(records.expansions[record])
     if count == UNKNOWN:
@@ -75,7 +75,7 @@ def fleet_of(instance: Instance, plans: tuple[Plan, ...]) -> Fleet:
 
 @settings(max_examples=min(100, settings().max_examples))
 @given(fleets_under_way(SIZES), st.data())
-def test_a_query_is_repeated_only_where_the_theorem_says_and_else_finds_the_same(
+def test_a_query_is_repeated_only_where_the_lemma_says_and_else_finds_the_same(
     under_way: FleetUnderWay, data: st.DataObject
 ) -> None:
     instance, plans = under_way.instance, under_way.solution.plans

@@ -22,9 +22,9 @@ from carp_verify import verify_bound as page
 from carp_verify.bound import Progress, lower_bound
 from carp_verify.cut_search import prove
 from carp_verify.joint_search import least_total_cost
+from carp_verify.lemmas.prices_bound_the_total import at_most_paid, in_exchange, paid
 from carp_verify.smt import integers, truth, value_of
 from carp_verify.strategies import PlannedInstance, Sizes, instances, planned_instances
-from carp_verify.theorems.prices_bound_the_total import at_most_paid, in_exchange, paid
 from carp_verify.verify_bound import Budget, Search, Tariff, predecessors, verify_bound
 
 TINY = Sizes(resources=4, robots=3, capacity=2, duration=2, release=2, pace=2)
@@ -417,7 +417,7 @@ def test_the_verifier_shares_nothing_with_the_finder_and_loads_nothing_compiled(
     assert not {"carp_verify.bound", "carp_verify.price_search", "carp_verify.bound_cuts"} & set(loaded)
 
 
-def test_what_the_verifier_lets_robots_pay_is_what_the_theorem_says() -> None:
+def test_what_the_verifier_lets_robots_pay_is_what_the_lemma_says() -> None:
     """A robot in a resource at a tick pays its price there once, and all of them at most price times capacity."""
     occupies, (price, capacity) = truth("occupies"), integers("price capacity")
     for value, most, enter, leave, tick in product(range(3), (1, 2), range(3), range(1, 4), range(3)):
@@ -432,7 +432,7 @@ def test_what_the_verifier_lets_robots_pay_is_what_the_theorem_says() -> None:
         assert tariff.worth == value_of(at_most_paid(price, capacity), values)
 
 
-def test_who_pays_for_an_exchange_in_the_verifier_is_who_the_theorem_says() -> None:
+def test_who_pays_for_an_exchange_in_the_verifier_is_who_the_lemma_says() -> None:
     """Who leaves r for s at the tick, comes from there, or stays in r pays the price once; nobody else does."""
     counted = in_exchange(*integers("leaving coming staying"))
     graph = ResourceGraph((Resource("r"), Resource("s"), Resource("q")), (("r", "s"), ("r", "q")))

@@ -1,6 +1,6 @@
-"""The formulas of the theorems say what the program does: both are evaluated on every small input.
+"""The formulas of the lemmas say what the program does: both are evaluated on every small input.
 
-So a change of the program that the theorems do not speak of breaks a test here.
+So a change of the program that the lemmas do not speak of breaks a test here.
 """
 
 from collections.abc import Iterator, Sequence
@@ -14,19 +14,16 @@ from carp_reference.problem import prepare
 from carp_reference.query import Node, _expand
 from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Visit
 from carp_spec import has_ended as plan_has_ended
-from carp_spec.neighbourhood_rules import replaces_best as spec_replaces_best
 from carp_spec.plan_rules import plan_keeps_history
 from carp_spec.windows import Occupation, Window, free_windows, occupancy, windows_are_free
 from carp_spec.windows import stay_fits as spec_stay_fits
+from carp_verify.lemmas.counting_gives_occupancy import changes_up_to
+from carp_verify.lemmas.entry_is_the_least_allowed import first_candidate, may_enter
+from carp_verify.lemmas.history_is_kept import keeps_history, may_leave_from
+from carp_verify.lemmas.occupancy_changes_only_where_stays_begin_or_end import no_change
+from carp_verify.lemmas.reserving_splits_a_window import held_by_parts
+from carp_verify.lemmas.sweeping_makes_the_free_windows import sweep_step
 from carp_verify.smt import Answer, Bool, Int, integer, integers, truth, value_of
-from carp_verify.theorems.counting_gives_occupancy import changes_up_to
-from carp_verify.theorems.cut_permutations_are_no_better import replaces_best
-from carp_verify.theorems.entry_is_the_least_allowed import first_candidate, may_enter
-from carp_verify.theorems.history_is_kept import keeps_history, may_leave_from
-from carp_verify.theorems.occupancy_changes_only_where_stays_begin_or_end import no_change
-from carp_verify.theorems.reserving_counts_at_any_capacity import free_after, is_free
-from carp_verify.theorems.reserving_splits_a_window import held_by_parts
-from carp_verify.theorems.sweeping_makes_the_free_windows import sweep_step
 from carp_verify.vocabulary import has_ended, holds, interval, lasts_until, stay_fits
 
 TICKS = range(5)
@@ -70,7 +67,7 @@ def test_stay_fits_and_lasts_until_are_those_of_the_specification() -> None:
 
 
 def swept(occupations: Sequence[Occupation], capacity: int) -> Iterator[Window]:
-    """The windows that the theorem's step makes, change by change."""
+    """The windows that the lemma's step makes, change by change."""
     is_open_term, opened_term, tick_term, free_term = truth("is_open"), *integers("opened tick"), truth("free")
     step = sweep_step(is_open_term, opened_term, tick_term, free_term)
     changes = {0, *(enter for enter, _ in occupations), *(leave for _, leave in occupations if leave is not None)}
@@ -117,19 +114,6 @@ def test_the_parts_of_a_split_window_are_the_free_windows_of_capacity_one() -> N
                     assert evaluate(term, values, {"tick": tick}) == held(after, tick)
 
 
-def test_free_and_free_after_a_stay_are_told_by_the_free_windows() -> None:
-    now, after = (
-        is_free(*integers("occupancy capacity")),
-        free_after(integer("occupancy"), integer("capacity"), truth("in_stay")),
-    )
-    for others, capacity, stay, tick in product(range(3), (1, 2), STAYS, TICKS):
-        before: list[Occupation] = [(1, 3)] * others
-        values: dict[str, Answer] = {"occupancy": occupancy(before, tick), "capacity": capacity}
-        assert evaluate(now, values) == held(free_windows(before, capacity), tick)
-        in_stay: dict[str, Answer] = {"in_stay": bool(occupancy([stay], tick))}
-        assert evaluate(after, values, in_stay) == held(free_windows([*before, stay], capacity), tick)
-
-
 def test_an_entry_is_the_one_of_the_reference() -> None:
     graph = ResourceGraph((Resource("r"), Resource("s", duration=2)), (("r", "s"),))
     instance = Instance(graph, (Robot("robot", "r", "s"),))
@@ -147,7 +131,7 @@ def test_an_entry_is_the_one_of_the_reference() -> None:
         assert found == expected[:1]
 
 
-def test_the_heuristic_of_the_reference_is_the_one_of_the_theorem() -> None:
+def test_the_heuristic_of_the_reference_is_the_one_of_the_lemma() -> None:
     """It is 0 at the goal, and along every move no more than the duration and the heuristic after it."""
     graph = ResourceGraph(
         tuple(Resource(id, duration=duration) for id, duration in zip("abcde", (1, 3, 2, 1, 2), strict=True)),
@@ -161,12 +145,6 @@ def test_the_heuristic_of_the_reference_is_the_one_of_the_theorem() -> None:
             assert all(h[source] <= instance.duration("robot", source) + h[target] for target in targets)
             if source != goal:
                 assert h[source] == min(instance.duration("robot", source) + h[target] for target in targets)
-
-
-def test_a_better_candidate_is_the_one_of_the_specification() -> None:
-    term = replaces_best(*integers("cost best"))
-    for cost, best in product(TICKS, TICKS):
-        assert evaluate(term, {"cost": cost, "best": best}) == spec_replaces_best(cost, best)
 
 
 def test_leaving_and_history_are_those_of_the_specification_and_the_reference() -> None:

@@ -14,12 +14,11 @@ from carp_reference.problem import Problem, ticks_to_goal
 from carp_reference.query import Node, find_plan
 from carp_spec import Plan, ResourceId
 from carp_spec.query_rules import expansion_key
-from carp_spec.windows import Occupation, Window, free_windows, occupancy
+from carp_spec.windows import Window
 from carp_verify.enumeration import ASKED, PATTERNS, Pattern, SmallCase, small_cases
+from carp_verify.lemmas.first_pop_is_final import is_ahead, is_final, is_taken
+from carp_verify.lemmas.freed_stays_come_too_late import is_too_late, least_f
 from carp_verify.smt import Bool, Int, any_of, integer, value_of
-from carp_verify.theorems.first_pop_is_final import is_ahead, is_final, is_taken
-from carp_verify.theorems.freed_stays_come_too_late import is_too_late, least_f
-from carp_verify.theorems.skipped_queries_return_the_same import as_free
 
 SEARCH = import_module("carp_reference.query")  # the name of the module is also that of a function
 FOR_EVER = 99
@@ -163,24 +162,6 @@ def test_the_first_entry_taken_is_final_and_every_other_way_has_a_node_in_the_qu
     assert ways > 100, "there are windows with several ways to them"
 
 
-def test_a_tick_is_as_free_as_it_was_where_the_specification_says_so() -> None:
-    names = ("rest", "old", "new", "capacity")
-    term = as_free(*map(integer, names))
-    stays: Sequence[Occupation] = [(0, 1), (0, None), (1, 2), (2, None)]
-    for rest, old, new, capacity, tick in product(
-        [(), ((0, 2),), ((0, 2), (1, None))], stays, stays, (1, 2, 3), range(3)
-    ):
-        values = (occupancy(rest, tick), occupancy([old], tick), occupancy([new], tick), capacity)
-        free = [
-            any(
-                window.start <= tick and window.lasts_until(tick + 1)
-                for window in free_windows((*rest, each), capacity)
-            )
-            for each in (old, new)
-        ]
-        assert evaluated(term, **dict(zip(names, values, strict=True))) == (free[0] == free[1])
-
-
 @pytest.mark.parametrize("pattern", PATTERNS[1::2], ids=str)
 def test_a_query_goes_the_same_way_until_an_answer_differs(trace: Trace, pattern: Pattern) -> None:
     """So a state is a function of the answers before it, and a query all whose answers stay the same is the same."""
@@ -207,7 +188,7 @@ Lateness = Callable[[Int, Int, Int, Int, Int, Int], Bool]
 
 
 def an_end_too_early(ready: Int, earliest: Int, latest: Int, duration: Int, h: Int, arrival: Int) -> Bool:
-    """The formula of the theorem, with a planted error of one tick."""
+    """The formula of the lemma, with a planted error of one tick."""
     return any_of(latest <= ready + 1, least_f(ready, earliest, duration, h) > arrival)
 
 

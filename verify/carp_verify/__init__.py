@@ -1,1 +1,1 @@
-"""Evidence that others can check: theorems, certificates, optima and their proofs."""
+"""Evidence that others can check: lemmas, certificates, optima and their proofs."""

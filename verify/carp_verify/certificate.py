@@ -2,9 +2,9 @@
 
 For each resource z3 is asked for a tick, any whole number, at which more robots occupy it than its capacity; for each
 pair of resources between which robots move both ways, for a tick at which two robots make opposite moves. Each
-robot's stays are one tracked term, so that an answer names the robots. Where there is no answer, there is no such
-tick; the lemma "An accepted certificate bounds every tick" says why. That part shares nothing with `carp_spec.check`,
-which sweeps over events instead. The rules of single plans and of the list of plans have no second opinion here.
+robot's stays are one tracked term, so that an answer names the robots. The question is the negation of the rule, so
+where z3 finds no answer there is no such tick. That part shares nothing with `carp_spec.check`, which sweeps over
+events instead. The rules of single plans and of the list of plans have no second opinion here.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -1,8 +1,11 @@
-"""The engine of the theorems: a claim is proved from premises, and its mutants are refuted.
+"""The engine of the lemmas: z3 checks that a claim follows from premises, and that its mutants do not.
 
-To prove is to show that the premises can hold and that the claim cannot fail under them. A mutant is a lemma
-with one planted error; to refute it is to show a model in which its premises hold and its claim does not. So a
-theorem whose premises contradict each other, or whose claim says nothing, is caught. z3's `unknown` is a failure.
+To check a formula is to show that the premises can hold and that the claim cannot fail under them. A mutant is a
+formula with one planted error; to refute it is to show a model in which its premises hold and its claim does not. So
+premises that contradict each other, and a claim that says nothing, are caught. z3's `unknown` is a failure.
+
+z3 and the Python that writes the formulas are trusted. The induction from a step to the whole, and that the formula
+is about the program, are not checked here: each lemma's docstring says what is left.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -12,8 +15,8 @@ from carp_verify.smt import Bool, Model, Undecided, find_model, negation
 
 
 @dataclass(frozen=True, slots=True)
-class Lemma:
-    """A claim that follows from premises; of a mutant, one that does not, and its name tells the planted error."""
+class Formula:
+    """A claim that follows from premises; of a mutant, one that does not, and its name says which error is planted."""
 
     name: str
     premises: Sequence[Bool]
@@ -21,37 +24,37 @@ class Lemma:
 
 
 @dataclass(frozen=True, slots=True)
-class Theorem:
-    """A statement proved by its lemmas together, the rules that it supports, and mutants of it."""
+class Lemma:
+    """A statement with what is left to argue by hand, the rules that it supports, its formulas and their mutants."""
 
     name: str
     statement: str
     rules: tuple[str, ...]
-    lemmas: Callable[[], Iterator[Lemma]]
-    mutants: Callable[[], Iterator[Lemma]]
+    formulas: Callable[[], Iterator[Formula]]
+    mutants: Callable[[], Iterator[Formula]]
 
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """What came of a theorem: it is proved if there are lemmas and mutants and no failure."""
+    """z3's answers for a lemma: it is checked if there are formulas and mutants and no failure."""
 
-    theorem: Theorem
-    lemmas: tuple[str, ...]
+    lemma: Lemma
+    formulas: tuple[str, ...]
     refuted: tuple[tuple[str, str], ...]
     failures: tuple[str, ...]
 
     @property
-    def proved(self) -> bool:
-        """Whether every lemma is proved and every mutant refuted, and there is at least one of each."""
-        return bool(self.lemmas) and bool(self.refuted) and not self.failures
+    def checked(self) -> bool:
+        """Whether every formula is proved and every mutant refuted, and there is at least one of each."""
+        return bool(self.formulas) and bool(self.refuted) and not self.failures
 
 
 class Unproved(Exception):  # noqa: N818 - like Refusal: nothing went wrong in the program
-    """A lemma that is not proved or a mutant that is not refuted, and why."""
+    """A formula that z3 does not prove or a mutant that it does not refute, and why."""
 
 
 def prove(premises: Sequence[Bool], claim: Bool) -> None:
-    """Prove the claim for all whole numbers, or raise `Unproved`."""
+    """Have z3 prove that the premises imply the claim, whatever whole numbers the unknowns are, or raise `Unproved`."""
     try:
         if find_model(premises) is None:
             raise Unproved("the premises contradict each other")
@@ -73,20 +76,20 @@ def refute(premises: Sequence[Bool], claim: Bool) -> Model:
     return model
 
 
-def examine(theorem: Theorem) -> Report:
-    """Prove every lemma of the theorem and refute every mutant."""
+def examine(lemma: Lemma) -> Report:
+    """Have z3 prove every formula of the lemma and refute every mutant."""
     proved: list[str] = []
     refuted: list[tuple[str, str]] = []
     failures: list[str] = []
-    for lemma in theorem.lemmas():
+    for formula in lemma.formulas():
         try:
-            prove(lemma.premises, lemma.claim)
-            proved.append(lemma.name)
+            prove(formula.premises, formula.claim)
+            proved.append(formula.name)
         except Unproved as reason:
-            failures.append(f"lemma {lemma.name!r} is not proved: {reason}")
-    for mutant in theorem.mutants():
+            failures.append(f"formula {formula.name!r} is not proved: {reason}")
+    for mutant in lemma.mutants():
         try:
             refuted.append((mutant.name, str(refute(mutant.premises, mutant.claim))))
         except Unproved as reason:
             failures.append(f"mutant {mutant.name!r} is not refuted: {reason}")
-    return Report(theorem, tuple(proved), tuple(refuted), tuple(failures))
+    return Report(lemma, tuple(proved), tuple(refuted), tuple(failures))

@@ -1,14 +1,14 @@
-"""Which rules theorems support, and why the others have none."""
+"""Which rules lemmas support, and why the others have none."""
 
 from collections.abc import Mapping
 
-from carp_verify.theorems import MODULES, theorem_named
+from carp_verify.lemmas import MODULES, lemma_named
 
-_READING = "it says how a document is written; there is nothing about it to prove for all whole numbers"
-_DATA = "it is decided by looking at each entry once; its predicate is its own proof, and examples test it"
+_READING = "it says how a document is written; it claims nothing of whole numbers"
+_DATA = "it is decided by looking at each entry once; there is no argument in it to check, and examples test it"
 _CHANCE = "it is a choice by numbers of a stream: which one is made decides how soon plans get better, not whether"
 
-WITHOUT_THEOREM: Mapping[str, str] = {
+WITHOUT_LEMMA: Mapping[str, str] = {
     "document/json": _READING,
     "document/format": _READING,
     "document/shape": _READING,
@@ -48,10 +48,10 @@ WITHOUT_THEOREM: Mapping[str, str] = {
 }
 
 
-def theorems_of_rules() -> Mapping[str, tuple[str, ...]]:
-    """The modules of the theorems that support each rule, for the rules that have any."""
+def lemmas_of_rules() -> Mapping[str, tuple[str, ...]]:
+    """The modules of the lemmas that support each rule, for the rules that have any."""
     modules: dict[str, tuple[str, ...]] = {}
     for module in MODULES:
-        for rule in theorem_named(module).rules:
+        for rule in lemma_named(module).rules:
             modules[rule] = (*modules.get(rule, ()), module)
     return modules

@@ -3,7 +3,7 @@
 Why the bound holds: take any plans of all robots that break no rule together. What they pay in prices is at most the
 prices times the capacities (a row of prices and its capacity are below), and what each costs, weighted, together with
 what it pays, is at least the least that `least_cost` finds for it. With a cut, a part of its robots' costs is counted
-in the cut instead, where their sum is at least what the cut proves. The theorem is `prices_bound_the_total`.
+in the cut instead, where their sum is at least what the cut proves. The lemma is `prices_bound_the_total`.
 
 - A price of a resource r at a tick t is paid by all who are in r at t: at most the capacity of r, by `joint/capacity`.
 - An exchange price of (r, s) at t is paid by all who move from r to s or from s to r at t, and by all who are in r both

@@ -1,4 +1,4 @@
-"""What the theorems speak of, as terms: each stands for a function of carp_spec, and a test holds the two equal."""
+"""The words of the lemmas as terms: each stands for a function of carp_spec, and a test holds the two equal."""
 
 from dataclasses import dataclass
 

@@ -1,16 +1,19 @@
 """The sweep of `free_windows` makes exactly the maximal intervals of free ticks, disjoint and in order.
 
-The sweep goes from one tick of change to the next, with a window open or not. Its invariant, at such a tick:
-a window is open if and only if the tick is free; it has been free since the window opened; the tick before that is not
-free, or there is none; and the ticks so far are free if and only if a finished or the open window holds them. For any
-number of changes, by induction. That the ticks between two changes are like the first is another theorem,
-"Occupancy changes only where stays begin or end".
+The sweep goes from one tick of change to the next, with a window open or not. Its invariant, at such a tick: a window
+is open if and only if the tick is free; it has been free since the window opened; the tick before that is not free, or
+there is none; and the ticks so far are free if and only if a finished or the open window holds them. z3 checks that
+the invariant holds at tick 0, that a step keeps it, and what it gives after the last change.
+
+By hand: the induction over changes. That ticks between two changes are like the first is a premise here and another
+lemma, "Occupancy changes only where stays begin or end". `sweep_step` is a copy of the loop's body in `free_windows`,
+and a test holds the two equal on small stays.
 """
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from carp_verify.engine import Lemma, Theorem
+from carp_verify.engine import Formula, Lemma
 from carp_verify.smt import (
     Bool,
     Int,
@@ -120,37 +123,37 @@ def _after(sweep: Sweep, step: Step) -> dict[str, Bool]:
     }
 
 
-def lemmas() -> Iterator[Lemma]:
+def formulas() -> Iterator[Formula]:
     """The beginning at tick 0, the step, and the end."""
     sweep = _sweep()
     first = sweep_step(truth("never"), sweep.opened, sweep.tick, free(sweep.tick))
     begins = [negation(truth("never")), equal(sweep.tick, 0)]
     opens_at_0 = all_of(same(first.is_open, free(sweep.tick)), implies(first.is_open, equal(first.opened, 0)))
-    yield Lemma("at tick 0 a window opens if and only if the tick is free", begins, opens_at_0)
+    yield Formula("at tick 0 a window opens if and only if the tick is free", begins, opens_at_0)
     step = sweep_step(sweep.is_open, sweep.opened, sweep.tick, free(sweep.tick))
     for name, claim in _after(sweep, step).items():
-        yield Lemma(name, _invariant(sweep), claim)
+        yield Formula(name, _invariant(sweep), claim)
     later = [*_invariant(sweep), sweep.other >= sweep.before, same(free(sweep.other), free(sweep.before))]
     holds_other = sweep.covered(sweep.is_open, sweep.opened, finished(sweep.other))
-    yield Lemma(
+    yield Formula(
         "after the last change the open window holds the free ticks", later, same(free(sweep.other), holds_other)
     )
 
 
-def mutants() -> Iterator[Lemma]:
+def mutants() -> Iterator[Formula]:
     """Steps with an error."""
     sweep = _sweep()
     right = sweep_step(sweep.is_open, sweep.opened, sweep.tick, free(sweep.tick))
     covers = "the ticks so far are free if and only if a window holds them"
     late = Step(right.is_open, choose(sweep.is_open, sweep.opened, sweep.tick + 1), right.finishes)
-    yield Lemma("a window opens a tick late", _invariant(sweep), _after(sweep, late)[covers])
+    yield Formula("a window opens a tick late", _invariant(sweep), _after(sweep, late)[covers])
     forgets = Step(any_of(sweep.is_open, right.is_open), right.opened, right.finishes)
-    yield Lemma("a finished window stays open", _invariant(sweep), _after(sweep, forgets)[covers])
+    yield Formula("a finished window stays open", _invariant(sweep), _after(sweep, forgets)[covers])
     reopens = Step(right.is_open, choose(right.is_open, sweep.tick, sweep.opened), right.finishes)
     maximal = "the tick before an open window is not free, or there is none"
-    yield Lemma("every free tick of change opens a window anew", _invariant(sweep), _after(sweep, reopens)[maximal])
+    yield Formula("every free tick of change opens a window anew", _invariant(sweep), _after(sweep, reopens)[maximal])
 
 
-THEOREM = Theorem(
-    "The sweep makes the free windows, disjoint, ordered and maximal", __doc__, ("window/free",), lemmas, mutants
+LEMMA = Lemma(
+    "The sweep makes the free windows, disjoint, ordered and maximal", __doc__, ("window/free",), formulas, mutants
 )

@@ -1,12 +1,15 @@
 """Between two ticks at which stays begin or end, the occupancy stays the same.
 
-For any number of stays, by induction: a stay that neither begins nor ends in (from, to] holds both or neither. So it
-is enough to look at the ticks of the changes, as `free_windows` does.
+z3 checks that a stay that neither begins nor ends in (from, to] holds both ticks or neither. So it is enough to look
+at the ticks of the changes, as `free_windows` does.
+
+By hand: the induction over stays, from none, where the occupancy is 0 throughout; and that `free_windows` looks at
+every tick at which a stay begins or ends, which is read in its source.
 """
 
 from collections.abc import Iterator, Sequence
 
-from carp_verify.engine import Lemma, Theorem
+from carp_verify.engine import Formula, Lemma
 from carp_verify.smt import Bool, Int, all_of, between, counted, equal, integer, integers, negation
 from carp_verify.vocabulary import Interval, holds, interval, is_interval
 
@@ -24,20 +27,20 @@ def _same_occupancy(stay: Interval, start: Int, end: Int) -> tuple[Sequence[Bool
     return [equal(at_start, at_end), is_interval(stay), start <= end], after
 
 
-def lemmas() -> Iterator[Lemma]:
+def formulas() -> Iterator[Formula]:
     """The induction step; that the occupancy without stays is 0 throughout needs no proof."""
     stay, (start, end) = interval("stay"), integers("start end")
     premises, after = _same_occupancy(stay, start, end)
-    yield Lemma("one stay more keeps the occupancies equal", [*premises, no_change(stay, start, end)], after)
+    yield Formula("one stay more keeps the occupancies equal", [*premises, no_change(stay, start, end)], after)
 
 
-def mutants() -> Iterator[Lemma]:
+def mutants() -> Iterator[Formula]:
     """Changes that are overlooked."""
     stay, (start, end) = interval("stay"), integers("start end")
     premises, after = _same_occupancy(stay, start, end)
     begins = negation(between(start + 1, stay.start, end + 1))
-    yield Lemma("the ends of stays are overlooked", [*premises, begins], after)
-    yield Lemma("a change at the last tick is overlooked", [*premises, no_change(stay, start, end - 1)], after)
+    yield Formula("the ends of stays are overlooked", [*premises, begins], after)
+    yield Formula("a change at the last tick is overlooked", [*premises, no_change(stay, start, end - 1)], after)
 
 
-THEOREM = Theorem("Occupancy changes only where stays begin or end", __doc__, ("window/free",), lemmas, mutants)
+LEMMA = Lemma("Occupancy changes only where stays begin or end", __doc__, ("window/free",), formulas, mutants)
