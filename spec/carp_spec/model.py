@@ -4,11 +4,13 @@ Time is `int` ticks from 0. Every interval is half-open, `[enter, leave)`, and `
 for ever: the robot that leaves at t and the robot that enters at t never share the resource.
 
 The classes are plain data and may hold nonsense; `carp_spec.instance_rules` and `carp_spec.check` say
-what is right. Source: the paper, section II; ter Mors 2010 for capacities and durations.
+what is right. Nothing in them can be changed, the look-ups included.
+Source: the paper, section II; ter Mors 2010 for capacities and durations.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Literal, TypeAlias
 
 ResourceId: TypeAlias = str | int
@@ -60,11 +62,16 @@ class ResourceGraph:
                 successors[source].append(target)
         for targets in successors.values():
             targets.sort(key=index.__getitem__)
-        object.__setattr__(self, "resource", {each.id: each for each in self.resources})
-        object.__setattr__(self, "index", index)
-        object.__setattr__(self, "successors", {source: tuple(each) for source, each in successors.items()})
+        sorted_successors = {source: tuple(targets) for source, targets in successors.items()}
+        object.__setattr__(self, "resource", MappingProxyType({each.id: each for each in self.resources}))
+        object.__setattr__(self, "index", MappingProxyType(index))
+        object.__setattr__(self, "successors", MappingProxyType(sorted_successors))
         moves = frozenset((source, target) for source, targets in successors.items() for target in targets)
         object.__setattr__(self, "moves", moves)
+
+    def __reduce__(self) -> tuple[type["ResourceGraph"], tuple[object, ...]]:
+        """Copy and pickle the fields; the look-ups, which do not pickle, are made again."""
+        return type(self), (self.resources, self.edges, self.directed)
 
     def has_move(self, source: ResourceId, target: ResourceId) -> bool:
         """Whether a robot can move from one resource to the other."""
@@ -100,7 +107,11 @@ class Instance:
 
     def __post_init__(self) -> None:
         """Make the look-up."""
-        object.__setattr__(self, "robot", {each.id: each for each in self.robots})
+        object.__setattr__(self, "robot", MappingProxyType({each.id: each for each in self.robots}))
+
+    def __reduce__(self) -> tuple[type["Instance"], tuple[object, ...]]:
+        """Copy and pickle the fields; the look-up, which does not pickle, is made again."""
+        return type(self), (self.graph, self.robots, self.after_goal)
 
     def duration(self, robot: RobotId, resource: ResourceId) -> int:
         """Ticks that the robot needs at least in the resource: the resource's duration times its pace."""

@@ -1,6 +1,10 @@
 """The model's look-ups."""
 
+import copy
 import dataclasses
+import pickle
+from collections.abc import Callable
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -66,3 +70,33 @@ def test_look_ups_are_no_part_of_the_hash_or_of_what_is_printed() -> None:
 def test_the_model_cannot_be_changed() -> None:
     with pytest.raises(dataclasses.FrozenInstanceError):
         VANISHING.robots[0].pace = 2  # type: ignore[misc] # that is what is tried
+
+
+LOOK_UPS = {
+    "resource": VANISHING.graph.resource,
+    "index": VANISHING.graph.index,
+    "successors": VANISHING.graph.successors,
+    "robot": VANISHING.robot,
+}
+
+
+@pytest.mark.parametrize("name", LOOK_UPS)
+def test_a_look_up_cannot_be_changed(name: str) -> None:
+    look_up: Any = LOOK_UPS[name]
+    before, key = dict(look_up), next(iter(look_up))
+    with pytest.raises(TypeError):
+        look_up[key] = None
+    with pytest.raises(TypeError):
+        del look_up[key]
+    for change in ("clear", "pop", "popitem", "setdefault", "update"):
+        assert not hasattr(look_up, change)
+    assert look_up == before
+
+
+@pytest.mark.parametrize("again", [lambda each: pickle.loads(pickle.dumps(each)), copy.deepcopy, copy.copy])  # noqa: S301
+def test_an_instance_survives_pickling_and_copying_with_its_look_ups(again: Callable[[Instance], Instance]) -> None:
+    twin = again(VANISHING)
+    assert (twin, hash(twin)) == (VANISHING, hash(VANISHING))
+    assert (twin.robot, twin.graph.resource) == (VANISHING.robot, VANISHING.graph.resource)
+    assert (twin.graph.index, twin.graph.successors) == (VANISHING.graph.index, VANISHING.graph.successors)
+    assert not hasattr(twin.robot, "clear")
