@@ -81,7 +81,8 @@ class Conformance:
         level = report.options.level
         head = f"{report.program} does not conform to level {level.label}: {level.statement}"
         if not report.failures:
-            return f"{head}; no case was answered"
+            reasons = [*(fault.message for fault in report.faults), *report.shortfalls]
+            return "\n".join([head, *(reasons or ["no random case decided it"])])
         smallest = report.failures[0]
         save(smallest, self._folder)
         finding, instance = smallest.finding, smallest.case.instance

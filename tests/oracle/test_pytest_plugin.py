@@ -65,26 +65,35 @@ def test_planners_that_are_right_pass(tmp_path: Path) -> None:
     [
         ("carproof.conforms(hurries)", "wrong answer", "plan/start"),
         ('carproof.conforms(gives_up, level="complete")', "wrong answer", "query/complete"),
-        ('carproof.conforms(gives_up, level="sound")', None, None),
         ("carproof.conforms(fails)", "crash", "program/alive"),
         ("carproof.conforms(returns_nothing)", "protocol error", "program/result"),
         ("carproof.conforms(no_document, documents=True)", "protocol error", "program/result"),
     ],
 )
 def test_a_planner_that_is_wrong_fails_the_test_by_its_rule(
-    test: str, category: str | None, rule: str | None, tmp_path: Path
+    test: str, category: str, rule: str, tmp_path: Path
 ) -> None:
     done = pytest_of_another_project(tmp_path, test)
     saved = tmp_path / "conform-failure" / "test_0"
-    if category is None:
-        assert "1 passed" in done.stdout, done.stdout
-        return
     assert "1 failed" in done.stdout
     (told,) = (line for line in done.stdout.splitlines() if line.startswith(f"{category}: "))
     assert told.endswith(f"[{rule}]")
     assert f"saved in {saved}" in done.stdout
     assert len(json.loads((saved / "instance.json").read_bytes())["robots"]) <= 1
     assert "Function" not in done.stdout, "no traceback through the runner"
+
+
+@pytest.mark.parametrize(
+    ("test", "reason"),
+    [
+        ('carproof.conforms(gives_up, level="sound")', "it gave up"),
+        ('carproof.conforms(right, level="sound", examples=0)', "no random case decided it"),
+    ],
+)
+def test_a_planner_that_shows_nothing_fails_the_test(test: str, reason: str, tmp_path: Path) -> None:
+    done = pytest_of_another_project(tmp_path, test)
+    assert "1 failed" in done.stdout
+    assert reason in done.stdout
 
 
 def test_pytest_starts_without_loading_what_judges_planners() -> None:

@@ -5,6 +5,7 @@ import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from secrets import randbits
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
@@ -24,7 +25,8 @@ if TYPE_CHECKING:
     from carp_oracle.conform.run import Report
     from carp_oracle.conform.subjects import Subject
 
-_STAGES = "passed", "skipped", "wrong answer", "crash", "timeout", "protocol error"
+_STAGES = "passed", "gave up", "skipped", "not asked", "wrong answer", "crash", "timeout", "protocol error"
+_SEED_BITS = 32
 _LEVELS = "\n".join(
     ["\b", "Levels, each with all before it:", *(f"  {level.label:17}{level.statement}" for level in Level), "", ""]
 )
@@ -43,7 +45,13 @@ _LEVELS = "\n".join(
 @click.argument("program", nargs=-1, required=True, metavar="-- PROGRAM ...")
 @click.option("--level", type=click.Choice(list(LEVELS)), default=Level.SOUND.label, help="What is asked of it.")
 @click.option("--examples", "number", type=click.IntRange(0), default=200, help="How many random cases are asked.")
-@click.option("--seed", type=click.IntRange(0, 2**64 - 1), default=0, help="The seed of the random cases.")
+@click.option(
+    "--seed",
+    type=click.IntRange(0, 2**64 - 1),
+    default=lambda: randbits(_SEED_BITS),
+    show_default="a new one",
+    help="The seed of the random cases.",
+)
 @click.option(
     "--timeout",
     type=click.FloatRange(0, min_open=True),
@@ -81,15 +89,21 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     """Ask PROGRAM questions, and judge its answers.
 
     PROGRAM stays up and answers requests, one a line, as carproof serve does: start, and as many of check, query,
-    plan, add and optimum as it likes; what it does not offer is skipped. A failing case is shrunk, and written to the
-    folder of --save: the request, the documents, a test vector and a picture.
+    plan, add, polish, optimum and bound as it likes; what it does not offer is not asked. A failing case is shrunk,
+    and written to the folder of --save: the request, the documents, a test vector and a picture.
+
+    It must answer all smoke cases, and 90 in 100 random cases of each op that it offers; to skip a case, or to leave
+    an optimum undecided, is no answer. It may give up at most half of the random cases of an op that have an answer.
+    carproof rules program/answers and program/tries have the details. Random cases are new ones each time, so that
+    they cannot be known before; the verdict names the seed, with which they are asked again.
 
     With --one-shot it is started for each instance, and plans the file {instance}. It writes the file {solution},
     if its arguments name that, or else to its standard output. If they name {map} and {scen}, these are MovingAI
     files with {agents} agents, and what it writes may be in any format that carproof check reads; all else than
-    classical grids is skipped, and the levels are sound, complete (all robots, where all can have plans) and optimal.
+    classical grids is not asked, and the levels are sound, complete (all robots, where all can have plans) and optimal.
 
-    Exit codes: 0 it conforms, 1 it does not, 2 bad usage, 3 undecided, because it was interrupted.
+    Exit codes: 0 it conforms, 1 it does not, 2 bad usage, 3 undecided: it was interrupted, or no random case decided
+    it.
     """
     from carp_oracle.conform.child import Limits  # noqa: PLC0415 - what runs processes is loaded when it is needed
     from carp_oracle.conform.documents import junit_document, report_document  # noqa: PLC0415
@@ -166,6 +180,8 @@ def _show(report: "Report", saved: Path | None) -> None:
         size = f"{len(instance.robots)} robots, {len(instance.graph.resources)} resources"
         finding = outcome.finding
         print_line(f"{finding.category} ({outcome.case.name}; {size}): {finding.message} [{finding.rule}]")
+    for shortfall in report.shortfalls:
+        print_line(f"too few answers: {shortfall}")
     stderr = next((finding.stderr for finding in report.findings if finding.stderr), "")
     if stderr:
         click.echo("the end of the program's standard error:")
@@ -177,11 +193,21 @@ def _show(report: "Report", saved: Path | None) -> None:
 
 
 def _verdict(report: "Report") -> str:
+    """The last line, with the answers that decided it."""
     level = report.options.level
+    about = f"{report.program}, level {level.label}"
     if report.conforms:
-        return f"CONFORMS: {report.program}, level {level.label}: {level.statement}"
+        return f"CONFORMS: {about}: {level.statement}; {_answered(report)}"
     if report.conforms is None:
-        return f"UNDECIDED: {report.program}, level {level.label}: interrupted before anything wrong was found"
-    if not report.findings:
-        return f"DOES NOT CONFORM: {report.program} answered no case that shows level {level.label}"
-    return f"DOES NOT CONFORM: {report.program}, level {level.label}"
+        why = "interrupted before anything wrong was found" if report.interrupted else "no random case decided it"
+        return f"UNDECIDED: {about}: {why}; {_answered(report)}"
+    return f"DOES NOT CONFORM: {about}; {_answered(report)}"
+
+
+def _answered(report: "Report") -> str:
+    """How many cases were answered."""
+    from carp_oracle.conform.findings import LEAST_ANSWERED  # noqa: PLC0415 - loaded by the run already
+
+    random = ", ".join(f"{op} {tally}" for op, tally in report.tallies.items()) or "none"
+    needed = f"{LEAST_ANSWERED} in 100 needed, seed {report.options.seed}"
+    return f"rightly answered: smoke {report.smoke}; random {random} ({needed})"

@@ -9,7 +9,7 @@ from carp_oracle.conform.cases import Case
 from carp_oracle.conform.findings import Category, Fault, Finding, is_accepted, is_response, is_result
 from carp_spec import Plan, Refusal, ResourceId, Solution, Visit, read_solution
 from carp_spec.bounds import BoundDocument
-from carp_spec.documents import VerdictDocument
+from carp_spec.documents import VerdictDocument, is_json
 
 T = TypeVar("T")
 MOST_SHOWN = 200
@@ -18,6 +18,13 @@ MOST_SHOWN = 200
 @dataclass(frozen=True, slots=True)
 class Skipped:
     """The program does not offer what was asked."""
+
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
+class NotAsked:
+    """The program cannot be asked this: its kind of input has no words for it."""
 
     why: str
 
@@ -40,7 +47,7 @@ class OptimumAnswer:
 
 
 Answer: TypeAlias = QueryAnswer | Solution | VerdictDocument | OptimumAnswer | BoundDocument
-Reply: TypeAlias = Answer | Skipped
+Reply: TypeAlias = Answer | Skipped | NotAsked
 
 
 class _Response(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -90,6 +97,8 @@ def _decoded(data: bytes | msgspec.Raw, kind: type[T], rule: str, what: str) -> 
 
 def result_of(line: bytes, id: object) -> msgspec.Raw | Skipped:
     """The result in a response to the request with the id."""
+    if not is_json(line):
+        raise protocol_error(is_response.id, f"the response must obey {is_json.id}: {shown(line)}")
     response = _decoded(line, _Response, is_response.id, "the response is not as it must be")
     fields = {name for name in ("id", "result", "skipped", "error") if getattr(response, name) is not msgspec.UNSET}
     if not is_response(fields):

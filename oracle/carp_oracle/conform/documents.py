@@ -7,6 +7,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 import msgspec
 
+from carp_oracle.conform.deciding import Tally
 from carp_oracle.conform.findings import Finding
 from carp_oracle.conform.run import Report, label
 
@@ -40,10 +41,20 @@ def report_document(report: Report, saved: Path | None) -> bytes:
         "seed": report.options.seed,
         "cases": counts(report),
         "judged": report.judged,
+        "answered": {"smoke": _tally_fields(report.smoke), "random": _tallies_fields(report)},
+        "shortfalls": report.shortfalls,
         "failures": failures,
         "saved": None if saved is None else str(saved),
     }
     return msgspec.json.encode(document) + b"\n"
+
+
+def _tallies_fields(report: Report) -> dict[str, dict[str, int]]:
+    return {op: _tally_fields(tally) for op, tally in report.tallies.items()}
+
+
+def _tally_fields(tally: Tally) -> dict[str, int]:
+    return {"asked": tally.asked, "answered": tally.answered, "gave_up": tally.gave_up}
 
 
 def _finding_fields(finding: Finding) -> dict[str, Any]:
@@ -70,7 +81,8 @@ def junit_document(report: Report) -> bytes:
         _test(suite, "process", "start and stop", finding)
     if not report.reaches_level:
         test = _test(suite, "level", report.options.level.label, None)
-        SubElement(test, "failure", message="no case that shows the level was answered")
+        message = "; ".join(report.shortfalls) or "no random case decided it"
+        SubElement(test, "failure", message=_printable(message))
     tests = suite.findall("testcase")
     suite.set("tests", str(len(tests)))
     suite.set("failures", str(len(suite.findall("testcase/failure"))))

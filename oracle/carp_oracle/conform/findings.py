@@ -7,6 +7,13 @@ from typing import Any
 from carp_spec import Rule
 from carp_spec.rule import DESIGN, rule
 
+LEAST_ANSWERED = 90
+"""In 100 random cases of an op. They are small, so that a program that offers the op can answer nearly all of them, and
+two in three have two robots or more, so that one that answers only the easy ones does not come near."""
+LEAST_TRIED = 50
+"""In 100 random cases of an op in which there is something to do. A sound planner may miss plans; one that misses most
+of them, where four robots at most are on a map of six resources, has shown nothing."""
+
 
 class Category(StrEnum):
     """How a case ends that a program does not pass."""
@@ -99,6 +106,40 @@ def is_complete(unplanned: int, least: int | None) -> bool:
     return unplanned == 0 or least is None
 
 
+@rule(
+    "program/lower",
+    "A lower bound that a program gives is at most the least total cost of plans for all robots.",
+    DESIGN,
+)
+def is_lower(bound: int, least: int | None) -> bool:
+    """Whether the bound is not above the least total cost; `None` is that there are no plans for all robots."""
+    return least is None or bound <= least
+
+
+@rule(
+    "program/answers",
+    "A program shows a level by answering all smoke cases that it can be asked, and at least "
+    f"{LEAST_ANSWERED} in 100 random cases of each op that it offers. To skip a case or to leave it undecided is no "
+    "answer.",
+    DESIGN,
+)
+def answers_enough(answered: int, asked: int) -> bool:
+    """Whether so many answers are enough of so many random cases of one op."""
+    return 100 * answered >= LEAST_ANSWERED * asked
+
+
+@rule(
+    "program/tries",
+    f"A program gives up at most {100 - LEAST_TRIED} in 100 random cases of each op in which there is something to do. "
+    "To give up is to have no plan where there is one, to plan at most half as many robots as CARP, to better no "
+    "plan where carproof does, or to have a bound below what the robots need alone.",
+    DESIGN,
+)
+def tries_enough(tried: int, gave_up: int) -> bool:
+    """Whether so many tries are enough of the random cases of one op that have an answer."""
+    return 100 * tried >= LEAST_TRIED * (tried + gave_up)
+
+
 PROGRAM_RULES: tuple[Rule[..., Any], ...] = (
     is_alive,
     is_in_time,
@@ -107,4 +148,7 @@ PROGRAM_RULES: tuple[Rule[..., Any], ...] = (
     is_accepted,
     is_optimal,
     is_complete,
+    is_lower,
+    answers_enough,
+    tries_enough,
 )

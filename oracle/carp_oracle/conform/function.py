@@ -6,10 +6,10 @@ from typing import Any
 
 import msgspec
 
-from carp_oracle.conform.answers import Reply, Skipped, decode_solution, protocol_error
+from carp_oracle.conform.answers import NotAsked, Reply, decode_solution, protocol_error
 from carp_oracle.conform.cases import Case
 from carp_oracle.conform.findings import Category, Fault, Finding, is_alive, is_result
-from carp_spec import Instance, Solution, write_instance
+from carp_spec import Instance, Solution, read_instance, write_instance, write_solution
 
 Document = dict[str, Any]
 
@@ -28,8 +28,19 @@ def by_documents(planner: Callable[[Document], Document]) -> Callable[[Instance]
     return plan
 
 
+def _written(solution: Solution) -> bytes:
+    try:
+        return write_solution(solution)
+    except Exception as error:
+        raise protocol_error(is_result.id, f"the planner's solution cannot be written as JSON: {error}") from error
+
+
 class Function:
-    """A planner that is called with an instance and returns a solution. Nothing limits its time."""
+    """A planner that is called with an instance and returns a solution. Nothing limits its time.
+
+    It gets an instance of its own, and its solution is written and read as a document, so that the judges look at
+    nothing that the planner has in its hands.
+    """
 
     def __init__(self, planner: Callable[[Instance], Solution], name: str) -> None:
         self._planner = planner
@@ -43,18 +54,18 @@ class Function:
         """Call the function."""
         del seconds
         if case.op != "plan" or case.planner is not None:
-            return Skipped("it plans whole instances, by a planner of its own")
+            return NotAsked("it plans whole instances, by a planner of its own")
         try:
-            solution: object = self._planner(case.instance)
-        except Fault:
+            solution: object = self._planner(read_instance(write_instance(case.instance)))
+        except (Fault, KeyboardInterrupt):
             raise
-        except Exception as error:
+        except BaseException as error:  # pytest.skip and sys.exit are no way out
             message = f"it raised {type(error).__name__}: {str(error).partition(chr(10))[0]}"
             raise Fault(Finding(Category.CRASH, is_alive.id, message, traceback.format_exc())) from error
         if not isinstance(solution, Solution):
             message = f"a planner must return a carp_spec.Solution, not {type(solution).__name__}"
             raise protocol_error(is_result.id, message)
-        return solution
+        return decode_solution(_written(solution))
 
     def finish(self) -> None:
         """Nothing runs on."""

@@ -41,7 +41,7 @@ def _findings(case: Case, answer: Answer, level: Level) -> Iterator[Finding]:
         case OptimumAnswer():
             yield from optimum_findings(case.instance, answer, level)
         case BoundDocument():
-            yield from bound_findings(case.instance, answer, level)
+            yield from bound_findings(case.instance, answer)
         case Solution() if case.op == "add":
             yield from _add_findings(case, answer, level)
         case Solution() if case.op == "polish":
@@ -172,7 +172,7 @@ def _polish_findings(case: Case, after: Solution, level: Level) -> Iterator[Find
     """A polished solution breaks no rule, leaves no more robots unplanned, and if as many, has no larger total."""
     for violation in judge(case.instance, after).violations:
         yield wrong(violation.rule, violation.message)
-    (missing, total), (missing_before, total_before) = (_worth(case, each.plans) for each in (after, case.solution))
+    (missing, total), (missing_before, total_before) = (worth(case, each.plans) for each in (after, case.solution))
     if not is_kept((missing_before, total_before), (missing, total)):
         given = f"the solution to polish leaves {missing_before} robots unplanned, with a total of {total_before}"
         yield wrong(is_kept.id, f"{given}, and the answer leaves {missing}, with {total}")
@@ -181,7 +181,8 @@ def _polish_findings(case: Case, after: Solution, level: Level) -> Iterator[Find
         yield from _same_solution(after, expected, "polish")
 
 
-def _worth(case: Case, plans: Sequence[Plan]) -> tuple[int, int]:
+def worth(case: Case, plans: Sequence[Plan]) -> tuple[int, int]:
+    """How many robots have no plan, and the total of the others."""
     return len(case.instance.robots) - len(plans), total_cost(case.instance, plans)
 
 

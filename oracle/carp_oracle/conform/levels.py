@@ -1,6 +1,9 @@
 """The levels of conformance; each asks all that the ones before it ask."""
 
+from collections.abc import Mapping
 from enum import IntEnum
+
+from carp_oracle.conform.cases import Op
 
 
 class Level(IntEnum):
@@ -33,11 +36,12 @@ _STATEMENTS = {
 CLASSICAL_LEVELS = (Level.SOUND, Level.COMPLETE, Level.OPTIMAL)
 """The levels of planners whose answers do not tell in which order the plans were made."""
 LEVELS = {level.label: level for level in Level}
-JUDGED_OPS = {
-    Level.SOUND: ("check", "query", "plan", "add", "polish", "optimum", "bound"),
-    Level.COMPLETE: ("query", "plan", "add", "optimum"),
+JUDGED_OPS: Mapping[Level, tuple[Op, ...]] = {
+    Level.SOUND: ("check", "query", "plan", "add", "polish", "bound"),
+    Level.COMPLETE: ("query", "plan", "add"),
     Level.CONTEXT_OPTIMAL: ("query", "plan"),
     Level.OPTIMAL: ("optimum",),
     Level.EXACT: ("query", "plan", "add", "polish"),
 }
-"""The ops by which a level is shown: a program that answers none of them has not reached it."""
+"""The ops by which a level is shown: a program that offers none of them has not reached it. `optimum` is asked from
+`optimal` on; `check`, `polish` and `bound` are asked at all levels, but show `complete` of nobody."""

@@ -6,7 +6,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from carp_oracle.adapters import carproof_documents, read_foreign_solution
-from carp_oracle.conform.answers import Reply, Skipped, decode_solution, protocol_error, shown
+from carp_oracle.conform.answers import NotAsked, Reply, decode_solution, protocol_error, shown
 from carp_oracle.conform.cases import Case
 from carp_oracle.conform.child import Limits, end_group, ending, environment, exit_code, limited
 from carp_oracle.conform.findings import Category, Fault, Finding, is_alive, is_in_time, is_result
@@ -48,9 +48,9 @@ class OneShot:
     def ask(self, case: Case, seconds: float | None = None) -> Reply:
         """Run the program on the case's instance."""
         if case.op != "plan" or case.planner is not None:
-            return Skipped("it plans whole instances, by a planner of its own")
+            return NotAsked("it plans whole instances, by a planner of its own")
         if self.is_classical and not is_classical(case.instance):
-            return Skipped("it plans classical grids")
+            return NotAsked("it plans classical grids")
         with TemporaryDirectory(prefix="carproof-") as folder:
             return self._run(case, Path(folder), seconds or self._limits.seconds)
 

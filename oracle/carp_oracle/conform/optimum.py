@@ -5,11 +5,11 @@ from functools import lru_cache
 
 from carp_oracle.conform.answers import OptimumAnswer
 from carp_oracle.conform.cases import OPTIMUM_SECONDS
-from carp_oracle.conform.findings import Finding, is_complete, is_optimal, wrong
+from carp_oracle.conform.findings import Finding, is_complete, is_lower, is_optimal, wrong
 from carp_oracle.conform.levels import Level
+from carp_oracle.engines import engine_named
 from carp_spec import Instance, Refusal, Solution, judge, total_cost
 from carp_spec.bounds import BoundDocument
-from carp_verify.bound_rules import require_kept
 
 
 @lru_cache(maxsize=1)
@@ -19,6 +19,13 @@ def proved_cost(instance: Instance) -> tuple[bool, int | None]:
 
     found = optimum(instance, OPTIMUM_SECONDS)
     return found.proved, found.cost
+
+
+def cost_alone(instance: Instance) -> int | None:
+    """What the robots need together if each is alone, `None` if one has no plan even then."""
+    plans = [engine_named("reference").query(instance, (), robot) for robot in instance.robot]
+    known = [plan for plan in plans if plan is not None]
+    return total_cost(instance, known) if len(known) == len(plans) else None
 
 
 def optimum_findings(instance: Instance, answer: OptimumAnswer, level: Level) -> Iterator[Finding]:
@@ -37,7 +44,7 @@ def optimum_findings(instance: Instance, answer: OptimumAnswer, level: Level) ->
         yield from _against_proof(instance, answer)
 
 
-def bound_findings(instance: Instance, certificate: BoundDocument, level: Level) -> Iterator[Finding]:
+def bound_findings(instance: Instance, certificate: BoundDocument) -> Iterator[Finding]:
     """What is wrong with an answer to `bound`: its certificate, or a bound above the proved optimum."""
     from carp_verify.verify_bound import verify_bound  # noqa: PLC0415 - only programs that have bounds need it
 
@@ -46,18 +53,20 @@ def bound_findings(instance: Instance, certificate: BoundDocument, level: Level)
     except Refusal as refusal:
         yield wrong(refusal.rule, f"{refusal.path}: {refusal.message}")
         return
-    if level >= Level.OPTIMAL:
-        is_proved, least = proved_cost(instance)
-        if is_proved and least is not None:
-            require_kept(bound, least)
+    if bound <= (cost_alone(instance) or 0):
+        return
+    is_proved, least = proved_cost(instance)
+    if is_proved and not is_lower(bound, least):
+        message = f"its certificate passes for a bound of {bound}, and there are plans with a total of {least}"
+        yield wrong(is_lower.id, f"{message}: the certificate is false, and carproof's check of it has a fault")
 
 
 def _against_proof(instance: Instance, answer: OptimumAnswer) -> Iterator[Finding]:
     is_proved, least = proved_cost(instance)
     if is_proved and answer.proved and not is_optimal(answer.cost, least):
         yield wrong(is_optimal.id, f"the least total cost is {_shown(least)}, not {_shown(answer.cost)}")
-    if is_proved and least is not None and (answer.lower or 0) > least:
-        yield wrong(is_optimal.id, f"no lower bound is above the least total cost {least}, as {answer.lower} is")
+    if is_proved and answer.lower is not None and not is_lower(answer.lower, least):
+        yield wrong(is_lower.id, f"no lower bound is above the least total cost {least}, as {answer.lower} is")
 
 
 def plan_cost_findings(instance: Instance, solution: Solution) -> Iterator[Finding]:

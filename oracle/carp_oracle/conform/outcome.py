@@ -1,10 +1,11 @@
 """What came of asking one case."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from time import monotonic
 
-from carp_oracle.conform.answers import Answer, Skipped
+from carp_oracle.conform.answers import Answer, NotAsked, Skipped
 from carp_oracle.conform.cases import Case
+from carp_oracle.conform.effort import Effort, effort, why_undecided
 from carp_oracle.conform.findings import Fault, Finding
 from carp_oracle.conform.judges import first_finding
 from carp_oracle.conform.levels import Level
@@ -13,12 +14,17 @@ from carp_oracle.conform.subjects import Subject
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """A case, what is wrong with the answer if anything is, the answer if there is one, and why it was skipped."""
+    """A case, what is wrong with the answer if anything is, the answer if there is one, and why it was skipped.
+
+    `asked` is whether the program could be asked at all, and `effort` what an answer shows that is not wrong.
+    """
 
     case: Case
     finding: Finding | None = None
     answer: Answer | None = None
     skipped: str | None = None
+    asked: bool = True
+    effort: Effort | None = None
     seconds: float = 0.0
 
     @property
@@ -35,6 +41,11 @@ def ask(subject: Subject, case: Case, level: Level, seconds: float | None = None
     except Fault as fault:
         return Outcome(case, fault.finding, seconds=monotonic() - started)
     taken = monotonic() - started
-    if isinstance(reply, Skipped):
-        return Outcome(case, skipped=reply.why, seconds=taken)
-    return replace(Outcome(case, answer=reply, seconds=taken), finding=first_finding(case, reply, level))
+    if isinstance(reply, Skipped | NotAsked):
+        return Outcome(case, skipped=reply.why, asked=isinstance(reply, Skipped), seconds=taken)
+    finding = first_finding(case, reply, level)
+    if finding is not None:
+        return Outcome(case, finding, reply, seconds=taken)
+    undecided = why_undecided(case, reply, level)
+    shown = effort(case, reply) if undecided is None else None
+    return Outcome(case, None, reply, undecided, effort=shown, seconds=taken)

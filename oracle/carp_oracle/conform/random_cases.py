@@ -1,10 +1,10 @@
 """Random cases by hypothesis' strategies, which shrink to few robots, few resources and small numbers."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from hypothesis import strategies as st
 
-from carp_oracle.conform.cases import Case
+from carp_oracle.conform.cases import Case, Op
 from carp_oracle.conform.levels import Level
 from carp_spec import (
     AfterGoal,
@@ -130,17 +130,20 @@ def _checks(draw: st.DrawFn) -> Case:
     return Case("random", "check", "check", instance, draw(solutions(instance, SIZES)))
 
 
-def random_cases(ops: Sequence[str], level: Level, whole: bool) -> st.SearchStrategy[Case] | None:
-    """Cases of the ops that are offered, or `None` if there is none of them."""
+def random_cases(ops: Sequence[str], level: Level, whole: bool) -> Mapping[Op, st.SearchStrategy[Case]]:
+    """Cases of each op that is offered."""
     if whole:
-        return _plans([None])
+        return {"plan": _plans([None])}
     planners = EXACT_PLANNERS if level >= Level.EXACT else (Carp(),)
-    by_op = {"query": _queries(), "plan": _plans(planners), "add": _additions(), "check": _checks()}
-    by_op["polish"] = _polishes()
-    by_op["bound"] = instances(OPTIMUM_SIZES).map(lambda instance: Case("random", "bound", "bound", instance))
+    small = st.one_of(instances(OPTIMUM_SIZES), _busy_instances(), _busy_instances())
+    by_op: dict[Op, st.SearchStrategy[Case]] = {
+        "query": _queries(),
+        "plan": _plans(planners),
+        "add": _additions(),
+        "check": _checks(),
+        "polish": _polishes(),
+        "bound": small.map(lambda instance: Case("random", "bound", "bound", instance)),
+    }
     if level >= Level.OPTIMAL:
-        small = st.one_of(instances(OPTIMUM_SIZES), _busy_instances(), _busy_instances())
-        optimal = small.map(lambda instance: Case("random", "optimum", "optimum", instance))
-        by_op["optimum"] = optimal
-    offered = [strategy for op, strategy in by_op.items() if op in ops]
-    return st.one_of(offered) if offered else None
+        by_op["optimum"] = small.map(lambda instance: Case("random", "optimum", "optimum", instance))
+    return {op: cases for op, cases in by_op.items() if op in ops}

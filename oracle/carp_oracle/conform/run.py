@@ -4,7 +4,9 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 
-from carp_oracle.conform.cases import Case
+from carp_oracle.conform.cases import Case, Op
+from carp_oracle.conform.deciding import Tally, random_shortfalls, smoke_shortfalls
+from carp_oracle.conform.effort import Effort
 from carp_oracle.conform.findings import Category, Fault, Finding
 from carp_oracle.conform.levels import JUDGED_OPS, Level
 from carp_oracle.conform.outcome import Outcome, ask
@@ -12,7 +14,6 @@ from carp_oracle.conform.shrinking import SHRINK_SECONDS, Search
 from carp_oracle.conform.smoke import smoke_cases
 from carp_oracle.conform.subjects import Subject
 from carp_oracle.conform.vector_cases import vector_cases
-from carp_spec import Solution
 
 MOST_FAULTS = 3
 """After so many crashes, timeouts and protocol errors no further fixed case is asked: each costs a new process."""
@@ -33,20 +34,26 @@ class Options:
     whole: bool = False
     classical: bool = False
 
+    @property
+    def ops(self) -> tuple[Op, ...]:
+        """The ops by which the level is shown."""
+        return ("plan",) if self.whole else JUDGED_OPS[self.level]
+
 
 @dataclass(slots=True)
 class Report:
     """What a run has found so far.
 
-    `outcomes` are those of the fixed cases, `random` counts the random ones by what came of them, and `judged` the
-    answers of each op. `smallest` is the failing random case after shrinking. A fault without a case, at the
-    start or at the stop, is in `faults`.
+    `outcomes` are those of the fixed cases, `random` counts the random ones by what came of them, `tallies` those of
+    each op, and `judged` all answers of each op. `smallest` is the failing random case after shrinking. A fault
+    without a case, at the start or at the stop, is in `faults`.
     """
 
     options: Options
     program: str = ""
     outcomes: list[Outcome] = field(default_factory=list)
     random: Counter[str] = field(default_factory=Counter)
+    tallies: dict[Op, Tally] = field(default_factory=dict)
     judged: Counter[str] = field(default_factory=Counter)
     smallest: Outcome | None = None
     faults: list[Finding] = field(default_factory=list)
@@ -74,41 +81,61 @@ class Report:
         return sum(finding.category != Category.WRONG_ANSWER for finding in findings)
 
     @property
+    def smoke(self) -> Tally:
+        """The smoke cases."""
+        tally = Tally()
+        for outcome in self.outcomes:
+            if outcome.case.stage == "smoke":
+                tally.add(outcome)
+        return tally
+
+    @property
+    def shortfalls(self) -> list[str]:
+        """Why answers of which none is wrong are too few for the level."""
+        if self.findings or self.interrupted:
+            return []
+        ops = self.options.ops
+        if not any(outcome.case.op in ops for outcome in self.outcomes) and not any(op in self.tallies for op in ops):
+            return [f"it offers nothing that shows the level, which is one of {', '.join(ops)}"]
+        return [*smoke_shortfalls(self.outcomes), *random_shortfalls(self.tallies)]
+
+    @property
+    def is_decided(self) -> bool:
+        """Whether a random case, which nobody knows before, has decided anything."""
+        return any(self.tallies[op].decides for op in self.options.ops if op in self.tallies)
+
+    @property
     def reaches_level(self) -> bool:
-        """Whether the program has answered what the level is about; who skips everything conforms to nothing."""
-        ops = JUDGED_OPS[self.options.level]
-        if self.options.whole:
-            return self.judged["plan"] > 0
-        return any(self.judged[op] for op in ops)
+        """Whether there are enough answers to what the level is about."""
+        return not self.shortfalls and self.is_decided
 
     @property
     def conforms(self) -> bool | None:
-        """Whether the program conforms; `None` if an interruption leaves it undecided."""
+        """Whether the program conforms; `None` if an interruption or too few random cases leave it undecided."""
         if self.findings:
             return False
-        return None if self.interrupted else self.reaches_level
+        if self.interrupted:
+            return None
+        return False if self.shortfalls else self.is_decided or None
 
     def add(self, outcome: Outcome) -> None:
         """Count an outcome."""
         if outcome.case.stage == "random":
             self.random[label(outcome)] += 1
+            self.tallies.setdefault(outcome.case.op, Tally()).add(outcome)
         else:
             self.outcomes.append(outcome)
-        if outcome.answer is not None and not _is_silent(outcome):
+        if outcome.answer is not None and outcome.is_judged:
             self.judged[outcome.case.op] += 1
-
-
-def _is_silent(outcome: Outcome) -> bool:
-    """Whether a classical planner has planned nobody: as good as no answer, if it never does more."""
-    answer = outcome.answer
-    return outcome.case.classical and isinstance(answer, Solution) and not answer.plans
 
 
 def label(outcome: Outcome) -> str:
     """What came of a case, in a word or two."""
     if outcome.finding is not None:
         return outcome.finding.category.value
-    return "passed" if outcome.is_judged else "skipped"
+    if outcome.effort == Effort.GAVE_UP:
+        return "gave up"
+    return "passed" if outcome.is_judged else "skipped" if outcome.asked else "not asked"
 
 
 def conform(subject: Subject, options: Options, advance: Callable[[], None] = lambda: None) -> Report:
@@ -145,13 +172,13 @@ def _ask_fixed(subject: Subject, report: Report, cases: Iterable[Case], advance:
 
 
 def _ask_random(subject: Subject, report: Report, advance: Callable[[], None]) -> None:
+    """Ask as many of each op."""
     from carp_oracle.conform.classical_cases import classical_cases  # noqa: PLC0415 - loads hypothesis
     from carp_oracle.conform.random_cases import random_cases  # noqa: PLC0415 - loads hypothesis
 
     options = report.options
-    cases = classical_cases() if options.classical else random_cases(subject.ops, options.level, options.whole)
-    if cases is None or options.examples == 0:
-        return
+    ours = random_cases(subject.ops, options.level, options.whole)
+    by_op = {"plan": classical_cases()} if options.classical else ours
 
     def ask_one(case: Case, seconds: float | None) -> Outcome:
         outcome = ask(subject, case, options.level, seconds)
@@ -162,6 +189,9 @@ def _ask_random(subject: Subject, report: Report, advance: Callable[[], None]) -
 
     search = Search(ask_one, options.limit, options.shrink_seconds)
     try:
-        search.run(cases, options.examples, options.seed)
+        for number, cases in enumerate(by_op.values()):
+            examples = (options.examples + number) // len(by_op)
+            if examples and search.best is None:
+                search.run(cases, examples, options.seed)
     finally:
         report.smallest = search.best

@@ -184,5 +184,7 @@ def smoke_cases(ops: Sequence[str], level: Level, whole: bool) -> Iterator[Case]
         return
     each = (*_alone(), *_with_others(), *_under_way(), *_whole(Carp()), *_checks(), *_additions(), *_polishes())
     yield from (case for case in each if case.op in ops)
+    if "bound" in ops:
+        yield from (Case("smoke", f"bound: {case.name[6:]}", "bound", case.instance) for case in _whole(None))
     if "optimum" in ops and level >= Level.OPTIMAL:
         yield from (Case("smoke", f"optimum: {case.name[6:]}", "optimum", case.instance) for case in _whole(None))

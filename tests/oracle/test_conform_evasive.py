@@ -1,0 +1,261 @@
+"""Programs and functions that are never caught in a wrong answer, as they give none, or damage what judges look at."""
+
+import json
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from tests.oracle.running import Run
+from tests.oracle.test_conform_judges import Tampered, as_it_is
+
+import carp_reference
+import carp_verify.verify_bound
+from carp_oracle.conform.answers import result_of
+from carp_oracle.conform.cases import NO_PLANS, Case
+from carp_oracle.conform.child import Limits
+from carp_oracle.conform.findings import LEAST_ANSWERED, LEAST_TRIED, Fault, answers_enough, tries_enough
+from carp_oracle.conform.function import Function
+from carp_oracle.conform.levels import Level
+from carp_oracle.conform.program import Program
+from carp_oracle.conform.run import Options, Report, conform
+from carp_oracle.conform.smoke import EAST, row
+from carp_spec import Carp, Instance, Plan, Solution, Visit
+
+PATIENT = 30.0
+EVASIVE = [sys.executable, str(Path(__file__).with_name("evasive.py"))]
+
+
+def run(how: str, ops: str, level: Level, examples: int = 60) -> Report:
+    program = Program([*EVASIVE, how, ops], Limits(seconds=PATIENT))
+    return conform(program, Options(level, examples, limit=PATIENT, shrink_seconds=1))
+
+
+@pytest.mark.parametrize(
+    ("how", "ops", "level", "rule"),
+    [
+        ("is undecided", "optimum", Level.OPTIMAL, "program/answers"),
+        ("finds and does not prove", "optimum", Level.OPTIMAL, "program/answers"),
+        ("answers empty fleets", "query,plan,add,polish", Level.EXACT, "program/answers"),
+        ("answers one robot", "optimum", Level.OPTIMAL, "program/answers"),
+        ("answers one robot", "plan", Level.SOUND, "program/answers"),
+        ("skips the unknown", "query,plan", Level.EXACT, "program/answers"),
+        ("answers one op", "query,plan", Level.CONTEXT_OPTIMAL, "program/answers"),
+        ("plans nobody", "query,plan", Level.SOUND, "program/tries"),
+        ("plans one", "plan", Level.SOUND, "program/tries"),
+        ("adds nobody", "add", Level.SOUND, "program/tries"),
+        ("gives back", "polish", Level.SOUND, "program/tries"),
+        ("bounds by nothing", "bound", Level.SOUND, "program/tries"),
+    ],
+)
+def test_who_only_keeps_silent_well_does_not_conform(how: str, ops: str, level: Level, rule: str) -> None:
+    report = run(how, ops, level)
+    assert (report.conforms, report.findings) == (False, [])
+    assert [shortfall for shortfall in report.shortfalls if shortfall.endswith(f"[{rule}]")]
+
+
+@pytest.mark.parametrize(
+    ("how", "ops", "level", "rules"),
+    [
+        ("repeats itself", "plan", Level.SOUND, {"solution/covers", "plan/start", "plan/goal", "plan/resource"}),
+        ("leaves", "query", Level.SOUND, {"program/alive"}),
+        ("calls all valid", "check", Level.SOUND, {"plan/duration", "joint/capacity", "joint/exchange", "plan/start"}),
+        ("bounds another", "bound", Level.SOUND, {"bound/instance"}),
+    ],
+)
+def test_who_answers_anything_gives_wrong_answers(how: str, ops: str, level: Level, rules: set[str]) -> None:
+    report = run(how, ops, level)
+    assert report.conforms is False
+    assert {finding.rule for finding in report.findings} & rules
+
+
+@pytest.mark.parametrize("level", [level for level in Level if level > Level.SOUND])
+def test_an_op_that_plans_nobody_shows_no_level_above_sound(level: Level) -> None:
+    subject = Tampered(as_it_is)
+    subject.ops = ("check", "bound")
+    report = conform(subject, Options(level, examples=20))
+    assert (report.conforms, report.findings) == (False, [])
+    assert report.shortfalls[0].startswith("it offers nothing that shows the level")
+
+
+def test_a_false_certificate_that_passes_the_check_is_refused_by_the_optimum(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(carp_verify.verify_bound, "verify_bound", lambda *_: 10**6)
+    subject = Tampered(as_it_is)
+    subject.ops = ("bound",)
+    report = conform(subject, Options(Level.SOUND, examples=5, shrink_seconds=1))
+    assert {finding.rule for finding in report.findings} == {"program/lower"}
+
+
+def test_nothing_is_decided_without_random_cases() -> None:
+    report = conform(Tampered(as_it_is), Options(Level.SOUND, examples=0))
+    assert (report.conforms, report.shortfalls) == (None, [])
+
+
+@pytest.mark.usefixtures("elsewhere")
+def test_random_cases_are_new_ones_each_time_and_the_verdict_names_their_seed(process: Run) -> None:
+    serve = ["--", sys.executable, "-m", "carp_oracle", "serve"]
+    seeds = [json.loads(process("conform", "--json", "--examples", "6", *serve).stdout)["seed"] for _ in range(2)]
+    assert seeds[0] != seeds[1]
+    last = process("conform", "--seed", str(seeds[0]), "--examples", "6", *serve).stdout.splitlines()[-1]
+    assert "random query 1 of 1, plan 1 of 1" in last
+    assert f"90 in 100 needed, seed {seeds[0]}" in last
+
+
+def test_the_shares_are_the_same_in_the_help_and_in_the_rules(carproof: Run) -> None:
+    text = " ".join(carproof("conform", "--help").stdout.split())
+    assert f"{LEAST_ANSWERED} in 100 random cases of each op" in text
+    assert LEAST_TRIED == 50
+    assert "give up at most half of the random cases" in text
+    assert [answers_enough(answered, 40) for answered in (35, 36)] == [False, True]
+    assert [tries_enough(tried, 7) for tried in (6, 7)] == [False, True]
+
+
+@pytest.mark.parametrize(
+    "line",
+    ['{"id": 1, "result": {"plan": null, "plan": []}}', '{"id": 1, "id": 1, "result": {"plan": null}}'],
+)
+def test_a_response_that_says_two_things_is_none(line: str) -> None:
+    with pytest.raises(Fault, match="document/json"):
+        result_of(line.encode(), 1)
+
+
+@pytest.fixture
+def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def right(instance: Instance) -> Solution:
+    return carp_reference.plan(instance, Carp())
+
+
+def forgets_the_robots(instance: Instance) -> Solution:
+    object.__setattr__(instance, "robot", {})
+    object.__setattr__(instance, "robots", ())
+    return NO_PLANS
+
+
+def jumps(instance: Instance) -> Solution:
+    """Every robot goes from its start straight to its goal, on a map on which that is a move."""
+    ids = tuple(instance.graph.index)
+    object.__setattr__(instance.graph, "successors", dict.fromkeys(ids, ids))
+    return right(instance)
+
+
+class Fickle(Visit):
+    """A visit that ends when it is looked at."""
+
+    def __getattribute__(self, name: str) -> Any:  # noqa: ANN401
+        if name == "leave":
+            raise RuntimeError("not now")
+        return super().__getattribute__(name)
+
+
+class Never(int):
+    """A tick that is in order with every other."""
+
+    def __lt__(self, other: object) -> bool:
+        return False
+
+    def __gt__(self, other: object) -> bool:
+        return False
+
+    def __eq__(self, other: object) -> bool:
+        return True
+
+    def __hash__(self) -> int:
+        return 0
+
+
+@dataclass
+class Duck:
+    """What has the fields of a visit."""
+
+    resource: Any
+    enter: Any
+    leave: Any
+
+
+def with_visits(solution: Solution, change: Callable[[Visit], Any]) -> Solution:
+    plans = [Plan(plan.robot, [change(visit) for visit in plan.visits]) for plan in solution.plans]  # type: ignore[arg-type]
+    return replace(solution, plans=plans)  # type: ignore[arg-type]
+
+
+def never_in_conflict(instance: Instance) -> Solution:
+    return with_visits(right(instance), lambda visit: Visit(visit.resource, Never(0), Never(0)))
+
+
+def says_true_for_one(instance: Instance) -> Solution:
+    return with_visits(right(instance), lambda visit: Visit(visit.resource, True, visit.leave))
+
+
+def is_fickle(instance: Instance) -> Solution:
+    return with_visits(right(instance), lambda visit: Fickle(visit.resource, visit.enter, visit.leave))
+
+
+def names_no_plans(instance: Instance) -> Solution:
+    del instance
+    return Solution(None, None, None)  # type: ignore[arg-type]
+
+
+def skips_the_test(instance: Instance) -> Solution:
+    del instance
+    pytest.skip("it is late")
+
+
+def ends_python(instance: Instance) -> Solution:
+    del instance
+    sys.exit(0)
+
+
+@pytest.mark.parametrize(
+    ("planner", "rules"),
+    [
+        (forgets_the_robots, {"solution/covers"}),
+        (jumps, {"plan/move"}),
+        (never_in_conflict, {"program/result", "plan/start"}),
+        (says_true_for_one, {"program/result"}),
+        (is_fickle, {"program/result"}),
+        (names_no_plans, {"program/result"}),
+        (skips_the_test, {"program/alive"}),
+        (ends_python, {"program/alive"}),
+    ],
+)
+def test_a_function_cannot_reach_the_judges(planner: Callable[[Instance], Solution], rules: set[str]) -> None:
+    report = conform(Function(planner, "mine"), Options(examples=60, shrink_seconds=1, whole=True))
+    assert report.conforms is False
+    assert {finding.rule for finding in report.findings} & rules
+    assert {finding.rule for finding in report.findings} <= rules | {"plan/goal", "plan/duration", "plan/contiguous"}
+
+
+def test_a_function_may_return_lists_and_what_looks_like_visits() -> None:
+    def mine(instance: Instance) -> Solution:
+        return with_visits(right(instance), lambda visit: Duck(visit.resource, visit.enter, visit.leave))
+
+    assert conform(Function(mine, "mine"), Options(examples=20, whole=True)).conforms
+
+
+def test_a_function_that_gives_up_or_plans_one_robot_shows_nothing() -> None:
+    def first(instance: Instance) -> Solution:
+        solution = right(instance)
+        named = solution.order[:1]
+        return Solution(solution.plans[:1], named, tuple(robot for robot in instance.robot if robot not in named))
+
+    report = conform(Function(first, "first"), Options(examples=60, whole=True))
+    assert (report.conforms, report.findings) == (False, [])
+
+
+def test_a_case_keeps_its_instance_whatever_a_function_does_with_its_own() -> None:
+    seen: list[Instance] = []
+
+    def keeps(instance: Instance) -> Solution:
+        seen.append(instance)
+        return right(instance)
+
+    case = Case("random", "plan", "plan", row([EAST]))
+    Function(keeps, "keeps").ask(case)
+    assert seen == [case.instance]
+    assert seen[0] is not case.instance
+    assert seen[0].graph is not case.instance.graph
