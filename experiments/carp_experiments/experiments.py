@@ -90,7 +90,7 @@ EXPERIMENTS = (
     ),
     Experiment(
         "gap",
-        f"Small maps, {SIDE} x {SIDE}, against the proved optimum.",
+        f"Small maps, {SIDE} x {SIDE}, against the optimum.",
         Profile(100, 10, ALL_MAPS),
         Profile(20, 6, SOME_MAPS),
         lambda profile: over_maps(GapCase, profile.assignments, profile.maps, profile.robots),

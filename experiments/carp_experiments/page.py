@@ -23,7 +23,7 @@ TITLES = {
     "quality": "Experiment 1: failures and total cost",
     "time": "Experiment 2: the time to plan when the k-th robot comes",
     "reuse": "Queries asked and avoided",
-    "gap": "Small maps against the proved optimum",
+    "gap": "Small maps against the optimum",
     "related": "Fixed paths and greedy best-first",
     "polish": "The distance to the optimum at the paper's size, and the polish",
     "unplanned": "What stays unplanned on sparse maps, and why",

@@ -1,4 +1,4 @@
-"""Small maps against the proved optimum: how far from it each algorithm is, over the density of the map.
+"""Small maps against the optimum: how far from it each algorithm is, over the density of the map.
 
 Also what a polish of Proposed_4 leaves, and how far below the optimum the lower bound of `carp_verify.bound` is.
 """
@@ -80,8 +80,8 @@ class GapCase:
             "assignment": self.assignment,
             "shortest": best.shortest,
             "bound": bound,
-            "optimum": best.cost if best.proved else None,
-            "decided": best.proved,
+            "optimum": best.cost if best.decided else None,
+            "decided": best.decided,
             "results": results,
         }
 
@@ -119,7 +119,7 @@ def gap_report(rows: Iterable[Row], robots: int) -> Report:
         by_map[measured.map].append(measured)
     summary = tuple(gap_of(map, name, each, robots) for map, each in sorted(by_map.items()) for name in TOLD)
     lines = {name: [(each.map, each.gap) for each in summary if each.algorithm == name] for name in TOLD}
-    title = f"Above the proved optimum, {robots} robots on {SIDE} x {SIDE} maps"
+    title = f"Above the optimum that the search found, {robots} robots on {SIDE} x {SIDE} maps"
     figure = Figure("gap", title, (MAP_AXIS, "per cent above the optimum"), lines)
     return Report(summary, (gap_table(summary, by_map, title),), (figure,))
 

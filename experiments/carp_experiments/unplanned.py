@@ -1,7 +1,7 @@
 """What polish leaves unplanned on sparse maps, and whether it could be planned: `carproof experiment unplanned`.
 
 Where some robot stays without a plan after all rounds, robots are taken away as long as the others still cannot all be
-planned. Of the few that are left, every order is tried, and the optimum is searched for: either it is proved that they,
+planned. Of the few that are left, every order is tried, and the optimum is searched for: either it is found that they,
 and so all robots, can have no plans together, or their plans are kept and the other robots planned around them.
 """
 
@@ -71,7 +71,7 @@ class Group(msgspec.Struct, frozen=True):
     """Robots of which some stay unplanned even without the others, and none can be left out.
 
     In `failing` of `orders` orders CARP leaves one of them unplanned; of more than `MOST_ORDERED` robots no order is
-    tried. `cost` is the least total, `None` if there is none or it was not found; `proved` tells which.
+    tried. `cost` is the least total, `None` if there is none or it was not found; `proved`: the search ended.
     """
 
     robots: tuple[RobotId, ...]
@@ -141,7 +141,7 @@ def group_facts(instance: Instance, robots: tuple[RobotId, ...]) -> Group:
     orders = list(permutations(robots)) if len(robots) <= MOST_ORDERED else []
     failing = sum(bool(engine.plan(part_of(instance, order), Carp()).unplanned) for order in orders)
     best = optimum(part_of(instance, robots), LIMIT_IN_SECONDS)
-    return Group(robots, len(orders), failing, best.shortest or 0, best.cost, best.proved)
+    return Group(robots, len(orders), failing, best.shortest or 0, best.cost, best.decided)
 
 
 def planned_around(instance: Instance, robots: Sequence[RobotId], seed: int) -> Solution | None:
@@ -193,7 +193,7 @@ class UnplannedRow(msgspec.Struct, frozen=True):
 
     @property
     def is_unsolvable(self) -> bool:
-        """Whether it is proved that not all robots can have plans."""
+        """Whether the search found that not all robots can have plans."""
         return any(group.proved and group.cost is None for group in self.groups)
 
 
@@ -203,8 +203,8 @@ class Unplanned:
 
     `before` are those with an unplanned robot before polish, `unplanned` the mean number of these robots; `after` those
     with one after so many rounds. Of the last, `unordered` are those in which a group of robots can be planned in no
-    order, `unsolvable` those in which it is proved that they cannot be planned at all, and `planned` those for which
-    plans of all robots were found around the optimum of the group.
+    order, `unsolvable` those in which the search found that they cannot be planned at all, and `planned` those for
+    which plans of all robots were found around the optimum of the group.
     """
 
     map: int
@@ -255,7 +255,7 @@ def unplanned_on(map: int, rows: Sequence[UnplannedRow]) -> Unplanned:
 def maps_table(maps: Sequence[Unplanned]) -> Table:
     """Assignments with an unplanned robot, and what is known of those that stay so."""
     after = tuple(f"{rounds:,} rounds" for rounds in ROUNDS)
-    columns = ("map", GIVEN, *after, "no order works", "proved unsolvable", "planned all the same")
+    columns = ("map", GIVEN, *after, "no order works", "found unsolvable", "planned all the same")
     rows = [
         (
             str(each.map),
@@ -268,8 +268,8 @@ def maps_table(maps: Sequence[Unplanned]) -> Table:
     title = (
         f"Assignments with an unplanned robot, after {GIVEN} (and the mean number of such robots) and after so many "
         "rounds of polish; of the last, in how many a few robots by themselves can be planned in no order one after "
-        "the other, in how many it is proved that they cannot be planned at all, and for how many plans of all robots "
-        "were found around the optimum of these few"
+        "the other, in how many the search found that they cannot be planned at all, and for how many plans of all "
+        "robots were found around the optimum of these few"
     )
     return Table("unplanned", title, columns, tuple(rows), columns)
 
@@ -293,7 +293,7 @@ def groups_table(stuck: Sequence[UnplannedRow]) -> Table:
     ]
     title = (
         "Robots that stay unplanned after the last round; the robots that block each other, none of which can be left "
-        "out; in how many of their orders CARP plans not all of them; the sum of their shortest paths, their proved "
+        "out; in how many of their orders CARP plans not all of them; the sum of their shortest paths, the "
         "optimum, and the total of plans of all robots found around it"
     )
     return Table("unplanned-groups", title, columns, tuple(rows), columns[:2] + columns[4:])

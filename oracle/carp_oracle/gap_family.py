@@ -72,7 +72,7 @@ class Cell:
     @property
     def decided(self) -> list[Gap]:
         """The gaps of instances that have an optimum, and it is known."""
-        return [each for each in self.gaps if each.optimum.proved and each.optimum.cost is not None]
+        return [each for each in self.gaps if each.optimum.decided and each.optimum.cost is not None]
 
     @property
     def delay(self) -> Excess:

@@ -20,7 +20,10 @@ class PlannerGapDocument(msgspec.Struct, frozen=True):
 
 
 class GapDocument(msgspec.Struct, frozen=True):
-    """The optimum, or null and the lower bound; the least total over all orders, if known; and the planners."""
+    """The optimum, or null and the lower bound; the least total over all orders, if known; and the planners.
+
+    `proved` means that the search for the optimum ended with an answer, which rests on its solver.
+    """
 
     optimum: int | None
     lower: int
@@ -75,13 +78,13 @@ class FamilyDocument(msgspec.Struct, frozen=True):
 def gap_document(gap: Gap) -> GapDocument:
     """The document of a gap."""
     planners = tuple(PlannerGapDocument(each.planner.name, each.unplanned, each.total) for each in gap.planners)
-    cost = gap.optimum.cost if gap.optimum.proved else None
-    return GapDocument(cost, gap.optimum.lower, gap.optimum.proved, gap.best_order, planners)
+    cost = gap.optimum.cost if gap.optimum.decided else None
+    return GapDocument(cost, gap.optimum.lower, gap.optimum.decided, gap.best_order, planners)
 
 
 def gap_rows(gap: Gap) -> Iterator[Sequence[object]]:
     """A row of each planner, after those of the optimum and of the best order."""
-    cost = gap.optimum.cost if gap.optimum.proved else None
+    cost = gap.optimum.cost if gap.optimum.decided else None
     yield ("optimum", *(("-",) * 5 if cost is None else (0, cost, *("-",) * 3)))
     order_price = _difference(gap.best_order, cost)
     if gap.best_order is not None:

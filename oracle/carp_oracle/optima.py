@@ -1,6 +1,6 @@
 """The documents of an optimum and of a proof that was checked."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import msgspec
 
@@ -10,29 +10,36 @@ if TYPE_CHECKING:
     from carp_verify.optimum import Optimum
 
 
-class OptimumDocument(msgspec.Struct, frozen=True):
+class OptimumDocument(msgspec.Struct, frozen=True, omit_defaults=True):
     """The result of a search for the optimum.
 
     Proved, and a cost of null: the robots cannot all be planned. Not proved: the solution is the best known, or
-    null if none is.
+    null if none is. `proved` means that the search ended with an answer; like `lower`, the answer rests on the solver.
+    `checked` is there, and true, where a proof was written and then checked as by `carproof verify-proof`.
     """
 
     cost: int | None
     lower: int
     proved: bool
     solution: SolutionDocument | None
+    checked: bool = False
 
 
-def optimum_document(best: "Optimum") -> OptimumDocument:
+def optimum_document(best: "Optimum", is_checked: bool = False) -> OptimumDocument:
     """The document of an optimum."""
     solution = None if best.solution is None else solution_document(best.solution)
-    return OptimumDocument(best.cost, best.lower, best.proved, solution)
+    return OptimumDocument(best.cost, best.lower, best.decided, solution, is_checked)
 
 
 class ProofDocument(msgspec.Struct, frozen=True):
-    """The result of checking a proof: the cost that is proved least, or why it is not."""
+    """The result of checking a proof: the cost that is proved least, or why there are no plans of all robots.
+
+    Where nothing is proved, `reason` says why not.
+    """
 
     proved: bool
-    cost: int | None
-    solution: SolutionDocument | None
-    reason: str | None
+    claim: Literal["optimum", "unsolvable"] | None = None
+    cost: int | None = None
+    solution: SolutionDocument | None = None
+    obstacle: str | None = None
+    reason: str | None = None

@@ -47,7 +47,7 @@ def right_proof(case: Case) -> Reply:
     if case.op == "bound":
         return lower_bound(case.instance, steps=20)
     best = optimum(case.instance, 5)
-    return OptimumAnswer(best.cost, best.lower, best.proved, best.solution)
+    return OptimumAnswer(best.cost, best.lower, best.decided, best.solution)
 
 
 class Tampered:

@@ -39,7 +39,7 @@ def test_the_optimum_is_shown_and_its_plans_are_written(carproof: Run, town: Pat
     output = tmp_path / "best.json"
     outcome = carproof("optimum", town, "-o", output)
     assert (outcome.code, outcome.stderr) == (0, "")
-    assert outcome.stdout.splitlines()[-1].split()[:5] == ["2", "5", "5", "5", "yes"]
+    assert outcome.stdout.splitlines()[-1].split()[:7] == ["2", "5", "5", "5", "found,", "not", "proved"]
     assert json.loads(output.read_text()) == TWO_PLANNED
     assert carproof("check", town, output).code == 0
 
@@ -84,12 +84,16 @@ def test_an_undecided_search_tells_its_bound_and_whether_it_has_plans(carproof: 
 
 def test_a_proof_is_written_and_checked(carproof: Run, town: Path, tmp_path: Path) -> None:
     folder = tmp_path / "proof"
-    assert carproof("optimum", town, "--proof", folder).code == 0
+    outcome = carproof("optimum", town, "--proof", folder)
+    assert (outcome.code, outcome.stdout.splitlines()[-1].split()[3:5]) == (0, ["5", "proved"])
+    document = json.loads(carproof("optimum", town, "--proof", folder, "--json").stdout)
+    assert (document["proved"], document["checked"]) == (True, True)
     outcome = carproof("verify-proof", folder, "--instance", town)
     assert (outcome.code, outcome.stderr) == (0, "")
     assert outcome.stdout.splitlines()[-1].split() == ["5", "2", "checked", "sat", "unsat"]
     document = json.loads(carproof("verify-proof", folder, "--json").stdout)
-    assert document == {"proved": True, "cost": 5, "solution": TWO_PLANNED, "reason": None}
+    proved = {"proved": True, "claim": "optimum", "cost": 5, "solution": TWO_PLANNED}
+    assert document == proved | {"obstacle": None, "reason": None}
 
 
 def test_a_proof_about_which_z3_does_not_answer_is_undecided(

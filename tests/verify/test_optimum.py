@@ -11,6 +11,7 @@ from carp_verify.encoding import Encoding
 from carp_verify.joint_search import least_total_cost
 from carp_verify.optimum import optimum
 from carp_verify.strategies import Sizes, instances
+from carp_verify.unsolvable import describe
 
 TINY = Sizes(resources=4, robots=3, capacity=2, duration=2, release=2, pace=2)
 LONG = 60
@@ -35,7 +36,7 @@ def turned_ring(size: int, after_goal: str = "vanish") -> Instance:
 @given(instances(TINY, least_robots=2))
 def test_the_optimum_is_that_of_the_joint_search(instance: Instance) -> None:
     best = optimum(instance, LONG)
-    assert best.proved
+    assert best.decided
     assert best.cost == least_total_cost(instance)
     if best.cost is not None:
         assert best.solution is not None
@@ -50,7 +51,7 @@ def test_the_same_instance_gives_the_same_solution() -> None:
 
 def test_nobody_costs_nothing() -> None:
     best = optimum(grid(2), LONG)
-    assert (best.cost, best.proved) == (0, True)
+    assert (best.cost, best.decided) == (0, True)
 
 
 @pytest.mark.parametrize(
@@ -77,10 +78,11 @@ def test_nobody_costs_nothing() -> None:
         ),
     ],
 )
-def test_an_unsolvable_instance_is_proved_so_with_the_reason(instance: Instance, reason: str) -> None:
+def test_an_unsolvable_instance_is_found_with_its_obstacle(instance: Instance, reason: str) -> None:
     best = optimum(instance, LONG)
-    assert (best.cost, best.proved, best.solution) == (None, True, None)
-    assert best.reason == reason
+    assert (best.cost, best.decided, best.solution) == (None, True, None)
+    assert best.obstacle is not None
+    assert describe(instance, best.obstacle) == reason
 
 
 def clock_of(seconds_a_look: float) -> Iterator[int]:
@@ -98,7 +100,7 @@ def test_the_search_ends_with_the_first_look_at_the_clock_behind_the_limit() -> 
 
     ticks = clock_of(0.01)
     best = optimum(instance, 3, clock)
-    assert not best.proved
+    assert not best.decided
     assert [tick >= 3_000_000_000 for tick in told].count(True) <= 2
     shortest = sum(abs(8 - 2 * x) + abs(8 - 2 * y) for x in range(9) for y in range(9))
     assert best.lower >= shortest
@@ -112,7 +114,7 @@ def test_an_undecided_search_leaves_the_best_plans_found_and_a_bound(
     instance = grid_instance(Grid(8, 8, 20, map_seed=1), Fleet(32, 1, "park"))
     ticks = clock_of(0.1)
     best = optimum(instance, 20, lambda: next(ticks))
-    assert (best.proved, best.reason) == (False, None)
+    assert (best.decided, best.obstacle) == (False, None)
     assert best.solution is not None
     assert best.cost is not None
     verdict = judge(instance, best.solution)
@@ -137,4 +139,26 @@ def test_the_limit_is_kept_on_a_large_map_with_many_robots(limit: int) -> None:
     started = time.process_time()
     best = optimum(instance, limit)
     assert time.process_time() - started < 2 * limit + 0.5
-    assert best.proved == (best.cost == best.lower)
+    assert best.decided == (best.cost == best.lower)
+
+
+def test_far_releases_do_not_make_the_search_over_all_states_endless() -> None:
+    """The states would be looked at tick by tick until the release."""
+    line = ResourceGraph(tuple(map(Resource, range(12))), tuple((i, i + 1) for i in range(11)))
+    instance = Instance(line, (Robot("a", 0, 11, 3_000_000), Robot("b", 11, 0, 3_000_000)))
+    started = time.process_time()
+    assert not optimum(instance, 1).decided
+    assert time.process_time() - started < 2
+
+
+def test_a_search_over_too_many_states_leaves_the_search_for_an_optimum_going(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("carp_verify.unsolvable.FEW_STATES", 10**9)
+    monkeypatch.setattr("carp_verify.joint_search.refuse_size", refuse_anything)
+    monkeypatch.setattr("carp_verify.optimum.DELAY_OF_DOUBT", 1)
+    instance = grid(3, Robot("a", "0,1", "2,1"), Robot("b", "2,1", "0,1"), Robot("c", "1,0", "1,2"), after_goal="park")
+    best = optimum(instance, LONG)
+    assert (best.cost, best.shortest) == (9, 6)
+
+
+def refuse_anything(what: str, size: int, limit: int) -> None:
+    raise Refusal("limit", "$.robots", "optimum/size", f"{what} must be at most {limit}, not {size}")

@@ -36,7 +36,7 @@ def faults(number: int) -> Iterator[str]:
 
 def faults_of_search(instance: Instance, least: int | None) -> Iterator[str]:
     best = optimum(instance, SECONDS)
-    if (best.proved, best.cost) != (True, least):
+    if (best.decided, best.cost) != (True, least):
         yield f"the search finds {best.cost}, not {least}"
     if best.solution is not None and best.cost is not None:
         yield from faults_of_solution(instance, best.solution, best.cost)

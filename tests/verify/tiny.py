@@ -9,7 +9,7 @@ from itertools import combinations
 
 from carp_spec import AfterGoal, Instance, Move, Resource, ResourceGraph, Robot
 from carp_spec.permutations import shuffle, splitmix64
-from carp_verify.optimum import joint_states
+from carp_verify.joint_search import joint_states
 
 MOST_STATES = 15_000
 

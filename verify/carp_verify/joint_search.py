@@ -87,6 +87,17 @@ class _Search:
                 yield after
 
 
+def joint_states(instance: Instance) -> int:
+    """No fewer than the states of all robots together, apart from the tick.
+
+    A robot is in a resource, with a number of ticks to stay, or waits for its release, or is gone or parked.
+    """
+    states = 1
+    for robot in instance.robots:
+        states *= 2 + sum(instance.duration(robot.id, resource.id) + 1 for resource in instance.graph.resources)
+    return states
+
+
 def least_total_cost(
     instance: Instance, most: int = LARGEST_SEARCH, on_step: Callable[[], None] | None = None
 ) -> int | None:

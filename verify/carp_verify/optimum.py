@@ -6,14 +6,14 @@ horizon, and the next assumption is that no other one of the core is given up. O
 model's plans have a total of just the lower bound; the conflicts among them are forbidden and the search goes
 on, until there are none. Source: the OLL algorithm of Andres, Kaufmann, Matheis and Schaub 2012, over delays.
 
-Where no plan set exists, the search is told so by one of these facts:
+Where no plan set exists, the search finds one of these obstacles (`carp_verify.unsolvable` says why each is one):
 
-- a robot has no way to its goal;
-- with `park`, a resource is the goal of more robots than its capacity: once the last of them has come, all are there;
-- a core is empty: not even robots as late as you like can keep the rules (such as two released into one place);
-- the states of all robots together are few (`joint_states`), and a search over them all finds no end
-  (`carp_verify.joint_search`). Proof idea: after the last release the rules do not look at the clock, so a plan set
-  that is in one joint state twice can be cut between; hence the states, without the tick, are all that can happen.
+- `no-way`: a robot has no way to its goal;
+- `full-goal`: with `park`, a resource is the goal of more robots than its capacity;
+- `clauses`: a core is empty, so not even robots as late as you like can keep the rules;
+- `states`: the states of all robots together are few, and a search over them all finds no end.
+
+What the search finds is not proved: it rests on this module and on the solver. `carp_verify.proof` makes it a proof.
 """
 
 from collections import Counter
@@ -21,17 +21,17 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from time import monotonic_ns
 
-from carp_spec import Instance, Plan, Solution, total_cost
+from carp_spec import Instance, Plan, Refusal, Solution, total_cost
 from carp_verify.bound_rules import require_kept
 from carp_verify.clauses import Literal, Unary
 from carp_verify.encoding import Encoding, violated
 from carp_verify.heuristics import plans_of_all
 from carp_verify.joint_search import least_total_cost
 from carp_verify.solver import Deadline, Solver, TimeOver
+from carp_verify.unsolvable import Clauses, FullGoal, NoWay, Obstacle, States, is_searched
 
 CONFLICTS_TO_SHRINK = 900
 DELAY_OF_DOUBT = 20
-FEW_STATES = 1_000_000
 PARTS = 5
 PARTS_BEFORE_HEURISTICS = (1, 3)
 
@@ -48,47 +48,36 @@ class Evidence:
 class Optimum:
     """The least total cost.
 
-    `proved`: `cost` is the optimum and `solution` has it, or, where `cost` is `None`, no plan set exists, and
-    `reason` says why. Otherwise `solution` is the best known, if any, `cost` its total, and `lower` a bound that
-    no plan set beats. `shortest` is the sum of the robots' costs if each were alone, a robot without a way left out;
-    `None` if the limit did not suffice to find them.
+    `decided`: by the search, `cost` is the optimum and `solution` has it, or, where `cost` is `None`, no plan set
+    exists because of the `obstacle`. Otherwise `solution` is the best known, if any, `cost` its total, and `lower` a
+    bound that no plan set beats. `shortest` is the sum of the robots' costs if each were alone, a robot without a
+    way left out; `None` if the limit did not suffice to find them.
     """
 
     shortest: int | None
     cost: int | None
     lower: int
-    proved: bool
+    decided: bool
     solution: Solution | None
     evidence: Evidence
-    reason: str | None = None
+    obstacle: Obstacle | None = None
 
 
 def optimum(instance: Instance, limit: float, clock: Callable[[], int] = monotonic_ns) -> Optimum:
     """Search for the optimum for at most `limit` seconds. Raises `Refusal` if the formula outgrows the memory.
 
-    What is proved does not depend on the clock, which tells nanoseconds: the same instance gives the same solution.
+    What is found does not depend on the clock, which tells nanoseconds: the same instance gives the same solution.
     """
     deadline = Deadline(limit, clock)
     try:
         encoding = Encoding(instance, deadline.check)
     except TimeOver:
-        return Optimum(None, None, 0, proved=False, solution=None, evidence=Evidence((), ()))
+        return Optimum(None, None, 0, decided=False, solution=None, evidence=Evidence((), ()))
     search = _Search(encoding, deadline)
     try:
         return search.run()
     finally:
         search.close()
-
-
-def joint_states(instance: Instance) -> int:
-    """No fewer than the states of all robots together, apart from the tick.
-
-    A robot is in a resource, with a number of ticks to stay, or waits for its release, or is gone or parked.
-    """
-    states = 1
-    for robot in instance.robots:
-        states *= 2 + sum(instance.duration(robot.id, resource.id) + 1 for resource in instance.graph.resources)
-    return states
 
 
 class _Search:
@@ -108,9 +97,9 @@ class _Search:
         self.solver.close()
 
     def run(self) -> Optimum:
-        reason = self.obstacle()
-        if reason is not None:
-            return self.unsolvable(reason)
+        obstacle = self.obstacle()
+        if obstacle is not None:
+            return self.unsolvable(obstacle)
         try:
             for position in range(len(self.encoding.robots)):
                 self.grow(position)
@@ -118,15 +107,14 @@ class _Search:
         except TimeOver:
             return self.undecided()
 
-    def obstacle(self) -> str | None:
+    def obstacle(self) -> Obstacle | None:
         """Why no plan set exists, if that shows without a search."""
         for robot in self.encoding.wayless:
-            return f"no way leads from {robot.start} to {robot.goal}, the goal of robot {robot.id}"
+            return NoWay(robot.id)
         if self.instance.after_goal == "park":
             for goal, robots in Counter(robot.goal for robot in self.instance.robots).items():
-                capacity = self.instance.graph.resource[goal].capacity
-                if robots > capacity:
-                    return f"{robots} robots are to park in {goal}, which has a capacity of {capacity}"
+                if robots > self.instance.graph.resource[goal].capacity:
+                    return FullGoal(goal)
         return None
 
     def raise_bound(self) -> Optimum:
@@ -142,16 +130,19 @@ class _Search:
             else:
                 core = self.shrunk([-literal for literal in self.solver.core()])
                 if not core:
-                    return self.unsolvable("robots are in one place, or exchange places, however late they are")
+                    return self.unsolvable(Clauses(self.evidence.horizons))
                 self.relax(core)
                 if self.delay == DELAY_OF_DOUBT and self.has_no_end():
-                    return self.unsolvable("a search over all states of the robots together finds no plan set")
+                    return self.unsolvable(States())
 
     def has_no_end(self) -> bool:
         """Whether the states of all robots together are few, and none is the end of a plan set."""
-        if joint_states(self.instance) > FEW_STATES:
+        if not is_searched(self.instance):
             return False
-        return least_total_cost(self.instance, on_step=self.look) is None
+        try:
+            return least_total_cost(self.instance, on_step=self.look) is None
+        except Refusal:
+            return False
 
     def grow(self, position: int) -> None:
         """Give a robot a longer horizon, and assume that it comes within it."""
@@ -215,18 +206,18 @@ class _Search:
             self.encoding.shortest,
             self.lower,
             self.lower,
-            proved=True,
+            decided=True,
             solution=_solution(plans),
             evidence=self.evidence,
         )
 
-    def unsolvable(self, reason: str) -> Optimum:
-        return Optimum(self.encoding.shortest, None, self.lower, True, None, self.evidence, reason)
+    def unsolvable(self, obstacle: Obstacle) -> Optimum:
+        return Optimum(self.encoding.shortest, None, self.lower, True, None, self.evidence, obstacle)
 
     def undecided(self) -> Optimum:
         if self.best is None:
             return Optimum(
-                self.encoding.shortest, None, self.lower, proved=False, solution=None, evidence=self.evidence
+                self.encoding.shortest, None, self.lower, decided=False, solution=None, evidence=self.evidence
             )
         cost = total_cost(self.instance, self.best)
         require_kept(self.lower, cost)

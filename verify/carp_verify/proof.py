@@ -113,7 +113,7 @@ def _bounded(instance: Instance, bound: int, evidence: Evidence, most: int) -> E
 
 def write_proof(instance: Instance, best: Optimum, directory: Path, limit: float) -> None:
     """Write the proof directory of a proved optimum; raises `TimeOver` if that takes more than `limit` seconds."""
-    if best.cost is None or not is_provable(best.proved, best.cost):
+    if best.cost is None or not is_provable(best.decided, best.cost):
         message = "there is a proof directory only for a proved optimum"
         raise Refusal("request", "$.proof", is_provable.id, message)
     deadline = Deadline(limit)

@@ -63,7 +63,9 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     seed: int,
     after_goal: AfterGoal,
 ) -> Answer:
-    """Plan INSTANCE with every planner, and tell how far each is from the optimum, and why.
+    """Plan INSTANCE with every planner, and show how far each is from the optimum, and why.
+
+    The optimum is found by a search and not proved (see optimum).
 
     The price of an order is how far the best of all orders is from the optimum, if robots are planned one after
     the other; it is known for small fleets. The price of the search is how far the planner is from the best order.
@@ -72,7 +74,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     95 % intervals: the price of an order is the best order above the optimum, `found` is in how many instances
     it is known or the planner plans all robots, and what is not found is in no mean.
 
-    Exit codes: 0 the optimum is known, 1 the robots cannot all be planned, 2 bad input, 3 undecided within the limit.
+    Exit codes: 0 the optimum is found, 1 the robots cannot all be planned, 2 bad input, 3 undecided within the limit.
     Of a family they tell the worst of its instances.
     """
     if (instance is None) == (size is None):
@@ -90,18 +92,20 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 def _gap_of(path: str, limit: int, as_json: bool) -> Answer:
     from carp_oracle.gap_report import PLANNERS, gap_document, gap_rows  # noqa: PLC0415 - loads the planners
     from carp_verify.gap import gap  # noqa: PLC0415
+    from carp_verify.unsolvable import describe  # noqa: PLC0415
 
-    measured = gap(read_instance_file(path), PLANNERS, limit)
+    problem = read_instance_file(path)
+    measured = gap(problem, PLANNERS, limit)
     best = measured.optimum
     if as_json:
         print_document(write(gap_document(measured)))
     else:
         print_table(COLUMNS, gap_rows(measured), numbers=COLUMNS[1:])
-        if best.reason is not None:
-            print_line(f"the robots cannot all be planned: {best.reason}")
-        elif not best.proved:
+        if best.obstacle is not None:
+            print_line(f"the robots cannot all be planned: {describe(problem, best.obstacle)}")
+        elif not best.decided:
             print_line(f"the optimum was not found within {limit} s; it is at least {best.lower}")
-    if not best.proved:
+    if not best.decided:
         return Answer.UNDECIDED
     return Answer.of(best.cost is not None)
 
@@ -119,6 +123,6 @@ def _gaps_of(family: "Family", limit: int, as_json: bool) -> Answer:
         print_table(FAMILY_COLUMNS, rows, numbers=("map", "robots", *FAMILY_COLUMNS[4:]))
         print_line("means in per cent of the optimum, with 95 % intervals")
     optima = [gap.optimum for cell in cells for gap in cell.gaps]
-    if not all(each.proved for each in optima):
+    if not all(each.decided for each in optima):
         return Answer.UNDECIDED
     return Answer.of(all(each.cost is not None for each in optima))

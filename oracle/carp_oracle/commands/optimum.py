@@ -17,7 +17,7 @@ from carp_spec.documents import write
 if TYPE_CHECKING:
     from carp_verify.optimum import Optimum
 
-COLUMNS = ("robots", "shortest paths", "lower bound", "cost", "proved", "time")
+COLUMNS = ("robots", "shortest paths", "lower bound", "cost", "answer", "time")
 
 
 @click.command(
@@ -35,12 +35,17 @@ COLUMNS = ("robots", "shortest paths", "lower bound", "cost", "proved", "time")
 def command(instance: str, limit: int, proof: Path | None, output: Path | None, as_json: bool) -> Answer:
     """Find the least total cost of plans for all robots of INSTANCE, and plans that have it.
 
-    --output writes the plans as a solution, --json prints cost, lower bound and solution. --proof writes files
-    with which others can check the cost (see verify-proof), for at most --limit seconds more.
+    The answer is found by a search and not proved: it rests on the solver. With --proof it is proved: files are
+    written, for at most --limit seconds more, with which others can check the least cost, or that the robots cannot
+    all be planned, and they are checked at once (see verify-proof).
 
-    Exit codes: 0 here is the optimum, 1 the robots cannot all be planned, 2 bad input, 3 undecided within the limit.
+    --output writes the plans as a solution, --json prints cost, lower bound and solution. In the document, "proved" is
+    true where the search ended with an answer, and "checked" where the proof of --proof was checked.
+
+    Exit codes: 0 optimum found, 1 the robots cannot all be planned, 2 bad input, 3 undecided within the limit.
     """
     from carp_verify.optimum import optimum  # noqa: PLC0415 - loads the planners
+    from carp_verify.unsolvable import describe  # noqa: PLC0415
 
     problem = read_instance_file(instance)
     started = perf_counter()
@@ -48,20 +53,21 @@ def command(instance: str, limit: int, proof: Path | None, output: Path | None, 
     seconds = perf_counter() - started
     if output is not None and best.solution is not None:
         write_whole(output, write_solution(best.solution))
+    is_provable = best.decided and best.cost is not None
+    is_proved = proof is not None and is_provable and _prove(proof, problem, best, limit)
     if as_json:
-        print_document(write(optimum_document(best)))
+        print_document(write(optimum_document(best, is_proved)))
     else:
+        answer = "undecided" if not best.decided else "proved" if is_proved else "found, not proved"
         numbers = [len(problem.robots), best.shortest, best.lower, best.cost]
         row = ["-" if number is None else number for number in numbers]
-        print_table(COLUMNS, [[*row, "yes" if best.proved else "no", f"{seconds:.2f} s"]], numbers=COLUMNS)
-        if best.reason is not None:
-            print_line(f"the robots cannot all be planned: {best.reason}")
-        if not best.proved:
+        print_table(COLUMNS, [[*row, answer, f"{seconds:.2f} s"]], numbers=COLUMNS)
+        if best.obstacle is not None:
+            print_line(f"the robots cannot all be planned: {describe(problem, best.obstacle)}")
+        if not best.decided:
             print_line(_undecided(best, limit))
-    if not best.proved:
+    if not best.decided or (proof is not None and is_provable and not is_proved):
         return Answer.UNDECIDED
-    if proof is not None and best.cost is not None:
-        return _prove(proof, problem, best, limit)
     return Answer.of(best.cost is not None)
 
 
@@ -73,15 +79,17 @@ def _undecided(best: "Optimum", limit: int) -> str:
     return f"{known}, and the best found {best.cost}"
 
 
-def _prove(folder: Path, instance: Instance, best: "Optimum", limit: int) -> Answer:
-    from carp_verify.proof import write_proof  # noqa: PLC0415 - only for those who ask for a proof
+def _prove(folder: Path, instance: Instance, best: "Optimum", limit: int) -> bool:
+    """Write a proof and check it; whether the limit sufficed to write it."""
+    from carp_verify.proof import verify_proof, write_proof  # noqa: PLC0415 - only for those who ask for a proof
     from carp_verify.solver import TimeOver  # noqa: PLC0415
 
     try:
         write_proof(instance, best, folder, limit)
     except TimeOver:
         click.echo(f"The proof takes longer than the limit of {limit} s; nothing was written.", err=True)
-        return Answer.UNDECIDED
+        return False
     except OSError as error:
         raise click.ClickException(f"{folder}: it cannot be written: {error.strerror}") from error
-    return Answer.YES
+    verify_proof(folder, instance)
+    return True

@@ -31,14 +31,15 @@ def command(folder: Path, instance: str | None, as_json: bool) -> Answer:
         verified = verify_proof(folder, given)
     except ProofError as error:
         if as_json:
-            print_document(write(ProofDocument(proved=False, cost=None, solution=None, reason=str(error))))
+            print_document(write(ProofDocument(proved=False, reason=str(error))))
         else:
             print_line(f"not proved: {error}")
         return Answer.NO
     reason = None if verified.is_decided else "z3 did not answer in time about one of the formulas"
     if as_json:
         solution = solution_document(verified.solution)
-        print_document(write(ProofDocument(verified.is_decided, verified.cost, solution, reason)))
+        document = ProofDocument(verified.is_decided, "optimum", verified.cost, solution, reason=reason)
+        print_document(write(document))
     else:
         columns = ["least cost", "robots", "refutation", "z3 at the cost", "z3 below it"]
         row = [verified.cost, len(verified.solution.plans), "checked", verified.z3_reach, verified.z3_beat]

@@ -6,7 +6,7 @@ from carp_oracle.conform.answers import Answer, OptimumAnswer, QueryAnswer
 from carp_oracle.conform.cases import OPTIMUM_SECONDS, POLISH_ROUNDS, Case
 from carp_oracle.conform.judges import worth
 from carp_oracle.conform.levels import Level
-from carp_oracle.conform.optimum import cost_alone, proved_cost
+from carp_oracle.conform.optimum import cost_alone, found_cost
 from carp_oracle.engines import engine_named
 from carp_spec import Carp, Solution
 from carp_spec.bounds import BoundDocument
@@ -26,7 +26,7 @@ def why_undecided(case: Case, answer: Answer, level: Level) -> str | None:
         return "it leaves the optimum undecided"
     is_judged_by_proof = isinstance(answer, OptimumAnswer) or (isinstance(answer, Solution) and case.planner is None)
     needs_proof = case.op in ("plan", "optimum") and is_judged_by_proof and level >= Level.OPTIMAL
-    if needs_proof and not proved_cost(case.instance)[0]:
+    if needs_proof and not found_cost(case.instance)[0]:
         return f"carproof cannot prove the optimum in {OPTIMUM_SECONDS} s, with which to compare"
     return None
 

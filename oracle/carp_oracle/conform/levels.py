@@ -30,7 +30,7 @@ _STATEMENTS = {
     Level.SOUND: "no plan breaks a rule",
     Level.COMPLETE: "a robot is left without a plan only where there is none",
     Level.CONTEXT_OPTIMAL: "each query arrives as early as the plans before it allow",
-    Level.OPTIMAL: "the total cost is the proved optimum",
+    Level.OPTIMAL: "the total cost is the optimum that carproof's search finds",
     Level.EXACT: "the plans are carproof's, visit for visit",
 }
 CLASSICAL_LEVELS = (Level.SOUND, Level.COMPLETE, Level.OPTIMAL)

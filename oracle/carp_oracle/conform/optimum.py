@@ -1,4 +1,4 @@
-"""What the level `optimal` asks: the proved optimum of small instances."""
+"""What the level `optimal` asks: the optimum of small instances, as carproof's search finds it."""
 
 from collections.abc import Iterator
 from functools import lru_cache
@@ -13,12 +13,12 @@ from carp_spec.bounds import BoundDocument
 
 
 @lru_cache(maxsize=1)
-def proved_cost(instance: Instance) -> tuple[bool, int | None]:
-    """Whether the optimum could be proved in time, and its cost, `None` if there are no plans for all robots."""
+def found_cost(instance: Instance) -> tuple[bool, int | None]:
+    """Whether the search for the optimum ended in time, and what it found: `None` if robots cannot all be planned."""
     from carp_verify.optimum import optimum  # noqa: PLC0415 - loads a solver
 
     found = optimum(instance, OPTIMUM_SECONDS)
-    return found.proved, found.cost
+    return found.decided, found.cost
 
 
 def cost_alone(instance: Instance) -> int | None:
@@ -45,7 +45,7 @@ def optimum_findings(instance: Instance, answer: OptimumAnswer, level: Level) ->
 
 
 def bound_findings(instance: Instance, certificate: BoundDocument) -> Iterator[Finding]:
-    """What is wrong with an answer to `bound`: its certificate, or a bound above the proved optimum."""
+    """What is wrong with an answer to `bound`: its certificate, or a bound above the optimum."""
     from carp_verify.verify_bound import verify_bound  # noqa: PLC0415 - only programs that have bounds need it
 
     try:
@@ -55,24 +55,24 @@ def bound_findings(instance: Instance, certificate: BoundDocument) -> Iterator[F
         return
     if bound <= (cost_alone(instance) or 0):
         return
-    is_proved, least = proved_cost(instance)
-    if is_proved and not is_lower(bound, least):
+    is_found, least = found_cost(instance)
+    if is_found and not is_lower(bound, least):
         message = f"its certificate passes for a bound of {bound}, and there are plans with a total of {least}"
         yield wrong(is_lower.id, f"{message}: the certificate is false, and carproof's check of it has a fault")
 
 
 def _against_proof(instance: Instance, answer: OptimumAnswer) -> Iterator[Finding]:
-    is_proved, least = proved_cost(instance)
-    if is_proved and answer.proved and not is_optimal(answer.cost, least):
+    is_found, least = found_cost(instance)
+    if is_found and answer.proved and not is_optimal(answer.cost, least):
         yield wrong(is_optimal.id, f"the least total cost is {_shown(least)}, not {_shown(answer.cost)}")
-    if is_proved and answer.lower is not None and not is_lower(answer.lower, least):
+    if is_found and answer.lower is not None and not is_lower(answer.lower, least):
         yield wrong(is_lower.id, f"no lower bound is above the least total cost {least}, as {answer.lower} is")
 
 
 def plan_cost_findings(instance: Instance, solution: Solution) -> Iterator[Finding]:
     """What is wrong with the cost of a solution that is to be optimal."""
-    is_proved, least = proved_cost(instance)
-    if is_proved and least is not None:
+    is_found, least = found_cost(instance)
+    if is_found and least is not None:
         cost = total_cost(instance, solution.plans)
         if solution.unplanned:
             yield wrong(is_optimal.id, f"all robots can have plans, with a total cost of {least}")
@@ -84,8 +84,8 @@ def complete_findings(instance: Instance, solution: Solution) -> Iterator[Findin
     """What is wrong with a solution that leaves robots unplanned, if all robots can have plans."""
     if not solution.unplanned:
         return
-    is_proved, least = proved_cost(instance)
-    if is_proved and not is_complete(len(solution.unplanned), least):
+    is_found, least = found_cost(instance)
+    if is_found and not is_complete(len(solution.unplanned), least):
         message = f"all robots can have plans, and {len(solution.unplanned)} have none"
         yield wrong(is_complete.id, message)
 

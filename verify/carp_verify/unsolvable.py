@@ -1,0 +1,70 @@
+"""Why no plan set exists: the obstacles.
+
+- `no-way`: no moves lead from the robot's start to its goal.
+- `full-goal`: robots park, and more of them have this goal than its capacity. Once the last has come, all are there.
+- `clauses`: the encoding of the instance with these horizons and without any bound on the delays has no model. All
+  conflicts are forbidden, and robots later than their horizons are left free, so any plan set would be a model.
+- `states`: a search over the states of all robots together finds no end (`carp_verify.joint_search`). After the last
+  release the rules do not look at the clock, so a plan set that is in one joint state twice can be cut between; hence
+  the states, without the later ticks, are all that can happen. Only few states are searched.
+"""
+
+from typing import TypeAlias
+
+import msgspec
+
+from carp_spec import Instance
+from carp_spec.model import ResourceId, RobotId
+from carp_verify.joint_search import joint_states
+
+FEW_STATES = 1_000_000
+
+
+class NoWay(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind", tag="no-way"):
+    """A robot has no way to its goal."""
+
+    robot: RobotId
+
+
+class FullGoal(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind", tag="full-goal"):
+    """More robots are to park in a resource than its capacity."""
+
+    goal: ResourceId
+
+
+class Clauses(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind", tag="clauses"):
+    """However late the robots are, they break a joint rule; one horizon for each robot."""
+
+    horizons: tuple[int, ...]
+
+
+class States(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind", tag="states"):
+    """None of all joint states is the end of a plan set."""
+
+
+Obstacle: TypeAlias = NoWay | FullGoal | Clauses | States
+
+
+def describe(instance: Instance, obstacle: Obstacle) -> str:
+    """What the obstacle is, in a sentence; the robot or goal must be one of the instance."""
+    match obstacle:
+        case NoWay(id):
+            robot = instance.robot[id]
+            return f"no way leads from {robot.start} to {robot.goal}, the goal of robot {robot.id}"
+        case FullGoal(goal):
+            capacity = instance.graph.resource[goal].capacity
+            return f"{_parkers(instance, goal)} robots are to park in {goal}, which has a capacity of {capacity}"
+        case Clauses():
+            return "robots are in one place, or exchange places, however late they are"
+        case States():
+            return "a search over all states of the robots together finds no plan set"
+
+
+def is_searched(instance: Instance) -> bool:
+    """Whether the states of all robots together are few, at all ticks up to the last release and one more."""
+    last_release = max((robot.release for robot in instance.robots), default=0)
+    return joint_states(instance) * (last_release + 2) <= FEW_STATES
+
+
+def _parkers(instance: Instance, goal: ResourceId) -> int:
+    return sum(robot.goal == goal for robot in instance.robots)
