@@ -8,6 +8,7 @@ from carp_spec.documents import SolutionDocument, solution_document
 
 if TYPE_CHECKING:
     from carp_verify.optimum import Optimum
+    from carp_verify.proof import Verified
 
 
 class OptimumDocument(msgspec.Struct, frozen=True, omit_defaults=True):
@@ -43,3 +44,10 @@ class ProofDocument(msgspec.Struct, frozen=True):
     solution: SolutionDocument | None = None
     obstacle: str | None = None
     reason: str | None = None
+
+
+def proof_document(verified: "Verified", reason: str | None) -> ProofDocument:
+    """The document of a proof that holds, or, with a reason, one that z3 did not decide."""
+    solution = None if verified.solution is None else solution_document(verified.solution)
+    claim: Literal["optimum", "unsolvable"] = "unsolvable" if solution is None else "optimum"
+    return ProofDocument(verified.is_decided, claim, verified.cost, solution, verified.obstacle, reason)

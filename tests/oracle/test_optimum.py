@@ -49,12 +49,22 @@ def test_the_optimum_as_a_document(carproof: Run, town: Path) -> None:
     assert json.loads(outcome.stdout) == {"cost": 5, "lower": 5, "proved": True, "solution": TWO_PLANNED}
 
 
-def test_robots_that_cannot_all_be_planned_are_proved_so(carproof: Run, tmp_path: Path) -> None:
-    path = written(tmp_path / "lane.json", UNSOLVABLE)
-    outcome = carproof("optimum", path, "--proof", tmp_path / "proof")
-    assert outcome.code == 1
-    assert outcome.stdout.splitlines()[-1].startswith("the robots cannot all be planned: a search over all states")
-    assert not (tmp_path / "proof").exists()
+def test_that_robots_cannot_all_be_planned_is_found_and_with_a_proof_proved(carproof: Run, tmp_path: Path) -> None:
+    path, folder = written(tmp_path / "lane.json", UNSOLVABLE), tmp_path / "proof"
+    obstacle = "a search over all states of the robots together finds no plan set"
+    for options, answer in (((), ["found,", "not", "proved"]), (("--proof", folder), ["proved"])):
+        outcome = carproof("optimum", path, *options)
+        row, reason = outcome.stdout.splitlines()[-2:]
+        assert (outcome.code, row.split()[4:-2]) == (1, answer)
+        assert reason == f"the robots cannot all be planned: {obstacle}"
+    outcome = carproof("verify-proof", folder, "--instance", path)
+    assert (outcome.code, outcome.stdout) == (0, f"proved: the robots cannot all be planned: {obstacle}\n")
+    document = json.loads(carproof("verify-proof", folder, "--json").stdout)
+    assert document == dict.fromkeys(("cost", "solution", "reason")) | {
+        "proved": True,
+        "claim": "unsolvable",
+        "obstacle": obstacle,
+    }
     document = json.loads(carproof("optimum", path, "--json").stdout)
     assert document == {"cost": None, "lower": 28, "proved": True, "solution": None}
 
@@ -100,7 +110,7 @@ def test_a_proof_about_which_z3_does_not_answer_is_undecided(
     carproof: Run, town: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert carproof("optimum", town, "--proof", tmp_path / "proof").code == 0
-    monkeypatch.setattr("carp_verify.proof._ask_z3", lambda _: "unknown")
+    monkeypatch.setattr("carp_verify.proof._ask_z3", lambda *_: "unknown")
     outcome = carproof("verify-proof", tmp_path / "proof")
     assert outcome.code == 3
     assert outcome.stdout.splitlines()[-1] == "undecided: z3 did not answer in time about one of the formulas"

@@ -14,6 +14,7 @@ from carp_verify.optimum import Evidence, optimum
 from carp_verify.proof import beat_formula, reach_formula, solution_of
 from carp_verify.robot_clauses import Node, RobotClauses
 from carp_verify.solver import Deadline, Solver
+from carp_verify.unsolvable import FullGoal, NoWay, Obstacle, why_no_obstacle
 
 NIGHTLY = os.environ.get("HYPOTHESIS_PROFILE") == "nightly"
 CASES = 50_000 if NIGHTLY else 3_000
@@ -28,6 +29,8 @@ def faults(number: int) -> Iterator[str]:
     least = least_total_cost(drawn.instance)
     if least is not None or is_asked_more:
         yield from faults_of_search(drawn.instance, least)
+    if least is not None:
+        yield from faults_of_obstacles(drawn.instance)
     if not Encoding(drawn.instance).wayless:
         yield from faults_of_bounds(drawn, least)
         if is_asked_more:
@@ -46,6 +49,14 @@ def faults_of_solution(instance: Instance, solution: Solution, cost: int) -> Ite
     verdict = judge(instance, solution)
     if (verdict.violations, verdict.unplanned, verdict.cost) != ((), 0, cost):
         yield f"plans of {cost} are judged {verdict}"
+
+
+def faults_of_obstacles(instance: Instance) -> Iterator[str]:
+    obstacles: list[Obstacle] = [NoWay(robot.id) for robot in instance.robots]
+    obstacles += [FullGoal(resource.id) for resource in instance.graph.resources]
+    for obstacle in obstacles:
+        if why_no_obstacle(instance, obstacle) is None:
+            yield f"there are plans, though it has the obstacle {obstacle}"
 
 
 def faults_of_bounds(drawn: Case, least: int | None) -> Iterator[str]:

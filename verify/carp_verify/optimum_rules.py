@@ -22,10 +22,12 @@ def size_is_bounded(size: int, limit: int) -> bool:
     return size <= limit
 
 
-@rule("optimum/proof", "A proof is written of an optimum that is proved, and whose formulas bear it out.", DESIGN)
-def is_provable(proved: bool, cost: int | None) -> bool:
-    """Whether there is a cost that is proved."""
-    return proved and cost is not None
+@rule(
+    "optimum/proof", "A proof is written of an answer that a search has found and that its formulas bear out.", DESIGN
+)
+def is_provable(decided: bool) -> bool:
+    """Whether the search has found an answer: an optimum, or that no plan set exists."""
+    return decided
 
 
 OPTIMUM_RULES: tuple[Rule[..., Any], ...] = (size_is_bounded, is_provable)

@@ -1,4 +1,6 @@
-"""A proof directory: that the optimum of an instance is K, for others to check.
+"""A proof directory, for others to check: that the optimum of an instance is K, or that no plan set exists.
+
+Of an optimum:
 
 - `manifest.json`: the cost K, each robot's horizon and the order of adding delays (all that the encoder needs
   beside the instance; any values are sound), and the SHA-256 digest of every other file
@@ -9,16 +11,21 @@
 - `beat.cnf`: the encoding's clauses for a total of at most K - 1, robots later than their horizons left free
 - `beat.lrat`: a refutation of them with hints, LRAT without RAT steps
 
+Where no plan set exists, the manifest names the obstacle (`carp_verify.unsolvable`), and beside it is the instance. If
+the obstacle is the clauses, there are also `beat.cnf`, of any total, and `beat.lrat`.
+
 `verify_proof` believes none of them: it makes both formulas again from the instance and compares, evaluates the model,
 has the plans judged by carp_spec, checks the refutation (`carp_verify.refutation`), and asks z3 for both formulas too.
-It accepts formulas of at most `LARGEST_PROOF` clauses each and files of at most `LARGEST_FILE` bytes.
+It accepts formulas of at most `LARGEST_PROOF` clauses each, none larger than its file, and files of at most
+`LARGEST_FILE` bytes.
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
+from typing import Literal
 
 import msgspec
 
@@ -32,10 +39,13 @@ from carp_verify.optimum import Evidence, Optimum
 from carp_verify.optimum_rules import is_provable
 from carp_verify.refutation import NotRefutedError, require_refutation
 from carp_verify.solver import Deadline, Solver
+from carp_verify.unsolvable import Clauses, Obstacle, describe, why_no_obstacle
 
 PROOF_FORMAT = "carproof-proof/2"
 OLD_FORMAT = "carproof-proof/1"
 FILES = ("instance.json", "reach.cnf", "reach.model", "variables.json", "beat.cnf", "beat.lrat")
+FILES_OF_CLAUSES = ("instance.json", "beat.cnf", "beat.lrat")
+FILES_OF_OBSTACLE = ("instance.json",)
 LONGEST_Z3_MS = 60_000
 LARGEST_PROOF = 5_000_000
 LARGEST_FILE = 1 << 30
@@ -56,13 +66,27 @@ class ProofError(Exception):
 
 
 class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What a proof directory claims, and what its formulas were made from."""
+    """What a proof directory of an optimum claims, and what its formulas were made from."""
 
     format: str
+    claim: Literal["optimum"]
     cost: int
     horizons: tuple[int, ...]
     order: tuple[int, ...]
     sha256: Mapping[str, str]
+
+
+class UnsolvableManifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Why no plan set exists, as a proof directory claims."""
+
+    format: str
+    claim: Literal["unsolvable"]
+    obstacle: Obstacle
+    sha256: Mapping[str, str]
+
+
+class _Claim(msgspec.Struct, frozen=True):
+    claim: Literal["optimum", "unsolvable"]
 
 
 class RobotVariables(msgspec.Struct, frozen=True):
@@ -75,65 +99,83 @@ class RobotVariables(msgspec.Struct, frozen=True):
 
 @dataclass(frozen=True, slots=True)
 class Verified:
-    """What a proof directory proves, and what z3 answers about its formulas: `unknown` if they take it too long."""
+    """What a proof directory proves: the least cost and a solution that has it, or why no plan set exists.
 
-    cost: int
-    solution: Solution
-    z3_reach: str
-    z3_beat: str
+    The others are `None`, and so are z3's answers about formulas that are not there. z3 answers `unknown` about those
+    that take it too long.
+    """
+
+    cost: int | None
+    solution: Solution | None
+    obstacle: str | None
+    z3_reach: str | None
+    z3_beat: str | None
 
     @property
     def is_decided(self) -> bool:
-        """Whether z3 has answered; if not, the cost rests on the refutation alone."""
+        """Whether z3 has answered; if not, the claim rests on the refutation alone."""
         return "unknown" not in (self.z3_reach, self.z3_beat)
 
 
-def reach_formula(instance: Instance, cost: int, evidence: Evidence) -> Encoding:
+def reach_formula(instance: Instance, cost: int, evidence: Evidence, most: int = LARGEST_PROOF) -> Encoding:
     """The encoding of plans whose total is at most `cost`, each within its robot's horizon.
 
-    Raises `Refusal` if it would have more clauses than a proof may.
+    Raises `Refusal` beyond `most` clauses.
     """
-    encoding = _bounded(instance, cost + 1, evidence, LARGEST_PROOF)
+    encoding = _bounded(instance, cost + 1, evidence, most)
     encoding.close()
     return encoding
 
 
-def beat_formula(instance: Instance, cost: int, evidence: Evidence, most: int = LARGEST_PROOF) -> Encoding:
-    """The relaxed encoding of plans whose total is less than `cost`; raises `Refusal` beyond `most` clauses."""
+def beat_formula(instance: Instance, cost: int | None, evidence: Evidence, most: int = LARGEST_PROOF) -> Encoding:
+    """The relaxed encoding of plans whose total is less than `cost`, or of any plans where it is `None`.
+
+    Raises `Refusal` beyond `most` clauses.
+    """
     return _bounded(instance, cost, evidence, most)
 
 
-def _bounded(instance: Instance, bound: int, evidence: Evidence, most: int) -> Encoding:
+def _bounded(instance: Instance, bound: int | None, evidence: Evidence, most: int) -> Encoding:
     encoding = Encoding(instance, most=most)
     encoding.grow_to(evidence.horizons)
     encoding.forbid_all()
-    encoding.bound_delays(bound - encoding.shortest, evidence.order)
+    if bound is not None:
+        encoding.bound_delays(bound - encoding.shortest, evidence.order)
     return encoding
 
 
 def write_proof(instance: Instance, best: Optimum, directory: Path, limit: float) -> None:
-    """Write the proof directory of a proved optimum; raises `TimeOver` if that takes more than `limit` seconds."""
-    if best.cost is None or not is_provable(best.decided, best.cost):
-        message = "there is a proof directory only for a proved optimum"
+    """Write the proof directory of an answer; raises `TimeOver` if that takes more than `limit` seconds."""
+    if not is_provable(best.decided):
+        message = "there is a proof directory only for an answer that the search has found"
         raise Refusal("request", "$.proof", is_provable.id, message)
     deadline = Deadline(limit)
-    reach = reach_formula(instance, best.cost, best.evidence)
-    model = _model(reach.formula, deadline)
-    beat = beat_formula(instance, best.cost, best.evidence)
-    files = {
-        "instance.json": write_instance(instance),
-        "reach.cnf": dimacs(reach.formula).encode(),
-        "reach.model": _model_text(model).encode(),
-        "variables.json": _variables(reach),
-        "beat.cnf": dimacs(beat.formula).encode(),
-        "beat.lrat": refutation(beat.formula, deadline).encode(),
-    }
-    digests = {name: sha256(content).hexdigest() for name, content in files.items()}
-    manifest = Manifest(PROOF_FORMAT, best.cost, best.evidence.horizons, best.evidence.order, digests)
+    files = {"instance.json": write_instance(instance)}
+    if best.cost is not None:
+        reach = reach_formula(instance, best.cost, best.evidence)
+        files["reach.cnf"] = dimacs(reach.formula).encode()
+        files["reach.model"] = _model_text(_model(reach.formula, deadline)).encode()
+        files["variables.json"] = _variables(reach)
+        files |= _beaten(beat_formula(instance, best.cost, best.evidence).formula, deadline)
+    elif isinstance(best.obstacle, Clauses):
+        evidence = Evidence(best.obstacle.horizons, ())
+        files |= _beaten(beat_formula(instance, None, evidence).formula, deadline)
+    manifest = _manifest_of(best, {name: sha256(content).hexdigest() for name, content in files.items()})
     files["manifest.json"] = msgspec.json.encode(manifest) + b"\n"
     directory.mkdir(parents=True, exist_ok=True)
     for name, content in files.items():
         (directory / name).write_bytes(content)
+
+
+def _beaten(formula: Formula, deadline: Deadline) -> Mapping[str, bytes]:
+    return {"beat.cnf": dimacs(formula).encode(), "beat.lrat": refutation(formula, deadline).encode()}
+
+
+def _manifest_of(best: Optimum, digests: Mapping[str, str]) -> Manifest | UnsolvableManifest:
+    if best.obstacle is not None:
+        return UnsolvableManifest(PROOF_FORMAT, "unsolvable", best.obstacle, digests)
+    assert best.cost is not None  # noqa: S101 - an answer without a cost has an obstacle
+    return Manifest(PROOF_FORMAT, "optimum", best.cost, best.evidence.horizons, best.evidence.order, digests)
 
 
 def _model(formula: Formula, deadline: Deadline) -> Sequence[bool]:
@@ -186,41 +228,62 @@ def verify_proof(directory: Path, instance: Instance | None = None) -> Verified:
 
     Raises `ProofError` where it does not prove its claim, and `Refusal` if its instance is malformed.
     """
-    manifest, files = _read(directory)
+    manifest = _read_manifest(directory)
+    files = _read_files(directory, manifest)
     proved = read_instance(files["instance.json"])
     if instance is not None and write_instance(instance) != write_instance(proved):
         raise ProofError("instance.json", "it is another instance than the one given")
-    evidence = _evidence(proved, manifest)
-    reach, beat = _formulas(proved, manifest.cost, evidence)
-    _compare("reach.cnf", dimacs(reach.formula), files)
+    if isinstance(manifest, UnsolvableManifest):
+        return _verify_obstacle(proved, manifest.obstacle, files)
+    return _verify_optimum(proved, manifest, files)
+
+
+def _verify_obstacle(instance: Instance, obstacle: Obstacle, files: Mapping[str, bytes]) -> Verified:
+    reason = why_no_obstacle(instance, obstacle)
+    if reason is not None:
+        raise ProofError("manifest.json", f"the obstacle is not there: {reason}")
+    answer = None
+    if isinstance(obstacle, Clauses):
+        _require_beaten(instance, None, Evidence(obstacle.horizons, ()), files)
+        answer = _ask_z3("beat.cnf", files, "sat")
+    return Verified(None, None, describe(instance, obstacle), None, answer)
+
+
+def _verify_optimum(instance: Instance, manifest: Manifest, files: Mapping[str, bytes]) -> Verified:
+    evidence = _evidence(instance, manifest)
+    reach = _checked(lambda most: reach_formula(instance, manifest.cost, evidence, most), "reach.cnf", files)
     _compare("variables.json", _variables(reach).decode(), files)
-    solution = _solution(proved, reach, manifest.cost, files["reach.model"])
-    _compare("beat.cnf", dimacs(beat.formula), files)
-    _require_refutation(beat.formula, files)
-    answers = _ask_z3(files["reach.cnf"]), _ask_z3(files["beat.cnf"])
-    for name, answer, wrong in zip(("reach.cnf", "beat.cnf"), answers, ("unsat", "sat"), strict=True):
-        if answer == wrong:
-            raise ProofError(name, f"z3 finds it {wrong}, against the evidence")
-    return Verified(manifest.cost, solution, *answers)
+    solution = _solution(instance, reach, manifest.cost, files["reach.model"])
+    _require_beaten(instance, manifest.cost, evidence, files)
+    answers = _ask_z3("reach.cnf", files, "unsat"), _ask_z3("beat.cnf", files, "sat")
+    return Verified(manifest.cost, solution, None, *answers)
 
 
-def _read(directory: Path) -> tuple[Manifest, Mapping[str, bytes]]:
-    """The manifest and the files, each with the digest that the manifest gives."""
+def _read_manifest(directory: Path) -> Manifest | UnsolvableManifest:
     content = _read_file(directory, "manifest.json")
     if has_format(content, OLD_FORMAT):
         reason = f"{OLD_FORMAT} has a refutation without hints, which is not accepted; write the proof again"
         raise ProofError("manifest.json", reason)
     try:
-        manifest = decode(content, Manifest, PROOF_FORMAT)
+        if decode(content, _Claim, PROOF_FORMAT).claim == "unsolvable":
+            return decode(content, UnsolvableManifest, PROOF_FORMAT)
+        return decode(content, Manifest, PROOF_FORMAT)
     except Refusal as refusal:
         raise ProofError("manifest.json", f"it must be a manifest: {refusal}") from refusal
-    if sorted(manifest.sha256) != sorted(FILES):
-        raise ProofError("manifest.json", f"it must have the digests of {', '.join(FILES)}")
-    files = {name: _read_file(directory, name) for name in FILES}
-    for name in FILES:
+
+
+def _read_files(directory: Path, manifest: Manifest | UnsolvableManifest) -> Mapping[str, bytes]:
+    """The files beside the manifest, each with the digest that the manifest gives."""
+    names: tuple[str, ...] = FILES
+    if isinstance(manifest, UnsolvableManifest):
+        names = FILES_OF_CLAUSES if isinstance(manifest.obstacle, Clauses) else FILES_OF_OBSTACLE
+    if sorted(manifest.sha256) != sorted(names):
+        raise ProofError("manifest.json", f"it must have the digests of {', '.join(names)}")
+    files = {name: _read_file(directory, name) for name in names}
+    for name in names:
         if sha256(files[name]).hexdigest() != manifest.sha256[name]:
             raise ProofError(name, "its SHA-256 digest is not the one in the manifest")
-    return manifest, files
+    return files
 
 
 def _read_file(directory: Path, name: str) -> bytes:
@@ -249,11 +312,18 @@ def _evidence(instance: Instance, manifest: Manifest) -> Evidence:
     return Evidence(manifest.horizons, manifest.order)
 
 
-def _formulas(instance: Instance, cost: int, evidence: Evidence) -> tuple[Encoding, Encoding]:
+def _checked(make: Callable[[int], Encoding], name: str, files: Mapping[str, bytes]) -> Encoding:
+    """A formula made again from the instance, which the file must hold; one larger than the file is not made."""
+    most = min(LARGEST_PROOF, files[name].count(b"\n"))
     try:
-        return reach_formula(instance, cost, evidence), beat_formula(instance, cost, evidence)
+        encoding = make(most)
     except Refusal as refusal:
-        raise ProofError("manifest.json", f"its horizons make formulas too large: {refusal.message}") from refusal
+        reason = (
+            f"for this instance and these horizons it must have more than {most} clauses, which it has not or may not"
+        )
+        raise ProofError(name, reason) from refusal
+    _compare(name, dimacs(encoding.formula), files)
+    return encoding
 
 
 def _compare(name: str, right: str, files: Mapping[str, bytes]) -> None:
@@ -294,17 +364,23 @@ def solution_of(plans: Sequence[Plan]) -> Solution:
     return Solution(tuple(plans), tuple(plan.robot for plan in plans))
 
 
-def _require_refutation(formula: Formula, files: Mapping[str, bytes]) -> None:
+def _require_beaten(instance: Instance, cost: int | None, evidence: Evidence, files: Mapping[str, bytes]) -> None:
+    """Raise `ProofError` unless the files refute the formula of plans below the cost, or of any plans."""
+    beat = _checked(lambda most: beat_formula(instance, cost, evidence, most), "beat.cnf", files)
     try:
-        require_refutation(formula.clauses, files["beat.lrat"].decode())
+        require_refutation(beat.formula.clauses, files["beat.lrat"].decode())
     except (NotRefutedError, UnicodeDecodeError) as error:
         raise ProofError("beat.lrat", f"it does not show that beat.cnf has no model: {error}") from error
 
 
-def _ask_z3(formula: bytes) -> str:
+def _ask_z3(name: str, files: Mapping[str, bytes], wrong: str) -> str:
+    """What z3 answers about a formula; raises `ProofError` if that is the wrong answer."""
     import z3  # noqa: PLC0415 - slow to load
 
     solver = z3.Solver()
     solver.set("timeout", LONGEST_Z3_MS)
-    solver.from_string(formula.decode())
-    return str(solver.check())
+    solver.from_string(files[name].decode())
+    answer = str(solver.check())
+    if answer == wrong:
+        raise ProofError(name, f"z3 finds it {wrong}, against the evidence")
+    return answer

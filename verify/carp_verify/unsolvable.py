@@ -1,4 +1,4 @@
-"""Why no plan set exists: the obstacles.
+"""Why no plan set exists: the obstacles, and the check of each.
 
 - `no-way`: no moves lead from the robot's start to its goal.
 - `full-goal`: robots park, and more of them have this goal than its capacity. Once the last has come, all are there.
@@ -7,15 +7,17 @@
 - `states`: a search over the states of all robots together finds no end (`carp_verify.joint_search`). After the last
   release the rules do not look at the clock, so a plan set that is in one joint state twice can be cut between; hence
   the states, without the later ticks, are all that can happen. Only few states are searched.
+
+The checks share no code with the search for an optimum. The refutation of clauses is checked by `carp_verify.proof`.
 """
 
 from typing import TypeAlias
 
 import msgspec
 
-from carp_spec import Instance
-from carp_spec.model import ResourceId, RobotId
-from carp_verify.joint_search import joint_states
+from carp_spec import Instance, Refusal, ResourceId, RobotId
+from carp_verify.encoding import Encoding
+from carp_verify.joint_search import joint_states, least_total_cost
 
 FEW_STATES = 1_000_000
 
@@ -60,11 +62,65 @@ def describe(instance: Instance, obstacle: Obstacle) -> str:
             return "a search over all states of the robots together finds no plan set"
 
 
+def why_no_obstacle(instance: Instance, obstacle: Obstacle) -> str | None:
+    """Why the instance does not have the obstacle, or `None` if it has; clauses are still to be refuted."""
+    match obstacle:
+        case NoWay(id):
+            return _why_way(instance, id)
+        case FullGoal(goal):
+            return _why_room(instance, goal)
+        case Clauses(horizons):
+            return _why_no_clauses(instance, horizons)
+        case States():
+            return _why_end(instance)
+
+
 def is_searched(instance: Instance) -> bool:
     """Whether the states of all robots together are few, at all ticks up to the last release and one more."""
     last_release = max((robot.release for robot in instance.robots), default=0)
     return joint_states(instance) * (last_release + 2) <= FEW_STATES
 
 
+def _why_way(instance: Instance, id: RobotId) -> str | None:
+    if id not in instance.robot:
+        return f"the instance has no robot {id}"
+    robot = instance.robot[id]
+    reached = {robot.start}
+    ahead = [robot.start]
+    while ahead:
+        for target in instance.graph.successors[ahead.pop()]:
+            if target not in reached:
+                reached.add(target)
+                ahead.append(target)
+    return f"there is a way from {robot.start} to {robot.goal}" if robot.goal in reached else None
+
+
+def _why_room(instance: Instance, goal: ResourceId) -> str | None:
+    if instance.after_goal != "park":
+        return "robots do not park"
+    if goal not in instance.graph.resource:
+        return f"the instance has no resource {goal}"
+    capacity, robots = instance.graph.resource[goal].capacity, _parkers(instance, goal)
+    return f"{goal} has room for {capacity} robots, and {robots} park there" if robots <= capacity else None
+
+
 def _parkers(instance: Instance, goal: ResourceId) -> int:
     return sum(robot.goal == goal for robot in instance.robots)
+
+
+def _why_no_clauses(instance: Instance, horizons: tuple[int, ...]) -> str | None:
+    if len(horizons) != len(instance.robots) or any(horizon < 0 for horizon in horizons):
+        return f"it must have a horizon, no less than 0, of each of {len(instance.robots)} robots"
+    if Encoding(instance).wayless:
+        return "a robot has no way to its goal, and so no clauses"
+    return None
+
+
+def _why_end(instance: Instance) -> str | None:
+    if not is_searched(instance):
+        return f"the joint states may be more than {FEW_STATES}"
+    try:
+        cost = least_total_cost(instance)
+    except Refusal as refusal:
+        return refusal.message
+    return None if cost is None else f"a plan set costs {cost}"

@@ -53,8 +53,7 @@ def command(instance: str, limit: int, proof: Path | None, output: Path | None, 
     seconds = perf_counter() - started
     if output is not None and best.solution is not None:
         write_whole(output, write_solution(best.solution))
-    is_provable = best.decided and best.cost is not None
-    is_proved = proof is not None and is_provable and _prove(proof, problem, best, limit)
+    is_proved = proof is not None and best.decided and _prove(proof, problem, best, limit)
     if as_json:
         print_document(write(optimum_document(best, is_proved)))
     else:
@@ -66,7 +65,7 @@ def command(instance: str, limit: int, proof: Path | None, output: Path | None, 
             print_line(f"the robots cannot all be planned: {describe(problem, best.obstacle)}")
         if not best.decided:
             print_line(_undecided(best, limit))
-    if not best.decided or (proof is not None and is_provable and not is_proved):
+    if not best.decided or (proof is not None and not is_proved):
         return Answer.UNDECIDED
     return Answer.of(best.cost is not None)
 
@@ -80,7 +79,7 @@ def _undecided(best: "Optimum", limit: int) -> str:
 
 
 def _prove(folder: Path, instance: Instance, best: "Optimum", limit: int) -> bool:
-    """Write a proof and check it; whether the limit sufficed to write it."""
+    """Write a proof and check it; whether the limits sufficed."""
     from carp_verify.proof import verify_proof, write_proof  # noqa: PLC0415 - only for those who ask for a proof
     from carp_verify.solver import TimeOver  # noqa: PLC0415
 
@@ -91,5 +90,4 @@ def _prove(folder: Path, instance: Instance, best: "Optimum", limit: int) -> boo
         return False
     except OSError as error:
         raise click.ClickException(f"{folder}: it cannot be written: {error.strerror}") from error
-    verify_proof(folder, instance)
-    return True
+    return verify_proof(folder, instance).is_decided

@@ -6,10 +6,10 @@ import click
 
 from carp_oracle.answer import Answer
 from carp_oracle.files import InputFile, print_document, read_instance_file
-from carp_oracle.optima import ProofDocument
+from carp_oracle.optima import ProofDocument, proof_document
 from carp_oracle.options import examples, json_option
 from carp_oracle.tables import print_line, print_table
-from carp_spec.documents import solution_document, write
+from carp_spec.documents import write
 
 
 @click.command(epilog=examples("carproof verify-proof proof", "carproof verify-proof proof --instance town.json"))
@@ -17,12 +17,14 @@ from carp_spec.documents import solution_document, write
 @click.option("--instance", type=InputFile(), help="The instance that the proof must be about.")
 @json_option
 def command(folder: Path, instance: str | None, as_json: bool) -> Answer:
-    """Check that the files in FOLDER prove the least total cost of their instance.
+    """Check that the files in FOLDER prove the least total cost of their instance, or that there are no plans of all.
 
     Both formulas are made again from the instance and compared. The model's plans are judged. The refutation of a
-    smaller cost is checked step by step, and z3 is asked about both formulas.
+    smaller cost is checked step by step, and z3 is asked about both formulas. Where the robots cannot all be planned,
+    the obstacle is checked: a robot without a way, a goal where too many robots park, a refutation of plans of any
+    cost, or the end of a search over few joint states.
 
-    Exit codes: 0 the cost is proved, 1 it is not, 2 bad input, 3 undecided, because z3 did not answer in time.
+    Exit codes: 0 the claim is proved, 1 it is not, 2 bad input, 3 undecided, because z3 did not answer in time.
     """
     from carp_verify.proof import ProofError, verify_proof  # noqa: PLC0415 - loads the planners
 
@@ -37,13 +39,13 @@ def command(folder: Path, instance: str | None, as_json: bool) -> Answer:
         return Answer.NO
     reason = None if verified.is_decided else "z3 did not answer in time about one of the formulas"
     if as_json:
-        solution = solution_document(verified.solution)
-        document = ProofDocument(verified.is_decided, "optimum", verified.cost, solution, reason=reason)
-        print_document(write(document))
-    else:
+        print_document(write(proof_document(verified, reason)))
+    elif verified.solution is None and reason is None:
+        print_line(f"proved: the robots cannot all be planned: {verified.obstacle}")
+    elif verified.solution is not None:
         columns = ["least cost", "robots", "refutation", "z3 at the cost", "z3 below it"]
         row = [verified.cost, len(verified.solution.plans), "checked", verified.z3_reach, verified.z3_beat]
         print_table(columns, [row], numbers=columns[:2])
-        if reason is not None:
-            print_line(f"undecided: {reason}")
+    if reason is not None and not as_json:
+        print_line(f"undecided: {reason}")
     return Answer.YES if verified.is_decided else Answer.UNDECIDED
