@@ -94,7 +94,7 @@ def polish(request: Request, engine: Engine) -> Result:
 
 
 def optimum(request: Request, engine: Engine) -> Result:
-    """Search for the least total cost."""
+    """Search for the least total cost; `proved` means that the search ended with an answer, which nothing checked."""
     from carp_verify.optimum import optimum as search  # noqa: PLC0415 - a server that is not asked need not load it
 
     del engine

@@ -42,7 +42,7 @@ def test_in_no_order_of_them_all_get_plans_and_yet_there_are_some(tree: Instance
     assert not whole.unplanned
 
 
-def test_what_cannot_be_planned_at_all_is_proved() -> None:
+def test_what_cannot_be_planned_at_all_is_found() -> None:
     graph = ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),))
     instance = Instance(graph, (Robot("east", "a", "b"), Robot("west", "b", "a")))
     group = group_facts(instance, ("east", "west"))

@@ -197,13 +197,22 @@ def test_a_robot_at_its_goal_has_a_way() -> None:
     assert why_no_obstacle(instance, NoWay("a")) == "there is a way from 1 to 1"
 
 
+def test_a_goal_has_room_for_as_many_robots_as_its_capacity() -> None:
+    instance = line(2, Robot("a", 0, 1), after_goal="park")
+    assert why_no_obstacle(instance, FullGoal(1)) == "1 has room for 1 robots, and 1 park there"
+
+
+def test_a_robot_without_a_way_has_no_clauses() -> None:
+    assert why_no_obstacle(APART, Clauses((0, 0))) == "a robot has no way to its goal, and so no clauses"
+
+
 def test_robots_that_vanish_do_not_fill_their_goal() -> None:
     assert why_no_obstacle(SOLVABLE[1], FullGoal(1)) == "robots do not park"
 
 
 def test_more_joint_states_than_are_searched_are_refused_before_the_search(monkeypatch: pytest.MonkeyPatch) -> None:
     far = line(6, Robot("a", 0, 5, release=10**9), Robot("b", 5, 0, release=10**9))
-    assert why_no_obstacle(far, States()) == "the joint states may be more than 1000000"
+    assert why_no_obstacle(far, States()) == "the joint states may be more than 2000000"
     monkeypatch.setattr(unsolvable, "FEW_STATES", 100)
     assert why_no_obstacle(HEAD_ON, States()) == "the joint states may be more than 100"
 

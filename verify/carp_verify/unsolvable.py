@@ -19,7 +19,7 @@ from carp_spec import Instance, Refusal, ResourceId, RobotId
 from carp_verify.encoding import Encoding
 from carp_verify.joint_search import joint_states, least_total_cost
 
-FEW_STATES = 1_000_000
+FEW_STATES = 2_000_000
 
 
 class NoWay(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind", tag="no-way"):

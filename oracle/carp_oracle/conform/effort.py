@@ -27,7 +27,7 @@ def why_undecided(case: Case, answer: Answer, level: Level) -> str | None:
     is_judged_by_proof = isinstance(answer, OptimumAnswer) or (isinstance(answer, Solution) and case.planner is None)
     needs_proof = case.op in ("plan", "optimum") and is_judged_by_proof and level >= Level.OPTIMAL
     if needs_proof and not found_cost(case.instance)[0]:
-        return f"carproof cannot prove the optimum in {OPTIMUM_SECONDS} s, with which to compare"
+        return f"carproof does not find the optimum in {OPTIMUM_SECONDS} s, with which to compare"
     return None
 
 
