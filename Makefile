@@ -1,4 +1,4 @@
-# Two commands set everything up on a machine with Python and make: `make demo` and `make test`.
+# `make demo`, `make quick` and `make test` each set everything up on a machine with Python and make.
 PYTHON ?= python3
 BIN := .venv/bin
 
@@ -6,7 +6,7 @@ export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 .DELETE_ON_ERROR:
-.PHONY: bench install compiled demo test paper-sized nightly coverage mutation conform lint format gap optimum-figures experiments-page generated clean
+.PHONY: bench install compiled demo quick quick-tests test thorough paper-sized nightly coverage mutation conform lint format gap optimum-figures experiments-page generated clean
 
 install: .venv/installed
 
@@ -32,8 +32,25 @@ format: install
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
 
+# In under a minute: lint, types, and the fastest tests of every package, with few examples.
+quick: install
+	$(MAKE) --jobs 2 lint quick-tests
+
+QUICK := tests/spec tests/reference tests/optimized/test_limits.py tests/optimized/test_sorting.py \
+    tests/verify/test_certificate.py tests/verify/test_encoding.py tests/verify/test_evidence.py tests/verify/test_joint_search.py \
+    tests/oracle/test_rules.py tests/oracle/test_generate.py tests/oracle/test_networkx_graphs.py tests/oracle/test_view.py \
+    tests/experiments/test_statistics.py tests/experiments/test_page.py tests/test_house.py tests/test_programs.py
+
+quick-tests: install
+	HYPOTHESIS_PROFILE=quick $(BIN)/pytest -q -m 'not nightly' -k 'not every_small_query' $(QUICK)
+
+# Lint, types, and all tests but those marked nightly, with 200 examples where hypothesis draws.
 test: lint compiled
-	$(BIN)/pytest --numprocesses 2 --dist worksteal
+	$(BIN)/pytest -m 'not nightly' --numprocesses 2 --dist worksteal
+
+# All tests, also those marked nightly, with 1,000 examples.
+thorough: compiled
+	HYPOTHESIS_PROFILE=ci $(BIN)/pytest --numprocesses 2 --dist worksteal
 
 # How fast the optimised planner is, beside C++ written by hand and the reference; needs g++.
 bench: install
@@ -63,7 +80,7 @@ generated: install
 paper-sized: compiled
 	$(BIN)/python -m tests.optimized.paper_sized
 
-# All tests with many more examples, and CrossHair on the integer leaf functions: hours.
+# All tests with 50,000 examples, and CrossHair on the integer leaf functions: hours.
 nightly: install
 	HYPOTHESIS_PROFILE=nightly $(BIN)/pytest
 

@@ -1,34 +1,11 @@
-"""Hypothesis' profiles: dev for a quick look, ci for the gate, nightly for long runs, mutation for one mutant.
-
-The profile is the environment's HYPOTHESIS_PROFILE, and ci where it names none.
-"""
+"""Hypothesis' profile, and what the environment of every test lacks."""
 
 import os
 import signal
 
-from hypothesis import HealthCheck, Phase, settings
+from tests.profiles import load_profile
 
-settings.register_profile("dev", max_examples=100, deadline=None)
-settings.register_profile(
-    "ci",
-    max_examples=1000,
-    deadline=None,
-    derandomize=True,
-    database=None,
-    print_blob=True,
-    suppress_health_check=[HealthCheck.too_slow],
-)
-settings.register_profile("nightly", max_examples=50_000, deadline=None, suppress_health_check=[HealthCheck.too_slow])
-settings.register_profile(
-    "mutation",
-    max_examples=25,
-    deadline=None,
-    derandomize=True,
-    database=None,
-    phases=[Phase.explicit, Phase.generate],
-    suppress_health_check=[HealthCheck.too_slow],
-)
-settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "ci"))
+load_profile()
 
 # A shell that runs the tests in the background ignores interrupts for them, and programs would inherit that.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:

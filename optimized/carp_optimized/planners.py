@@ -3,7 +3,7 @@
 Importing it loads neither numpy nor numba; planning does.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from time import perf_counter
 from typing import TYPE_CHECKING
 
@@ -77,6 +77,15 @@ def plan(
                 fleet.add(robot, 0, planner)
                 advance()
     return _solution(instance, fleet.plans, set(fleet.instance.robot))
+
+
+def sum_of_shortest_paths(instance: Instance, robots: Iterable[RobotId]) -> int:
+    """What the robots would cost if each were alone; one without a path adds nothing.
+
+    Raises `Refusal` for numbers that are too large.
+    """
+    fleet = _fleet(instance)
+    return sum(fleet.ticks_to_goal(fleet.index(robot)) for robot in robots)
 
 
 def steps(instance: Instance, planner: Planner) -> int:

@@ -4,13 +4,15 @@ import io
 import os
 import sys
 import traceback
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from importlib import import_module
 
 import click
 
 from carp_oracle.answer import INTERNAL_ERROR, INTERRUPTED, PIPE_CLOSED, Answer
 from carp_oracle.commands import COMMANDS
+from carp_oracle.extras import advice
 from carp_oracle.tables import printable
 from carp_spec import Refusal
 from carp_verify.bound_rules import ContradictionError
@@ -84,7 +86,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _answer(arguments: Sequence[str]) -> int:
     try:
-        with carproof.make_context("carproof", list(arguments)) as context:
+        with carproof.make_context("carproof", list(arguments)) as context, _naming_extras(context):
             answer = carproof.invoke(context)
     except click.exceptions.Exit as done:
         return done.exit_code
@@ -96,6 +98,18 @@ def _answer(arguments: Sequence[str]) -> int:
     except Refusal as refusal:
         return _complain(f"{_option(refusal.path)}: {refusal.message} [{refusal.rule}]")
     return Answer(answer)
+
+
+@contextmanager
+def _naming_extras(context: click.Context) -> Iterator[None]:
+    """Say of a library that is missing which extra has it."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        advised = advice(error)
+        if advised is None:
+            raise
+        raise click.ClickException(f"carproof {context.invoked_subcommand} {advised}") from error
 
 
 def _option(path: str) -> str:

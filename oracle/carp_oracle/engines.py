@@ -1,10 +1,10 @@
 """The planners to choose from, each loaded when it is first used."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from importlib import import_module
 from typing import Protocol, cast
 
-from carp_spec import Instance, Neighbourhood, Plan, Planner, RobotId, Solution, plan_cost
+from carp_spec import Instance, Neighbourhood, Plan, Planner, Refusal, RobotId, Solution, total_cost
 
 ENGINES = ("optimized", "reference")
 
@@ -82,10 +82,24 @@ def _engine_with(planner: Planner) -> Engine:
     return engine_named("optimized" if isinstance(planner, PLANNERS) else "reference")
 
 
-def shortest_path_cost(instance: Instance, robot: RobotId) -> int | None:
-    """The cost of a robot's plan if it were alone, or `None` if it has no path."""
-    alone = engine_named("reference").query(instance, (), robot)
-    return None if alone is None else plan_cost(instance, alone)
+def sum_of_shortest_paths(instance: Instance, robots: Iterable[RobotId]) -> int:
+    """What the robots would cost if each were alone; one without a path adds nothing."""
+    from carp_optimized import sum_of_shortest_paths as fast  # noqa: PLC0415 - loaded when it is first used
+
+    asked = tuple(robots)
+    try:
+        return fast(instance, asked)
+    except Refusal:  # numbers that only the reference holds
+        alone = (engine_named("reference").query(instance, (), robot) for robot in asked)
+        return total_cost(instance, [plan for plan in alone if plan is not None])
+
+
+def plan_beside(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int) -> Plan | None:
+    """The plan of one robot against committed plans, whatever the size of the numbers."""
+    try:
+        return engine_named("optimized").query(instance, committed, robot, now)
+    except Refusal:  # numbers that only the reference holds
+        return engine_named("reference").query(instance, committed, robot, now)
 
 
 def why_unplanned(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0) -> str:

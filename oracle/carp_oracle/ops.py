@@ -9,6 +9,7 @@ from importlib.metadata import version
 from typing import Any, TypeAlias, cast
 
 from carp_oracle.engines import Engine
+from carp_oracle.extras import require
 from carp_oracle.optima import optimum_document
 from carp_oracle.options import DEFAULT_LIMIT, DEFAULT_SECONDS
 from carp_oracle.protocol import VERSION, Request, fields_are_right, value_of, version_is_spoken
@@ -95,6 +96,7 @@ def polish(request: Request, engine: Engine) -> Result:
 
 def optimum(request: Request, engine: Engine) -> Result:
     """Search for the least total cost; `proved` means that the search ended with an answer, which nothing checked."""
+    require("pysat")
     from carp_verify.optimum import optimum as search  # noqa: PLC0415 - a server that is not asked need not load it
 
     del engine
@@ -109,6 +111,7 @@ def optimum(request: Request, engine: Engine) -> Result:
 
 def bound(request: Request, engine: Engine) -> Result:
     """Search for a lower bound on the total cost, with a certificate."""
+    require("pysat")
     from carp_verify.bound import lower_bound  # noqa: PLC0415 - a server that is not asked need not load it
 
     del engine

@@ -7,7 +7,8 @@ or `{"id": same, "error": {"kind", "path", "rule", "message"}}`. The kinds of er
 - `request`: the request makes no sense (its fields, its robot, its tick, plans that break a rule);
 - `option`: a planner's option;
 - `limit`: the line is too long;
-- `internal`: carproof failed by a fault of its own; `rule` is null, and the next request is answered as ever.
+- `internal`: carproof failed by a fault of its own, or its installation lacks a library that the op needs; `rule` is
+  null, and the next request is answered as ever.
 """
 
 from collections.abc import Callable

@@ -62,7 +62,13 @@ class Conformance:
         and returns the documents, as dictionaries.
         """
         __tracebackhide__ = True
-        from carp_oracle.conform.function import Function, by_documents  # noqa: PLC0415 - only who judges loads them
+        from carp_oracle.extras import advice, require  # noqa: PLC0415 - only a test that judges loads them
+
+        try:
+            require("hypothesis", "pysat")
+        except ModuleNotFoundError as error:
+            pytest.fail(f"carproof.conforms {advice(error)}", pytrace=False)
+        from carp_oracle.conform.function import Function, by_documents  # noqa: PLC0415
         from carp_oracle.conform.levels import LEVELS  # noqa: PLC0415
         from carp_oracle.conform.run import Options, conform  # noqa: PLC0415
 

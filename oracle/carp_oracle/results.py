@@ -6,7 +6,7 @@ from pathlib import Path
 import msgspec
 
 from carp_oracle.answer import Answer
-from carp_oracle.engines import engine_named, shortest_path_cost, why_unplanned
+from carp_oracle.engines import plan_beside, sum_of_shortest_paths, why_unplanned
 from carp_oracle.files import print_document, write_whole
 from carp_oracle.tables import print_line, print_table
 from carp_spec import Instance, Plan, ResourceId, RobotId, Solution, total_cost, write_instance
@@ -46,15 +46,10 @@ def show_solution(instance: Instance, solution: Solution, planner: str, seconds:
 def result_row(instance: Instance, solution: Solution, planner: str, seconds: float) -> Sequence[object]:
     """A row of the columns: the shortest paths are the sum over the robots that have a plan."""
     total = total_cost(instance, solution.plans)
-    shortest = sum_of_shortest_paths(instance, solution)
+    shortest = sum_of_shortest_paths(instance, (plan.robot for plan in solution.plans))
     ratio = f"{total / shortest:.4f}" if shortest else "-"
     unplanned = len(instance.robots) - len(solution.plans)
     return (planner, len(instance.robots), unplanned, total, shortest, ratio, f"{seconds:.2f} s")
-
-
-def sum_of_shortest_paths(instance: Instance, solution: Solution) -> int:
-    """What the robots that have a plan would cost if each were alone."""
-    return sum(shortest_path_cost(instance, plan.robot) or 0 for plan in solution.plans)
 
 
 def show_unplanned(instance: Instance, solution: Solution, robots: Sequence[RobotId], now: int = 0) -> None:
@@ -64,7 +59,7 @@ def show_unplanned(instance: Instance, solution: Solution, robots: Sequence[Robo
 
 
 def _why(instance: Instance, solution: Solution, robot: RobotId, now: int) -> str:
-    if engine_named("reference").query(instance, solution.plans, robot, now) is not None:
+    if plan_beside(instance, solution.plans, robot, now) is not None:
         return "the planner found no plan for it, though there is one beside the plans of the others"
     return why_unplanned(instance, solution.plans, robot, now)
 

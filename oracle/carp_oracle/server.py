@@ -7,6 +7,7 @@ from typing import BinaryIO
 import msgspec
 
 from carp_oracle.engines import Engine
+from carp_oracle.extras import advice
 from carp_oracle.ops import answer
 from carp_oracle.protocol import (
     LONGEST_LINE,
@@ -48,8 +49,12 @@ def respond(line: bytes, engine: Engine) -> tuple[Response, bool]:
     except Refusal as refusal:
         return Response(id, error=refused(refusal)), True
     except Exception as fault:  # noqa: BLE001 - whatever goes wrong with one request, the next is answered
-        traceback.print_exc(file=sys.stderr)
-        message = f"carproof failed by a fault of its own: {type(fault).__name__}: {fault}"
+        advised = advice(fault) if isinstance(fault, ModuleNotFoundError) else None
+        if advised is None:
+            traceback.print_exc(file=sys.stderr)
+            message = f"carproof failed by a fault of its own: {type(fault).__name__}: {fault}"
+        else:
+            message = f"the op {op} {advised}"
         return Response(id, error=ErrorDocument("internal", "$", None, message)), True
 
 

@@ -2,22 +2,38 @@
 
 from collections.abc import Sequence
 
-from carp_reference.context import context_of
-from carp_reference.problem import ticks_to_goal
-from carp_spec import Instance, Plan, RobotId
-from carp_spec.windows import stay_fits
+from carp_spec import Instance, Plan, ResourceGraph, ResourceId, RobotId
+from carp_spec.windows import Window, free_windows, stay_fits
 
 
 def why_unplanned(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0) -> str:
     """One clause that says why CARP finds no plan for a robot that has none against the committed plans."""
     request = instance.robot[robot]
-    if request.start not in ticks_to_goal(instance, request):
+    if not leads(instance.graph, request.start, request.goal):
         return f"no moves lead from its start {request.start} to its goal {request.goal}"
-    context = context_of(instance, committed)
     duration = instance.duration(robot, request.start)
     ready = max(request.release + duration, now)
-    if not any(stay_fits(window, request.release, ready, duration) for window in context.windows(request.start)):
+    if not any(
+        stay_fits(window, request.release, ready, duration) for window in windows(instance, committed, request.start)
+    ):
         return f"its start {request.start} is taken in [{request.release},{ready}), from its release on"
-    if instance.after_goal == "park" and all(window.end is not None for window in context.windows(request.goal)):
+    at_goal = windows(instance, committed, request.goal)
+    if instance.after_goal == "park" and all(window.end is not None for window in at_goal):
         return f"its goal {request.goal} is taken for ever"
     return "the committed plans leave no way to its goal"
+
+
+def leads(graph: ResourceGraph, start: ResourceId, goal: ResourceId) -> bool:
+    """Whether moves lead from the start to the goal."""
+    reached, waiting = {start}, [start]
+    while waiting:
+        further = [target for target in graph.successors[waiting.pop()] if target not in reached]
+        reached.update(further)
+        waiting.extend(further)
+    return goal in reached
+
+
+def windows(instance: Instance, committed: Sequence[Plan], resource: ResourceId) -> tuple[Window, ...]:
+    """The free windows that the committed plans leave at one resource."""
+    stays = [(visit.enter, visit.leave) for plan in committed for visit in plan.visits if visit.resource == resource]
+    return free_windows(stays, instance.graph.resource[resource].capacity)

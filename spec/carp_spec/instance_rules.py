@@ -3,7 +3,7 @@
 Each predicate takes the instance and yields its faults, each with its path in the instance document.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from carp_spec.model import Instance
 from carp_spec.rule import DESIGN, MORS, Fault, Rule, is_whole, rule
@@ -23,10 +23,11 @@ def _id_faults(rule_id: str, path: str, ids: Sequence[object]) -> Iterator[Fault
             first_at[id] = position
 
 
-def _number_faults(rule_id: str, path: str, name: str, value: object, least: int) -> Iterator[Fault]:
-    if not is_whole(value) or value < least:
-        message = f"the {name} must be a whole number of at least {least}, not {value!r}"
-        yield Fault(rule_id, f"{path}.{name}", message)
+def _number_faults(rule_id: str, path: str, name: str, values: Iterable[object], least: int) -> Iterator[Fault]:
+    for position, value in enumerate(values):
+        if not is_whole(value) or value < least:
+            message = f"the {name} must be a whole number of at least {least}, not {value!r}"
+            yield Fault(rule_id, f"{path}[{position}].{name}", message)
 
 
 @rule("instance/resource-id", "Resource ids are strings or whole numbers, and no two are the same.", DESIGN)
@@ -37,16 +38,14 @@ def resource_ids_are_unique(instance: Instance) -> Iterator[Fault]:
 
 @rule("instance/capacity", "A resource's capacity is a whole number of at least 1.", f"{PAPER}; {MORS}")
 def capacities_are_positive(instance: Instance) -> Iterator[Fault]:
-    for position, resource in enumerate(instance.graph.resources):
-        path = f"$.graph.nodes[{position}]"
-        yield from _number_faults("instance/capacity", path, "capacity", resource.capacity, 1)
+    capacities = (resource.capacity for resource in instance.graph.resources)
+    yield from _number_faults("instance/capacity", "$.graph.nodes", "capacity", capacities, 1)
 
 
 @rule("instance/duration", "A resource's duration is a whole number of ticks, at least 1.", f"{PAPER}; {MORS}")
 def durations_are_positive(instance: Instance) -> Iterator[Fault]:
-    for position, resource in enumerate(instance.graph.resources):
-        path = f"$.graph.nodes[{position}]"
-        yield from _number_faults("instance/duration", path, "duration", resource.duration, 1)
+    durations = (resource.duration for resource in instance.graph.resources)
+    yield from _number_faults("instance/duration", "$.graph.nodes", "duration", durations, 1)
 
 
 @rule("instance/position", "A resource's x and y are both whole numbers or both absent.", DESIGN)
@@ -97,8 +96,8 @@ def endpoints_are_resources(instance: Instance) -> Iterator[Fault]:
 
 @rule("instance/release", "A robot's release is a tick: a whole number of at least 0.", DESIGN)
 def releases_are_ticks(instance: Instance) -> Iterator[Fault]:
-    for position, robot in enumerate(instance.robots):
-        yield from _number_faults("instance/release", f"$.robots[{position}]", "release", robot.release, 0)
+    releases = (robot.release for robot in instance.robots)
+    yield from _number_faults("instance/release", "$.robots", "release", releases, 0)
 
 
 @rule(
@@ -107,8 +106,8 @@ def releases_are_ticks(instance: Instance) -> Iterator[Fault]:
     "paper, section V (heterogeneous robots)",
 )
 def paces_are_positive(instance: Instance) -> Iterator[Fault]:
-    for position, robot in enumerate(instance.robots):
-        yield from _number_faults("instance/pace", f"$.robots[{position}]", "pace", robot.pace, 1)
+    paces = (robot.pace for robot in instance.robots)
+    yield from _number_faults("instance/pace", "$.robots", "pace", paces, 1)
 
 
 @rule("instance/after-goal", 'After its goal a robot is to "vanish" or to "park".', DESIGN)

@@ -7,6 +7,7 @@ from time import thread_time_ns
 from typing import Any
 
 import pytest
+from tests.programs import require_programs
 
 import carp_reference
 from carp_optimized import passes
@@ -67,6 +68,7 @@ def ours(fleet: Fleet, robot: int) -> tuple[int, float]:
 
 @pytest.fixture(scope="module")
 def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    require_programs("g++")
     path = tmp_path_factory.mktemp("query") / "query"
     subprocess.run(["g++", "-O3", "-march=native", "-std=c++17", "-o", path, HERE / "query.cpp"], check=True)  # noqa: S607
     return path

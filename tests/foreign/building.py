@@ -1,11 +1,11 @@
 """Builds the planners in other languages, once for each state of their sources."""
 
-import shutil
 import subprocess
 from hashlib import sha256
 from pathlib import Path
 
 import pytest
+from tests.programs import require_programs
 
 HERE = Path(__file__).parent
 BUILT = HERE.parent.parent / ".venv" / "foreign"
@@ -16,10 +16,9 @@ COMPILERS = {
 
 
 def built(language: str) -> Path:
-    """The program, built if it is not there."""
+    """The program, built if it is not there; skips the test without a compiler."""
     command = COMPILERS[language]
-    if shutil.which(command[0]) is None:
-        pytest.fail(f"The compiler {command[0]} is missing, which builds tests/foreign/{language}.", pytrace=False)
+    require_programs(command[0])
     sources = sorted(path for path in (HERE / language).iterdir() if path.is_file())
     digest = sha256(b"\0".join([*map(str.encode, command), *(path.read_bytes() for path in sources)])).hexdigest()
     program = BUILT / f"{language}-{digest[:16]}"

@@ -5,6 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 CACHE = Path(__file__).parents[2] / "build" / "bounds-checked"
 
 CROSSCHECK = """
@@ -22,6 +24,7 @@ print(first_difference(300, seed=5))
 """
 
 
+@pytest.mark.nightly
 def test_no_index_is_out_of_bounds() -> None:
     checked = {**os.environ, "NUMBA_BOUNDSCHECK": "1", "NUMBA_CACHE_DIR": str(CACHE)}
     checked.pop("NUMBA_DISABLE_JIT", None)

@@ -7,6 +7,7 @@ from math import isqrt, sqrt
 import pytest
 from hypothesis import HealthCheck, given, settings
 from tests.optimized.test_same_plans import crowds
+from tests.profiles import draws
 
 import carp_optimized
 import carp_reference
@@ -162,7 +163,7 @@ def test_robots_whose_plans_have_ended_are_left_alone() -> None:
         assert carp_optimized.add(*question) == carp_reference.add(*question)
 
 
-@settings(max_examples=min(60, settings().max_examples), suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=draws(60), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(crowds())
 def test_what_does_not_fit_into_the_memory_of_a_round_is_forgotten(
     monkeypatch: pytest.MonkeyPatch, instance: Instance

@@ -5,6 +5,7 @@ from dataclasses import replace
 from itertools import groupby, product
 
 import pytest
+from tests.profiles import rest_nightly
 
 from carp_optimized.fleet import Fleet
 from carp_reference.problem import Problem, ticks_to_goal
@@ -13,6 +14,7 @@ from carp_spec import Instance, Plan, ResourceGraph, ResourceId, Robot, RobotId
 from carp_verify.enumeration import ASKED, PATTERNS, Pattern, SmallCase, small_cases
 
 SMALL_CASES_OF_A_PATTERN = 52_198
+RICHEST = 3
 
 
 def fleet_of_all(instance: Instance) -> Fleet:
@@ -46,7 +48,7 @@ def answers(pattern: Pattern) -> Iterator[tuple[SmallCase, Plan | None]]:
             yield case, plan and replace(plan, robot=ASKED)
 
 
-@pytest.mark.parametrize("pattern", PATTERNS, ids=str)
+@pytest.mark.parametrize("pattern", rest_nightly(PATTERNS, RICHEST), ids=str)
 def test_every_small_query_has_the_same_answer(pattern: Pattern) -> None:
     asked = 0
     graph: ResourceGraph | None = None

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from tests.profiles import draws
 
 from carp_optimized import passes
 from carp_optimized.arrays import NEVER, NONE, UNKNOWN
@@ -73,7 +74,7 @@ def fleet_of(instance: Instance, plans: tuple[Plan, ...]) -> Fleet:
     return fleet
 
 
-@settings(max_examples=min(100, settings().max_examples))
+@settings(max_examples=draws(100))
 @given(fleets_under_way(SIZES), st.data())
 def test_a_query_is_repeated_only_where_the_lemma_says_and_else_finds_the_same(
     under_way: FleetUnderWay, data: st.DataObject

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.optimized.paper_sized import FOUR, MAPS, Question, read_digests
+from tests.profiles import draws
 
 import carp_optimized
 from carp_optimized import Reuse
@@ -140,7 +141,7 @@ def test_a_fleet_that_stays_up_minds_which_reuse_is_on() -> None:
     assert asked[0] < asked[1]
 
 
-@settings(max_examples=max(5, settings().max_examples // 100))
+@settings(max_examples=draws(10))
 @given(st.integers(0, 20), st.integers(20, 60), st.integers(0, 2**32 - 1), st.sampled_from(WHOLE_FLEETS))
 def test_fleets_added_one_by_one_have_the_same_plans_without_reuse(
     map: int, robots: int, seed: int, options: Neighbourhood

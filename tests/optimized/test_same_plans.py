@@ -2,6 +2,7 @@
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.profiles import draws
 
 import carp_optimized
 import carp_reference
@@ -74,7 +75,7 @@ def test_adding_a_robot_makes_the_same_solution(fleet: FleetUnderWay, options: N
     assert carp_optimized.add(*question, reuse) == carp_reference.add(*question)
 
 
-@settings(max_examples=min(400, settings().max_examples))
+@settings(max_examples=draws(400))
 @given(crowds(), st.integers(2, 3), st.booleans(), kinds_of_reuse())
 def test_crowds_are_planned_alike(instance: Instance, m: int, baseline: bool, reuse: Reuse) -> None:
     options = Neighbourhood(m=m, baseline=baseline)

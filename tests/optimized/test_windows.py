@@ -6,6 +6,7 @@ from random import Random
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.profiles import draws
 
 from carp_optimized import passes
 from carp_optimized.arrays import NEVER, Rows
@@ -50,7 +51,7 @@ def assert_windows_are(fleet: Fleet, instance: Instance, plans: Sequence[Plan]) 
         assert windows == free_windows(occupations(plans, resource.id), resource.capacity)
 
 
-@settings(max_examples=300)
+@settings(max_examples=draws(300))
 @given(planned_instances(SIZES), st.randoms(use_true_random=False))
 def test_withdrawing_undoes_reserving_in_any_order(planned: PlannedInstance, random: Random) -> None:
     plans = list(planned.solution.plans)

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.oracle.foreign_files import COLUMNS, CORRECT, INSTANCE, LACAM, MAP, MOVES, ROWS, SCENARIO, SCHEDULE, TABLE
 from tests.oracle.running import Run
+from tests.profiles import draws
 
 from carp_oracle.adapters import (
     ADAPTER_RULES,
@@ -282,14 +283,14 @@ def planned_grids() -> st.SearchStrategy[PlannedInstance]:
 
 
 @pytest.mark.parametrize("format", ADAPTERS)
-@settings(max_examples=150)
+@settings(max_examples=draws(150))
 @given(planned=planned_grids())
 def test_every_solution_on_a_grid_survives_the_way_there_and_back(format: str, planned: PlannedInstance) -> None:
     data = write_foreign_solution(planned.instance, planned.solution, format)
     assert read_foreign_solution(data, planned.instance, "file", format) == planned.solution
 
 
-@settings(max_examples=300)
+@settings(max_examples=draws(300))
 @given(planned=planned_grids(), format=st.sampled_from([*CORRECT]))
 def test_a_format_that_is_found_is_the_right_one_or_means_the_same(planned: PlannedInstance, format: str) -> None:
     data = write_foreign_solution(planned.instance, planned.solution, format)

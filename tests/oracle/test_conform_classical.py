@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from tests.oracle.foreign_files import INSTANCE
 from tests.oracle.running import Run
+from tests.profiles import draws
 
 from carp_oracle.conform.classical_cases import classical_instances
 from carp_oracle.conform.findings import is_complete
@@ -25,7 +26,7 @@ PLANNER = [sys.executable, "-I", "-S", str(Path(__file__).parent / "grid_planner
 FILES = ["{map}", "{scen}", "{agents}"]
 
 
-@settings(max_examples=200)
+@settings(max_examples=draws(200))
 @given(instance=classical_instances())
 def test_what_is_drawn_is_classical_and_survives_the_way_to_files_and_back(instance: Instance) -> None:
     assert is_classical(instance)

@@ -34,7 +34,7 @@ def run_console(text: str, folder: Path) -> str:
     )
     environment = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}", "COLUMNS": "80"}
     return subprocess.run(
-        ["/bin/bash", "-c", script],
+        ["/bin/sh", "-c", script],
         cwd=folder,
         env=environment,
         check=False,

@@ -225,12 +225,3 @@ def test_a_narrow_screen_needs_no_scrolling_sideways(
     shown = opened(driver, tmp_path, *town, width=380)
     assert shown.script("return document.documentElement.scrollWidth") <= 380
     assert logged(driver, "browser") == []
-
-
-def test_a_missing_browser_is_named_with_its_packages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("PATH", str(tmp_path))
-    with (
-        pytest.raises(pytest.fail.Exception, match="Debian's packages chromium and chromium-driver"),
-        chromium(tmp_path),
-    ):
-        pass

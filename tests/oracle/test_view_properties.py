@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.oracle.viewing import picture_of, scene_of
+from tests.profiles import draws
 
 from carp_oracle.viewer.lanes import lanes, lasts, occupations
 from carp_oracle.viewer.page import page
@@ -16,7 +17,7 @@ from carp_verify.strategies import instances
 
 TICKS = st.integers(-5, 20)
 LATEST = 25
-FEW = settings(max_examples=60)
+FEW = settings(max_examples=draws(60))
 
 
 @st.composite
@@ -58,7 +59,7 @@ def test_no_two_robots_stand_in_one_lane_at_a_time(case: tuple[Instance, Solutio
     assert none_overlap((stand, enter, leave) for track in scene["tracks"] for stand, enter, leave in track["stays"])
 
 
-@settings(max_examples=300)
+@settings(max_examples=draws(300))
 @given(st.lists(st.builds(Visit, st.just("a"), TICKS, st.none() | TICKS)))
 def test_lanes_hold_one_stay_at_a_time_and_are_as_few_as_can_be(visits: list[Visit]) -> None:
     stays = [stay for _, _, stay in occupations([Plan("r1", (visit,)) for visit in visits]).get("a", [])]

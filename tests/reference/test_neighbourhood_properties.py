@@ -5,6 +5,7 @@ from unittest.mock import patch
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.profiles import draws
 
 import carp_reference
 from carp_reference import neighbourhood
@@ -25,7 +26,7 @@ OPTIONS = st.builds(
 )
 
 
-@settings(max_examples=500)
+@settings(max_examples=draws(500))
 @given(fleets_under_way(CROWDED), OPTIONS)
 def test_adding_a_robot_breaks_no_rule_and_keeps_history(fleet: FleetUnderWay, options: Neighbourhood) -> None:
     instance, before = fleet.instance, fleet.solution
@@ -40,7 +41,7 @@ def test_adding_a_robot_breaks_no_rule_and_keeps_history(fleet: FleetUnderWay, o
         assert total_cost(instance, after.plans) <= total_cost(instance, (*before.plans, kept))
 
 
-@settings(max_examples=300)
+@settings(max_examples=draws(300))
 @given(instances(CROWDED), st.integers(2, 4))
 def test_replanning_from_scratch_equals_keeping_the_prefix_in_paper_mode(instance: Instance, m: int) -> None:
     paper = Neighbourhood(m=m, baseline=False)
@@ -49,7 +50,7 @@ def test_replanning_from_scratch_equals_keeping_the_prefix_in_paper_mode(instanc
     assert carp_reference.plan(instance, paper) == from_scratch
 
 
-@settings(max_examples=300)
+@settings(max_examples=draws(300))
 @given(instances(CROWDED))
 def test_every_plan_is_the_query_against_those_before_it(instance: Instance) -> None:
     for planner in (Carp(), Neighbourhood(m=3), Neighbourhood(m=3, baseline=False)):
@@ -58,7 +59,7 @@ def test_every_plan_is_the_query_against_those_before_it(instance: Instance) -> 
             assert plan == carp_reference.query(instance, solution.plans[:position], plan.robot)
 
 
-@settings(max_examples=300)
+@settings(max_examples=draws(300))
 @given(instances(CROWDED), st.data())
 def test_sharing_the_beginnings_of_orders_changes_no_plan(instance: Instance, data: st.DataObject) -> None:
     members = [robot.id for robot in instance.robots][:3]
@@ -77,7 +78,7 @@ def test_sharing_the_beginnings_of_orders_changes_no_plan(instance: Instance, da
     assert [*shared] == one_by_one
 
 
-@settings(max_examples=300)
+@settings(max_examples=draws(300))
 @given(fleets_under_way(CROWDED), OPTIONS)
 def test_a_plan_that_has_ended_is_left_alone(fleet: FleetUnderWay, options: Neighbourhood) -> None:
     after = carp_reference.add(fleet.instance, fleet.solution, fleet.robot, fleet.now, options)

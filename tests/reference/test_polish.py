@@ -3,6 +3,7 @@
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.profiles import draws
 from tests.spec.making import instance_on, line
 
 from carp_oracle.generate import Fleet, Grid, grid_instance
@@ -15,7 +16,7 @@ def worth(instance: Instance, solution: Solution) -> tuple[int, int]:
     return (len(instance.robots) - len(solution.plans), total_cost(instance, solution.plans))
 
 
-@settings(max_examples=min(300, settings().max_examples))
+@settings(max_examples=draws(300))
 @given(planned_instances(Sizes(resources=8, robots=8)), st.integers(0, 15), st.integers(0, 2**64 - 1))
 def test_a_polished_solution_breaks_no_rule_and_is_no_worse(
     planned: PlannedInstance, iterations: int, seed: int

@@ -5,10 +5,11 @@ from typing import get_args
 
 from hypothesis import settings
 from hypothesis import strategies as st
+from tests.profiles import draws
 
 from carp_spec import AfterGoal, Instance, Plan, Resource, ResourceGraph, ResourceId, Robot, RobotId, Solution, Visit
 
-FEWER = settings(max_examples=max(25, settings().max_examples // 4))
+FEWER = settings(max_examples=draws(250))
 """For tests with large examples."""
 
 IDS = st.one_of(st.integers(-5, 5), st.text(max_size=3))

@@ -2,8 +2,8 @@
 
 import json
 from collections.abc import Callable
-from contextlib import suppress
-from typing import Any
+from typing import Any, cast
+from unittest.mock import Mock
 
 import networkx as nx
 import pytest
@@ -25,6 +25,16 @@ from carp_spec import (
     write_instance,
     write_solution,
     write_verdict,
+)
+from carp_spec.documents import (
+    INSTANCE_FORMAT,
+    SOLUTION_FORMAT,
+    Document,
+    InstanceDocument,
+    SolutionDocument,
+    has_format,
+    has_shape,
+    is_json,
 )
 
 Json = Any
@@ -377,10 +387,13 @@ def test_random_bytes_are_read_or_refused(data: bytes) -> None:
 
 @FEWER
 @given(data=st.data())
-def test_a_document_with_random_bytes_in_it_is_read_or_refused(data: st.DataObject) -> None:
-    read, whole = data.draw(
+def test_a_document_with_random_bytes_in_it_is_refused_by_the_first_rule_that_it_breaks(data: st.DataObject) -> None:
+    read, whole, format, kind = data.draw(
         st.sampled_from(
-            [(read_instance, write_instance(VANISHING)), (read_solution, write_solution(solution_of(PARKED)))]
+            [
+                (read_instance, write_instance(VANISHING), INSTANCE_FORMAT, InstanceDocument),
+                (read_solution, write_solution(solution_of(PARKED)), SOLUTION_FORMAT, SolutionDocument),
+            ]
         )
     )
     start = data.draw(st.integers(0, len(whole)))
@@ -390,8 +403,27 @@ def test_a_document_with_random_bytes_in_it_is_read_or_refused(data: st.DataObje
         + data.draw(st.binary(max_size=4) | st.sampled_from([b"-", b"null", b"1e5", b"[", b'"']))
         + whole[end:]
     )
-    with suppress(Refusal):
+    laws = {
+        "document/json": is_json(changed),
+        "document/format": has_format(changed, format),
+        "document/shape": has_shape(changed, cast("type[Document]", kind)),
+    }
+    broken = next((rule for rule, holds in laws.items() if not holds), None)
+    found = None
+    try:
         assert isinstance(read(changed), Instance | Solution)
+    except Refusal as refusal:
+        found = refusal.rule
+    assert found == broken or (broken is None and str(found).startswith("instance/"))
+
+
+def test_a_right_document_is_parsed_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    parse = Mock(side_effect=json.loads)
+    monkeypatch.setattr("json.loads", parse)
+    monkeypatch.setattr("carp_spec.documents.msgspec.json.decode", lambda *_, **__: pytest.fail("parsed again"))
+    data = write_instance(VANISHING)
+    assert read_instance(data) == VANISHING
+    assert parse.call_count == 1
 
 
 def test_networkx_node_link_data_is_read() -> None:

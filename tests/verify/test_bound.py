@@ -13,6 +13,7 @@ import msgspec
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.profiles import draws
 
 from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, ResourceId, Robot, Visit
 from carp_spec.bounds import BOUND_FORMAT, BoundDocument, CutDocument, digest, read_bound
@@ -113,7 +114,7 @@ def plans_of(instance: Instance, robot: Robot) -> Iterator[Plan]:
     return go_on((), robot.start, robot.release)
 
 
-@settings(max_examples=120)
+@settings(max_examples=draws(120))
 @given(st.data(), instances(Sizes(resources=3, robots=1, capacity=1, duration=2, release=3, pace=1), least_robots=1))
 def test_the_least_cost_is_that_of_the_cheapest_of_all_plans(data: st.DataObject, instance: Instance) -> None:
     certificate = data.draw(certificates(instance))
@@ -122,7 +123,7 @@ def test_the_least_cost_is_that_of_the_cheapest_of_all_plans(data: st.DataObject
     assert certificate.robots == ((robot.id, min(costs, default=None)),)
 
 
-@settings(max_examples=300)
+@settings(max_examples=draws(300))
 @given(st.data(), planned_instances(Sizes(resources=4, robots=4, release=2, wait=1)))
 def test_whatever_the_prices_sound_plans_pay_no_more_than_they_are_worth_and_cost_no_less_than_the_least(
     data: st.DataObject, planned: PlannedInstance
@@ -138,7 +139,7 @@ def test_whatever_the_prices_sound_plans_pay_no_more_than_they_are_worth_and_cos
     assert sum(payment(certificate, plan) for plan in plans) <= Tariff(instance, certificate).worth
 
 
-@settings(max_examples=80)
+@settings(max_examples=draws(80))
 @given(instances(TINY, least_robots=2))
 def test_a_bound_that_was_found_is_verified_and_at_most_the_optimum(instance: Instance) -> None:
     seen: list[Progress] = []

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from tests.oracle.conftest import carproof
 from tests.oracle.running import Run
+from tests.profiles import draws
 
 from carp_spec import (
     Instance,
@@ -52,7 +53,7 @@ def agree(instance: Instance, plans: tuple[Plan, ...]) -> None:
 
 
 @given(planned_instances())
-@settings(max_examples=200)
+@settings(max_examples=draws(200))
 def test_sound_solutions_are_certified(planned: PlannedInstance) -> None:
     assert certify(planned.instance, planned.solution).accepted
 
@@ -93,7 +94,7 @@ def test_a_checker_and_z3_that_contradict_each_other_are_a_fault(monkeypatch: py
 
 
 @given(broken_solutions())
-@settings(max_examples=500)
+@settings(max_examples=draws(500))
 def test_certificate_and_checker_agree_on_broken_solutions(broken: BrokenSolution) -> None:
     agree(broken.instance, broken.solution.plans)
 

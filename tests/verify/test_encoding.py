@@ -1,4 +1,5 @@
 from hypothesis import given, settings
+from tests.profiles import draws
 
 from carp_spec import Instance, Resource, ResourceGraph, Robot, check, total_cost
 from carp_verify.encoding import Conflict, Encoding, violated
@@ -38,7 +39,7 @@ def has_ways(instance: Instance) -> bool:
     return not Encoding(instance).wayless
 
 
-@settings(max_examples=300)
+@settings(max_examples=draws(300))
 @given(instances(TINY, least_robots=1))
 def test_with_horizons_far_enough_the_clauses_have_a_model_from_the_least_total_on(instance: Instance) -> None:
     least = least_total_cost(instance)
@@ -50,7 +51,7 @@ def test_with_horizons_far_enough_the_clauses_have_a_model_from_the_least_total_
             assert has_model(bounded(instance, horizons, delay + 1, closed=True))
 
 
-@settings(max_examples=300)
+@settings(max_examples=draws(300))
 @given(instances(TINY, least_robots=1))
 def test_short_horizons_only_relax(instance: Instance) -> None:
     least = least_total_cost(instance)
@@ -61,14 +62,14 @@ def test_short_horizons_only_relax(instance: Instance) -> None:
             assert has_model(bounded(instance, horizons, delay + 1, closed=False))
 
 
-@settings(max_examples=300)
+@settings(max_examples=draws(300))
 @given(planned_instances(TINY))
 def test_the_conflicts_among_plans_are_those_of_the_checker(planned: PlannedInstance) -> None:
     plans = [plan for robot in planned.instance.robots for plan in planned.solution.plans if plan.robot == robot.id]
     assert violated(planned.instance, plans) == []
 
 
-@settings(max_examples=300)
+@settings(max_examples=draws(300))
 @given(instances(TINY, least_robots=2))
 def test_models_with_no_conflict_forbidden_hold_plans_that_break_joint_rules_only(instance: Instance) -> None:
     if has_ways(instance):

@@ -2,6 +2,7 @@ from itertools import permutations
 
 import pytest
 from hypothesis import given, settings
+from tests.profiles import draws
 
 from carp_reference import query
 from carp_spec import (
@@ -36,7 +37,7 @@ def order_total(instance: Instance, order: tuple[Robot, ...]) -> int | None:
     return total_cost(instance, plans)
 
 
-@settings(max_examples=250)
+@settings(max_examples=draws(250))
 @given(instances(SMALL_FLEET))
 def test_the_best_order_is_the_least_of_all(instance: Instance) -> None:
     totals = [order_total(instance, order) for order in permutations(instance.robots)]
@@ -45,7 +46,7 @@ def test_the_best_order_is_the_least_of_all(instance: Instance) -> None:
     assert best_order(instance, SECONDS, floor=least or 0) == least
 
 
-@settings(max_examples=150)
+@settings(max_examples=draws(150))
 @given(instances(SMALL_FLEET, least_robots=2))
 def test_no_order_and_no_planner_beats_the_optimum(instance: Instance) -> None:
     measured = gap(instance, [Carp(), Neighbourhood(m=2)], SECONDS)

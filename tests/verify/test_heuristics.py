@@ -1,5 +1,6 @@
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
+from tests.profiles import draws
 from tests.verify.test_optimum import turned_ring
 
 from carp_reference import plan
@@ -32,7 +33,7 @@ def found(instance: Instance, enough: int = 0) -> tuple[Plan, ...] | None:
 
 
 @pytest.mark.usefixtures("engine")
-@settings(max_examples=100, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=draws(100), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(instances(SMALL))
 def test_the_plans_are_sound_and_of_all_robots(instance: Instance) -> None:
     plans = found(instance)
@@ -42,7 +43,7 @@ def test_the_plans_are_sound_and_of_all_robots(instance: Instance) -> None:
 
 
 @pytest.mark.usefixtures("engine")
-@settings(max_examples=100, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=draws(100), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(instances(SMALL, least_robots=2))
 def test_a_robot_that_found_no_plan_is_planned_earlier(instance: Instance) -> None:
     backwards = Instance(instance.graph, instance.robots[::-1], instance.after_goal)
@@ -50,7 +51,7 @@ def test_a_robot_that_found_no_plan_is_planned_earlier(instance: Instance) -> No
     assert found(instance) is not None
 
 
-@settings(max_examples=200)
+@settings(max_examples=draws(200))
 @given(instances(SMALL))
 def test_the_distances_of_the_encoding_are_those_of_the_planner(instance: Instance) -> None:
     ticks_to_goal = {robot.robot.id: robot.ticks_to_goal for robot in Encoding(instance).robots}

@@ -4,6 +4,7 @@ from itertools import count
 
 import pytest
 from hypothesis import given, settings
+from tests.profiles import draws
 
 from carp_oracle.generate import Fleet, Grid, grid_instance
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, judge
@@ -32,7 +33,7 @@ def turned_ring(size: int, after_goal: str = "vanish") -> Instance:
     return grid(size, *robots, after_goal=after_goal)
 
 
-@settings(max_examples=1200)
+@settings(max_examples=draws(1200))
 @given(instances(TINY, least_robots=2))
 def test_the_optimum_is_that_of_the_joint_search(instance: Instance) -> None:
     best = optimum(instance, LONG)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
+from tests.profiles import draws
 from tests.verify.test_bound import UNSOUND_DRAT
 
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, judge, write_instance
@@ -102,7 +103,7 @@ def test_an_optimum_of_the_shortest_paths_is_proved_too(tmp_path: Path) -> None:
     assert verify_proof(tmp_path).cost == 1
 
 
-@settings(max_examples=150)
+@settings(max_examples=draws(150))
 @given(instances(TINY, least_robots=1))
 def test_every_optimum_can_be_proved(tmp_path_factory: pytest.TempPathFactory, instance: Instance) -> None:
     best = optimum(instance, SECONDS)

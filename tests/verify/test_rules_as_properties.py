@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from tests.profiles import draws
 
 from carp_spec import (
     FixedPaths,
@@ -98,7 +99,7 @@ PLANTS: Mapping[str, Plant] = {
 
 
 @pytest.mark.parametrize("rule", PLANTS)
-@settings(max_examples=60)
+@settings(max_examples=draws(60))
 @given(data=st.data(), instance=WITH_ROBOTS)
 def test_a_fault_planted_in_an_instance_is_found_and_no_other(
     rule: str, data: st.DataObject, instance: Instance
@@ -106,7 +107,7 @@ def test_a_fault_planted_in_an_instance_is_found_and_no_other(
     assert {fault.rule for fault in instance_faults(PLANTS[rule](instance, data))} == {rule}
 
 
-@settings(max_examples=200)
+@settings(max_examples=draws(200))
 @given(WITH_ROBOTS, st.data())
 def test_a_document_cut_short_is_no_json(instance: Instance, data: st.DataObject) -> None:
     document = write_instance(instance).rstrip()
@@ -114,7 +115,7 @@ def test_a_document_cut_short_is_no_json(instance: Instance, data: st.DataObject
         read_instance(document[: data.draw(st.integers(0, len(document) - 1))])
 
 
-@settings(max_examples=200)
+@settings(max_examples=draws(200))
 @given(WITH_ROBOTS, st.text() | st.text().map("carproof-instance/".__add__) | st.none() | st.integers())
 def test_any_other_format_is_refused(instance: Instance, format: str | int | None) -> None:
     assume(format != "carproof-instance/1")
@@ -130,7 +131,7 @@ def leaves(value: Any, path: tuple[str | int, ...] = ()) -> list[tuple[str | int
     return [path]
 
 
-@settings(max_examples=200)
+@settings(max_examples=draws(200))
 @given(WITH_ROBOTS, st.data())
 def test_a_fraction_anywhere_in_a_document_has_not_the_shape(instance: Instance, data: st.DataObject) -> None:
     document = json.loads(write_instance(instance))
@@ -147,7 +148,7 @@ def stay_lengths(plan: Plan) -> list[int]:
     return [following.enter - visit.enter for visit, following in pairwise(plan.visits)]
 
 
-@settings(max_examples=200)
+@settings(max_examples=draws(200))
 @given(planned_instances(), st.integers(-50, 50))
 def test_costs_are_the_ticks_before_the_last_visits(planned: PlannedInstance, claimed: int) -> None:
     plans = planned.solution.plans
@@ -159,7 +160,7 @@ def test_costs_are_the_ticks_before_the_last_visits(planned: PlannedInstance, cl
     assert all(plan_cost(planned.instance, plan) >= 0 for plan in plans)
 
 
-@settings(max_examples=200)
+@settings(max_examples=draws(200))
 @given(st.lists(st.tuples(*[st.integers(0, 2)] * 4), min_size=1))
 def test_what_is_expanded_first_is_best_in_each_respect_among_its_equals(
     nodes: list[tuple[int, int, int, int]],
@@ -171,7 +172,7 @@ def test_what_is_expanded_first_is_best_in_each_respect_among_its_equals(
     assert window == min(node[3] for node in nodes if node[:3] == (f, g, index))
 
 
-@settings(max_examples=200)
+@settings(max_examples=draws(200))
 @given(st.lists(st.integers(0, 5)))
 def test_the_best_of_all_candidates_is_the_first_of_the_cheapest(costs: list[int]) -> None:
     best: int | None = None
@@ -181,14 +182,14 @@ def test_the_best_of_all_candidates_is_the_first_of_the_cheapest(costs: list[int
     assert best == (costs.index(min(costs)) if costs else None)
 
 
-@settings(max_examples=200)
+@settings(max_examples=draws(200))
 @given(st.lists(st.booleans()), st.booleans())
 def test_there_is_always_a_first_candidate(rounds: list[bool], baseline: bool) -> None:
     assert baseline_is_tried(baseline, len(rounds)) or rounds
     assert baseline_is_tried(baseline=True, rounds=len(rounds))
 
 
-@settings(max_examples=200)
+@settings(max_examples=draws(200))
 @given(st.lists(st.none() | st.integers(1, 9), min_size=1))
 def test_a_trajectory_is_the_last_plan_that_was_found(rounds: list[int | None]) -> None:
     def plan(enter: int) -> Plan:
@@ -201,7 +202,7 @@ def test_a_trajectory_is_the_last_plan_that_was_found(rounds: list[int | None]) 
     assert trajectory == plan(found[-1] if found else 10)
 
 
-@settings(max_examples=200)
+@settings(max_examples=draws(200))
 @given(st.integers(-3, LARGEST_SEED + 3) | st.sampled_from([True, 1.0, "1"]))
 def test_options_are_whole_numbers_within_their_bounds(value: Any) -> None:  # noqa: ANN401 - nonsense too
     whole = type(value) is int

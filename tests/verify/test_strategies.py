@@ -5,6 +5,7 @@ from collections.abc import Callable
 import pytest
 from hypothesis import HealthCheck, Phase, find, given, settings
 from hypothesis import strategies as st
+from tests.profiles import draws
 
 from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot, has_ended, judge
 from carp_spec.instance_rules import instance_faults
@@ -117,7 +118,7 @@ def test_another_project_tests_its_own_map_with_them(after_goal: AfterGoal) -> N
     fleet = Instance(aisle, (Robot("picker", 0, 3), Robot("sweeper", 3, 0, release=5)), after_goal)
 
     @given(st.data())
-    @settings(max_examples=50)
+    @settings(max_examples=draws(50))
     def arrivals_are_no_earlier_than_the_way_is_long(data: st.DataObject) -> None:
         solution = data.draw(solutions(fleet, Sizes(wait=3)))
         for plan in solution.plans:

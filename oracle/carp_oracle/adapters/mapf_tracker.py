@@ -62,7 +62,8 @@ def _names(head: str) -> list[str]:
 
 
 def _is_table(text: str) -> bool:
-    return any(name in _COLUMNS for name in _names(text.partition("\n")[0]))
+    head = text.partition("\n")[0]
+    return any(column in head for column in _COLUMNS) and any(name in _COLUMNS for name in _names(head))
 
 
 def _cell_of_table(text: str, file: str) -> tuple[str, int]:

@@ -6,6 +6,7 @@ from time import perf_counter
 import click
 
 from carp_oracle.answer import Answer
+from carp_oracle.extras import require
 from carp_oracle.files import InputFile, print_document, read_instance_file, read_solution_file, write_whole
 from carp_oracle.options import DEFAULT_SECONDS, examples, instance_argument, json_option, output_option
 from carp_oracle.progress import found_so_far, gap, search_progress
@@ -43,6 +44,7 @@ def command(
 
     Exit codes: 0 here is a bound, 1 a robot has no way to its goal (the bound is that of the others), 2 bad input.
     """
+    require("pysat")
     from carp_verify.bound import Progress, lower_bound  # noqa: PLC0415 - loads the planners
 
     problem = read_instance_file(instance)

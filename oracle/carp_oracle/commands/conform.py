@@ -14,6 +14,7 @@ import click
 from carp_oracle.adapters import ADAPTERS
 from carp_oracle.answer import Answer
 from carp_oracle.conform.levels import CLASSICAL_LEVELS, LEVELS, Level
+from carp_oracle.extras import require
 from carp_oracle.files import OutputFile, print_document, write_whole
 from carp_oracle.options import examples, json_option
 from carp_oracle.progress import progress
@@ -111,6 +112,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     from carp_oracle.conform.program import Program  # noqa: PLC0415
     from carp_oracle.conform.run import Options, conform  # noqa: PLC0415
 
+    require("hypothesis", "pysat")
     if format is not None and not one_shot:
         raise click.UsageError("--from is of the files that programs write with --one-shot.")
     if shutil.which(program[0]) is None:

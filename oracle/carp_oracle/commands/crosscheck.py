@@ -8,6 +8,7 @@ import click
 import msgspec
 
 from carp_oracle.answer import Answer
+from carp_oracle.extras import require
 from carp_oracle.files import print_document
 from carp_oracle.options import examples, json_option, output_option
 from carp_oracle.progress import progress
@@ -32,6 +33,7 @@ def command(count: int, seed: int, output: Path | None, as_json: bool) -> Answer
 
     Exit codes: 0 no difference, 1 a difference, 2 bad usage.
     """
+    require("hypothesis")
     with progress("asking both engines", count) as advance:
         difference = first_difference(count, seed, advance)
     written = msgspec.json.encode(document(difference)) + b"\n"

@@ -8,13 +8,12 @@ from time import perf_counter
 import click
 
 from carp_oracle.answer import Answer
-from carp_oracle.engines import engine_named
+from carp_oracle.engines import engine_named, sum_of_shortest_paths
 from carp_oracle.files import OutputFile, write_whole
 from carp_oracle.generate import Fleet, Grid, grid_instance
 from carp_oracle.movingai import movingai_instance, read_map, read_scenario
 from carp_oracle.options import examples
 from carp_oracle.progress import progress
-from carp_oracle.results import sum_of_shortest_paths
 from carp_oracle.tables import print_line, print_table
 from carp_spec import Carp, Instance, Neighbourhood, Planner, judge, total_cost, write_instance, write_solution
 
@@ -79,7 +78,7 @@ def planned(folder: Path, name: str, instance: Instance, planner: str) -> Result
     write_whole(_file(folder / f"{name}-{planner.split(maxsplit=1)[0]}.json"), write_solution(solution))
     verdict = judge(instance, solution)
     counts = (len(instance.robots), verdict.unplanned, total_cost(instance, solution.plans))
-    shortest = sum_of_shortest_paths(instance, solution)
+    shortest = sum_of_shortest_paths(instance, (plan.robot for plan in solution.plans))
     return Result((name, planner, *counts, shortest, len(verdict.violations), f"{seconds:.2f} s"), verdict.valid)
 
 

@@ -9,6 +9,7 @@ import click
 from carp_experiments.crosscheck import FULL_QUESTIONS, QUICK_QUESTIONS, crosscheck_cases, crosscheck_report
 from carp_experiments.experiments import EXPERIMENTS, Experiment, Profile
 from carp_oracle.answer import Answer
+from carp_oracle.extras import require
 from carp_oracle.files import print_document
 from carp_oracle.options import examples
 from carp_oracle.progress import progress
@@ -149,6 +150,7 @@ def go(  # noqa: PLR0913 - the campaign's options
     from carp_experiments.report import write_report  # noqa: PLC0415
     from carp_experiments.store import open_store  # noqa: PLC0415
 
+    require("joblib", *(["matplotlib"] if report is not None else []), *(["distributed"] if backend == "dask" else []))
     who = chosen_workers(workers, backend, scheduler)  # before the store is there
     keys = [case.key for case in cases]
     with open_store(store, identity) as results:

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, get_args
 import click
 
 from carp_oracle.answer import Answer
+from carp_oracle.extras import require
 from carp_oracle.files import InputFile, print_document, read_instance_file
 from carp_oracle.generate import Range
 from carp_oracle.options import RangeType, examples, json_option, limit_option
@@ -77,6 +78,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     Exit codes: 0 the optimum is found, 1 the robots cannot all be planned, 2 bad input, 3 undecided within the limit.
     Of a family they tell the worst of its instances.
     """
+    require("pysat")
     if (instance is None) == (size is None):
         raise click.UsageError("Give an INSTANCE or a --size, one of them.")
     if instance is not None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from carp_oracle.answer import Answer
+from carp_oracle.extras import require
 from carp_oracle.files import print_document, read_instance_file, write_whole
 from carp_oracle.optima import optimum_document
 from carp_oracle.options import examples, instance_argument, json_option, limit_option, output_option
@@ -44,6 +45,7 @@ def command(instance: str, limit: int, proof: Path | None, output: Path | None, 
 
     Exit codes: 0 optimum found, 1 the robots cannot all be planned, 2 bad input, 3 undecided within the limit.
     """
+    require("pysat")
     from carp_verify.optimum import optimum  # noqa: PLC0415 - loads the planners
     from carp_verify.unsolvable import describe  # noqa: PLC0415
 

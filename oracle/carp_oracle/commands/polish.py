@@ -6,7 +6,7 @@ from time import perf_counter
 import click
 
 from carp_oracle.answer import Answer
-from carp_oracle.engines import engine_named, shortest_path_cost
+from carp_oracle.engines import engine_named, sum_of_shortest_paths
 from carp_oracle.files import (
     InputFile,
     naming,
@@ -104,7 +104,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 def bound_of(instance: Instance, certificate: str | None) -> int:
     """What all plans together cost at least: by the certificate, if there is one, else by the shortest paths."""
     if certificate is None:
-        return sum(shortest_path_cost(instance, robot.id) or 0 for robot in instance.robots)
+        return sum_of_shortest_paths(instance, instance.robot)
     from carp_spec.bounds import read_bound  # noqa: PLC0415 - only for those who have a certificate
     from carp_verify.verify_bound import verify_bound  # noqa: PLC0415
 

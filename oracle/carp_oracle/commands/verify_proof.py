@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from carp_oracle.answer import Answer
+from carp_oracle.extras import require
 from carp_oracle.files import InputFile, print_document, read_instance_file
 from carp_oracle.optima import ProofDocument, proof_document
 from carp_oracle.options import examples, json_option
@@ -26,6 +27,7 @@ def command(folder: Path, instance: str | None, as_json: bool) -> Answer:
 
     Exit codes: 0 the claim is proved, 1 it is not, 2 bad input, 3 undecided, because z3 did not answer in time.
     """
+    require("z3")
     from carp_verify.proof import ProofError, verify_proof  # noqa: PLC0415 - loads the planners
 
     given = None if instance is None else read_instance_file(instance)

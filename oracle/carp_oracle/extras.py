@@ -1,0 +1,29 @@
+"""The libraries that a base installation lacks, and which extra of carproof installs each."""
+
+from importlib.util import find_spec
+
+EXTRAS = {
+    "distributed": ("distributed", "experiments"),
+    "hypothesis": ("hypothesis", "test"),
+    "joblib": ("joblib", "experiments"),
+    "matplotlib": ("matplotlib", "experiments"),
+    "pysat": ("python-sat", "prove"),
+    "z3": ("z3-solver", "prove"),
+}
+"""By module: the distribution that has it, and the extra."""
+
+
+def advice(error: ModuleNotFoundError) -> str | None:
+    """What to install for a module that is missing, as the end of a sentence; `None` if no extra has it."""
+    module = (error.name or "").partition(".")[0]
+    if module not in EXTRAS:
+        return None
+    distribution, extra = EXTRAS[module]
+    return f"needs {distribution}: install carproof[{extra}]"
+
+
+def require(*modules: str) -> None:
+    """Raise `ModuleNotFoundError` before long work that would end in it."""
+    for module in modules:
+        if find_spec(module) is None:
+            raise ModuleNotFoundError(name=module)

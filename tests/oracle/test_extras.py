@@ -1,0 +1,101 @@
+"""A base installation does what checking and planning need; a command whose extra is missing names it."""
+
+import json
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+from tests.oracle.running import ONE_PLANNED, TWO, TWO_PLANNED, line
+
+from carp_oracle.extras import EXTRAS
+
+ROOT = Path(__file__).parent.parent.parent
+WITHOUT_EXTRAS = f"import sys\nsys.modules.update(dict.fromkeys({[*EXTRAS]}))\n"
+COMMAND = "from carp_oracle.cli import main\nsys.exit(main(sys.argv[1:]))"
+COMMANDS = "import json\nfrom carp_oracle.cli import main\nprint(any([main(each) for each in json.loads(sys.argv[1])]))"
+FINDS = {
+    "certify town.json plans.json": "z3-solver: install carproof[prove]",
+    "theorems": "z3-solver: install carproof[prove]",
+    "verify-proof .": "z3-solver: install carproof[prove]",
+    "optimum town.json": "python-sat: install carproof[prove]",
+    "bound town.json": "python-sat: install carproof[prove]",
+    "gap town.json": "python-sat: install carproof[prove]",
+    "conform true": "hypothesis: install carproof[test]",
+    "crosscheck": "hypothesis: install carproof[test]",
+    "experiment quality --quick": "joblib: install carproof[experiments]",
+}
+DEPOT = ROOT / "oracle/carp_oracle/examples/depot"
+BASE = [
+    "--help",
+    "plan town.json -o made.json",
+    "plan town.json --engine reference -o made.json",
+    "check town.json plans.json",
+    "add town.json one.json r2 -o added.json",
+    "polish town.json plans.json --iterations 10 -o polished.json",
+    "query town.json plans.json r1",
+    "view town.json plans.json -o view.html",
+    "generate grid --width 3 --height 3 --robots 2 -o grid.json",
+    f"convert {DEPOT}.map {DEPOT}.scen -o depot.json",
+    "rules",
+]
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    documents = {"town.json": TWO, "plans.json": TWO_PLANNED, "one.json": ONE_PLANNED}
+    for name, document in documents.items():
+        (tmp_path / name).write_bytes(line(**document))
+    return tmp_path
+
+
+def run(program: str, folder: Path, *arguments: str, stdin: bytes = b"") -> subprocess.CompletedProcess[bytes]:
+    command = [sys.executable, "-c", WITHOUT_EXTRAS + program, *arguments]
+    return subprocess.run(command, cwd=folder, input=stdin, capture_output=True, check=False)
+
+
+def test_each_extra_is_one_of_the_project_and_has_the_distribution() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    extras = project["optional-dependencies"]
+    assert [each for each in EXTRAS.values() if each[0] not in extras[each[1]]] == []
+    optional = {name for extra in ("prove", "experiments", "test") for name in extras[extra]}
+    assert optional == {distribution for distribution, _ in EXTRAS.values()}
+    assert not optional & set(project["dependencies"])
+
+
+def test_checking_and_planning_need_no_extra(folder: Path) -> None:
+    done = run(COMMANDS, folder, json.dumps([each.split() for each in BASE]))
+    assert done.stdout.endswith(b"\nFalse\n"), done.stderr.decode()
+
+
+@pytest.mark.parametrize("command", FINDS)
+def test_a_command_without_its_extra_names_it_and_does_nothing(command: str, folder: Path) -> None:
+    before = sorted(folder.iterdir())
+    done = run(COMMAND, folder, *command.split())
+    assert (done.returncode, done.stdout) == (2, b"")
+    assert done.stderr.decode() == f"Error: carproof {command.split(maxsplit=1)[0]} needs {FINDS[command]}\n"
+    assert sorted(folder.iterdir()) == before
+
+
+def test_an_op_without_its_extra_names_it_and_the_server_goes_on(folder: Path) -> None:
+    requests = line(id=1, op="optimum", instance=TWO) + line(id=2, op="stop")
+    done = run(COMMAND, folder, "serve", stdin=requests)
+    refused, stopped = map(json.loads, done.stdout.splitlines())
+    assert refused["error"]["message"] == "the op optimum needs python-sat: install carproof[prove]"
+    assert stopped == {"id": 2, "result": {}}
+    assert done.stderr == b""
+
+
+def test_another_projects_tests_run_without_hypothesis_and_a_judgement_names_it(folder: Path) -> None:
+    (folder / "pytest.ini").write_text("[pytest]\n")
+    (folder / "test_mine.py").write_text(
+        "def test_nothing():\n    pass\ndef test_planner(carproof):\n    carproof.conforms(print)\n"
+    )
+    done = run(
+        "import os, pytest\nos.environ['PYTEST_DISABLE_PLUGIN_AUTOLOAD'] = '1'  # hypothesis' own\n"
+        "sys.exit(pytest.main(['-q', '-p', 'carp_oracle.pytest_plugin', '-p', 'no:cacheprovider']))",
+        folder,
+    )
+    assert b"1 failed, 1 passed" in done.stdout, done.stdout.decode()
+    assert b"carproof.conforms needs hypothesis: install carproof[test]" in done.stdout
