@@ -58,11 +58,11 @@ bench: install
 
 # Measure how far planners are from the optimum, and put the table into verify/README.md; takes a few minutes.
 gap: install
-	$(BIN)/python -m carp_oracle.gap_table
+	$(BIN)/python -m carproof.gap_table
 
 # Measure how long the search for an optimum takes, and put the table into verify/README.md; takes up to five minutes.
 optimum-figures: install
-	$(BIN)/python -m carp_oracle.optimum_table
+	$(BIN)/python -m carproof.optimum_table
 
 # Put the results of stored runs, in experiments/results, into experiments/README.md.
 experiments-page: install
@@ -73,7 +73,7 @@ generated: install
 	$(BIN)/python -m tests.oracle.test_readme
 	$(BIN)/python -m carp_verify.vectors
 	$(BIN)/python -m carp_spec.readme
-	$(BIN)/python -m carp_oracle.viewer.samples
+	$(BIN)/python -m carproof.viewer.samples
 
 # Ask the reference questions of the paper's size, and write digests of its answers, with which the gate compares the
 # compiled planner's: about a quarter of an hour.

@@ -14,14 +14,14 @@ MAY_IMPORT: dict[str, set[str]] = {
     "carp_reference": {"carp_spec"},
     "carp_optimized": {"carp_spec"},
     "carp_verify": {"carp_spec", "carp_reference", "carp_optimized"},
-    "carp_oracle": {"carp_spec", "carp_reference", "carp_optimized", "carp_verify", "carp_experiments"},
-    "carp_experiments": {"carp_spec", "carp_reference", "carp_optimized", "carp_verify", "carp_oracle"},
+    "carproof": {"carp_spec", "carp_reference", "carp_optimized", "carp_verify", "carp_experiments"},
+    "carp_experiments": {"carp_spec", "carp_reference", "carp_optimized", "carp_verify", "carproof"},
 }
 SLOW_TO_LOAD = {"z3", "numba", "numpy", "pysat", "matplotlib", "hypothesis", "networkx"}
 
 
 def packages() -> dict[str, Path]:
-    return {name: ROOT / name.removeprefix("carp_") / name for name in MAY_IMPORT if list(ROOT.glob(f"*/{name}"))}
+    return {path.name: path for path in ROOT.glob("*/*") if path.name in MAY_IMPORT}
 
 
 def imported(package: Path) -> Iterator[tuple[str, str]]:

@@ -54,8 +54,8 @@ class Block(msgspec.Struct):
 
 def ask_both(block: Block, seed: int, number: int) -> None:
     """Ask both engines one question; an engine that fails by an exception differs too."""
-    from carp_oracle.commands.crosscheck import document  # noqa: PLC0415 - each worker loads it
-    from carp_verify.crosscheck import ask  # noqa: PLC0415
+    from carproof.commands.crosscheck import document  # noqa: PLC0415 - each worker loads it
+    from carproof.crosscheck import ask  # noqa: PLC0415
 
     subject, planner = question(seed, number)
     try:

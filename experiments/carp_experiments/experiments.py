@@ -56,7 +56,7 @@ class Experiment:
 
     def refuse(self, profile: Profile) -> None:
         """Raise `Refusal` where the maps have no place for so many robots."""
-        from carp_oracle.generate.options import ends_suffice  # noqa: PLC0415 - imports what imports this
+        from carproof.generate.options import ends_suffice  # noqa: PLC0415 - imports what imports this
 
         if not ends_suffice(self.places, profile.robots):
             message = f"{profile.robots} robots need as many distinct starts, and the map has {self.places}"

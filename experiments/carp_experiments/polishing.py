@@ -55,8 +55,8 @@ class PolishCase:
         polish, in nanoseconds.
         """
         import carp_optimized as engine  # noqa: PLC0415 - each worker loads it
-        from carp_oracle.generate import Fleet, Grid, grid_instance  # noqa: PLC0415
         from carp_verify.bound import lower_bound  # noqa: PLC0415
+        from carproof.generate import Fleet, Grid, grid_instance  # noqa: PLC0415
 
         instance = grid_instance(Grid(map=self.map), Fleet(robots=self.robots, seed=self.assignment))
         results: dict[str, tuple[int, int]] = {}

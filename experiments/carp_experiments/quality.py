@@ -80,8 +80,8 @@ class QualityCase:
 def grid_fleet(map: int, map_seed: int, robots: int, seed: int) -> "Fleet":
     """A fleet without plans on a map of the paper; raises `Refusal` where there can be no such fleet."""
     from carp_optimized.fleet import Fleet  # noqa: PLC0415 - each worker loads it
-    from carp_oracle.generate import Fleet as RandomFleet  # noqa: PLC0415
-    from carp_oracle.generate import Grid, grid_instance  # noqa: PLC0415
+    from carproof.generate import Fleet as RandomFleet  # noqa: PLC0415
+    from carproof.generate import Grid, grid_instance  # noqa: PLC0415
 
     return Fleet(grid_instance(Grid(map=map, map_seed=map_seed), RandomFleet(robots=robots, seed=seed)))
 

@@ -52,10 +52,10 @@ class GapCase:
         """
         import carp_optimized as engine  # noqa: PLC0415 - each worker loads it
         from carp_optimized.fleet import Fleet  # noqa: PLC0415
-        from carp_oracle.generate import Fleet as RandomFleet  # noqa: PLC0415
-        from carp_oracle.generate import Grid, grid_instance  # noqa: PLC0415
         from carp_verify.bound import lower_bound  # noqa: PLC0415
         from carp_verify.optimum import optimum  # noqa: PLC0415
+        from carproof.generate import Fleet as RandomFleet  # noqa: PLC0415
+        from carproof.generate import Grid, grid_instance  # noqa: PLC0415
 
         grid = Grid(SIDE, SIDE, self.map, map_seed=self.assignment)
         instance = grid_instance(grid, RandomFleet(robots=self.robots, seed=self.assignment))

@@ -26,7 +26,7 @@ from carp_spec.permutations import shuffle, splitmix64
 from carp_spec.planners import LARGEST_SEED
 
 if TYPE_CHECKING:
-    from carp_verify.strategies import FleetUnderWay
+    from carproof.strategies import FleetUnderWay
 
 T = TypeVar("T")
 Subject: TypeAlias = "Instance | FleetUnderWay"
@@ -138,7 +138,7 @@ def draw_neighbourhood(draw: Draw) -> Neighbourhood:
 
 def draw_fleet(draw: Draw, instance: Instance) -> "FleetUnderWay":
     """A fleet at a tick at which its plans, which make detours and wait as those of any planner might, are followed."""
-    from carp_verify.strategies import FleetUnderWay  # noqa: PLC0415 - slow to load
+    from carproof.strategies import FleetUnderWay  # noqa: PLC0415 - slow to load
 
     new, *others = shuffle(instance.robots, draw.stream)
     plans: list[Plan] = []
@@ -154,7 +154,7 @@ def draw_fleet(draw: Draw, instance: Instance) -> "FleetUnderWay":
 
 def draw_plan(draw: Draw, instance: Instance, committed: Sequence[Plan], robot: Robot) -> Plan | None:
     """A plan over some resource, longer in each than it needs to be; `None` if there is no way, or none is free."""
-    from carp_verify.timing import path_between, timed_plan  # noqa: PLC0415
+    from carproof.timing import path_between, timed_plan  # noqa: PLC0415
 
     over = draw.one_of(instance.graph.resources).id
     there, back = path_between(instance.graph, robot.start, over), path_between(instance.graph, over, robot.goal)

@@ -49,7 +49,7 @@ class UnplannedCase:
         Only the search for a group's optimum that comes near its minute can end otherwise on another machine.
         """
         import carp_optimized as engine  # noqa: PLC0415 - each worker loads it
-        from carp_oracle.generate import Fleet, Grid, grid_instance  # noqa: PLC0415
+        from carproof.generate import Fleet, Grid, grid_instance  # noqa: PLC0415
 
         instance = grid_instance(Grid(map=self.map), Fleet(robots=self.robots, seed=self.assignment))
         solution = engine.plan(instance, seeded(ALGORITHMS[GIVEN], self.assignment))

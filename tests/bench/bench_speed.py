@@ -13,9 +13,9 @@ import carp_reference
 from carp_optimized import passes
 from carp_optimized.arrays import NEVER
 from carp_optimized.fleet import Fleet
-from carp_oracle.bench import PROPOSED, ROBOTS
-from carp_oracle.generate import Fleet as RandomFleet
-from carp_oracle.generate import Grid, grid_instance
+from carproof.bench import PROPOSED, ROBOTS
+from carproof.generate import Fleet as RandomFleet
+from carproof.generate import Grid, grid_instance
 
 HERE = Path(__file__).parent
 ASSIGNMENTS = range(20)

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from click.testing import CliRunner
 
-from carp_oracle.cli import main
+from carproof.cli import main
 
 SMALL = ("--robots", "8", "--assignments", "2", "--map", "5", "--map", "12")
 

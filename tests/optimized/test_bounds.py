@@ -13,7 +13,7 @@ CROSSCHECK = """
 from carp_optimized import passes
 from carp_optimized.fleet import Fleet
 from carp_spec import Instance, Resource, ResourceGraph, Robot
-from carp_verify.crosscheck import first_difference
+from carproof.crosscheck import first_difference
 
 fleet = Fleet(Instance(ResourceGraph((Resource("a"),), ()), (Robot("r", "a", "a"),)))
 try:

@@ -16,8 +16,6 @@ from carp_optimized.__main__ import compile_all
 from carp_optimized.arrays import Search
 from carp_optimized.distances import term
 from carp_optimized.fleet import Fleet
-from carp_oracle.generate import Fleet as Robots
-from carp_oracle.generate import Grid, grid_instance
 from carp_spec import (
     Carp,
     Greedy,
@@ -35,6 +33,8 @@ from carp_spec import (
     Visit,
 )
 from carp_spec.permutations import splitmix64
+from carproof.generate import Fleet as Robots
+from carproof.generate import Grid, grid_instance
 
 LARGEST = 2**30 - 1
 ROUNDED_UP = ((400500, 89496552), (615752, 494798881), (973787, 88743213))  # where a float root is one too large

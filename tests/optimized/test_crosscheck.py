@@ -4,7 +4,7 @@ import pytest
 
 import carp_optimized
 from carp_spec import Instance, Planner, Solution
-from carp_verify.crosscheck import first_difference
+from carproof.crosscheck import first_difference
 
 
 def test_the_engines_agree() -> None:

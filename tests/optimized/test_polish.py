@@ -10,9 +10,9 @@ import carp_reference
 from carp_optimized import encoding
 from carp_optimized.arrays import Records
 from carp_optimized.recording import enlarged
-from carp_oracle.generate import Fleet, Grid, Range, Traits, grid_instance
 from carp_spec import Carp, Instance, Refusal, Solution, judge, total_cost
-from carp_verify.strategies import PlannedInstance, Sizes, planned_instances
+from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
+from carproof.strategies import PlannedInstance, Sizes, planned_instances
 
 SIZES = Sizes(resources=8, robots=12)
 SEEDS = st.integers(0, 2**64 - 1)

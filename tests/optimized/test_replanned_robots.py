@@ -6,9 +6,9 @@ from tests.optimized.towns import TOWNS
 import carp_optimized
 import carp_reference
 from carp_optimized.fleet import Fleet
-from carp_oracle.generate import Fleet as Robots
-from carp_oracle.generate import Grid, grid_instance
 from carp_spec import Neighbourhood, Solution
+from carproof.generate import Fleet as Robots
+from carproof.generate import Grid, grid_instance
 
 ALONE = Neighbourhood(m=1)
 

@@ -20,7 +20,7 @@ from carp_reference.problem import ticks_to_goal
 from carp_spec import Instance, Plan, ResourceId, RobotId
 from carp_verify.lemmas.freed_stays_come_too_late import least_f
 from carp_verify.smt import integers, value_of
-from carp_verify.strategies import FleetUnderWay, Sizes, fleets_under_way
+from carproof.strategies import FleetUnderWay, Sizes, fleets_under_way
 
 pytestmark = pytest.mark.skipif(os.environ.get("NUMBA_DISABLE_JIT") != "1", reason="it runs uncompiled")
 

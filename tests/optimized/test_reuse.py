@@ -14,9 +14,9 @@ import carp_optimized
 from carp_optimized import Reuse
 from carp_optimized.arrays import ANSWERS, PLANS
 from carp_optimized.fleet import Fleet
-from carp_oracle.generate import Fleet as Robots
-from carp_oracle.generate import Grid, grid_instance
 from carp_spec import Instance, Neighbourhood, Solution
+from carproof.generate import Fleet as Robots
+from carproof.generate import Grid, grid_instance
 
 KINDS = ("kept", "unchanged", "prefixes", "shared", "bounds")
 ALL_OFF = Reuse(**dict.fromkeys(KINDS, False))

@@ -19,7 +19,7 @@ from carp_spec import (
     Robot,
     Shuffled,
 )
-from carp_verify.strategies import FleetUnderWay, Sizes, fleets_under_way, instances
+from carproof.strategies import FleetUnderWay, Sizes, fleets_under_way, instances
 
 SIZES = Sizes(resources=6, robots=6)
 SEEDS = st.integers(0, 2**64 - 1)

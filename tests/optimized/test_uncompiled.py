@@ -7,7 +7,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 UNCOMPILED = ("test_replanning", "test_sorting")
-CROSSCHECK = "from carp_verify.crosscheck import first_difference; print(first_difference(60, seed=3))"
+CROSSCHECK = "from carproof.crosscheck import first_difference; print(first_difference(60, seed=3))"
 
 
 def uncompiled(*arguments: str) -> subprocess.CompletedProcess[str]:

@@ -13,7 +13,7 @@ from carp_optimized.arrays import NEVER, Rows
 from carp_optimized.fleet import Fleet
 from carp_spec import Instance, Plan
 from carp_spec.windows import Occupation, Window, free_windows
-from carp_verify.strategies import PlannedInstance, Sizes, planned_instances
+from carproof.strategies import PlannedInstance, Sizes, planned_instances
 
 SIZES = Sizes(resources=5, robots=6)
 

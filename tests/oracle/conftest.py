@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner
 from tests.oracle.running import Outcome, Run
 
-from carp_oracle.cli import main
+from carproof.cli import main
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -37,7 +37,7 @@ def process() -> Run:
     """Run `carproof` as a process of its own."""
 
     def run(*arguments: str | Path, stdin: bytes = b"") -> Outcome:
-        done = subprocess.run([sys.executable, "-m", "carp_oracle", *arguments], input=stdin, capture_output=True)  # noqa: PLW1510 - the code is the outcome
+        done = subprocess.run([sys.executable, "-m", "carproof", *arguments], input=stdin, capture_output=True)  # noqa: PLW1510 - the code is the outcome
         return Outcome(done.returncode, done.stdout.decode(), done.stderr.decode())
 
     return run

@@ -9,14 +9,14 @@ from typing import Any
 
 import msgspec
 
-from carp_oracle.conform.cases import OPS, request_fields
-from carp_oracle.conform.levels import Level
-from carp_oracle.conform.smoke import smoke_cases
-from carp_oracle.conform.vector_cases import vector_cases
-from carp_oracle.engines import engine_named
-from carp_oracle.server import respond
 from carp_spec import Refusal, read_instance
 from carp_spec.bounds import digest
+from carproof.conform.cases import OPS, request_fields
+from carproof.conform.levels import Level
+from carproof.conform.smoke import smoke_cases
+from carproof.conform.vector_cases import vector_cases
+from carproof.engines import engine_named
+from carproof.server import respond
 
 Request = dict[str, Any]
 Response = dict[str, Any]

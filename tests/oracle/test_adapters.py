@@ -11,16 +11,6 @@ from tests.oracle.foreign_files import COLUMNS, CORRECT, INSTANCE, LACAM, MAP, M
 from tests.oracle.running import Run
 from tests.profiles import draws
 
-from carp_oracle.adapters import (
-    ADAPTER_RULES,
-    ADAPTERS,
-    format_is_clear,
-    read_foreign_solution,
-    walks,
-    write_foreign_solution,
-)
-from carp_oracle.adapters.walks import instance_has_walks, solution_has_walks, walks_are_bounded
-from carp_oracle.generate.grid import cell_edges, cell_id
 from carp_spec import (
     Instance,
     Plan,
@@ -34,7 +24,17 @@ from carp_spec import (
     write_instance,
     write_solution,
 )
-from carp_verify.strategies import PlannedInstance, Sizes, instances, planned_instances
+from carproof.adapters import (
+    ADAPTER_RULES,
+    ADAPTERS,
+    format_is_clear,
+    read_foreign_solution,
+    walks,
+    write_foreign_solution,
+)
+from carproof.adapters.walks import instance_has_walks, solution_has_walks, walks_are_bounded
+from carproof.generate.grid import cell_edges, cell_id
+from carproof.strategies import PlannedInstance, Sizes, instances, planned_instances
 
 SOLUTION = Solution(
     (

@@ -7,9 +7,9 @@ from types import SimpleNamespace
 import pytest
 from tests.oracle.running import Run
 
-from carp_oracle import bench
-from carp_oracle.bench import GROWTH, PARTS, Added, OnGrid, OnMap, on_grid, on_map, weight
-from carp_oracle.commands import bench as command
+from carproof import bench
+from carproof.bench import GROWTH, PARTS, Added, OnGrid, OnMap, on_grid, on_map, weight
+from carproof.commands import bench as command
 
 KINDS = ("kept", "unchanged", "prefixes", "shared", "bounds")
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from tests.oracle.running import TWO, TWO_PLANNED, Run, line
 
-from carp_oracle.commands import COMMANDS
+from carproof.commands import COMMANDS
 
 SLOW_TO_LOAD = ("z3", "numba", "numpy", "networkx", "pysat", "hypothesis", "matplotlib")
 CARPROOF = Path(sys.executable).with_name("carproof")
@@ -57,7 +57,7 @@ def test_check_loads_nothing_slow(tmp_path: Path) -> None:
     (tmp_path / "town.json").write_bytes(line(**TWO))
     (tmp_path / "plans.json").write_bytes(line(**TWO_PLANNED))
     program = (
-        "import sys; from carp_oracle.cli import main; code = main(['check', 'town.json', 'plans.json', '--json']);"
+        "import sys; from carproof.cli import main; code = main(['check', 'town.json', 'plans.json', '--json']);"
         f"assert code == 0; print([name for name in {SLOW_TO_LOAD} if name in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True, cwd=tmp_path)
@@ -111,7 +111,7 @@ def test_progress_goes_to_standard_error_and_only_to_a_terminal(tmp_path: Path) 
 
 
 def test_a_fault_of_ours_is_no_answer(carproof: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("carp_oracle.commands.rules.rule_named", lambda _: 1 // 0)
+    monkeypatch.setattr("carproof.commands.rules.rule_named", lambda _: 1 // 0)
     outcome = carproof("rules", "joint/capacity")
     assert outcome.code == 70
     assert outcome.stderr.endswith("carproof failed by a fault of its own; the lines above say where.\n")

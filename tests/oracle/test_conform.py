@@ -8,7 +8,7 @@ from xml.etree import ElementTree as ET
 import pytest
 from tests.oracle.running import Run
 
-SERVE = [sys.executable, "-m", "carp_oracle", "serve"]
+SERVE = [sys.executable, "-m", "carproof", "serve"]
 
 
 @pytest.mark.usefixtures("elsewhere")

@@ -12,15 +12,15 @@ from tests.oracle.foreign_files import INSTANCE
 from tests.oracle.running import Run
 from tests.profiles import draws
 
-from carp_oracle.conform.classical_cases import classical_instances
-from carp_oracle.conform.findings import is_complete
-from carp_oracle.conform.function import Function
-from carp_oracle.conform.levels import Level
-from carp_oracle.conform.run import Options, conform
-from carp_oracle.movingai import movingai_instance, read_map, read_scenario
-from carp_oracle.movingai_writer import is_classical, write_movingai
 from carp_spec import Instance, Resource, ResourceGraph, Robot, Solution
 from carp_verify.optimum import optimum
+from carproof.conform.classical_cases import classical_instances
+from carproof.conform.findings import is_complete
+from carproof.conform.function import Function
+from carproof.conform.levels import Level
+from carproof.conform.run import Options, conform
+from carproof.movingai import movingai_instance, read_map, read_scenario
+from carproof.movingai_writer import is_classical, write_movingai
 
 PLANNER = [sys.executable, "-I", "-S", str(Path(__file__).parent / "grid_planner.py")]
 FILES = ["{map}", "{scen}", "{agents}"]

@@ -13,16 +13,16 @@ from tests.oracle.test_conform_judges import Tampered, as_it_is
 
 import carp_reference
 import carp_verify.verify_bound
-from carp_oracle.conform.answers import result_of
-from carp_oracle.conform.cases import NO_PLANS, Case
-from carp_oracle.conform.child import Limits
-from carp_oracle.conform.findings import LEAST_ANSWERED, LEAST_TRIED, Fault, answers_enough, tries_enough
-from carp_oracle.conform.function import Function
-from carp_oracle.conform.levels import Level
-from carp_oracle.conform.program import Program
-from carp_oracle.conform.run import Options, Report, conform
-from carp_oracle.conform.smoke import EAST, row
 from carp_spec import Carp, Instance, Plan, Solution, Visit
+from carproof.conform.answers import result_of
+from carproof.conform.cases import NO_PLANS, Case
+from carproof.conform.child import Limits
+from carproof.conform.findings import LEAST_ANSWERED, LEAST_TRIED, Fault, answers_enough, tries_enough
+from carproof.conform.function import Function
+from carproof.conform.levels import Level
+from carproof.conform.program import Program
+from carproof.conform.run import Options, Report, conform
+from carproof.conform.smoke import EAST, row
 
 PATIENT = 30.0
 EVASIVE = [sys.executable, str(Path(__file__).with_name("evasive.py"))]
@@ -95,7 +95,7 @@ def test_nothing_is_decided_without_random_cases() -> None:
 
 @pytest.mark.usefixtures("elsewhere")
 def test_random_cases_are_new_ones_each_time_and_the_verdict_names_their_seed(process: Run) -> None:
-    serve = ["--", sys.executable, "-m", "carp_oracle", "serve"]
+    serve = ["--", sys.executable, "-m", "carproof", "serve"]
     seeds = [json.loads(process("conform", "--json", "--examples", "6", *serve).stdout)["seed"] for _ in range(2)]
     assert seeds[0] != seeds[1]
     last = process("conform", "--seed", str(seeds[0]), "--examples", "6", *serve).stdout.splitlines()[-1]

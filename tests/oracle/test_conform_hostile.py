@@ -11,14 +11,14 @@ from pathlib import Path
 
 import pytest
 
-from carp_oracle.conform.cases import Case
-from carp_oracle.conform.child import Child, Limits
-from carp_oracle.conform.findings import Category, Fault
-from carp_oracle.conform.levels import Level
-from carp_oracle.conform.outcome import ask
-from carp_oracle.conform.program import Program
-from carp_oracle.conform.run import Options, Report, conform
-from carp_oracle.conform.smoke import smoke_cases
+from carproof.conform.cases import Case
+from carproof.conform.child import Child, Limits
+from carproof.conform.findings import Category, Fault
+from carproof.conform.levels import Level
+from carproof.conform.outcome import ask
+from carproof.conform.program import Program
+from carproof.conform.run import Options, Report, conform
+from carproof.conform.smoke import smoke_cases
 
 OWNER = f"-Xowner={os.getpid()}"
 """Python takes it and does nothing with it: other test processes run the same program at the same time."""
@@ -161,7 +161,7 @@ def test_a_program_that_cannot_be_run_is_a_crash() -> None:
 
 @pytest.mark.parametrize("stop", [signal.SIGINT, signal.SIGTERM])
 def test_an_interruption_leaves_no_child_and_is_undecided(stop: signal.Signals, tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "carp_oracle", "conform", "--timeout", "60", "--", *HOSTILE, "silence"]
+    command = [sys.executable, "-m", "carproof", "conform", "--timeout", "60", "--", *HOSTILE, "silence"]
     with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         deadline = time.monotonic() + GENEROUS
         while len(hostile_processes()) < 2 and time.monotonic() < deadline:

@@ -10,17 +10,17 @@ import msgspec
 import pytest
 
 import carp_reference
-from carp_oracle.conform.answers import OptimumAnswer, QueryAnswer, Reply
-from carp_oracle.conform.cases import OPS, POLISH_ROUNDS, Case, request_fields
-from carp_oracle.conform.levels import Level
-from carp_oracle.conform.run import Options, Report, conform
-from carp_oracle.conform.saving import save
 from carp_spec import Carp, Plan, Solution, judge
 from carp_spec.bounds import BoundDocument
 from carp_spec.documents import VerdictDocument, verdict_document
 from carp_spec.vectors import VectorsDocument
 from carp_verify.bound import lower_bound
 from carp_verify.optimum import optimum
+from carproof.conform.answers import OptimumAnswer, QueryAnswer, Reply
+from carproof.conform.cases import OPS, POLISH_ROUNDS, Case, request_fields
+from carproof.conform.levels import Level
+from carproof.conform.run import Options, Report, conform
+from carproof.conform.saving import save
 
 LATE = {"query/optimal", "joint/capacity", "joint/exchange", "fleet/history"}
 Tamper = Callable[[Case, Reply], Reply]

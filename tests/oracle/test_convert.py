@@ -6,10 +6,10 @@ from pathlib import Path
 import pytest
 from tests.oracle.running import Run
 
-from carp_oracle.movingai import map_is_right, read_map, read_scenario, scenario_is_right
 from carp_spec import read_instance
+from carproof.movingai import map_is_right, read_map, read_scenario, scenario_is_right
 
-EXAMPLES = Path(__file__).parent.parent.parent / "oracle/carp_oracle/examples"
+EXAMPLES = Path(__file__).parent.parent.parent / "oracle/carproof/examples"
 MAP = "type octile\nheight 2\nwidth 3\nmap\n.G@\nS.T\n"
 SCENARIO = "version 1\n0\tm.map\t3\t2\t0\t0\t1\t1\t1.41\n0\tm.map\t3\t2\t1\t1\t0\t0\t1.41\n"
 

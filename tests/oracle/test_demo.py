@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from tests.oracle.running import Run
 
-from carp_oracle.generate import Fleet, Grid, grid_instance
+from carproof.generate import Fleet, Grid, grid_instance
 
 FILES = [
     "depot-carp.json",
@@ -23,7 +23,7 @@ FILES = [
 @pytest.fixture
 def small_paper_map(monkeypatch: pytest.MonkeyPatch) -> None:
     small = grid_instance(Grid(5, 5), Fleet(robots=6))
-    monkeypatch.setattr("carp_oracle.commands.demo.grid_instance", lambda *_: small)
+    monkeypatch.setattr("carproof.commands.demo.grid_instance", lambda *_: small)
 
 
 @pytest.mark.usefixtures("small_paper_map")
@@ -43,7 +43,7 @@ def test_the_demo_plans_checks_and_compares(carproof: Run, tmp_path: Path) -> No
 
 
 def test_the_shipped_scenario_is_made_for_the_shipped_map() -> None:
-    folder = Path(__file__).parent.parent.parent / "oracle/carp_oracle/examples"
+    folder = Path(__file__).parent.parent.parent / "oracle/carproof/examples"
     agents = [line.split("\t") for line in (folder / "depot.scen").read_text().splitlines()[1:]]
     assert {agent[1] for agent in agents} == {"depot.map"}
     assert len(agents) == 30

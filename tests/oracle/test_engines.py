@@ -4,10 +4,10 @@ import pytest
 from hypothesis import given, settings
 from tests.profiles import draws
 
-from carp_oracle.engines import sum_of_shortest_paths
 from carp_reference import query
 from carp_spec import Instance, Resource, ResourceGraph, Robot, plan_cost
-from carp_verify.strategies import instances
+from carproof.engines import sum_of_shortest_paths
+from carproof.strategies import instances
 
 
 @settings(max_examples=draws(200))
@@ -26,6 +26,6 @@ def test_numbers_too_large_for_the_compiled_planner_are_added_up_too() -> None:
 
 
 def test_the_reference_is_not_asked_robot_by_robot(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("carp_oracle.engines.engine_named", lambda _: pytest.fail("asked"))
+    monkeypatch.setattr("carproof.engines.engine_named", lambda _: pytest.fail("asked"))
     instance = Instance(ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),)), (Robot("r", "a", "b"),))
     assert sum_of_shortest_paths(instance, instance.robot) == 1

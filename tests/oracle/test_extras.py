@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 from tests.oracle.running import ONE_PLANNED, TWO, TWO_PLANNED, line
 
-from carp_oracle.extras import EXTRAS
+from carproof.extras import EXTRAS
 
 ROOT = Path(__file__).parent.parent.parent
 WITHOUT_EXTRAS = f"import sys\nsys.modules.update(dict.fromkeys({[*EXTRAS]}))\n"
-COMMAND = "from carp_oracle.cli import main\nsys.exit(main(sys.argv[1:]))"
-COMMANDS = "import json\nfrom carp_oracle.cli import main\nprint(any([main(each) for each in json.loads(sys.argv[1])]))"
+COMMAND = "from carproof.cli import main\nsys.exit(main(sys.argv[1:]))"
+COMMANDS = "import json\nfrom carproof.cli import main\nprint(any([main(each) for each in json.loads(sys.argv[1])]))"
 FINDS = {
     "certify town.json plans.json": "z3-solver: install carproof[prove]",
     "theorems": "z3-solver: install carproof[prove]",
@@ -26,7 +26,7 @@ FINDS = {
     "crosscheck": "hypothesis: install carproof[test]",
     "experiment quality --quick": "joblib: install carproof[experiments]",
 }
-DEPOT = ROOT / "oracle/carp_oracle/examples/depot"
+DEPOT = ROOT / "oracle/carproof/examples/depot"
 BASE = [
     "--help",
     "plan town.json -o made.json",
@@ -94,7 +94,7 @@ def test_another_projects_tests_run_without_hypothesis_and_a_judgement_names_it(
     )
     done = run(
         "import os, pytest\nos.environ['PYTEST_DISABLE_PLUGIN_AUTOLOAD'] = '1'  # hypothesis' own\n"
-        "sys.exit(pytest.main(['-q', '-p', 'carp_oracle.pytest_plugin', '-p', 'no:cacheprovider']))",
+        "sys.exit(pytest.main(['-q', '-p', 'carproof.pytest_plugin', '-p', 'no:cacheprovider']))",
         folder,
     )
     assert b"1 failed, 1 passed" in done.stdout, done.stdout.decode()

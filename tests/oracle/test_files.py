@@ -12,7 +12,7 @@ import click
 import pytest
 from tests.oracle.running import TWO, TWO_PLANNED, Run
 
-from carp_oracle.files import write_whole
+from carproof.files import write_whole
 
 
 @pytest.fixture
@@ -120,7 +120,7 @@ def test_a_write_that_fails_leaves_the_old_file_and_nothing_else(
 
 
 def test_an_interrupt_ends_with_one_word_and_no_output_file(tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "carp_oracle"]
+    command = [sys.executable, "-m", "carproof"]
     large = subprocess.run([*command, "generate", "grid", "--map", "10"], check=True, capture_output=True).stdout
     (tmp_path / "town.json").write_bytes(large)
     arguments = ["plan", "town.json", "--planner", "shuffled", "--attempts", "1000000", "-o", "out.json"]

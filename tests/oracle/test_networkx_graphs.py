@@ -6,9 +6,9 @@ import networkx as nx
 import pytest
 
 import carp_reference
-from carp_oracle.adapters import instance_from_networkx
-from carp_oracle.adapters.networkx_graphs import node_is_right
 from carp_spec import Carp, Refusal, Resource, Robot, judge
+from carproof.adapters import instance_from_networkx
+from carproof.adapters.networkx_graphs import node_is_right
 
 
 def test_nodes_are_resources_and_edges_moves() -> None:

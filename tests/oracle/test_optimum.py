@@ -6,13 +6,13 @@ from pathlib import Path
 import pytest
 from tests.oracle.running import HEAD_ON, TWO, TWO_PLANNED, Document, Run, corridor, line
 
-from carp_oracle import gap_table, optimum_table
-from carp_oracle.gap_family import Cell, Family, measured
-from carp_oracle.gap_report import PLANNERS
-from carp_oracle.generate import Range
 from carp_spec import Carp
 from carp_verify.gap import Gap, PlannerGap
 from carp_verify.optimum import Evidence, Optimum
+from carproof import gap_table, optimum_table
+from carproof.gap_family import Cell, Family, measured
+from carproof.gap_report import PLANNERS
+from carproof.generate import Range
 
 UNSOLVABLE = corridor([{"id": "r1", "start": "a", "goal": "e"}, HEAD_ON])
 

@@ -138,7 +138,7 @@ def test_without_an_engine_asked_for_the_fastest_plans_that_has_the_planner(
         asked.append(name)
         return import_module(name)
 
-    monkeypatch.setattr("carp_oracle.engines.import_module", watched)
+    monkeypatch.setattr("carproof.engines.import_module", watched)
     for planner, engine in (("neighbourhood", "carp_optimized"), ("fixed-paths", "carp_reference")):
         asked.clear()
         outcome = carproof("plan", file(TWO), "--planner", planner, "--json")

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 from tests.oracle.running import BROKEN, HEAD_ON, ONE_PLANNED, TWO, TWO_PLANNED, Document, Run, corridor, line, solution
 
-from carp_oracle.engines import engine_named
-from carp_oracle.server import respond
+from carproof.engines import engine_named
+from carproof.server import respond
 
 LATE = solution({"r1": [["a", 0, 2], ["b", 2, 4], ["c", 4, 5]], "r2": TWO_PLANNED["plans"][1]["visits"]})
 

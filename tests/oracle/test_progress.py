@@ -13,9 +13,9 @@ from pathlib import Path
 import pytest
 
 from carp_optimized import plan
-from carp_oracle.generate import Fleet, Grid, grid_instance
-from carp_oracle.progress import found_so_far, search_progress
 from carp_spec import Carp, write_instance, write_solution
+from carproof.generate import Fleet, Grid, grid_instance
+from carproof.progress import found_so_far, search_progress
 
 CODES = re.compile(r"\x1b\[[0-9;?]*[a-zA-Z]")
 
@@ -25,7 +25,7 @@ def on_a_terminal(*arguments: object, columns: int = 80) -> list[str]:
     ours, theirs = pty.openpty()
     fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
     environment = {name: value for name, value in os.environ.items() if name not in ("CI", "COLUMNS", "NO_COLOR")}
-    command = [sys.executable, "-m", "carp_oracle", *map(str, arguments)]
+    command = [sys.executable, "-m", "carproof", *map(str, arguments)]
     with subprocess.Popen(
         command, stdin=theirs, stdout=theirs, stderr=theirs, env={**environment, "TERM": "xterm"}
     ) as child:

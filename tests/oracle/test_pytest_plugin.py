@@ -97,7 +97,7 @@ def test_a_planner_that_shows_nothing_fails_the_test(test: str, reason: str, tmp
 
 
 def test_pytest_starts_without_loading_what_judges_planners() -> None:
-    look = "import sys, carp_oracle.pytest_plugin; print(' '.join(sys.modules))"
+    look = "import sys, carproof.pytest_plugin; print(' '.join(sys.modules))"
     done = subprocess.run([sys.executable, "-c", look], check=True, capture_output=True, text=True)
     slow = {"hypothesis", "z3", "networkx", "numpy", "msgspec", "carp_spec", "carp_reference"}
     assert not slow & set(done.stdout.split())

@@ -3,9 +3,9 @@
 import pytest
 from tests.oracle.running import BROKEN, ONE_PLANNED, TWO, TWO_PLANNED, Run, line
 
-from carp_oracle.requests import now_is_a_tick, path_to, plans_are_sound, robot_is_known
-from carp_oracle.rules import ALL_RULES
 from carp_spec import Violation, read_instance, read_solution
+from carproof.requests import now_is_a_tick, path_to, plans_are_sound, robot_is_known
+from carproof.rules import ALL_RULES
 
 
 def test_every_rule_is_listed_once_and_told_in_full(carproof: Run) -> None:

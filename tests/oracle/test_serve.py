@@ -23,11 +23,11 @@ from tests.oracle.running import (
     solution,
 )
 
-from carp_oracle.engines import engine_named
-from carp_oracle.ops import OPS
-from carp_oracle.protocol import LONGEST_LINE
-from carp_oracle.rules import ALL_RULES
-from carp_oracle.server import respond, serve
+from carproof.engines import engine_named
+from carproof.ops import OPS
+from carproof.protocol import LONGEST_LINE
+from carproof.rules import ALL_RULES
+from carproof.server import respond, serve
 
 STOP = line(id="last", op="stop")
 GOODBYE = {"id": "last", "result": {}}
@@ -295,7 +295,7 @@ def test_a_fault_of_ours_is_an_error_of_kind_internal(
 
 
 def test_the_process_answers_each_line_before_it_reads_the_next() -> None:
-    command = [sys.executable, "-m", "carp_oracle", "serve"]
+    command = [sys.executable, "-m", "carproof", "serve"]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
         assert process.stdin is not None
         assert process.stdout is not None

@@ -8,13 +8,13 @@ import pytest
 from tests.oracle.running import BEHIND, EAST, EAST_PLAN, Run, corridor, solution
 from tests.oracle.viewing import COLLIDING, CORRIDOR, HOSTILE, SVG, drawn, picture_of, scene_of, without_positions
 
-from carp_oracle.viewer import limits
-from carp_oracle.viewer.chart_picture import TimeScale
-from carp_oracle.viewer.lanes import lanes, spots
-from carp_oracle.viewer.placement import UNIT, placement
-from carp_oracle.viewer.samples import FOLDER, sample_pictures
-from carp_oracle.viewer.staging import short_labels
 from carp_spec import Resource, ResourceGraph, judge, read_instance, read_solution
+from carproof.viewer import limits
+from carproof.viewer.chart_picture import TimeScale
+from carproof.viewer.lanes import lanes, spots
+from carproof.viewer.placement import UNIT, placement
+from carproof.viewer.samples import FOLDER, sample_pictures
+from carproof.viewer.staging import short_labels
 
 OUTSIDE = re.compile(r"""(?:src|href|url|action)\s*[=(]\s*["']?(?!#|data:)[a-z]*:?//""", re.IGNORECASE)
 PARKED = solution({"r1": [*EAST_PLAN[:2], ["c", 2, None]]}, ["r2"])
@@ -247,7 +247,7 @@ def test_two_pictures_at_once_are_refused(carproof: Run, tmp_path: Path) -> None
 def test_only_the_first_of_very_many_violations_are_listed(
     carproof: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("carp_oracle.viewer.staging.MOST_LISTED", 1)
+    monkeypatch.setattr("carproof.viewer.staging.MOST_LISTED", 1)
     scene = scene_of(drawn(carproof, tmp_path, CORRIDOR, COLLIDING))
     assert len(scene["violations"]) == 1
     assert scene["rules"][0]["count"] == 2

@@ -11,11 +11,11 @@ from selenium.webdriver.support.wait import WebDriverWait
 from tests.oracle.browser import Page, chromium, logged
 from tests.oracle.viewing import COLLIDING, CORRIDOR, HOSTILE, SVG, picture_of
 
-from carp_oracle.generate import Fleet, Grid, Range, Traits, grid_instance
-from carp_oracle.viewer.page import page
-from carp_oracle.viewer.stills import map_still
 from carp_reference import plan
 from carp_spec import Carp, Instance, Plan, Robot, Solution, Visit, read_instance, read_solution
+from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
+from carproof.viewer.page import page
+from carproof.viewer.stills import map_still
 
 LATER = 30
 CHART_IS_DRAWN = "return document.getElementById('chart').width > 400"

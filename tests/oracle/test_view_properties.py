@@ -8,12 +8,12 @@ from hypothesis import strategies as st
 from tests.oracle.viewing import picture_of, scene_of
 from tests.profiles import draws
 
-from carp_oracle.viewer.lanes import lanes, lasts, occupations
-from carp_oracle.viewer.page import page
-from carp_oracle.viewer.stills import chart_still, map_still
 from carp_spec import Instance, Plan, Solution, Visit, judge
 from carp_spec.windows import occupancy
-from carp_verify.strategies import instances
+from carproof.strategies import instances
+from carproof.viewer.lanes import lanes, lasts, occupations
+from carproof.viewer.page import page
+from carproof.viewer.stills import chart_still, map_still
 
 TICKS = st.integers(-5, 20)
 LATEST = 25

@@ -12,7 +12,7 @@ from carp_reference import neighbourhood
 from carp_reference.problem import prepare
 from carp_reference.query import find_plan
 from carp_spec import Carp, Instance, Neighbourhood, Plan, check, check_update, has_ended, judge, total_cost
-from carp_verify.strategies import FleetUnderWay, Sizes, fleets_under_way, instances
+from carproof.strategies import FleetUnderWay, Sizes, fleets_under_way, instances
 
 CROWDED = Sizes(resources=6, robots=5, duration=2)
 

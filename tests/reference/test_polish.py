@@ -6,10 +6,10 @@ from hypothesis import strategies as st
 from tests.profiles import draws
 from tests.spec.making import instance_on, line
 
-from carp_oracle.generate import Fleet, Grid, grid_instance
 from carp_reference import polish
 from carp_spec import Instance, Refusal, Robot, Solution, judge, total_cost
-from carp_verify.strategies import PlannedInstance, Sizes, planned_instances
+from carproof.generate import Fleet, Grid, grid_instance
+from carproof.strategies import PlannedInstance, Sizes, planned_instances
 
 
 def worth(instance: Instance, solution: Solution) -> tuple[int, int]:

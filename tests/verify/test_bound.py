@@ -25,8 +25,8 @@ from carp_verify.cut_search import prove
 from carp_verify.joint_search import least_total_cost
 from carp_verify.lemmas.prices_bound_the_total import at_most_paid, in_exchange, paid
 from carp_verify.smt import integers, truth, value_of
-from carp_verify.strategies import PlannedInstance, Sizes, instances, planned_instances
 from carp_verify.verify_bound import Budget, Search, Tariff, predecessors, verify_bound
+from carproof.strategies import PlannedInstance, Sizes, instances, planned_instances
 
 TINY = Sizes(resources=4, robots=3, capacity=2, duration=2, release=2, pace=2)
 SCALE = 4

@@ -24,7 +24,7 @@ from carp_spec import (
 from carp_verify import certificate
 from carp_verify.certificate import certify, certify_together
 from carp_verify.smt import Solver, Undecided
-from carp_verify.strategies import BrokenSolution, PlannedInstance, broken_solutions, planned_instances
+from carproof.strategies import BrokenSolution, PlannedInstance, broken_solutions, planned_instances
 
 __all__ = ["carproof"]
 

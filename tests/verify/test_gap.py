@@ -19,7 +19,7 @@ from carp_spec import (
 )
 from carp_verify.gap import best_order, gap
 from carp_verify.solver import TimeOver
-from carp_verify.strategies import Sizes, instances
+from carproof.strategies import Sizes, instances
 
 SECONDS = 60
 SMALL_FLEET = Sizes(resources=5, robots=4, capacity=2, duration=2, release=2, pace=2)

@@ -10,7 +10,7 @@ from carp_verify import heuristics
 from carp_verify.encoding import Encoding
 from carp_verify.heuristics import plans_of_all
 from carp_verify.solver import TimeOver
-from carp_verify.strategies import Sizes, instances
+from carproof.strategies import Sizes, instances
 
 SMALL = Sizes(resources=6, robots=4, capacity=2, duration=3, release=3, pace=2)
 

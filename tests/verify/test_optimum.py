@@ -6,13 +6,13 @@ import pytest
 from hypothesis import given, settings
 from tests.profiles import draws
 
-from carp_oracle.generate import Fleet, Grid, grid_instance
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, judge
 from carp_verify.encoding import Encoding
 from carp_verify.joint_search import least_total_cost
 from carp_verify.optimum import optimum
-from carp_verify.strategies import Sizes, instances
 from carp_verify.unsolvable import describe
+from carproof.generate import Fleet, Grid, grid_instance
+from carproof.strategies import Sizes, instances
 
 TINY = Sizes(resources=4, robots=3, capacity=2, duration=2, release=2, pace=2)
 LONG = 60

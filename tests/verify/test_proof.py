@@ -12,7 +12,7 @@ from tests.verify.test_bound import UNSOUND_DRAT
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, judge, write_instance
 from carp_verify.optimum import optimum
 from carp_verify.proof import FILES, ProofError, verify_proof, write_proof
-from carp_verify.strategies import Sizes, instances
+from carproof.strategies import Sizes, instances
 
 SECONDS = 60
 TINY = Sizes(resources=4, robots=3, capacity=2, duration=2, release=2, pace=2)

@@ -30,7 +30,7 @@ from carp_spec.neighbourhood_rules import baseline_is_tried, next_trajectory, re
 from carp_spec.plan_rules import is_plan_cost, is_total_cost
 from carp_spec.planners import LARGEST_SAMPLE, LARGEST_SEED, options_are_right
 from carp_spec.query_rules import expansion_key
-from carp_verify.strategies import PlannedInstance, instances, planned_instances
+from carproof.strategies import PlannedInstance, instances, planned_instances
 
 Plant: TypeAlias = Callable[[Instance, st.DataObject], Instance]
 WITH_ROBOTS = instances(least_robots=1)

@@ -1,1 +1,0 @@
-"""The face: command line, protocol, other tools' formats."""

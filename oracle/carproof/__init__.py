@@ -1,0 +1,140 @@
+"""The public face of carproof, for authors of planners.
+
+    from carproof import check, plan, read_instance
+
+    instance = read_instance(Path("town.json").read_bytes())
+    verdict = check(instance, plan(instance))
+
+The model (`Instance`, `ResourceGraph`, `Resource`, `Robot`, `Solution`, `Plan`, `Visit`), its documents (`read_...`,
+`write_...`), the checker (`check`, with a `Verdict` of `Violation`s by the rules in `RULES`), the planners (`plan`,
+`query`, `add`, `polish`) with their options (`Carp`, `Neighbourhood`, ...), and what is known of the best plans
+(`bound`, `verify_bound`, `optimum`). `carproof.adapters` reads and writes other tools' formats, `carproof.generate`
+makes instances, and `carproof.strategies` draws them for hypothesis.
+
+A name is loaded when it is first used, so that importing this page costs nothing.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from carp_optimized import add, plan, polish, query
+    from carp_spec import (
+        RULES,
+        AfterGoal,
+        Carp,
+        Fault,
+        FixedPaths,
+        Greedy,
+        Instance,
+        LongestFirst,
+        Move,
+        Neighbourhood,
+        Plan,
+        Planner,
+        Refusal,
+        Resource,
+        ResourceGraph,
+        ResourceId,
+        Robot,
+        RobotId,
+        Rule,
+        Shuffled,
+        Solution,
+        TimeExpanded,
+        Verdict,
+        Violation,
+        Visit,
+        check_update,
+        plan_cost,
+        planner_named,
+        read_instance,
+        read_solution,
+        total_cost,
+        write_instance,
+        write_solution,
+        write_verdict,
+    )
+    from carp_spec import judge as check
+    from carp_spec.bounds import BoundDocument, read_bound
+    from carp_verify.bound import lower_bound as bound
+    from carp_verify.optimum import Optimum, optimum
+    from carp_verify.verify_bound import verify_bound
+
+_ELSEWHERE = {
+    "add": "carp_optimized",
+    "plan": "carp_optimized",
+    "polish": "carp_optimized",
+    "query": "carp_optimized",
+    "check": "carp_spec:judge",
+    "BoundDocument": "carp_spec.bounds",
+    "read_bound": "carp_spec.bounds",
+    "bound": "carp_verify.bound:lower_bound",
+    "Optimum": "carp_verify.optimum",
+    "optimum": "carp_verify.optimum",
+    "verify_bound": "carp_verify.verify_bound",
+}
+"""Where a name comes from, and what it is called there; all others are of `carp_spec`."""
+
+__all__ = [
+    "RULES",
+    "AfterGoal",
+    "BoundDocument",
+    "Carp",
+    "Fault",
+    "FixedPaths",
+    "Greedy",
+    "Instance",
+    "LongestFirst",
+    "Move",
+    "Neighbourhood",
+    "Optimum",
+    "Plan",
+    "Planner",
+    "Refusal",
+    "Resource",
+    "ResourceGraph",
+    "ResourceId",
+    "Robot",
+    "RobotId",
+    "Rule",
+    "Shuffled",
+    "Solution",
+    "TimeExpanded",
+    "Verdict",
+    "Violation",
+    "Visit",
+    "add",
+    "bound",
+    "check",
+    "check_update",
+    "optimum",
+    "plan",
+    "plan_cost",
+    "planner_named",
+    "polish",
+    "query",
+    "read_bound",
+    "read_instance",
+    "read_solution",
+    "total_cost",
+    "verify_bound",
+    "write_instance",
+    "write_solution",
+    "write_verdict",
+]
+
+
+def __getattr__(name: str) -> Any:  # noqa: ANN401 - any of the names above
+    """Load a name of this page when it is first used."""
+    if name == "__version__":
+        return import_module("importlib.metadata").version("carproof")
+    if name not in __all__:
+        raise AttributeError(f"module 'carproof' has no attribute {name!r}")
+    module, _, original = _ELSEWHERE.get(name, "carp_spec").partition(":")
+    return getattr(import_module(module), original or name)
+
+
+def __dir__() -> list[str]:
+    """The names of this page."""
+    return [*__all__, "__version__"]

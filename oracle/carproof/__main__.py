@@ -1,0 +1,8 @@
+"""`python -m carproof` is the command `carproof`."""
+
+import sys
+
+from carproof.cli import main
+
+if __name__ == "__main__":
+    sys.exit(main())

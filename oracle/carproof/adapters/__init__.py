@@ -1,0 +1,90 @@
+"""Solutions in other planners' formats, one a module, and graphs of networkx.
+
+`read_foreign_solution` reads any of them, and finds out which it is where nobody says; `write_foreign_solution`
+writes them. What the formats mean, `walks` says. To add one, write its module and put its adapter into `ADAPTERS`.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+from carp_spec import Instance, Refusal, Rule, Solution
+from carp_spec.rule import DESIGN, rule
+from carproof.adapters import agent_paths, carproof_documents, lacam, libmultirobotplanning, mapf_tracker
+from carproof.adapters.adapter import Adapter
+from carproof.adapters.networkx_graphs import instance_from_networkx, node_is_right
+from carproof.adapters.walks import WALK_RULES
+
+__all__ = ["ADAPTERS", "ADAPTER_RULES", "instance_from_networkx", "read_foreign_solution", "write_foreign_solution"]
+
+ADAPTERS: Mapping[str, Adapter] = {
+    each.name: each
+    for each in (
+        carproof_documents.ADAPTER,
+        lacam.ADAPTER,
+        libmultirobotplanning.ADAPTER,
+        mapf_tracker.ADAPTER,
+        agent_paths.ROW_COLUMN,
+        agent_paths.X_Y,
+    )
+}
+
+
+@rule(
+    "adapter/format",
+    "A solution whose format is not named looks like one format; of those that it looks like, it is the one in which "
+    "every robot begins at its start.",
+    DESIGN,
+)
+def format_is_clear(text: str, instance: Instance) -> bool:
+    """Whether the format can be found out."""
+    return len(_possible(text, instance)) == 1
+
+
+ADAPTER_RULES: tuple[Rule[..., Any], ...] = (
+    *WALK_RULES,
+    format_is_clear,
+    lacam.lines_are_right,
+    libmultirobotplanning.schedule_is_right,
+    mapf_tracker.moves_are_right,
+    agent_paths.paths_are_right,
+    node_is_right,
+)
+
+
+def read_foreign_solution(data: bytes, instance: Instance, file: str = "file", format: str | None = None) -> Solution:
+    """Read a solution in the format named or, if none is, in the one that it looks like.
+
+    Raises `Refusal` with file and line, also where two formats are possible or none is.
+    """
+    text = data.decode(errors="surrogateescape").replace("\r\n", "\n")
+    if format is None:
+        format = _format_of(text, instance, file)
+    return ADAPTERS[format].read(text, instance, file)
+
+
+def write_foreign_solution(instance: Instance, solution: Solution, format: str) -> bytes:
+    """Write a solution that breaks no rule in the format named."""
+    return ADAPTERS[format].write(instance, solution).encode()
+
+
+def _format_of(text: str, instance: Instance, file: str) -> str:
+    possible = _possible(text, instance)
+    if len(possible) == 1:
+        return possible[0]
+    looks = ", ".join(name for name, each in ADAPTERS.items() if each.looks_like(text))
+    what = f"it could be {looks}" if looks else f"it looks like none of {', '.join(ADAPTERS)}"
+    raise Refusal("document", file, format_is_clear.id, f"the format must be named by --from: {what}")
+
+
+def _possible(text: str, instance: Instance) -> list[str]:
+    """The formats that it looks like; if they are more than one, those in which robots begin at their starts."""
+    names = [name for name, each in ADAPTERS.items() if each.looks_like(text)]
+    return names if len(names) == 1 else [name for name in names if _begins_at_starts(text, instance, ADAPTERS[name])]
+
+
+def _begins_at_starts(text: str, instance: Instance, adapter: Adapter) -> bool:
+    try:
+        solution = adapter.read(text, instance, "file")
+    except Refusal:
+        return False
+    return all(plan.visits[0].resource == instance.robot[plan.robot].start for plan in solution.plans)

@@ -1,0 +1,122 @@
+"""Walks over cells, tick by tick: what all the planners' text formats have in common, and what they mean.
+
+They are of classical multi-agent path finding: every robot is there from tick 0, moves or waits in each tick, and
+stays at its goal for ever. Following and rotating are allowed, swapping is not, and cells and moves take one tick;
+carproof's rules say the same of an instance with `park` and durations and capacities of one, and where an instance
+says otherwise, the instance is right. Waiting at the end of a walk is part of one visit for ever. A cell that the
+instance does not have, a jump, or a walk that ends elsewhere than at the goal is left to the checker.
+"""
+
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from typing import Any, TypeAlias
+
+from carp_spec import Instance, Plan, Refusal, ResourceId, RobotId, Rule, Solution, Visit, judge
+from carp_spec.rule import DESIGN, rule
+from carproof.generate.grid import cell_id
+
+Cell: TypeAlias = tuple[int, int]
+Walk: TypeAlias = Sequence[tuple[Cell, int]]
+"""Cells, each with the tick at which the robot is known to be there; the ticks rise, and between them it stays."""
+
+MOST_CELLS = 20_000_000
+
+
+@rule(
+    "adapter/instance",
+    "Walks over cells are of an instance in which robots park and are released at 0, and in which every resource has "
+    "a position of its own.",
+    DESIGN,
+)
+def instance_has_walks(instance: Instance) -> bool:
+    """Whether walks over cells can be plans of the instance."""
+    positions = {(each.x, each.y) for each in instance.graph.resources if each.x is not None and each.y is not None}
+    all_there = all(robot.release == 0 for robot in instance.robots)
+    return instance.after_goal == "park" and all_there and len(positions) == len(instance.graph.resources)
+
+
+@rule("adapter/size", f"Walks have at most {MOST_CELLS} cells together, waiting counted tick by tick.", DESIGN)
+def walks_are_bounded(cells: int) -> bool:
+    """Whether so many cells fit in memory."""
+    return cells <= MOST_CELLS
+
+
+@rule(
+    "adapter/solution",
+    "A solution is written as walks only if it breaks no rule, and without unplanned robots where the format has no "
+    "place for them.",
+    DESIGN,
+)
+def solution_has_walks(instance: Instance, solution: Solution, partial: bool) -> bool:
+    """Whether the solution can be written; `partial` formats can leave robots out."""
+    return judge(instance, solution).valid and (partial or not solution.unplanned)
+
+
+WALK_RULES: tuple[Rule[..., Any], ...] = (instance_has_walks, walks_are_bounded, solution_has_walks)
+
+
+def require_walks(instance: Instance) -> None:
+    """Raise `Refusal` if the instance is not one of walks."""
+    if not instance_has_walks(instance):
+        message = "robots must park and be released at 0, and every resource must have a position of its own"
+        raise Refusal("document", "INSTANCE", instance_has_walks.id, message)
+
+
+def require_bounded(cells: int, where: str) -> None:
+    """Raise `Refusal` if there are too many cells."""
+    if not walks_are_bounded(cells):
+        message = f"the walks must have at most {MOST_CELLS} cells together, and have {cells}"
+        raise Refusal("limit", where, walks_are_bounded.id, message)
+
+
+def solution_of_walks(instance: Instance, walks: Mapping[RobotId, Walk]) -> Solution:
+    """The solution in which robots walk so; those without a walk are unplanned."""
+    require_walks(instance)
+    resources = {(each.x, each.y): each.id for each in instance.graph.resources}
+    plans = tuple(_plan(id, walks[id], resources) for id in instance.robot if id in walks)
+    unplanned = tuple(id for id in instance.robot if id not in walks)
+    return Solution(plans, tuple(plan.robot for plan in plans), unplanned)
+
+
+def _plan(robot: RobotId, walk: Walk, resources: Mapping[tuple[int | None, int | None], ResourceId]) -> Plan:
+    entries = [walk[at] for at in range(len(walk)) if at == 0 or walk[at][0] != walk[at - 1][0]]
+    ends: list[int | None] = [*(tick for _, tick in entries[1:]), None]
+    return Plan(
+        robot,
+        tuple(
+            Visit(resources.get(cell, cell_id(*cell)), enter, leave)
+            for (cell, enter), leave in zip(entries, ends, strict=True)
+        ),
+    )
+
+
+def walks_of_solution(instance: Instance, solution: Solution, *, partial: bool) -> Mapping[RobotId, Walk]:
+    """The walk of each plan, with each visit once; raises `Refusal` if the format cannot hold the solution."""
+    require_walks(instance)
+    if not solution_has_walks(instance, solution, partial):
+        wrong = [str(each) for each in judge(instance, solution).violations]
+        what = f"it breaks a rule: {wrong[0]}" if wrong else f"it leaves {len(solution.unplanned)} robots unplanned"
+        raise Refusal("document", "SOLUTION", solution_has_walks.id, f"the format cannot hold it: {what}")
+    plans = {plan.robot: plan for plan in solution.plans}
+    return {
+        id: [(_cell(instance, each), each.enter) for each in plans[id].visits] for id in instance.robot if id in plans
+    }
+
+
+def _cell(instance: Instance, visit: Visit) -> Cell:
+    resource = instance.graph.resource[visit.resource]
+    return (resource.x or 0, resource.y or 0)
+
+
+def tick_by_tick(walks: Mapping[RobotId, Walk]) -> Mapping[RobotId, Sequence[Cell]]:
+    """The cell of each robot at each tick up to its arrival."""
+    require_bounded(sum(walk[-1][1] + 1 for walk in walks.values()), "SOLUTION")
+    return {
+        robot: [*(cell for (cell, enter), (_, leave) in pairwise(walk) for _ in range(enter, leave)), walk[-1][0]]
+        for robot, walk in walks.items()
+    }
+
+
+def last_arrival(cells: Mapping[RobotId, Sequence[Cell]]) -> int:
+    """The tick at which the last robot arrives, 0 without robots; `cells` are those of each robot tick by tick."""
+    return max((len(each) - 1 for each in cells.values()), default=0)

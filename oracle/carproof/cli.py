@@ -1,0 +1,135 @@
+"""The command `carproof`: loads the command that is asked for and turns what comes of it into an exit code."""
+
+import io
+import os
+import sys
+import traceback
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from importlib import import_module
+
+import click
+
+from carp_spec import Refusal
+from carp_verify.bound_rules import ContradictionError
+from carproof.answer import INTERNAL_ERROR, INTERRUPTED, PIPE_CLOSED, Answer
+from carproof.commands import COMMANDS
+from carproof.extras import advice
+from carproof.tables import printable
+
+SETTINGS = {"help_option_names": ["-h", "--help"], "show_default": True}
+EPILOG = """\b
+Examples:
+  carproof generate grid -o town.json             20 x 20 grid, 100 robots
+  carproof plan town.json -o plans.json           plan them
+  carproof check town.json plans.json             judge the plans
+  carproof rules joint/capacity                   what a rule says
+  carproof plan town.json --json | carproof check town.json -
+
+\b
+Exit codes: 0 yes, 1 no (a broken rule, a robot without a plan),
+2 bad input or usage, 3 undecided within the limit given.
+"""
+
+
+class LazyCommands(click.Group):
+    """A group whose commands are the modules of `carproof.commands`."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """The commands in the order in which they are told."""
+        del ctx
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Load a command."""
+        del ctx
+        if cmd_name not in COMMANDS:
+            return None
+        command = import_module(f"carproof.commands.{cmd_name.replace('-', '_')}").command
+        assert isinstance(command, click.Command)  # noqa: S101 - a promise of ours, not of the user's
+        return command
+
+
+@click.group(cls=LazyCommands, epilog=EPILOG, context_settings=SETTINGS)
+@click.version_option(package_name="carproof", message="carproof %(version)s")
+def carproof() -> None:
+    """Plan robots in an automated warehouse, and judge anybody's plans by stable rules."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command line and return its exit code."""
+    _open_closed_streams()
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+    try:
+        answer = _answer(sys.argv[1:] if arguments is None else arguments)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        _forget_output()
+        return PIPE_CLOSED
+    except KeyboardInterrupt:
+        click.echo("Interrupted.", err=True)
+        return INTERRUPTED
+    except OSError as error:
+        _forget_output()
+        return _complain(f"the output cannot be written: {error.strerror}")
+    except ContradictionError as error:
+        click.echo(f"Internal contradiction: {error}. A checker of carproof is wrong; please report both.", err=True)
+        return INTERNAL_ERROR
+    except Exception:  # noqa: BLE001 - a fault of ours must not look like the answer no
+        traceback.print_exc()
+        click.echo("carproof failed by a fault of its own; the lines above say where.", err=True)
+        return INTERNAL_ERROR
+    return answer
+
+
+def _answer(arguments: Sequence[str]) -> int:
+    try:
+        with carproof.make_context("carproof", list(arguments)) as context, _naming_extras(context):
+            answer = carproof.invoke(context)
+    except click.exceptions.Exit as done:
+        return done.exit_code
+    except click.UsageError as error:
+        asked = error.ctx.command_path if error.ctx else "carproof"
+        return _complain(f"{error.format_message()} (See {asked} --help.)")
+    except click.ClickException as error:
+        return _complain(error.format_message())
+    except Refusal as refusal:
+        return _complain(f"{_option(refusal.path)}: {refusal.message} [{refusal.rule}]")
+    return Answer(answer)
+
+
+@contextmanager
+def _naming_extras(context: click.Context) -> Iterator[None]:
+    """Say of a library that is missing which extra has it."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        advised = advice(error)
+        if advised is None:
+            raise
+        raise click.ClickException(f"carproof {context.invoked_subcommand} {advised}") from error
+
+
+def _option(path: str) -> str:
+    """The command line's name of an option that Python and documents call `$.map_seed`."""
+    return "--" + path[2:].replace("_", "-") if path.startswith("$.") else path
+
+
+def _complain(sentence: str) -> Answer:
+    click.echo(f"Error: {printable(sentence)}", err=True)
+    return Answer.BAD_INPUT
+
+
+def _open_closed_streams() -> None:
+    """Give a process that was started without standard streams, as by `>&-`, empty ones."""
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: PTH123, SIM115 - as long as the process
+
+
+def _forget_output() -> None:
+    """Send what is still buffered nowhere, so that the interpreter's last flush finds an open file."""
+    with open(os.devnull, "w", encoding="utf-8") as nowhere:  # noqa: PTH123 - a device, not a path
+        os.dup2(nowhere.fileno(), sys.__stdout__.fileno() if sys.__stdout__ else 1)

@@ -1,0 +1,75 @@
+"""`carproof add`: add one robot to plans that are there, by the neighbourhood planner."""
+
+from pathlib import Path
+from typing import Any, cast
+
+import click
+
+from carp_spec import Neighbourhood, write_solution
+from carproof.answer import Answer
+from carproof.engines import engine_named
+from carproof.files import naming, read_instance_file, read_solution_file, refuse_two_standard_inputs
+from carproof.options import (
+    ADDING,
+    chosen_planner,
+    engine_option,
+    examples,
+    instance_argument,
+    json_option,
+    now_option,
+    output_option,
+    planner_options,
+    solution_argument,
+)
+from carproof.requests import require_new_robot, require_tick, robot_called, sound_solution
+from carproof.results import show_addition, write_result
+
+
+@click.command(
+    short_help="Add one robot to plans that are there.",
+    epilog=examples(
+        "carproof add town.json plans.json r101 -o plans.json",
+        "carproof add town.json plans.json r101 --now 12 --m 5",
+    ),
+)
+@instance_argument
+@solution_argument
+@click.argument("robot")
+@now_option
+@planner_options(*ADDING)
+@engine_option
+@output_option
+@json_option
+def command(  # noqa: PLR0913 - one parameter for each argument and option
+    *,
+    instance: str,
+    solution: str,
+    robot: str,
+    now: int,
+    engine: str | None,
+    output: Path | None,
+    as_json: bool,
+    **options: Any,  # noqa: ANN401 - `planner_named` checks them
+) -> Answer:
+    """Add ROBOT, which INSTANCE has, to the plans of SOLUTION, by the neighbourhood planner.
+
+    Robots near it may get new plans; what each has done by --now stays. A robot that SOLUTION does not name
+    counts as unplanned.
+
+    Exit codes: 0 the robot has a plan, 1 it has none and all plans stay as they were, 2 bad input.
+    """
+    refuse_two_standard_inputs(instance, solution)
+    require_tick(now, "$.now")
+    chosen = cast("Neighbourhood", chosen_planner(Neighbourhood.name, options))
+    problem = read_instance_file(instance)
+    given = read_solution_file(solution)
+    with naming(solution):
+        before = sound_solution(problem, given)
+    id = robot_called(problem, robot)
+    require_new_robot(problem, before, id, "ROBOT")
+    with naming(instance):
+        after = engine_named(engine).add(problem, before, id, now, chosen)
+    write_result(write_solution(after), output, as_json)
+    if not as_json:
+        show_addition(problem, before, after, id, now)
+    return Answer.of(id not in after.unplanned)

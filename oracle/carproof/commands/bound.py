@@ -1,0 +1,91 @@
+"""`carproof bound`: a lower bound on the total cost, with a certificate."""
+
+from pathlib import Path
+from time import perf_counter
+
+import click
+
+from carp_spec import Instance, judge, total_cost
+from carp_spec.documents import write
+from carproof.answer import Answer
+from carproof.extras import require
+from carproof.files import InputFile, print_document, read_instance_file, read_solution_file, write_whole
+from carproof.options import DEFAULT_SECONDS, examples, instance_argument, json_option, output_option
+from carproof.progress import found_so_far, gap, search_progress
+from carproof.tables import print_line, print_table
+
+COLUMNS = ("robots", "shortest paths", "lower bound", "best known", "gap", "steps", "time")
+
+
+@click.command(
+    epilog=examples(
+        "carproof bound town.json -o certificate.json",
+        "carproof verify-bound town.json certificate.json",
+        "carproof bound town.json --seconds 60 --plans plans.json",
+        "carproof bound town.json --steps 500 --json",
+    )
+)
+@instance_argument
+@click.option(
+    "--seconds", type=click.IntRange(min=1), help=f"For how long to search at most.  [default: {DEFAULT_SECONDS}]"
+)
+@click.option("--steps", type=click.IntRange(min=0), help="After how many steps to end; the result is always the same.")
+@click.option("--plans", type=InputFile(), help="A solution whose total is set against the bound.")
+@output_option
+@json_option
+def command(
+    instance: str, seconds: int | None, steps: int | None, plans: str | None, output: Path | None, as_json: bool
+) -> Answer:
+    """Find a lower bound on the total cost of any plans for all robots of INSTANCE.
+
+    Robots pay prices for places that they contend for: what they cost then at least, less what can be paid at most,
+    no plans can beat. --output writes the prices as a certificate, which verify-bound checks. The gap is that of
+    the plans given, or else of the best of ten orders in which the robots are planned one after the other.
+
+    Exit codes: 0 here is a bound, 1 a robot has no way to its goal (the bound is that of the others), 2 bad input.
+    """
+    require("pysat")
+    from carp_verify.bound import Progress, lower_bound  # noqa: PLC0415 - loads the planners
+
+    problem = read_instance_file(instance)
+    known = best_known(problem, plans)
+    limit = DEFAULT_SECONDS if seconds is None and steps is None else seconds
+    seen: list[Progress] = []
+
+    def keep(progress: Progress) -> None:
+        seen[1:] = [progress]
+        show(progress.steps, found_so_far(known, progress.bound))
+
+    started = perf_counter()
+    with search_progress("bounding", steps, limit) as show:
+        certificate = lower_bound(problem, limit, steps, keep)
+    took = perf_counter() - started
+    document = write(certificate)
+    if output is not None:
+        write_whole(output, document)
+    lost = [problem.robot[robot] for robot, least in certificate.robots if least is None]
+    if as_json:
+        print_document(document)
+    else:
+        numbers = [len(problem.robots), seen[0].bound, certificate.bound, "-" if known is None else known]
+        row = [*numbers, "-" if known is None else gap(known, certificate.bound), seen[-1].steps, f"{took:.2f} s"]
+        print_table(COLUMNS, [row], numbers=COLUMNS)
+        for robot in lost:
+            print_line(f"unplanned: no way leads from {robot.start} to {robot.goal}, the goal of robot {robot.id}")
+    return Answer.of(not lost)
+
+
+def best_known(instance: Instance, plans: str | None) -> int | None:
+    """The total of the plans given, or of plans made quickly; `None` if they leave a robot without a plan."""
+    if plans is not None:
+        solution = read_solution_file(plans)
+        verdict = judge(instance, solution)
+        if not verdict.valid:
+            raise click.ClickException(f"{plans}: plans to compare with must break no rule: {verdict.violations[0]}")
+    else:
+        from carp_optimized import plan  # noqa: PLC0415 - loads a planner
+        from carp_spec import Shuffled  # noqa: PLC0415
+
+        solution = plan(instance, Shuffled(attempts=10))
+    planned = {each.robot for each in solution.plans}
+    return total_cost(instance, solution.plans) if planned == set(instance.robot) else None

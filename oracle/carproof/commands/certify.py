@@ -1,0 +1,74 @@
+"""`carproof certify`: check a solution, and have z3 confirm that plans keep capacities and avoid exchanges."""
+
+import json
+from dataclasses import asdict
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import click
+
+from carproof.answer import Answer
+from carproof.files import print_document, read_instance_file, read_solution_file, refuse_two_standard_inputs
+from carproof.options import examples, instance_argument, json_option, solution_argument
+from carproof.progress import progress
+from carproof.tables import print_line
+
+if TYPE_CHECKING:
+    from carp_verify.certificate import Certificate
+
+
+@click.command(
+    epilog=examples(
+        "carproof certify town.json plans.json",
+        "carproof plan town.json --json | carproof certify town.json -",
+    )
+)
+@instance_argument
+@solution_argument
+@json_option
+def command(instance: str, solution: str, as_json: bool) -> Answer:
+    """Check SOLUTION, and have z3 confirm that its plans keep capacities and avoid exchanges.
+
+    A solution that breaks a rule of single plans or of the list of plans is refused, as check refuses it. Then
+    z3 shows for each resource that there is no tick at all at which it is too full, and for each pair that no
+    two robots exchange it: a second opinion on the rules joint/capacity and joint/exchange, by other means than
+    check. Where there is such a tick it is named, with the robots.
+
+    Exit codes: 0 certified, 1 refused, 2 bad input, 3 z3 could not tell.
+    """
+    refuse_two_standard_inputs(instance, solution)
+    problem = read_instance_file(instance)
+    answer = read_solution_file(solution)
+    from carp_verify.certificate import certify  # noqa: PLC0415 - loads z3
+    from carp_verify.smt import Undecided  # noqa: PLC0415
+
+    visited = {visit.resource for plan in answer.plans for visit in plan.visits} & problem.graph.resource.keys()
+    started = perf_counter()
+    try:
+        with progress("certifying", len(visited)) as advance:
+            certificate = certify(problem, answer, advance)
+    except Undecided as undecided:
+        click.echo(f"Undecided: {undecided}.", err=True)
+        return Answer.UNDECIDED
+    if as_json:
+        print_document(document(certificate))
+    else:
+        for broken in (*certificate.violations, *certificate.breaches):
+            print_line(str(broken))
+        print_line(f"{summary(certificate)} in {perf_counter() - started:.1f} s")
+    return Answer.of(certificate.accepted)
+
+
+def summary(certificate: "Certificate") -> str:
+    """The outcome in a line."""
+    asked = f"{certificate.resources} resources and {certificate.pairs} pairs of resources"
+    if certificate.accepted:
+        return f"certified: check finds no rule broken, and z3 no tick too full and no exchange in {asked}"
+    if certificate.violations:
+        return "REFUSED: check finds a rule broken, and z3 was not asked"
+    return f"REFUSED: z3 finds {len(certificate.breaches)} ticks at which a rule is broken in {asked}"
+
+
+def document(certificate: "Certificate") -> bytes:
+    """The certificate as one JSON document."""
+    return json.dumps({"accepted": certificate.accepted, **asdict(certificate)}).encode() + b"\n"

@@ -1,0 +1,86 @@
+"""`carproof check`: whether a solution is right, in carproof's format or another planner's."""
+
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+
+from carp_spec import RULES, Verdict, judge, write_verdict
+from carp_spec.check import MOST_LISTED
+from carproof.answer import Answer
+from carproof.files import InputFile, print_document, read_instance_file, refuse_two_standard_inputs, write_whole
+from carproof.foreign import MovingAI, from_option, movingai_options, read_movingai, read_solution_of
+from carproof.options import examples, json_option, output_option
+from carproof.tables import print_line, print_table
+
+
+@click.command(
+    short_help="Check plans, and name the rules that they break.",
+    epilog=examples(
+        "carproof check town.json plans.json",
+        "carproof plan town.json --json | carproof check town.json -",
+        "carproof check town.json plans.json --json > verdict.json",
+        "carproof check town.json result.txt --from lacam",
+        "carproof check --map town.map --scen town.scen --agents 40 result.txt",
+    ),
+)
+@click.argument("files", metavar="[INSTANCE] SOLUTION", nargs=-1, required=True, type=InputFile())
+@movingai_options
+@from_option
+@click.option("--all", "everything", is_flag=True, help="List every violation, however many there are.")
+@output_option
+@json_option
+def command(  # noqa: PLR0913 - one parameter for each argument and option
+    *,
+    files: Sequence[str],
+    map: str | None,
+    scen: str | None,
+    agents: int | None,
+    format: str | None,
+    everything: bool,
+    output: Path | None,
+    as_json: bool,
+) -> Answer:
+    """Check the plans of SOLUTION against INSTANCE, or against a MovingAI map and scenario.
+
+    Prints the first 100 violations of each rule with their reasons (--all: every one), and how often each rule
+    is broken. Robots without a plan break no rule; they are counted. Either file may be - for standard input.
+
+    SOLUTION is carproof's document or another planner's output (--from). Such output is of classical multi-agent
+    path finding: robots are there from tick 0, move or wait in each tick, and stay at their goals for ever;
+    following is allowed, swapping is not; durations and capacities are one unless INSTANCE says otherwise.
+
+    Exit codes: 0 no rule is broken, 1 a rule is broken, 2 bad input.
+    """
+    *instances, solution = files
+    benchmark = MovingAI.of(map, scen, agents)
+    if len(instances) != (benchmark is None):
+        raise click.UsageError("Give INSTANCE and SOLUTION, or --map, --scen and SOLUTION.")
+    refuse_two_standard_inputs(*files, *(benchmark.names if benchmark else ()))
+    instance = read_movingai(benchmark) if benchmark else read_instance_file(instances[0])
+    most = None if everything else MOST_LISTED
+    verdict = judge(instance, read_solution_of(instance, solution, format), most)
+    document = write_verdict(verdict)
+    if output is not None:
+        write_whole(output, document)
+    if as_json:
+        print_document(document)
+    else:
+        print_verdict(verdict, most)
+    return Answer.of(verdict.valid)
+
+
+def print_verdict(verdict: Verdict, most: int | None) -> None:
+    """Print the violations one a line, then how many there are of each rule; `most` of a rule may stand for more."""
+    for violation in verdict.violations:
+        print_line(str(violation))
+    count = Counter(violation.rule for violation in verdict.violations)
+    if count:
+        click.echo()
+        numbers = {rule: f"{number} or more" if number == most else number for rule, number in count.items()}
+        broken = [(rule.id, numbers[rule.id]) for rule in RULES if rule.id in numbers]
+        print_table(["rule", "violations"], broken, numbers=["violations"])
+        click.echo()
+    result = "no rule is broken" if verdict.valid else "INVALID"
+    print_line(f"{result}: total cost {verdict.cost}, unplanned robots {verdict.unplanned}")

@@ -1,0 +1,215 @@
+"""`carproof conform`: whether somebody's planner conforms to the specification."""
+
+import shutil
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from secrets import randbits
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
+
+import click
+
+from carproof.adapters import ADAPTERS
+from carproof.answer import Answer
+from carproof.conform.levels import CLASSICAL_LEVELS, LEVELS, Level
+from carproof.extras import require
+from carproof.files import OutputFile, print_document, write_whole
+from carproof.options import examples, json_option
+from carproof.progress import progress
+from carproof.tables import print_line, print_table
+
+if TYPE_CHECKING:
+    from carproof.conform.child import Limits
+    from carproof.conform.one_shot import OneShot
+    from carproof.conform.run import Report
+    from carproof.conform.subjects import Subject
+
+_STAGES = "passed", "gave up", "skipped", "not asked", "wrong answer", "crash", "timeout", "protocol error"
+_SEED_BITS = 32
+_LEVELS = "\n".join(
+    ["\b", "Levels, each with all before it:", *(f"  {level.label:17}{level.statement}" for level in Level), "", ""]
+)
+
+
+@click.command(
+    epilog=_LEVELS
+    + examples(
+        "carproof conform -- carproof serve",
+        "carproof conform --level complete --examples 2000 -- ./planner --quiet",
+        "carproof conform --one-shot -- ./planner {instance} {solution}",
+        "carproof conform --one-shot -- ./planner {map} {scen} {agents} {solution}",
+        "carproof conform --junit conform.xml --save found -- ./planner",
+    )
+)
+@click.argument("program", nargs=-1, required=True, metavar="-- PROGRAM ...")
+@click.option("--level", type=click.Choice(list(LEVELS)), default=Level.SOUND.label, help="What is asked of it.")
+@click.option("--examples", "number", type=click.IntRange(0), default=200, help="How many random cases are asked.")
+@click.option(
+    "--seed",
+    type=click.IntRange(0, 2**64 - 1),
+    default=lambda: randbits(_SEED_BITS),
+    show_default="a new one",
+    help="The seed of the random cases.",
+)
+@click.option(
+    "--timeout",
+    type=click.FloatRange(0, min_open=True),
+    default=5.0,
+    help="Seconds for an answer; 5 times that at a start.",
+)
+@click.option("--shrinking", type=click.FloatRange(0), default=15.0, help="Seconds for making a failure smaller.")
+@click.option("--memory", type=click.IntRange(0), default=4096, help="MiB of address space for PROGRAM; 0: any.")
+@click.option("--one-shot", is_flag=True, help="PROGRAM plans one {instance}, or {map} and {scen}.")
+@click.option(
+    "--from",
+    "format",
+    type=click.Choice([*ADAPTERS]),
+    metavar="FORMAT",
+    help=f"What it writes then: {', '.join(ADAPTERS)}.  [default: found out]",
+)
+@click.option("--save", type=click.Path(path_type=Path, file_okay=False), default="conform-failure", help="Folder.")
+@click.option("--junit", type=OutputFile(), help="Write the results to this file, as XML for continuous integration.")
+@json_option
+def command(  # noqa: PLR0913 - one parameter for each argument and option
+    *,
+    program: tuple[str, ...],
+    level: str,
+    number: int,
+    seed: int,
+    timeout: float,
+    shrinking: float,
+    memory: int,
+    one_shot: bool,
+    format: str | None,
+    save: Path,
+    junit: Path | None,
+    as_json: bool,
+) -> Answer:
+    """Ask PROGRAM questions, and judge its answers.
+
+    PROGRAM stays up and answers requests, one a line, as carproof serve does: start, and as many of check, query,
+    plan, add, polish, optimum and bound as it likes; what it does not offer is not asked. A failing case is shrunk,
+    and written to the folder of --save: the request, the documents, a test vector and a picture.
+
+    It must answer all smoke cases, and 90 in 100 random cases of each op that it offers; to skip a case, or to leave
+    an optimum undecided, is no answer. It may give up at most half of the random cases of an op that have an answer.
+    carproof rules program/answers and program/tries have the details. Random cases are new ones each time, so that
+    they cannot be known before; the verdict names the seed, with which they are asked again.
+
+    With --one-shot it is started for each instance, and plans the file {instance}. It writes the file {solution},
+    if its arguments name that, or else to its standard output. If they name {map} and {scen}, these are MovingAI
+    files with {agents} agents, and what it writes may be in any format that carproof check reads; all else than
+    classical grids is not asked, and the levels are sound, complete (all robots, where all can have plans) and optimal.
+
+    Exit codes: 0 it conforms, 1 it does not, 2 bad usage, 3 undecided: it was interrupted, or no random case decided
+    it.
+    """
+    from carproof.conform.child import Limits  # noqa: PLC0415 - what runs processes is loaded when it is needed
+    from carproof.conform.documents import junit_document, report_document  # noqa: PLC0415
+    from carproof.conform.one_shot import OneShot  # noqa: PLC0415
+    from carproof.conform.program import Program  # noqa: PLC0415
+    from carproof.conform.run import Options, conform  # noqa: PLC0415
+
+    require("hypothesis", "pysat")
+    if format is not None and not one_shot:
+        raise click.UsageError("--from is of the files that programs write with --one-shot.")
+    if shutil.which(program[0]) is None:
+        raise click.UsageError(f"{program[0]}: there is no such program, or it may not be run.")
+    limits = Limits(timeout, memory)
+    subject: Subject = _one_shot(program, limits, format) if one_shot else Program(program, limits, seed)
+    classical = isinstance(subject, OneShot) and subject.is_classical
+    if classical and LEVELS[level] not in CLASSICAL_LEVELS:
+        right = ", ".join(each.label for each in CLASSICAL_LEVELS)
+        raise click.UsageError(f"Of a planner for MovingAI files --level must be one of {right}.")
+    options = Options(LEVELS[level], number, seed, timeout, shrinking, whole=one_shot, classical=classical)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    with progress("asking", number) as advance, _nothing_kept():
+        report = conform(subject, options, advance)
+    saved = _save(report, save)
+    if junit is not None:
+        write_whole(junit, junit_document(report))
+    if as_json:
+        print_document(report_document(report, saved))
+    else:
+        _show(report, saved)
+    return Answer.UNDECIDED if report.conforms is None else Answer.of(report.conforms)
+
+
+@contextmanager
+def _nothing_kept() -> Iterator[None]:
+    """Let hypothesis keep its files in a folder that goes away, not in the user's."""
+    from hypothesis.configuration import set_hypothesis_home_dir  # noqa: PLC0415 - loaded only where used
+
+    with TemporaryDirectory(prefix="carproof-") as folder:
+        set_hypothesis_home_dir(folder)
+        yield
+
+
+def _one_shot(program: tuple[str, ...], limits: "Limits", format: str | None) -> "OneShot":
+    from carproof.conform.one_shot import INSTANCE, MAP, SCEN, OneShot, names  # noqa: PLC0415
+
+    has_map, has_scen = names(program, MAP), names(program, SCEN)
+    if has_map != has_scen or not (has_map or names(program, INSTANCE)):
+        message = f"With --one-shot the program's arguments must hold {INSTANCE}, or {MAP} and {SCEN}."
+        raise click.UsageError(message)
+    return OneShot(program, limits, format)
+
+
+def _save(report: "Report", folder: Path) -> Path | None:
+    """Save the smallest failure, and return its folder."""
+    from carproof.conform.saving import save  # noqa: PLC0415
+
+    if not report.failures:
+        return None
+    save(report.failures[0], folder)
+    return folder
+
+
+def _show(report: "Report", saved: Path | None) -> None:
+    """Print what came of it: counts, what is wrong, and the verdict."""
+    from carproof.conform.documents import counts  # noqa: PLC0415
+
+    rows = [(stage, *(count[name] for name in _STAGES)) for stage, count in counts(report).items()]
+    print_table(["cases", *_STAGES], rows, numbers=_STAGES)
+    click.echo()
+    for fault in report.faults:
+        print_line(f"{fault.category}: {fault.message} [{fault.rule}]")
+    for outcome in report.failures:
+        assert outcome.finding is not None  # noqa: S101 - a failure has a finding
+        instance = outcome.case.instance
+        size = f"{len(instance.robots)} robots, {len(instance.graph.resources)} resources"
+        finding = outcome.finding
+        print_line(f"{finding.category} ({outcome.case.name}; {size}): {finding.message} [{finding.rule}]")
+    for shortfall in report.shortfalls:
+        print_line(f"too few answers: {shortfall}")
+    stderr = next((finding.stderr for finding in report.findings if finding.stderr), "")
+    if stderr:
+        click.echo("the end of the program's standard error:")
+        for line in stderr.splitlines()[-10:]:
+            print_line(f"  {line}")
+    if saved is not None:
+        print_line(f"the smallest failing case is in {saved}")
+    print_line(_verdict(report))
+
+
+def _verdict(report: "Report") -> str:
+    """The last line, with the answers that decided it."""
+    level = report.options.level
+    about = f"{report.program}, level {level.label}"
+    if report.conforms:
+        return f"CONFORMS: {about}: {level.statement}; {_answered(report)}"
+    if report.conforms is None:
+        why = "interrupted before anything wrong was found" if report.interrupted else "no random case decided it"
+        return f"UNDECIDED: {about}: {why}; {_answered(report)}"
+    return f"DOES NOT CONFORM: {about}; {_answered(report)}"
+
+
+def _answered(report: "Report") -> str:
+    """How many cases were answered."""
+    from carproof.conform.findings import LEAST_ANSWERED  # noqa: PLC0415 - loaded by the run already
+
+    random = ", ".join(f"{op} {tally}" for op, tally in report.tallies.items()) or "none"
+    needed = f"{LEAST_ANSWERED} in 100 needed, seed {report.options.seed}"
+    return f"rightly answered: smoke {report.smoke}; random {random} ({needed})"

@@ -1,0 +1,69 @@
+"""`carproof convert`: instances and solutions from and to other people's formats."""
+
+from pathlib import Path
+from typing import get_args
+
+import click
+
+from carp_spec import AfterGoal
+from carproof.adapters import ADAPTERS, write_foreign_solution
+from carproof.answer import Answer
+from carproof.files import InputFile, print_document, read_instance_file, refuse_two_standard_inputs, write_whole
+from carproof.foreign import AGENTS_HELP, MovingAI, from_option, read_movingai, read_solution_of
+from carproof.options import examples, json_option, output_option
+from carproof.results import show_instance
+
+
+@click.command(
+    short_help="Make an instance of MovingAI files.",
+    epilog=examples(
+        "carproof convert demo/depot.map demo/depot.scen -o depot.json",
+        "carproof convert town.map town.scen --agents 40 | carproof plan -",
+        "carproof convert town.json plans.json --to lacam -o result.txt",
+        "carproof convert town.json result.txt --to carproof -o plans.json",
+    ),
+)
+@click.argument("first", metavar="MAP|INSTANCE", type=InputFile())
+@click.argument("second", metavar="SCEN|SOLUTION", type=InputFile())
+@click.option("--agents", type=click.IntRange(min=0), help=AGENTS_HELP)
+@click.option("--after-goal", type=click.Choice(get_args(AfterGoal)), help="What robots do then.  [default: park]")
+@click.option("--to", type=click.Choice([*ADAPTERS]), metavar="FORMAT", help="Convert a solution to this format.")
+@from_option
+@output_option
+@json_option
+def command(  # noqa: PLR0913 - one parameter for each argument and option
+    *,
+    first: str,
+    second: str,
+    agents: int | None,
+    after_goal: AfterGoal | None,
+    to: str | None,
+    format: str | None,
+    output: Path | None,
+    as_json: bool,
+) -> Answer:
+    """Make an instance of a MovingAI .map and .scen file, or with --to convert a solution of an instance.
+
+    With --after-goal park, the default, an instance is classical multi-agent path finding: 4-connected, capacities
+    and durations of one, and the cost is the sum of costs. The scenario's lengths are of octile moves and not used.
+
+    With --to, the files are INSTANCE and SOLUTION. Other planners' formats hold plans of robots that are there from
+    tick 0 and park, on resources with positions; a solution that breaks a rule, or needs what the format cannot
+    say, is refused.
+
+    The result goes to standard output, or with -o to a file.
+    """
+    refuse_two_standard_inputs(first, second)
+    if to is None:
+        if format is not None:
+            raise click.UsageError("--from is of a solution, and so is --to.")
+        return show_instance(read_movingai(MovingAI(first, second, agents, after_goal or "park")), output, as_json)
+    if agents is not None or after_goal is not None or as_json:
+        raise click.UsageError("--agents, --after-goal and --json are of instances, and --to is of a solution.")
+    instance = read_instance_file(first)
+    data = write_foreign_solution(instance, read_solution_of(instance, second, format), to)
+    if output is None:
+        print_document(data)
+    else:
+        write_whole(output, data)
+    return Answer.YES

@@ -1,0 +1,86 @@
+"""`carproof demo`: the main job from end to end, on the paper's map and on a MovingAI one."""
+
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from time import perf_counter
+
+import click
+
+from carp_spec import Carp, Instance, Neighbourhood, Planner, judge, total_cost, write_instance, write_solution
+from carproof.answer import Answer
+from carproof.engines import engine_named, sum_of_shortest_paths
+from carproof.files import OutputFile, write_whole
+from carproof.generate import Fleet, Grid, grid_instance
+from carproof.movingai import movingai_instance, read_map, read_scenario
+from carproof.options import examples
+from carproof.progress import progress
+from carproof.tables import print_line, print_table
+
+COLUMNS = ("instance", "planner", "robots", "unplanned", "total\ncost", "shortest\npaths", "rules\nbroken", "time")
+PLANNERS: dict[str, Planner] = {"carp": Carp(), "neighbourhood m=4": Neighbourhood(m=4)}
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """One row of the table."""
+
+    cells: tuple[object, ...]
+    right: bool
+
+
+@click.command(
+    short_help="Make, plan and check two instances, and compare planners.",
+    epilog=examples("carproof demo", "carproof demo /tmp/somewhere"),
+)
+@click.argument("folder", type=click.Path(file_okay=False, path_type=Path), default=Path("demo"))
+def command(folder: Path) -> Answer:
+    """Make, plan and check two instances, in FOLDER (demo if none is named).
+
+    One is the paper's 20 x 20 map number 20 with 100 robots, the other a small warehouse in MovingAI's format.
+    Both are planned by CARP and by the paper's neighbourhood planner; a table compares the two.
+
+    Exit codes: 0 no plan breaks a rule, 1 one does, 2 the folder cannot be written.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise click.ClickException(f"{folder}: it cannot be made: {error.strerror}") from error
+    instances = {"paper": grid_instance(Grid(), Fleet()), "depot": depot(folder)}
+    results: list[Result] = []
+    for name, instance in instances.items():
+        write_whole(_file(folder / f"{name}.json"), write_instance(instance))
+        results += [planned(folder, name, instance, planner) for planner in PLANNERS]
+    print_table(COLUMNS, [result.cells for result in results], numbers=COLUMNS[2:])
+    click.echo()
+    print_line(f"The instances and their plans are in {folder}. To look further:")
+    print_line(f"  carproof check {folder}/paper.json {folder}/paper-carp.json")
+    print_line(f"  carproof plan {folder}/depot.json --planner shuffled --attempts 100")
+    return Answer.of(all(result.right for result in results))
+
+
+def depot(folder: Path) -> Instance:
+    """Copy the MovingAI files that carproof ships into the folder, and convert them."""
+    map, scenario = ((files("carproof") / "examples" / name).read_bytes() for name in ("depot.map", "depot.scen"))
+    write_whole(_file(folder / "depot.map"), map)
+    write_whole(_file(folder / "depot.scen"), scenario)
+    grid = read_map(map)
+    return movingai_instance(grid, read_scenario(scenario, grid, None), "park")
+
+
+def planned(folder: Path, name: str, instance: Instance, planner: str) -> Result:
+    """Plan an instance, check the plans and write them."""
+    engine = engine_named(None)
+    started = perf_counter()
+    with progress(f"{name}, {planner}", engine.steps(instance, PLANNERS[planner])) as advance:
+        solution = engine.plan(instance, PLANNERS[planner], advance)
+    seconds = perf_counter() - started
+    write_whole(_file(folder / f"{name}-{planner.split(maxsplit=1)[0]}.json"), write_solution(solution))
+    verdict = judge(instance, solution)
+    counts = (len(instance.robots), verdict.unplanned, total_cost(instance, solution.plans))
+    shortest = sum_of_shortest_paths(instance, (plan.robot for plan in solution.plans))
+    return Result((name, planner, *counts, shortest, len(verdict.violations), f"{seconds:.2f} s"), verdict.valid)
+
+
+def _file(path: Path) -> Path:
+    return OutputFile().convert(str(path), None, None)

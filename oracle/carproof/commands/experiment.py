@@ -1,0 +1,184 @@
+"""`carproof experiment`: run an experiment of the paper, or go on with one."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from carp_experiments.crosscheck import FULL_QUESTIONS, QUICK_QUESTIONS, crosscheck_cases, crosscheck_report
+from carp_experiments.experiments import EXPERIMENTS, Experiment, Profile
+from carproof.answer import Answer
+from carproof.extras import require
+from carproof.files import print_document
+from carproof.options import examples
+from carproof.progress import progress
+from carproof.tables import print_line, print_table
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from carp_experiments.campaign import Case, Workers
+    from carp_experiments.report import Report
+    from carp_experiments.store import Row
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+@click.group(
+    epilog=examples(
+        "carproof experiment quality --quick",
+        "carproof experiment quality --assignments 20 --map 20 --map 10",
+        "carproof experiment quality --store full.sqlite --workers 2",
+        "carproof experiment quality --store full.sqlite --report report",
+        "carproof experiment crosscheck --questions 50000 --seed 7",
+    )
+)
+def command() -> None:
+    """Run an experiment, or go on with the one in a store.
+
+    Results are written to the store as they come. A run that is stopped, also
+    killed, goes on where it was when it is called again with the same store, and
+    a larger one takes over what a smaller one has left there. Whoever computes,
+    the results are the same, and so is their digest.
+    """
+
+
+def campaign_options(function: F) -> F:
+    """The options that all experiments have."""
+    options = (
+        click.option("--store", type=click.Path(path_type=Path, dir_okay=False), help="Keep the results in this file."),
+        click.option("--report", type=click.Path(path_type=Path, file_okay=False), help="Write tables, figures there."),
+        click.option("--note", default="", help="With --report: on what the run was made, in a sentence."),
+        click.option("--workers", type=click.IntRange(min=1), default=1, help="Processes on this machine."),
+        click.option("--backend", type=click.Choice(["loky", "dask"]), default="loky", help="Who computes."),
+        click.option("--scheduler", metavar="ADDRESS", help="The address of the dask scheduler."),
+        click.option("--json", "as_json", is_flag=True, help="Print one document on standard output, nothing else."),
+    )
+    for option in reversed(options):
+        function = option(function)
+    return function
+
+
+def chosen_workers(count: int, backend: str, scheduler: str | None) -> "Workers":
+    """Who computes; raises `UsageError` if that is not all said."""
+    from carp_experiments.campaign import Workers  # noqa: PLC0415
+
+    if backend == "dask" and scheduler is None:
+        raise click.UsageError("The backend dask needs the address of its --scheduler.")
+    return Workers(count, "dask" if backend == "dask" else "loky", scheduler)
+
+
+def command_of(experiment: Experiment) -> click.Command:
+    """The command of an experiment over maps and assignments."""
+
+    @click.command(
+        experiment.name,
+        help=f"{experiment.sentence}\n\nIn full: {experiment.full}. Quick: {experiment.quick}.",
+        epilog=examples(
+            f"carproof experiment {experiment.name} --quick",
+            f"carproof experiment {experiment.name} --store {experiment.name}.sqlite",
+        ),
+        short_help=experiment.sentence,
+    )
+    @click.option("--quick", is_flag=True, help="The quick size.")
+    @click.option("--assignments", type=click.IntRange(min=1), help="How many assignments.")
+    @click.option("--robots", type=click.IntRange(min=1), help="How many robots.")
+    @click.option("--map", "maps", type=click.IntRange(0, 20), multiple=True, help="Only this map; may be repeated.")
+    @campaign_options
+    def run(
+        quick: bool,
+        assignments: int | None,
+        robots: int | None,
+        maps: tuple[int, ...],
+        **campaign: Any,  # noqa: ANN401 - click's
+    ) -> Answer:
+        base = experiment.quick if quick else experiment.full
+        chosen = tuple(sorted(set(maps))) or base.maps
+        profile = Profile(assignments or base.assignments, robots or base.robots, chosen)
+        experiment.refuse(profile)
+        identity = f"{experiment.name} of {profile.robots} robots"
+        return go(
+            experiment.name,
+            identity,
+            f"carproof experiment {experiment.name} {profile.options}",
+            str(profile),
+            experiment.cases(profile),
+            lambda rows: experiment.report(rows, profile),
+            **campaign,
+        )
+
+    return run
+
+
+@command.command("crosscheck")
+@click.option("--quick", is_flag=True, help=f"{QUICK_QUESTIONS} questions.")
+@click.option("--questions", type=click.IntRange(min=1), default=FULL_QUESTIONS, help="How many random questions.")
+@click.option("--seed", type=click.IntRange(0, 2**64 - 1), default=0, help="The seed of the questions.")
+@campaign_options
+def crosscheck(quick: bool, questions: int, seed: int, **campaign: Any) -> Answer:  # noqa: ANN401 - click's
+    """Ask both engines the same random questions on small instances.
+
+    Exit codes: 0 no difference, 1 a difference, 2 bad usage.
+    """
+    size = QUICK_QUESTIONS if quick else questions
+    cases = crosscheck_cases(size, seed)
+    command = f"carproof experiment crosscheck --questions {size} --seed {seed}"
+    return go("crosscheck", "crosscheck", command, f"{size} questions", cases, crosscheck_report, **campaign)
+
+
+def go(  # noqa: PLR0913 - the campaign's options
+    name: str,
+    identity: str,
+    command: str,
+    size: str,
+    cases: "Sequence[Case]",
+    report_of: "Callable[[Iterable[Row]], Report]",
+    *,
+    store: Path | None,
+    report: Path | None,
+    note: str,
+    workers: int,
+    backend: str,
+    scheduler: str | None,
+    as_json: bool,
+) -> Answer:
+    """Run the cases that the store does not have, and tell what all of them say."""
+    import msgspec  # noqa: PLC0415 - loaded with the experiment
+
+    from carp_experiments.campaign import run_campaign  # noqa: PLC0415
+    from carp_experiments.report import write_report  # noqa: PLC0415
+    from carp_experiments.store import open_store  # noqa: PLC0415
+
+    require("joblib", *(["matplotlib"] if report is not None else []), *(["distributed"] if backend == "dask" else []))
+    who = chosen_workers(workers, backend, scheduler)  # before the store is there
+    keys = [case.key for case in cases]
+    with open_store(store, identity) as results:
+        with progress(name, len(cases)) as advance:
+            run_campaign(cases, results, who, advance)
+        told = report_of(row for _, row in results.rows(keys))
+        facts = {
+            "command": command,
+            "size": size,
+            "cases": len(cases),
+            "digest": results.digest(keys),
+            "processor_seconds": round(results.seconds(keys)),
+            "note": note,
+        }
+    if report is not None:
+        write_report(report, name, told, facts)
+    if as_json:
+        print_document(msgspec.json.encode({"experiment": name, **facts, "summary": told.summary}) + b"\n")
+        return Answer.of(told.holds)
+    for table in told.tables:
+        print_line(f"{table.title}:")
+        print_table(table.columns, table.rows, numbers=table.numbers)
+        print_line("")
+    for line in told.lines:
+        print_line(line)
+    print_line(f"{size}: digest of {len(cases)} cases {facts['digest']}")
+    return Answer.of(told.holds)
+
+
+for each in EXPERIMENTS:
+    command.add_command(command_of(each))

@@ -1,0 +1,95 @@
+"""`carproof optimum`: the least total cost of plans for all robots, with a proof if one is asked for."""
+
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import click
+
+from carp_spec import Instance, write_solution
+from carp_spec.documents import write
+from carproof.answer import Answer
+from carproof.extras import require
+from carproof.files import print_document, read_instance_file, write_whole
+from carproof.optima import optimum_document
+from carproof.options import examples, instance_argument, json_option, limit_option, output_option
+from carproof.tables import print_line, print_table
+
+if TYPE_CHECKING:
+    from carp_verify.optimum import Optimum
+
+COLUMNS = ("robots", "shortest paths", "lower bound", "cost", "answer", "time")
+
+
+@click.command(
+    epilog=examples(
+        "carproof optimum town.json",
+        "carproof optimum town.json --limit 300 -o best.json",
+        "carproof optimum town.json --proof proof && carproof verify-proof proof",
+    )
+)
+@instance_argument
+@limit_option
+@click.option("--proof", type=click.Path(file_okay=False, path_type=Path), help="Write a proof into this folder.")
+@output_option
+@json_option
+def command(instance: str, limit: int, proof: Path | None, output: Path | None, as_json: bool) -> Answer:
+    """Find the least total cost of plans for all robots of INSTANCE, and plans that have it.
+
+    The answer is found by a search and not proved: it rests on the solver. With --proof it is proved: files are
+    written, for at most --limit seconds more, with which others can check the least cost, or that the robots cannot
+    all be planned, and they are checked at once (see verify-proof).
+
+    --output writes the plans as a solution, --json prints cost, lower bound and solution. In the document, "proved" is
+    true where the search ended with an answer, and "checked" where the proof of --proof was checked.
+
+    Exit codes: 0 optimum found, 1 the robots cannot all be planned, 2 bad input, 3 undecided within the limit.
+    """
+    require("pysat")
+    from carp_verify.optimum import optimum  # noqa: PLC0415 - loads the planners
+    from carp_verify.unsolvable import describe  # noqa: PLC0415
+
+    problem = read_instance_file(instance)
+    started = perf_counter()
+    best = optimum(problem, limit)
+    seconds = perf_counter() - started
+    if output is not None and best.solution is not None:
+        write_whole(output, write_solution(best.solution))
+    is_proved = proof is not None and best.decided and _prove(proof, problem, best, limit)
+    if as_json:
+        print_document(write(optimum_document(best, is_proved)))
+    else:
+        answer = "undecided" if not best.decided else "proved" if is_proved else "found, not proved"
+        numbers = [len(problem.robots), best.shortest, best.lower, best.cost]
+        row = ["-" if number is None else number for number in numbers]
+        print_table(COLUMNS, [[*row, answer, f"{seconds:.2f} s"]], numbers=COLUMNS)
+        if best.obstacle is not None:
+            print_line(f"the robots cannot all be planned: {describe(problem, best.obstacle)}")
+        if not best.decided:
+            print_line(_undecided(best, limit))
+    if not best.decided or (proof is not None and not is_proved):
+        return Answer.UNDECIDED
+    return Answer.of(best.cost is not None)
+
+
+def _undecided(best: "Optimum", limit: int) -> str:
+    """What is known of the optimum, in a line."""
+    known = f"undecided after {limit} s: plans of all robots cost at least {best.lower}"
+    if best.cost is None:
+        return f"{known}; no plans of all robots found yet"
+    return f"{known}, and the best found {best.cost}"
+
+
+def _prove(folder: Path, instance: Instance, best: "Optimum", limit: int) -> bool:
+    """Write a proof and check it; whether the limits sufficed."""
+    from carp_verify.proof import verify_proof, write_proof  # noqa: PLC0415 - only for those who ask for a proof
+    from carp_verify.solver import TimeOver  # noqa: PLC0415
+
+    try:
+        write_proof(instance, best, folder, limit)
+    except TimeOver:
+        click.echo(f"The proof takes longer than the limit of {limit} s; nothing was written.", err=True)
+        return False
+    except OSError as error:
+        raise click.ClickException(f"{folder}: it cannot be written: {error.strerror}") from error
+    return verify_proof(folder, instance).is_decided

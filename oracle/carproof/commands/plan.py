@@ -1,0 +1,69 @@
+"""`carproof plan`: plan all robots of an instance."""
+
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import click
+
+from carp_spec import write_solution
+from carproof.answer import Answer
+from carproof.engines import engine_named
+from carproof.files import naming, read_instance_file
+from carproof.options import (
+    PLANNING,
+    chosen_planner,
+    engine_option,
+    examples,
+    instance_argument,
+    json_option,
+    output_option,
+    planner_option,
+    planner_options,
+)
+from carproof.progress import progress
+from carproof.results import show_solution, write_result
+
+
+@click.command(
+    short_help="Plan all robots of an instance.",
+    epilog=examples(
+        "carproof plan town.json",
+        "carproof plan town.json --m 6 -o plans.json",
+        "carproof plan town.json --planner shuffled --attempts 100 --seed 1",
+        "carproof plan town.json --planner fixed-paths --k 5 --paths disjoint",
+        "carproof generate grid --robots 50 | carproof plan - --json > plans.json",
+    ),
+)
+@instance_argument
+@planner_option
+@planner_options(*PLANNING)
+@engine_option
+@output_option
+@json_option
+def command(
+    instance: str,
+    planner: str,
+    engine: str | None,
+    output: Path | None,
+    as_json: bool,
+    **options: Any,  # noqa: ANN401 - `planner_named` checks them
+) -> Answer:
+    """Plan all robots of INSTANCE, a document or - for standard input.
+
+    An option that is not given keeps the planner's default; one that the planner does not have is refused.
+    Robots that cannot be planned are listed with the reason, and the others are planned all the same.
+
+    Exit codes: 0 every robot has a plan, 1 some robot has none, 2 bad input.
+    """
+    chosen = chosen_planner(planner, options)
+    problem = read_instance_file(instance)
+    run = engine_named(engine)
+    started = perf_counter()
+    with naming(instance), progress("planning", run.steps(problem, chosen)) as advance:
+        solution = run.plan(problem, chosen, advance)
+    seconds = perf_counter() - started
+    write_result(write_solution(solution), output, as_json)
+    if not as_json:
+        show_solution(problem, solution, chosen.name, seconds)
+    return Answer.of(not solution.unplanned)

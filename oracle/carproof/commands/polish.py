@@ -1,0 +1,118 @@
+"""`carproof polish`: improve a solution by planning neighbourhoods anew."""
+
+from pathlib import Path
+from time import perf_counter
+
+import click
+
+from carp_spec import Instance, Solution, check, total_cost, write_solution
+from carp_spec.polish_rules import ITERATIONS, last_round, require_polish_options
+from carproof.answer import Answer
+from carproof.engines import engine_named, sum_of_shortest_paths
+from carproof.files import (
+    InputFile,
+    naming,
+    read_bytes,
+    read_instance_file,
+    read_solution_file,
+    refuse_two_standard_inputs,
+)
+from carproof.options import (
+    engine_option,
+    examples,
+    instance_argument,
+    json_option,
+    output_option,
+    solution_argument,
+)
+from carproof.progress import found_so_far, gap, search_progress
+from carproof.requests import sound_solution
+from carproof.results import show_unplanned, write_result
+from carproof.tables import print_table
+
+COLUMNS = ("plans", "unplanned", "total cost", "bound", "gap", "rounds", "time")
+
+
+@click.command(
+    short_help="Improve plans that are there.",
+    epilog=examples(
+        "carproof polish town.json plans.json -o better.json",
+        "carproof polish town.json plans.json --seconds 5 -o better.json",
+        "carproof polish town.json plans.json --iterations 2000 --seed 7",
+        "carproof polish town.json plans.json --bound certificate.json",
+    ),
+)
+@instance_argument
+@solution_argument
+@click.option("--iterations", type=int, help=f"How many rounds.  [default: {ITERATIONS}]", show_default=False)
+@click.option("--seconds", type=float, help="For how long, in place of a number of rounds.")
+@click.option("--seed", type=int, default=0, help="The seed of all choices.")
+@click.option("--bound", type=InputFile(), help="The certificate of a lower bound, of `carproof bound`.")
+@engine_option
+@output_option
+@json_option
+def command(  # noqa: PLR0913 - one parameter for each argument and option
+    *,
+    instance: str,
+    solution: str,
+    iterations: int | None,
+    seconds: float | None,
+    seed: int,
+    bound: str | None,
+    engine: str | None,
+    output: Path | None,
+    as_json: bool,
+) -> Answer:
+    """Improve SOLUTION, plans for INSTANCE, round by round; robots without a plan get one, if it can be found.
+
+    A round takes out a few robots, plans them anew, and keeps what is not worse. Equal --iterations and --seed
+    give equal plans. All robots are planned from their release on: none is under way. The bound, which no plans
+    of all robots are below, is the sum of the shortest paths, or that of --bound, which is verified first.
+
+    Exit codes: 0 every robot has a plan, 1 some robot has none, 2 bad input.
+    """
+    refuse_two_standard_inputs(instance, solution, bound or "")
+    require_polish_options(iterations, seconds, seed)
+    problem = read_instance_file(instance)
+    given = read_solution_file(solution)
+    with naming(solution):
+        before = sound_solution(problem, given)
+    least = bound_of(problem, bound)
+    played = 0
+    started = perf_counter()
+    with naming(instance), search_progress("polishing", last_round(iterations, seconds), seconds) as show:
+
+        def advance(rounds: int, unplanned: int, total: int) -> None:
+            nonlocal played
+            played = rounds
+            show(rounds, found_so_far(total, least, unplanned))
+
+        after = engine_named(engine).polish(
+            problem, before, iterations=iterations, seconds=seconds, seed=seed, advance=advance
+        )
+    time = perf_counter() - started
+    for violation in check(problem, after.plans):
+        raise AssertionError(violation)
+    write_result(write_solution(after), output, as_json)
+    if not as_json:
+        rows = [_row("given", problem, before, least), _row("polished", problem, after, least)]
+        print_table(COLUMNS, [[*rows[0], "", ""], [*rows[1], played, f"{time:.2f} s"]], numbers=COLUMNS[1:])
+        show_unplanned(problem, after, after.unplanned)
+    return Answer.of(not after.unplanned)
+
+
+def bound_of(instance: Instance, certificate: str | None) -> int:
+    """What all plans together cost at least: by the certificate, if there is one, else by the shortest paths."""
+    if certificate is None:
+        return sum_of_shortest_paths(instance, instance.robot)
+    from carp_spec.bounds import read_bound  # noqa: PLC0415 - only for those who have a certificate
+    from carp_verify.verify_bound import verify_bound  # noqa: PLC0415
+
+    data = read_bytes(certificate)
+    with naming(certificate):
+        return verify_bound(instance, read_bound(data))
+
+
+def _row(name: str, instance: Instance, solution: Solution, bound: int) -> list[object]:
+    total = total_cost(instance, solution.plans)
+    return [name, len(solution.unplanned), total, bound, "-" if solution.unplanned else gap(total, bound)]

@@ -1,0 +1,68 @@
+"""`carproof query`: plan one robot against the plans of the others."""
+
+from pathlib import Path
+
+import click
+
+from carp_spec import plan_cost
+from carp_spec.documents import write
+from carproof.answer import Answer
+from carproof.engines import engine_named, why_unplanned
+from carproof.files import naming, read_instance_file, read_solution_file, refuse_two_standard_inputs
+from carproof.options import (
+    engine_option,
+    examples,
+    instance_argument,
+    json_option,
+    now_option,
+    output_option,
+    solution_argument,
+)
+from carproof.requests import require_tick, robot_called, sound_solution
+from carproof.results import query_document, write_result
+from carproof.tables import print_line, print_table
+
+
+@click.command(
+    short_help="Plan one robot beside plans that stay as they are.",
+    epilog=examples(
+        "carproof query town.json plans.json r7",
+        "carproof query town.json plans.json r7 --now 12 --json",
+    ),
+)
+@instance_argument
+@solution_argument
+@click.argument("robot")
+@now_option
+@engine_option
+@output_option
+@json_option
+def command(  # noqa: PLR0913 - one parameter for each argument and option
+    *, instance: str, solution: str, robot: str, now: int, engine: str | None, output: Path | None, as_json: bool
+) -> Answer:
+    """Find the plan with which ROBOT arrives earliest beside the plans of SOLUTION.
+
+    Those plans stay as they are. A plan that SOLUTION has of ROBOT itself is what it has followed until --now.
+
+    Exit codes: 0 here is the plan, 1 there is none, 2 bad input.
+    """
+    refuse_two_standard_inputs(instance, solution)
+    require_tick(now, "$.now")
+    problem = read_instance_file(instance)
+    given = read_solution_file(solution)
+    id = robot_called(problem, robot)
+    with naming(solution):
+        committed = sound_solution(problem, given, id)
+    with naming(instance):
+        plan = engine_named(engine).query(problem, committed.plans, id, now)
+    write_result(write(query_document(plan)), output, as_json)
+    if plan is None and not as_json:
+        others = [each for each in committed.plans if each.robot != id]
+        print_line(f"no plan: {why_unplanned(problem, others, id, now)}")
+    elif plan is not None and not as_json:
+        rows = [
+            (visit.resource, visit.enter, "for ever" if visit.leave is None else visit.leave) for visit in plan.visits
+        ]
+        print_table(["resource", "enter", "leave"], rows, numbers=["enter", "leave"])
+        print_line(f"cost {plan_cost(problem, plan)}")
+    return Answer.of(plan is not None)

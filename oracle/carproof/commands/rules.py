@@ -1,0 +1,44 @@
+"""`carproof rules`: what the rules say."""
+
+from difflib import get_close_matches
+from typing import Any
+
+import click
+
+from carp_spec import Rule
+from carproof.answer import Answer
+from carproof.options import examples
+from carproof.rules import ALL_RULES
+from carproof.tables import print_table
+
+
+@click.command(
+    short_help="List all rules, or tell one in full.",
+    epilog=examples("carproof rules", "carproof rules joint/capacity"),
+)
+@click.argument("id", required=False)
+def command(id: str | None) -> Answer:
+    """List all rules, or tell the rule ID in full."""
+    if id is None:
+        print_table(["rule", "statement"], [(rule.id, rule.statement) for rule in ALL_RULES])
+    else:
+        print_rule(rule_named(id))
+    return Answer.YES
+
+
+def rule_named(id: str) -> Rule[..., Any]:
+    """The rule of that id; the nearest ids are suggested where there is none."""
+    rules = {rule.id: rule for rule in ALL_RULES}
+    if id not in rules:
+        near = get_close_matches(id, rules, cutoff=0.5)
+        hint = f"the nearest are {', '.join(near)}" if near else "carproof rules lists them all"
+        raise click.BadParameter(f"there is no rule {id!r}; {hint}.", param_hint="ID")
+    return rules[id]
+
+
+def print_rule(rule: Rule[..., Any]) -> None:
+    """Print a rule in full."""
+    click.echo(f"{rule.id}\n")
+    click.echo(click.wrap_text(rule.statement, initial_indent="  ", subsequent_indent="  "))
+    click.echo(f"\nSource:    {rule.source}")
+    click.echo(f"Predicate: {rule.predicate.__module__}.{rule.predicate.__name__}")

@@ -1,0 +1,57 @@
+"""Whether right answers are enough for a level, or the program has only kept silent well."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from carproof.conform.cases import Op
+from carproof.conform.effort import Effort
+from carproof.conform.findings import LEAST_ANSWERED, LEAST_TRIED, answers_enough, tries_enough
+from carproof.conform.outcome import Outcome
+
+
+@dataclass(slots=True)
+class Tally:
+    """How many cases a program could be asked, how many it answered rightly, and on how many it tried or gave up."""
+
+    asked: int = 0
+    answered: int = 0
+    tried: int = 0
+    gave_up: int = 0
+
+    def add(self, outcome: Outcome) -> None:
+        """Count an outcome."""
+        self.asked += outcome.asked
+        self.answered += outcome.is_judged and outcome.finding is None
+        self.tried += outcome.effort == Effort.TRIED
+        self.gave_up += outcome.effort == Effort.GAVE_UP
+
+    @property
+    def decides(self) -> bool:
+        """Whether there was anything to try."""
+        return self.tried + self.gave_up > 0
+
+    def __str__(self) -> str:
+        """The counts in words."""
+        given_up = f", {self.gave_up} given up" if self.gave_up else ""
+        return f"{self.answered} of {self.asked}{given_up}"
+
+
+def smoke_shortfalls(outcomes: list[Outcome]) -> Iterator[str]:
+    """Why the smoke cases are not enough: each that could be asked must be answered."""
+    asked = [outcome for outcome in outcomes if outcome.case.stage == "smoke" and outcome.asked]
+    silent = [outcome for outcome in asked if not outcome.is_judged]
+    if silent:
+        first = f"{silent[0].case.name} ({silent[0].skipped})"
+        message = f"it did not answer {len(silent)} of {len(asked)} smoke cases, the first of them {first}"
+        yield f"{message} [{answers_enough.id}]"
+
+
+def random_shortfalls(tallies: Mapping[Op, Tally]) -> Iterator[str]:
+    """Why the random cases are not enough."""
+    for op, tally in tallies.items():
+        if not answers_enough(tally.answered, tally.asked):
+            some = f"it answered {tally.answered} of {tally.asked} random cases of {op}"
+            yield f"{some}, and {LEAST_ANSWERED} in 100 are needed [{answers_enough.id}]"
+        if not tries_enough(tally.tried, tally.gave_up):
+            some = f"it gave up {tally.gave_up} of {tally.tried + tally.gave_up} random cases of {op}"
+            yield f"{some}, and may give up {100 - LEAST_TRIED} in 100 [{tries_enough.id}]"

@@ -1,0 +1,107 @@
+"""The report as documents: JSON for programs, JUnit's XML for continuous integration."""
+
+from collections import Counter
+from pathlib import Path
+from typing import Any
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
+
+import msgspec
+
+from carproof.conform.deciding import Tally
+from carproof.conform.findings import Finding
+from carproof.conform.run import Report, label
+
+FORMAT = "carproof-conformance/1"
+
+
+def counts(report: Report) -> dict[str, Counter[str]]:
+    """How many cases of each stage came to what."""
+    by_stage: dict[str, Counter[str]] = {}
+    for outcome in report.outcomes:
+        by_stage.setdefault(outcome.case.stage, Counter())[label(outcome)] += 1
+    return {**by_stage, "random": report.random}
+
+
+def report_document(report: Report, saved: Path | None) -> bytes:
+    """The report as one JSON document."""
+    failures = [_finding_fields(finding) for finding in report.faults]
+    for outcome in report.failures:
+        assert outcome.finding is not None  # noqa: S101 - a failure has a finding
+        case = outcome.case
+        sizes = {"robots": len(case.instance.robots), "resources": len(case.instance.graph.resources)}
+        asked = {"stage": case.stage, "case": case.name, "op": case.op, **sizes}
+        failures.append({**_finding_fields(outcome.finding), **asked})
+    document = {
+        "format": FORMAT,
+        "program": report.program,
+        "level": report.options.level.label,
+        "conforms": report.conforms,
+        "reaches_level": report.reaches_level,
+        "interrupted": report.interrupted,
+        "seed": report.options.seed,
+        "cases": counts(report),
+        "judged": report.judged,
+        "answered": {"smoke": _tally_fields(report.smoke), "random": _tallies_fields(report)},
+        "shortfalls": report.shortfalls,
+        "failures": failures,
+        "saved": None if saved is None else str(saved),
+    }
+    return msgspec.json.encode(document) + b"\n"
+
+
+def _tallies_fields(report: Report) -> dict[str, dict[str, int]]:
+    return {op: _tally_fields(tally) for op, tally in report.tallies.items()}
+
+
+def _tally_fields(tally: Tally) -> dict[str, int]:
+    return {"asked": tally.asked, "answered": tally.answered, "gave_up": tally.gave_up}
+
+
+def _finding_fields(finding: Finding) -> dict[str, Any]:
+    return {
+        "category": finding.category.value,
+        "rule": finding.rule,
+        "message": finding.message,
+        "stderr": finding.stderr,
+    }
+
+
+def junit_document(report: Report) -> bytes:
+    """The report as JUnit's XML: one test for each fixed case, and one for all random ones."""
+    suite = Element("testsuite", name=f"carproof conform --level {report.options.level.label}")
+    for outcome in report.outcomes:
+        test = _test(suite, outcome.case.stage, outcome.case.name, outcome.finding)
+        test.set("time", f"{outcome.seconds:.3f}")
+        if not outcome.is_judged:
+            SubElement(test, "skipped", message=_printable(outcome.skipped or ""))
+    if report.random:
+        name = f"{report.random.total()} cases, seed {report.options.seed}"
+        _test(suite, "random", name, None if report.smallest is None else report.smallest.finding)
+    for finding in report.faults:
+        _test(suite, "process", "start and stop", finding)
+    if not report.reaches_level:
+        test = _test(suite, "level", report.options.level.label, None)
+        message = "; ".join(report.shortfalls) or "no random case decided it"
+        SubElement(test, "failure", message=_printable(message))
+    tests = suite.findall("testcase")
+    suite.set("tests", str(len(tests)))
+    suite.set("failures", str(len(suite.findall("testcase/failure"))))
+    suite.set("errors", "0")
+    suite.set("skipped", str(len(suite.findall("testcase/skipped"))))
+    indent(suite)
+    xml: bytes = tostring(suite, encoding="utf-8", xml_declaration=True)
+    return xml + b"\n"
+
+
+def _test(suite: Element, stage: str, name: str, finding: Finding | None) -> Element:
+    test = SubElement(suite, "testcase", classname=f"carproof.{stage}", name=_printable(name))
+    if finding is not None:
+        message = f"{finding.category}: {finding.message} [{finding.rule}]"
+        failure = SubElement(test, "failure", type=finding.rule, message=_printable(message))
+        failure.text = "".join(c if c in "\n\t" else _printable(c) for c in finding.stderr)
+    return test
+
+
+def _printable(text: str) -> str:
+    """The text without what XML cannot hold."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)

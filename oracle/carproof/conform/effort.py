@@ -1,0 +1,82 @@
+"""What an answer shows that nothing is wrong with: who always says that there is no plan is never wrong at `sound`."""
+
+from enum import Enum
+
+from carp_spec import Carp, Solution
+from carp_spec.bounds import BoundDocument
+from carproof.conform.answers import Answer, OptimumAnswer, QueryAnswer
+from carproof.conform.cases import OPTIMUM_SECONDS, POLISH_ROUNDS, Case
+from carproof.conform.judges import worth
+from carproof.conform.levels import Level
+from carproof.conform.optimum import cost_alone, found_cost
+from carproof.engines import engine_named
+
+
+class Effort(Enum):
+    """Whether an answer is one that shows something."""
+
+    TRIED = "tried"
+    GAVE_UP = "gave up"
+    NOTHING_TO_DO = "nothing to do"
+
+
+def why_undecided(case: Case, answer: Answer, level: Level) -> str | None:
+    """Why a right answer counts as none: it is undecided, or carproof is, so that nobody can judge it."""
+    if isinstance(answer, OptimumAnswer) and not answer.proved:
+        return "it leaves the optimum undecided"
+    is_judged_by_proof = isinstance(answer, OptimumAnswer) or (isinstance(answer, Solution) and case.planner is None)
+    needs_proof = case.op in ("plan", "optimum") and is_judged_by_proof and level >= Level.OPTIMAL
+    if needs_proof and not found_cost(case.instance)[0]:
+        return f"carproof does not find the optimum in {OPTIMUM_SECONDS} s, with which to compare"
+    return None
+
+
+def effort(case: Case, answer: Answer) -> Effort:
+    """Whether a right answer shows something; a verdict does in any case."""
+    match answer:
+        case QueryAnswer():
+            return _planned(case, answer.plan is not None)
+        case Solution() if case.op == "add":
+            return _planned(case, case.robot not in answer.unplanned)
+        case Solution() if case.op == "polish":
+            return _polished(case, answer)
+        case Solution():
+            return _planned_whole(case, answer)
+        case BoundDocument():
+            return _bounded(case, answer)
+        case _:
+            return Effort.TRIED
+
+
+def _planned(case: Case, has_plan: bool) -> Effort:
+    """Of the robot that is asked for."""
+    assert case.robot is not None  # noqa: S101 - a promise of ours
+    if has_plan:
+        return Effort.TRIED
+    best = engine_named("reference").query(case.instance, case.solution.plans, case.robot, case.now)
+    return Effort.NOTHING_TO_DO if best is None else Effort.GAVE_UP
+
+
+def _planned_whole(case: Case, answer: Solution) -> Effort:
+    """More than half as many robots as CARP plans; classical planners often plan all robots or nobody."""
+    could = engine_named("reference").plan(case.instance, Carp())
+    if not could.plans or (case.classical and could.unplanned and not answer.plans):
+        return Effort.NOTHING_TO_DO
+    return Effort.TRIED if 2 * len(answer.plans) > len(could.plans) else Effort.GAVE_UP
+
+
+def _polished(case: Case, answer: Solution) -> Effort:
+    """Better than the given plans, where carproof betters them."""
+    given = worth(case, case.solution.plans)
+    if worth(case, answer.plans) < given:
+        return Effort.TRIED
+    polished = engine_named("reference").polish(case.instance, case.solution, iterations=POLISH_ROUNDS)
+    return Effort.GAVE_UP if worth(case, polished.plans) < given else Effort.NOTHING_TO_DO
+
+
+def _bounded(case: Case, answer: BoundDocument) -> Effort:
+    """No less than the robots need if each is alone, which is a bound that nobody has to search for."""
+    least = cost_alone(case.instance)
+    if not least:
+        return Effort.NOTHING_TO_DO
+    return Effort.TRIED if answer.bound >= least else Effort.GAVE_UP

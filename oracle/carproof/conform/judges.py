@@ -1,0 +1,206 @@
+"""What each level asks of an answer. Whoever gives an answer is judged by it alone, not by how it was found."""
+
+from collections.abc import Iterator, Sequence
+
+from carp_spec import (
+    Carp,
+    Instance,
+    Plan,
+    RobotId,
+    Solution,
+    Visit,
+    check,
+    check_update,
+    judge,
+    plan_cost,
+    total_cost,
+)
+from carp_spec.bounds import BoundDocument
+from carp_spec.documents import VerdictDocument, verdict_document
+from carp_spec.polish_rules import is_kept
+from carp_spec.rule import interval
+from carproof.conform.answers import Answer, OptimumAnswer, QueryAnswer
+from carproof.conform.cases import POLISH_ROUNDS, Case
+from carproof.conform.findings import Finding, wrong
+from carproof.conform.levels import Level
+from carproof.conform.optimum import bound_findings, complete_findings, optimum_findings, plan_cost_findings
+from carproof.engines import engine_named
+
+
+def first_finding(case: Case, answer: Answer, level: Level) -> Finding | None:
+    """The first thing that is wrong with an answer, by the least level that asks for it."""
+    return next(_findings(case, answer, level), None)
+
+
+def _findings(case: Case, answer: Answer, level: Level) -> Iterator[Finding]:
+    match answer:
+        case QueryAnswer():
+            yield from _query_findings(case, answer.plan, level)
+        case VerdictDocument():
+            yield from _check_findings(case, answer, level)
+        case OptimumAnswer():
+            yield from optimum_findings(case.instance, answer, level)
+        case BoundDocument():
+            yield from bound_findings(case.instance, answer)
+        case Solution() if case.op == "add":
+            yield from _add_findings(case, answer, level)
+        case Solution() if case.op == "polish":
+            yield from _polish_findings(case, answer, level)
+        case Solution():
+            yield from _plan_findings(case, answer, level)
+
+
+def shown_plan(plan: Plan) -> str:
+    """A plan in one line."""
+    return " ".join(f"{visit.resource}{interval(visit.enter, visit.leave)}" for visit in plan.visits)
+
+
+def _followed(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int) -> tuple[Plan, ...]:
+    """What a robot has followed until now; one without a plan has been standing at its start since its release."""
+    request = instance.robot[robot]
+    own = tuple(plan for plan in committed if plan.robot == robot)
+    standing = (Plan(robot, (Visit(request.start, request.release, None),)),) if request.release <= now else ()
+    return own or standing
+
+
+def _query_findings(case: Case, plan: Plan | None, level: Level) -> Iterator[Finding]:
+    assert case.robot is not None  # noqa: S101 - a promise of ours
+    committed = case.solution.plans
+    others = [each for each in committed if each.robot != case.robot]
+    if plan is not None:
+        before = _followed(case.instance, committed, case.robot, case.now)
+        for violation in (*check(case.instance, (*others, plan)), *check_update(before, [plan], case.now)):
+            yield wrong(violation.rule, violation.message)
+    yield from _against_best(case, committed, case.robot, plan, level)
+
+
+def _against_best(
+    case: Case, committed: Sequence[Plan], robot: RobotId, plan: Plan | None, level: Level
+) -> Iterator[Finding]:
+    """Compare with the best plan against the committed ones."""
+    if level < Level.COMPLETE:
+        return
+    best = engine_named("reference").query(case.instance, committed, robot, case.now)
+    if best is None:
+        if plan is not None:
+            raise RuntimeError(f"carproof says that robot {robot} has no plan, and {shown_plan(plan)} is one")
+        return
+    arrival = best.visits[-1].enter
+    if plan is None:
+        yield wrong("query/complete", f"robot {robot} has a plan, which arrives at {arrival}: {shown_plan(best)}")
+    elif plan_cost(case.instance, plan) < plan_cost(case.instance, best):
+        raise RuntimeError(f"carproof says that robot {robot} arrives at {arrival} at best: not so {shown_plan(plan)}")
+    elif level >= Level.CONTEXT_OPTIMAL and plan_cost(case.instance, plan) > plan_cost(case.instance, best):
+        late = plan.visits[-1].enter
+        yield wrong("query/optimal", f"robot {robot} arrives at {late}, and can at {arrival}: {shown_plan(best)}")
+    elif level >= Level.EXACT and plan != best:
+        yield wrong("query/ties", f"robot {robot} must go {shown_plan(best)}, not {shown_plan(plan)}")
+
+
+def _plan_findings(case: Case, solution: Solution, level: Level) -> Iterator[Finding]:
+    for violation in judge(case.instance, solution).violations:
+        yield wrong(violation.rule, violation.message)
+    if isinstance(case.planner, Carp):
+        yield from _in_order_findings(case, solution, list(case.instance.robot), level)
+    elif case.classical:
+        yield from complete_findings(case.instance, solution) if level >= Level.COMPLETE else ()
+    elif case.planner is None:
+        order = [*solution.order, *solution.unplanned]
+        yield from _in_order_findings(case, solution, order, min(level, Level.CONTEXT_OPTIMAL))
+    if case.planner is None and level >= Level.OPTIMAL:
+        yield from plan_cost_findings(case.instance, solution)
+    if case.planner is not None and level >= Level.EXACT:
+        expected = engine_named("reference").plan(case.instance, case.planner)
+        yield from _same_solution(solution, expected, case.planner.name)
+
+
+def _in_order_findings(case: Case, solution: Solution, order: Sequence[RobotId], level: Level) -> Iterator[Finding]:
+    """Compare each plan with the best against those before it."""
+    plans = {plan.robot: plan for plan in solution.plans}
+    committed: list[Plan] = []
+    for robot in order:
+        plan = plans.get(robot)
+        yield from _against_best(case, committed, robot, plan, level)
+        committed += [] if plan is None else [plan]
+
+
+def _same_solution(solution: Solution, expected: Solution, planner: str) -> Iterator[Finding]:
+    if (solution.order, solution.unplanned) != (expected.order, expected.unplanned):
+        right = f"the order {list(expected.order)} and leave {list(expected.unplanned)} unplanned"
+        yield wrong("query/ties", f"{planner} must give {right}, not {list(solution.order)}")
+    for plan, right_plan in zip(solution.plans, expected.plans, strict=False):
+        if plan != right_plan:
+            right = f"robot {right_plan.robot} {shown_plan(right_plan)}"
+            yield wrong("query/ties", f"{planner} must give {right}, not {shown_plan(plan)}")
+
+
+def _add_findings(case: Case, after: Solution, level: Level) -> Iterator[Finding]:
+    assert case.robot is not None  # noqa: S101 - a promise of ours
+    for violation in judge(case.instance, after).violations:
+        yield wrong(violation.rule, violation.message)
+    before = case.solution.plans
+    lost = {plan.robot for plan in before} - {plan.robot for plan in after.plans}
+    for plan in before:
+        if plan.robot in lost:
+            yield wrong("fleet/history", f"robot {plan.robot} had a plan and has none now")
+    followed = (*before, *_followed(case.instance, before, case.robot, case.now))
+    for violation in check_update(followed, after.plans, case.now):
+        yield wrong(violation.rule, violation.message)
+    if level >= Level.COMPLETE:
+        yield from _against_keeping(case, after)
+    if level >= Level.EXACT:
+        expected = engine_named("reference").add(case.instance, case.solution, case.robot, case.now, case.options)
+        yield from _same_solution(after, expected, "add")
+
+
+def _against_keeping(case: Case, after: Solution) -> Iterator[Finding]:
+    """With the baseline, adding a robot is no worse than keeping all plans and asking for one more."""
+    assert case.robot is not None  # noqa: S101 - a promise of ours
+    kept = case.solution.plans
+    one_more = engine_named("reference").query(case.instance, kept, case.robot, case.now)
+    if one_more is None or not case.options.baseline:
+        return
+    if case.robot in after.unplanned:
+        yield wrong("query/complete", f"robot {case.robot} has a plan: {shown_plan(one_more)}")
+        return
+    least, cost = total_cost(case.instance, (*kept, one_more)), total_cost(case.instance, after.plans)
+    if cost > least:
+        yield wrong("neighbourhood/baseline", f"the total cost is {cost}, and {least} if all plans are kept")
+
+
+def _polish_findings(case: Case, after: Solution, level: Level) -> Iterator[Finding]:
+    """A polished solution breaks no rule, leaves no more robots unplanned, and if as many, has no larger total."""
+    for violation in judge(case.instance, after).violations:
+        yield wrong(violation.rule, violation.message)
+    (missing, total), (missing_before, total_before) = (worth(case, each.plans) for each in (after, case.solution))
+    if not is_kept((missing_before, total_before), (missing, total)):
+        given = f"the solution to polish leaves {missing_before} robots unplanned, with a total of {total_before}"
+        yield wrong(is_kept.id, f"{given}, and the answer leaves {missing}, with {total}")
+    if level >= Level.EXACT:
+        expected = engine_named("reference").polish(case.instance, case.solution, iterations=POLISH_ROUNDS)
+        yield from _same_solution(after, expected, "polish")
+
+
+def worth(case: Case, plans: Sequence[Plan]) -> tuple[int, int]:
+    """How many robots have no plan, and the total of the others."""
+    return len(case.instance.robots) - len(plans), total_cost(case.instance, plans)
+
+
+def _check_findings(case: Case, verdict: VerdictDocument, level: Level) -> Iterator[Finding]:
+    right = verdict_document(judge(case.instance, case.solution))
+    told = list(dict.fromkeys(violation.rule for violation in verdict.violations))
+    broken = list(dict.fromkeys(violation.rule for violation in right.violations))
+    for rule in broken:
+        if rule not in told:
+            message = next(violation.message for violation in right.violations if violation.rule == rule)
+            yield wrong(rule, f"the verdict must tell that it is broken: {message}")
+    for rule in told:
+        if rule not in broken:
+            yield wrong(rule, "the verdict must not tell that it is broken")
+    if verdict.valid != right.valid:
+        yield wrong("program/result", f"valid must be {right.valid}, as the violations say")
+    if (verdict.cost, verdict.unplanned) != (right.cost, right.unplanned):
+        message = f"cost and unplanned must be {right.cost} and {right.unplanned}"
+        yield wrong("cost/total", f"{message}, not {verdict.cost} and {verdict.unplanned}")
+    if level >= Level.EXACT and verdict != right:
+        yield wrong("program/result", f"the violations must be {list(right.violations)}")

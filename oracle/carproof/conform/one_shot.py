@@ -1,0 +1,125 @@
+"""A program that plans whole instances: started for each case, with a file for the instance and one for its answer."""
+
+import subprocess
+from collections.abc import Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from carp_spec import Instance, Refusal, Solution, write_instance
+from carproof.adapters import carproof_documents, read_foreign_solution
+from carproof.conform.answers import NotAsked, Reply, decode_solution, protocol_error, shown
+from carproof.conform.cases import Case
+from carproof.conform.child import Limits, end_group, ending, environment, exit_code, limited
+from carproof.conform.findings import Category, Fault, Finding, is_alive, is_in_time, is_result
+from carproof.movingai_writer import MAP_NAME, is_classical, write_movingai
+
+INSTANCE, MAP, SCEN, AGENTS, SOLUTION = "{instance}", "{map}", "{scen}", "{agents}", "{solution}"
+_KEPT_STDERR = 8 * 2**10
+
+
+def names(template: Sequence[str], placeholder: str) -> bool:
+    """Whether the placeholder is in a template of a command line."""
+    return any(placeholder in part for part in template)
+
+
+class OneShot:
+    """A program with a template of its command line.
+
+    `{instance}` stands for the file that it reads, or `{map}` and `{scen}` for MovingAI files and `{agents}` for how
+    many agents they have; `{solution}` for the file that it writes; without the latter its standard output is its
+    answer. A program that leaves robots unplanned may end with 1.
+
+    One that reads MovingAI files, or writes another format than carproof's, is classical: it is asked only what
+    these can say, and its answer's format is found out if it is not given; nothing is that no robot has a plan.
+    """
+
+    def __init__(self, template: Sequence[str], limits: Limits, format: str | None = None) -> None:
+        self._template = template
+        self._limits = limits
+        self._format = format
+        is_foreign = format not in (None, carproof_documents.ADAPTER.name)
+        self.is_classical = is_foreign or names(template, MAP) or names(template, SCEN)
+        self.name = template[0]
+        self.ops: tuple[str, ...] = ("plan",)
+
+    def start(self) -> None:
+        """It is started for each case."""
+
+    def ask(self, case: Case, seconds: float | None = None) -> Reply:
+        """Run the program on the case's instance."""
+        if case.op != "plan" or case.planner is not None:
+            return NotAsked("it plans whole instances, by a planner of its own")
+        if self.is_classical and not is_classical(case.instance):
+            return NotAsked("it plans classical grids")
+        with TemporaryDirectory(prefix="carproof-") as folder:
+            return self._run(case, Path(folder), seconds or self._limits.seconds)
+
+    def _run(self, case: Case, folder: Path, seconds: float) -> Reply:
+        solution, output, errors = folder / "solution", folder / "output", folder / "errors"
+        command = self._command(case.instance, folder, solution)
+        with output.open("wb") as stdout, errors.open("wb") as stderr:
+            code = self._wait(command, stdout.fileno(), stderr.fileno(), seconds)
+        told = self._beginning(errors)[-_KEPT_STDERR:].decode("utf-8", "backslashreplace")
+        if code is None:
+            raise Fault(Finding(Category.TIMEOUT, is_in_time.id, f"no answer within {seconds:g} s", told))
+        answer = solution if names(self._template, SOLUTION) else output
+        written = self._beginning(answer) if answer.is_file() else b""
+        if code not in (0, 1) or (code == 1 and not written):
+            raise Fault(Finding(Category.CRASH, is_alive.id, ending(code), told))
+        if self.is_classical and not written:
+            return Solution((), (), tuple(case.instance.robot))
+        if not written or len(written) > self._limits.output:
+            much = "nothing" if not written else f"more than {self._limits.output} bytes"
+            raise Fault(Finding(Category.PROTOCOL_ERROR, is_result.id, f"it wrote {much} as its answer", told))
+        return self._read(written, case.instance)
+
+    def _command(self, instance: Instance, folder: Path, solution: Path) -> list[str]:
+        """Write the files that the program reads, and put all files' names into the template."""
+        files = {INSTANCE: folder / "instance.json", MAP: folder / MAP_NAME, SCEN: folder / "instance.scen"}
+        files[INSTANCE].write_bytes(write_instance(instance))
+        if self.is_classical:
+            benchmark = write_movingai(instance)
+            files[MAP].write_bytes(benchmark.map)
+            files[SCEN].write_bytes(benchmark.scen)
+        filled = {**files, SOLUTION: solution, AGENTS: len(instance.robots)}
+        command = list(self._template)
+        for placeholder, value in filled.items():
+            command = [part.replace(placeholder, str(value)) for part in command]
+        return command
+
+    def _read(self, written: bytes, instance: Instance) -> Solution:
+        if not self.is_classical:
+            return decode_solution(written)
+        try:
+            return read_foreign_solution(written, instance, "solution", self._format)
+        except Refusal as refusal:
+            message = f"the solution is not as it must be, at {refusal}; it is {shown(written)}"
+            raise protocol_error(is_result.id, message) from refusal
+
+    def _wait(self, command: Sequence[str], stdout: int, stderr: int, seconds: float) -> int | None:
+        """Run the command, and return its exit code, or `None` if it took too long."""
+        blocks = self._limits.output // 512 + 1
+        bounded = ("/bin/sh", "-c", 'ulimit -f "$0" && exec "$@"', str(blocks), *limited(command, self._limits))
+        process = subprocess.Popen(  # noqa: S603 - to run the user's command is the task
+            bounded,
+            stdin=subprocess.DEVNULL,
+            stdout=stdout,
+            stderr=stderr,
+            env=environment(),
+            start_new_session=True,
+        )
+        try:
+            return exit_code(process, seconds)
+        finally:
+            end_group(process)
+
+    def _beginning(self, file: Path) -> bytes:
+        """As much of a file as an answer may have, and a byte."""
+        with file.open("rb") as opened:
+            return opened.read(self._limits.output + 1)
+
+    def finish(self) -> None:
+        """Nothing runs on."""
+
+    def kill(self) -> None:
+        """Nothing runs on."""

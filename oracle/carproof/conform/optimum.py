@@ -1,0 +1,94 @@
+"""What the level `optimal` asks: the optimum of small instances, as carproof's search finds it."""
+
+from collections.abc import Iterator
+from functools import lru_cache
+
+from carp_spec import Instance, Refusal, Solution, judge, total_cost
+from carp_spec.bounds import BoundDocument
+from carproof.conform.answers import OptimumAnswer
+from carproof.conform.cases import OPTIMUM_SECONDS
+from carproof.conform.findings import Finding, is_complete, is_lower, is_optimal, wrong
+from carproof.conform.levels import Level
+from carproof.engines import engine_named
+
+
+@lru_cache(maxsize=1)
+def found_cost(instance: Instance) -> tuple[bool, int | None]:
+    """Whether the search for the optimum ended in time, and what it found: `None` if robots cannot all be planned."""
+    from carp_verify.optimum import optimum  # noqa: PLC0415 - loads a solver
+
+    found = optimum(instance, OPTIMUM_SECONDS)
+    return found.decided, found.cost
+
+
+def cost_alone(instance: Instance) -> int | None:
+    """What the robots need together if each is alone, `None` if one has no plan even then."""
+    plans = [engine_named("reference").query(instance, (), robot) for robot in instance.robot]
+    known = [plan for plan in plans if plan is not None]
+    return total_cost(instance, known) if len(known) == len(plans) else None
+
+
+def optimum_findings(instance: Instance, answer: OptimumAnswer, level: Level) -> Iterator[Finding]:
+    """What is wrong with an answer to `optimum`."""
+    if answer.solution is not None:
+        for violation in judge(instance, answer.solution).violations:
+            yield wrong(violation.rule, violation.message)
+        if answer.solution.unplanned:
+            yield wrong("solution/covers", f"an optimum has plans for all robots, also {answer.solution.unplanned[0]}")
+        total = total_cost(instance, answer.solution.plans)
+        if answer.cost != total:
+            yield wrong("cost/total", f"the cost must be {total}, the total of the plans, not {answer.cost}")
+    elif answer.cost is not None:
+        yield wrong("cost/total", f"a cost of {answer.cost} needs a solution that has it")
+    if level >= Level.OPTIMAL:
+        yield from _against_proof(instance, answer)
+
+
+def bound_findings(instance: Instance, certificate: BoundDocument) -> Iterator[Finding]:
+    """What is wrong with an answer to `bound`: its certificate, or a bound above the optimum."""
+    from carp_verify.verify_bound import verify_bound  # noqa: PLC0415 - only programs that have bounds need it
+
+    try:
+        bound = verify_bound(instance, certificate)
+    except Refusal as refusal:
+        yield wrong(refusal.rule, f"{refusal.path}: {refusal.message}")
+        return
+    if bound <= (cost_alone(instance) or 0):
+        return
+    is_found, least = found_cost(instance)
+    if is_found and not is_lower(bound, least):
+        message = f"its certificate passes for a bound of {bound}, and there are plans with a total of {least}"
+        yield wrong(is_lower.id, f"{message}: the certificate is false, and carproof's check of it has a fault")
+
+
+def _against_proof(instance: Instance, answer: OptimumAnswer) -> Iterator[Finding]:
+    is_found, least = found_cost(instance)
+    if is_found and answer.proved and not is_optimal(answer.cost, least):
+        yield wrong(is_optimal.id, f"the least total cost is {_shown(least)}, not {_shown(answer.cost)}")
+    if is_found and answer.lower is not None and not is_lower(answer.lower, least):
+        yield wrong(is_lower.id, f"no lower bound is above the least total cost {least}, as {answer.lower} is")
+
+
+def plan_cost_findings(instance: Instance, solution: Solution) -> Iterator[Finding]:
+    """What is wrong with the cost of a solution that is to be optimal."""
+    is_found, least = found_cost(instance)
+    if is_found and least is not None:
+        cost = total_cost(instance, solution.plans)
+        if solution.unplanned:
+            yield wrong(is_optimal.id, f"all robots can have plans, with a total cost of {least}")
+        elif not is_optimal(cost, least):
+            yield wrong(is_optimal.id, f"the least total cost is {least}, not {cost}")
+
+
+def complete_findings(instance: Instance, solution: Solution) -> Iterator[Finding]:
+    """What is wrong with a solution that leaves robots unplanned, if all robots can have plans."""
+    if not solution.unplanned:
+        return
+    is_found, least = found_cost(instance)
+    if is_found and not is_complete(len(solution.unplanned), least):
+        message = f"all robots can have plans, and {len(solution.unplanned)} have none"
+        yield wrong(is_complete.id, message)
+
+
+def _shown(cost: int | None) -> str:
+    return "none, as not all robots can have plans" if cost is None else str(cost)

@@ -1,0 +1,51 @@
+"""What came of asking one case."""
+
+from dataclasses import dataclass
+from time import monotonic
+
+from carproof.conform.answers import Answer, NotAsked, Skipped
+from carproof.conform.cases import Case
+from carproof.conform.effort import Effort, effort, why_undecided
+from carproof.conform.findings import Fault, Finding
+from carproof.conform.judges import first_finding
+from carproof.conform.levels import Level
+from carproof.conform.subjects import Subject
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """A case, what is wrong with the answer if anything is, the answer if there is one, and why it was skipped.
+
+    `asked` is whether the program could be asked at all, and `effort` what an answer shows that is not wrong.
+    """
+
+    case: Case
+    finding: Finding | None = None
+    answer: Answer | None = None
+    skipped: str | None = None
+    asked: bool = True
+    effort: Effort | None = None
+    seconds: float = 0.0
+
+    @property
+    def is_judged(self) -> bool:
+        """Whether the case was answered, rightly or wrongly."""
+        return self.skipped is None
+
+
+def ask(subject: Subject, case: Case, level: Level, seconds: float | None = None) -> Outcome:
+    """Ask a subject one case, and judge its answer by the level; `seconds` is the time of the subject alone."""
+    started = monotonic()
+    try:
+        reply = subject.ask(case, seconds)
+    except Fault as fault:
+        return Outcome(case, fault.finding, seconds=monotonic() - started)
+    taken = monotonic() - started
+    if isinstance(reply, Skipped | NotAsked):
+        return Outcome(case, skipped=reply.why, asked=isinstance(reply, Skipped), seconds=taken)
+    finding = first_finding(case, reply, level)
+    if finding is not None:
+        return Outcome(case, finding, reply, seconds=taken)
+    undecided = why_undecided(case, reply, level)
+    shown = effort(case, reply) if undecided is None else None
+    return Outcome(case, None, reply, undecided, effort=shown, seconds=taken)

@@ -1,0 +1,96 @@
+"""A program that speaks the protocol: a process that stays up, and is started again when it fails."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import msgspec
+
+from carp_spec.permutations import splitmix64
+from carproof.conform.answers import Reply, Skipped, decode_answer, protocol_error, result_of, start_result
+from carproof.conform.cases import Case, request_fields
+from carproof.conform.child import Child, Limits
+from carproof.conform.findings import Fault, Finding, is_response
+from carproof.protocol import VERSION
+
+STARTING = 5
+"""A program that has just been started may take so many times as long for its first answer."""
+_ID_BITS = 31
+
+
+def request_ids(seed: int) -> Iterator[int | str]:
+    """Ids that tell nothing: numbers and strings by turns."""
+    for number in splitmix64(seed):
+        yield number >> (64 - _ID_BITS) if number & 1 else f"{number:016x}"
+
+
+class Program:
+    """A program that speaks the protocol. It is started when it is first asked, and after each of its faults."""
+
+    def __init__(self, command: Sequence[str], limits: Limits, seed: int = 0) -> None:
+        self._command = command
+        self._limits = limits
+        self._ids = request_ids(seed)
+        self._child: Child | None = None
+        self.name = command[0]
+        self.ops: tuple[str, ...] = ()
+
+    def start(self) -> None:
+        """Start the process and learn its ops; raises `Fault` if it does not say them."""
+        self._child = Child(self._command, self._limits)
+        result = self._request("start", {"version": VERSION}, STARTING * self._limits.seconds)
+        if isinstance(result, Skipped):
+            raise self._broken(protocol_error(is_response.id, "a program must answer start"))
+        try:
+            said = start_result(result)
+        except Fault as fault:
+            raise self._broken(fault) from fault
+        self.name = f"{said.name} {said.version}"
+        self.ops = said.ops
+
+    def ask(self, case: Case, seconds: float | None = None) -> Reply:
+        """Ask the process, a new one if the last is gone."""
+        if self._child is None:
+            self.start()
+        result = self._request(case.op, request_fields(case), seconds or self._limits.seconds)
+        if isinstance(result, Skipped):
+            return result
+        try:
+            return decode_answer(case, result)
+        except Fault as fault:
+            raise self._broken(fault) from fault
+
+    def _request(self, op: str, fields: dict[str, Any], seconds: float) -> msgspec.Raw | Skipped:
+        """Send a request; whoever breaks the protocol is started anew before the next one."""
+        assert self._child is not None  # noqa: S101 - a promise of ours
+        id = next(self._ids)
+        line = msgspec.json.encode({"id": id, "op": op, **fields}) + b"\n"
+        try:
+            return result_of(self._child.ask(line, seconds), id)
+        except Fault as fault:
+            raise self._broken(fault) from fault
+
+    def _broken(self, fault: Fault) -> Fault:
+        """The fault with what the process said on standard error; the process is gone after it."""
+        finding = fault.finding
+        stderr = finding.stderr or (self._child.stderr if self._child is not None else "")
+        self.kill()
+        return Fault(Finding(finding.category, finding.rule, finding.message, stderr))
+
+    def finish(self) -> None:
+        """Ask the process to stop; raises `Fault` if it does not end with 0."""
+        if self._child is None:
+            return
+        result = self._request("stop", {}, self._limits.seconds)
+        try:
+            if isinstance(result, Skipped) or bytes(result).strip() != b"{}":
+                raise protocol_error(is_response.id, "the result of stop must be {}")
+            self._child.end(self._limits.seconds)
+        except Fault as fault:
+            raise self._broken(fault) from fault
+        self.kill()
+
+    def kill(self) -> None:
+        """End the process."""
+        if self._child is not None:
+            self._child.kill()
+            self._child = None

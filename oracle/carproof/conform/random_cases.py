@@ -1,0 +1,149 @@
+"""Random cases by hypothesis' strategies, which shrink to few robots, few resources and small numbers."""
+
+from collections.abc import Mapping, Sequence
+
+from hypothesis import strategies as st
+
+from carp_spec import (
+    AfterGoal,
+    Carp,
+    FixedPaths,
+    Greedy,
+    Instance,
+    LongestFirst,
+    Neighbourhood,
+    Planner,
+    Resource,
+    ResourceGraph,
+    Robot,
+    RobotId,
+    Shuffled,
+    Solution,
+    TimeExpanded,
+)
+from carproof.conform.cases import Case, Op
+from carproof.conform.levels import Level
+from carproof.strategies import Sizes, broken_solutions, committed_plans, fleets_under_way, instances, solutions
+
+SIZES = Sizes(resources=6, robots=4)
+OPTIMUM_SIZES = Sizes(resources=5, robots=3, duration=2, release=2)
+EXACT_PLANNERS: tuple[Planner, ...] = (
+    Carp(),
+    Shuffled(attempts=3),
+    LongestFirst(),
+    Greedy(),
+    Neighbourhood(m=3),
+    Neighbourhood(m=3, baseline=False),
+    Neighbourhood(m=3, sample=2, seed=5, fallback=2),
+    FixedPaths(),
+    FixedPaths(paths="disjoint"),
+    TimeExpanded(),
+)
+ADDING = tuple(planner for planner in EXACT_PLANNERS if isinstance(planner, Neighbourhood))
+
+
+SHAPES: tuple[tuple[tuple[int, int], ...], ...] = (
+    ((0, 1), (1, 2)),
+    ((0, 1), (1, 2), (2, 3)),
+    ((0, 1), (1, 2), (2, 0)),
+    ((0, 1), (1, 2), (2, 3), (1, 4)),
+    ((0, 1), (1, 2), (2, 3), (3, 0)),
+    ((0, 1), (1, 2), (3, 4), (4, 5), (0, 3), (1, 4), (2, 5)),
+)
+"""Edges of small maps: two rows of cells, a triangle, a row with a place to pass, a ring, a grid."""
+
+
+@st.composite
+def _shaped_graphs(draw: st.DrawFn) -> ResourceGraph:
+    edges = draw(st.sampled_from(SHAPES))
+    count = 1 + max(max(edge) for edge in edges)
+    numbers = st.tuples(st.sampled_from([1, 1, 1, 2]), st.integers(1, SIZES.duration))
+    attributes = draw(st.lists(numbers, min_size=count, max_size=count))
+    resources = tuple(Resource(id, capacity, duration) for id, (capacity, duration) in enumerate(attributes))
+    return ResourceGraph(resources, edges)
+
+
+@st.composite
+def _busy_instances(draw: st.DrawFn) -> Instance:
+    """Two or more robots on a small map, from different starts: most are in each other's way."""
+    graph = draw(_shaped_graphs())
+    starts = draw(st.permutations(list(graph.index)))
+    count = draw(st.integers(2, min(SIZES.robots, len(starts))))
+    goals = draw(st.lists(st.sampled_from(list(graph.index)), min_size=count, max_size=count))
+    requests = st.tuples(st.integers(0, SIZES.release), st.integers(1, SIZES.pace))
+    robots = tuple(Robot(id, starts[id], goals[id], *draw(requests)) for id in range(count))
+    policies: list[AfterGoal] = ["vanish", "park"]
+    return Instance(graph, robots, draw(st.sampled_from(policies)))
+
+
+def _instances(least_robots: int = 0) -> st.SearchStrategy[Instance]:
+    """Instances of every kind; hypothesis' own leaning to the simplest leaves robots alone, hence the busy ones."""
+    any_instance = instances(SIZES, least_robots=least_robots)
+    return st.one_of(any_instance, _busy_instances(), _busy_instances())
+
+
+@st.composite
+def _queries(draw: st.DrawFn) -> Case:
+    """One robot against plans of some of the others; it may be under way itself, and the tick be later than 0."""
+    instance = draw(_instances(least_robots=1))
+    robot: RobotId = draw(st.sampled_from(instance.robots)).id
+    is_new = draw(st.sampled_from([True, True, True, False]))
+    plans = draw(committed_plans(instance, SIZES, without=robot if is_new else None))
+    ends = [visit.leave or visit.enter for plan in plans for visit in plan.visits]
+    now = draw(st.just(0) | st.integers(0, max(ends, default=SIZES.release)))
+    order = tuple(plan.robot for plan in plans)
+    solution = Solution(plans, order, tuple(each for each in instance.robot if each not in order))
+    return Case("random", "query", "query", instance, solution, robot, now)
+
+
+def _plans(planners: Sequence[Planner | None]) -> st.SearchStrategy[Case]:
+    return st.builds(
+        lambda instance, planner: Case("random", "plan", "plan", instance, planner=planner),
+        _instances(),
+        st.sampled_from(planners),
+    )
+
+
+@st.composite
+def _additions(draw: st.DrawFn) -> Case:
+    fleet = draw(fleets_under_way(SIZES, _instances(least_robots=1)))
+    options = draw(st.sampled_from(ADDING))
+    return Case("random", "add", "add", fleet.instance, fleet.solution, fleet.robot, fleet.now, options)
+
+
+@st.composite
+def _polishes(draw: st.DrawFn) -> Case:
+    """Plans of some or all robots, most of them slower than they must be."""
+    instance = draw(_instances())
+    plans = draw(committed_plans(instance, SIZES))
+    order = tuple(plan.robot for plan in plans)
+    solution = Solution(plans, order, tuple(each for each in instance.robot if each not in order))
+    return Case("random", "polish", "polish", instance, solution)
+
+
+@st.composite
+def _checks(draw: st.DrawFn) -> Case:
+    if draw(st.booleans()):
+        broken = draw(broken_solutions(SIZES))
+        return Case("random", "check", "check", broken.instance, broken.solution)
+    instance = draw(_instances())
+    return Case("random", "check", "check", instance, draw(solutions(instance, SIZES)))
+
+
+def random_cases(ops: Sequence[str], level: Level, whole: bool) -> Mapping[Op, st.SearchStrategy[Case]]:
+    """Cases of each op that is offered."""
+    if whole:
+        return {"plan": _plans([None])}
+    planners = EXACT_PLANNERS if level >= Level.EXACT else (Carp(),)
+    small = st.one_of(instances(OPTIMUM_SIZES), _busy_instances(), _busy_instances())
+    by_op: dict[Op, st.SearchStrategy[Case]] = {
+        "query": _queries(),
+        "plan": _plans(planners),
+        "add": _additions(),
+        "check": _checks(),
+        "polish": _polishes(),
+        "bound": small.map(lambda instance: Case("random", "bound", "bound", instance)),
+    }
+    if level >= Level.OPTIMAL:
+        by_op["optimum"] = small.map(lambda instance: Case("random", "optimum", "optimum", instance))
+    return {op: cases for op, cases in by_op.items() if op in ops}

@@ -1,0 +1,197 @@
+"""A run: smoke cases, test vectors, then random cases; it ends with a report, also when it is interrupted."""
+
+from collections import Counter
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
+
+from carproof.conform.cases import Case, Op
+from carproof.conform.deciding import Tally, random_shortfalls, smoke_shortfalls
+from carproof.conform.effort import Effort
+from carproof.conform.findings import Category, Fault, Finding
+from carproof.conform.levels import JUDGED_OPS, Level
+from carproof.conform.outcome import Outcome, ask
+from carproof.conform.shrinking import SHRINK_SECONDS, Search
+from carproof.conform.smoke import smoke_cases
+from carproof.conform.subjects import Subject
+from carproof.conform.vector_cases import vector_cases
+
+MOST_FAULTS = 3
+"""After so many crashes, timeouts and protocol errors no further fixed case is asked: each costs a new process."""
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """How a program is asked; `whole`: whole instances, each by a planner of the program's own.
+
+    `classical`: besides, random ones are classical multi-agent path finding.
+    """
+
+    level: Level = Level.SOUND
+    examples: int = 200
+    seed: int = 0
+    limit: float = 5.0
+    shrink_seconds: float = SHRINK_SECONDS
+    whole: bool = False
+    classical: bool = False
+
+    @property
+    def ops(self) -> tuple[Op, ...]:
+        """The ops by which the level is shown."""
+        return ("plan",) if self.whole else JUDGED_OPS[self.level]
+
+
+@dataclass(slots=True)
+class Report:
+    """What a run has found so far.
+
+    `outcomes` are those of the fixed cases, `random` counts the random ones by what came of them, `tallies` those of
+    each op, and `judged` all answers of each op. `smallest` is the failing random case after shrinking. A fault
+    without a case, at the start or at the stop, is in `faults`.
+    """
+
+    options: Options
+    program: str = ""
+    outcomes: list[Outcome] = field(default_factory=list)
+    random: Counter[str] = field(default_factory=Counter)
+    tallies: dict[Op, Tally] = field(default_factory=dict)
+    judged: Counter[str] = field(default_factory=Counter)
+    smallest: Outcome | None = None
+    faults: list[Finding] = field(default_factory=list)
+    interrupted: bool = False
+
+    @property
+    def failures(self) -> list[Outcome]:
+        """The failures, the smallest first, of each rule and category one."""
+        found = ([] if self.smallest is None else [self.smallest]) + self.outcomes
+        by_key: dict[tuple[Category, str], Outcome] = {}
+        for outcome in sorted(found, key=lambda outcome: outcome.case.size):
+            if outcome.finding is not None:
+                by_key.setdefault(outcome.finding.key, outcome)
+        return list(by_key.values())
+
+    @property
+    def findings(self) -> list[Finding]:
+        """All that is wrong."""
+        return [*self.faults, *(outcome.finding for outcome in self.failures if outcome.finding is not None)]
+
+    @property
+    def processes_lost(self) -> int:
+        """How many of the fixed cases ended in anything but an answer."""
+        findings = [outcome.finding for outcome in self.outcomes if outcome.finding is not None]
+        return sum(finding.category != Category.WRONG_ANSWER for finding in findings)
+
+    @property
+    def smoke(self) -> Tally:
+        """The smoke cases."""
+        tally = Tally()
+        for outcome in self.outcomes:
+            if outcome.case.stage == "smoke":
+                tally.add(outcome)
+        return tally
+
+    @property
+    def shortfalls(self) -> list[str]:
+        """Why answers of which none is wrong are too few for the level."""
+        if self.findings or self.interrupted:
+            return []
+        ops = self.options.ops
+        if not any(outcome.case.op in ops for outcome in self.outcomes) and not any(op in self.tallies for op in ops):
+            return [f"it offers nothing that shows the level, which is one of {', '.join(ops)}"]
+        return [*smoke_shortfalls(self.outcomes), *random_shortfalls(self.tallies)]
+
+    @property
+    def is_decided(self) -> bool:
+        """Whether a random case, which nobody knows before, has decided anything."""
+        return any(self.tallies[op].decides for op in self.options.ops if op in self.tallies)
+
+    @property
+    def reaches_level(self) -> bool:
+        """Whether there are enough answers to what the level is about."""
+        return not self.shortfalls and self.is_decided
+
+    @property
+    def conforms(self) -> bool | None:
+        """Whether the program conforms; `None` if an interruption or too few random cases leave it undecided."""
+        if self.findings:
+            return False
+        if self.interrupted:
+            return None
+        return False if self.shortfalls else self.is_decided or None
+
+    def add(self, outcome: Outcome) -> None:
+        """Count an outcome."""
+        if outcome.case.stage == "random":
+            self.random[label(outcome)] += 1
+            self.tallies.setdefault(outcome.case.op, Tally()).add(outcome)
+        else:
+            self.outcomes.append(outcome)
+        if outcome.answer is not None and outcome.is_judged:
+            self.judged[outcome.case.op] += 1
+
+
+def label(outcome: Outcome) -> str:
+    """What came of a case, in a word or two."""
+    if outcome.finding is not None:
+        return outcome.finding.category.value
+    if outcome.effort == Effort.GAVE_UP:
+        return "gave up"
+    return "passed" if outcome.is_judged else "skipped" if outcome.asked else "not asked"
+
+
+def conform(subject: Subject, options: Options, advance: Callable[[], None] = lambda: None) -> Report:
+    """Ask the subject everything, and report; `advance` is called for each case but those of shrinking."""
+    report = Report(options, subject.name)
+    try:
+        _ask_everything(subject, report, advance)
+        subject.finish()
+    except Fault as fault:
+        report.faults.append(fault.finding)
+    except KeyboardInterrupt:
+        report.interrupted = True
+    finally:
+        subject.kill()
+    report.program = subject.name
+    return report
+
+
+def _ask_everything(subject: Subject, report: Report, advance: Callable[[], None]) -> None:
+    options = report.options
+    subject.start()
+    for cases in (smoke_cases, vector_cases):
+        _ask_fixed(subject, report, cases(subject.ops, options.level, options.whole), advance)
+    _ask_random(subject, report, advance)
+
+
+def _ask_fixed(subject: Subject, report: Report, cases: Iterable[Case], advance: Callable[[], None]) -> None:
+    for case in cases:
+        if report.processes_lost >= MOST_FAULTS:
+            return
+        asked = replace(case, classical=report.options.classical)
+        report.add(ask(subject, asked, report.options.level))
+        advance()
+
+
+def _ask_random(subject: Subject, report: Report, advance: Callable[[], None]) -> None:
+    """Ask as many of each op."""
+    from carproof.conform.classical_cases import classical_cases  # noqa: PLC0415 - loads hypothesis
+    from carproof.conform.random_cases import random_cases  # noqa: PLC0415 - loads hypothesis
+
+    options = report.options
+    ours = random_cases(subject.ops, options.level, options.whole)
+    by_op = {"plan": classical_cases()} if options.classical else ours
+
+    def ask_one(case: Case, seconds: float | None) -> Outcome:
+        outcome = ask(subject, case, options.level, seconds)
+        if search.best is None:
+            report.add(outcome)
+            advance()
+        return outcome
+
+    search = Search(ask_one, options.limit, options.shrink_seconds)
+    try:
+        for number, cases in enumerate(by_op.values()):
+            examples = (options.examples + number) // len(by_op)
+            if examples and search.best is None:
+                search.run(cases, examples, options.seed)
+    finally:
+        report.smallest = search.best

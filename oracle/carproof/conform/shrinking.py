@@ -1,0 +1,96 @@
+"""The search for a random case that fails, and for the smallest that fails in the same way.
+
+Hypothesis draws and shrinks. What a case has come to once is remembered, so that a program that answers the same
+question now rightly and now wrongly, or the end of the time for shrinking, cannot confuse it.
+"""
+
+from collections.abc import Callable
+from random import Random
+from time import monotonic
+from typing import TYPE_CHECKING
+
+from carproof.conform.cases import Case
+from carproof.conform.findings import Category
+from carproof.conform.outcome import Outcome
+
+if TYPE_CHECKING:
+    from hypothesis.strategies import SearchStrategy
+
+SHRINK_SECONDS = 15.0
+_LEAST_SECONDS = 0.25
+_PATIENCE = 20
+
+Ask = Callable[[Case, float | None], Outcome]
+
+
+class Search:
+    """Draws cases until one fails, and then smaller ones that fail alike; `best` is the smallest so far."""
+
+    def __init__(self, ask: Ask, limit: float, shrink_seconds: float) -> None:
+        self._ask = ask
+        self._limit = limit
+        self._shrink_seconds = shrink_seconds
+        self._slowest = 0.0
+        self._deadline = 0.0
+        self._fails: dict[Case, bool] = {}
+        self._first: Outcome | None = None
+        self.best: Outcome | None = None
+
+    def run(self, cases: "SearchStrategy[Case]", examples: int, seed: int) -> None:
+        """Draw so many cases at most."""
+        from hypothesis import HealthCheck, Phase, find, settings  # noqa: PLC0415 - loaded only where used
+        from hypothesis.errors import NoSuchExample  # noqa: PLC0415
+
+        limits = settings(
+            max_examples=examples,
+            deadline=None,
+            database=None,
+            derandomize=False,
+            report_multiple_bugs=False,
+            phases=(Phase.generate, Phase.shrink),
+            suppress_health_check=list(HealthCheck),
+        )
+        try:
+            find(cases, self._is_failure, settings=limits, random=Random(seed))  # noqa: S311 - cases, no secrets
+        except NoSuchExample:
+            return
+        self._confirm()
+
+    def _is_failure(self, case: Case) -> bool:
+        if self._first is None:
+            return self._is_first_failure(case)
+        if case not in self._fails and monotonic() < self._deadline:
+            self._fails[case] = self._fails_alike(case)
+        return self._fails.get(case, False)
+
+    def _is_first_failure(self, case: Case) -> bool:
+        outcome = self._ask(case, None)
+        if outcome.finding is None:
+            self._slowest = max(self._slowest, outcome.seconds)
+            return False
+        self._first = self.best = outcome
+        self._fails[case] = True
+        self._deadline = monotonic() + self._shrink_seconds
+        return True
+
+    def _fails_alike(self, case: Case) -> bool:
+        assert self._first is not None  # noqa: S101 - a promise of ours
+        assert self._first.finding is not None  # noqa: S101
+        outcome = self._ask(case, self._seconds())
+        if outcome.finding is None or outcome.finding.key != self._first.finding.key:
+            return False
+        if self.best is None or case.size <= self.best.case.size:
+            self.best = outcome
+        return True
+
+    def _seconds(self) -> float | None:
+        """How long to wait while shrinking: of a program that is slow only where it fails, not long."""
+        return min(self._limit, max(_LEAST_SECONDS, _PATIENCE * self._slowest))
+
+    def _confirm(self) -> None:
+        """Ask the smallest case that took too long once more, with all the time there is."""
+        if self.best is None or self.best.finding is None or self.best.finding.category != Category.TIMEOUT:
+            return
+        again = self._ask(self.best.case, None)
+        alike = again.finding is not None and again.finding.key == self.best.finding.key
+        self.best = again if alike else self._first

@@ -1,0 +1,46 @@
+"""The table of gaps over small maps, from spanning tree to full grid, in verify/README.md; `make gap` makes it anew."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from carproof.gap_family import Cell, Excess, Family, measured
+from carproof.gap_report import PLANNERS
+from carproof.generate import Range
+from carproof.progress import progress
+
+FAMILY = Family(Range(3, 8), (0, 5, 10, 20))
+LIMIT = 1
+COLUMNS = ("grid", "map", "robots", "decided", "delay", "best order", *(planner.name for planner in PLANNERS))
+BEGIN, END = "<!-- gap table: begin -->\n", "<!-- gap table: end -->\n"
+
+
+def row(cell: Cell) -> Sequence[str]:
+    """A row of the table, in per cent of the optimum."""
+    decided = len(cell.decided)
+    head = (f"{cell.size} x {cell.size}", str(cell.map), str(cell.robots), f"{decided}/{len(cell.gaps)}")
+    of_planners = (_shown(cell.above_optimum(planner), decided, "failed") for planner in range(len(PLANNERS)))
+    return (*head, str(cell.delay), _shown(cell.price_of_an_order, decided, "open"), *of_planners)
+
+
+def _shown(excess: Excess, of: int, without: str) -> str:
+    """The mean with its interval, and how many of the instances have none."""
+    return f"{excess} ({of - excess.instances} {without})" if excess.instances < of else str(excess)
+
+
+def table(rows: Sequence[Sequence[str]]) -> str:
+    """The rows as a table in Markdown."""
+    lines = [COLUMNS, ["---", *(["---:"] * (len(COLUMNS) - 1))], *rows]
+    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
+
+
+def write_table(page: Path, family: Family) -> None:
+    """Measure, and put the table between its marks on the page."""
+    before, _, rest = page.read_text(encoding="utf-8").partition(BEGIN)
+    _, _, after = rest.partition(END)
+    with progress("measuring gaps", len(family.cells) * family.count) as advance:
+        rows = [row(cell) for cell in measured(family, PLANNERS, LIMIT, advance)]
+    page.write_text(f"{before}{BEGIN}{table(rows)}{END}{after}", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    write_table(Path(__file__).parents[2] / "verify" / "README.md", FAMILY)

@@ -1,0 +1,8 @@
+"""Instances to try planners on: the paper's grids, and warehouses with aisles. Equal options, equal instance."""
+
+from carproof.generate.fleet import Fleet
+from carproof.generate.grid import Grid, grid_instance
+from carproof.generate.options import Range, Traits
+from carproof.generate.warehouse import Warehouse, warehouse_instance
+
+__all__ = ["Fleet", "Grid", "Range", "Traits", "Warehouse", "grid_instance", "warehouse_instance"]

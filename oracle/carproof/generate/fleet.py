@@ -1,0 +1,44 @@
+"""Random robots: where they start and end, when they are released and how fast they are."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from carp_spec import AfterGoal, Refusal, ResourceId, Robot
+from carp_spec.permutations import shuffle, splitmix64
+from carproof.generate.options import JUST_ONE, JUST_ZERO, Distinct, Range, ends_suffice
+
+
+@dataclass(frozen=True, slots=True)
+class Fleet:
+    """How many robots, and what is drawn for them from the seed.
+
+    `distinct` says whether no two start at the same resource, and no two end at the same. Of equal seeds the
+    smaller fleet is the larger's first robots, if all are released at one tick.
+    """
+
+    robots: int = 100
+    seed: int = 0
+    after_goal: AfterGoal = "vanish"
+    distinct: Distinct = "both"
+    release: Range = JUST_ZERO
+    pace: Range = JUST_ONE
+
+
+def random_robots(fleet: Fleet, starts: Sequence[ResourceId], goals: Sequence[ResourceId]) -> tuple[Robot, ...]:
+    """Draw the robots r1, r2, ... in the order of their releases."""
+    stream = splitmix64(fleet.seed)
+    start_of = _ends(fleet, starts, stream, "starts")
+    goal_of = _ends(fleet, goals, stream, "goals")
+    paces = [fleet.pace.draw(stream) for _ in range(fleet.robots)]
+    releases = sorted(fleet.release.draw(stream) for _ in range(fleet.robots))
+    drawn = zip(start_of, goal_of, releases, paces, strict=True)
+    return tuple(Robot(f"r{number}", *each) for number, each in enumerate(drawn, start=1))
+
+
+def _ends(fleet: Fleet, places: Sequence[ResourceId], stream: Iterator[int], kind: str) -> Sequence[ResourceId]:
+    if fleet.distinct not in ("both", kind):
+        return [places[next(stream) % len(places)] for _ in range(fleet.robots)]
+    if not ends_suffice(len(places), fleet.robots):
+        message = f"{fleet.robots} robots need as many distinct {kind}, and the map has {len(places)}"
+        raise Refusal("option", "$.robots", ends_suffice.id, message)
+    return shuffle(places, stream)[: fleet.robots]

@@ -1,0 +1,123 @@
+"""Arguments and options that several commands share."""
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import click
+
+from carp_spec import FixedPaths, Neighbourhood, Planner, Shuffled, planner_named
+from carp_spec.planners import PLANNERS
+from carproof.engines import ENGINES
+from carproof.files import InputFile, OutputFile
+from carproof.generate import Range
+
+DEFAULT_LIMIT = 60
+DEFAULT_SECONDS = 10
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+class RangeType(click.ParamType[Range]):
+    """A whole number, or LOW..HIGH."""
+
+    name = "range"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Range:  # noqa: ANN401 - click's own signature
+        """Read `2` or `1..3`."""
+        if isinstance(value, Range):
+            return value
+        low, dots, high = value.partition("..")
+        try:
+            return Range(int(low), int(high if dots else low))
+        except ValueError:
+            self.fail(f"{value!r} must be a whole number or LOW..HIGH, like 1..3.", param, ctx)
+
+
+def examples(*lines: str) -> str:
+    """The end of a command's help: examples, printed as they are."""
+    return "\n".join(["\b", "Examples:", *(f"  {line}" for line in lines)])
+
+
+def instance_argument(function: F) -> F:
+    """INSTANCE, a document or `-`."""
+    return click.argument("instance", type=InputFile())(function)
+
+
+def solution_argument(function: F) -> F:
+    """SOLUTION, a document or `-`."""
+    return click.argument("solution", type=InputFile())(function)
+
+
+def output_option(function: F) -> F:
+    """`--output`: where the document goes."""
+    help = "Write the document to this file, whole or not at all."
+    return click.option("--output", "-o", type=OutputFile(), help=help)(function)
+
+
+def json_option(function: F) -> F:
+    """`--json`: a document in place of text."""
+    help = "Print the document on standard output, and nothing else."
+    return click.option("--json", "as_json", is_flag=True, help=help)(function)
+
+
+def engine_option(function: F) -> F:
+    """`--engine`: whose planner."""
+    help = (
+        "The compiled planner, or the one to read; their plans are the same.  [default: optimized, and reference for "
+        "planners that only it has]"
+    )
+    return click.option("--engine", type=click.Choice(ENGINES), help=help)(function)
+
+
+def now_option(function: F) -> F:
+    """`--now`: the tick of the request."""
+    help = "The tick at which the request is made; robots keep what they have done by then."
+    return click.option("--now", type=int, default=0, help=help)(function)
+
+
+def limit_option(function: F) -> F:
+    """`--limit`: for how long to search."""
+    help = "For how many seconds to search."
+    return click.option("--limit", type=click.IntRange(min=1), default=DEFAULT_LIMIT, help=help)(function)
+
+
+def planner_option(function: F) -> F:
+    """`--planner`: which planner."""
+    help = f"One of {', '.join(PLANNERS)}."
+    return click.option("--planner", metavar="NAME", default=Neighbourhood.name, help=help)(function)
+
+
+def planner_options(*names: str) -> Callable[[F], F]:
+    """The options of planners that are named, as `carp_spec.planners` has them; those not given keep its defaults."""
+
+    def decorate(function: F) -> F:
+        for name in reversed(names):
+            function = _PLANNER_OPTIONS[name](function)
+        return function
+
+    return decorate
+
+
+def _option(flags: str, help: str, default: object, **settings: Any) -> Callable[[Any], Any]:  # noqa: ANN401 - click's
+    """An option that is `None` where it is not given; the planner's default is shown."""
+    return click.option(flags, default=None, help=f"{help}  [default: {default}]", **settings)
+
+
+_PLANNER_OPTIONS: dict[str, Callable[[Any], Any]] = {
+    "m": _option("--m", "neighbourhood: how many robots are planned anew together.", Neighbourhood().m, type=int),
+    "sample": _option("--sample", "neighbourhood: how many of their orders are tried.", "all", type=int),
+    "seed": _option("--seed", "neighbourhood, shuffled: the seed of random orders.", Neighbourhood().seed, type=int),
+    "baseline": _option(
+        "--baseline/--no-baseline", "neighbourhood: try to keep all plans; without, as the paper.", "--baseline"
+    ),
+    "fallback": _option("--fallback", "neighbourhood: attempts of shuffled if nothing is found.", "none", type=int),
+    "attempts": _option("--attempts", "shuffled: how many orders are tried.", Shuffled().attempts, type=int),
+    "k": _option("--k", "fixed-paths: how many paths of each robot.", FixedPaths().k, type=int),
+    "paths": _option("--paths", "fixed-paths: shortest or disjoint.", FixedPaths().paths, metavar="KIND"),
+}
+ADDING = ("m", "sample", "seed", "baseline", "fallback")
+PLANNING = tuple(_PLANNER_OPTIONS)
+
+
+def chosen_planner(name: str, options: dict[str, Any]) -> Planner:
+    """The planner with the options that were given."""
+    return planner_named(name, {option: value for option, value in options.items() if value is not None})

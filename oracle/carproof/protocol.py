@@ -1,0 +1,138 @@
+"""The protocol's lines: how a request is read, and how it is answered. Its rules are `protocol/...`.
+
+A request is one line of JSON, `{"id": any, "op": name, ...}`, and so is the response: `{"id": same, "result": ...}`
+or `{"id": same, "error": {"kind", "path", "rule", "message"}}`. The kinds of errors:
+
+- `document`: a document in the request is malformed, or the line is no JSON;
+- `request`: the request makes no sense (its fields, its robot, its tick, plans that break a rule);
+- `option`: a planner's option;
+- `limit`: the line is too long;
+- `internal`: carproof failed by a fault of its own, or its installation lacks a library that the op needs; `rule` is
+  null, and the next request is answered as ever.
+"""
+
+from collections.abc import Callable
+from typing import Any, Literal, TypeVar
+
+import msgspec
+
+from carp_spec import Instance, Refusal, RobotId, Rule, Solution, read_instance, read_solution
+from carp_spec.documents import require_json
+from carp_spec.rule import DESIGN, rule
+from carproof.requests import inside
+
+VERSION = 1
+LONGEST_LINE = 64 * 2**20
+NULL = msgspec.Raw(b"null")
+MISSING = msgspec.Raw()
+T = TypeVar("T")
+
+
+class ErrorDocument(msgspec.Struct, frozen=True):
+    """Why a request was refused."""
+
+    kind: Literal["document", "request", "option", "limit", "internal"]
+    path: str
+    rule: str | None
+    message: str
+
+
+class Response(msgspec.Struct, frozen=True, omit_defaults=True):
+    """The answer to a request: a result, or an error."""
+
+    id: msgspec.Raw
+    result: Any = msgspec.UNSET
+    error: ErrorDocument | msgspec.UnsetType = msgspec.UNSET
+
+
+@rule("protocol/line", f"A request is a line of at most {LONGEST_LINE // 2**20} MiB.", DESIGN)
+def line_is_bounded(line: bytes) -> bool:
+    """Whether the line, without its end, is short enough."""
+    return len(line) <= LONGEST_LINE
+
+
+@rule(
+    "protocol/request",
+    "A request is a JSON object with an id, an op that the oracle has, and the fields of that op and no others.",
+    DESIGN,
+)
+def fields_are_right(given: set[str], needed: set[str], known: set[str]) -> bool:
+    """Whether the fields are all that is needed and nothing unknown."""
+    return needed <= given <= known
+
+
+@rule("protocol/version", f"The version of the protocol is {VERSION}.", DESIGN)
+def version_is_spoken(version: int) -> bool:
+    """Whether it is this version."""
+    return version == VERSION
+
+
+PROTOCOL_RULES: tuple[Rule[..., Any], ...] = (line_is_bounded, fields_are_right, version_is_spoken)
+
+
+class Request:
+    """The fields of a request that its op has not taken yet; each is decoded when it is taken."""
+
+    def __init__(self, line: bytes) -> None:
+        require_json(line)
+        try:
+            self._fields = msgspec.json.decode(line, type=dict[str, msgspec.Raw])
+        except msgspec.ValidationError as error:
+            raise Refusal("request", "$", fields_are_right.id, "a request must be an object") from error
+        self.id = self._fields.pop("id", MISSING)
+
+    def take(self, name: str, decode: Callable[[bytes], T], default: T | None = None) -> T:
+        """Decode a field and take it out; one without default must be there."""
+        if name not in self._fields:
+            if default is None:
+                raise Refusal("request", f"$.{name}", fields_are_right.id, "the field must be there")
+            return default
+        with inside(f"$.{name}"):
+            return decode(bytes(self._fields.pop(name)))
+
+    def op(self) -> str:
+        """The op; the request must have an id too."""
+        if self.id is MISSING:
+            raise Refusal("request", "$.id", fields_are_right.id, "the field must be there")
+        op: str = self.take("op", value_of(str))
+        return op
+
+    def instance(self) -> Instance:
+        """The instance."""
+        return self.take("instance", read_instance)
+
+    def solution(self) -> Solution:
+        """The solution."""
+        return self.take("solution", read_solution)
+
+    def robot(self) -> RobotId:
+        """The robot."""
+        robot: RobotId = self.take("robot", value_of(RobotId))
+        return robot
+
+    def options(self) -> dict[str, Any]:
+        """All that is left, as options of a planner."""
+        return {name: self.take(name, msgspec.json.decode) for name in list(self._fields)}
+
+    def end(self) -> None:
+        """Refuse a request with fields that its op does not have."""
+        for name in self._fields:
+            raise Refusal("request", f"$.{name}", fields_are_right.id, "the op has no such field")
+
+
+def value_of(kind: Any) -> Callable[[bytes], Any]:  # noqa: ANN401 - msgspec's own word for a type
+    """A decoder of plain values, strict as documents are."""
+
+    def decode(data: bytes) -> Any:  # noqa: ANN401 - a value of the kind
+        try:
+            return msgspec.json.decode(data, type=kind)
+        except msgspec.ValidationError as error:
+            message = str(error).partition(" - at ")[0].replace("`", "")
+            raise Refusal("request", "$", fields_are_right.id, message[:1].lower() + message[1:]) from error
+
+    return decode
+
+
+def refused(refusal: Refusal) -> ErrorDocument:
+    """The error of a refusal."""
+    return ErrorDocument(refusal.kind, refusal.path, refusal.rule, refusal.message)

@@ -1,0 +1,112 @@
+"""The pytest fixture `carproof`, with which a project tests a planner of its own.
+
+    def test_my_planner_is_sound(carproof):
+        carproof.conforms(my_planner, level="sound")
+
+pytest loads this module whenever it starts; what it needs to judge planners is loaded by the first test that does.
+"""
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, cast, overload
+
+import pytest
+
+if TYPE_CHECKING:
+    from carp_spec import Instance, Solution
+    from carproof.conform.run import Report
+
+LevelName = Literal["sound", "complete", "context-optimal", "optimal", "exact"]
+FOLDER = "conform-failure"
+
+
+class Conformance:
+    """Judges planners, and saves failing cases into its folder."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+
+    @overload
+    def conforms(
+        self,
+        planner: "Callable[[Instance], Solution]",
+        level: LevelName = ...,
+        examples: int = ...,
+        seed: int = ...,
+        documents: Literal[False] = ...,
+    ) -> None: ...
+
+    @overload
+    def conforms(
+        self,
+        planner: Callable[[dict[str, Any]], dict[str, Any]],
+        level: LevelName = ...,
+        examples: int = ...,
+        seed: int = ...,
+        *,
+        documents: Literal[True],
+    ) -> None: ...
+
+    def conforms(
+        self,
+        planner: Callable[..., Any],
+        level: LevelName = "sound",
+        examples: int = 100,
+        seed: int = 0,
+        documents: bool = False,
+    ) -> None:
+        """Fail the test if the planner does not conform to the level.
+
+        The planner takes a `carp_spec.Instance` and returns a `carp_spec.Solution`; with `documents=True` it takes
+        and returns the documents, as dictionaries.
+        """
+        __tracebackhide__ = True
+        from carproof.extras import advice, require  # noqa: PLC0415 - only a test that judges loads them
+
+        try:
+            require("hypothesis", "pysat")
+        except ModuleNotFoundError as error:
+            pytest.fail(f"carproof.conforms {advice(error)}", pytrace=False)
+        from carproof.conform.function import Function, by_documents  # noqa: PLC0415
+        from carproof.conform.levels import LEVELS  # noqa: PLC0415
+        from carproof.conform.run import Options, conform  # noqa: PLC0415
+
+        name = getattr(planner, "__name__", type(planner).__name__)
+        called = by_documents(planner) if documents else cast("Callable[[Instance], Solution]", planner)
+        report = conform(Function(called, name), Options(LEVELS[level], examples, seed, whole=True))
+        if report.interrupted:
+            raise KeyboardInterrupt
+        if not report.conforms:
+            pytest.fail(self._told(report), pytrace=False)
+
+    def _told(self, report: "Report") -> str:
+        """What is wrong, on which instance, and where it was saved."""
+        from carproof.conform.saving import picture_of, save  # noqa: PLC0415
+
+        level = report.options.level
+        head = f"{report.program} does not conform to level {level.label}: {level.statement}"
+        if not report.failures:
+            reasons = [*(fault.message for fault in report.faults), *report.shortfalls]
+            return "\n".join([head, *(reasons or ["no random case decided it"])])
+        smallest = report.failures[0]
+        save(smallest, self._folder)
+        finding, instance = smallest.finding, smallest.case.instance
+        assert finding is not None  # noqa: S101 - a failure has a finding
+        size = f"{len(instance.robots)} robots and {len(instance.graph.resources)} resources"
+        lines = [
+            head,
+            f"{finding.category}: {finding.message} [{finding.rule}]",
+            f"on an instance of {size}, saved in {self._folder}",
+            *(f"  {robot}" for robot in instance.robots),
+            picture_of(smallest),
+            finding.stderr,
+        ]
+        return "\n".join(lines).rstrip()
+
+
+@pytest.fixture
+def carproof(request: pytest.FixtureRequest) -> Conformance:
+    """Judge planners: `carproof.conforms(planner, level="sound", examples=100, seed=0)`."""
+    test = re.sub(r"[^\w.-]+", "-", request.node.name).strip("-")
+    return Conformance(request.config.rootpath / FOLDER / test)

@@ -1,0 +1,96 @@
+"""What commands show and write: documents for programs, tables for people."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import msgspec
+
+from carp_spec import Instance, Plan, ResourceId, RobotId, Solution, total_cost, write_instance
+from carp_spec.documents import visits_document
+from carproof.answer import Answer
+from carproof.engines import plan_beside, sum_of_shortest_paths, why_unplanned
+from carproof.files import print_document, write_whole
+from carproof.tables import print_line, print_table
+
+COLUMNS = ("planner", "robots", "unplanned", "total cost", "shortest paths", "ratio", "time")
+
+
+def show_instance(instance: Instance, output: Path | None, as_json: bool) -> Answer:
+    """Write an instance to the file, or print its document; tell people what was written."""
+    document = write_instance(instance)
+    if output is not None:
+        write_whole(output, document)
+    if output is None or as_json:
+        print_document(document)
+    else:
+        columns = ["written", "resources", "edges", "robots", "after goal"]
+        row = [output, len(instance.graph.resources), len(instance.graph.edges), len(instance.robots)]
+        print_table(columns, [[*row, instance.after_goal]], numbers=columns[1:4])
+    return Answer.YES
+
+
+def write_result(document: bytes, output: Path | None, as_json: bool) -> None:
+    """Write a document to the file, if one is given, and to standard output, if it is asked for."""
+    if output is not None:
+        write_whole(output, document)
+    if as_json:
+        print_document(document)
+
+
+def show_solution(instance: Instance, solution: Solution, planner: str, seconds: float) -> None:
+    """Print a table of the result, and why robots are unplanned."""
+    print_table(COLUMNS, [result_row(instance, solution, planner, seconds)], numbers=COLUMNS[1:])
+    show_unplanned(instance, solution, solution.unplanned)
+
+
+def result_row(instance: Instance, solution: Solution, planner: str, seconds: float) -> Sequence[object]:
+    """A row of the columns: the shortest paths are the sum over the robots that have a plan."""
+    total = total_cost(instance, solution.plans)
+    shortest = sum_of_shortest_paths(instance, (plan.robot for plan in solution.plans))
+    ratio = f"{total / shortest:.4f}" if shortest else "-"
+    unplanned = len(instance.robots) - len(solution.plans)
+    return (planner, len(instance.robots), unplanned, total, shortest, ratio, f"{seconds:.2f} s")
+
+
+def show_unplanned(instance: Instance, solution: Solution, robots: Sequence[RobotId], now: int = 0) -> None:
+    """Print why robots have no plan, one a line."""
+    for robot in robots:
+        print_line(f"unplanned: robot {robot}: {_why(instance, solution, robot, now)}")
+
+
+def _why(instance: Instance, solution: Solution, robot: RobotId, now: int) -> str:
+    if plan_beside(instance, solution.plans, robot, now) is not None:
+        return "the planner found no plan for it, though there is one beside the plans of the others"
+    return why_unplanned(instance, solution.plans, robot, now)
+
+
+def show_addition(instance: Instance, before: Solution, after: Solution, robot: RobotId, now: int) -> None:
+    """Print what became of a robot that was to be added, and of the others."""
+    plans = {plan.robot: plan for plan in after.plans}
+    if robot not in plans:
+        show_unplanned(instance, after, [robot], now)
+        return
+    changed = [str(plan.robot) for plan in before.plans if plans[plan.robot] != plan]
+    print_line(f"robot {robot} arrives at tick {plans[robot].visits[-1].enter}")
+    print_line(f"plans of other robots that changed: {', '.join(changed) or 'none'}")
+    print_line(f"total cost {total_cost(instance, before.plans)} before, {total_cost(instance, after.plans)} now")
+
+
+class QueryDocument(msgspec.Struct, frozen=True):
+    """The result of a query: the visits of the plan, or null if there is none."""
+
+    plan: tuple[tuple[ResourceId, int, int | None], ...] | None
+
+
+def query_document(plan: Plan | None) -> QueryDocument:
+    """The document of a query's result."""
+    return QueryDocument(None if plan is None else visits_document(plan))
+
+
+class VerifiedBoundDocument(msgspec.Struct, frozen=True):
+    """The bound that a certificate proves, or null and where, by which rule and why it does not."""
+
+    bound: int | None
+    path: str | None
+    rule: str | None
+    reason: str | None

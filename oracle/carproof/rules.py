@@ -1,0 +1,29 @@
+"""All rules that carproof quotes: the specification's, then those of requests, formats and searches."""
+
+from typing import Any
+
+from carp_spec import RULES, Rule
+from carp_spec.limits import LIMIT_RULES
+from carp_verify.bound_rules import BOUND_RULES
+from carp_verify.optimum_rules import OPTIMUM_RULES
+from carproof.adapters import ADAPTER_RULES
+from carproof.conform.findings import PROGRAM_RULES
+from carproof.generate.options import GENERATE_RULES
+from carproof.movingai import MOVINGAI_RULES
+from carproof.protocol import PROTOCOL_RULES
+from carproof.requests import REQUEST_RULES
+from carproof.viewer.limits import VIEW_RULES
+
+ALL_RULES: tuple[Rule[..., Any], ...] = (
+    *RULES,
+    *LIMIT_RULES,
+    *REQUEST_RULES,
+    *GENERATE_RULES,
+    *MOVINGAI_RULES,
+    *ADAPTER_RULES,
+    *PROTOCOL_RULES,
+    *PROGRAM_RULES,
+    *VIEW_RULES,
+    *OPTIMUM_RULES,
+    *BOUND_RULES,
+)

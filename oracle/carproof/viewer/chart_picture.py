@@ -1,0 +1,118 @@
+"""The chart of resources by time as a still: free windows, visits and violations of the resources that are visited."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from xml.etree.ElementTree import Element, SubElement
+
+from carproof.viewer.scene import Scene
+from carproof.viewer.shapes import box, drawing, group, hatch_definition, line, path, text
+
+LANE = 12
+GAP = 4
+LABELS = 70
+AXIS = 22
+WIDEST = 1_200
+WIDEST_TICK = 40
+FEWEST_PIXELS = 40
+LETTER = 8
+LABEL_LENGTH = 11
+
+
+@dataclass(frozen=True, slots=True)
+class TimeScale:
+    """Ticks as places from left to right."""
+
+    first: int
+    end: int
+
+    @property
+    def width(self) -> int:
+        """How wide all ticks are together."""
+        return min(WIDEST, WIDEST_TICK * (self.end - self.first))
+
+    def at(self, tick: int) -> int:
+        """Where the tick begins."""
+        return LABELS + (tick - self.first) * self.width // (self.end - self.first)
+
+    def span(self, start: int, end: int | None) -> tuple[int, int]:
+        """Where an interval begins and how wide it is; one for ever goes on to the chart's edge."""
+        left, right = self.at(start), self.at(self.end if end is None else min(end, self.end))
+        return left, max(1, right - left)
+
+    def marks(self) -> Iterator[int]:
+        """Round ticks, not too close to each other."""
+        ticks = self.end - self.first
+        rounded = (digit * 10**power for power in range(9) for digit in (1, 2, 5))
+        step = next(step for step in rounded if step * self.width >= FEWEST_PIXELS * ticks)
+        yield from range(-(-self.first // step) * step, self.end + 1, step)
+
+
+def chart_picture(scene: Scene) -> Element:
+    """Draw the chart; a little room behind the last tick stands for what is for ever."""
+    scale = TimeScale(scene.first, scene.last + max(1, (scene.last - scene.first) // 40))
+    tops: dict[int, int] = {}
+    height = AXIS
+    for place in visited_places(scene):
+        tops[place] = height
+        height += row_height(scene, place)
+    picture = drawing(scale.at(scale.end) + GAP, height + GAP, **{"class": "chart"})
+    hatch_definition(picture)
+    draw_axis(picture, scale, height)
+    draw_windows(picture, scene, scale, tops)
+    draw_stays(picture, scene, scale, tops)
+    draw_violations(picture, scene, scale, tops)
+    return picture
+
+
+def visited_places(scene: Scene) -> list[int]:
+    """The places that some plan visits, in the order of the instance."""
+    return sorted({scene.stands[stand].place for track in scene.tracks for stand, _, _ in track.stays})
+
+
+def row_height(scene: Scene, place: int) -> int:
+    """How high a place's row is."""
+    return scene.places[place].lanes * LANE + GAP
+
+
+def draw_axis(picture: Element, scale: TimeScale, height: int) -> None:
+    """Draw lines at round ticks, and their numbers."""
+    axis = group(picture, "axis")
+    for tick in scale.marks():
+        path(axis, "line", [line([(scale.at(tick), AXIS - GAP), (scale.at(tick), height)])])
+        text(axis, "tick", scale.at(tick) + 3, AXIS - 8, str(tick), 10)
+    text(axis, "unit", LABELS - GAP, AXIS - 8, "tick", 10)
+
+
+def draw_windows(picture: Element, scene: Scene, scale: TimeScale, tops: Mapping[int, int]) -> None:
+    """Draw the free windows, and each row's name."""
+    rows = group(picture, "rows")
+    for place, top in tops.items():
+        drawn = scene.places[place]
+        spans = [scale.span(start, end) for start, end in drawn.windows]
+        path(rows, "window", (box(x, top, width, drawn.lanes * LANE) for x, width in spans))
+        name = drawn.label if len(drawn.label) <= LABEL_LENGTH else f"{drawn.label[: LABEL_LENGTH - 1]}…"
+        text(rows, "row-name", LABELS - GAP, top + drawn.lanes * LANE // 2, name, 10)
+
+
+def draw_stays(picture: Element, scene: Scene, scale: TimeScale, tops: Mapping[int, int]) -> None:
+    """Draw each robot's visits in its lanes, with its name where there is room for it."""
+    robots = group(picture, "stays")
+    for track in scene.tracks:
+        of_robot = group(robots, f"stay tint{track.tint}")
+        SubElement(of_robot, "title").text = track.label
+        for stand, enter, leave in track.stays:
+            spot = scene.stands[stand]
+            x, width = scale.span(enter, leave)
+            top = tops[spot.place] + spot.lane * LANE
+            path(of_robot, "bar", [box(x, top + 1, max(1, width - 1), LANE - 2)])
+            if width >= LETTER * len(track.short):
+                text(of_robot, "short", x + width // 2, top + LANE // 2, track.short, 9)
+
+
+def draw_violations(picture: Element, scene: Scene, scale: TimeScale, tops: Mapping[int, int]) -> None:
+    """Draw a hatched frame around every violation that has a place and a tick."""
+    marks = group(picture, "marks")
+    for each in scene.violations:
+        if each.place is not None and each.place in tops and each.start is not None:
+            x, width = scale.span(each.start, each.end)
+            path(marks, "violation", [box(x, tops[each.place], max(3, width), scene.places[each.place].lanes * LANE)])

@@ -1,0 +1,135 @@
+"""The map: resources and moves, and above them the robots and the violations of a tick."""
+
+from collections.abc import Iterator, Sequence
+from math import isqrt
+from xml.etree.ElementTree import Element, SubElement
+
+from carp_spec import ResourceGraph
+from carproof.viewer.lanes import SIDE
+from carproof.viewer.placement import Point
+from carproof.viewer.scene import Broken, Place, Scene, Stand, Track
+from carproof.viewer.shapes import box, drawing, group, hatch_definition, line, path, text
+
+MOST_NAMED = 200
+MOST_TRAITS = 2_000
+NAME_SIZE = 7
+NAME_LENGTH = 8
+SIZE_OF_LENGTH = (0, 13, 12, 10, 8)
+ROBOT_RADIUS = 10
+HEAD = 9
+HALF = SIDE // 2
+
+
+def map_picture(graph: ResourceGraph, scene: Scene) -> Element:
+    """Everything that stays, and three empty groups above it: marks of violations, the trail, the robots."""
+    picture = drawing(scene.width, scene.height, **{"class": "map"})
+    hatch_definition(picture)
+    ground = group(picture, "ground")
+    ways = edge_ends(graph, scene)
+    one_way = [(source, target) for source, target, back in ways if not back]
+    path(ground, "edge thin" if scene.computed else "edge", (line([one, two]) for one, two, back in ways if back))
+    path(ground, "one-way", (line(ends) for ends in one_way))
+    located = [(place, place.at) for place in scene.places if place.at is not None]
+    path(ground, "cell", (cell(at) for place, at in located if place.capacity == "1"))
+    path(ground, "cell roomy", (cell(at) for place, at in located if place.capacity != "1"))
+    path(ground, "head", (arrow_head(*ends) for ends in one_way))
+    write_names(ground, located)
+    for kind in ("marks", "trail", "robots"):
+        group(picture, kind)
+    return picture
+
+
+def edge_ends(graph: ResourceGraph, scene: Scene) -> list[tuple[Point, Point, bool]]:
+    """The edges as pairs of points, each pair of opposite moves once, and whether both moves are there."""
+    points = [place.at for place in scene.places]
+    found: list[tuple[Point, Point, bool]] = []
+    moves = set(graph.edges)
+    for source, target in graph.edges:
+        back = not graph.directed or (target, source) in moves
+        again = graph.directed and back and graph.index[source] > graph.index[target]
+        one, two = points[graph.index[source]], points[graph.index[target]]
+        if not again and one is not None and two is not None:
+            found.append((one, two, back))
+    return found
+
+
+def cell(centre: Point) -> str:
+    """Path data of a resource."""
+    return box(centre[0] - HALF, centre[1] - HALF, SIDE, SIDE)
+
+
+def arrow_head(source: Point, target: Point) -> str:
+    """Path data of the head of an arrow, just outside the resource that it points to."""
+    dx, dy = target[0] - source[0], target[1] - source[1]
+    length = max(1, isqrt(dx * dx + dy * dy))
+    reach = max(abs(dx), abs(dy), 1)
+    x, y = target[0] - dx * HALF // reach, target[1] - dy * HALF // reach
+    back_x, back_y = x - dx * HEAD // length, y - dy * HEAD // length
+    side_x, side_y = -dy * HEAD // (2 * length), dx * HEAD // (2 * length)
+    return f"M{x} {y}L{back_x + side_x} {back_y + side_y}L{back_x - side_x} {back_y - side_y}z"
+
+
+def write_names(ground: Element, located: Sequence[tuple[Place, Point]]) -> None:
+    """Write the resources' names, if there are few, and capacities and durations that are not one."""
+    if len(located) <= MOST_NAMED:
+        for place, (x, y) in located:
+            name = place.label if len(place.label) <= NAME_LENGTH else f"{place.label[: NAME_LENGTH - 1]}…"
+            text(ground, "name", x - HALF + 2, y - HALF + NAME_SIZE, name, NAME_SIZE)
+    traits = [(place_traits(place), at) for place, at in located]
+    if sum(bool(each) for each, _ in traits) <= MOST_TRAITS:
+        for each, (x, y) in traits:
+            if each:
+                text(ground, "name traits", x + HALF - 2, y + HALF - 2, each, NAME_SIZE)
+
+
+def place_traits(place: Place) -> str:
+    """Room and duration as the map shows them: 2x for a capacity of two, 3t for three ticks."""
+    room = "" if place.capacity == "1" else f"{place.capacity}x"
+    ticks = "" if place.duration == "1" else f"{place.duration}t"
+    return " ".join(each for each in (room, ticks) if each)
+
+
+def robot_picture(robots: Element, track: Track) -> Element:
+    """A robot at the origin, of a radius of ten; whoever draws it moves and scales it."""
+    robot = group(robots, f"robot tint{track.tint}")
+    SubElement(robot, "title").text = track.label
+    SubElement(robot, "circle", {"r": str(ROBOT_RADIUS)})
+    text(robot, "short", 0, 0, track.short, SIZE_OF_LENGTH[min(len(track.short), len(SIZE_OF_LENGTH) - 1)])
+    return robot
+
+
+def standing(track: Track, scene: Scene, tick: int) -> Stand | None:
+    """Where the robot is at the tick; a broken plan may name several places, of which the last visit's counts."""
+    for stand, enter, leave in reversed(track.stays):
+        if enter <= tick and (leave is None or tick < leave):
+            return scene.stands[stand]
+    return None
+
+
+def violations_at(scene: Scene, tick: int) -> Iterator[Broken]:
+    """The violations that hold at the tick; one that takes no time is told for one tick."""
+    for each in scene.violations:
+        if each.start is not None and each.start <= tick and (each.end is None or tick < max(each.end, each.start + 1)):
+            yield each
+
+
+def still_map(graph: ResourceGraph, scene: Scene, tick: int) -> Element:
+    """The map at a tick, with its violations."""
+    picture = map_picture(graph, scene)
+    marks, _, robots = picture[-3:]
+    wrong = list(violations_at(scene, tick))
+    for place in dict.fromkeys(each.place for each in wrong if each.place is not None):
+        centre = scene.places[place].at
+        if centre is not None:
+            path(marks, "violation", [cell(centre)])
+    blamed = {track for each in wrong for track in each.tracks}
+    for number, track in enumerate(scene.tracks):
+        stand = standing(track, scene, tick)
+        if stand is not None and stand.at is not None:
+            robot = robot_picture(robots, track)
+            robot.set(
+                "transform", f"translate({stand.at[0]} {stand.at[1]}) scale({stand.radius * 100 // ROBOT_RADIUS}e-2)"
+            )
+            if number in blamed:
+                robot.set("class", f"{robot.get('class')} blamed")
+    return picture

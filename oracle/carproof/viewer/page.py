@@ -1,0 +1,54 @@
+"""The page: one HTML file with map, chart, lists and script; a browser needs nothing else and fetches nothing.
+
+Whatever comes from a document reaches the page escaped: as XML text in the map, and as JSON without `<`, `>`
+and `&` for the script, which shows it as text only. The page's own policy lets no other script run.
+"""
+
+from base64 import b64encode
+from hashlib import sha256
+from html import escape
+from string import Template
+
+import msgspec
+
+from carp_spec import Instance, Solution
+from carproof.viewer.limits import refuse_more
+from carproof.viewer.map_picture import map_picture, robot_picture
+from carproof.viewer.scene import Scene
+from carproof.viewer.shapes import svg_text
+from carproof.viewer.staging import make_scene
+from carproof.viewer.stills import STYLES, page_file
+
+SCRIPTS = ("scene.js", "clock.js", "map.js", "chart.js", "lists.js", "main.js")
+UNSAFE_IN_HTML = {ord(c): f"\\u{ord(c):04x}" for c in "<>&\u2028\u2029"}
+
+
+def page(instance: Instance, solution: Solution, title: str) -> bytes:
+    """The page of a solution."""
+    scene = make_scene(instance, solution, title)
+    picture = map_picture(instance.graph, scene)
+    for track in scene.tracks:
+        robot_picture(picture[-1], track)
+    style = "\n".join(map(page_file, (*STYLES, "page.css")))
+    script = "\n".join(map(page_file, SCRIPTS))
+    filled = Template(page_file("page.html")).substitute(
+        title=escape(scene.title),
+        policy=f"default-src 'none'; img-src data:; style-src '{digest(style)}'; script-src '{digest(script)}'",
+        style=style,
+        map=svg_text(picture),
+        scene=scene_text(scene),
+        script=script,
+    )
+    data = filled.encode()
+    refuse_more("bytes", len(data))
+    return data
+
+
+def scene_text(scene: Scene) -> str:
+    """The scene as JSON that may stand in HTML."""
+    return msgspec.json.encode(scene).decode().translate(UNSAFE_IN_HTML)
+
+
+def digest(text: str) -> str:
+    """How a content security policy names an inline text."""
+    return f"sha256-{b64encode(sha256(text.encode()).digest()).decode()}"
