@@ -14,11 +14,11 @@ install: .venv/installed
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --editable '.[dev]'
 	touch $@
-	$(BIN)/python -m carp_verify
+	$(BIN)/python -m carp_optimum
 
 # Compile what bounds and the planner run, if a source has changed: half a minute, in place of some test's or the demo's.
 compiled: install
-	$(BIN)/python -m carp_verify
+	$(BIN)/python -m carp_optimum
 
 demo: compiled
 	$(BIN)/carproof demo
@@ -56,11 +56,11 @@ thorough: compiled
 bench: install
 	$(BIN)/pytest -o addopts= -o filterwarnings= --import-mode=importlib -q -s tests/bench/bench_speed.py
 
-# Measure how far planners are from the optimum, and put the table into verify/README.md; takes a few minutes.
+# Measure how far planners are from the optimum, and put the table into optimum/README.md; takes a few minutes.
 gap: install
 	$(BIN)/python -m carproof.gap_table
 
-# Measure how long the search for an optimum takes, and put the table into verify/README.md; takes up to five minutes.
+# Measure how long the search for an optimum takes, and put the table into optimum/README.md; takes up to five minutes.
 optimum-figures: install
 	$(BIN)/python -m carproof.optimum_table
 
@@ -71,8 +71,9 @@ experiments-page: install
 generated: install
 	$(BIN)/python -m carp_spec.schema
 	$(BIN)/python -m tests.oracle.test_readme
-	$(BIN)/python -m carp_verify.vectors
+	$(BIN)/python -m tests.vectors
 	$(BIN)/python -m carp_spec.readme
+	$(BIN)/python -m tests.verify.test_trusted_base
 	$(BIN)/python -m carproof.viewer.samples
 
 # Ask the reference questions of the paper's size, and write digests of its answers, with which the gate compares the

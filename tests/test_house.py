@@ -13,9 +13,10 @@ MAY_IMPORT: dict[str, set[str]] = {
     "carp_spec": set(),
     "carp_reference": {"carp_spec"},
     "carp_optimized": {"carp_spec"},
-    "carp_verify": {"carp_spec", "carp_reference", "carp_optimized"},
-    "carproof": {"carp_spec", "carp_reference", "carp_optimized", "carp_verify", "carp_experiments"},
-    "carp_experiments": {"carp_spec", "carp_reference", "carp_optimized", "carp_verify", "carproof"},
+    "carp_verify": {"carp_spec"},
+    "carp_optimum": {"carp_spec", "carp_reference", "carp_optimized", "carp_verify"},
+    "carproof": {"carp_spec", "carp_reference", "carp_optimized", "carp_verify", "carp_optimum"},
+    "carp_experiments": {"carp_spec", "carp_reference", "carp_optimized", "carp_verify", "carp_optimum", "carproof"},
 }
 SLOW_TO_LOAD = {"z3", "numba", "numpy", "pysat", "matplotlib", "hypothesis", "networkx"}
 

@@ -16,9 +16,9 @@ import msgspec
 from carp_experiments.campaign import key_on_map
 from carp_experiments.quality import ALGORITHMS, ROBOTS, grid_fleet, outcome, seeded
 from carp_experiments.report import Figure, Report, Table
-from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import MEASURED, Row
 from carp_spec import Neighbourhood, Planner, Shuffled
+from carproof.statistics import Interval, mean_interval
 
 if TYPE_CHECKING:
     from carp_optimized.fleet import Fleet

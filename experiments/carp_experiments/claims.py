@@ -9,7 +9,7 @@ from carp_experiments.quality import FULL_MAP, RIVALS, QualitySummary, Saving
 from carp_experiments.quality_report import FEWEST_SHOWN
 from carp_experiments.related_work import FIXED, Related
 from carp_experiments.reuse_counts import PAPERS_SHARES, ReuseOf
-from carp_experiments.statistics import Interval
+from carproof.statistics import Interval
 
 Verdict: TypeAlias = Literal["reproduced", "in part", "not reproduced", "undecided"]
 Savings: TypeAlias = Mapping[tuple[int | None, str, str], Saving]

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from itertools import zip_longest
 from pathlib import Path
 
-from carp_experiments.statistics import Interval
+from carproof.statistics import Interval
 
 COLOURS = (
     "#000000",

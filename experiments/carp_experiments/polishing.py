@@ -1,6 +1,6 @@
 """The distance to the optimum at the paper's size: shortest paths, a lower bound, the planner, and what is polished.
 
-The bound is that of `carp_verify.bound`, which no plans of all robots can beat; the polish is `carp_optimized.polish`,
+The bound is that of `carp_optimum.bound`, which no plans of all robots can beat; the polish is `carp_optimized.polish`,
 which also tries to plan robots that have no plan. Both by a number of steps, not by the clock, so that the same numbers
 come out anywhere: on the paper's maps these are about ten seconds of the bound and one and three of the polish.
 """
@@ -17,10 +17,10 @@ from carp_experiments.campaign import key_on_map
 from carp_experiments.quality import ALGORITHMS, ROBOTS, seeded
 from carp_experiments.quality_report import MAP_AXIS
 from carp_experiments.report import Figure, Report, Table
-from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import MEASURED, Row
 from carp_spec import Instance, RobotId, Solution, total_cost
 from carp_verify.bound_rules import require_kept
+from carproof.statistics import Interval, mean_interval
 
 STEPS = 2000
 POLISHED = {"Proposed_4": {"polish": 20_000, "long polish": 60_000}, "Proposed_10": {"polish": 20_000}}
@@ -55,7 +55,7 @@ class PolishCase:
         polish, in nanoseconds.
         """
         import carp_optimized as engine  # noqa: PLC0415 - each worker loads it
-        from carp_verify.bound import lower_bound  # noqa: PLC0415
+        from carp_optimum.bound import lower_bound  # noqa: PLC0415
         from carproof.generate import Fleet, Grid, grid_instance  # noqa: PLC0415
 
         instance = grid_instance(Grid(map=self.map), Fleet(robots=self.robots, seed=self.assignment))

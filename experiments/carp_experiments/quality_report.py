@@ -4,8 +4,8 @@ from collections.abc import Iterable
 
 from carp_experiments.quality import ALGORITHMS, FULL_MAP, QualitySummary, Summary, summarise
 from carp_experiments.report import Figure, Report, Table
-from carp_experiments.statistics import Interval
 from carp_experiments.store import Row
+from carproof.statistics import Interval
 
 SHOWN_MAPS = (0, 5, 10, 15, 20)
 FEWEST_SHOWN = 4  # a mean over less than a quarter of the assignments is no point in a figure

@@ -16,9 +16,9 @@ from carp_experiments.campaign import key_on_map
 from carp_experiments.quality import ROBOTS, grid_fleet, plan_all
 from carp_experiments.quality_report import MAP_AXIS, SHOWN_MAPS
 from carp_experiments.report import Figure, Report, Table
-from carp_experiments.statistics import Interval, mean_interval, proportion_interval
 from carp_experiments.store import Row
 from carp_spec import Instance, LongestFirst, Plan, ResourceId, Robot, plan_cost
+from carproof.statistics import Interval, mean_interval, proportion_interval
 
 Path = tuple[ResourceId, ...]
 MOST_SHORTEST = 10

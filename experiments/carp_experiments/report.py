@@ -8,7 +8,7 @@ from typing import Any
 import msgspec
 
 from carp_experiments.figures import line_figure
-from carp_experiments.statistics import Interval
+from carproof.statistics import Interval
 
 
 @dataclass(frozen=True, slots=True)

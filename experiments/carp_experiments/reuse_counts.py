@@ -10,10 +10,10 @@ import msgspec
 from carp_experiments.campaign import key_on_map
 from carp_experiments.quality import ROBOTS, grid_fleet
 from carp_experiments.report import Report, Table
-from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import Row
 from carp_optimized.reuse import Reuse
 from carp_spec import Neighbourhood
+from carproof.statistics import Interval, mean_interval
 
 NOTHING = Reuse(kept=False, unchanged=False, prefixes=False, shared=False, bounds=False)
 SETTINGS: Mapping[str, Reuse] = {

@@ -1,6 +1,6 @@
 """Small maps against the optimum: how far from it each algorithm is, over the density of the map.
 
-Also what a polish of Proposed_4 leaves, and how far below the optimum the lower bound of `carp_verify.bound` is.
+Also what a polish of Proposed_4 leaves, and how far below the optimum the lower bound of `carp_optimum.bound` is.
 """
 
 from collections import defaultdict
@@ -13,10 +13,10 @@ from carp_experiments.campaign import key_on_map
 from carp_experiments.quality import ALGORITHMS, outcome, plan_all, seeded
 from carp_experiments.quality_report import MAP_AXIS, SHOWN_MAPS
 from carp_experiments.report import Figure, Report, Table
-from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import Row
 from carp_spec import Greedy, Planner, total_cost
 from carp_verify.bound_rules import require_kept
+from carproof.statistics import Interval, mean_interval
 
 SIDE = 8
 LIMIT_IN_SECONDS = 60
@@ -52,8 +52,8 @@ class GapCase:
         """
         import carp_optimized as engine  # noqa: PLC0415 - each worker loads it
         from carp_optimized.fleet import Fleet  # noqa: PLC0415
-        from carp_verify.bound import lower_bound  # noqa: PLC0415
-        from carp_verify.optimum import optimum  # noqa: PLC0415
+        from carp_optimum.bound import lower_bound  # noqa: PLC0415
+        from carp_optimum.optimum import optimum  # noqa: PLC0415
         from carproof.generate import Fleet as RandomFleet  # noqa: PLC0415
         from carproof.generate import Grid, grid_instance  # noqa: PLC0415
 

@@ -136,7 +136,7 @@ def blocking_group(instance: Instance, robots: Sequence[RobotId], seed: int) -> 
 def group_facts(instance: Instance, robots: tuple[RobotId, ...]) -> Group:
     """What is known of a group."""
     import carp_optimized as engine  # noqa: PLC0415
-    from carp_verify.optimum import optimum  # noqa: PLC0415
+    from carp_optimum.optimum import optimum  # noqa: PLC0415
 
     orders = list(permutations(robots)) if len(robots) <= MOST_ORDERED else []
     failing = sum(bool(engine.plan(part_of(instance, order), Carp()).unplanned) for order in orders)
@@ -146,7 +146,7 @@ def group_facts(instance: Instance, robots: tuple[RobotId, ...]) -> Group:
 
 def planned_around(instance: Instance, robots: Sequence[RobotId], seed: int) -> Solution | None:
     """Plans of all robots, found around the best plans of some of them; `None` if none were found."""
-    from carp_verify.optimum import optimum  # noqa: PLC0415
+    from carp_optimum.optimum import optimum  # noqa: PLC0415
 
     best = optimum(part_of(instance, robots), LIMIT_IN_SECONDS).solution
     if best is None:

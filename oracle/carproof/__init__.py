@@ -19,6 +19,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from carp_optimized import add, plan, polish, query
+    from carp_optimum.bound import lower_bound as bound
+    from carp_optimum.optimum import Optimum, optimum
     from carp_spec import (
         RULES,
         AfterGoal,
@@ -57,8 +59,6 @@ if TYPE_CHECKING:
     )
     from carp_spec import judge as check
     from carp_spec.bounds import BoundDocument, read_bound
-    from carp_verify.bound import lower_bound as bound
-    from carp_verify.optimum import Optimum, optimum
     from carp_verify.verify_bound import verify_bound
 
 _ELSEWHERE = {
@@ -69,9 +69,9 @@ _ELSEWHERE = {
     "check": "carp_spec:judge",
     "BoundDocument": "carp_spec.bounds",
     "read_bound": "carp_spec.bounds",
-    "bound": "carp_verify.bound:lower_bound",
-    "Optimum": "carp_verify.optimum",
-    "optimum": "carp_verify.optimum",
+    "bound": "carp_optimum.bound:lower_bound",
+    "Optimum": "carp_optimum.optimum",
+    "optimum": "carp_optimum.optimum",
     "verify_bound": "carp_verify.verify_bound",
 }
 """Where a name comes from, and what it is called there; all others are of `carp_spec`."""

@@ -7,6 +7,7 @@ import traceback
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from importlib import import_module
+from typing import TYPE_CHECKING
 
 import click
 
@@ -16,6 +17,9 @@ from carproof.answer import INTERNAL_ERROR, INTERRUPTED, PIPE_CLOSED, Answer
 from carproof.commands import COMMANDS
 from carproof.extras import advice
 from carproof.tables import printable
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoints
 
 SETTINGS = {"help_option_names": ["-h", "--help"], "show_default": True}
 EPILOG = """\b
@@ -33,21 +37,30 @@ Exit codes: 0 yes, 1 no (a broken rule, a robot without a plan),
 
 
 class LazyCommands(click.Group):
-    """A group whose commands are the modules of `carproof.commands`."""
+    """A group whose commands are the modules of `carproof.commands`, and those that other packages add."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """The commands in the order in which they are told."""
+        """The commands in the order in which they are listed."""
         del ctx
-        return list(COMMANDS)
+        return [*COMMANDS, *_added_commands().names]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Load a command."""
         del ctx
-        if cmd_name not in COMMANDS:
+        if cmd_name in COMMANDS:
+            command = import_module(f"carproof.commands.{cmd_name.replace('-', '_')}").command
+        elif cmd_name in _added_commands().names:
+            command = _added_commands()[cmd_name].load()
+        else:
             return None
-        command = import_module(f"carproof.commands.{cmd_name.replace('-', '_')}").command
         assert isinstance(command, click.Command)  # noqa: S101 - a promise of ours, not of the user's
         return command
+
+
+def _added_commands() -> "EntryPoints":
+    from importlib.metadata import entry_points  # noqa: PLC0415 - slow to load, and most commands are ours
+
+    return entry_points(group="carproof.commands")
 
 
 @click.group(cls=LazyCommands, epilog=EPILOG, context_settings=SETTINGS)

@@ -6,10 +6,10 @@ Everything but the limit of a search is decided by seeds. Means are floats; they
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from carp_experiments.statistics import Interval, mean_interval
+from carp_optimum.gap import Gap, gap
 from carp_spec import AfterGoal, Instance, Planner
-from carp_verify.gap import Gap, gap
 from carproof.generate import Fleet, Grid, Range, grid_instance
+from carproof.statistics import Interval, mean_interval
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""The table of gaps over small maps, from spanning tree to full grid, in verify/README.md; `make gap` makes it anew."""
+"""The table of gaps over small maps, from spanning tree to full grid, in optimum/README.md, made by `make gap`."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -43,4 +43,4 @@ def write_table(page: Path, family: Family) -> None:
 
 
 if __name__ == "__main__":
-    write_table(Path(__file__).parents[2] / "verify" / "README.md", FAMILY)
+    write_table(Path(__file__).parents[2] / "optimum" / "README.md", FAMILY)

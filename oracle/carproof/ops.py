@@ -97,7 +97,7 @@ def polish(request: Request, engine: Engine) -> Result:
 def optimum(request: Request, engine: Engine) -> Result:
     """Search for the least total cost; `proved` means that the search ended with an answer, which nothing checked."""
     require("pysat")
-    from carp_verify.optimum import optimum as search  # noqa: PLC0415 - a server that is not asked need not load it
+    from carp_optimum.optimum import optimum as search  # noqa: PLC0415 - a server that is not asked need not load it
 
     del engine
     instance = request.instance()
@@ -112,7 +112,7 @@ def optimum(request: Request, engine: Engine) -> Result:
 def bound(request: Request, engine: Engine) -> Result:
     """Search for a lower bound on the total cost, with a certificate."""
     require("pysat")
-    from carp_verify.bound import lower_bound  # noqa: PLC0415 - a server that is not asked need not load it
+    from carp_optimum.bound import lower_bound  # noqa: PLC0415 - a server that is not asked need not load it
 
     del engine
     instance = request.instance()

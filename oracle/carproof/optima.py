@@ -7,7 +7,7 @@ import msgspec
 from carp_spec.documents import SolutionDocument, solution_document
 
 if TYPE_CHECKING:
-    from carp_verify.optimum import Optimum
+    from carp_optimum.optimum import Optimum
     from carp_verify.proof import Verified
 
 

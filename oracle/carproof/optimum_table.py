@@ -1,4 +1,4 @@
-"""The table of times of the search for an optimum, in verify/README.md; `make optimum-figures` makes it anew.
+"""The table of times of the search for an optimum, in optimum/README.md; `make optimum-figures` makes it anew.
 
 Everything but the clock is decided by seeds.
 """
@@ -9,8 +9,8 @@ from pathlib import Path
 from statistics import median
 from time import perf_counter
 
+from carp_optimum.optimum import optimum
 from carp_spec import AfterGoal, Instance
-from carp_verify.optimum import optimum
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 from carproof.generate.options import JUST_ONE
 from carproof.progress import progress
@@ -111,4 +111,4 @@ def write_table(page: Path) -> str:
 
 
 if __name__ == "__main__":
-    print(write_table(Path(__file__).parents[2] / "verify" / "README.md"), end="")  # noqa: T201 - the command's output
+    print(write_table(Path(__file__).parents[2] / "optimum" / "README.md"), end="")  # noqa: T201 - the command's output

@@ -15,9 +15,9 @@ from carp_experiments.quality import grid_fleet
 from carp_experiments.related_work import FIXED, METHODS, Related, RelatedCase, related_report
 from carp_experiments.reuse_counts import ReuseCase, ReuseOf, reuse_report
 from carp_experiments.small_gaps import COMPARED, POLISHED, GapCase, GapRow, gap_report
-from carp_experiments.statistics import Interval
 from carp_experiments.store import digest_of
 from carp_spec import Carp, FixedPaths, Greedy, LongestFirst, Planner, plan_cost
+from carproof.statistics import Interval
 
 
 def test_times_are_measured_and_do_not_count_in_the_digest() -> None:

@@ -7,7 +7,7 @@ import pytest
 from carp_experiments.claims import above_zero, below_zero, up_to, verdict_of
 from carp_experiments.page import PAGE, RESULTS, page
 from carp_experiments.quality import Saving
-from carp_experiments.statistics import Interval
+from carproof.statistics import Interval
 
 
 def test_the_page_is_that_of_the_results() -> None:

@@ -75,7 +75,7 @@ def test_the_installation_compiles_every_entry() -> None:
 import sys
 called = set()
 sys.setprofile(lambda frame, event, _: called.add(frame.f_code.co_name) if event == "call" else None)
-from carp_verify.__main__ import compile_all
+from carp_optimum.__main__ import compile_all
 compile_all()
 sys.setprofile(None)
 print(*called)

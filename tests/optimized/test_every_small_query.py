@@ -5,13 +5,13 @@ from dataclasses import replace
 from itertools import groupby, product
 
 import pytest
+from tests.enumeration import ASKED, PATTERNS, Pattern, SmallCase, small_cases
 from tests.profiles import rest_nightly
 
 from carp_optimized.fleet import Fleet
 from carp_reference.problem import Problem, ticks_to_goal
 from carp_reference.query import find_plan
 from carp_spec import Instance, Plan, ResourceGraph, ResourceId, Robot, RobotId
-from carp_verify.enumeration import ASKED, PATTERNS, Pattern, SmallCase, small_cases
 
 SMALL_CASES_OF_A_PATTERN = 52_198
 RICHEST = 3

@@ -14,7 +14,7 @@ from carproof.cli import main
 @pytest.fixture(scope="session", autouse=True)
 def _compiled() -> None:
     """Compile before the first test, whose output would tell of it."""
-    from carp_verify.__main__ import compile_all
+    from carp_optimum.__main__ import compile_all
 
     compile_all()
 

@@ -8,8 +8,8 @@ import pytest
 from msgspec import to_builtins
 from tests.oracle.running import HEAD_ON, TWO, TWO_PLANNED, Run, corridor, line
 
+from carp_optimum.bound import Progress
 from carp_spec.bounds import BOUND_FORMAT, BoundDocument, read_bound
-from carp_verify.bound import Progress
 
 EMPTY = BoundDocument(BOUND_FORMAT, "", 0, 1, 0, (), (), (), ())
 
@@ -117,7 +117,7 @@ def test_plans_that_cost_less_than_the_bound_are_a_contradiction(
         return EMPTY
 
     monkeypatch.setattr("carp_verify.verify_bound.verify_bound", lambda *_: 1_000_000)
-    monkeypatch.setattr("carp_verify.bound.lower_bound", too_much)
+    monkeypatch.setattr("carp_optimum.bound.lower_bound", too_much)
     town, plans = written(tmp_path / "town.json", TWO), written(tmp_path / "plans.json", TWO_PLANNED)
     if command == "bound":
         outcome = carproof("bound", town, "--steps", 1, "--plans", plans)

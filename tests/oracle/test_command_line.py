@@ -18,11 +18,11 @@ CARPROOF = Path(sys.executable).with_name("carproof")
 def test_help_names_every_command_and_fits_eighty_columns(carproof: Run) -> None:
     outcome = carproof("--help")
     assert outcome.code == 0
-    assert all(f"\n  {name} " in outcome.stdout for name in COMMANDS)
+    assert all(f"\n  {name} " in outcome.stdout for name in (*COMMANDS, "experiment"))
     assert max(map(len, outcome.stdout.splitlines())) <= 80
 
 
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("name", [*COMMANDS, "experiment"])
 def test_each_command_explains_itself_with_an_example(carproof: Run, name: str) -> None:
     outcome = carproof(name, "--help")
     assert outcome.code == 0

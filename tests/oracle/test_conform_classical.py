@@ -12,8 +12,8 @@ from tests.oracle.foreign_files import INSTANCE
 from tests.oracle.running import Run
 from tests.profiles import draws
 
+from carp_optimum.optimum import optimum
 from carp_spec import Instance, Resource, ResourceGraph, Robot, Solution
-from carp_verify.optimum import optimum
 from carproof.conform.classical_cases import classical_instances
 from carproof.conform.findings import is_complete
 from carproof.conform.function import Function

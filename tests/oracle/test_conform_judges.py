@@ -10,12 +10,12 @@ import msgspec
 import pytest
 
 import carp_reference
+from carp_optimum.bound import lower_bound
+from carp_optimum.optimum import optimum
 from carp_spec import Carp, Plan, Solution, judge
 from carp_spec.bounds import BoundDocument
 from carp_spec.documents import VerdictDocument, verdict_document
 from carp_spec.vectors import VectorsDocument
-from carp_verify.bound import lower_bound
-from carp_verify.optimum import optimum
 from carproof.conform.answers import OptimumAnswer, QueryAnswer, Reply
 from carproof.conform.cases import OPS, POLISH_ROUNDS, Case, request_fields
 from carproof.conform.levels import Level

@@ -6,9 +6,10 @@ from pathlib import Path
 import pytest
 from tests.oracle.running import HEAD_ON, TWO, TWO_PLANNED, Document, Run, corridor, line
 
+from carp_optimum.gap import Gap, PlannerGap
+from carp_optimum.optimum import Optimum
 from carp_spec import Carp
-from carp_verify.gap import Gap, PlannerGap
-from carp_verify.optimum import Evidence, Optimum
+from carp_verify.encoding import Evidence
 from carproof import gap_table, optimum_table
 from carproof.gap_family import Cell, Family, measured
 from carproof.gap_report import PLANNERS

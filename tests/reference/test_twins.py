@@ -3,12 +3,12 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.enumeration import ASKED, PATTERNS, Pattern, small_cases
 from tests.profiles import rest_nightly
 
 from carp_reference import query
 from carp_reference.time_expanded import find_plan_by_ticks
 from carp_spec import Instance, Plan, RobotId, check, check_update, plan_cost
-from carp_verify.enumeration import ASKED, PATTERNS, Pattern, small_cases
 from carproof.strategies import FleetUnderWay, fleets_under_way
 
 SMALL_CASES_OF_A_PATTERN = 52_198

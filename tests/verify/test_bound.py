@@ -15,13 +15,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.profiles import draws
 
+from carp_optimum.bound import Progress, lower_bound
+from carp_optimum.cut_search import prove
 from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, ResourceId, Robot, Visit
 from carp_spec.bounds import BOUND_FORMAT, BoundDocument, CutDocument, digest, read_bound
 from carp_spec.documents import write
 from carp_spec.plan_rules import plan_cost
 from carp_verify import verify_bound as page
-from carp_verify.bound import Progress, lower_bound
-from carp_verify.cut_search import prove
 from carp_verify.joint_search import least_total_cost
 from carp_verify.lemmas.prices_bound_the_total import at_most_paid, in_exchange, paid
 from carp_verify.smt import integers, truth, value_of
@@ -415,7 +415,7 @@ def test_the_verifier_shares_nothing_with_the_finder_and_loads_nothing_compiled(
         "msgspec",
         "typing_extensions",
     }
-    assert not {"carp_verify.bound", "carp_verify.price_search", "carp_verify.bound_cuts"} & set(loaded)
+    assert not {"carp_optimum.bound", "carp_optimum.price_search", "carp_verify.bound_cuts"} & set(loaded)
 
 
 def test_what_the_verifier_lets_robots_pay_is_what_the_lemma_says() -> None:

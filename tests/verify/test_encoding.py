@@ -1,10 +1,10 @@
 from hypothesis import given, settings
 from tests.profiles import draws
 
+from carp_optimum.solver import Deadline, Solver
 from carp_spec import Instance, Resource, ResourceGraph, Robot, check, total_cost
 from carp_verify.encoding import Conflict, Encoding, violated
 from carp_verify.joint_search import least_total_cost
-from carp_verify.solver import Deadline, Solver
 from carproof.strategies import PlannedInstance, Sizes, instances, planned_instances
 
 TINY = Sizes(resources=4, robots=3, capacity=2, duration=2, release=2, pace=2)

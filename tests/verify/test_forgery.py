@@ -18,15 +18,17 @@ from tests.verify.test_bound import completed, crossing, cut_certificate
 from tests.verify.test_proof import crossing as four_crossing
 from tests.verify.test_proof import with_digests
 
+from carp_optimum.bound import lower_bound
+from carp_optimum.optimum import optimum
+from carp_optimum.proving import write_proof
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
 from carp_spec.bounds import BoundDocument, CutDocument, digest, read_bound
 from carp_spec.documents import write
-from carp_verify.bound import lower_bound
 from carp_verify.bound_cuts import formula_of
 from carp_verify.clauses import dimacs
+from carp_verify.encoding import Evidence
 from carp_verify.joint_search import least_total_cost
-from carp_verify.optimum import Evidence, optimum
-from carp_verify.proof import FILES, ProofError, beat_formula, reach_formula, verify_proof, write_proof
+from carp_verify.proof import FILES, ProofError, beat_formula, reach_formula, verify_proof
 from carp_verify.refutation import NotRefutedError, read_steps, require_refutation
 from carp_verify.verify_bound import verify_bound
 

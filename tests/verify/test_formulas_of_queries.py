@@ -8,6 +8,7 @@ from importlib import import_module
 from itertools import combinations, product
 
 import pytest
+from tests.enumeration import ASKED, PATTERNS, Pattern, SmallCase, small_cases
 
 from carp_reference.context import Context, context_of
 from carp_reference.problem import Problem, ticks_to_goal
@@ -15,7 +16,6 @@ from carp_reference.query import Node, find_plan
 from carp_spec import Plan, ResourceId
 from carp_spec.query_rules import expansion_key
 from carp_spec.windows import Window
-from carp_verify.enumeration import ASKED, PATTERNS, Pattern, SmallCase, small_cases
 from carp_verify.lemmas.first_pop_is_final import is_ahead, is_final, is_taken
 from carp_verify.lemmas.freed_stays_come_too_late import is_too_late, least_f
 from carp_verify.smt import Bool, Int, any_of, integer, value_of

@@ -4,6 +4,8 @@ import pytest
 from hypothesis import given, settings
 from tests.profiles import draws
 
+from carp_optimum.gap import best_order, gap
+from carp_optimum.solver import TimeOver
 from carp_reference import query
 from carp_spec import (
     Carp,
@@ -17,8 +19,6 @@ from carp_spec import (
     Shuffled,
     total_cost,
 )
-from carp_verify.gap import best_order, gap
-from carp_verify.solver import TimeOver
 from carproof.strategies import Sizes, instances
 
 SECONDS = 60

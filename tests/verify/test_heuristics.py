@@ -3,13 +3,13 @@ from hypothesis import HealthCheck, assume, given, settings
 from tests.profiles import draws
 from tests.verify.test_optimum import turned_ring
 
+from carp_optimum import heuristics
+from carp_optimum.heuristics import plans_of_all
+from carp_optimum.solver import TimeOver
 from carp_reference import plan
 from carp_reference.problem import prepare
 from carp_spec import Carp, Instance, Plan, Resource, ResourceGraph, Robot, Solution, judge, total_cost
-from carp_verify import heuristics
 from carp_verify.encoding import Encoding
-from carp_verify.heuristics import plans_of_all
-from carp_verify.solver import TimeOver
 from carproof.strategies import Sizes, instances
 
 SMALL = Sizes(resources=6, robots=4, capacity=2, duration=3, release=3, pace=2)

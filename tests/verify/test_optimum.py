@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given, settings
 from tests.profiles import draws
 
+from carp_optimum.optimum import optimum
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, judge
 from carp_verify.encoding import Encoding
 from carp_verify.joint_search import least_total_cost
-from carp_verify.optimum import optimum
 from carp_verify.unsolvable import describe
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.strategies import Sizes, instances
@@ -155,7 +155,7 @@ def test_far_releases_do_not_make_the_search_over_all_states_endless() -> None:
 def test_a_search_over_too_many_states_leaves_the_search_for_an_optimum_going(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("carp_verify.unsolvable.FEW_STATES", 10**9)
     monkeypatch.setattr("carp_verify.joint_search.refuse_size", refuse_anything)
-    monkeypatch.setattr("carp_verify.optimum.DELAY_OF_DOUBT", 1)
+    monkeypatch.setattr("carp_optimum.optimum.DELAY_OF_DOUBT", 1)
     instance = grid(3, Robot("a", "0,1", "2,1"), Robot("b", "2,1", "0,1"), Robot("c", "1,0", "1,2"), after_goal="park")
     best = optimum(instance, LONG)
     assert (best.cost, best.shortest) == (9, 6)

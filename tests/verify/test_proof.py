@@ -9,9 +9,10 @@ from hypothesis import given, settings
 from tests.profiles import draws
 from tests.verify.test_bound import UNSOUND_DRAT
 
+from carp_optimum.optimum import optimum
+from carp_optimum.proving import write_proof
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, judge, write_instance
-from carp_verify.optimum import optimum
-from carp_verify.proof import FILES, ProofError, verify_proof, write_proof
+from carp_verify.proof import FILES, ProofError, verify_proof
 from carproof.strategies import Sizes, instances
 
 SECONDS = 60

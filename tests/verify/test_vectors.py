@@ -7,14 +7,14 @@ from typing import Any
 
 import pytest
 from jsonschema import Draft202012Validator
+from tests.vectors import writing
+from tests.vectors.judging import finding
+from tests.vectors.writing import ChangedError, digests, file_text, list_text, listed, published
 
 from carp_reference.time_expanded import find_plan_by_ticks
 from carp_spec import RULES, plan_cost
 from carp_spec.schema import schema_file
 from carp_spec.vectors import DIGESTS, FLAGS, FOLDER, Vector, subjects, vector_file, vectors
-from carp_verify.vectors import writing
-from carp_verify.vectors.judging import finding
-from carp_verify.vectors.writing import ChangedError, digests, file_text, list_text, listed, published
 
 BY_RULE = [rule.id for rule in RULES]
 ALL = [pytest.param(subject, vector, id=vector.id) for subject in subjects() for vector in vectors(subject)]

@@ -28,6 +28,14 @@ class Conflict:
     target: ResourceId | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """What the encoding needs to prove the bound: each robot's horizon, and an order in which to add the delays."""
+
+    horizons: tuple[int, ...]
+    order: tuple[int, ...]
+
+
 class Encoding:
     """The clauses of all robots of an instance, each with a horizon of 0 at first; every robot must have a way.
 

@@ -32,13 +32,9 @@ import msgspec
 from carp_spec import Instance, Plan, Refusal, Solution, judge, read_instance, write_instance
 from carp_spec.documents import decode, has_format
 from carp_spec.model import ResourceId, RobotId
-from carp_verify.clauses import Formula, dimacs
-from carp_verify.encoding import Encoding
-from carp_verify.hints import NoHintsError, refutation_with_hints
-from carp_verify.optimum import Evidence, Optimum
-from carp_verify.optimum_rules import is_provable
+from carp_verify.clauses import dimacs
+from carp_verify.encoding import Encoding, Evidence
 from carp_verify.refutation import NotRefutedError, require_refutation
-from carp_verify.solver import Deadline, Solver
 from carp_verify.unsolvable import Clauses, Obstacle, describe, why_no_obstacle
 
 PROOF_FORMAT = "carproof-proof/2"
@@ -144,74 +140,8 @@ def _bounded(instance: Instance, bound: int | None, evidence: Evidence, most: in
     return encoding
 
 
-def write_proof(instance: Instance, best: Optimum, directory: Path, limit: float) -> None:
-    """Write the proof directory of an answer; raises `TimeOver` if that takes more than `limit` seconds."""
-    if not is_provable(best.decided):
-        message = "there is a proof directory only for an answer that the search has found"
-        raise Refusal("request", "$.proof", is_provable.id, message)
-    deadline = Deadline(limit)
-    files = {"instance.json": write_instance(instance)}
-    if best.cost is not None:
-        reach = reach_formula(instance, best.cost, best.evidence)
-        files["reach.cnf"] = dimacs(reach.formula).encode()
-        files["reach.model"] = _model_text(_model(reach.formula, deadline)).encode()
-        files["variables.json"] = _variables(reach)
-        files |= _beaten(beat_formula(instance, best.cost, best.evidence).formula, deadline)
-    elif isinstance(best.obstacle, Clauses):
-        evidence = Evidence(best.obstacle.horizons, ())
-        files |= _beaten(beat_formula(instance, None, evidence).formula, deadline)
-    manifest = _manifest_of(best, {name: sha256(content).hexdigest() for name, content in files.items()})
-    files["manifest.json"] = msgspec.json.encode(manifest) + b"\n"
-    directory.mkdir(parents=True, exist_ok=True)
-    for name, content in files.items():
-        (directory / name).write_bytes(content)
-
-
-def _beaten(formula: Formula, deadline: Deadline) -> Mapping[str, bytes]:
-    return {"beat.cnf": dimacs(formula).encode(), "beat.lrat": refutation(formula, deadline).encode()}
-
-
-def _manifest_of(best: Optimum, digests: Mapping[str, str]) -> Manifest | UnsolvableManifest:
-    if best.obstacle is not None:
-        return UnsolvableManifest(PROOF_FORMAT, "unsolvable", best.obstacle, digests)
-    assert best.cost is not None  # noqa: S101 - an answer without a cost has an obstacle
-    return Manifest(PROOF_FORMAT, "optimum", best.cost, best.evidence.horizons, best.evidence.order, digests)
-
-
-def _model(formula: Formula, deadline: Deadline) -> Sequence[bool]:
-    solver = Solver(formula, deadline.check)
-    try:
-        if not solver.satisfiable([]):
-            message = "the formula of the optimum has no model; the optimum is not one"
-            raise Refusal("request", "$.proof", is_provable.id, message)
-        return solver.model()
-    finally:
-        solver.close()
-
-
-def refutation(formula: Formula, deadline: Deadline) -> str:
-    """A refutation of the formula, with hints; raises `TimeOver`, and `Refusal` if the formula has a model."""
-    if () in formula.clauses:
-        return refutation_with_hints(formula.clauses, (), deadline.check)
-    solver = Solver(formula, deadline.check, with_proof=True)
-    try:
-        if solver.satisfiable([]):
-            message = "the formula below the optimum has a model; the optimum is not one"
-            raise Refusal("request", "$.proof", is_provable.id, message)
-        return refutation_with_hints(formula.clauses, solver.proof(), deadline.check)
-    except NoHintsError as error:
-        message = f"the solver's refutation has a step that no hints can justify: {error}"
-        raise Refusal("request", "$.proof", is_provable.id, message) from error
-    finally:
-        solver.close()
-
-
-def _model_text(model: Sequence[bool]) -> str:
-    literals = [variable if model[variable] else -variable for variable in range(1, len(model))]
-    return " ".join(map(str, (*literals, 0))) + "\n"
-
-
-def _variables(encoding: Encoding) -> bytes:
+def variables(encoding: Encoding) -> bytes:
+    """The file `variables.json` of an encoding."""
     robots = [
         RobotVariables(
             robot.robot.id,
@@ -252,7 +182,7 @@ def _verify_obstacle(instance: Instance, obstacle: Obstacle, files: Mapping[str,
 def _verify_optimum(instance: Instance, manifest: Manifest, files: Mapping[str, bytes]) -> Verified:
     evidence = _evidence(instance, manifest)
     reach = _checked(lambda most: reach_formula(instance, manifest.cost, evidence, most), "reach.cnf", files)
-    _compare("variables.json", _variables(reach).decode(), files)
+    _compare("variables.json", variables(reach).decode(), files)
     solution = _solution(instance, reach, manifest.cost, files["reach.model"])
     _require_beaten(instance, manifest.cost, evidence, files)
     answers = _ask_z3("reach.cnf", files, "unsat"), _ask_z3("beat.cnf", files, "sat")

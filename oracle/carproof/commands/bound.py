@@ -45,7 +45,7 @@ def command(
     Exit codes: 0 here is a bound, 1 a robot has no way to its goal (the bound is that of the others), 2 bad input.
     """
     require("pysat")
-    from carp_verify.bound import Progress, lower_bound  # noqa: PLC0415 - loads the planners
+    from carp_optimum.bound import Progress, lower_bound  # noqa: PLC0415 - loads the planners
 
     problem = read_instance_file(instance)
     known = best_known(problem, plans)

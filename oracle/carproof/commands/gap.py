@@ -92,7 +92,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
 
 def _gap_of(path: str, limit: int, as_json: bool) -> Answer:
-    from carp_verify.gap import gap  # noqa: PLC0415
+    from carp_optimum.gap import gap  # noqa: PLC0415
     from carp_verify.unsolvable import describe  # noqa: PLC0415
     from carproof.gap_report import PLANNERS, gap_document, gap_rows  # noqa: PLC0415 - loads the planners
 

@@ -16,7 +16,7 @@ from carproof.options import examples, instance_argument, json_option, limit_opt
 from carproof.tables import print_line, print_table
 
 if TYPE_CHECKING:
-    from carp_verify.optimum import Optimum
+    from carp_optimum.optimum import Optimum
 
 COLUMNS = ("robots", "shortest paths", "lower bound", "cost", "answer", "time")
 
@@ -46,7 +46,7 @@ def command(instance: str, limit: int, proof: Path | None, output: Path | None, 
     Exit codes: 0 optimum found, 1 the robots cannot all be planned, 2 bad input, 3 undecided within the limit.
     """
     require("pysat")
-    from carp_verify.optimum import optimum  # noqa: PLC0415 - loads the planners
+    from carp_optimum.optimum import optimum  # noqa: PLC0415 - loads the planners
     from carp_verify.unsolvable import describe  # noqa: PLC0415
 
     problem = read_instance_file(instance)
@@ -82,8 +82,9 @@ def _undecided(best: "Optimum", limit: int) -> str:
 
 def _prove(folder: Path, instance: Instance, best: "Optimum", limit: int) -> bool:
     """Write a proof and check it; whether the limits sufficed."""
-    from carp_verify.proof import verify_proof, write_proof  # noqa: PLC0415 - only for those who ask for a proof
-    from carp_verify.solver import TimeOver  # noqa: PLC0415
+    from carp_optimum.proving import write_proof  # noqa: PLC0415 - only for those who ask for a proof
+    from carp_optimum.solver import TimeOver  # noqa: PLC0415
+    from carp_verify.proof import verify_proof  # noqa: PLC0415 - only for those who ask for a proof
 
     try:
         write_proof(instance, best, folder, limit)

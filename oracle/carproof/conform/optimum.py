@@ -15,7 +15,7 @@ from carproof.engines import engine_named
 @lru_cache(maxsize=1)
 def found_cost(instance: Instance) -> tuple[bool, int | None]:
     """Whether the search for the optimum ended in time, and what it found: `None` if robots cannot all be planned."""
-    from carp_verify.optimum import optimum  # noqa: PLC0415 - loads a solver
+    from carp_optimum.optimum import optimum  # noqa: PLC0415 - loads a solver
 
     found = optimum(instance, OPTIMUM_SECONDS)
     return found.decided, found.cost

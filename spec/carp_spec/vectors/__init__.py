@@ -7,7 +7,7 @@ might give, or, where there is none, the question's own input. Where no op of th
 the rule's id and asks its predicate alone.
 
 An id means the same case for ever: `digests.txt` names every case with a digest of all but flags and comment, and
-only grows. `carp_verify.vectors` writes the files anew; nothing here is read before somebody asks.
+only grows. `tests.vectors` writes the files anew; nothing here is read before somebody asks.
 """
 
 from collections.abc import Iterator, Mapping

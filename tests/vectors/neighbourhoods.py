@@ -2,8 +2,9 @@
 
 from collections.abc import Mapping, Sequence
 
+from tests.vectors.making import EDGE, FREE, Flags, case, graph, instance, predicate, robot, row, solution, stays
+
 from carp_spec.vectors import Fields, Vector
-from carp_verify.vectors.making import EDGE, FREE, Flags, case, graph, instance, predicate, robot, row, solution, stays
 
 UNIT = 65536
 TOWN = instance(graph("ab bc de"), robot("r1", "a", "c"), robot("r2", "d", "e"))

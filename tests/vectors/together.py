@@ -2,8 +2,9 @@
 
 from collections.abc import Mapping, Sequence
 
+from tests.vectors.making import EDGE, KNOWN_BUG, check, graph, instance, parking, robot, row, solution
+
 from carp_spec.vectors import Vector
-from carp_verify.vectors.making import EDGE, KNOWN_BUG, check, graph, instance, parking, robot, row, solution
 
 FOLLOW = instance(row("abcd"), robot("r1", "a", "c"), robot("r2", "b", "d"))
 CROSS = graph("ax xb cx xd")

@@ -5,8 +5,7 @@ The cost is what a right program must find; the claims are plans, or the claim t
 
 from collections.abc import Mapping, Sequence
 
-from carp_spec.vectors import Vector
-from carp_verify.vectors.making import (
+from tests.vectors.making import (
     EDGE,
     FREE,
     KNOWN_BUG,
@@ -19,6 +18,8 @@ from carp_verify.vectors.making import (
     row,
     solution,
 )
+
+from carp_spec.vectors import Vector
 
 R1 = robot("r1", "a", "c")
 ROW = instance(row("abcd"), R1, robot("r2", "b", "d"))

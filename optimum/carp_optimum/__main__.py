@@ -1,8 +1,8 @@
-"""`python -m carp_verify` compiles what bounds and planners run, so that no later call has to."""
+"""`python -m carp_optimum` compiles what bounds and planners run, so that no later call has to."""
 
 from carp_optimized.__main__ import compile_all as compile_planner
+from carp_optimum.bound import lower_bound
 from carp_spec import Instance, Resource, ResourceGraph, Robot
-from carp_verify.bound import lower_bound
 
 
 def compile_all() -> None:

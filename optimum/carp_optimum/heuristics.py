@@ -9,9 +9,9 @@ instance's numbers, by CARP of `carp_reference`, as compiling would take longer 
 from collections.abc import Callable, Mapping, Sequence
 from typing import TypeAlias
 
+from carp_optimum.solver import TimeOver
 from carp_spec import Instance, Neighbourhood, Plan, Refusal, ResourceId, RobotId, total_cost
 from carp_spec.permutations import shuffle, splitmix64
-from carp_verify.solver import TimeOver
 
 ATTEMPTS = 1000
 TOGETHER = 3

@@ -9,13 +9,13 @@ any order, as a planner that plans robots again may).
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from carp_optimum.optimum import Optimum, optimum
+from carp_optimum.solver import Deadline, TimeOver
 from carp_reference import plan, query
 from carp_spec import Instance, Plan, Planner, RobotId, plan_cost, total_cost
 from carp_verify.bound_rules import require_kept
 from carp_verify.encoding import Encoding
-from carp_verify.optimum import Optimum, optimum
 from carp_verify.optimum_rules import MOST_ORDERED, refuse_size
-from carp_verify.solver import Deadline, TimeOver
 
 
 @dataclass(frozen=True, slots=True)

@@ -38,8 +38,8 @@ class SmallCase:
 
 def connected_graphs() -> Iterator[tuple[int, tuple[tuple[int, int], ...]]]:
     """The connected graphs of up to four nodes in networkx's atlas: how many nodes, and the edges."""
-    import networkx as nx  # noqa: PLC0415 - loaded only where used
-    from networkx.generators.atlas import graph_atlas_g  # noqa: PLC0415
+    import networkx as nx
+    from networkx.generators.atlas import graph_atlas_g
 
     for graph in graph_atlas_g():
         if 0 < len(graph) <= MOST_RESOURCES and nx.is_connected(graph):
@@ -48,7 +48,7 @@ def connected_graphs() -> Iterator[tuple[int, tuple[tuple[int, int], ...]]]:
 
 def small_cases(pattern: Pattern) -> Iterator[SmallCase]:
     """All graphs, starts, goals and policies for one pattern; the committed plans are CARP's."""
-    import carp_reference  # noqa: PLC0415 - loads networkx
+    import carp_reference
 
     policies: tuple[AfterGoal, ...] = ("vanish", "park")
     for (size, edges), after_goal in product(connected_graphs(), policies):

@@ -6,8 +6,9 @@ Seeds tell what is chosen: the first numbers of SplitMix64 of seed 1 are 1045121
 
 from collections.abc import Mapping, Sequence
 
+from tests.vectors.making import EDGE, Flags, graph, instance, predicate, stays
+
 from carp_spec.vectors import Fields, Vector
-from carp_verify.vectors.making import EDGE, Flags, graph, instance, predicate, stays
 
 
 def _drawn(  # noqa: PLR0913 - the fields of a case

@@ -2,7 +2,7 @@
 
 Robots that are in each other's way near the best prices are tried in pairs first, those most often in the way before
 the others; then groups that are already cuts together with one robot more. The optimum of each group is searched for
-(`carp_verify.optimum`), and a lower bound on it is a cut if the robots' average costs are below it.
+(`carp_optimum.optimum`), and a lower bound on it is a cut if the robots' average costs are below it.
 """
 
 from collections import Counter, defaultdict
@@ -10,13 +10,14 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import combinations, count
 
+from carp_optimum.optimum import optimum
+from carp_optimum.price_search import PriceSearch
+from carp_optimum.proving import refutation
+from carp_optimum.solver import NANOSECONDS, Deadline, TimeOver
 from carp_spec import Instance, Refusal
 from carp_spec.bounds import CutDocument
 from carp_verify.bound_cuts import group_of
-from carp_verify.optimum import optimum
-from carp_verify.price_search import PriceSearch
-from carp_verify.proof import beat_formula, refutation
-from carp_verify.solver import NANOSECONDS, Deadline, TimeOver
+from carp_verify.proof import beat_formula
 
 LOOKS = 400  # of the search for a group's optimum at its clock
 STEPS = 120

@@ -3,8 +3,9 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from tests.vectors.making import EDGE, Flags, case, instance, robot, row, solution
+
 from carp_spec.vectors import Fields, Vector
-from carp_verify.vectors.making import EDGE, Flags, case, instance, robot, row, solution
 
 TOWN = instance(row("ab"), robot("r1", "a", "b"))
 WALK = solution(r1="a 0 1, b 1 2")

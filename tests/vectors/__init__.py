@@ -1,12 +1,11 @@
-"""The test vectors' source: `python -m carp_verify.vectors` writes the files of `carp_spec.vectors` anew.
+"""The test vectors' source: `python -m tests.vectors` writes the files of `carp_spec.vectors` anew.
 
 The cases are written by hand, what is expected of them too; `judging` is what carproof itself says of them.
 """
 
 from collections.abc import Mapping, Sequence
 
-from carp_spec.vectors import Vector
-from carp_verify.vectors import (
+from tests.vectors import (
     documents,
     instances,
     neighbourhoods,
@@ -17,6 +16,8 @@ from carp_verify.vectors import (
     together,
     windows,
 )
+
+from carp_spec.vectors import Vector
 
 CASES: Mapping[str, Sequence[Vector]] = {
     **documents.CASES,

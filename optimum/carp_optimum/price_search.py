@@ -1,4 +1,4 @@
-"""The search for good prices: what is done between the compiled steps of `carp_verify.price_steps`."""
+"""The search for good prices: what is done between the compiled steps of `carp_optimum.price_steps`."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
@@ -8,10 +8,8 @@ import numpy as np
 from carp_optimized.arrays import LARGEST, NONE, Graph, Ints, Longs, LongTable
 from carp_optimized.encoding import encode_graph, refuse_tick, refuse_what_is_too_large
 from carp_optimized.references import Native
-from carp_spec import Instance, Refusal, ResourceId, RobotId
-from carp_verify.bound_rules import LARGEST_TABLE, LONGEST_STAY, size_fits, stay_is_searched
-from carp_verify.price_steps import KEPT, LARGEST_GAIN, PARTS, UNIT, turn_all, walk_all
-from carp_verify.priced_ways import (
+from carp_optimum.price_steps import KEPT, LARGEST_GAIN, PARTS, UNIT, turn_all, walk_all
+from carp_optimum.priced_ways import (
     Market,
     Prices,
     Requests,
@@ -22,6 +20,8 @@ from carp_verify.priced_ways import (
     find_ways,
     least_cost,
 )
+from carp_spec import Instance, Refusal, ResourceId, RobotId
+from carp_verify.bound_rules import LARGEST_TABLE, LONGEST_STAY, size_fits, stay_is_searched
 
 TICKS_BEYOND = 32  # of the horizon beyond the last arrival of a robot that nothing delays
 DELAYS = 64

@@ -2,8 +2,9 @@
 
 from collections.abc import Mapping, Sequence
 
+from tests.vectors.making import EDGE, KNOWN_BUG, Flags, case, predicate
+
 from carp_spec.vectors import Fields, Vector
-from carp_verify.vectors.making import EDGE, KNOWN_BUG, Flags, case, predicate
 
 
 def _free(

@@ -21,27 +21,19 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from time import monotonic_ns
 
+from carp_optimum.heuristics import plans_of_all
+from carp_optimum.solver import Deadline, Solver, TimeOver
 from carp_spec import Instance, Plan, Refusal, Solution, total_cost
 from carp_verify.bound_rules import require_kept
 from carp_verify.clauses import Literal, Unary
-from carp_verify.encoding import Encoding, violated
-from carp_verify.heuristics import plans_of_all
+from carp_verify.encoding import Encoding, Evidence, violated
 from carp_verify.joint_search import least_total_cost
-from carp_verify.solver import Deadline, Solver, TimeOver
 from carp_verify.unsolvable import Clauses, FullGoal, NoWay, Obstacle, States, is_searched
 
 CONFLICTS_TO_SHRINK = 900
 DELAY_OF_DOUBT = 20
 PARTS = 5
 PARTS_BEFORE_HEURISTICS = (1, 3)
-
-
-@dataclass(frozen=True, slots=True)
-class Evidence:
-    """What the encoding needs to prove the bound: each robot's horizon, and an order in which to add the delays."""
-
-    horizons: tuple[int, ...]
-    order: tuple[int, ...]
 
 
 @dataclass(frozen=True, slots=True)

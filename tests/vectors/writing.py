@@ -4,9 +4,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from hashlib import sha256
 
 import msgspec
+from tests.vectors import CASES
 
 from carp_spec.vectors import DIGESTS, FLAGS, VECTORS_FORMAT, Vector, VectorsDocument, subjects, vector_file
-from carp_verify.vectors import CASES
 
 
 class ChangedError(Exception):

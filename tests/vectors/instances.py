@@ -3,8 +3,9 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from tests.vectors.making import EDGE, KNOWN_BUG, Flags, case, instance, parking, robot, row, solution
+
 from carp_spec.vectors import Fields, Vector
-from carp_verify.vectors.making import EDGE, KNOWN_BUG, Flags, case, instance, parking, robot, row, solution
 
 
 def _unplanned(id: str, comment: str, instance: Fields, refused: str = "", rule: str = "", flags: Flags = ()) -> Vector:

@@ -2,8 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from carp_spec.vectors import Fields, Vector
-from carp_verify.vectors.making import (
+from tests.vectors.making import (
     EDGE,
     KNOWN_BUG,
     Flags,
@@ -16,6 +15,8 @@ from carp_verify.vectors.making import (
     row,
     solution,
 )
+
+from carp_spec.vectors import Fields, Vector
 
 PAIR = instance(row("abcd"), robot("r1", "a", "c"), robot("r2", "b", "d"))
 EAST, NEXT = "a 0 1, b 1 2, c 2 3", "b 0 1, c 1 2, d 2 3"

@@ -1,8 +1,8 @@
 """Finds a good lower bound on the total cost, with a certificate that `carp_verify.verify_bound` checks.
 
 Prices are raised where the robots' cheapest ways need more than there is, and lowered where they need less, step by
-step (`carp_verify.price_steps`); where that gains no more, cuts are added (`carp_verify.cut_search`). The search aims a
-little above the best bound known, less and less so as it fails to get there. Source: the target level method of Goffin
+step (`carp_optimum.price_steps`). Where that gains no more, cuts are added (`carp_optimum.cut_search`). The search aims
+a little above the best bound known, and less so after each failure. Source: the target level method of Goffin
 and Kiwiel 1999, over the Lagrangian relaxation of all rules of plans together.
 """
 
@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
+from carp_optimum.solver import Deadline, TimeOver
 from carp_spec import Instance
 from carp_spec.bounds import BOUND_FORMAT, BoundDocument, digest
-from carp_verify.solver import Deadline, TimeOver
 
 if TYPE_CHECKING:
-    from carp_verify.cut_search import CutSearch
-    from carp_verify.price_search import PriceSearch
+    from carp_optimum.cut_search import CutSearch
+    from carp_optimum.price_search import PriceSearch
 
 SCALE = 1 << 16
 FIRST_AIM = 50  # one part of the sum of shortest paths
@@ -47,8 +47,8 @@ def lower_bound(
     With steps alone, the same instance gives the same certificate. `on_step` is called after each step, and now and
     then while cuts are searched for. Raises `Refusal` for numbers that are too large.
     """
-    from carp_verify.cut_search import CutSearch  # noqa: PLC0415 - numba is slow to load
-    from carp_verify.price_search import PriceSearch  # noqa: PLC0415
+    from carp_optimum.cut_search import CutSearch  # noqa: PLC0415 - numba is slow to load
+    from carp_optimum.price_search import PriceSearch  # noqa: PLC0415
 
     rough = _limit(seconds, steps, ROUGH_PARTS)
     end = _limit(seconds, steps, PARTS)

@@ -1,0 +1,76 @@
+"""The table of what must be trusted, in verify/README.md; run as a module it writes the table."""
+
+import io
+import tokenize
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+README = ROOT / "verify" / "README.md"
+START = "<!-- trusted base: made by `make generated` -->\n"
+END = "<!-- end of trusted base -->\n"
+LAW = ("check", "joint_rules", "plan_rules", "instance_rules", "documents", "model", "rule", "refusal")
+BOUND = ("verify_bound", "bound_rules")
+ENCODER = ("encoding", "robot_clauses", "clauses", "optimum_rules")
+VERDICTS: dict[str, tuple[tuple[str, ...], str]] = {
+    "`check`: no rule is broken": ((), ""),
+    "`verify-bound`, without cuts": (BOUND, ""),
+    "`verify-bound`, with cuts": ((*BOUND, "bound_cuts", *ENCODER, "refutation"), ""),
+    "`verify-proof`, an optimum": (("proof", *ENCODER, "refutation"), ""),
+    "`verify-proof`, unsolvable by clauses": (("proof", "unsolvable", *ENCODER, "refutation"), ""),
+    "`verify-proof`, unsolvable otherwise": (("proof", "unsolvable", "joint_search", "optimum_rules"), ""),
+    "`certify`: z3 agrees on capacity and exchange": (("certificate", "smt"), "z3"),
+    "`theorems`: a lemma holds": (("engine", "smt", "vocabulary"), "z3, the argument by hand in the docstring"),
+}
+
+
+def lines_of_code(path: Path) -> int:
+    """The lines that hold more than a comment or a docstring."""
+    source = path.read_text()
+    skipped = {tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.ENDMARKER}
+    lines: set[int] = set()
+    begins = True
+    for token in tokenize.generate_tokens(io.StringIO(source).readline):
+        is_docstring = begins and token.type == tokenize.STRING
+        if token.type not in skipped and not is_docstring:
+            lines.update(range(token.start[0], token.end[0] + 1))
+        if token.type not in {tokenize.COMMENT, tokenize.NL}:
+            begins = token.type in {tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT}
+    return len(lines)
+
+
+def table() -> str:
+    rows = ["| verdict | beside the law, in `carp_verify` | lines | also |", "|---|---|---:|---|"]
+    law = sum(lines_of_code(ROOT / "spec" / "carp_spec" / f"{name}.py") for name in LAW)
+    for verdict, (modules, others) in VERDICTS.items():
+        lines = sum(lines_of_code(ROOT / "verify" / "carp_verify" / f"{name}.py") for name in modules)
+        named = ", ".join(f"`{name}`" for name in modules) or f"nothing; the law is {law} lines of `carp_spec`"
+        rows.append(f"| {verdict} | {named} | {lines} | {others} |")
+    return "".join(f"{row}\n" for row in rows)
+
+
+def with_table(text: str) -> str:
+    before, _, rest = text.partition(START)
+    return f"{before}{START}{table()}{END}{rest.partition(END)[2]}"
+
+
+def test_the_page_lists_what_must_be_trusted_with_its_lines_of_code() -> None:
+    assert README.read_text() == with_table(README.read_text()), "make generated"
+
+
+def test_docstrings_and_comments_are_no_lines_of_code(tmp_path: Path) -> None:
+    path = tmp_path / "page.py"
+    text = '"""A page.\n\nOf three lines.\n"""\n\n# why\nNUMBER = (\n    1\n)\n\n\n'
+    path.write_text(text + 'def one() -> int:\n    """One."""\n    return 1\n')
+    assert lines_of_code(path) == 5
+
+
+@pytest.mark.parametrize("name", sorted({name for modules, _ in VERDICTS.values() for name in modules}))
+def test_what_is_trusted_imports_no_search(name: str) -> None:
+    source = (ROOT / "verify" / "carp_verify" / f"{name}.py").read_text()
+    assert not any(package in source for package in ("carp_optimum", "carp_optimized", "carp_reference", "pysat"))
+
+
+if __name__ == "__main__":
+    README.write_text(with_table(README.read_text()))
