@@ -201,7 +201,7 @@ Record claim := Claim {
 }.
 
 Section Claim.
-Variables (i : instance) (tf : tariff) (successors : Z -> list Z) (a : robot) (c : claim).
+Variables (i : instance) (tf : tariff) (successors : Z -> list Z) (takes : Z -> Z) (a : robot) (c : claim).
 
 (** Who is free to leave the resource at the tick and has paid the amount comes to the claim by the least ticks that
     remain; or a label says so. *)
@@ -215,13 +215,13 @@ Definition covered (amount r t : Z) : bool :=
 
 (** Who enters the goal for the last time at the tick, and has paid the amount, comes to the claim. *)
 Definition arrives_covered (amount t : Z) : bool :=
-  let end_ := match after_goal i with Vanish => t + need i a (goal a) | Park => horizon tf end in
+  let end_ := match after_goal i with Vanish => t + takes (goal a) | Park => horizon tf end in
   claimed c <=? amount + stay_price tf (goal a) t end_ + weight c * (t - release a).
 
 (** Who enters the resource at the tick, and has paid the amount: it may be there for the last time, or go on. *)
 Definition entry_covered (amount r t : Z) : bool :=
   (negb (r =? goal a) || arrives_covered amount t) &&
-  (let ready := t + need i a r in covered (amount + stay_price tf r t ready) r ready).
+  (let ready := t + takes r in covered (amount + stay_price tf r t ready) r ready).
 
 (** All that may follow a label is covered: waiting for a tick, and each move. *)
 Definition label_is_closed (r t label : Z) : bool :=
@@ -234,7 +234,7 @@ Definition rests_are_least (r : Z) : bool :=
     match rest_of c r with
     | Some ticks =>
         (negb (s =? goal a) || (ticks <=? 0)) &&
-        match rest_of c s with Some later => ticks <=? need i a s + later | None => true end
+        match rest_of c s with Some later => ticks <=? takes s + later | None => true end
     | None => negb (s =? goal a) && match rest_of c s with Some _ => false | None => true end
     end) (successors r).
 
@@ -250,6 +250,7 @@ Hypothesis right : Well_formed i.
 Hypothesis known : In a (robots i).
 Hypothesis tables : Holds_prices tf xs.
 Hypothesis all_moves : forall r s, Move i r s -> In s (successors r).
+Hypothesis durations : forall r, takes r = need i a r.
 Hypothesis least : forall r, In r (resource_ids i) -> rests_are_least r = true.
 
 (** The tick at which the last visit is entered. *)
@@ -267,7 +268,7 @@ Proof.
     exists ticks. split; auto. split_bools. simpl in *. unfold arrives. simpl. split_bools. lia.
   - destruct (IH w u rest eq_refl) as (later & R & A). rewrite R in L.
     destruct (rest_of c (visit_resource v)) as [ticks |]; [| rewrite andb_false_r in L; discriminate].
-    exists ticks. split; auto. split_bools. lia.
+    exists ticks. split; auto. split_bools. rewrite durations in *. lia.
 Qed.
 
 Hypothesis closed : forall r t label, label_at c r t = Some label -> label_is_closed r t label = true.
@@ -291,7 +292,7 @@ Lemma covered_entry_is_claimed v before : Way i a [v] ->
 Proof.
   intros H C. inversion H as [v' Hg Hl |]; subst. apply Z.leb_le in C. unfold priced_cost, arrives. simpl.
   destruct v as [r first end_]. simpl in *. subst r end_.
-  destruct (after_goal i).
+  rewrite durations in C. destruct (after_goal i).
   - rewrite stay_price_is_paid with (tf := tf) by auto. lia.
   - rewrite endless_stay_pays with (tf := tf) by auto. lia.
 Qed.
@@ -327,7 +328,7 @@ Proof.
         apply covered_entry_is_claimed; auto. apply Z.leb_le in Last. apply Z.leb_le. rewrite Hg in Move. unfold before'.
         lia.
       - inversion Hw; subst. apply (IH w u rest eq_refl before' (enter w + need i a (visit_resource w))); [lia |].
-        eapply who_pays_more_is_covered; [| exact On]. rewrite stay_price_is_paid with (tf := tf) by auto.
+        rewrite durations in On. eapply who_pays_more_is_covered; [| exact On]. rewrite stay_price_is_paid with (tf := tf) by auto.
         unfold before'. lia. }
     unfold before', priced_cost in *. rewrite paid_from_the_second_visit_on.
     change (arrives (Visit r first (Some (enter w)) :: w :: later)) with (arrives (w :: later)). lia.
@@ -345,11 +346,12 @@ Qed.
 End Claim.
 
 (** No lawful plan of the robot alone costs less, weighted and together with its prices, than the claim. *)
-Theorem claim_is_below_every_plan i tf successors a c xs p : Well_formed i -> In a (robots i) -> Holds_prices tf xs ->
-  (forall r s, Move i r s -> In s (successors r)) -> Claim_holds i tf successors a c -> Plan_lawful i a p ->
+Theorem claim_is_below_every_plan i tf successors takes a c xs p : Well_formed i -> In a (robots i) -> Holds_prices tf xs ->
+  (forall r s, Move i r s -> In s (successors r)) -> (forall r, takes r = need i a r) ->
+  Claim_holds i tf successors takes a c -> Plan_lawful i a p ->
   claimed c <= paid xs (visits p) + weight c * cost a p.
 Proof.
-  intros right known tables moves [Start Closed Least Weight] lawful.
+  intros right known tables moves durations [Start Closed Least Weight] lawful.
   pose proof (lawful_plan_is_a_way i a right known p lawful) as W.
   destruct (starts_at_release i a p lawful) as (v & rest & E & R & T). unfold cost, arrival. rewrite E in *.
   change (fold_left (fun _ v => enter v) (v :: rest) (release a)) with (arrives (v :: rest)).
@@ -358,8 +360,8 @@ Proof.
   - inversion W as [v' Hg |]; subst. rewrite Hg, Z.eqb_refl in Last. simpl in Last. rewrite <- (Z.add_0_l (paid _ _)), <- Z.add_assoc.
     rewrite T. eapply covered_entry_is_claimed; eauto. 
   - inversion W; subst.
-    pose proof (covered_way_is_claimed i tf successors a c xs right known tables moves Least Closed Weight
+    pose proof (covered_way_is_claimed i tf successors takes a c xs right known tables moves durations Least Closed Weight
       (v :: w :: later) W v w later eq_refl 0 (enter v + need i a (visit_resource v))) as P.
     unfold priced_cost in P. rewrite T in *. apply P; [lia |].
-    rewrite stay_price_is_paid with (tf := tf) by auto. exact On.
+    rewrite stay_price_is_paid with (tf := tf), <- durations by auto. exact On.
 Qed.
