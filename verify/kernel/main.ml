@@ -44,6 +44,13 @@ let contents file =
 
 let json_of_file file = Reading.json_of_text (contents file)
 
+(* The formulas of cuts, by their numbers. *)
+let rec cut_formulas = function
+  | "--cut-formula" :: number :: file :: rest when int_of_string_opt number <> None ->
+      (int_of_string number, Reading.formula_of_text (contents file)) :: cut_formulas rest
+  | [] -> []
+  | _ -> prerr_string usage; exit 2
+
 (* One request a line: {"op": "check", "instance": ..., "solution": ...} or {"op": "verify-bound", "instance": ...,
    "certificate": ...}. *)
 let requested line () =
@@ -53,7 +60,7 @@ let requested line () =
   let instance = Reading.instance_of_json (Reading.required field "instance" any) in
   match (Reading.required field "op" Reading.text, Reading.present field "solution" any, Reading.present field "certificate" any) with
   | "check", Some solution, None -> Verdicts.check instance (Reading.solution_of_json instance solution)
-  | "verify-bound", None, Some bound -> Verdicts.verify_bound instance (Reading.bound_of_json instance bound)
+  | "verify-bound", None, Some bound -> Verdicts.verify_bound [] instance (Reading.bound_of_json instance bound)
   | _ -> Reading.shape "$" "a request that the kernel knows, with its documents"
 
 let rec serve () =
@@ -77,10 +84,11 @@ let () =
       print (answered (fun () ->
           let instance = Reading.instance_of_json (json_of_file instance) in
           Verdicts.check instance (Reading.solution_of_json instance (json_of_file solution))))
-  | [ "verify-bound"; instance; certificate ] ->
+  | "verify-bound" :: instance :: certificate :: options ->
       print (answered (fun () ->
+          let formulas = cut_formulas options in
           let instance = Reading.instance_of_json (json_of_file instance) in
-          Verdicts.verify_bound instance (Reading.bound_of_json instance (json_of_file certificate))))
+          Verdicts.verify_bound formulas instance (Reading.bound_of_json instance (json_of_file certificate))))
   | [ "refute"; formula; proof ] ->
       print (answered (fun () ->
           Verdicts.refute (Reading.formula_of_text (contents formula)) (Reading.proof_of_text (contents proof))))

@@ -63,8 +63,19 @@ let refute formula proof =
 
 (* ---- verify-bound ---- *)
 
-let verify_bound (read : Reading.instance) (bound : Reading.bound) =
-  let { Reading.certificate; _ } = bound in
+(* A cut is decided by a formula of the caller's, which must say that its robots cost less: the kernel checks that it has
+   no solution. Without one, or without a refutation by unit propagation, it is undecided. *)
+let why_undecided formulas number refutation =
+  match List.assoc_opt number formulas with
+  | None -> Some (Printf.sprintf "cut %d needs its formula: --cut-formula %d FILE" number number)
+  | Some formula -> (
+      match Hints.lines formula refutation with
+      | proof when K.refutes formula proof -> None
+      | _ -> Some (Printf.sprintf "the refutation of cut %d does not hold" number)
+      | exception Hints.Not_found_out why -> Some (Printf.sprintf "cut %d: %s" number why))
+
+let verify_bound formulas (read : Reading.instance) (bound : Reading.bound) =
+  let { Reading.certificate; refutations; _ } = bound in
   match K.broken_rule read.instance certificate (Search.evidence read.instance certificate) with
   | Some K.Scale -> Refused ("bound/scale", "the scale must be a power of two")
   | Some K.Price_rule -> Refused ("bound/price", "a price must be at least 0, at a place of the graph and a tick before the horizon")
@@ -76,4 +87,12 @@ let verify_bound (read : Reading.instance) (bound : Reading.bound) =
       Refused ("bound/robots", "the claim of robot " ^ name ^ " must be no more than its least priced cost")
   | Some (K.Robots []) -> Refused ("bound/robots", "each robot must be named once, in the instance's order")
   | Some K.Total -> Refused ("bound/total", "the bound must be the sum of all parts, rounded up")
-  | None -> Accepted [ ("bound", whole certificate.bound) ]
+  | None -> (
+      match List.find_map Fun.id (List.mapi (why_undecided formulas) refutations) with
+      | Some why -> Undecided why
+      | None ->
+          let cut number (k : K.cut) : Yojson.Safe.t =
+            `String (Printf.sprintf "the formula given says that the robots of cut %d cost less than %s together" number
+                (Z.to_string k.least_total))
+          in
+          Accepted [ ("bound", whole certificate.bound); ("assumed", `List (List.mapi cut certificate.cuts)) ])
