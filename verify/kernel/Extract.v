@@ -7,6 +7,7 @@ Extract Constant Z.leb => "Big_int_Z.le_big_int".
 Extract Constant Z.ltb => "Big_int_Z.lt_big_int".
 
 Extraction Language OCaml.
-Extraction "kernel.ml" instance_accepted accepted lookup_of total_cost covers_accepted order_accepted
+Extraction Blacklist Bool Int List Nat Option String.
+Separate Extraction instance_accepted accepted lookup_of total_cost covers_accepted order_accepted
   moves_of_graph plan_of_robot_accepted stay_accepted end_accepted same_end has_move capacity_accepted exchanges_accepted
   refutes Map.find broken_rule stay_price wait_price move_price tariff_of resource_table takes_in weight_of.

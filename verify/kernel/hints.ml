@@ -2,8 +2,6 @@
 
    Deletions are passed over. Each added clause is shown by unit propagation with two watched literals a clause. *)
 
-module K = Kernel
-
 exception Refuted of int list
 exception Not_found_out of string
 
@@ -99,7 +97,7 @@ let keep state clause =
       | None -> ())
   | _ -> ()
 
-let words numbers = List.map (fun n -> K.Number (Z.of_int n)) numbers
+let words numbers = List.map (fun n -> Refutation.Number (Z.of_int n)) numbers
 
 (* The lines of a proof with hints, from a formula and the clauses that a proof adds. *)
 let with_hints formula added =

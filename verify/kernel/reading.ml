@@ -2,8 +2,6 @@
 
    Ids become numbers: each resource of the graph and each robot its position, any other id a number after those. *)
 
-module K = Kernel
-
 (* A document that is refused: where, by which rule, and what would be right. *)
 exception Refused of { path : string; rule : string; message : string }
 
@@ -150,17 +148,17 @@ let require_format format json =
 
 (* ---- Instances ---- *)
 
-type instance = { instance : K.instance; resource_numbers : numbers; robot_numbers : numbers }
+type instance = { instance : Law.instance; resource_numbers : numbers; robot_numbers : numbers }
 
 (* Refuse an instance that the kernel does not accept, by the first rule that is seen to be broken. *)
-let name_fault { K.resources; edges; directed; robots; _ } =
-  let known id = List.exists (fun r -> Z.equal r.K.resource_id id) resources in
+let name_fault { Law.resources; edges; directed; robots; _ } =
+  let known id = List.exists (fun r -> Z.equal r.Law.resource_id id) resources in
   let at_least_one rule path name value =
     if Z.lt value Z.one then refuse (path ^ "." ^ name) rule (Printf.sprintf "the %s must be a whole number of at least 1" name)
   in
   let each path check = List.iteri (fun position x -> check (Printf.sprintf "%s[%d]" path position) x) in
-  each "$.graph.nodes" (fun path r -> at_least_one "instance/capacity" path "capacity" r.K.capacity) resources;
-  each "$.graph.nodes" (fun path r -> at_least_one "instance/duration" path "duration" r.K.duration) resources;
+  each "$.graph.nodes" (fun path r -> at_least_one "instance/capacity" path "capacity" r.Law.capacity) resources;
+  each "$.graph.nodes" (fun path r -> at_least_one "instance/duration" path "duration" r.Law.duration) resources;
   let met = Hashtbl.create 1024 in
   let edge path (source, target) =
     if not (known source) then refuse (path ^ ".source") "instance/edge" "it must be the id of a resource, and is not";
@@ -171,13 +169,13 @@ let name_fault { K.resources; edges; directed; robots; _ } =
     Hashtbl.add met (source, target) ()
   in
   each "$.graph.edges" edge edges;
-  each "$.robots" (fun path a -> if not (known a.K.start) then
+  each "$.robots" (fun path a -> if not (known a.Law.start) then
     refuse (path ^ ".start") "instance/endpoint" "the start must be the id of a resource") robots;
-  each "$.robots" (fun path a -> if not (known a.K.goal) then
+  each "$.robots" (fun path a -> if not (known a.Law.goal) then
     refuse (path ^ ".goal") "instance/endpoint" "the goal must be the id of a resource") robots;
-  each "$.robots" (fun path a -> if Z.sign a.K.release < 0 then
+  each "$.robots" (fun path a -> if Z.sign a.Law.release < 0 then
     refuse (path ^ ".release") "instance/release" "the release must be a whole number of at least 0") robots;
-  each "$.robots" (fun path a -> at_least_one "instance/pace" path "pace" a.K.pace) robots;
+  each "$.robots" (fun path a -> at_least_one "instance/pace" path "pace" a.Law.pace) robots;
   refuse "$" "instance" "the instance must keep the rules instance/..."
 
 let instance_of_json json =
@@ -192,7 +190,7 @@ let instance_of_json json =
       refuse (path ^ ".id") "instance/resource-id" ("ids must be unique, and a resource before it has the id " ^ shown known);
     if (present field "x" whole = None) <> (present field "y" whole = None) then
       refuse path "instance/position" "x and y must both be whole numbers or both be absent";
-    { K.resource_id = number resource_numbers known;
+    { Law.resource_id = number resource_numbers known;
       capacity = optional one field "capacity" whole;
       duration = optional one field "duration" whole }
   in
@@ -213,7 +211,7 @@ let instance_of_json json =
     let known = required field "id" id in
     if Hashtbl.mem robot_numbers.known known then
       refuse (path ^ ".id") "instance/robot-id" ("ids must be unique, and a robot before it has the id " ^ shown known);
-    { K.robot_id = number robot_numbers known;
+    { Law.robot_id = number robot_numbers known;
       start = required field "start" resource_id;
       goal = required field "goal" resource_id;
       release = optional Z.zero field "release" whole;
@@ -221,16 +219,16 @@ let instance_of_json json =
   in
   let after path json =
     match text path json with
-    | "vanish" -> K.Vanish
-    | "park" -> K.Park
+    | "vanish" -> Law.Vanish
+    | "park" -> Law.Park
     | _ -> shape path "\"vanish\" or \"park\""
   in
   let field = fields "$" ~required:[ "format"; "graph"; "after_goal"; "robots" ] ~optional:[] json in
   let resources, edges, directed = required field "graph" graph in
   let after_goal = required field "after_goal" after in
   let robots = required field "robots" (elements robot) in
-  let instance = { K.resources; edges; directed; after_goal; robots } in
-  if not (K.instance_accepted instance) then name_fault instance;
+  let instance = { Law.resources; edges; directed; after_goal; robots } in
+  if not (Checker.instance_accepted instance) then name_fault instance;
   { instance; resource_numbers; robot_numbers }
 
 (* ---- Solutions ---- *)
@@ -241,23 +239,23 @@ let solution_of_json { resource_numbers; robot_numbers; _ } json =
   let visit path (json : Yojson.Safe.t) =
     match json with
     | `List [ resource; enter; leave ] ->
-        { K.visit_resource = number resource_numbers (id (path ^ "[0]") resource);
+        { Law.visit_resource = number resource_numbers (id (path ^ "[0]") resource);
           enter = whole (path ^ "[1]") enter;
           leave = whole_or_null (path ^ "[2]") leave }
     | _ -> shape path "an array of a resource, a tick and a tick or null"
   in
   let plan path json =
     let field = fields path ~required:[ "robot"; "visits" ] ~optional:[] json in
-    { K.plan_robot = required field "robot" robot; visits = required field "visits" (elements visit) }
+    { Law.plan_robot = required field "robot" robot; visits = required field "visits" (elements visit) }
   in
   let field = fields "$" ~required:[ "format"; "plans"; "order"; "unplanned" ] ~optional:[] json in
-  { K.plans = required field "plans" (elements plan);
+  { Law.plans = required field "plans" (elements plan);
     order = required field "order" (elements robot);
     unplanned = required field "unplanned" (elements robot) }
 
 (* ---- Bounds ---- *)
 
-type bound = { certificate : K.certificate; named_instance : string; refutations : string list }
+type bound = { certificate : Bound.certificate; named_instance : string; refutations : string list }
 
 let bound_of_json { resource_numbers; robot_numbers; _ } json =
   require_format "carproof-bound/1" json;
@@ -266,14 +264,14 @@ let bound_of_json { resource_numbers; robot_numbers; _ } json =
   let resource_price path (json : Yojson.Safe.t) =
     match json with
     | `List [ place; tick; amount ] ->
-        { K.place = resource (path ^ "[0]") place; other = None;
+        { Prices.place = resource (path ^ "[0]") place; other = None;
           tick = whole (path ^ "[1]") tick; amount = whole (path ^ "[2]") amount }
     | _ -> shape path "an array of a resource, a tick and a price"
   in
   let exchange_price path (json : Yojson.Safe.t) =
     match json with
     | `List [ place; other; tick; amount ] ->
-        { K.place = resource (path ^ "[0]") place; other = Some (resource (path ^ "[1]") other);
+        { Prices.place = resource (path ^ "[0]") place; other = Some (resource (path ^ "[1]") other);
           tick = whole (path ^ "[2]") tick; amount = whole (path ^ "[3]") amount }
     | _ -> shape path "an array of two resources, a tick and a price"
   in
@@ -282,7 +280,7 @@ let bound_of_json { resource_numbers; robot_numbers; _ } json =
     let field = fields path ~required:names ~optional:[] json in
     ignore (required field "horizons" (elements whole));
     ignore (required field "order" (elements whole));
-    ( { K.members = required field "robots" (elements robot);
+    ( { Bound.members = required field "robots" (elements robot);
         least_total = required field "least" whole;
         multiplier = required field "multiplier" whole },
       required field "refutation" text )
@@ -298,7 +296,7 @@ let bound_of_json { resource_numbers; robot_numbers; _ } json =
   let resource_prices = required field "resources" (elements resource_price) in
   let exchange_prices = required field "exchanges" (elements exchange_price) in
   { certificate =
-      { K.bound = required field "bound" whole;
+      { Bound.bound = required field "bound" whole;
         scale = required field "scale" whole;
         price_horizon = required field "horizon" whole;
         prices = List.rev_append (List.rev resource_prices) exchange_prices;
@@ -341,5 +339,5 @@ let formula_of_text contents =
 
 (* The words of a proof's lines; whether they make steps, the kernel decides. *)
 let proof_of_text contents =
-  let word = function "d" -> K.Letter_d | word -> K.Number (whole_of_word word) in
+  let word = function "d" -> Refutation.Letter_d | word -> Refutation.Number (whole_of_word word) in
   List.map (List.map word) (lines_of_words contents)

@@ -1,7 +1,5 @@
 (* Searches for the evidence of a bound's claims. Nothing here is trusted: the kernel checks what is found. *)
 
-module K = Kernel
-
 module Queue = Set.Make (struct
   type t = Z.t * Z.t
 
@@ -11,11 +9,11 @@ end)
 let resources_to table r = Option.value ~default:[] (Hashtbl.find_opt table r)
 
 (* For each resource those that one move leads to, and those from which one move leads to it. *)
-let moves_of (instance : K.instance) =
+let moves_of (instance : Law.instance) =
   let onwards = Hashtbl.create 1024 and backwards = Hashtbl.create 1024 in
   let add table source target = Hashtbl.replace table source (target :: resources_to table source) in
   let move (source, target) = add onwards source target; add backwards target source in
-  List.iter move (K.moves_of_graph instance);
+  List.iter move (Checker.moves_of_graph instance);
   (onwards, backwards)
 
 (* The least ticks from leaving a resource to entering the goal, for those that lead there: Dijkstra. *)
@@ -49,7 +47,7 @@ let rec way_on takes onwards ticks goal r =
     match List.find_opt is_shortest next with None -> [] | Some s -> s :: way_on takes onwards ticks goal s
 
 (* Labels for all that costs less than is claimed, tick by tick; none once the claim is seen to be too high. *)
-let labels_below claimed weight (tariff : K.tariff) takes onwards ticks (a : K.robot) =
+let labels_below claimed weight (tariff : Labels.tariff) takes onwards ticks (a : Law.robot) =
   let amounts = Hashtbl.create 1024 and queue = ref Queue.empty and too_high = ref false in
   let reach amount r t =
     match Hashtbl.find_opt ticks r with
@@ -65,7 +63,7 @@ let labels_below claimed weight (tariff : K.tariff) takes onwards ticks (a : K.r
   in
   let enter amount r t =
     let ready = Z.add t (takes r) in
-    reach (Z.add amount (K.stay_price tariff r t ready)) r ready
+    reach (Z.add amount (Labels.stay_price tariff r t ready)) r ready
   in
   enter Z.zero a.start a.release;
   let rec settle () =
@@ -73,8 +71,8 @@ let labels_below claimed weight (tariff : K.tariff) takes onwards ticks (a : K.r
     | Some ((t, r) as first) when not !too_high ->
         queue := Queue.remove first !queue;
         let amount = Hashtbl.find amounts (r, t) in
-        reach (Z.add amount (K.wait_price tariff r t)) r (Z.succ t);
-        List.iter (fun s -> enter (Z.add amount (K.move_price tariff r s t)) s t) (resources_to onwards r);
+        reach (Z.add amount (Labels.wait_price tariff r t)) r (Z.succ t);
+        List.iter (fun s -> enter (Z.add amount (Labels.move_price tariff r s t)) s t) (resources_to onwards r);
         settle ()
     | _ -> ()
   in
@@ -82,13 +80,13 @@ let labels_below claimed weight (tariff : K.tariff) takes onwards ticks (a : K.r
   Hashtbl.fold (fun place amount labels -> (place, amount) :: labels) amounts []
 
 (* The evidence of each robot's claim. *)
-let evidence (instance : K.instance) (certificate : K.certificate) =
+let evidence (instance : Law.instance) (certificate : Bound.certificate) =
   let onwards, backwards = moves_of instance in
-  let tariff = K.tariff_of certificate.prices and table = K.resource_table instance in
+  let tariff = Tables.tariff_of certificate.prices and table = Tables.resource_table instance in
   let claims = Hashtbl.of_seq (List.to_seq certificate.claims) in
   let known = Hashtbl.create 64 in
-  let of_robot (a : K.robot) =
-    let takes = K.takes_in table a in
+  let of_robot (a : Law.robot) =
+    let takes = Tables.takes_in table a in
     let ticks =
       match Hashtbl.find_opt known (a.goal, a.pace) with
       | Some ticks -> ticks
@@ -97,10 +95,10 @@ let evidence (instance : K.instance) (certificate : K.certificate) =
     let labels =
       match Hashtbl.find_opt claims a.robot_id with
       | Some (Some claimed) ->
-          labels_below claimed (K.weight_of certificate a.robot_id) tariff takes onwards ticks a
+          labels_below claimed (Bound.weight_of certificate a.robot_id) tariff takes onwards ticks a
       | _ -> []
     in
-    { K.ticks_after = Hashtbl.fold (fun r rest all -> (r, rest) :: all) ticks []; labels;
+    { Bound.ticks_after = Hashtbl.fold (fun r rest all -> (r, rest) :: all) ticks []; labels;
       way = way_on takes onwards ticks a.goal a.start }
   in
   List.map of_robot instance.robots

@@ -1,7 +1,5 @@
 (* The questions that the kernel decides, each with its verdict. *)
 
-module K = Kernel
-
 (* Accepted, refused by a rule, or undecided, each with what else is to be said in JSON. *)
 type verdict =
   | Accepted of (string * Yojson.Safe.t) list
@@ -13,37 +11,37 @@ let whole n : Yojson.Safe.t = `Intlit (Z.to_string n)
 (* ---- check ---- *)
 
 (* The rule of a plan that is broken first; what is accepted is decided by the kernel alone. *)
-let broken_plan_rule instance known (a : K.robot) (p : K.plan) =
+let broken_plan_rule instance known (a : Law.robot) (p : Law.plan) =
   let rec chain = function
     | [] -> "plan/goal"
-    | (v : K.visit) :: later -> (
-        if K.Map.find v.visit_resource known.K.resource_of = None then "plan/resource"
-        else if not (K.stay_accepted known a v) then "plan/duration"
+    | (v : Law.visit) :: later -> (
+        if Collections.Map.find v.visit_resource known.Checker.resource_of = None then "plan/resource"
+        else if not (Checker.stay_accepted known a v) then "plan/duration"
         else
           match later with
           | [] -> "plan/goal"
-          | w :: _ when not (K.same_end v.leave (Some w.enter)) -> "plan/contiguous"
-          | w :: _ when K.Map.find w.visit_resource known.K.resource_of <> None
-                        && not (K.has_move known v.visit_resource w.visit_resource) -> "plan/move"
+          | w :: _ when not (Checker.same_end v.leave (Some w.enter)) -> "plan/contiguous"
+          | w :: _ when Collections.Map.find w.visit_resource known.Checker.resource_of <> None
+                        && not (Checker.has_move known v.visit_resource w.visit_resource) -> "plan/move"
           | _ -> chain later)
   in
   match p.visits with
   | v :: _ when Z.equal v.visit_resource a.start && Z.equal v.enter a.release -> chain p.visits
   | _ -> "plan/start"
 
-let check (read : Reading.instance) (solution : K.solution) =
+let check (read : Reading.instance) (solution : Law.solution) =
   let instance = read.instance in
-  if K.accepted instance solution then
+  if Checker.accepted instance solution then
     Accepted
-      [ ("cost", whole (K.total_cost instance solution)); ("unplanned", `Int (List.length solution.unplanned)) ]
+      [ ("cost", whole (Law.total_cost instance solution)); ("unplanned", `Int (List.length solution.unplanned)) ]
   else
-    let known = K.lookup_of instance in
-    let robot_of (p : K.plan) = K.Map.find p.plan_robot known.robot_of in
+    let known = Checker.lookup_of instance in
+    let robot_of (p : Law.plan) = Collections.Map.find p.plan_robot known.robot_of in
     let names = Reading.names read.robot_numbers in
-    let broken p = not (K.plan_of_robot_accepted instance known p) in
-    if not (K.covers_accepted instance solution) then
+    let broken p = not (Checker.plan_of_robot_accepted instance known p) in
+    if not (Checker.covers_accepted instance solution) then
       Refused ("solution/covers", "each robot must have one plan or be unplanned once")
-    else if not (K.order_accepted solution) then
+    else if not (Checker.order_accepted solution) then
       Refused ("solution/order", "the order must name each robot that has a plan once")
     else
       match List.find_opt broken solution.plans with
@@ -51,14 +49,14 @@ let check (read : Reading.instance) (solution : K.solution) =
           let rule = match robot_of p with Some a -> broken_plan_rule instance known a p | None -> "solution/covers" in
           Refused (rule, "the plan of robot " ^ Reading.shown names.(Z.to_int p.plan_robot))
       | None ->
-          if not (K.capacity_accepted instance solution.plans) then
+          if not (Checker.capacity_accepted instance solution.plans) then
             Refused ("joint/capacity", "more robots occupy a resource than its capacity")
           else Refused ("joint/exchange", "two robots exchange two resources")
 
 (* ---- refute ---- *)
 
 let refute formula proof =
-  if K.refutes formula proof then Accepted []
+  if Refutation.refutes formula proof then Accepted []
   else Refused ("refutation", "the proof does not derive the empty clause by its hints")
 
 (* ---- verify-bound ---- *)
@@ -70,28 +68,28 @@ let why_undecided formulas number refutation =
   | None -> Some (Printf.sprintf "cut %d needs its formula: --cut-formula %d FILE" number number)
   | Some formula -> (
       match Hints.lines formula refutation with
-      | proof when K.refutes formula proof -> None
+      | proof when Refutation.refutes formula proof -> None
       | _ -> Some (Printf.sprintf "the refutation of cut %d does not hold" number)
       | exception Hints.Not_found_out why -> Some (Printf.sprintf "cut %d: %s" number why))
 
 let verify_bound formulas (read : Reading.instance) (bound : Reading.bound) =
   let { Reading.certificate; refutations; _ } = bound in
-  match K.broken_rule read.instance certificate (Search.evidence read.instance certificate) with
-  | Some K.Scale -> Refused ("bound/scale", "the scale must be a power of two")
-  | Some K.Price_rule -> Refused ("bound/price", "a price must be at least 0, at a place of the graph and a tick before the horizon")
-  | Some K.Once -> Refused ("bound/once", "a place must have one price at a tick")
-  | Some K.Size -> Refused ("bound/size", "the prices would not fit into a table")
-  | Some K.Cut_rule -> Refused ("bound/cut", "multipliers must be at least 0 and a robot's no more than the scale together")
-  | Some (K.Robots (a :: _)) ->
+  match Bound.broken_rule read.instance certificate (Search.evidence read.instance certificate) with
+  | Some Bound.Scale -> Refused ("bound/scale", "the scale must be a power of two")
+  | Some Bound.Price_rule -> Refused ("bound/price", "a price must be at least 0, at a place of the graph and a tick before the horizon")
+  | Some Bound.Once -> Refused ("bound/once", "a place must have one price at a tick")
+  | Some Bound.Size -> Refused ("bound/size", "the prices would not fit into a table")
+  | Some Bound.Cut_rule -> Refused ("bound/cut", "multipliers must be at least 0 and a robot's no more than the scale together")
+  | Some (Bound.Robots (a :: _)) ->
       let name = Reading.shown (Reading.names read.robot_numbers).(Z.to_int a.robot_id) in
       Refused ("bound/robots", "the claim of robot " ^ name ^ " must be no more than its least priced cost")
-  | Some (K.Robots []) -> Refused ("bound/robots", "each robot must be named once, in the instance's order")
-  | Some K.Total -> Refused ("bound/total", "the bound must be the sum of all parts, rounded up")
+  | Some (Bound.Robots []) -> Refused ("bound/robots", "each robot must be named once, in the instance's order")
+  | Some Bound.Total -> Refused ("bound/total", "the bound must be the sum of all parts, rounded up")
   | None -> (
       match List.find_map Fun.id (List.mapi (why_undecided formulas) refutations) with
       | Some why -> Undecided why
       | None ->
-          let cut number (k : K.cut) : Yojson.Safe.t =
+          let cut number (k : Bound.cut) : Yojson.Safe.t =
             `String (Printf.sprintf "the formula given says that the robots of cut %d cost less than %s together" number
                 (Z.to_string k.least_total))
           in
