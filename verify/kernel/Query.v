@@ -1,5 +1,5 @@
 (** The CARP query: the plan of one robot against committed plans that arrives earliest, by Dijkstra's algorithm over
-    free windows. It is a model to read of carp_reference.query; QueryFacts.v and QuerySearch.v prove it right. *)
+    free windows. It is a model to read of carp_reference.query; QueryOptimal.v proves it right. *)
 Require Import ZArith List Bool.
 From Carproof Require Import Law Collections Timeline Journey Checker Windows Context Past.
 Import ListNotations.
