@@ -1,4 +1,5 @@
-(** Every plan of a solution, of whatever planner, certified optimal against those before it in the planning order. *)
+(** Certificates together with the documents that they are about: one query, and the audit of a solution, in which every
+    plan, of whatever planner, is certified optimal against those before it in the planning order. *)
 Require Import ZArith List Bool Lia.
 From Carproof Require Import Law Collections Timeline Journey Checker Windows Context Past QueryCertificate.
 Import ListNotations.
@@ -32,6 +33,30 @@ Definition audit (i : instance) (s : solution) (certificates : list (Z * certifi
 (** The plans of the robots, in their order. *)
 Definition In_planning_order (s : solution) (ids : list Z) (ps : list plan) : Prop :=
   Forall2 (fun id p => In p (plans s) /\ plan_robot p = id) ids ps.
+
+(** The plans of the other robots, and the plan that the robot has followed, if it has one. *)
+Definition others (s : solution) (id : Z) : list plan := filter (fun p => negb (plan_robot p =? id)) (plans s).
+Definition own (s : solution) (id : Z) : option plan := find (fun p => plan_robot p =? id) (plans s).
+
+(** The plans are lawful, each by itself, and of different robots of the instance. *)
+Definition plans_accepted (i : instance) (known : lookup) (ps : list plan) : bool :=
+  Ids.distinct (map plan_robot ps)
+  && forallb (fun p => Map.mem (plan_robot p) (robot_of known)) ps
+  && forallb (plan_of_robot_accepted i known) ps.
+
+(** Verify the certificate of a query at the tick [now] for one robot against the plans of the others. *)
+Definition query_accepted (i : instance) (s : solution) (id now : Z) (cert : certificate) : bool :=
+  let g := world_of i in
+  let known := looked_up g in
+  instance_accepted i && plans_accepted i known (plans s) &&
+  match Map.find id (robot_of known) with
+  | Some a => certificate_accepted i g (context_of known (others s id)) a now (own s id) cert
+  | None => false
+  end.
+
+(** Audit a solution: the instance is well-formed, the solution lawful, and each of its plans certified. *)
+Definition audit_accepted (i : instance) (s : solution) (certificates : list (Z * certificate)) : bool :=
+  instance_accepted i && accepted i s && match audit i s certificates with None => true | Some _ => false end.
 
 Section Instance.
 Variable i : instance.
@@ -126,3 +151,48 @@ Proof.
     (empty_context_represents i) H before id later committed p a rival O C).
 Qed.
 End Instance.
+
+(** query/optimal and query/complete, from the documents on: an accepted certificate leaves the robot no plan that
+    breaks no rule, alone or together with the plans of the others, fits what it has done by [now], and arrives before
+    the bound. *)
+Theorem accepted_query_of_a_solution_is_optimal i s id now cert : query_accepted i s id now cert = true ->
+  Well_formed i /\ forall a p, In a (robots i) -> robot_id a = id -> Sound i a (others s id) p ->
+  Fits_the_past (own s id) p now -> Reaches (bound cert) (arrival (release a) p).
+Proof.
+  unfold query_accepted, plans_accepted. cbv zeta. cbn [looked_up world_of].
+  rewrite !andb_true_iff, Ids.distinct_iff, !forallb_forall.
+  intros [[W [[N K] L]] C]. apply instance_is_well_formed_exactly_when_accepted in W as V. split; [exact V|].
+  rewrite <- forallb_forall in L. apply (plans_accepted_iff i V) in L.
+  intros a p A E S F. destruct (Map.find id (robot_of (lookup_of i))) as [b|] eqn:B; [|discriminate].
+  assert (b = a) as ->.
+  { assert (X : Map.find id (robot_of (lookup_of i)) = Some a) by (apply find_robot; auto). congruence. }
+  assert (R : forall q, In q (plans s) -> exists x, In x (robots i) /\ robot_id x = plan_robot q).
+  { intros q Q. specialize (K q Q). apply Map_facts.mem_in_iff in K as [x X]. apply Map.find_1 in X.
+    apply find_robot in X; [|exact V]. eauto. }
+  apply (accepted_query_is_optimal i V a (others s id) (context_of (lookup_of i) (others s id)) now (own s id) cert p); auto.
+  - unfold others. split.
+    + intros q Q. apply filter_In in Q as [Q _]. auto.
+    + intros q x Q. apply filter_In in Q as [Q _]. apply L. exact Q.
+    + clear -N. induction (plans s) as [|q ps IH]; simpl in *; [constructor|]. inversion N as [|? ? Q M]; subst.
+      destruct (negb (plan_robot q =? id)); simpl; auto. constructor; auto. intros H. apply Q.
+      apply in_map_iff in H as (x & <- & X). apply filter_In in X as [X _]. apply in_map. exact X.
+    + intros H. apply in_map_iff in H as (q & Q & H). apply filter_In in H as [_ H]. rewrite Q, E, Z.eqb_refl in H.
+      discriminate.
+  - apply context_of_represents. exact V.
+  - intros before O. unfold own in O. apply find_some in O as [O P]. apply Z.eqb_eq in P. split; [congruence|].
+    apply L; auto. congruence.
+Qed.
+
+(** In an audited solution, from the documents on, no robot has a sound plan that arrives earlier. *)
+Theorem plans_of_an_accepted_audit_are_optimal i s certificates : audit_accepted i s certificates = true ->
+  Well_formed i /\ Lawful i s /\
+  forall before id later committed p a rival, order s = before ++ id :: later -> In_planning_order s before committed ->
+  In p (plans s) -> plan_robot p = id -> In a (robots i) -> robot_id a = id -> Sound i a committed rival ->
+  arrival (release a) p <= arrival (release a) rival.
+Proof.
+  unfold audit_accepted. rewrite !andb_true_iff. intros [[W L] A].
+  apply instance_is_well_formed_exactly_when_accepted in W.
+  apply (checker_accepts_exactly_lawful_solutions i W) in L.
+  destruct (audit i s certificates) eqn:E; [discriminate|]. split; [exact W|]. split; [exact L|].
+  exact (audited_plans_are_optimal i W s L certificates E).
+Qed.

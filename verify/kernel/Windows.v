@@ -201,6 +201,37 @@ Proof.
   intros F. apply sweep_covers; auto. apply E. exact F.
 Qed.
 
+(** Each window of the list has ended before the next opens. *)
+Definition In_order_of_time : list window -> Prop :=
+  StronglySorted (fun v w => exists last, closes v = Some last /\ last < opens w).
+
+Lemma sweep_opens most l : forall inside opened w, In w (sweep most inside opened l) ->
+  opened = Some (opens w) \/ exists c, In c l /\ fst c = opens w.
+Proof.
+  induction l as [|[k d] l IH]; intros inside opened w W; cbn [sweep] in W; cbv zeta in W.
+  - destruct opened as [first|]; [destruct W as [<-|[]]; auto | destruct W].
+  - assert (H : forall opened', In w (sweep most (inside + d) opened' l) -> opened' = opened \/ opened' = Some k \/ opened' = None ->
+      opened = Some (opens w) \/ exists c, In c ((k, d) :: l) /\ fst c = opens w).
+    { intros opened' I E. apply IH in I as [I|(c & C & F)]; [|right; exists c; split; [right|]; auto].
+      destruct E as [E|[E|E]]; rewrite E in I; auto; [|discriminate]. injection I as ->. right. exists (opens w, d).
+      split; [left|]; reflexivity. }
+    destruct opened as [first|]; destruct (inside + d <? most); eauto.
+    destruct W as [<-|W]; eauto.
+Qed.
+
+Theorem free_windows_are_in_order_of_time stays most : In_order_of_time (free_windows stays most).
+Proof.
+  unfold free_windows, In_order_of_time. pose proof (changes_are_in_order stays) as O. revert O.
+  generalize (changes stays) as l. assert (H : forall l, In_order l -> forall inside opened,
+    StronglySorted (fun v w => exists last, closes v = Some last /\ last < opens w) (sweep most inside opened l)).
+  - intros l O. induction O as [|[k d] l O IH A]; intros inside opened; cbn [sweep]; cbv zeta.
+    + destruct opened; repeat constructor.
+    + destruct opened as [first|]; destruct (inside + d <? most); auto. constructor; auto.
+      rewrite Forall_forall in *. intros w W. exists k. split; [reflexivity|].
+      apply sweep_opens in W as [W|(c & C & <-)]; [discriminate | exact (A c C)].
+  - intros l O. apply H. exact O.
+Qed.
+
 (** A stay whose ticks are all free lies in one window. *)
 Theorem free_stays_are_in_windows stays most enter leave : Before enter leave ->
   (forall tick, enter <= tick -> Before tick leave -> Free stays most tick) ->
