@@ -27,11 +27,27 @@ let character_length text at =
           && (first <> 0xF0 || second >= 0x90) && (first <> 0xF4 || second < 0x90) then 4
   else 0
 
-(* Refuse what the JSON library would read beyond JSON (comments, tuples, raw control characters), bad UTF-8, and deep
-   nesting. *)
+(* The word is a number as JSON has it. *)
+let is_number word =
+  let digit at = at < String.length word && word.[at] >= '0' && word.[at] <= '9' in
+  let is at letters = at < String.length word && String.contains letters word.[at] in
+  let rec digits at = if digit at then digits (at + 1) else at in
+  let first = if is 0 "-" then 1 else 0 in
+  let after_whole = if is first "0" then first + 1 else digits first in
+  let after_fraction = if is after_whole "." then digits (after_whole + 1) else after_whole in
+  let exponent = if is (after_fraction + 1) "+-" then after_fraction + 2 else after_fraction + 1 in
+  digit first
+  && (after_fraction = after_whole || digit (after_whole + 1))
+  && if is after_fraction "eE" then digit exponent && digits exponent = String.length word
+     else after_fraction = String.length word
+
+(* Refuse what the JSON library would read beyond JSON (comments, names without quotes, NaN, raw control characters), bad
+   UTF-8, and deep nesting. *)
 let require_plain text =
   if String.length text > largest_document then
-    refuse "$" "document/json" (Printf.sprintf "the document must have at most %d bytes" largest_document);
+    malformed (Printf.sprintf "it must have at most %d bytes" largest_document);
+  let is_of_word = function '-' | '+' | '.' | '0' .. '9' | 'a' .. 'z' | 'A' .. 'Z' -> true | _ -> false in
+  let rec end_of_word at = if at < String.length text && is_of_word text.[at] then end_of_word (at + 1) else at in
   let rec outside at depth =
     if at < String.length text then
       match text.[at] with
@@ -39,7 +55,11 @@ let require_plain text =
       | '[' | '{' when depth = deepest -> malformed (Printf.sprintf "it must be nested at most %d deep" deepest)
       | '[' | '{' -> outside (at + 1) (depth + 1)
       | ']' | '}' -> outside (at + 1) (depth - 1)
-      | ' ' | '\t' | '\n' | '\r' | ',' | ':' | '-' | '+' | '.' | '0' .. '9' | 'a' .. 'z' | 'A' .. 'Z' -> outside (at + 1) depth
+      | ' ' | '\t' | '\n' | '\r' | ',' | ':' -> outside (at + 1) depth
+      | first when is_of_word first ->
+          let word = String.sub text at (end_of_word at - at) in
+          if is_number word || List.mem word [ "true"; "false"; "null" ] then outside (end_of_word at) depth
+          else malformed (Printf.sprintf "it has a word that is no JSON at byte %d" at)
       | found -> malformed (Printf.sprintf "it has %C at byte %d" found at)
   and inside at depth =
     if at < String.length text then
@@ -69,8 +89,6 @@ let rec require_json (json : Yojson.Safe.t) =
       let sign = if digits.[0] = '-' then 1 else 0 in
       if String.length digits - sign > most_digits then
         malformed (Printf.sprintf "a whole number has more than %d digits" most_digits)
-  | `Float number when Float.is_nan number || Float.is_integer number && Float.abs number = Float.infinity ->
-      malformed "it has a number that is none"
   | `Null | `Bool _ | `Int _ | `Float _ | `String _ -> ()
   | `Tuple _ | `Variant _ -> malformed "it has a tuple or a variant"
 
@@ -141,24 +159,24 @@ let number numbers id =
 (* The ids by their numbers. *)
 let names numbers = Array.of_list (List.rev numbers.names)
 
-let require_format format json =
+let require_format path format json =
   match json with
   | `Assoc members when List.assoc_opt "format" members = Some (`String format) -> ()
-  | _ -> refuse "$.format" "document/format" ("the format must be " ^ format)
+  | _ -> refuse (path ^ ".format") "document/format" ("the format must be " ^ format)
 
 (* ---- Instances ---- *)
 
 type instance = { instance : Law.instance; resource_numbers : numbers; robot_numbers : numbers }
 
 (* Refuse an instance that the kernel does not accept, by the first rule that is seen to be broken. *)
-let name_fault { Law.resources; edges; directed; robots; _ } =
+let name_fault path { Law.resources; edges; directed; robots; _ } =
   let known id = List.exists (fun r -> Z.equal r.Law.resource_id id) resources in
   let at_least_one rule path name value =
     if Z.lt value Z.one then refuse (path ^ "." ^ name) rule (Printf.sprintf "the %s must be a whole number of at least 1" name)
   in
-  let each path check = List.iteri (fun position x -> check (Printf.sprintf "%s[%d]" path position) x) in
-  each "$.graph.nodes" (fun path r -> at_least_one "instance/capacity" path "capacity" r.Law.capacity) resources;
-  each "$.graph.nodes" (fun path r -> at_least_one "instance/duration" path "duration" r.Law.duration) resources;
+  let each field check = List.iteri (fun position x -> check (Printf.sprintf "%s%s[%d]" path field position) x) in
+  each ".graph.nodes" (fun path r -> at_least_one "instance/capacity" path "capacity" r.Law.capacity) resources;
+  each ".graph.nodes" (fun path r -> at_least_one "instance/duration" path "duration" r.Law.duration) resources;
   let met = Hashtbl.create 1024 in
   let edge path (source, target) =
     if not (known source) then refuse (path ^ ".source") "instance/edge" "it must be the id of a resource, and is not";
@@ -168,18 +186,18 @@ let name_fault { Law.resources; edges; directed; robots; _ } =
       refuse path "instance/edge" "it must be listed once";
     Hashtbl.add met (source, target) ()
   in
-  each "$.graph.edges" edge edges;
-  each "$.robots" (fun path a -> if not (known a.Law.start) then
+  each ".graph.edges" edge edges;
+  each ".robots" (fun path a -> if not (known a.Law.start) then
     refuse (path ^ ".start") "instance/endpoint" "the start must be the id of a resource") robots;
-  each "$.robots" (fun path a -> if not (known a.Law.goal) then
+  each ".robots" (fun path a -> if not (known a.Law.goal) then
     refuse (path ^ ".goal") "instance/endpoint" "the goal must be the id of a resource") robots;
-  each "$.robots" (fun path a -> if Z.sign a.Law.release < 0 then
+  each ".robots" (fun path a -> if Z.sign a.Law.release < 0 then
     refuse (path ^ ".release") "instance/release" "the release must be a whole number of at least 0") robots;
-  each "$.robots" (fun path a -> at_least_one "instance/pace" path "pace" a.Law.pace) robots;
-  refuse "$" "instance" "the instance must keep the rules instance/..."
+  each ".robots" (fun path a -> at_least_one "instance/pace" path "pace" a.Law.pace) robots;
+  refuse path "instance" "the instance must keep the rules instance/..."
 
-let instance_of_json json =
-  require_format "carproof-instance/1" json;
+let instance_of_json path json =
+  require_format path "carproof-instance/1" json;
   let one = Z.one in
   let resource_numbers = no_numbers () and robot_numbers = no_numbers () in
   let resource_id path json = number resource_numbers (id path json) in
@@ -188,7 +206,9 @@ let instance_of_json json =
     let known = required field "id" id in
     if Hashtbl.mem resource_numbers.known known then
       refuse (path ^ ".id") "instance/resource-id" ("ids must be unique, and a resource before it has the id " ^ shown known);
-    if (present field "x" whole = None) <> (present field "y" whole = None) then
+    let x = present field "x" whole in
+    let y = present field "y" whole in
+    if (x = None) <> (y = None) then
       refuse path "instance/position" "x and y must both be whole numbers or both be absent";
     { Law.resource_id = number resource_numbers known;
       capacity = optional one field "capacity" whole;
@@ -223,18 +243,18 @@ let instance_of_json json =
     | "park" -> Law.Park
     | _ -> shape path "\"vanish\" or \"park\""
   in
-  let field = fields "$" ~required:[ "format"; "graph"; "after_goal"; "robots" ] ~optional:[] json in
+  let field = fields path ~required:[ "format"; "graph"; "after_goal"; "robots" ] ~optional:[] json in
   let resources, edges, directed = required field "graph" graph in
   let after_goal = required field "after_goal" after in
   let robots = required field "robots" (elements robot) in
   let instance = { Law.resources; edges; directed; after_goal; robots } in
-  if not (Checker.instance_accepted instance) then name_fault instance;
+  if not (Checker.instance_accepted instance) then name_fault path instance;
   { instance; resource_numbers; robot_numbers }
 
 (* ---- Solutions ---- *)
 
-let solution_of_json { resource_numbers; robot_numbers; _ } json =
-  require_format "carproof-solution/1" json;
+let solution_of_json { resource_numbers; robot_numbers; _ } path json =
+  require_format path "carproof-solution/1" json;
   let robot path json = number robot_numbers (id path json) in
   let visit path (json : Yojson.Safe.t) =
     match json with
@@ -248,7 +268,7 @@ let solution_of_json { resource_numbers; robot_numbers; _ } json =
     let field = fields path ~required:[ "robot"; "visits" ] ~optional:[] json in
     { Law.plan_robot = required field "robot" robot; visits = required field "visits" (elements visit) }
   in
-  let field = fields "$" ~required:[ "format"; "plans"; "order"; "unplanned" ] ~optional:[] json in
+  let field = fields path ~required:[ "format"; "plans"; "order"; "unplanned" ] ~optional:[] json in
   { Law.plans = required field "plans" (elements plan);
     order = required field "order" (elements robot);
     unplanned = required field "unplanned" (elements robot) }
@@ -257,8 +277,8 @@ let solution_of_json { resource_numbers; robot_numbers; _ } json =
 
 type bound = { certificate : Bound.certificate; named_instance : string; refutations : string list }
 
-let bound_of_json { resource_numbers; robot_numbers; _ } json =
-  require_format "carproof-bound/1" json;
+let bound_of_json { resource_numbers; robot_numbers; _ } path json =
+  require_format path "carproof-bound/1" json;
   let robot path json = number robot_numbers (id path json) in
   let resource path json = number resource_numbers (id path json) in
   let resource_price path (json : Yojson.Safe.t) =
@@ -291,7 +311,7 @@ let bound_of_json { resource_numbers; robot_numbers; _ } json =
     | _ -> shape path "an array of a robot and a whole number or null"
   in
   let names = [ "format"; "instance"; "bound"; "scale"; "horizon"; "resources"; "exchanges"; "cuts"; "robots" ] in
-  let field = fields "$" ~required:names ~optional:[] json in
+  let field = fields path ~required:names ~optional:[] json in
   let cuts = required field "cuts" (elements cut) in
   let resource_prices = required field "resources" (elements resource_price) in
   let exchange_prices = required field "exchanges" (elements exchange_price) in
