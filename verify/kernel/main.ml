@@ -55,12 +55,13 @@ let rec cut_formulas = function
    "certificate": ...}. *)
 let requested line () =
   let json = Reading.json_of_text line in
-  let any _ json = json in
   let field = Reading.fields "$" ~required:[ "op"; "instance" ] ~optional:[ "solution"; "certificate" ] json in
-  let instance = Reading.instance_of_json (Reading.required field "instance" any) in
-  match (Reading.required field "op" Reading.text, Reading.present field "solution" any, Reading.present field "certificate" any) with
-  | "check", Some solution, None -> Verdicts.check instance (Reading.solution_of_json instance solution)
-  | "verify-bound", None, Some bound -> Verdicts.verify_bound [] instance (Reading.bound_of_json instance bound)
+  let instance = Reading.required field "instance" Reading.instance_of_json in
+  let solution = Reading.present field "solution" (Reading.solution_of_json instance) in
+  let bound = Reading.present field "certificate" (Reading.bound_of_json instance) in
+  match (Reading.required field "op" Reading.text, solution, bound) with
+  | "check", Some solution, None -> Verdicts.check instance solution
+  | "verify-bound", None, Some bound -> Verdicts.verify_bound [] instance bound
   | _ -> Reading.shape "$" "a request that the kernel knows, with its documents"
 
 let rec serve () =
@@ -82,13 +83,13 @@ let () =
   | [ "serve" ] -> serve ()
   | [ "check"; instance; solution ] ->
       print (answered (fun () ->
-          let instance = Reading.instance_of_json (json_of_file instance) in
-          Verdicts.check instance (Reading.solution_of_json instance (json_of_file solution))))
+          let instance = Reading.instance_of_json "$" (json_of_file instance) in
+          Verdicts.check instance (Reading.solution_of_json instance "$" (json_of_file solution))))
   | "verify-bound" :: instance :: certificate :: options ->
       print (answered (fun () ->
           let formulas = cut_formulas options in
-          let instance = Reading.instance_of_json (json_of_file instance) in
-          Verdicts.verify_bound formulas instance (Reading.bound_of_json instance (json_of_file certificate))))
+          let instance = Reading.instance_of_json "$" (json_of_file instance) in
+          Verdicts.verify_bound formulas instance (Reading.bound_of_json instance "$" (json_of_file certificate))))
   | [ "refute"; formula; proof ] ->
       print (answered (fun () ->
           Verdicts.refute (Reading.formula_of_text (contents formula)) (Reading.proof_of_text (contents proof))))
