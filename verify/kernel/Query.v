@@ -42,12 +42,16 @@ Fixpoint first_allowed (from to : Z) (moves_left : nat) (tick : Z) : Z :=
   | O => tick
   end.
 
-(** window/fits: move into the window at the first tick at which the robot may leave where it is, the window is open and
-    the move is no exchange; the robot must still be in its own window then, and its stay must fit into the new one. *)
+(** The first tick at which the robot may leave where it is, the window is open, and the move is no exchange. *)
+Definition first_entry (l : label) (r : resource) (w : window) : Z :=
+  first_allowed (resource_id (target l)) (resource_id r) (Triples.S.cardinal (moves_made c))
+    (Z.max (ready_from l) (opens w)).
+
+(** window/fits: move into the window at that tick. The robot must still be in its own window then, and the least that
+    it stays must fit into the new one. *)
 Definition move_into (l : label) (r : resource) (w : window) : list label :=
   let least := least_stay a r in
-  let tick := first_allowed (resource_id (target l)) (resource_id r) (Triples.S.cardinal (moves_made c))
-    (Z.max (ready_from l) (opens w)) in
+  let tick := first_entry l r w in
   if lasts (room l) (Some tick) && holds_stay w tick (Some (tick + least))
   then [Label r w tick (tick + least) (behind l ++ [visit_until l (Some tick)])] else [].
 

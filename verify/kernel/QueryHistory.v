@@ -1,9 +1,12 @@
 (** The plans that the query makes keep what the robot has done (fleet/history). *)
 Require Import ZArith List Bool Lia.
-From Carproof Require Import Law Collections Timeline Journey Checker Windows Context Past QueryCertificate Query QuerySearch
-  QuerySound.
+From Carproof Require Import Law Collections Timeline Journey Checker Windows Context Past QueryCertificate.
+From Carproof Require Import Query QuerySearch QuerySound.
 Import ListNotations.
 Open Scope Z_scope.
+
+Lemma from_reversed {A} (l before : list A) x : rev l = x :: before -> l = rev before ++ [x].
+Proof. intros E. rewrite <- (rev_involutive l), E. reflexivity. Qed.
 
 Section Robot.
 Variables (i : instance) (a : robot).
@@ -23,7 +26,8 @@ Proof.
   - pose proof (chain_later i a well_formed of_instance v (w :: rest) C) as L. destruct C as (_ & _ & _ & C).
     destruct (IH w C) as (r & E & R).
     change (filter (fun x => enter x <=? now) (v :: w :: rest)) with
-      (if enter v <=? now then v :: filter (fun x => enter x <=? now) (w :: rest) else filter (fun x => enter x <=? now) (w :: rest)).
+      (if enter v <=? now then v :: filter (fun x => enter x <=? now) (w :: rest)
+       else filter (fun x => enter x <=? now) (w :: rest)).
     destruct (Z.leb_spec (enter v) now) as [V|V].
     + exists r. split; auto. exact (f_equal (cons v) E).
     + assert (A : forall x, In x (w :: rest) -> now < enter x).
@@ -81,12 +85,13 @@ Proof.
   destruct (rev (history before now)) as [|v earlier] eqn:H.
   - assert (G : history before now = []) by (rewrite <- (rev_involutive (history before now)), H; reflexivity).
     rewrite G. intros [|n] v; discriminate.
-  - assert (G : history before now = rev earlier ++ [v]) by (rewrite <- (rev_involutive (history before now)), H; reflexivity).
+  - pose proof (from_reversed _ _ _ H) as G.
     simpl in E, R, T. rewrite E, G. intros n w W.
     destruct (Nat.ltb_spec n (length (rev earlier))) as [M|M].
     + rewrite nth_error_app1 in W |- * by exact M. exists w. repeat split; auto.
       intros O. destruct O. destruct (nth_error_split _ _ W) as (b & r & I & _). destruct r as [|x r].
-      * apply (history_has_ended i a well_formed of_instance before now b w v [] L). rewrite G, I, <- app_assoc. reflexivity.
+      * apply (history_has_ended i a well_formed of_instance before now b w v [] L).
+        rewrite G, I, <- app_assoc. reflexivity.
       * apply (history_has_ended i a well_formed of_instance before now b w x (r ++ [v]) L).
         rewrite G, I, <- app_assoc. reflexivity.
     + assert (K : n = length (rev earlier)).
@@ -109,19 +114,20 @@ Proof.
   unfold s, standing_of. destruct followed as [before|]; [|exists (Visit (start a) (release a) None); auto].
   destruct (is_under_way before eq_refl) as [L _].
   destruct (rev (history before now)) as [|v earlier] eqn:H; [exists (Visit (start a) (release a) None); auto|].
-  assert (G : history before now = rev earlier ++ [v]) by (rewrite <- (rev_involutive (history before now)), H; reflexivity).
+  pose proof (from_reversed _ _ _ H) as G.
   exists v. split; [reflexivity|]. split; [reflexivity|]. simpl.
   destruct (history_comes_first before now L) as (rest & E & _). rewrite G in E.
   apply (lawful_plan_is_a_course i a) in L as [C _]. rewrite E in C. apply course_of_front in C; [exact C|].
   destruct (rev earlier); discriminate.
 Qed.
 
-Lemma continues_with_another_end b v w : Continues (b ++ [v]) -> Same_entry v w -> No_earlier (leave w) now -> Continues (b ++ [w]).
+Lemma continues_with_another_end b v w :
+  Continues (b ++ [v]) -> Same_entry v w -> No_earlier (leave w) now -> Continues (b ++ [w]).
 Proof.
   intros (x & later & E & R & T & N) [P Q] M. destruct later as [|y later] using rev_ind.
   - apply app_inj_tail in E as [-> ->]. exists w, []. repeat split; auto; congruence.
   - clear IHlater. exists x, (later ++ [w]). repeat split; auto.
-    replace (past s ++ x :: later ++ [y]) with ((past s ++ x :: later) ++ [y]) in E by (rewrite <- app_assoc; reflexivity).
+    change (x :: later ++ [y]) with ((x :: later) ++ [y]) in E. rewrite app_assoc in E.
     apply app_inj_tail in E as [-> _]. rewrite <- app_assoc. reflexivity.
 Qed.
 

@@ -1,14 +1,15 @@
 (** The query is right: its plan is sound, none arrives earlier, and it finds a plan wherever one exists. *)
 Require Import ZArith List Bool Lia.
-From Carproof Require Import Law Collections Timeline Journey Checker Windows Context Past QueryCertificate Query QuerySearch
-  QuerySound QueryHistory.
+From Carproof Require Import Law Collections Timeline Journey Checker Windows Context Past QueryCertificate.
+From Carproof Require Import Query QuerySearch QuerySound QueryHistory.
 Import ListNotations.
 Open Scope Z_scope.
 
 (** * Windows *)
 
 (** Two maximal intervals that share a tick are one. *)
-Theorem free_windows_are_unique P v w tick : Maximal P v -> Maximal P w -> In_window v tick -> In_window w tick -> v = w.
+Theorem free_windows_are_unique P v w tick :
+  Maximal P v -> Maximal P w -> In_window v tick -> In_window w tick -> v = w.
 Proof.
   intros [_ I B A] [_ J C D] [O U] [Q V]. destruct v as [o c], w as [q d]. simpl in *.
   assert (o = q).
@@ -89,7 +90,8 @@ Qed.
 (** Wherever a robot can go after a later entry into a window, it can go after an earlier one: from a label that
     dominates a visit, the search finds a label to end with, entered no later than the last visit. *)
 Theorem earliest_entry_dominates later : forall v l, In l (labels from) -> Dominates l v -> Chain i a v later ->
-  Free i c (v :: later) -> exists last, In last (labels from) /\ can_end i a now last = true /\ entry last <= last_entry v later.
+  Free i c (v :: later) ->
+  exists last, In last (labels from) /\ can_end i a now last = true /\ entry last <= last_entry v later.
 Proof.
   induction later as [|w rest IH]; intros v l L D C F.
   - exists l. split; auto. split; [exact (dominating_label_can_end l v D (proj2 C)) | exact (no_later l v D)].
@@ -111,7 +113,8 @@ Let s := standing_of known a now followed.
 
 Lemma sound_plan_is_free p : Sound i a committed p -> Free i c (visits p).
 Proof.
-  intros S. apply (allows_iff i); auto. apply (sound_visits_are_allowed i well_formed a committed c of_instance others represents p S).
+  intros S. apply (allows_iff i); auto.
+  apply (sound_visits_are_allowed i well_formed a committed c of_instance others represents p S).
   exists [], []. rewrite app_nil_r. reflexivity.
 Qed.
 
@@ -131,7 +134,8 @@ Proof.
   destruct (has_room _ _ _ (sound_plan_is_free p S) current I) as (r & w & R & E & W & H).
   rewrite <- P, <- E, (least_ticks_of i well_formed a r R) in Y.
   assert (B : No_earlier (leave current) (ready s)).
-  { destruct (leave current) as [l|] eqn:M; simpl in *; auto. pose proof (respects_durations _ _ _ L current r l I R E M). lia. }
+  { destruct (leave current) as [l|] eqn:M; simpl in *; auto.
+    pose proof (respects_durations _ _ _ L current r l I R E M). lia. }
   pose proof (least_stay_is_positive i a well_formed of_instance r R).
   assert (K : holds_stay w (since s) (Some (ready s)) = true).
   { unfold holds_stay, lasts in *. rewrite T in H. apply andb_true_iff in H as [-> H]. simpl.
@@ -142,7 +146,8 @@ Proof.
   apply find_some in X as [X J].
   assert (U : x = w).
   { rewrite (has_windows _ _ _ represents r R) in X, W.
-    apply (free_windows_are_maximal i) in X, W; auto; try exact (are_of_robots _ _ _ others); try exact (are_lawful _ _ _ others).
+    apply (free_windows_are_maximal i) in X, W; auto;
+      try exact (are_of_robots _ _ _ others); try exact (are_lawful _ _ _ others).
     unfold holds_stay, lasts in J, K. apply andb_true_iff in J as [J J'], K as [K K'].
     apply (free_windows_are_unique _ x w (since s) X W); split; try lia.
     - destruct (closes x); simpl; auto. lia.
@@ -192,7 +197,8 @@ Proof.
   { apply (labels_are_reached i known c a (least_stay_is_positive i a well_formed of_instance)) in L as [->|L];
       [constructor | exact (entered_is_reached i known c a from l L)]. }
   split.
-  - exact (right_way_is_sound i a well_formed c committed others represents capacity_is_kept exchanges_are_avoided now l Rl Q).
+  - exact (right_way_is_sound i a well_formed c committed others represents capacity_is_kept exchanges_are_avoided
+      now l Rl Q).
   - exact (history_is_kept i a well_formed of_instance now followed is_under_way l Kl Q).
 Qed.
 End Robot.
@@ -238,7 +244,8 @@ Lemma ended_plan_is_returned p made : followed = Some p -> has_ended p now = tru
 Proof.
   intros E H [S F]. destruct (followed_is_lawful p E) as [_ L]. rewrite E in F.
   assert (V : visits made = visits p).
-  { apply (ended_plan_is_unchanged i a well_formed of_instance p made now L); [apply has_ended_iff; exact H | exact F]. }
+  { apply (ended_plan_is_unchanged i a well_formed of_instance p made now L); [|exact F].
+    apply has_ended_iff. exact H. }
   split; auto. unfold query, query_in_context. rewrite E, H.
   rewrite (sound_visits_are_allowed i well_formed a committed c of_instance others
     (context_of_represents i well_formed committed) made S); auto.
@@ -264,7 +271,8 @@ Proof.
     + exact (plan_from_is_sound i a committed c now well_formed of_instance others R followed U
         capacity_is_kept exchanges_are_avoided made Q).
     + intros rival [S F].
-      destruct (plan_from_is_least i a committed c now well_formed of_instance others R followed U rival S F) as (best & B & T).
+      destruct (plan_from_is_least i a committed c now well_formed of_instance others R followed U rival S F)
+        as (best & B & T).
       rewrite B in Q. injection Q as <-. exact T.
 Qed.
 
@@ -275,7 +283,8 @@ Proof.
   destruct ended_or_under_way as [(before & E & H)|H].
   - destruct (ended_plan_is_returned before p E H X) as [_ K]. congruence.
   - destruct (under_way H) as [K U]. destruct X as [S F].
-    destruct (plan_from_is_least i a committed c now well_formed of_instance others R followed U p S F) as (best & B & _).
+    destruct (plan_from_is_least i a committed c now well_formed of_instance others R followed U p S F)
+      as (best & B & _).
     congruence.
 Qed.
 End Query.

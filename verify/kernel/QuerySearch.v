@@ -27,7 +27,8 @@ Proof.
   pose proof (filter_is_shorter f g b H). pose proof (filter_is_shorter f g r H). lia.
 Qed.
 
-Lemma exchange_is_passed from to tick : is_exchange c from to tick = true -> (moves_from (tick + 1) < moves_from tick)%nat.
+Lemma exchange_is_passed from to tick : is_exchange c from to tick = true ->
+  (moves_from (tick + 1) < moves_from tick)%nat.
 Proof.
   unfold is_exchange, Triples.contains. intros E. apply Triples.S.mem_2, Triples.S.elements_1 in E.
   apply InA_alt in E as (m & <- & M). apply (filter_is_strictly_shorter _ _ (tick, (to, from))); simpl; auto; lia.
@@ -56,8 +57,7 @@ Proof.
   repeat split; auto.
   - apply A. rewrite Triples.S.cardinal_1. unfold moves_from.
     induction (Triples.S.elements (moves_made c)) as [|m l IH]; simpl; [lia|]. destruct (tick <=? fst m); simpl; lia.
-  - intros other O E. destruct (Z.leb_spec (first_allowed c from to (Triples.S.cardinal (moves_made c)) tick) other); auto.
-    rewrite S in E by lia. discriminate.
+  - intros other O E. apply Z.nlt_ge. intros B. rewrite S in E by lia. discriminate.
 Qed.
 End Entry.
 
@@ -88,6 +88,8 @@ Qed.
 
 Section Search.
 Variables (i : instance) (known : lookup) (c : context) (a : robot).
+Hypothesis ids_are_unique :
+  forall r s, In r (resources i) -> In s (resources i) -> resource_id r = resource_id s -> r = s.
 Hypothesis stays_are_positive : forall r, In r (resources i) -> 1 <= least_stay a r.
 
 (** The label [e] is entered by a move from the label [l], at the tick [entry e]. *)
@@ -103,13 +105,18 @@ Record Moved (l e : label) : Prop := {
   comes_from : behind e = behind l ++ [visit_until l (Some (entry e))]
 }.
 
+Lemma first_entry_is_least l r w : let found := first_entry c l r w in
+  Z.max (ready_from l) (opens w) <= found /\ is_exchange c (resource_id (target l)) (resource_id r) found = false /\
+  forall tick, Z.max (ready_from l) (opens w) <= tick ->
+  is_exchange c (resource_id (target l)) (resource_id r) tick = false -> found <= tick.
+Proof. apply entry_is_the_least_allowed. Qed.
+
 Lemma expansion_is_moved l e : In e (expand i known c a l) -> Moved l e.
 Proof.
   unfold expand. intros E. apply in_flat_map in E as (r & R & E). apply filter_In in R as [R M].
   apply in_flat_map in E as (w & W & E). unfold move_into in E. cbv zeta in E.
-  set (tick := first_allowed _ _ _ _ _) in E.
-  destruct (entry_is_the_least_allowed c (resource_id (target l)) (resource_id r) (Z.max (ready_from l) (opens w))) as (L & X & _).
-  fold tick in L, X. destruct (lasts (room l) (Some tick)) eqn:Q; [|destruct E].
+  destruct (first_entry_is_least l r w) as (L & X & _). set (tick := first_entry c l r w) in *.
+  destruct (lasts (room l) (Some tick)) eqn:Q; [|destruct E].
   destruct (holds_stay w tick (Some (tick + least_stay a r))) eqn:F; [|destruct E].
   destruct E as [<-|[]]. split; simpl; auto. lia.
 Qed.
@@ -123,14 +130,13 @@ Lemma allowed_entry_is_found l r w tick : In r (resources i) -> In w (windows_in
   exists e, In e (expand i known c a l) /\ target e = r /\ room e = w /\ entry e <= tick.
 Proof.
   intros R W M X T Q F.
-  destruct (entry_is_the_least_allowed c (resource_id (target l)) (resource_id r) (Z.max (ready_from l) (opens w))) as (L & _ & A).
+  destruct (first_entry_is_least l r w) as (L & _ & A). set (first := first_entry c l r w) in *.
   unfold holds_stay, lasts in *. apply andb_true_iff in F as [O F]. specialize (A tick ltac:(lia) X).
-  set (first := first_allowed c (resource_id (target l)) (resource_id r) (Triples.S.cardinal (moves_made c)) (Z.max (ready_from l) (opens w))) in *.
   exists (Label r w first (first + least_stay a r) (behind l ++ [visit_until l (Some first)])).
   repeat split; auto. unfold expand. apply in_flat_map. exists r. split; [apply filter_In; auto|].
   apply in_flat_map. exists w. split; auto. unfold move_into. cbv zeta. fold first.
-  replace (lasts (room l) (Some first) && holds_stay w first (Some (first + least_stay a r))) with true; [left; reflexivity|].
-  symmetry. unfold holds_stay, lasts. rewrite !andb_true_iff. repeat split; [|lia|].
+  replace (lasts (room l) (Some first) && holds_stay w first (Some (first + least_stay a r))) with true;
+    [left; reflexivity|]. symmetry. unfold holds_stay, lasts. rewrite !andb_true_iff. repeat split; [|lia|].
   - destruct (closes (room l)); auto. lia.
   - destruct (closes w); auto. lia.
 Qed.
@@ -148,7 +154,9 @@ Lemma entered_is_reached from e : Entered from e -> Reached from e.
 Proof. intros (l & R & M). exact (reached_by_move from l e R M). Qed.
 
 Lemma entry_before_ready from e : Entered from e -> entry e < ready_from e.
-Proof. intros (l & _ & M). pose proof (stays_are_positive _ (has_resource l e M)). rewrite (stays_least l e M). lia. Qed.
+Proof.
+  intros (l & _ & M). pose proof (stays_are_positive _ (has_resource l e M)). rewrite (stays_least l e M). lia.
+Qed.
 
 (** Every window into which a move leads has a label with an entry that is no later. *)
 Definition Covered (ls : list label) (e : label) : Prop := exists l, In l ls /\ cell l = cell e /\ entry l <= entry e.
@@ -189,7 +197,8 @@ Lemma search_goes_on from settled queue l : Searching from settled queue -> earl
 Proof.
   intros [E C O N U] L. pose proof (earliest_is_least queue) as K. rewrite L in K. destruct K as [Q K].
   set (rest := filter _ _).
-  assert (R : forall e, In e rest <-> (In e queue \/ In e (expand i known c a l)) /\ ~ In (cell e) (map cell (l :: settled))).
+  assert (R : forall e, In e rest <->
+    (In e queue \/ In e (expand i known c a l)) /\ ~ In (cell e) (map cell (l :: settled))).
   { intros e. unfold rest. rewrite filter_In, in_app_iff, negb_true_iff, <- not_true_iff_false, is_settled_iff. tauto. }
   assert (T : Entered from l) by (apply E, in_or_app; auto).
   assert (G : forall e, In e (expand i known c a l) -> entry l <= entry e).
@@ -201,7 +210,8 @@ Proof.
       + exists l. split; [left; auto|]. split; auto. apply in_app_or in X as [X|X]; auto.
       + exists x. split; [right; apply in_or_app; auto|]. split; auto. apply in_app_or in X as [X|X]; auto.
         specialize (O x l S Q). specialize (G e X). lia.
-    - exists e. split; [|split; [reflexivity | lia]]. apply in_or_app. right. apply R. apply in_app_or in X. split; auto.
+    - exists e. split; [|split; [reflexivity | lia]]. apply in_or_app. right. apply R.
+      apply in_app_or in X. split; auto.
       intros Y. apply is_settled_iff in Y. congruence. }
   split.
   - intros x X. apply in_app_or in X as [[<-|X]|X]; auto; [apply E, in_or_app; auto|].
@@ -249,7 +259,8 @@ Qed.
 
 (** From every label every move leads into a window that has a label, with an entry that is no later. *)
 Theorem labels_are_closed from l e : In l (labels i known c a from) -> In e (expand i known c a l) ->
-  exists again, In again (labels i known c a from) /\ Entered from again /\ cell again = cell e /\ entry again <= entry e.
+  exists again, In again (labels i known c a from) /\ Entered from again /\ cell again = cell e /\
+  entry again <= entry e.
 Proof.
   intros L E. pose proof (settled_windows_are_covered from _ _ _ (search_begins from)
     ltac:(simpl; rewrite Nat.add_0_r; apply le_n)) as S.
@@ -258,5 +269,35 @@ Proof.
   destruct C as (x & X & F & M). exists x. repeat split; auto.
   - right. rewrite app_nil_r in X. exact X.
   - apply (are_entered _ _ _ S). exact X.
+Qed.
+
+Lemma move_is_labelled from l again e : In again (labels i known c a from) -> cell again = cell l ->
+  ready_from again <= ready_from l -> Moved l e ->
+  exists settled, In settled (labels i known c a from) /\ Entered from settled /\ cell settled = cell e /\
+  entry settled <= entry e.
+Proof.
+  intros L C T M. injection C as C D.
+  destruct (allowed_entry_is_found again (target e) (room e) (entry e)) as (x & X & E & F & N); rewrite ?C, ?D.
+  - exact (has_resource l e M).
+  - exact (has_window l e M).
+  - exact (makes_move l e M).
+  - exact (is_no_exchange l e M).
+  - pose proof (is_ready l e M). lia.
+  - exact (was_in_room l e M).
+  - rewrite <- (stays_least l e M). exact (fits l e M).
+  - destruct (labels_are_closed from again x L X) as (settled & S & Y & Z & O). exists settled.
+    repeat split; auto; [|lia]. rewrite Z. unfold cell. congruence.
+Qed.
+
+(** The entry at which the search settles a window is final: no moves lead into the window earlier, wherever the robot
+    waits on its way. *)
+Theorem settled_entry_is_final from e : Entered from e ->
+  exists l, In l (labels i known c a from) /\ Entered from l /\ cell l = cell e /\ entry l <= entry e.
+Proof.
+  intros (l & R & M). revert e M. induction R as [|before l R IH B]; intros e M.
+  - apply (move_is_labelled from from from e); auto; [left; reflexivity | lia].
+  - destruct (IH l B) as (again & L & (x & _ & X) & C & T). apply (move_is_labelled from l again e); auto.
+    rewrite (stays_least _ _ X), (stays_least _ _ B). injection C as C _.
+    rewrite (ids_are_unique _ _ (has_resource _ _ X) (has_resource _ _ B) C). lia.
 Qed.
 End Search.

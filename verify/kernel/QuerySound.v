@@ -11,25 +11,23 @@ Definition Adjacent (vs : list visit) (v w : visit) : Prop := exists before late
 
 Lemma adjacent_at_end b v w x y : Adjacent ((b ++ [v]) ++ [w]) x y <-> Adjacent (b ++ [v]) x y \/ x = v /\ y = w.
 Proof.
-  unfold Adjacent. rewrite <- app_assoc. simpl. split.
+  unfold Adjacent. split.
   - intros (p & l & E). destruct l as [|z l] using rev_ind.
-    + replace (b ++ [v; w]) with ((b ++ [v]) ++ [w]) in E by (rewrite <- app_assoc; reflexivity).
-      replace (p ++ [x; y]) with ((p ++ [x]) ++ [y]) in E by (rewrite <- app_assoc; reflexivity).
+    + change (p ++ [x; y]) with (p ++ [x] ++ [y]) in E. rewrite app_assoc in E.
       apply app_inj_tail in E as [E <-]. apply app_inj_tail in E as [_ <-]. auto.
-    + left. replace (b ++ [v; w]) with ((b ++ [v]) ++ [w]) in E by (rewrite <- app_assoc; reflexivity).
-      replace (p ++ x :: y :: l ++ [z]) with ((p ++ x :: y :: l) ++ [z]) in E by (rewrite <- app_assoc; reflexivity).
-      apply app_inj_tail in E as [E _]. rewrite E. eauto.
+    + change (x :: y :: l ++ [z]) with ((x :: y :: l) ++ [z]) in E. rewrite app_assoc in E.
+      apply app_inj_tail in E as [E _]. eauto.
   - intros [(p & l & E)|[-> ->]].
-    + exists p, (l ++ [w]). replace (b ++ [v; w]) with ((b ++ [v]) ++ [w]) by (rewrite <- app_assoc; reflexivity).
-      rewrite E, <- app_assoc. reflexivity.
-    + exists b, []. reflexivity.
+    + exists p, (l ++ [w]). rewrite E, <- app_assoc. reflexivity.
+    + exists b, []. rewrite <- app_assoc. reflexivity.
 Qed.
 
 Lemma not_adjacent_in_one v x y : ~ Adjacent ([] ++ [v]) x y.
 Proof. intros ([|p [|q b]] & l & E); discriminate. Qed.
 
 (** Another visit in the place of the last one has the same neighbour. *)
-Lemma adjacent_with_another_end b v w x y : Adjacent (b ++ [w]) x y -> Adjacent (b ++ [v]) x y \/ y = w /\ Adjacent (b ++ [v]) x v.
+Lemma adjacent_with_another_end b v w x y : Adjacent (b ++ [w]) x y ->
+  Adjacent (b ++ [v]) x y \/ y = w /\ Adjacent (b ++ [v]) x v.
 Proof.
   destruct b as [|u b] using rev_ind; intros H.
   - destruct (not_adjacent_in_one w x y H).
@@ -81,8 +79,8 @@ Proof.
   - intros x y X. apply (adjacent_with_another_end b v w) in X as [X|[-> X]]; auto. rewrite T, R. auto.
 Qed.
 
-Lemma course_goes_on b v w : Course (b ++ [v]) -> leave v = Some (enter w) -> Move i (visit_resource v) (visit_resource w) ->
-  Stay_lawful i a w -> Course ((b ++ [v]) ++ [w]).
+Lemma course_goes_on b v w : Course (b ++ [v]) -> leave v = Some (enter w) ->
+  Move i (visit_resource v) (visit_resource w) -> Stay_lawful i a w -> Course ((b ++ [v]) ++ [w]).
 Proof.
   intros [(f & l & E & B) S A] L M K. split.
   - rewrite E. exists f, (l ++ [w]). auto.
@@ -100,13 +98,16 @@ Definition Has_room (v : visit) : Prop := exists r w, In r (resources i) /\ reso
 (** The visits keep the rules joint/... with the committed plans. *)
 Record Free (vs : list visit) : Prop := {
   has_room : forall v, In v vs -> Has_room v;
-  makes_no_exchange : forall v w, Adjacent vs v w -> is_exchange c (visit_resource v) (visit_resource w) (enter w) = false
+  makes_no_exchange : forall v w, Adjacent vs v w ->
+    is_exchange c (visit_resource v) (visit_resource w) (enter w) = false
 }.
 
 Lemma allows_iff vs : allows known c vs = true <-> Free vs.
 Proof.
   assert (R : forall v, match Map.find (visit_resource v) (resource_of known) with
-    | Some r => existsb (fun w => holds_stay w (enter v) (leave v)) (windows_in c r) | None => false end = true <-> Has_room v).
+    | Some r => existsb (fun w => holds_stay w (enter v) (leave v)) (windows_in c r)
+    | None => false
+    end = true <-> Has_room v).
   { intros v. unfold Has_room. destruct (Map.find (visit_resource v) (resource_of known)) as [r|] eqn:E.
     - apply (find_resource i well_formed) in E as [R E]. rewrite existsb_exists. split.
       + intros (w & W & H). exists r, w. auto.
@@ -159,10 +160,12 @@ Lemma stays_that_fit_keep_capacity v r tick : Has_room v -> In r (resources i) -
 Proof.
   intros (s & w & S & E & W & H) R F [T U]. rewrite (resource_is_unique i well_formed s r) in * by congruence.
   rewrite (has_windows _ _ _ represents r R) in W.
-  apply (free_windows_are_maximal i) in W; auto; [|exact (are_of_robots _ _ _ others) | exact (are_lawful _ _ _ others)].
+  apply (free_windows_are_maximal i) in W; auto;
+    [|exact (are_of_robots _ _ _ others) | exact (are_lawful _ _ _ others)].
   unfold holds_stay, lasts in H. apply andb_true_iff in H as [O H].
   assert (I : In_window w tick).
-  { split; [lia|]. destruct (closes w) as [last|]; simpl; auto. destruct (leave v) as [l|]; [|discriminate]. simpl in U. lia. }
+  { split; [lia|]. destruct (closes w) as [last|]; simpl; auto.
+    destruct (leave v) as [l|]; [|discriminate]. simpl in U. lia. }
   destruct (holds_inside _ _ W tick I). lia.
 Qed.
 
@@ -185,7 +188,8 @@ Proof.
     + injection M as -> -> ->. exists p, v, w. repeat split; auto. apply in_or_app. right. left. auto.
 Qed.
 
-Theorem free_plan_is_sound p : plan_robot p = robot_id a -> Plan_lawful i a p -> Free (visits p) -> Sound i a committed p.
+Theorem free_plan_is_sound p : plan_robot p = robot_id a -> Plan_lawful i a p -> Free (visits p) ->
+  Sound i a committed p.
 Proof.
   intros E L [H X]. split; auto.
   - intros r tick ids R. revert ids.
@@ -200,7 +204,8 @@ Proof.
     { intros id r s tick (q & v & w & Q & _ & C & F & G & T) (x & y & D & M). injection M as -> -> ->.
       specialize (X x y D). apply not_true_iff_false in X. apply X. apply (has_moves _ _ _ represents).
       exists q. split; auto. exists v, w. split; auto. congruence. }
-    intros one other r s tick D R S M K. apply (makes_move_iff p) in M, K; auto. destruct M as [M|[-> M]], K as [K|[-> K]].
+    intros one other r s tick D R S M K. apply (makes_move_iff p) in M, K; auto.
+    destruct M as [M|[-> M]], K as [K|[-> K]].
     + exact (exchanges_are_avoided one other r s tick D R S M K).
     + exact (N one r s tick M K).
     + exact (N other s r tick K M).
