@@ -6,7 +6,8 @@ Import ListNotations.
 Open Scope Z_scope.
 
 (** The certificate is accepted, and its bound is no earlier than the plan's arrival. *)
-Definition plan_is_certified (i : instance) (g : world) (c : context) (a : robot) (p : plan) (cert : certificate) : bool :=
+Definition plan_is_certified (i : instance) (g : world) (c : context) (a : robot) (p : plan) (cert : certificate)
+  : bool :=
   match bound cert with
   | Some tick => (arrival (release a) p <=? tick) && certificate_accepted i g c a 0 None cert
   | None => false
@@ -114,7 +115,8 @@ Proof.
   - rewrite app_nil_r in O. subst id.
     assert (a = b) as <-.
     { assert (X : Map.find (robot_id a) (robot_of (lookup_of i)) = Some a) by (apply find_robot; auto).
-      assert (Y : Map.find (robot_id a) (robot_of (lookup_of i)) = Some b) by (apply find_robot; auto; split; [exact B | congruence]).
+      assert (Y : Map.find (robot_id a) (robot_of (lookup_of i)) = Some b) by (apply find_robot; auto; split;
+        [exact B | congruence]).
       congruence. }
     assert (p = q) as <-.
     { apply (plan_of_robot_is_unique (plans s) plans_are_distinct p q P Q). congruence. }
@@ -132,7 +134,8 @@ Proof.
       destruct (sound_visit i well_formed a committed B rival S first) as (_ & _ & _ & _ & _ & X & Z).
       * rewrite V. left. auto.
       * rewrite M in Z. simpl in Z. lia.
-  - apply (IH (before ++ [id]) (committed ++ [q]) (commit (lookup_of i) c q)) with (front := front) (id := id') (later := later)
+  - apply (IH (before ++ [id]) (committed ++ [q]) (commit (lookup_of i) c q))
+      with (front := front) (id := id') (later := later)
       (ps := ps); auto.
     + rewrite <- app_assoc. exact E.
     + apply Forall2_app; [exact H|]. constructor; auto.
@@ -169,7 +172,8 @@ Proof.
   assert (R : forall q, In q (plans s) -> exists x, In x (robots i) /\ robot_id x = plan_robot q).
   { intros q Q. specialize (K q Q). apply Map_facts.mem_in_iff in K as [x X]. apply Map.find_1 in X.
     apply find_robot in X; [|exact V]. eauto. }
-  apply (accepted_query_is_optimal i V a (others s id) (context_of (lookup_of i) (others s id)) now (own s id) cert p); auto.
+  apply (accepted_query_is_optimal i V a (others s id) (context_of (lookup_of i) (others s id)) now (own s id)
+    cert p); auto.
   - unfold others. split.
     + intros q Q. apply filter_In in Q as [Q _]. auto.
     + intros q x Q. apply filter_In in Q as [Q _]. apply L. exact Q.

@@ -31,7 +31,8 @@ Proof.
     + intros r s H. specialize (E _ H). simpl in E. rewrite !andb_true_iff, !Ids.contains_of_list in E.
       destruct E as [[E K] L]. split; auto. intros <-. rewrite Z.eqb_refl in E. discriminate.
     + intros F r s H K. destruct D as [D|D]; [congruence|]. specialize (D _ H).
-      apply negb_true_iff in D. change (swap (r, s)) with (s, r) in D. rewrite (proj2 (Pairs.contains_of_list _ _) K) in D. discriminate.
+      apply negb_true_iff in D. change (swap (r, s)) with (s, r) in D.
+      rewrite (proj2 (Pairs.contains_of_list _ _) K) in D. discriminate.
     + intros a H. specialize (A a H). rewrite !andb_true_iff, !Ids.contains_of_list in A. tauto.
     + intros a H. specialize (A a H). rewrite !andb_true_iff in A. lia.
     + intros a H. specialize (A a H). rewrite !andb_true_iff in A. lia.
@@ -202,7 +203,8 @@ Proof.
     apply F. apply (endpoints_are_resources i well_formed a A).
 Qed.
 
-Lemma chain_accepted_iff a later : In a (robots i) -> forall v, chain_accepted i known a v later = true <-> Chain i a v later.
+Lemma chain_accepted_iff a later : In a (robots i) ->
+  forall v, chain_accepted i known a v later = true <-> Chain i a v later.
 Proof.
   intros A. induction later as [|w rest IH]; intros v; simpl.
   - pose proof (stay_accepted_iff a v) as S. pose proof (end_accepted_iff a v A) as E.

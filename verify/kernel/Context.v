@@ -61,7 +61,8 @@ Fixpoint allows (known : lookup) (c : context) (vs : list visit) : bool :=
       if existsb (fun w => holds_stay w (enter v) (leave v)) (windows_in c r) then
         match later with
         | [] => true
-        | x :: _ => if is_exchange c (visit_resource v) (visit_resource x) (enter x) then false else allows known c later
+        | x :: _ =>
+          if is_exchange c (visit_resource v) (visit_resource x) (enter x) then false else allows known c later
         end
       else false
     end
@@ -125,7 +126,8 @@ Proof.
     rewrite find_renewed by exact R. unfold windows_of, timetable. rewrite fold_left_app. simpl.
     fold (timetable committed). rewrite <- S.
     destruct (existsb (fun v => visit_resource v =? resource_id r) (visits p)) eqn:E; auto.
-    rewrite (listed_of_unvisited p (resource_id r) (stays_of c) E). rewrite W. unfold windows_of. rewrite S. reflexivity.
+    rewrite (listed_of_unvisited p (resource_id r) (stays_of c) E). rewrite W. unfold windows_of. rewrite S.
+    reflexivity.
   - intros m. unfold commit. cbn [moves_made]. rewrite contains_added_all, in_add_moves, M. simpl.
     setoid_rewrite in_app_iff. simpl. split.
     + intros [[[]|H]|(q & Q & H)]; [exists p | exists q]; auto.
@@ -137,7 +139,8 @@ Proof.
   unfold context_of. assert (H : forall ps c before, Represents i c before ->
     Represents i (fold_left (commit known) ps c) (before ++ ps)).
   - induction ps as [|p ps IH]; intros c before R; simpl; [rewrite app_nil_r; exact R|].
-    change (before ++ p :: ps) with (before ++ [p] ++ ps). rewrite app_assoc. apply IH. apply commit_represents. exact R.
+    change (before ++ p :: ps) with (before ++ [p] ++ ps). rewrite app_assoc. apply IH. apply commit_represents.
+    exact R.
   - apply (H committed empty_context []). apply empty_context_represents.
 Qed.
 
@@ -205,7 +208,8 @@ Proof.
   { intros x [<-|X]; [lia|]. destruct (chain_later i a well_formed of_instance u later C x X) as (_ & _ & _ & H). lia. }
   specialize (F v V). clear E. assert (N : 0 <= enter v) by lia. clear F T R.
   assert (B : forall x, Stay_lawful i a x -> Before (enter x) (leave x)).
-  { intros x S. destruct (leave x) as [l|] eqn:L; simpl; auto. exact (stay_is_positive i a well_formed of_instance x l S L). }
+  { intros x S. destruct (leave x) as [l|] eqn:L; simpl; auto.
+    exact (stay_is_positive i a well_formed of_instance x l S L). }
   revert u C V. induction later as [|w rest IH]; intros u C V.
   - destruct V as [->|[]]. exists [], []. exact (conj eq_refl (conj C (conj (proj1 C) (conj N (B v (proj1 C)))))).
   - destruct V as [->|V].
@@ -223,7 +227,8 @@ Proof.
   destruct (free_stays_are_in_windows (listed (timetable committed) (resource_id r)) (capacity r) (enter v) (leave v) B)
     as (w & W & L).
   - intros tick T U. split; [lia|].
-    rewrite occupancy_of_timetable by exact (plan_holds_once i well_formed committed (are_of_robots _ _ others) (are_lawful _ _ others)).
+    rewrite occupancy_of_timetable
+      by exact (plan_holds_once i well_formed committed (are_of_robots _ _ others) (are_lawful _ _ others)).
     assert (O : occupants (committed ++ [p]) (resource_id r) tick <= capacity r).
     { apply occupants_iff; [exact all_are_distinct|]. intros ids. apply (keeps_capacity _ _ _ sound). exact R. }
     unfold occupants in *. rewrite filter_app, app_length in O. simpl in O.

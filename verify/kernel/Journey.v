@@ -9,7 +9,8 @@ Open Scope Z_scope.
 (** The visit is to a resource of the graph and lasts long enough. *)
 Definition Stay_lawful (i : instance) (a : robot) (v : visit) : Prop :=
   In (visit_resource v) (resource_ids i) /\
-  forall r l, In r (resources i) -> resource_id r = visit_resource v -> leave v = Some l -> least_stay a r <= l - enter v.
+  forall r l, In r (resources i) -> resource_id r = visit_resource v -> leave v = Some l ->
+  least_stay a r <= l - enter v.
 
 (** A plan may end with the visit. *)
 Definition Ends (i : instance) (a : robot) (v : visit) : Prop :=
@@ -74,7 +75,7 @@ Proof.
       * intros x y H. apply C. right. exact H.
 Qed.
 
-(** The rules [plan/...] hold if and only if the plan starts as it should and goes on step by step to the goal. *)
+(** The rules [plan/...] hold if and only if the plan starts as it should and leads step by step to the goal. *)
 Theorem plan_lawful_iff i a p : Plan_lawful i a p <->
   exists v later, visits p = v :: later /\ visit_resource v = start a /\ enter v = release a /\ Chain i a v later.
 Proof.
@@ -149,7 +150,8 @@ Proof.
   - simpl. destruct (holding place tick v); simpl; lia.
   - pose proof (chain_later v (w :: rest) C) as L. destruct C as (_ & _ & _ & C). specialize (IH w C).
     change (filter (holding place tick) (v :: w :: rest)) with
-      (if holding place tick v then v :: filter (holding place tick) (w :: rest) else filter (holding place tick) (w :: rest)).
+      (if holding place tick v
+       then v :: filter (holding place tick) (w :: rest) else filter (holding place tick) (w :: rest)).
     destruct (holding place tick v) eqn:H; [|exact IH].
     enough (E : filter (holding place tick) (w :: rest) = []) by (rewrite E; simpl; lia).
     destruct (filter (holding place tick) (w :: rest)) as [|x l] eqn:E; auto.

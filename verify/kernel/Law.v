@@ -208,7 +208,8 @@ Record Keeps_history (followed made : plan) (now : Z) : Prop := {
   adds_nothing_after_the_end : Has_ended followed now -> (length (visits made) <= length (history followed now))%nat
 }.
 
-(** A robot without a plan has been standing at its start since its release: its plan leaves there no earlier than now. *)
+(** A robot without a plan has been standing at its start since its release: its plan leaves there no earlier than
+    now. *)
 Definition Stood_at_start (made : plan) (now : Z) : Prop :=
   forall first later, visits made = first :: later -> No_earlier (leave first) now.
 

@@ -110,7 +110,8 @@ Theorem plan_begins_with_the_past followed made now :
   visit_resource current = place s /\ enter current = since s /\ No_earlier (leave current) now.
 Proof.
   intros B L F. unfold standing_of. cbv zeta.
-  assert (S : exists first later, visits made = first :: later /\ visit_resource first = start a /\ enter first = release a
+  assert (S : exists first later, visits made = first :: later /\
+    visit_resource first = start a /\ enter first = release a
     /\ Chain i a first later) by (apply plan_lawful_iff; exact L).
   destruct S as (first & later & E & R & T & C).
   destruct followed as [before|]; [|exists first, later; simpl; repeat split; auto; exact (F first later E)].
@@ -145,7 +146,8 @@ Qed.
 Theorem ended_plan_is_unchanged before made now : Plan_lawful i a before -> Has_ended before now ->
   Keeps_history before made now -> visits made = visits before.
 Proof.
-  intros L N [F D]. specialize (D N). assert (H : history before now = visits before /\ forall v, In v (visits before) -> Ended v now).
+  intros L N [F D]. specialize (D N).
+  assert (H : history before now = visits before /\ forall v, In v (visits before) -> Ended v now).
   { pose proof L as P. apply plan_lawful_iff in P as (u & rest & E & _ & _ & C).
     destruct N as (b & last & G & l & M & T).
     assert (A : forall v, In v (visits before) -> Ended v now).
@@ -161,7 +163,8 @@ Proof.
     { intros m. induction m as [|v m IH]; intros I; simpl; auto. rewrite IH by (intros; apply I; right; auto).
       destruct (A v (I v (or_introl eq_refl))) as (k & K & U).
       assert (S : Stay_lawful i a v) by (apply (chain_lawful i a u rest C); rewrite <- E; apply I; left; auto).
-      pose proof (stay_is_positive i a well_formed of_instance v k S K). destruct (Z.leb_spec (enter v) now); [auto | lia]. }
+      pose proof (stay_is_positive i a well_formed of_instance v k S K).
+      destruct (Z.leb_spec (enter v) now); [auto | lia]. }
     apply Q. auto. }
   destruct H as [H A]. rewrite H in *. destruct (prefix_of_nth (visits before) (visits made)) as (r & E).
   - intros n v V. destruct (F n v V) as (again & P & X & Y & Z & _). rewrite P. f_equal.

@@ -135,9 +135,39 @@ Definition certificate_accepted (i : instance) (g : world) (c : context) (a : ro
   | None => search
   end.
 
+(** * Why a certificate is refused *)
+
+(** Details for a message, with the ids of the resources; only [certificate_accepted] decides. *)
+Inductive fault :=
+| Earlier_arrival (tick : Z)              (** the robot's plan has ended, and arrived at the tick *)
+| Goal_potential                          (** the potential of the goal must be 0 *)
+| Move_potential (source target : Z)      (** along this move the potential falls by more than the robot needs *)
+| Open_start                              (** from the start a window without a label, or the end, is in reach *)
+| Open_label (id entry : Z).              (** the same from this label *)
+
+Definition certificate_fault (i : instance) (g : world) (c : context) (a : robot) (now : Z) (followed : option plan)
+  (cert : certificate) : option fault :=
+  let known := looked_up g in
+  let label_map := labels_by_resource (labels cert) in
+  let pot := index fst (potential cert) in
+  let refused := fun label => negb (label_accepted i known (successors g) c a (bound cert) label_map pot label) in
+  let inconsistent := fun move => negb (move_is_consistent known a pot move) in
+  let search :=
+    if negb (goal_is_0 a pot) then Goal_potential
+    else match find inconsistent (all_moves g), find refused (labels cert) with
+    | Some (source, target), _ => Move_potential source target
+    | None, Some (id, entry) => Open_label id entry
+    | None, None => Open_start
+    end in
+  if certificate_accepted i g c a now followed cert then None
+  else match followed with
+  | Some before => Some (if has_ended before now then Earlier_arrival (arrival (release a) before) else search)
+  | None => Some search
+  end.
+
 (** * Proofs *)
 
-(** A tick is not before the bound; no tick is if there is none. *)
+(** The tick is not before the bound. Without a bound this holds for no tick. *)
 Definition Reaches (bound : option Z) (tick : Z) : Prop := match bound with Some t => t <= tick | None => False end.
 
 Lemma reaches_iff bound tick : reaches bound tick = true <-> Reaches bound tick.
@@ -218,7 +248,8 @@ Hypothesis labels_ok : forall label, In label label_list ->
 
 Lemma late_at_goal tick : late (goal a) tick = true <-> Reaches bound tick.
 Proof.
-  pose proof goal_ok as G. unfold goal_is_0 in G. unfold is_late. destruct (Map.find (goal a) pot) as [[x t]|]; [|discriminate].
+  pose proof goal_ok as G. unfold goal_is_0 in G. unfold is_late.
+  destruct (Map.find (goal a) pot) as [[x t]|]; [|discriminate].
   apply Z.eqb_eq in G. subst t. rewrite reaches_iff, Z.add_0_r. tauto.
 Qed.
 
@@ -280,7 +311,8 @@ Proof.
   rewrite (find_own r (visit_resource v) R F) in H. rewrite forallb_forall in H. specialize (H w W).
   assert (K : lasts w (Some (entry + 1)) = true).
   { unfold lasts. destruct (closes w) as [last|]; auto. destruct (U last eq_refl) as (l & G & N).
-    specialize (D r l R F G). pose proof (least_stay_is_positive i a well_formed of_instance r R). apply Z.leb_le. lia. }
+    specialize (D r l R F G). pose proof (least_stay_is_positive i a well_formed of_instance r R). apply Z.leb_le.
+    lia. }
   rewrite K in H. destruct (Z.leb_spec (opens w) entry); [|lia]. simpl in H.
   apply andb_true_iff in H as [H H']. apply negb_true_iff in H. right. split; auto.
   exists (entry + least_stay a r). split; auto. lia.
@@ -307,7 +339,8 @@ Proof.
     assert (K : Consecutive p v x) by (exists b, rest; exact E).
     assert (E' : visits p = (b ++ [v]) ++ x :: rest) by (rewrite <- app_assoc; exact E).
     assert (I : In x (visits p)) by (rewrite E'; apply in_or_app; right; left; auto).
-    destruct (sound_visit_is_free i well_formed a committed c of_instance others represents p sound x I) as (rx & wx & Q).
+    destruct (sound_visit_is_free i well_formed a committed c of_instance others represents p sound x I)
+      as (rx & wx & Q).
     assert (Sx : Stay_lawful i a x) by (destruct rest; apply C).
     pose proof V as (R & G & W & O).
     assert (D : enter v + least_stay a r <= enter x) by (destruct S as [_ D]; specialize (D r _ R G X); lia).
@@ -318,14 +351,16 @@ Proof.
     + apply (closed_step (visit_resource v) w ready v x K eq_refl O X) with (r := rx); auto. lia.
 Qed.
 
-Lemma start_is_followed s current later : start_accepted i known (successors_of i) c a now bound label_map pot s = true ->
+Lemma start_is_followed s current later :
+  start_accepted i known (successors_of i) c a now bound label_map pot s = true ->
   visits p = past s ++ current :: later -> visit_resource current = place s -> enter current = since s ->
   No_earlier (leave current) now -> ready s = Z.max (since s + least_ticks known a (place s)) now ->
   Reaches bound (last_entry current later).
 Proof.
   intros H E P T N Y.
   assert (I : In current (visits p)) by (rewrite E; apply in_or_app; right; left; auto).
-  destruct (sound_visit_is_free i well_formed a committed c of_instance others represents p sound current I) as (r & w & V).
+  destruct (sound_visit_is_free i well_formed a committed c of_instance others represents p sound current I)
+    as (r & w & V).
   pose proof (is_lawful _ _ _ _ sound) as L. apply plan_lawful_iff in L as (u & rest & F & _ & _ & C).
   assert (K : Chain i a current later) by (apply (chain_behind i a (past s) u rest); [exact C | congruence]).
   clear u rest F C. unfold start_accepted in H. rewrite <- P, <- T in H.
@@ -346,7 +381,8 @@ Proof.
       * destruct K as (_ & X & M & K).
         assert (E' : visits p = (past s ++ [current]) ++ x :: rest) by (rewrite <- app_assoc; exact E).
         assert (I' : In x (visits p)) by (rewrite E'; apply in_or_app; right; left; auto).
-        destruct (sound_visit_is_free i well_formed a committed c of_instance others represents p sound x I') as (rx & wx & Q).
+        destruct (sound_visit_is_free i well_formed a committed c of_instance others represents p sound x I')
+          as (rx & wx & Q).
         apply (followed_to_the_end rest x rx wx _ E' K Q).
         apply (closed_step (visit_resource current) w (ready s) current x) with (r := rx); auto.
         -- exists (past s), rest. exact E.
@@ -411,7 +447,8 @@ Theorem accepted_query_is_optimal a committed c now followed cert p :
   Sound i a committed p -> Fits_the_past followed p now ->
   Reaches (bound cert) (arrival (release a) p).
 Proof.
-  intros A O R B H S F. unfold certificate_accepted in H. cbv zeta in H. cbn [looked_up all_moves successors world_of] in H.
+  intros A O R B H S F. unfold certificate_accepted in H. cbv zeta in H.
+  cbn [looked_up all_moves successors world_of] in H.
   assert (N : forall s, s = standing_of known a now followed ->
     (forall before, followed = Some before -> ~ Has_ended before now) ->
     (if allows known c (past s ++ [Visit (place s) (since s) (Some (ready s))])

@@ -20,7 +20,8 @@ Definition occupancy (stays : list stay) (tick : Z) : Z := Z.of_nat (length (fil
 Definition add_change (tick change : Z) (m : Map.t Z) : Map.t Z :=
   Map.add tick (match Map.find tick m with Some known => known + change | None => change end) m.
 
-(** A stay adds one robot as it begins (not before tick 0) and takes it away as it ends; one that has no tick is left out. *)
+(** A stay adds one robot as it begins (not before tick 0) and takes it away as it ends; one that has no tick is left
+    out. *)
 Definition add_stay (m : Map.t Z) (s : stay) : Map.t Z :=
   let enter := Z.max 0 (fst s) in
   match snd s with
@@ -85,7 +86,8 @@ Proof.
   intros T. destruct s as [e [l|]]; unfold add_stay, holds, before; cbn [fst snd]; cbv zeta.
   - destruct (Z.ltb_spec (Z.max 0 e) l) as [L|L].
     + rewrite !level_of_add_change.
-      destruct (Z.leb_spec l tick), (Z.leb_spec (Z.max 0 e) tick), (Z.leb_spec e tick), (Z.ltb_spec tick l); cbn [andb]; lia.
+      destruct (Z.leb_spec l tick), (Z.leb_spec (Z.max 0 e) tick), (Z.leb_spec e tick), (Z.ltb_spec tick l);
+        cbn [andb]; lia.
     + destruct (Z.leb_spec e tick), (Z.ltb_spec tick l); cbn [andb]; lia.
   - rewrite level_of_add_change.
     destruct (Z.leb_spec (Z.max 0 e) tick), (Z.leb_spec e tick); cbn [andb]; lia.
@@ -111,7 +113,7 @@ Proof.
   intros a b c. unfold Z_as_OT.lt. lia.
 Qed.
 
-(** The ticks of all changes. *)
+(** No change is before tick 0. *)
 Definition Not_negative (m : Map.t Z) : Prop := forall k, Map.In k m -> 0 <= k.
 
 Lemma not_negative_add_change m k d : 0 <= k -> Not_negative m -> Not_negative (add_change k d m).
@@ -124,7 +126,8 @@ Lemma changes_begin_at_0 stays : exists d l, changes stays = (0, d) :: l /\ fora
 Proof.
   unfold changes. set (m := fold_left add_stay stays (add_change 0 0 (Map.empty Z))).
   assert (N : Not_negative m /\ Map.In 0 m).
-  { assert (H : forall m, Not_negative m /\ Map.In 0 m -> Not_negative (fold_left add_stay stays m) /\ Map.In 0 (fold_left add_stay stays m)).
+  { assert (H : forall m, Not_negative m /\ Map.In 0 m ->
+      Not_negative (fold_left add_stay stays m) /\ Map.In 0 (fold_left add_stay stays m)).
     - clear m. induction stays as [|[e [l|]] stays IH]; intros m H; simpl; auto; apply IH; unfold add_stay; simpl;
         [destruct (Z.ltb_spec (Z.max 0 e) l); [|exact H] |]; destruct H as [H Z0].
       + split; [repeat apply not_negative_add_change; auto; lia|].

@@ -73,8 +73,10 @@ Proof.
       subst o. f_equal. destruct c as [c|].
       * f_equal. destruct (Z.lt_trichotomy c last) as [C|[C|C]]; auto.
         -- destruct (A c eq_refl). apply E. left. simpl in M. lia.
-        -- assert (P last) as H by (apply I; split; simpl; lia). apply E in H as [H|H]; [lia|]. destruct (N last); auto. lia.
-      * assert (P last) as H by (apply I; split; simpl; auto; lia). apply E in H as [H|H]; [lia|]. destruct (N last); auto. lia.
+        -- assert (P last) as H by (apply I; split; simpl; lia). apply E in H as [H|H]; [lia|].
+           destruct (N last); auto. lia.
+      * assert (P last) as H by (apply I; split; simpl; auto; lia). apply E in H as [H|H]; [lia|].
+        destruct (N last); auto. lia.
     + right. split; auto.
       * intros tick T. pose proof (I tick T) as H. apply E in H as [H|H]; auto. destruct T. lia.
       * intros H. apply B. apply E. auto.
@@ -127,7 +129,8 @@ Proof.
         intros c H. specialize (A c H). lia.
       * split; auto. intros c H. apply K. right. exact H.
     + simpl In. rewrite IH by exact R.
-      rewrite (maximal_in_two (Open most inside (Some first) ((k, d) :: l)) (Open most (inside + d) None l) first k w F).
+      rewrite (maximal_in_two (Open most inside (Some first) ((k, d) :: l)) (Open most (inside + d) None l)
+        first k w F).
       * intuition.
       * intros tick. unfold Open. rewrite (level_at_first k d l tick A). destruct (Z.leb_spec k tick) as [T|T]; [lia|].
         rewrite (level_before l tick); [lia|]. intros c H. specialize (A c H). lia.
@@ -136,7 +139,8 @@ Proof.
       * apply maximal_iff. intros tick. unfold Open. rewrite (level_at_first k d l tick A). simpl in C.
         destruct (Z.leb_spec k tick) as [T|T]; lia.
       * split; auto.
-    + rewrite IH by exact R. apply maximal_iff. intros tick. unfold Open. rewrite (level_at_first k d l tick A). simpl in C.
+    + rewrite IH by exact R. apply maximal_iff. intros tick. unfold Open. rewrite (level_at_first k d l tick A).
+      simpl in C.
       destruct (Z.leb_spec k tick) as [T|T]; [lia|]. rewrite level_before; [lia|].
       intros c H. specialize (A c H). lia.
 Qed.
@@ -151,7 +155,8 @@ Proof.
     rewrite (level_at_first k d l tick A) in L.
     assert (B : tick < k -> level l tick = 0).
     { intros T. apply level_before. intros c X. specialize (A c X). lia. }
-    destruct opened as [first|]; [destruct C as [C K]; pose proof (K _ (or_introl eq_refl)) as F; simpl in F|simpl in C];
+    destruct opened as [first|];
+      [destruct C as [C K]; pose proof (K _ (or_introl eq_refl)) as F; simpl in F | simpl in C];
       destruct (Z.ltb_spec (inside + d) most) as [R|R].
     + apply IH; [split; auto; intros c X; apply K; right; exact X|]. split; auto.
       destruct (Z.leb_spec k tick) as [T|T]; [lia|]. specialize (B T). lia.
@@ -210,7 +215,8 @@ Lemma sweep_opens most l : forall inside opened w, In w (sweep most inside opene
 Proof.
   induction l as [|[k d] l IH]; intros inside opened w W; cbn [sweep] in W; cbv zeta in W.
   - destruct opened as [first|]; [destruct W as [<-|[]]; auto | destruct W].
-  - assert (H : forall opened', In w (sweep most (inside + d) opened' l) -> opened' = opened \/ opened' = Some k \/ opened' = None ->
+  - assert (H : forall opened', In w (sweep most (inside + d) opened' l) ->
+      opened' = opened \/ opened' = Some k \/ opened' = None ->
       opened = Some (opens w) \/ exists c, In c ((k, d) :: l) /\ fst c = opens w).
     { intros opened' I E. apply IH in I as [I|(c & C & F)]; [|right; exists c; split; [right|]; auto].
       destruct E as [E|[E|E]]; rewrite E in I; auto; [|discriminate]. injection I as ->. right. exists (opens w, d).
