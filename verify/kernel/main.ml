@@ -7,6 +7,8 @@ let version = "1"
 let usage =
   "usage: carproof-kernel check INSTANCE SOLUTION\n\
   \       carproof-kernel verify-bound INSTANCE CERTIFICATE [--cut-formula NUMBER FILE]...\n\
+  \       carproof-kernel verify-query INSTANCE SOLUTION CERTIFICATE\n\
+  \       carproof-kernel audit INSTANCE SOLUTION CERTIFICATES\n\
   \       carproof-kernel refute FORMULA.cnf PROOF.lrat\n\
   \       carproof-kernel serve\n\
   \       carproof-kernel --version\n"
@@ -43,6 +45,7 @@ let contents file =
       with Sys_error reason | Failure reason -> Reading.refuse "$" "document/json" reason)
 
 let json_of_file file = Reading.json_of_text (contents file)
+let instance_of_file file = Reading.instance_of_json "$" (json_of_file file)
 
 (* The formulas of cuts, by their numbers. *)
 let rec cut_formulas = function
@@ -51,17 +54,20 @@ let rec cut_formulas = function
   | [] -> []
   | _ -> prerr_string usage; exit 2
 
-(* One request a line: {"op": "check", "instance": ..., "solution": ...} or {"op": "verify-bound", "instance": ...,
-   "certificate": ...}. *)
+(* One request a line: the op, and its documents by their names. *)
 let requested line () =
   let json = Reading.json_of_text line in
-  let field = Reading.fields "$" ~required:[ "op"; "instance" ] ~optional:[ "solution"; "certificate" ] json in
+  let field = Reading.fields "$" ~required:[ "op"; "instance" ] ~optional:[ "solution"; "certificate"; "certificates" ] json in
   let instance = Reading.required field "instance" Reading.instance_of_json in
   let solution = Reading.present field "solution" (Reading.solution_of_json instance) in
-  let bound = Reading.present field "certificate" (Reading.bound_of_json instance) in
-  match (Reading.required field "op" Reading.text, solution, bound) with
-  | "check", Some solution, None -> Verdicts.check instance solution
-  | "verify-bound", None, Some bound -> Verdicts.verify_bound [] instance bound
+  let certificates = Reading.present field "certificates" (Reading.elements (Reading.query_of_json instance)) in
+  match (Reading.required field "op" Reading.text, solution, field "certificate", certificates) with
+  | "check", Some solution, None, None -> Verdicts.check instance solution
+  | "verify-bound", None, Some (path, json), None ->
+      Verdicts.verify_bound [] instance (Reading.bound_of_json instance path json)
+  | "verify-query", Some solution, Some (path, json), None ->
+      Verdicts.verify_query instance solution (Reading.query_of_json instance path json)
+  | "audit", Some solution, None, Some certificates -> Verdicts.audit instance solution certificates
   | _ -> Reading.shape "$" "a request that the kernel knows, with its documents"
 
 let rec serve () =
@@ -83,12 +89,23 @@ let () =
   | [ "serve" ] -> serve ()
   | [ "check"; instance; solution ] ->
       print (answered (fun () ->
-          let instance = Reading.instance_of_json "$" (json_of_file instance) in
+          let instance = instance_of_file instance in
           Verdicts.check instance (Reading.solution_of_json instance "$" (json_of_file solution))))
+  | [ "verify-query"; instance; solution; certificate ] ->
+      print (answered (fun () ->
+          let instance = instance_of_file instance in
+          let solution = Reading.solution_of_json instance "$" (json_of_file solution) in
+          Verdicts.verify_query instance solution (Reading.query_of_json instance "$" (json_of_file certificate))))
+  | [ "audit"; instance; solution; certificates ] ->
+      print (answered (fun () ->
+          let instance = instance_of_file instance in
+          let solution = Reading.solution_of_json instance "$" (json_of_file solution) in
+          let query = Reading.query_of_json instance in
+          Verdicts.audit instance solution (Reading.elements query "$" (json_of_file certificates))))
   | "verify-bound" :: instance :: certificate :: options ->
       print (answered (fun () ->
           let formulas = cut_formulas options in
-          let instance = Reading.instance_of_json "$" (json_of_file instance) in
+          let instance = instance_of_file instance in
           Verdicts.verify_bound formulas instance (Reading.bound_of_json instance "$" (json_of_file certificate))))
   | [ "refute"; formula; proof ] ->
       print (answered (fun () ->

@@ -325,6 +325,26 @@ let bound_of_json { resource_numbers; robot_numbers; _ } path json =
     named_instance = required field "instance" text;
     refutations = List.map snd cuts }
 
+(* ---- Queries ---- *)
+
+(* The certificate of a query, its robot, and the tick at which it is planned. *)
+type query = { query_robot : Z.t; now : Z.t; query_certificate : QueryCertificate.certificate }
+
+let query_of_json { resource_numbers; robot_numbers; _ } path json =
+  require_format path "carproof-query/1" json;
+  let place_and_tick path (json : Yojson.Safe.t) =
+    match json with
+    | `List [ place; tick ] -> (number resource_numbers (id (path ^ "[0]") place), whole (path ^ "[1]") tick)
+    | _ -> shape path "an array of a resource and a whole number"
+  in
+  let field = fields path ~required:[ "format"; "robot"; "now"; "bound"; "labels"; "potential" ] ~optional:[] json in
+  { query_robot = number robot_numbers (required field "robot" id);
+    now = required field "now" whole;
+    query_certificate =
+      { QueryCertificate.bound = required field "bound" whole_or_null;
+        labels = required field "labels" (elements place_and_tick);
+        potential = required field "potential" (elements place_and_tick) } }
+
 (* ---- Formulas and refutations ---- *)
 
 (* The words of each line that is neither empty nor a comment. *)

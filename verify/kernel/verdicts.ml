@@ -8,6 +8,8 @@ type verdict =
 
 let whole n : Yojson.Safe.t = `Intlit (Z.to_string n)
 
+let named (read : Reading.instance) robot = Reading.shown (Reading.names read.robot_numbers).(Z.to_int robot)
+
 (* ---- check ---- *)
 
 (* The rule of a plan that is broken first; what is accepted is decided by the kernel alone. *)
@@ -37,7 +39,6 @@ let check (read : Reading.instance) (solution : Law.solution) =
   else
     let known = Checker.lookup_of instance in
     let robot_of (p : Law.plan) = Collections.Map.find p.plan_robot known.robot_of in
-    let names = Reading.names read.robot_numbers in
     let broken p = not (Checker.plan_of_robot_accepted instance known p) in
     if not (Checker.covers_accepted instance solution) then
       Refused ("solution/covers", "each robot must have one plan or be unplanned once")
@@ -47,11 +48,33 @@ let check (read : Reading.instance) (solution : Law.solution) =
       match List.find_opt broken solution.plans with
       | Some p ->
           let rule = match robot_of p with Some a -> broken_plan_rule instance known a p | None -> "solution/covers" in
-          Refused (rule, "the plan of robot " ^ Reading.shown names.(Z.to_int p.plan_robot))
+          Refused (rule, "the plan of robot " ^ named read p.plan_robot)
       | None ->
           if not (Checker.capacity_accepted instance solution.plans) then
             Refused ("joint/capacity", "more robots occupy a resource than its capacity")
           else Refused ("joint/exchange", "two robots exchange two resources")
+
+(* ---- verify-query and audit ---- *)
+
+let verify_query (read : Reading.instance) (solution : Law.solution) (query : Reading.query) =
+  let { Reading.query_robot; now; query_certificate } = query in
+  let bound = query_certificate.bound in
+  if Audit.query_accepted read.instance solution query_robot now query_certificate then
+    Accepted [ ("robot", `String (named read query_robot)); ("bound", Option.fold ~none:`Null ~some:whole bound) ]
+  else if not (Audit.plans_accepted read.instance (Checker.lookup_of read.instance) solution.plans) then
+    Refused ("query/sound", "each plan of the others must be lawful by itself, one of a robot")
+  else
+    let rule = if bound = None then "query/complete" else "query/optimal" in
+    Refused (rule, "the certificate does not show it for robot " ^ named read query_robot)
+
+let audit (read : Reading.instance) (solution : Law.solution) (queries : Reading.query list) =
+  match check read solution with
+  | Accepted more -> (
+      let certificate (query : Reading.query) = (query.query_robot, query.query_certificate) in
+      match Audit.audit read.instance solution (List.map certificate queries) with
+      | None -> Accepted more
+      | Some robot -> Refused ("query/optimal", "the plan of robot " ^ named read robot ^ " is not certified"))
+  | other -> other
 
 (* ---- refute ---- *)
 
@@ -81,8 +104,7 @@ let verify_bound formulas (read : Reading.instance) (bound : Reading.bound) =
   | Some Bound.Size -> Refused ("bound/size", "the prices would not fit into a table")
   | Some Bound.Cut_rule -> Refused ("bound/cut", "multipliers must be at least 0 and a robot's no more than the scale together")
   | Some (Bound.Robots (a :: _)) ->
-      let name = Reading.shown (Reading.names read.robot_numbers).(Z.to_int a.robot_id) in
-      Refused ("bound/robots", "the claim of robot " ^ name ^ " must be no more than its least priced cost")
+      Refused ("bound/robots", "the claim of robot " ^ named read a.robot_id ^ " must be no more than its least priced cost")
   | Some (Bound.Robots []) -> Refused ("bound/robots", "each robot must be named once, in the instance's order")
   | Some Bound.Total -> Refused ("bound/total", "the bound must be the sum of all parts, rounded up")
   | None -> (
