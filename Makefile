@@ -109,7 +109,7 @@ kernel:
 
 # Plant errors in the kernel's definitions, each of which must break a proof.
 kernel-mutants: kernel
-	$(PYTHON) verify/kernel/mutants.py
+	$(PYTHON) -m tests.verify.kernel_mutants
 
 clean:
 	rm -rf .venv build/kernel

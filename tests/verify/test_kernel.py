@@ -13,12 +13,13 @@ from typing import Any
 import msgspec
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
+from tests.verify.test_bound import TINY, certificates, crossing, cut_certificate
 
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, Solution, judge, read_instance, read_solution
-from carp_spec.bounds import BoundDocument
+from carp_spec.bounds import BOUND_FORMAT, BoundDocument, digest
 from carp_spec.documents import instance_document, solution_document, write
 from carp_spec.vectors import Vector, vectors
-from carp_verify.bound import lower_bound
 from carp_verify.bound_cuts import group_of
 from carp_verify.clauses import dimacs
 from carp_verify.mutations import BrokenSolution
@@ -44,7 +45,9 @@ def program() -> str:
     PROGRAM.parent.mkdir(parents=True, exist_ok=True)
     with (PROGRAM.parent / "lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        made = subprocess.run(["make", "kernel"], cwd=ROOT, capture_output=True, text=True, check=False)
+        made = subprocess.run(
+            [which("make") or "make", "kernel"], cwd=ROOT, capture_output=True, text=True, check=False
+        )
     assert made.returncode == 0, made.stderr
     return str(PROGRAM)
 
@@ -92,13 +95,6 @@ def run(*arguments: str | Path) -> tuple[int, Json, str]:
     """Run the kernel once: exit code, verdict, and what it prints on standard error."""
     done = subprocess.run([program(), *map(str, arguments)], capture_output=True, text=True, check=False)
     return done.returncode, json.loads(done.stdout) if done.stdout else None, done.stderr
-
-
-def crossing() -> Instance:
-    """Two robots cross in the middle of a plus."""
-    cells = tuple(Resource(name) for name in ("north", "east", "south", "west", "middle"))
-    edges = tuple((name, "middle") for name in ("north", "east", "south", "west"))
-    return Instance(ResourceGraph(cells, edges), (Robot("a", "north", "south"), Robot("b", "east", "west")))
 
 
 def questions() -> Iterator[Vector]:
@@ -285,7 +281,9 @@ def test_a_formula_that_has_a_solution_is_not_refuted(tmp_path: Path) -> None:
     assert refute(tmp_path, formula, PROOF)[0] == 1
 
 
-@pytest.mark.parametrize("formula", ["", "1 0\n", "p cnf 1 2\n1 0\n", "p cnf 1 1\n2 0\n", "p cnf 1 1\n1\n", "p cnf x 1\n"])
+@pytest.mark.parametrize(
+    "formula", ["", "1 0\n", "p cnf 1 2\n1 0\n", "p cnf 1 1\n2 0\n", "p cnf 1 1\n1\n", "p cnf x 1\n"]
+)
 def test_a_malformed_formula_is_bad_input(formula: str, tmp_path: Path) -> None:
     assert refute(tmp_path, formula, PROOF)[0] == 2
 
@@ -298,12 +296,118 @@ def test_words_that_are_no_numbers_are_bad_input(proof: str, tmp_path: Path) -> 
 # ---- bounds ----
 
 
-@cache
-def priced() -> BoundDocument:
-    """A certificate of the crossing's bound, with prices and no cut."""
-    certificate = lower_bound(crossing(), steps=200)
-    return msgspec.structs.replace(certificate)
+def broken_rule(instance: Instance, certificate: BoundDocument) -> str | None:
+    """The rule by which `carp_verify` refuses a certificate, if it does."""
+    try:
+        verify_bound(instance, certificate)
+    except Refusal as refusal:
+        return refusal.rule
+    return None
 
 
-def test_the_bound_of_a_crossing_is_accepted() -> None:
-    assert check_bound(crossing(), priced())["verdict"] in ("accepted", "undecided")
+def with_price(number: int, change: int) -> Callable[[BoundDocument], BoundDocument]:
+    """Change a price of a resource: its tick (1) or its amount (2)."""
+
+    def tamper(certificate: BoundDocument) -> BoundDocument:
+        first, others = certificate.resources[:1], certificate.resources[1:]
+        changed = tuple(
+            (place, tick + change * (number == 1), amount + change * (number == 2)) for place, tick, amount in first
+        )
+        return msgspec.structs.replace(certificate, resources=(*changed, *others))
+
+    return tamper
+
+
+def with_claim(change: Callable[[int | None], int | None]) -> Callable[[BoundDocument], BoundDocument]:
+    """Change the claim of the first robot."""
+
+    def tamper(certificate: BoundDocument) -> BoundDocument:
+        (robot, least), *others = certificate.robots
+        return msgspec.structs.replace(certificate, robots=((robot, change(least)), *others))
+
+    return tamper
+
+
+def replaced(**fields: Callable[[Any], object]) -> Callable[[BoundDocument], BoundDocument]:
+    """Change fields by what they are."""
+    return lambda certificate: msgspec.structs.replace(
+        certificate, **{name: change(getattr(certificate, name)) for name, change in fields.items()}
+    )
+
+
+TAMPERS = (
+    replaced(bound=lambda bound: bound + 1),
+    replaced(bound=lambda bound: bound - 1),
+    replaced(scale=lambda scale: scale - 1),
+    replaced(scale=lambda scale: scale * 2),
+    replaced(horizon=lambda horizon: horizon - 1),
+    replaced(horizon=lambda horizon: horizon * 10**30),
+    replaced(robots=lambda robots: robots[1:]),
+    replaced(robots=lambda robots: (*robots, *robots[:1])),
+    replaced(robots=lambda robots: robots[::-1]),
+    replaced(resources=lambda prices: (*prices, *prices[:1])),
+    replaced(exchanges=lambda prices: (*prices, *prices[:1])),
+    replaced(exchanges=lambda prices: tuple((two, one, tick, price) for one, two, tick, price in prices)),
+    replaced(exchanges=lambda prices: tuple((one, one, tick, price) for one, _, tick, price in prices)),
+    replaced(resources=lambda prices: tuple(("no place", tick, price) for _, tick, price in prices)),
+    with_price(1, 1),
+    with_price(1, -1),
+    with_price(2, 1),
+    with_price(2, -1),
+    with_price(2, -100),
+    with_claim(lambda _: None),
+    with_claim(lambda least: (least or 0) + 1),
+    with_claim(lambda least: (least or 0) - 1),
+)
+
+
+@given(st.data(), instances(TINY, least_robots=1))
+def test_bounds_are_accepted_and_refused_as_by_carp_verify(data: st.DataObject, instance: Instance) -> None:
+    certificate = data.draw(certificates(instance))
+    verdict = check_bound(instance, certificate)
+    assert (verdict["verdict"], verdict["bound"]) == ("accepted", certificate.bound)
+    tampered = data.draw(st.sampled_from(TAMPERS))(certificate)
+    verdict = check_bound(instance, tampered)
+    assert verdict.get("rule") == broken_rule(instance, tampered)
+    assert verdict["verdict"] == ("refused" if "rule" in verdict else "accepted")
+
+
+def test_long_stays_and_late_releases_cost_no_time() -> None:
+    """Ticks beyond the horizon are not gone through."""
+    resources = (Resource("a", duration=10**60), Resource("b"))
+    robots = (Robot("r", "a", "b", release=10**90), Robot("s", "a", "b"))
+    instance = Instance(ResourceGraph(resources, (("a", "b"),)), robots)
+    certificate = BoundDocument(
+        format=BOUND_FORMAT,
+        instance=digest(instance),
+        bound=2 * 10**60 + 3 - 3,
+        scale=1,
+        horizon=10**6,
+        resources=(("a", 5, 3),),
+        exchanges=(),
+        cuts=(),
+        robots=(("r", 10**60), ("s", 10**60 + 3)),
+    )
+    assert broken_rule(instance, certificate) is None
+    assert check_bound(instance, certificate)["verdict"] == "accepted"
+
+
+def test_a_bound_with_cuts_is_decided_by_formulas_that_are_refuted(tmp_path: Path) -> None:
+    certificate = cut_certificate()
+    (tmp_path / "instance.json").write_bytes(write(instance_document(crossing())))
+    (tmp_path / "bound.json").write_bytes(write(certificate))
+    files = (tmp_path / "instance.json", tmp_path / "bound.json")
+    code, verdict, sentence = run("verify-bound", *files)
+    assert (code, verdict["verdict"]) == (3, "undecided")
+    assert "--cut-formula 0 FILE" in sentence
+    options: list[str | Path] = []
+    for number, cut in enumerate(certificate.cuts):
+        group = group_of(crossing(), cut.robots)
+        formula = beat_formula(group, cut.least, Evidence(cut.horizons, cut.order)).formula
+        (tmp_path / f"{number}.cnf").write_text(dimacs(formula))
+        options += ["--cut-formula", str(number), tmp_path / f"{number}.cnf"]
+    code, verdict, _ = run("verify-bound", *files, *options)
+    assert (code, verdict["bound"], len(verdict["assumed"])) == (0, certificate.bound, len(certificate.cuts))
+    (tmp_path / "0.cnf").write_text("p cnf 1 1\n1 0\n")
+    code, verdict, _ = run("verify-bound", *files, *options)
+    assert (code, verdict["verdict"]) == (3, "undecided")

@@ -315,6 +315,21 @@ Qed.
 
 End Instance.
 
+(** bound/robots: a robot has no claim only where no way leads to its goal. *)
+Theorem robot_without_a_claim_has_no_way i tf own a e : Well_formed i -> In a (robots i) ->
+  claim_accepted i tf (listed (successor_table i)) (takes_in (resource_table i) a) own a None e = true -> ~ Plannable i a.
+Proof.
+  intros right Ha H. unfold claim_accepted in H. apply andb_true_iff in H as [Least H].
+  apply andb_true_iff in H as [Elsewhere Start]. apply negb_true_iff, Z.eqb_neq in Elsewhere.
+  unfold Plannable. intros L. remember (goal a) as to eqn:To. revert Elsewhere Start. generalize dependent (start a).
+  intros from L. induction L as [r | r s to M L IH]; intros Elsewhere Start; [congruence |]. subst to.
+  destruct (moves_join_resources i right r s M) as (_ & Hr & _).
+  pose proof (proj1 (forallb_forall _ _) Least r Hr) as N. unfold rests_are_least in N.
+  pose proof (proj1 (forallb_forall _ _) N s (proj2 (successors_are_moves i r s right) M)) as K. simpl in K.
+  destruct (Map.find r (index fst (ticks_after e))); [discriminate |]. apply andb_true_iff in K as [K1 K2].
+  apply negb_true_iff, Z.eqb_neq in K1. apply IH; auto.
+Qed.
+
 (** No lawful solution that plans every robot with a way to its goal costs less than an accepted bound, if its cuts hold. *)
 Theorem accepted_bound_is_below_every_solution i s c all : Well_formed i -> bound_accepted i c all = true ->
   Lawful i s -> Plans_every_plannable_robot i s -> (forall k, In k (cuts c) -> Cut_holds i s k) ->
