@@ -4,7 +4,8 @@ import fcntl
 import json
 import os
 import subprocess
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from shutil import which
@@ -12,11 +13,28 @@ from typing import Any
 
 import msgspec
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from tests.verify.test_bound import TINY, certificates, crossing, cut_certificate
 
-from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, Solution, judge, read_instance, read_solution
+from carp_reference.context import context_of
+from carp_reference.problem import Problem, prepare
+from carp_reference.query import _expand, _history, _start, find_plan
+from carp_spec import (
+    Instance,
+    Plan,
+    Refusal,
+    Resource,
+    ResourceGraph,
+    ResourceId,
+    Robot,
+    RobotId,
+    Solution,
+    has_ended,
+    judge,
+    read_instance,
+    read_solution,
+)
 from carp_spec.bounds import BOUND_FORMAT, BoundDocument, digest
 from carp_spec.documents import instance_document, solution_document, write
 from carp_spec.vectors import Vector, vectors
@@ -25,7 +43,14 @@ from carp_verify.clauses import dimacs
 from carp_verify.mutations import BrokenSolution
 from carp_verify.optimum import Evidence
 from carp_verify.proof import beat_formula
-from carp_verify.strategies import PlannedInstance, broken_solutions, instances, planned_instances
+from carp_verify.strategies import (
+    FleetUnderWay,
+    PlannedInstance,
+    broken_solutions,
+    fleets_under_way,
+    instances,
+    planned_instances,
+)
 from carp_verify.verify_bound import verify_bound
 
 ROOT = Path(__file__).parents[2]
@@ -240,6 +265,93 @@ def test_robots_meet_at_ticks_of_any_size() -> None:
     read = read_solution(json.dumps(solution).encode())
     assert judge(instance, read).valid
     assert check(instance, read)["verdict"] == "accepted"
+
+
+# ---- queries ----
+
+
+def query_certificate(problem: Problem, committed: Sequence[Plan], robot: RobotId) -> Json:
+    """A certificate made by the reference's steps: each window that can be entered in time, at its earliest."""
+    instance = problem.instance
+    plan = find_plan(problem, committed, robot)
+    bound = None if plan is None else plan.visits[-1].enter
+    context, potential = context_of(instance, committed), problem.ticks_to_goal[robot]
+    start = _start(context, _history(problem, robot))
+    entered: dict[tuple[ResourceId, int], int] = {}
+    queue = [] if start is None else [start]
+    while queue:
+        node = min(queue, key=lambda each: each.enter)
+        queue.remove(node)
+        for following in _expand(problem, context, robot, node, instance.graph.successors[node.resource]):
+            key = (following.resource, following.window.start)
+            in_time = following.resource in potential and (
+                bound is None or following.enter + potential[following.resource] < bound
+            )
+            if in_time and entered.get(key, following.enter + 1) > following.enter:
+                entered[key] = following.enter
+                queue.append(following)
+    return {
+        "format": "carproof-query/1",
+        "robot": robot,
+        "now": problem.now,
+        "bound": bound,
+        "labels": [(resource, enter) for (resource, _), enter in entered.items()],
+        "potential": list(potential.items()),
+    }
+
+
+def verify_query(instance: Instance, solution: Solution, certificate: Json) -> Json:
+    documents = {"instance": instance_document(instance), "solution": solution_document(solution)}
+    return ask(encoded(op="verify-query", certificate=certificate, **documents))
+
+
+@given(st.data(), fleets_under_way())
+def test_query_certificates_prove_the_least_arrival_and_no_later_one(data: st.DataObject, fleet: FleetUnderWay) -> None:
+    certificate = query_certificate(prepare(fleet.instance, fleet.now), fleet.solution.plans, fleet.robot)
+    verdict = verify_query(fleet.instance, fleet.solution, certificate)
+    assert (verdict["verdict"], verdict["bound"]) == ("accepted", certificate["bound"])
+    if certificate["bound"] is not None:
+        for later in (certificate["bound"] + 1, None):
+            assert verify_query(fleet.instance, fleet.solution, certificate | {"bound": later})["verdict"] == "refused"
+    if certificate["labels"]:
+        missing = data.draw(st.integers(0, len(certificate["labels"]) - 1))
+        fewer = [label for number, label in enumerate(certificate["labels"]) if number != missing]
+        assert verify_query(fleet.instance, fleet.solution, certificate | {"labels": fewer})["verdict"] == "refused"
+
+
+@given(st.data(), fleets_under_way())
+def test_query_certificates_of_robots_under_way_prove_the_least_arrival(
+    data: st.DataObject, fleet: FleetUnderWay
+) -> None:
+    assume(fleet.solution.plans)
+    plan = data.draw(st.sampled_from(fleet.solution.plans))
+    assume(not has_ended(plan, fleet.now))
+    problem = replace(prepare(fleet.instance, fleet.now), before={plan.robot: plan})
+    others = [each for each in fleet.solution.plans if each != plan]
+    certificate = query_certificate(problem, others, plan.robot)
+    verdict = verify_query(fleet.instance, fleet.solution, certificate)
+    assert (verdict["verdict"], verdict["bound"]) == ("accepted", certificate["bound"])
+    later = certificate | {"bound": certificate["bound"] + 1}
+    assert verify_query(fleet.instance, fleet.solution, later)["verdict"] == "refused"
+
+
+@given(instances())
+def test_an_audit_accepts_plans_made_one_after_the_other_and_no_later_one(instance: Instance) -> None:
+    problem = prepare(instance, 0)
+    plans: list[Plan] = []
+    certificates = []
+    for robot in instance.robot:
+        plan = find_plan(problem, plans, robot)
+        if plan is not None:
+            certificates.append(query_certificate(problem, plans, robot))
+            plans.append(plan)
+    order = tuple(plan.robot for plan in plans)
+    solution = Solution(tuple(plans), order, tuple(robot for robot in instance.robot if robot not in order))
+    documents = {"instance": instance_document(instance), "solution": solution_document(solution)}
+    assert ask(encoded(op="audit", certificates=certificates, **documents))["verdict"] == "accepted"
+    if certificates:
+        verdict = ask(encoded(op="audit", certificates=certificates[1:], **documents))
+        assert (verdict["verdict"], verdict["rule"]) == ("refused", "query/optimal")
 
 
 # ---- refutations ----

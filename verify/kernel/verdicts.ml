@@ -56,16 +56,36 @@ let check (read : Reading.instance) (solution : Law.solution) =
 
 (* ---- verify-query and audit ---- *)
 
+(* Why a certificate is refused; that it is, the kernel has decided. *)
+let query_fault (read : Reading.instance) (solution : Law.solution) (query : Reading.query) =
+  let instance = read.instance and { Reading.query_robot = robot; now; query_certificate } = query in
+  let world = QueryCertificate.world_of instance in
+  let place id = Reading.shown (Reading.names read.resource_numbers).(Z.to_int id) in
+  match Collections.Map.find robot world.looked_up.robot_of with
+  | None -> ("query-certificate/robot", "the instance must have the robot " ^ named read robot)
+  | Some a -> (
+      let context = Context.context_of world.looked_up (Audit.others solution robot) in
+      match QueryCertificate.certificate_fault instance world context a now (Audit.own solution robot) query_certificate with
+      | Some (QueryCertificate.Earlier_arrival tick) ->
+          ("query-certificate/bound", "the robot's plan has ended, and arrived at " ^ Z.to_string tick)
+      | Some Goal_potential -> ("query-certificate/potential", "the potential of the goal must be 0")
+      | Some (Move_potential (source, target)) ->
+          ( "query-certificate/potential",
+            Printf.sprintf "the potential falls by too much on the move from %s to %s" (place source) (place target) )
+      | Some (Open_label (id, entry)) ->
+          ( "query-certificate/closed",
+            Printf.sprintf "%s, entered at %s, leads to a window without a label or to the end" (place id) (Z.to_string entry) )
+      | Some Open_start | None -> ("query-certificate/closed", "the start leads to a window without a label or to the end"))
+
 let verify_query (read : Reading.instance) (solution : Law.solution) (query : Reading.query) =
   let { Reading.query_robot; now; query_certificate } = query in
-  let bound = query_certificate.bound in
   if Audit.query_accepted read.instance solution query_robot now query_certificate then
-    Accepted [ ("robot", `String (named read query_robot)); ("bound", Option.fold ~none:`Null ~some:whole bound) ]
+    Accepted [ ("bound", Option.fold ~none:`Null ~some:whole query_certificate.bound) ]
   else if not (Audit.plans_accepted read.instance (Checker.lookup_of read.instance) solution.plans) then
-    Refused ("query/sound", "each plan of the others must be lawful by itself, one of a robot")
+    Refused ("query/sound", "each plan must be lawful by itself, and of a robot of its own")
   else
-    let rule = if bound = None then "query/complete" else "query/optimal" in
-    Refused (rule, "the certificate does not show it for robot " ^ named read query_robot)
+    let rule, message = query_fault read solution query in
+    Refused (rule, message)
 
 let audit (read : Reading.instance) (solution : Law.solution) (queries : Reading.query list) =
   match check read solution with
