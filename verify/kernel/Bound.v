@@ -8,8 +8,8 @@ Open Scope Z_scope.
 (** A group of robots that cost at least [least_total] together, and how much it counts, in parts of a tick. *)
 Record cut := Cut { members : list Z; least_total : Z; multiplier : Z }.
 
-(** The certificate as its document has it: [claims] are the robots with their least priced costs, in parts of a tick, or
-    none where no way leads to the goal. *)
+(** The certificate as its document has it: [claims] are the robots with their least priced costs, in parts of a tick,
+    or with none where no way leads to the goal. *)
 Record certificate := Certificate {
   bound : Z;
   scale : Z;
@@ -31,7 +31,8 @@ Definition total_of {A} (f : A -> Z) (l : list A) : Z := fold_left (fun total x 
 Definition scale_accepted (c : certificate) : bool := (0 <? scale c) && (Z.land (scale c) (scale c - 1) =? 0).
 
 (** bound/price: at least 0, of a resource or of an exchange with a move each way, at a tick before the horizon. *)
-Definition price_accepted (i : instance) (known : Z -> bool) (successors : Z -> list Z) (c : certificate) (x : price) : bool :=
+Definition price_accepted (i : instance) (known : Z -> bool) (successors : Z -> list Z) (c : certificate)
+  (x : price) : bool :=
   let leads r s := existsb (Z.eqb s) (successors r) in
   (0 <=? amount x) && (0 <=? tick x) && (tick x <? price_horizon c) && known (place x) &&
   match other x with None => true | Some o => known o && leads (place x) o && leads o (place x) end.
@@ -51,7 +52,8 @@ Definition weight_of (c : certificate) (id : Z) : Z :=
 
 Definition cuts_accepted (i : instance) (c : certificate) : bool :=
   let ids := Ids.of_list (robot_ids i) in
-  forallb (fun k => (0 <=? multiplier k) && Ids.distinct (members k) && forallb (Ids.contains ids) (members k)) (cuts c) &&
+  forallb (fun k =>
+    (0 <=? multiplier k) && Ids.distinct (members k) && forallb (Ids.contains ids) (members k)) (cuts c) &&
   forallb (fun id => 0 <=? weight_of c id) (robot_ids i).
 
 (** The resources lead from one to the next and to the goal. *)
@@ -67,7 +69,8 @@ Definition claim_accepted (i : instance) (tf : tariff) (successors : Z -> list Z
   let rests := index fst (ticks_after e) in
   let rest_at r := match Map.find r rests with Some x => Some (snd x) | None => None end in
   let label_table := pairs_of (labels e) in
-  let c := Claim match claimed_least with Some n => n | None => 0 end own rest_at (fun r t => Pair_map.find (r, t) label_table) in
+  let label_in r t := Pair_map.find (r, t) label_table in
+  let c := Claim match claimed_least with Some n => n | None => 0 end own rest_at label_in in
   forallb (rests_are_least successors takes a c) (resource_ids i) &&
   match claimed_least with
   | Some _ =>
@@ -78,8 +81,8 @@ Definition claim_accepted (i : instance) (tf : tariff) (successors : Z -> list Z
   end.
 
 (** The first robots of the instance that are not named in order, or whose claims do not hold; none if all is right. *)
-Fixpoint refused_claims (i : instance) (tf : tariff) (successors : Z -> list Z) (table : Map.t resource) (c : certificate)
-    (robots : list robot) (claims : list (Z * option Z)) (all : list evidence) : option (list robot) :=
+Fixpoint refused_claims (i : instance) (tf : tariff) (successors : Z -> list Z) (table : Map.t resource)
+    (c : certificate) (robots : list robot) (claims : list (Z * option Z)) (all : list evidence) : option (list robot) :=
   match robots, claims, all with
   | [], [], _ => None
   | a :: robots', (id, claimed_least) :: claims', e :: all' =>
@@ -239,7 +242,8 @@ Proof.
   apply Z.le_trans with (Z.b2z (robot_id a =? plan_robot p) * priced_plan p);
     [| apply (sum_is_above_each _ _ p Positive Hp)].
   rewrite E, Z.eqb_refl. simpl Z.b2z. rewrite Z.mul_1_l. unfold priced_plan. rewrite (cost_is_of_robot a p), E by auto.
-  eapply (claim_is_below_every_plan i tf successors (takes_in table a) a (Claim n _ _ _) (prices c) p right Ha prices_are_held).
+  eapply (claim_is_below_every_plan i tf successors (takes_in table a) a (Claim n _ _ _) (prices c) p right Ha
+    prices_are_held).
   - intros r t. apply successors_are_moves, right.
   - intros r. apply takes_what_is_needed, right.
   - constructor.
@@ -286,7 +290,8 @@ Proof.
   assert (E : sum (fun k => multiplier k * sum (cost_of_robot i s) (members k)) (cuts c) =
     sum (fun p => sum (fun k => multiplier k * sum (fun m => Z.b2z (m =? plan_robot p)) (members k)) (cuts c) *
       cost_of_plan i p) (plans s)).
-  { rewrite (sum_of_equal _ (fun k => sum (fun p => multiplier k * sum (fun m => Z.b2z (m =? plan_robot p)) (members k) *
+  { rewrite (sum_of_equal _
+    (fun k => sum (fun p => multiplier k * sum (fun m => Z.b2z (m =? plan_robot p)) (members k) *
       cost_of_plan i p) (plans s))).
     - rewrite sums_are_exchanged. apply sum_of_equal. intros p _. rewrite Z.mul_comm, <- sum_of_multiples.
       apply sum_of_equal. intros. lia.
@@ -317,7 +322,8 @@ End Instance.
 
 (** bound/robots: a robot has no claim only where no way leads to its goal. *)
 Theorem robot_without_a_claim_has_no_way i tf own a e : Well_formed i -> In a (robots i) ->
-  claim_accepted i tf (listed (successor_table i)) (takes_in (resource_table i) a) own a None e = true -> ~ Plannable i a.
+  claim_accepted i tf (listed (successor_table i)) (takes_in (resource_table i) a) own a None e = true ->
+    ~ Plannable i a.
 Proof.
   intros right Ha H. unfold claim_accepted in H. apply andb_true_iff in H as [Least H].
   apply andb_true_iff in H as [Elsewhere Start]. apply negb_true_iff, Z.eqb_neq in Elsewhere.
@@ -330,7 +336,8 @@ Proof.
   apply negb_true_iff, Z.eqb_neq in K1. apply IH; auto.
 Qed.
 
-(** No lawful solution that plans every robot with a way to its goal costs less than an accepted bound, if its cuts hold. *)
+(** No lawful solution that plans every robot with a way to its goal costs less than an accepted bound, if its cuts
+    hold. *)
 Theorem accepted_bound_is_below_every_solution i s c all : Well_formed i -> bound_accepted i c all = true ->
   Lawful i s -> Plans_every_plannable_robot i s -> (forall k, In k (cuts c) -> Cut_holds i s k) ->
   bound c <= total_cost i s.

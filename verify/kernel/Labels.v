@@ -74,7 +74,8 @@ Qed.
     of two resources. All ticks with a price are before [horizon]. *)
 Record tariff := Tariff { here : Z -> Z -> Z; across : Z -> Z -> Z; exchange : Z -> Z -> Z -> Z; horizon : Z }.
 
-Definition is_here (r t : Z) (x : price) : bool := match other x with None => (place x =? r) && (tick x =? t) | _ => false end.
+Definition is_here (r t : Z) (x : price) : bool :=
+  match other x with None => (place x =? r) && (tick x =? t) | Some _ => false end.
 Definition is_across (r t : Z) (x : price) : bool :=
   match other x with Some _ => (place x =? r) && (tick x =? t) | None => false end.
 Definition is_exchange (r s t : Z) (x : price) : bool :=
@@ -111,7 +112,8 @@ Lemma span_of_a_price x r first end_ (chosen : Z -> price -> bool) (of_kind : bo
   span (fun t => amount x * Z.b2z (chosen t x)) first end_ =
   amount x * Z.b2z (of_kind && (place x =? r) && (first <=? tick x) && (tick x <? end_)).
 Proof.
-  intros C. transitivity (span (fun t => amount x * Z.b2z (of_kind && (place x =? r)) * Z.b2z (tick x =? t)) first end_).
+  intros C.
+  transitivity (span (fun t => amount x * Z.b2z (of_kind && (place x =? r)) * Z.b2z (tick x =? t)) first end_).
   - apply span_of_equal. intros t. rewrite C. destruct (of_kind && (place x =? r)); simpl; lia.
   - rewrite span_of_one_tick. destruct (of_kind && (place x =? r)), (first <=? tick x), (tick x <? end_); simpl; lia.
 Qed.
@@ -321,16 +323,18 @@ Proof.
     apply andb_true_iff in M as [Last On].
     destruct (moves_join_resources i right _ _ Hm) as (Different & _).
     pose proof (move_price_is_paid tf xs tables (Visit r first (Some (enter w))) w Different) as Move. simpl in Move.
-    set (before' := before + visit_paid xs (Visit r first (Some (enter w))) + move_paid xs (Visit r first (Some (enter w))) w).
+    set (v := Visit r first (Some (enter w))). set (before' := before + visit_paid xs v + move_paid xs v w).
     assert (Goal : claimed c <= before' + priced_cost (w :: later)).
     { destruct later as [| u rest].
       - inversion Hw as [w' Hg |]; subst. rewrite Hg, Z.eqb_refl in Last. simpl in Last.
-        apply covered_entry_is_claimed; auto. apply Z.leb_le in Last. apply Z.leb_le. rewrite Hg in Move. unfold before'.
+        apply covered_entry_is_claimed; auto. apply Z.leb_le in Last. apply Z.leb_le. rewrite Hg in Move.
+        unfold before', v.
         lia.
       - inversion Hw; subst. apply (IH w u rest eq_refl before' (enter w + need i a (visit_resource w))); [lia |].
-        rewrite durations in On. eapply who_pays_more_is_covered; [| exact On]. rewrite stay_price_is_paid with (tf := tf) by auto.
-        unfold before'. lia. }
-    unfold before', priced_cost in *. rewrite paid_from_the_second_visit_on.
+        rewrite durations in On. eapply who_pays_more_is_covered; [| exact On].
+        rewrite stay_price_is_paid with (tf := tf) by auto.
+        unfold before', v. lia. }
+    unfold before', v, priced_cost in *. rewrite paid_from_the_second_visit_on.
     change (arrives (Visit r first (Some (enter w)) :: w :: later)) with (arrives (w :: later)). lia.
   - unfold covered in C. rewrite R in C. apply orb_true_iff in C as [C | C].
     { split_bools. unfold priced_cost. rewrite paid_from_the_second_visit_on.
@@ -346,8 +350,8 @@ Qed.
 End Claim.
 
 (** No lawful plan of the robot alone costs less, weighted and together with its prices, than the claim. *)
-Theorem claim_is_below_every_plan i tf successors takes a c xs p : Well_formed i -> In a (robots i) -> Holds_prices tf xs ->
-  (forall r s, Move i r s -> In s (successors r)) -> (forall r, takes r = need i a r) ->
+Theorem claim_is_below_every_plan i tf successors takes a c xs p : Well_formed i -> In a (robots i) ->
+  Holds_prices tf xs -> (forall r s, Move i r s -> In s (successors r)) -> (forall r, takes r = need i a r) ->
   Claim_holds i tf successors takes a c -> Plan_lawful i a p ->
   claimed c <= paid xs (visits p) + weight c * cost a p.
 Proof.
@@ -357,11 +361,12 @@ Proof.
   change (fold_left (fun _ v => enter v) (v :: rest) (release a)) with (arrives (v :: rest)).
   apply andb_true_iff in Start as [Last On]. rewrite <- R, <- T in *.
   destruct rest as [| w later].
-  - inversion W as [v' Hg |]; subst. rewrite Hg, Z.eqb_refl in Last. simpl in Last. rewrite <- (Z.add_0_l (paid _ _)), <- Z.add_assoc.
+  - inversion W as [v' Hg |]; subst. rewrite Hg, Z.eqb_refl in Last. simpl in Last.
+    rewrite <- (Z.add_0_l (paid _ _)), <- Z.add_assoc.
     rewrite T. eapply covered_entry_is_claimed; eauto. 
   - inversion W; subst.
-    pose proof (covered_way_is_claimed i tf successors takes a c xs right known tables moves durations Least Closed Weight
-      (v :: w :: later) W v w later eq_refl 0 (enter v + need i a (visit_resource v))) as P.
+    pose proof (covered_way_is_claimed i tf successors takes a c xs right known tables moves durations Least Closed
+      Weight      (v :: w :: later) W v w later eq_refl 0 (enter v + need i a (visit_resource v))) as P.
     unfold priced_cost in P. rewrite T in *. apply P; [lia |].
     rewrite stay_price_is_paid with (tf := tf), <- durations by auto. exact On.
 Qed.

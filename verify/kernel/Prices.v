@@ -159,7 +159,8 @@ Proof.
   destruct (visit_pays x v) eqn:V; [left; exists v; simpl; auto |].
   destruct rest as [| w later]; [simpl in H; rewrite V in H; simpl in H; lia |].
   destruct (move_pays x v w) eqn:M; [right; exists [], v, w, later; auto |].
-  rewrite times_from_the_second_visit_on, V, M in H. destruct IH as [(u & Hin & Hu) | (before & u & u' & rest & E & Hu)]; [exact H | |].
+  rewrite times_from_the_second_visit_on, V, M in H.
+  destruct IH as [(u & Hin & Hu) | (before & u & u' & rest & E & Hu)]; [exact H | |].
   - left. exists u. simpl. auto.
   - right. exists (v :: before), u, u', rest. rewrite E. auto.
 Qed.
@@ -221,7 +222,8 @@ Proof. intros H. apply filter_In in H as [Hp Ht]. split_bools. auto. Qed.
 
 Lemma payers_are_different x : NoDup (map plan_robot (payers x)).
 Proof.
-  pose proof robots_have_one_plan as N. unfold payers, planned in *. induction (plans s) as [| p ps IH]; simpl in *; auto.
+  pose proof robots_have_one_plan as N. unfold payers, planned in *.
+  induction (plans s) as [| p ps IH]; simpl in *; auto.
   inversion N as [| ? ? Hn Hd]; subst. destruct (0 <? times x (visits p)); simpl; auto. constructor; auto.
   intros H. apply Hn. apply in_map_iff in H as (q & E & Hq). apply filter_In in Hq as [Hq _].
   apply in_map_iff. eauto.

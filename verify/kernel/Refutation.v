@@ -220,7 +220,8 @@ Proof.
     pose proof (propagated_clause_is_satisfied clauses added hints Hc Hz Hp) as Ha.
     destruct added as [| l others]; [destruct Ha as (l & [] & _) |].
     apply (IH (Numbered.add number (l :: others) clauses)); auto using added_clauses_are_satisfied.
-  - apply (IH (fold_left (fun kept n => Numbered.remove n kept) numbers clauses)); auto using kept_clauses_are_satisfied.
+  - apply (IH (fold_left (fun kept n => Numbered.remove n kept) numbers clauses));
+    auto using kept_clauses_are_satisfied.
 Qed.
 
 Lemma numbered_clauses_are_satisfied formula : forall n clauses, (forall c, In c formula -> Satisfies v c) ->

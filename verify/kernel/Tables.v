@@ -17,7 +17,8 @@ Definition successor_table (i : instance) : Map.t (list Z) :=
 
 Lemma successors_are_moves i r s : Well_formed i -> In s (listed (successor_table i) r) <-> Move i r s.
 Proof.
-  intros right. rewrite <- (has_move_iff i). unfold has_move. simpl. rewrite Pairs.contains_of_list. unfold successor_table.
+  intros right. rewrite <- (has_move_iff i). unfold has_move. simpl. rewrite Pairs.contains_of_list.
+  unfold successor_table.
   assert (H : forall l m, In s (listed (fold_left (fun m e => enlist (fst e) (snd e) m) l m) r) <->
     In (r, s) l \/ In s (listed m r)).
   { induction l as [| [x y] l IH]; intros m; simpl; [tauto |]. rewrite IH, listed_enlist. simpl.
@@ -81,7 +82,8 @@ Proof.
   destruct (key p) as [k |]; [| destruct (chosen p); [destruct C as [C _]; discriminate C; auto | simpl; lia]].
   unfold pair_at at 1. rewrite Pair_facts.add_o. destruct (Z_pair.eq_dec k (x, y)) as [E | E].
   - unfold Z_pair.eq in E. subst k. rewrite (proj2 C eq_refl). fold (pair_at m x y). simpl. lia.
-  - destruct (chosen p); [destruct E; destruct C as [C _]; injection (C eq_refl); auto |]. fold (pair_at m x y). simpl. lia.
+  - destruct (chosen p); [destruct E; destruct C as [C _]; injection (C eq_refl); auto |]. fold (pair_at m x y).
+    simpl. lia.
 Qed.
 
 Lemma triple_tally_is_the_sum key xs x y z (chosen : price -> bool) :
@@ -126,7 +128,8 @@ Proof.
     rewrite andb_true_iff, !Z.eqb_eq. split; [intros [<- <-] | injection 1]; auto.
   - apply pair_tally_is_the_sum. intros p. unfold is_across, key_across. destruct (other p); [| split; discriminate].
     rewrite andb_true_iff, !Z.eqb_eq. split; [intros [<- <-] | injection 1]; auto.
-  - apply triple_tally_is_the_sum. intros p. unfold is_exchange, key_exchange. destruct (other p); [| split; discriminate].
+  - apply triple_tally_is_the_sum. intros p. unfold is_exchange, key_exchange.
+    destruct (other p); [| split; discriminate].
     rewrite !andb_true_iff, !Z.eqb_eq. split; [intros [[<- <-] <-] | injection 1]; auto.
 Qed.
 
@@ -137,7 +140,8 @@ Definition pairs_of (l : list (Z * Z * Z)) : Pair_map.t Z :=
 
 Lemma found_pair_is_listed l k n : Pair_map.find k (pairs_of l) = Some n -> In (k, n) l.
 Proof.
-  unfold pairs_of. assert (H : forall m, Pair_map.find k (fold_left (fun m x => Pair_map.add (fst x) (snd x) m) l m) = Some n ->
+  unfold pairs_of.
+  assert (H : forall m, Pair_map.find k (fold_left (fun m x => Pair_map.add (fst x) (snd x) m) l m) = Some n ->
     In (k, n) l \/ Pair_map.find k m = Some n).
   { induction l as [| [j y] l IH]; intros m; simpl; auto. intros F. apply IH in F as [F | F]; auto.
     simpl in F. rewrite Pair_facts.add_o in F. destruct (Z_pair.eq_dec j k) as [E | E]; auto.

@@ -1,4 +1,4 @@
-(* Finds the hints of a refutation that has none (DRAT without RAT steps). Nothing here is trusted: the kernel checks them.
+(* Finds the hints of a refutation that has none (DRAT without RAT steps). Nothing here is trusted.
 
    Deletions are passed over. Each added clause is shown by unit propagation with two watched literals a clause. *)
 
@@ -30,7 +30,9 @@ let visit state false_literal number =
   if clause.(0) = false_literal then swap 0 1;
   if is_true state clause.(0) then `Keep
   else
-    let rec free k = if k = Array.length clause then None else if is_false state clause.(k) then free (k + 1) else Some k in
+    let rec free k =
+      if k = Array.length clause then None else if is_false state clause.(k) then free (k + 1) else Some k
+    in
     match free 2 with
     | Some k -> swap 1 k; Hashtbl.replace state.watched clause.(1) (number :: watching state clause.(1)); `Move
     | None when is_false state clause.(0) -> `Conflict
@@ -47,7 +49,8 @@ let rec propagate state = function
             match visit state (-literal) number with
             | `Keep -> each (number :: kept) others
             | `Move -> each kept others
-            | `Conflict -> Hashtbl.replace state.watched (-literal) (List.rev_append kept (number :: others)); Some number)
+            | `Conflict -> Hashtbl.replace state.watched (-literal) (List.rev_append kept (number :: others));
+              Some number)
       in
       (match each [] (watching state (-literal)) with
       | Some number -> Some number
@@ -110,7 +113,8 @@ let with_hints formula added =
   let add clause =
     if not (List.exists (is_true state) clause) then (
       let trail = state.trail in
-      let denied = List.filter_map (fun l -> if is_false state l then None else Some (-l)) (List.sort_uniq compare clause) in
+      let free = List.filter (fun literal -> not (is_false state literal)) (List.sort_uniq compare clause) in
+      let denied = List.map Int.neg free in
       List.iter (assign state) denied;
       match propagate state denied with
       | None -> raise (Not_found_out "a clause of the refutation does not follow by unit propagation")

@@ -40,7 +40,8 @@ let contents file =
   Fun.protect ~finally:(fun () -> close_in channel) (fun () ->
       try
         if in_channel_length channel > Reading.largest_document then
-          Reading.refuse "$" "document/json" (Printf.sprintf "%s must have at most %d bytes" file Reading.largest_document);
+          Reading.refuse "$" "document/json"
+            (Printf.sprintf "%s must have at most %d bytes" file Reading.largest_document);
         really_input_string channel (in_channel_length channel)
       with Sys_error reason | Failure reason -> Reading.refuse "$" "document/json" reason)
 
@@ -57,7 +58,8 @@ let rec cut_formulas = function
 (* One request a line: the op, and its documents by their names. *)
 let requested line () =
   let json = Reading.json_of_text line in
-  let field = Reading.fields "$" ~required:[ "op"; "instance" ] ~optional:[ "solution"; "certificate"; "certificates" ] json in
+  let optional = [ "solution"; "certificate"; "certificates" ] in
+  let field = Reading.fields "$" ~required:[ "op"; "instance" ] ~optional json in
   let instance = Reading.required field "instance" Reading.instance_of_json in
   let solution = Reading.present field "solution" (Reading.solution_of_json instance) in
   let certificates = Reading.present field "certificates" (Reading.elements (Reading.query_of_json instance)) in

@@ -41,8 +41,8 @@ let is_number word =
   && if is after_fraction "eE" then digit exponent && digits exponent = String.length word
      else after_fraction = String.length word
 
-(* Refuse what the JSON library would read beyond JSON (comments, names without quotes, NaN, raw control characters), bad
-   UTF-8, and deep nesting. *)
+(* Refuse what the JSON library would read beyond JSON (comments, names without quotes, NaN, raw control characters),
+   bad UTF-8, and deep nesting. *)
 let require_plain text =
   if String.length text > largest_document then
     malformed (Printf.sprintf "it must have at most %d bytes" largest_document);
@@ -110,7 +110,8 @@ let fields path ~required ~optional (json : Yojson.Safe.t) =
         (fun (name, _) ->
           if not (List.mem name required || List.mem name optional) then shape path (Printf.sprintf "no field %S" name))
         members;
-      List.iter (fun name -> if not (List.mem_assoc name members) then shape path (Printf.sprintf "a field %S" name)) required;
+      let missing name = not (List.mem_assoc name members) in
+      Option.iter (fun name -> shape path (Printf.sprintf "a field %S" name)) (List.find_opt missing required);
       fun name -> Option.map (fun value -> (path ^ "." ^ name, value)) (List.assoc_opt name members)
   | _ -> shape path "an object"
 
@@ -172,7 +173,8 @@ type instance = { instance : Law.instance; resource_numbers : numbers; robot_num
 let name_fault path { Law.resources; edges; directed; robots; _ } =
   let known id = List.exists (fun r -> Z.equal r.Law.resource_id id) resources in
   let at_least_one rule path name value =
-    if Z.lt value Z.one then refuse (path ^ "." ^ name) rule (Printf.sprintf "the %s must be a whole number of at least 1" name)
+    if Z.lt value Z.one then
+      refuse (path ^ "." ^ name) rule (Printf.sprintf "the %s must be a whole number of at least 1" name)
   in
   let each field check = List.iteri (fun position x -> check (Printf.sprintf "%s%s[%d]" path field position) x) in
   each ".graph.nodes" (fun path r -> at_least_one "instance/capacity" path "capacity" r.Law.capacity) resources;
@@ -205,7 +207,8 @@ let instance_of_json path json =
     let field = fields path ~required:[ "id" ] ~optional:[ "capacity"; "duration"; "x"; "y" ] json in
     let known = required field "id" id in
     if Hashtbl.mem resource_numbers.known known then
-      refuse (path ^ ".id") "instance/resource-id" ("ids must be unique, and a resource before it has the id " ^ shown known);
+      refuse (path ^ ".id") "instance/resource-id"
+        ("ids must be unique, and a resource before it has the id " ^ shown known);
     let x = present field "x" whole in
     let y = present field "y" whole in
     if (x = None) <> (y = None) then
@@ -356,8 +359,8 @@ let lines_of_words contents =
 let whole_of_word word =
   let sign = if word.[0] = '-' then 1 else 0 in
   let digits = String.length word - sign in
-  let is_digit position c = position < sign || (c >= '0' && c <= '9') in
-  if digits < 1 || digits > most_digits || not (List.for_all Fun.id (List.mapi is_digit (List.of_seq (String.to_seq word)))) then
+  let is_digit c = c >= '0' && c <= '9' in
+  if digits < 1 || digits > most_digits || not (String.for_all is_digit (String.sub word sign digits)) then
     shape "$" (Printf.sprintf "a whole number, not %S" word);
   Z.of_string word
 
@@ -371,9 +374,11 @@ let formula_of_text contents =
   match lines_of_words contents with
   | [ "p"; "cnf"; variables; count ] :: rest ->
       let variables = whole_of_word variables and literals = List.map whole_of_word (List.concat rest) in
-      if List.exists (fun literal -> Z.gt (Z.abs literal) variables) literals then shape "$" "no variable beyond those counted";
+      if List.exists (fun literal -> Z.gt (Z.abs literal) variables) literals then
+        shape "$" "no variable beyond those counted";
       let formula = clauses [] [] literals in
-      if not (Z.equal (whole_of_word count) (Z.of_int (List.length formula))) then shape "$" "as many clauses as are counted";
+      if not (Z.equal (whole_of_word count) (Z.of_int (List.length formula))) then
+        shape "$" "as many clauses as are counted";
       formula
   | _ -> shape "$" "the header p cnf VARIABLES CLAUSES"
 

@@ -65,7 +65,8 @@ let query_fault (read : Reading.instance) (solution : Law.solution) (query : Rea
   | None -> ("query-certificate/robot", "the instance must have the robot " ^ named read robot)
   | Some a -> (
       let context = Context.context_of world.looked_up (Audit.others solution robot) in
-      match QueryCertificate.certificate_fault instance world context a now (Audit.own solution robot) query_certificate with
+      let followed = Audit.own solution robot in
+      match QueryCertificate.certificate_fault instance world context a now followed query_certificate with
       | Some (QueryCertificate.Earlier_arrival tick) ->
           ("query-certificate/bound", "the robot's plan has ended, and arrived at " ^ Z.to_string tick)
       | Some Goal_potential -> ("query-certificate/potential", "the potential of the goal must be 0")
@@ -74,8 +75,10 @@ let query_fault (read : Reading.instance) (solution : Law.solution) (query : Rea
             Printf.sprintf "the potential falls by too much on the move from %s to %s" (place source) (place target) )
       | Some (Open_label (id, entry)) ->
           ( "query-certificate/closed",
-            Printf.sprintf "%s, entered at %s, leads to a window without a label or to the end" (place id) (Z.to_string entry) )
-      | Some Open_start | None -> ("query-certificate/closed", "the start leads to a window without a label or to the end"))
+            Printf.sprintf "%s, entered at %s, leads to a window without a label or to the end" (place id)
+              (Z.to_string entry) )
+      | Some Open_start | None ->
+          ("query-certificate/closed", "the start leads to a window without a label or to the end"))
 
 let verify_query (read : Reading.instance) (solution : Law.solution) (query : Reading.query) =
   let { Reading.query_robot; now; query_certificate } = query in
@@ -104,8 +107,8 @@ let refute formula proof =
 
 (* ---- verify-bound ---- *)
 
-(* A cut is decided by a formula of the caller's, which must say that its robots cost less: the kernel checks that it has
-   no solution. Without one, or without a refutation by unit propagation, it is undecided. *)
+(* A cut is decided by a formula of the caller's, which must say that its robots cost less: the kernel checks that it
+   has no solution. Without one, or without a refutation by unit propagation, it is undecided. *)
 let why_undecided formulas number refutation =
   match List.assoc_opt number formulas with
   | None -> Some (Printf.sprintf "cut %d needs its formula: --cut-formula %d FILE" number number)
@@ -119,12 +122,15 @@ let verify_bound formulas (read : Reading.instance) (bound : Reading.bound) =
   let { Reading.certificate; refutations; _ } = bound in
   match Bound.broken_rule read.instance certificate (Search.evidence read.instance certificate) with
   | Some Bound.Scale -> Refused ("bound/scale", "the scale must be a power of two")
-  | Some Bound.Price_rule -> Refused ("bound/price", "a price must be at least 0, at a place of the graph and a tick before the horizon")
+  | Some Bound.Price_rule ->
+      Refused ("bound/price", "a price must be at least 0, at a place of the graph and a tick before the horizon")
   | Some Bound.Once -> Refused ("bound/once", "a place must have one price at a tick")
   | Some Bound.Size -> Refused ("bound/size", "the prices would not fit into a table")
-  | Some Bound.Cut_rule -> Refused ("bound/cut", "multipliers must be at least 0 and a robot's no more than the scale together")
+  | Some Bound.Cut_rule ->
+      Refused ("bound/cut", "multipliers must be at least 0 and a robot's no more than the scale together")
   | Some (Bound.Robots (a :: _)) ->
-      Refused ("bound/robots", "the claim of robot " ^ named read a.robot_id ^ " must be no more than its least priced cost")
+      let claim = "the claim of robot " ^ named read a.robot_id in
+      Refused ("bound/robots", claim ^ " must be no more than its least priced cost")
   | Some (Bound.Robots []) -> Refused ("bound/robots", "each robot must be named once, in the instance's order")
   | Some Bound.Total -> Refused ("bound/total", "the bound must be the sum of all parts, rounded up")
   | None -> (
