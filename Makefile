@@ -6,7 +6,7 @@ export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 .DELETE_ON_ERROR:
-.PHONY: bench install compiled demo quick quick-tests test thorough paper-sized nightly coverage mutation conform lint format gap optimum-figures experiments-page generated clean
+.PHONY: bench install compiled demo quick quick-tests test thorough paper-sized nightly coverage mutation conform lint format gap optimum-figures experiments-page generated kernel kernel-mutants clean
 
 install: .venv/installed
 
@@ -121,5 +121,13 @@ mutation-%: install
 	nice cosmic-ray exec tests/mutation/$*.toml mutants.sqlite && \
 	cr-report --surviving-only mutants.sqlite
 
+# Check the proofs of the kernel, print what each theorem rests on, and make build/kernel/carproof-kernel: Coq and OCaml.
+kernel:
+	@$(MAKE) --no-print-directory -C verify/kernel
+
+# Plant errors in the kernel's definitions, each of which must break a proof.
+kernel-mutants: kernel
+	$(PYTHON) -m tests.verify.kernel_mutants
+
 clean:
-	rm -rf .venv
+	rm -rf .venv build/kernel

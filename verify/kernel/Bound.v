@@ -1,0 +1,367 @@
+(** Certificates of a lower bound on the total cost: the rules bound/... but for the digest of the instance, which the
+    driver compares. Cuts are claims that are proved elsewhere. *)
+Require Import ZArith List Bool Lia.
+From Carproof Require Import Law Collections Checker Ways Prices Labels Tables.
+Import ListNotations.
+Open Scope Z_scope.
+
+(** A group of robots that cost at least [least_total] together, and how much it counts, in parts of a tick. *)
+Record cut := Cut { members : list Z; least_total : Z; multiplier : Z }.
+
+(** The certificate as its document has it: [claims] are the robots with their least priced costs, in parts of a tick,
+    or with none where no way leads to the goal. *)
+Record certificate := Certificate {
+  bound : Z;
+  scale : Z;
+  price_horizon : Z;
+  prices : list price;
+  cuts : list cut;
+  claims : list (Z * option Z)
+}.
+
+(** What shows a robot's claim: for resources that lead to its goal, the least ticks from leaving them to entering it;
+    labels ((resource, tick), amount); and the resources of a way after its start. *)
+Record evidence := Evidence { ticks_after : list (Z * Z); labels : list (Z * Z * Z); way : list Z }.
+
+(** * The checker *)
+
+Definition total_of {A} (f : A -> Z) (l : list A) : Z := fold_left (fun total x => total + f x) l 0.
+
+(** bound/scale: a power of two. *)
+Definition scale_accepted (c : certificate) : bool := (0 <? scale c) && (Z.land (scale c) (scale c - 1) =? 0).
+
+(** bound/price: at least 0, of a resource or of an exchange with a move each way, at a tick before the horizon. *)
+Definition price_accepted (i : instance) (known : Z -> bool) (successors : Z -> list Z) (c : certificate)
+  (x : price) : bool :=
+  let leads r s := existsb (Z.eqb s) (successors r) in
+  (0 <=? amount x) && (0 <=? tick x) && (tick x <? price_horizon c) && known (place x) &&
+  match other x with None => true | Some o => known o && leads (place x) o && leads o (place x) end.
+
+(** bound/once: no price twice for the same place and tick. *)
+Definition prices_are_different (c : certificate) : bool :=
+  Pairs.distinct (flat_map (fun x => match key_here x with Some k => [k] | None => [] end) (prices c)) &&
+  Triples.distinct (flat_map (fun x => match key_exchange x with Some k => [k] | None => [] end) (prices c)).
+
+(** bound/size: a table of the priced resources and the ticks would have 20,000,000 entries at most. *)
+Definition size_accepted (c : certificate) : bool :=
+  price_horizon c * Z.of_nat (Ids.S.cardinal (Ids.of_list (map place (prices c)))) <=? 20000000.
+
+(** bound/cut: what a robot's own ticks count, in parts of a tick, where its cuts count the rest. *)
+Definition weight_of (c : certificate) (id : Z) : Z :=
+  scale c - sum (fun k => multiplier k * sum (fun m => Z.b2z (m =? id)) (members k)) (cuts c).
+
+Definition cuts_accepted (i : instance) (c : certificate) : bool :=
+  let ids := Ids.of_list (robot_ids i) in
+  forallb (fun k =>
+    (0 <=? multiplier k) && Ids.distinct (members k) && forallb (Ids.contains ids) (members k)) (cuts c) &&
+  forallb (fun id => 0 <=? weight_of c id) (robot_ids i).
+
+(** The resources lead from one to the next and to the goal. *)
+Fixpoint leads_on (successors : Z -> list Z) (r : Z) (later : list Z) (to : Z) : bool :=
+  match later with
+  | [] => r =? to
+  | s :: rest => existsb (Z.eqb s) (successors r) && leads_on successors s rest to
+  end.
+
+(** bound/robots, for one robot. *)
+Definition claim_accepted (i : instance) (tf : tariff) (successors : Z -> list Z) (takes : Z -> Z) (own : Z) (a : robot)
+    (claimed_least : option Z) (e : evidence) : bool :=
+  let rests := index fst (ticks_after e) in
+  let rest_at r := match Map.find r rests with Some x => Some (snd x) | None => None end in
+  let label_table := pairs_of (labels e) in
+  let label_in r t := Pair_map.find (r, t) label_table in
+  let c := Claim match claimed_least with Some n => n | None => 0 end own rest_at label_in in
+  forallb (rests_are_least successors takes a c) (resource_ids i) &&
+  match claimed_least with
+  | Some _ =>
+      entry_covered i tf takes a c 0 (start a) (release a) &&
+      forallb (fun l => label_is_closed i tf successors takes a c (fst (fst l)) (snd (fst l)) (snd l)) (labels e) &&
+      leads_on successors (start a) (way e) (goal a)
+  | None => negb (start a =? goal a) && match rest_at (start a) with None => true | Some _ => false end
+  end.
+
+(** The first robots of the instance that are not named in order, or whose claims do not hold; none if all is right. *)
+Fixpoint refused_claims (i : instance) (tf : tariff) (successors : Z -> list Z) (table : Map.t resource)
+    (c : certificate) (robots : list robot) (claims : list (Z * option Z)) (all : list evidence) : option (list robot) :=
+  match robots, claims, all with
+  | [], [], _ => None
+  | a :: robots', (id, claimed_least) :: claims', e :: all' =>
+      if (id =? robot_id a) &&
+        claim_accepted i tf successors (takes_in table a) (weight_of c id) a claimed_least e
+      then refused_claims i tf successors table c robots' claims' all'
+      else Some robots
+  | _, _, _ => Some robots
+  end.
+
+(** bound/total: all parts together. *)
+Definition parts (table : Map.t resource) (c : certificate) : Z :=
+  total_of (fun k => match snd k with Some n => n | None => 0 end) (claims c) +
+  total_of (fun k => multiplier k * least_total k) (cuts c) -
+  total_of (fun x => amount x * room_in table (place x)) (prices c).
+
+Definition total_accepted (table : Map.t resource) (c : certificate) : bool :=
+  bound c =? - ((- parts table c) / scale c).
+
+(** The rules, one after the other: the first that is broken, or none. *)
+Inductive bound_rule := Scale | Price_rule | Once | Size | Cut_rule | Robots (refused : list robot) | Total.
+
+Definition broken_rule (i : instance) (c : certificate) (all : list evidence) : option bound_rule :=
+  let table := resource_table i in
+  let moves := successor_table i in
+  let successors := listed moves in
+  let ids := Ids.of_list (resource_ids i) in
+  if negb (scale_accepted c) then Some Scale
+  else if negb (forallb (price_accepted i (Ids.contains ids) successors c) (prices c)) then Some Price_rule
+  else if negb (prices_are_different c) then Some Once
+  else if negb (size_accepted c) then Some Size
+  else if negb (cuts_accepted i c) then Some Cut_rule
+  else match refused_claims i (tariff_of (prices c)) successors table c (robots i) (claims c) all with
+       | Some refused => Some (Robots refused)
+       | None => if total_accepted table c then None else Some Total
+       end.
+
+Definition bound_accepted (i : instance) (c : certificate) (all : list evidence) : bool :=
+  match broken_rule i c all with None => true | Some _ => false end.
+
+(** * What it proves *)
+
+(** What a robot costs in the solution; 0 if it has no plan. *)
+Definition cost_of_robot (i : instance) (s : solution) (id : Z) : Z :=
+  sum (fun p => if plan_robot p =? id then cost_of_plan i p else 0) (plans s).
+
+(** The robots of the cut cost at least its least total together. *)
+Definition Cut_holds (i : instance) (s : solution) (k : cut) : Prop :=
+  least_total k <= sum (cost_of_robot i s) (members k).
+
+(** Each robot has a plan if a way leads to its goal. *)
+Definition Plans_every_plannable_robot (i : instance) (s : solution) : Prop :=
+  forall a, In a (robots i) -> Plannable i a -> In (robot_id a) (planned s).
+
+Lemma total_of_is_the_sum {A} (f : A -> Z) l : total_of f l = sum f l.
+Proof.
+  unfold total_of. rewrite <- (Z.add_0_l (sum f l)). generalize 0.
+  induction l as [| x l IH]; intros n; simpl; [lia |]. rewrite IH. lia.
+Qed.
+
+Lemma sum_is_above_each {A} (f : A -> Z) l x : (forall y, In y l -> 0 <= f y) -> In x l -> f x <= sum f l.
+Proof.
+  induction l as [| y l IH]; simpl; intros H; [intros [] |]. pose proof (H y (or_introl eq_refl)).
+  pose proof (sum_is_not_negative f l (fun z Hz => H z (or_intror Hz))).
+  intros [-> | Hx]; [lia |]. assert (f x <= sum f l) by auto. lia.
+Qed.
+
+Lemma one_of_different_ids {A} (key : A -> Z) l id : NoDup (map key l) -> In id (map key l) ->
+  sum (fun x => Z.b2z (key x =? id)) l = 1.
+Proof.
+  induction l as [| x l IH]; simpl; [intros _ [] |]. intros N. inversion N as [| ? ? Hx Hl]; subst.
+  destruct (Z.eqb_spec (key x) id) as [<- | D].
+  - intros _. assert (Z0 : sum (fun y => Z.b2z (key y =? key x)) l = 0); [| simpl Z.b2z; lia].
+    rewrite <- (sum_of_zeros l). apply sum_of_equal. intros y Hy.
+    destruct (Z.eqb_spec (key y) (key x)) as [E |]; auto. destruct Hx. rewrite <- E. apply in_map, Hy.
+  - intros [E | Hin]; [congruence |]. simpl Z.b2z. rewrite IH; auto.
+Qed.
+
+Lemma leads_on_leads successors i r later to : (forall r s, In s (successors r) -> Move i r s) ->
+  leads_on successors r later to = true -> Leads i r to.
+Proof.
+  intros M. revert r. induction later as [| s rest IH]; simpl; intros r H.
+  - apply Z.eqb_eq in H. subst. constructor.
+  - apply andb_true_iff in H as [H K]. apply existsb_exists in H as (s' & Hs & E). apply Z.eqb_eq in E. subst s'.
+    apply Leads_on with s; auto.
+Qed.
+
+Section Instance.
+Variables (i : instance) (s : solution) (c : certificate) (all : list evidence).
+Hypothesis right : Well_formed i.
+Hypothesis lawful : Lawful i s.
+Hypothesis complete : Plans_every_plannable_robot i s.
+Hypothesis cuts_hold : forall k, In k (cuts c) -> Cut_holds i s k.
+
+Let successors := listed (successor_table i).
+Let table := resource_table i.
+Let tf := tariff_of (prices c).
+
+(** What a plan costs, weighted, together with its prices. *)
+Let priced_plan (p : plan) : Z := paid (prices c) (visits p) + weight_of c (plan_robot p) * cost_of_plan i p.
+
+Hypothesis scaled : 0 < scale c.
+Hypothesis prices_right : forall x, In x (prices c) -> 0 <= amount x /\ In (place x) (resource_ids i) /\
+  match other x with Some o => In o (resource_ids i) | None => True end.
+Hypothesis weights_right : forall id, In id (robot_ids i) -> 0 <= weight_of c id.
+Hypothesis multipliers_right : forall k, In k (cuts c) -> 0 <= multiplier k.
+
+Lemma prices_are_held : Holds_prices tf (prices c).
+Proof. apply tariff_holds_prices. intros x Hx. apply (prices_right x Hx). Qed.
+
+Lemma cost_is_of_robot a p : In a (robots i) -> plan_robot p = robot_id a -> cost_of_plan i p = cost a p.
+Proof.
+  intros Ha E. unfold cost_of_plan. rewrite E. pose proof (robot_ids_are_unique i right) as N. unfold robot_ids in N.
+  induction (robots i) as [| b l IH]; [destruct Ha |]. inversion N as [| ? ? Hb Hl]; subst. simpl.
+  destruct (Z.eqb_spec (robot_id b) (robot_id a)) as [Eq | D].
+  - destruct Ha as [-> | Ha]; auto. destruct Hb. rewrite Eq. apply in_map, Ha.
+  - destruct Ha as [-> | Ha]; [congruence | auto].
+Qed.
+
+Lemma way_does_not_arrive_before_it_starts a vs : In a (robots i) -> Way i a vs -> forall v rest, vs = v :: rest ->
+  enter v <= arrives vs.
+Proof.
+  intros Ha H. induction H as [v Hg Hl | v w later Hl Hn Hm Hw IH]; intros u rest E; injection E as <- <-.
+  - unfold arrives. simpl. lia.
+  - pose proof (need_is_positive i a right Ha (visit_resource v)). specialize (IH w later eq_refl).
+    change (arrives (v :: w :: later)) with (arrives (w :: later)). lia.
+Qed.
+
+Lemma priced_plan_is_not_negative p : In p (plans s) -> 0 <= priced_plan p.
+Proof.
+  intros Hp. destruct (plan_is_a_way i s right lawful p Hp) as (a & Ha & E & W).
+  pose proof (nothing_is_paid_below_0 tf (prices c) prices_are_held (visits p)).
+  pose proof (plans_lawful i s lawful p a Hp Ha E) as L.
+  destruct (starts_at_release i a p L) as (v & rest & V & _ & T).
+  pose proof (way_does_not_arrive_before_it_starts a (visits p) Ha W v rest V) as A.
+  unfold priced_plan. rewrite (cost_is_of_robot a p) by auto. unfold cost, arrival. rewrite V in *.
+  change (fold_left (fun _ v => enter v) (v :: rest) (release a)) with (arrives (v :: rest)).
+  assert (0 <= weight_of c (plan_robot p)) by (apply weights_right; rewrite <- E; apply in_map, Ha). nia.
+Qed.
+
+(** What an accepted claim says of the robot's plans, if there are any. *)
+Lemma accepted_claim_is_below_plans a claimed_least e : In a (robots i) ->
+  claim_accepted i tf successors (takes_in table a) (weight_of c (robot_id a)) a claimed_least e = true ->
+  match claimed_least with Some n => n | None => 0 end <=
+  sum (fun p => Z.b2z (robot_id a =? plan_robot p) * priced_plan p) (plans s).
+Proof.
+  intros Ha H.
+  assert (Positive : forall p, In p (plans s) -> 0 <= Z.b2z (robot_id a =? plan_robot p) * priced_plan p).
+  { intros p Hp. pose proof (priced_plan_is_not_negative p Hp). destruct (_ =? _); simpl Z.b2z; lia. }
+  destruct claimed_least as [n |]; [| apply sum_is_not_negative, Positive].
+  unfold claim_accepted in H. apply andb_true_iff in H as [Rests H]. apply andb_true_iff in H as [H Leads].
+  apply andb_true_iff in H as [Start Closed].
+  assert (P : In (robot_id a) (planned s)).
+  { apply complete; auto. apply (leads_on_leads successors i _ (way e)); auto.
+    intros r t Hm. apply successors_are_moves; auto. }
+  apply in_map_iff in P as (p & E & Hp).
+  apply Z.le_trans with (Z.b2z (robot_id a =? plan_robot p) * priced_plan p);
+    [| apply (sum_is_above_each _ _ p Positive Hp)].
+  rewrite E, Z.eqb_refl. simpl Z.b2z. rewrite Z.mul_1_l. unfold priced_plan. rewrite (cost_is_of_robot a p), E by auto.
+  eapply (claim_is_below_every_plan i tf successors (takes_in table a) a (Claim n _ _ _) (prices c) p right Ha
+    prices_are_held).
+  - intros r t. apply successors_are_moves, right.
+  - intros r. apply takes_what_is_needed, right.
+  - constructor.
+    + exact Start.
+    + intros r t label L. simpl in L. apply found_pair_is_listed in L.
+      apply (proj1 (forallb_forall _ _) Closed _ L).
+    + apply forallb_forall, Rests.
+    + apply weights_right, in_map, Ha.
+  - apply (plans_lawful i s lawful p a); auto.
+Qed.
+
+Lemma accepted_claims_are_below_plans robots' : forall claims' all',
+  (forall a, In a robots' -> In a (robots i)) -> refused_claims i tf successors table c robots' claims' all' = None ->
+  sum (fun k => match snd k with Some n => n | None => 0 end) claims' <=
+  sum (fun a => sum (fun p => Z.b2z (robot_id a =? plan_robot p) * priced_plan p) (plans s)) robots'.
+Proof.
+  induction robots' as [| a robots' IH]; intros [| [id claimed_least] claims'] [| e all'] K H;
+    try discriminate; try (simpl; lia). simpl in H.
+  destruct (Z.eqb_spec id (robot_id a)) as [-> |]; [| discriminate].
+  destruct (claim_accepted i tf successors _ _ a claimed_least e) eqn:C; [| discriminate].
+  apply accepted_claim_is_below_plans in C; [| apply K; left; auto].
+  assert (IHr := IH claims' all' (fun b Hb => K b (or_intror Hb)) H). simpl in *. lia.
+Qed.
+
+Lemma each_plan_counts_once :
+  sum (fun a => sum (fun p => Z.b2z (robot_id a =? plan_robot p) * priced_plan p) (plans s)) (robots i) =
+  sum priced_plan (plans s).
+Proof.
+  rewrite sums_are_exchanged. apply sum_of_equal. intros p Hp.
+  rewrite (sum_of_equal _ (fun a => priced_plan p * Z.b2z (robot_id a =? plan_robot p))) by (intros; lia).
+  rewrite sum_of_multiples, one_of_different_ids; [lia | apply (robot_ids_are_unique i right) |].
+  apply (covers_robots i s lawful), in_or_app. left. apply in_map, Hp.
+Qed.
+
+Lemma total_is_the_sum : total_cost i s = sum (cost_of_plan i) (plans s).
+Proof. apply total_of_is_the_sum. Qed.
+
+(** What the robots' own ticks count is what is left by the cuts. *)
+Lemma cuts_count_the_rest :
+  sum (fun p => weight_of c (plan_robot p) * cost_of_plan i p) (plans s) =
+  scale c * total_cost i s - sum (fun k => multiplier k * sum (cost_of_robot i s) (members k)) (cuts c).
+Proof.
+  rewrite total_is_the_sum, <- sum_of_multiples.
+  assert (E : sum (fun k => multiplier k * sum (cost_of_robot i s) (members k)) (cuts c) =
+    sum (fun p => sum (fun k => multiplier k * sum (fun m => Z.b2z (m =? plan_robot p)) (members k)) (cuts c) *
+      cost_of_plan i p) (plans s)).
+  { rewrite (sum_of_equal _
+    (fun k => sum (fun p => multiplier k * sum (fun m => Z.b2z (m =? plan_robot p)) (members k) *
+      cost_of_plan i p) (plans s))).
+    - rewrite sums_are_exchanged. apply sum_of_equal. intros p _. rewrite Z.mul_comm, <- sum_of_multiples.
+      apply sum_of_equal. intros. lia.
+    - intros k _. unfold cost_of_robot. rewrite sums_are_exchanged, <- sum_of_multiples. apply sum_of_equal.
+      intros p _. rewrite <- Z.mul_assoc. f_equal. rewrite Z.mul_comm, <- sum_of_multiples. apply sum_of_equal.
+      intros m _. rewrite Z.eqb_sym. destruct (_ =? _); simpl Z.b2z; lia. }
+  rewrite E. assert (S : forall (f g h : plan -> Z) l, (forall p, f p = g p - h p) -> sum f l = sum g l - sum h l).
+  { intros f g h l H. induction l as [| p l IH]; simpl; [lia |]. rewrite H. lia. }
+  apply S. intros p. unfold weight_of. lia.
+Qed.
+
+Lemma all_parts_are_below_the_total : refused_claims i tf successors table c (robots i) (claims c) all = None ->
+  parts table c <= scale c * total_cost i s.
+Proof.
+  intros H. apply accepted_claims_are_below_plans in H; auto. rewrite each_plan_counts_once in H.
+  unfold priced_plan in H. rewrite sum_of_sums, cuts_count_the_rest in H.
+  pose proof (all_pay_no_more_than_prices_times_capacities i s right lawful (prices c) prices_right) as Paid.
+  unfold parts. rewrite !total_of_is_the_sum.
+  rewrite (sum_of_equal (fun x => amount x * room_in table (place x)) (fun x => amount x * room i (place x)))
+    by (intros; unfold table; rewrite room_is_looked_up; auto).
+  assert (sum (fun k => multiplier k * least_total k) (cuts c) <=
+    sum (fun k => multiplier k * sum (cost_of_robot i s) (members k)) (cuts c)).
+  { apply sum_is_monotone. intros k Hk. apply Z.mul_le_mono_nonneg_l; auto. apply cuts_hold, Hk. }
+  unfold worth in Paid. lia.
+Qed.
+
+End Instance.
+
+(** bound/robots: a robot has no claim only where no way leads to its goal. *)
+Theorem robot_without_a_claim_has_no_way i tf own a e : Well_formed i -> In a (robots i) ->
+  claim_accepted i tf (listed (successor_table i)) (takes_in (resource_table i) a) own a None e = true ->
+    ~ Plannable i a.
+Proof.
+  intros right Ha H. unfold claim_accepted in H. apply andb_true_iff in H as [Least H].
+  apply andb_true_iff in H as [Elsewhere Start]. apply negb_true_iff, Z.eqb_neq in Elsewhere.
+  unfold Plannable. intros L. remember (goal a) as to eqn:To. revert Elsewhere Start. generalize dependent (start a).
+  intros from L. induction L as [r | r s to M L IH]; intros Elsewhere Start; [congruence |]. subst to.
+  destruct (moves_join_resources i right r s M) as (_ & Hr & _).
+  pose proof (proj1 (forallb_forall _ _) Least r Hr) as N. unfold rests_are_least in N.
+  pose proof (proj1 (forallb_forall _ _) N s (proj2 (successors_are_moves i r s right) M)) as K. simpl in K.
+  destruct (Map.find r (index fst (ticks_after e))); [discriminate |]. apply andb_true_iff in K as [K1 K2].
+  apply negb_true_iff, Z.eqb_neq in K1. apply IH; auto.
+Qed.
+
+(** No lawful solution that plans every robot with a way to its goal costs less than an accepted bound, if its cuts
+    hold. *)
+Theorem accepted_bound_is_below_every_solution i s c all : Well_formed i -> bound_accepted i c all = true ->
+  Lawful i s -> Plans_every_plannable_robot i s -> (forall k, In k (cuts c) -> Cut_holds i s k) ->
+  bound c <= total_cost i s.
+Proof.
+  intros right H lawful complete cuts_hold. unfold bound_accepted, broken_rule in H.
+  destruct (scale_accepted c) eqn:Scaled; [| discriminate]. cbn [negb] in H.
+  destruct (forallb (price_accepted _ _ _ c) (prices c)) eqn:Priced; [| discriminate]. cbn [negb] in H.
+  destruct (prices_are_different c); [| discriminate]. cbn [negb] in H.
+  destruct (size_accepted c); [| discriminate]. cbn [negb] in H.
+  destruct (cuts_accepted i c) eqn:Cutted; [| discriminate]. cbn [negb] in H.
+  destruct (refused_claims _ _ _ _ c _ _ all) eqn:Claimed; [discriminate |].
+  destruct (total_accepted _ c) eqn:Totalled; [| discriminate].
+  apply andb_true_iff in Scaled as [Scaled _]. apply Z.ltb_lt in Scaled. apply Z.eqb_eq in Totalled.
+  apply andb_true_iff in Cutted as [Multipliers Weights]. rewrite forallb_forall in Multipliers, Weights, Priced.
+  assert (P : parts (resource_table i) c <= scale c * total_cost i s).
+  { apply (all_parts_are_below_the_total i s c all); auto.
+    - intros x Hx. specialize (Priced x Hx). unfold price_accepted in Priced. rewrite !andb_true_iff in Priced.
+      destruct Priced as ((((A & _) & _) & K) & O). apply Z.leb_le in A. apply Ids.contains_of_list in K.
+      repeat split; auto. destruct (other x) as [o |]; auto. rewrite !andb_true_iff in O. destruct O as ((O & _) & _).
+      apply Ids.contains_of_list in O. exact O.
+    - intros id Hid. apply Z.leb_le, Weights, Hid.
+    - intros k Hk. specialize (Multipliers k Hk). rewrite !andb_true_iff in Multipliers.
+      destruct Multipliers as ((M & _) & _). apply Z.leb_le in M. exact M. }
+  rewrite Totalled. pose proof (Z.mul_div_le (- parts (resource_table i) c) (scale c) Scaled).
+  pose proof (Z.mod_pos_bound (- parts (resource_table i) c) (scale c) Scaled).
+  pose proof (Z.div_mod (- parts (resource_table i) c) (scale c)). nia.
+Qed.
