@@ -10,6 +10,7 @@ from carp_optimum.hints import NoHintsError, refutation_with_hints
 from carp_optimum.optimum import Optimum
 from carp_optimum.solver import Deadline, Solver
 from carp_spec import Instance, Refusal, write_instance
+from carp_verify.bound_rules import ContradictionError
 from carp_verify.clauses import Formula, dimacs
 from carp_verify.encoding import Evidence
 from carp_verify.optimum_rules import is_provable
@@ -62,22 +63,25 @@ def _model(formula: Formula, deadline: Deadline) -> Sequence[bool]:
     solver = Solver(formula, deadline.check)
     try:
         if not solver.satisfiable([]):
-            message = "the formula of the optimum has no model; the optimum is not one"
-            raise Refusal("request", "$.proof", is_provable.id, message)
+            raise ContradictionError("the search has found an optimum whose formula has no model")
         return solver.model()
     finally:
         solver.close()
 
 
 def refutation(formula: Formula, deadline: Deadline) -> str:
-    """A refutation of the formula, with hints; raises `TimeOver`, and `Refusal` if the formula has a model."""
+    """A refutation of the formula, with hints.
+
+    Raises `TimeOver`, `ContradictionError` if the formula has a model, and `Refusal` if a step has no hints.
+    """
     if () in formula.clauses:
         return refutation_with_hints(formula.clauses, (), deadline.check)
     solver = Solver(formula, deadline.check, with_proof=True)
     try:
         if solver.satisfiable([]):
-            message = "the formula below the optimum has a model; the optimum is not one"
-            raise Refusal("request", "$.proof", is_provable.id, message)
+            raise ContradictionError(
+                "the search has found that no plans cost less, and the formula of such plans has a model"
+            )
         return refutation_with_hints(formula.clauses, solver.proof(), deadline.check)
     except NoHintsError as error:
         message = f"the solver's refutation has a step that no hints can justify: {error}"
