@@ -102,11 +102,15 @@ coverage: install
 
 # Break the specification and the reference in one place after the other, and list what no test noticed.
 # Works on a copy; `make mutation-carp_spec` for one package. tests/mutation/survivors.md explains what is left.
-mutation: mutation-carp_spec mutation-carp_reference mutation-carp_optimized
+mutation: mutation-trusted mutation-carp_spec mutation-carp_reference mutation-carp_optimized
 
-# The compiled planner's reuse, run uncompiled, by a driver of its own that forks for each mutant.
+# The compiled planner's reuse, run uncompiled, by a driver that forks for each mutant; then, by the same driver, the
+# checkers that call something proved, verified or conforming.
 mutation-carp_optimized: install
-	nice $(BIN)/python -m tests.mutation.forking
+	nice $(BIN)/python -m tests.mutation.planner
+
+mutation-trusted: install
+	nice $(BIN)/python -m tests.mutation.checkers
 
 mutation-%: install
 	rm -rf build/mutation/$* build/mutation/$*-original

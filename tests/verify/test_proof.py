@@ -176,6 +176,16 @@ def test_tampering_is_refused_though_the_digests_are_right(
         verify_proof(proof)
 
 
+@pytest.mark.parametrize(("name", "answer"), [("reach.cnf", "unsat"), ("beat.cnf", "sat")])
+def test_a_formula_about_which_z3_finds_the_opposite_is_refused(
+    proof: Path, name: str, answer: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    content = (proof / name).read_bytes()
+    monkeypatch.setattr("carp_verify.proof._ask_z3", lambda formula: answer if formula == content else "unknown")
+    with pytest.raises(ProofError, match=f"^{name}: z3 finds it {answer}, against the evidence"):
+        verify_proof(proof)
+
+
 def test_a_manifest_with_a_name_twice_is_refused(proof: Path) -> None:
     manifest = (proof / "manifest.json").read_text()
     (proof / "manifest.json").write_text(manifest.replace("{", '{"cost":1,', 1))

@@ -45,6 +45,7 @@ def test_clauses_that_are_forgotten_may_have_served_before() -> None:
         ("5 1 0 1 0\n6 0 5 3 4 0\n", "line 1 does not follow from its hints"),
         ("5 1 0 1 2 0\n5 0 5 3 4 0\n", "line 2 must have a number above 5"),
         ("4 1 0 1 2 0\n", "line 1 must have a number above 4"),
+        ("3 1 0 1 2 0\n", "line 1 must have a number above 4"),
         ("5 1 0 9 2 0\n", "line 1 has the hint 9"),
         ("5 0 5 0\n", "line 1 has the hint 5"),
         ("5 1 0 -1 2 0\n", "line 1 must be a clause with its hints"),
@@ -75,6 +76,11 @@ def test_a_refutation_that_looks_at_too_much_is_refused_before_its_first_step(mo
     monkeypatch.setattr(refutation, "LARGEST_REFUTATION", 10)
     with pytest.raises(NotRefutedError, match="its hints look at 21 literals, and at most 10"):
         require_refutation(SQUARE, "9 1 0 4 4 4 4 4 0\n" + REFUTED)
+    never_read = REFUTED.replace("3 4 0", "3 4 99 99 0")
+    require_refutation(SQUARE, never_read)
+    monkeypatch.setattr(refutation, "LARGEST_REFUTATION", 9)
+    with pytest.raises(NotRefutedError, match="its hints look at 10 literals, and at most 9"):
+        require_refutation(SQUARE, never_read)
 
 
 @given(CLAUSES, st.data())

@@ -1,0 +1,144 @@
+"""Mutants of the modules that call something proved, verified or conforming, against their own tests.
+
+`python -m tests.mutation.checkers` lists the mutants that no test notices; with names of modules, of these alone. The
+tests are the gate's, but random ones draw 25 examples where they do not say how many, and tests that take more than
+`LONGEST` seconds or start programs are left out. A mutant takes the place of its module in a process forked after all
+tests have passed once, so that what they remember, certificates for one, was made by the module as it is.
+"""
+
+import os
+import sys
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from time import process_time
+from types import ModuleType
+
+os.environ["HYPOTHESIS_PROFILE"] = "mutation"
+
+import pytest
+from _pytest.runner import runtestprotocol
+from tests.mutation.forking import ROOT, Case, chosen, outcome, run_mutants
+from tests.mutation.mutants import Mutant, mutants
+
+FORMULAS = ("verify/test_encoding", "verify/test_proof", "verify/test_forgery", "verify/test_optimum")
+TESTS: Mapping[str, Sequence[str]] = {
+    "carp_verify.refutation": ("verify/test_refutation", "verify/test_forgery"),
+    "carp_verify.bound_cuts": ("verify/test_bound", "verify/test_forgery"),
+    "carp_verify.bound_rules": ("verify/test_bound", "verify/test_forgery", "verify/test_gap", "oracle/test_bound"),
+    "carp_verify.verify_bound": ("verify/test_bound", "verify/test_forgery"),
+    "carp_verify.proof": ("verify/test_proof", "verify/test_forgery", "oracle/test_optimum"),
+    "carp_verify.certificate": ("verify/test_certificate",),
+    "carp_verify.clauses": (*FORMULAS, "verify/test_bound"),
+    "carp_verify.encoding": (*FORMULAS, "verify/test_bound"),
+    "carp_verify.robot_clauses": (*FORMULAS, "verify/test_bound"),
+}
+PLANTED: Mapping[str, Sequence[tuple[str, str]]] = {
+    "carp_verify.verify_bound": (
+        ("is_weight(0, -left[robot])", "is_weight(certificate.scale, cut.multiplier)"),  # per cut, not per robot
+        ("is_weight(0, -left[robot])", "True"),
+        ("price * instance.graph.resource[source].capacity", "price"),
+        ("(self.across.get(resource), enter + 1)", "(None, 0)"),  # only movers pay for exchanges
+        ("max(self.horizon, tick + 1)", "max(self.horizon, tick)"),
+    ),
+    "carp_verify.bound_cuts": (("0 <= horizon <= cut.least", "0 <= horizon"),),
+    "carp_verify.refutation": (
+        (
+            "for literal in known[hint] if -literal not in true]",
+            "for literal in known[hint] if -literal not in true][:1]",
+        ),
+        ("    last = len(known)\n", "    last = 0\n"),
+        ("        last = step.number\n        known[last]", "        known[step.number]"),
+    ),
+    "carp_verify.proof": (
+        ('("unsat", "sat")', '("unsat", "")'),  # what z3 says of the formula of a smaller total does not matter
+        ('("unsat", "sat")', '("", "sat")'),
+        ("!= manifest.sha256[name]", "is None"),
+        ("if verdict.violations:", "if not verdict:"),
+    ),
+    "carp_verify.robot_clauses": (
+        (
+            "if target in self._rest and (self._parks or target != self.robot.goal)",
+            "if target in self._rest and target != self.robot.goal",
+        ),
+    ),
+}
+"""Errors that an audit planted, some of which no test had noticed: texts of the modules, and what to put there."""
+LEFT_OUT = ("on_a_large_map", "nothing_compiled", "undecided_search", "before_a_deadline")
+LONGEST = 1.5
+
+
+class Tests:
+    """A plugin of pytest that runs the collected tests against mutants, in place of running them once."""
+
+    def __init__(self, names: Sequence[str]) -> None:
+        self.names = names
+
+    def pytest_runtestloop(self, session: pytest.Session) -> bool:
+        """Pass all tests once, then run the mutants of each module."""
+        cases = {item: measured(item) for item in session.items}
+        for name in self.names:
+            own = [item for item in session.items if in_tests(item, TESTS[name])]
+            ordered = sorted((cases[item] for item in own), key=lambda case: case.seconds)
+            kept = [Case(case.run, 3 * case.seconds + 1) for case in ordered if case.seconds <= LONGEST]
+            module = sys.modules[name]
+            path = Path(str(module.__file__))
+
+            def load(mutant: Mutant, module: ModuleType = module) -> None:
+                replace(module, mutant.source)
+
+            status, _ = outcome(partial(replace, module, path.read_text(encoding="utf-8")), kept)
+            if status:
+                sys.exit(f"the tests of {name} fail in a forked process without any mutation")
+            print(f"{name}: {len(kept)} tests, {sum(case.seconds for case in ordered):.0f} s", flush=True)  # noqa: T201
+            run_mutants(name, mutants(path, planted=PLANTED.get(name, ())), kept, load, 0)
+        return True
+
+
+def measured(item: pytest.Item) -> Case:
+    """A test with the seconds of the processor that it takes once all is loaded; ends the run if it fails."""
+    seconds = 0.0
+    for _ in range(2):
+        started = process_time()
+        run(item)
+        seconds = process_time() - started
+        if seconds < 1:
+            break
+    return Case(partial(run, item), seconds)
+
+
+def run(item: pytest.Item) -> int:
+    """Run a test."""
+    item._initrequest()  # type: ignore[attr-defined]
+    for report in runtestprotocol(item, log=False):
+        if report.failed:
+            raise AssertionError(f"{item.nodeid}: {report.longreprtext}")
+    return 0
+
+
+def in_tests(item: pytest.Item, files: Sequence[str]) -> bool:
+    return any(item.path == ROOT / "tests" / f"{name}.py" for name in files)
+
+
+def replace(module: ModuleType, source: str) -> None:
+    """Run a source as the module, and give what it defines to all modules that have imported it."""
+    before = dict(vars(module))
+    exec(compile(source, str(module.__file__), "exec"), vars(module))  # noqa: S102 - a mutant is to be run
+    for other in list(sys.modules.values()):
+        names = vars(other) if str(getattr(other, "__file__", "")).startswith(str(ROOT)) else {}
+        for name in [name for name in names if name in before and other is not module and not name.startswith("__")]:
+            if names[name] is before[name]:
+                setattr(other, name, getattr(module, name, None))
+
+
+def main(names: Sequence[str]) -> int:
+    modules = chosen(names, list(TESTS))
+    files = sorted({f"tests/{file}.py" for name in modules for file in TESTS[name]})
+    plugins = ("cacheprovider", "xdist", "cov")
+    left_out = " and ".join(f"not {name}" for name in LEFT_OUT)
+    options = ["-qqs", "-k", left_out, *(f"-pno:{name}" for name in plugins)]
+    return pytest.main([*options, *files], plugins=[Tests(modules)])
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,148 @@
+"""Mutants of the compiled planner, run uncompiled, each in a process forked from one that has loaded all but it.
+
+`python -m tests.mutation.planner` lists the mutants that no check notices; with names of modules, of these alone. The
+checks are those of tests/optimized that fit into a few seconds: random small questions and fleets to which robots are
+added, whose answers by the reference are known before the first fork; crowds; and test_replanning.py and
+test_reuse.py. Beside a mutant that survives stands how many queries it asks of the fleets, where it asks other ones:
+more cost time alone, fewer want a reason. Starting pytest and numba for each mutant would take ten times as long.
+"""
+
+import os
+import sys
+import warnings
+from collections.abc import Callable, Sequence
+from functools import partial
+from importlib import import_module
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
+from importlib.util import spec_from_loader
+from itertools import product
+from types import ModuleType
+
+os.environ["NUMBA_DISABLE_JIT"] = "1"  # numba looks when it is loaded
+os.environ["HYPOTHESIS_PROFILE"] = "mutation"
+
+import numpy as np
+import tests.conftest  # noqa: F401 - the profile
+from tests.mutation.forking import ROOT, Case, chosen, outcome, run_mutants
+from tests.mutation.mutants import Mutant, mutants
+from tests.optimized.arrivals import Arrivals, arrivals, convoy, scaled
+from tests.optimized.towns import TOWNS
+
+import carp_reference
+from carp_experiments.small_questions import question
+from carp_spec import Instance, Neighbourhood, Planner, Solution
+
+FOLDER = ROOT / "optimized" / "carp_optimized"
+MODULES = ("replanning", "order_search", "answers", "neighbourhood", "orders", "distances", "passes", "windows")
+QUESTIONS = 150
+FLEETS = (*range(120), 157, 202, 209, 307, 330, 381, 435, 466, 596, 935)  # the last ones notice what others do not
+CONVOYS = 10
+SECONDS = 4  # of the processor, for one case
+KINDS = ("kept", "unchanged", "prefixes", "shared", "bounds")
+CHOICES = list(product((True, False), repeat=len(KINDS)))
+TESTS: Sequence[tuple[str, str, tuple[object, ...]]] = (
+    *(("test_replanned_robots", "test_the_robots_behind_get_the_plans_of_the_reference", (name,)) for name in TOWNS),
+    (
+        "test_replanned_robots",
+        "test_a_plan_alone_is_not_taken_over_from_before_a_round_that_left_a_robot_outside_without_a_plan",
+        (),
+    ),
+    ("test_replanned_robots", "test_orders_are_drawn_in_a_round_too_in_which_a_member_has_no_plan", ()),
+    ("test_same_plans", "test_crowds_are_planned_alike", ()),
+    ("test_replanning", "test_a_query_is_repeated_only_where_the_lemma_says_and_else_finds_the_same", ()),
+    ("test_reuse", "test_orders_that_begin_alike_share_the_queries_of_their_beginning", (4, 64, 96)),
+    ("test_reuse", "test_without_reuse_every_query_is_asked", ()),
+    *(("test_reuse", "test_each_kind_avoids_queries_and_counts_them", (kind,)) for kind in KINDS),
+    ("test_reuse", "test_sampled_orders_share_their_beginnings_too", ()),
+)
+
+
+class Changed(MetaPathFinder, Loader):
+    """Loads a module from another source than its file."""
+
+    def __init__(self, name: str, source: str) -> None:
+        self.name, self.source = name, source
+
+    def find_spec(self, name: str, path: object, target: object = None) -> ModuleSpec | None:
+        del path, target
+        return spec_from_loader(name, self) if name == self.name else None
+
+    def exec_module(self, module: ModuleType) -> None:
+        module.__file__ = str(FOLDER / f"{self.name.rpartition('.')[2]}.py")
+        exec(compile(self.source, module.__file__, "exec"), module.__dict__)  # noqa: S102 - a mutant is to be run
+
+
+def cases() -> list[Case]:
+    """What a right planner passes, with the reference's answers; each loads the planner, and counts queries asked."""
+    asked: list[Callable[[], int]] = []
+    for number in range(QUESTIONS):
+        subject, planner = question(1, number)
+        expected = ask(carp_reference.plan, carp_reference.add, subject, planner)
+        choices = {CHOICES[0], CHOICES[number % len(CHOICES)]} if isinstance(planner, Neighbourhood) else {CHOICES[0]}
+        asked += [partial(ask_question, subject, planner, choice, expected) for choice in choices]
+    fleets = (*map(arrivals, FLEETS), *map(convoy, range(CONVOYS)), *(scaled(arrivals(k), 2**26, 1) for k in range(5)))
+    asked += [partial(ask_fleet, fleet, fleet.by_reference()) for fleet in fleets]
+    return [Case(each, SECONDS) for each in (*asked, *map(as_case, TESTS))]
+
+
+def ask_question(subject: object, planner: Planner, choice: Sequence[bool], expected: Solution) -> int:
+    import carp_optimized
+    from carp_optimized import Reuse
+
+    reuse = Reuse(*choice)
+    plan, add = partial(carp_optimized.plan, reuse=reuse), partial(carp_optimized.add, reuse=reuse)
+    assert ask(plan, add, subject, planner) == expected
+    return 0
+
+
+def ask_fleet(fleet: Arrivals, expected: Solution) -> int:
+    solution, queries = fleet.by_fleet()
+    assert solution == expected
+    return queries.asked
+
+
+def as_case(test: tuple[str, str, tuple[object, ...]]) -> Callable[[], int]:
+    """A test of a module of tests/optimized, called with arguments."""
+    module, name, arguments = test
+
+    def case() -> int:
+        getattr(import_module(f"tests.optimized.{module}"), name)(*arguments)
+        return 0
+
+    return case
+
+
+def ask(plan: Callable[..., Solution], add: Callable[..., Solution], subject: object, planner: Planner) -> Solution:
+    if isinstance(subject, Instance):
+        return plan(subject, planner)
+    fleet = subject
+    return add(fleet.instance, fleet.solution, fleet.robot, fleet.now, planner)  # type: ignore[attr-defined]
+
+
+def load(module: str, source: str) -> None:
+    """Have the planner loaded again when it is asked for, with another source of one module; "" is its own."""
+    for name in [name for name in sys.modules if name.startswith(("carp_optimized", "tests.optimized.test_"))]:
+        del sys.modules[name]
+    if source:
+        sys.meta_path.insert(0, Changed(f"carp_optimized.{module}", source))
+
+
+def main(names: Sequence[str]) -> int:
+    warnings.simplefilter("ignore")
+    np.seterr(all="ignore")
+    all_cases = cases()
+    status, usual = outcome(lambda: load("", ""), all_cases)
+    if status:
+        sys.exit("the planner fails the checks without any mutation")
+    for module in chosen(names, MODULES):
+
+        def changed(mutant: Mutant, module: str = module) -> None:
+            load(module, mutant.source)
+
+        run_mutants(module, mutants(FOLDER / f"{module}.py", omit=False), all_cases, changed, usual)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
