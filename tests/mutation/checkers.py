@@ -1,8 +1,8 @@
 """Mutants of the modules that call something proved, verified or conforming, against their own tests.
 
 `python -m tests.mutation.checkers` lists the mutants that no test notices; with names of modules, of these alone. The
-tests are the gate's, but random ones draw 25 examples where they do not say how many, and tests that take more than
-`LONGEST` seconds or start programs are left out. A mutant takes the place of its module in a process forked after all
+tests are the gate's, but random ones draw at most `EXAMPLES`, and tests that take more than `LONGEST` seconds or start
+programs are left out. A mutant takes the place of its module in a process forked after all
 tests have passed once, so that what they remember, certificates for one, was made by the module as it is.
 """
 
@@ -65,7 +65,8 @@ PLANTED: Mapping[str, Sequence[tuple[str, str]]] = {
 }
 """Errors that an audit planted, some of which no test had noticed: texts of the modules, and what to put there."""
 LEFT_OUT = ("on_a_large_map", "nothing_compiled", "undecided_search", "before_a_deadline")
-LONGEST = 1.5
+LONGEST = 2.5
+EXAMPLES = 60
 
 
 class Tests:
@@ -76,6 +77,8 @@ class Tests:
 
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         """Pass all tests once, then run the mutants of each module."""
+        for item in session.items:
+            draw_less(item)
         cases = {item: measured(item) for item in session.items}
         for name in self.names:
             own = [item for item in session.items if in_tests(item, TESTS[name])]
@@ -95,6 +98,16 @@ class Tests:
         return True
 
 
+def draw_less(item: pytest.Item) -> None:
+    """Let a random test draw no more than `EXAMPLES`."""
+    from hypothesis import settings  # pytest wants to load it itself
+
+    function = getattr(item, "function", None)
+    own = getattr(function, "_hypothesis_internal_use_settings", None)
+    if own is not None and own.max_examples > EXAMPLES:
+        function._hypothesis_internal_use_settings = settings(own, max_examples=EXAMPLES)  # type: ignore[union-attr]
+
+
 def measured(item: pytest.Item) -> Case:
     """A test with the seconds of the processor that it takes once all is loaded; ends the run if it fails."""
     seconds = 0.0
@@ -102,7 +115,7 @@ def measured(item: pytest.Item) -> Case:
         started = process_time()
         run(item)
         seconds = process_time() - started
-        if seconds < 1:
+        if seconds < 1 or seconds > 2 * LONGEST:
             break
     return Case(partial(run, item), seconds)
 
@@ -123,6 +136,8 @@ def in_tests(item: pytest.Item, files: Sequence[str]) -> bool:
 def replace(module: ModuleType, source: str) -> None:
     """Run a source as the module, and give what it defines to all modules that have imported it."""
     before = dict(vars(module))
+    for name in [name for name in before if not name.startswith("__")]:
+        delattr(module, name)
     exec(compile(source, str(module.__file__), "exec"), vars(module))  # noqa: S102 - a mutant is to be run
     for other in list(sys.modules.values()):
         names = vars(other) if str(getattr(other, "__file__", "")).startswith(str(ROOT)) else {}
