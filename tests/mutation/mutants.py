@@ -41,7 +41,7 @@ def mutants(path: Path, omit: bool = True, planted: Sequence[tuple[str, str]] = 
     """The mutants of a module, each different: texts replaced, cosmic-ray's, and with `omit` something left out."""
     original = path.read_text(encoding="utf-8")
     seen = {original}
-    changes = chain(_by_texts(original, planted), _by_cosmic_ray(original), _omissions(original) if omit else ())
+    changes = chain(_by_texts(original, planted), _omissions(original) if omit else (), _by_cosmic_ray(original))
     for line, source in changes:
         if source not in seen and is_python(source):
             seen.add(source)

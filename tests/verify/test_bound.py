@@ -244,6 +244,38 @@ def test_a_search_for_least_costs_that_takes_too_long_is_refused(monkeypatch: py
     assert refused.value.rule == "bound/size"
 
 
+def sized(change: str) -> tuple[Instance, BoundDocument]:
+    """A certificate with one size larger than all others."""
+    if change == "prices":
+        lane = Instance(ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),)), (Robot("r", "a", "b"),))
+        prices = {"resources": (("a", 29, 1),), "exchanges": (("b", "a", 29, 1), ("a", "b", 3, 1))}
+        return lane, completed(lane, msgspec.structs.replace(lower_bound(lane, steps=1), horizon=30, **prices))
+    certificate = cut_certificate()
+    return crossing(), msgspec.structs.replace(certificate, cuts=certificate.cuts * (2 if change == "cuts" else 0))
+
+
+@pytest.mark.parametrize(
+    ("change", "limit", "size", "path"),
+    [
+        ("robots", "LARGEST_TABLE", 3 * 6, "$.robots"),
+        ("cuts", "LARGEST_TABLE", 2 * 2 * 6, "$.cuts"),
+        ("prices", "LARGEST_TABLE", 30 * 2, "$.resources"),
+        ("cuts", "LARGEST_FORMULA", 2 * 97, "$.cuts[1]"),
+        ("prices", "LARGEST_SEARCH", 1, "$.robots"),
+    ],
+)
+def test_each_size_is_accepted_up_to_its_limit(
+    change: str, limit: str, size: int, path: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    instance, certificate = sized(change)
+    monkeypatch.setattr(page, limit, size)
+    assert verify_bound(instance, certificate) == certificate.bound
+    monkeypatch.setattr(page, limit, size - 1)
+    with pytest.raises(Refusal, match=f"at most {size - 1}|more than {size - 1}") as refused:
+        verify_bound(instance, certificate)
+    assert (refused.value.path, refused.value.rule) == (path, "bound/size")
+
+
 def test_prices_that_keep_a_robot_waiting_for_long_are_refused_after_a_bounded_search() -> None:
     lane = ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),))
     instance = Instance(lane, (Robot("r", "a", "b"),))
