@@ -11,7 +11,17 @@ from tests.verify.test_bound import UNSOUND_DRAT
 
 from carp_optimum.optimum import optimum
 from carp_optimum.proving import write_proof
-from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, judge, write_instance
+from carp_spec import (
+    Instance,
+    Refusal,
+    Resource,
+    ResourceGraph,
+    Robot,
+    Verdict,
+    Violation,
+    judge,
+    write_instance,
+)
 from carp_verify.bound_rules import ContradictionError
 from carp_verify.proof import FILES, ProofError, verify_proof
 from carproof.strategies import Sizes, instances
@@ -115,6 +125,15 @@ def test_every_optimum_can_be_proved(tmp_path_factory: pytest.TempPathFactory, i
         assert verify_proof(directory, instance).cost == best.cost
 
 
+def test_a_file_is_read_up_to_the_limit_alone(proof: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    largest = max((proof / name).stat().st_size for name in FILES)
+    monkeypatch.setattr("carp_verify.proof.LARGEST_FILE", largest)
+    assert verify_proof(proof).cost == 13
+    monkeypatch.setattr("carp_verify.proof.LARGEST_FILE", largest - 1)
+    with pytest.raises(ProofError, match=f"it has more than {largest - 1} bytes"):
+        verify_proof(proof)
+
+
 @pytest.mark.parametrize("name", ["manifest.json", *FILES])
 def test_a_missing_file_is_refused(proof: Path, name: str) -> None:
     (proof / name).unlink()
@@ -138,6 +157,8 @@ def test_a_file_that_was_changed_has_another_digest(proof: Path, name: str) -> N
         (change_text("reach.cnf", drop_clause), r"reach.cnf: line 1 must be"),
         (change_text("beat.cnf", lambda text: text + "1 0\n"), r"beat.cnf: it must have \d+ lines"),
         (change_text("beat.cnf", drop_last_line), r"beat.cnf: it must have \d+ lines"),
+        (change_text("beat.cnf", lambda text: text[:-1]), r"beat.cnf: it must have \d+ lines"),
+        (change_text("reach.cnf", lambda text: text.replace("\n", "\r\n")), r"reach.cnf: it must have \d+ lines"),
         (change_text("reach.model", lambda text: text.replace(" 0\n", "\n")), "reach.model: it must be whole numbers"),
         (change_text("reach.model", lambda text: text.replace("1 ", "x ", 1)), "reach.model: it must be whole numbers"),
         (change_text("reach.model", lambda text: text.split(" ", 1)[1]), "reach.model: it must give each"),
@@ -173,6 +194,24 @@ def test_tampering_is_refused_though_the_digests_are_right(
     tamper(proof)
     with_digests(proof)
     with pytest.raises(ProofError, match=reason):
+        verify_proof(proof)
+
+
+@pytest.mark.parametrize(
+    ("verdict", "reason"),
+    [
+        (Verdict(13, 0, (Violation("plan/move", (0,), "0,0", 1, 2, "r"),)), r"its plans break a rule: \[plan/move\]"),
+        (Verdict(13, 1, ()), "its plans must cost 13, and cost 13"),
+        (Verdict(12, 0, ()), "its plans must cost 13, and cost 12"),
+        (Verdict(14, 0, ()), "its plans must cost 13, and cost 14"),
+    ],
+)
+def test_plans_in_the_model_are_judged(
+    proof: Path, verdict: Verdict, reason: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whatever the clauses allow: the plans here are right, and the verdict is not."""
+    monkeypatch.setattr("carp_verify.proof.judge", lambda *_: verdict)
+    with pytest.raises(ProofError, match=f"^reach.model: {reason}"):
         verify_proof(proof)
 
 
