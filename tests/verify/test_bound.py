@@ -483,15 +483,30 @@ def test_who_pays_for_an_exchange_in_the_verifier_is_who_the_lemma_says() -> Non
 
 
 @pytest.mark.parametrize(
-    ("prices", "least"),
+    ("start", "prices", "least"),
     [
-        ((("b", 1, 12), ("a", 1, 1)), 2 * SCALE + 1),
-        ((*(("a", tick, 50) for tick in range(1, 6)), *(("b", tick, 50) for tick in range(2, 6))), 6 * SCALE),
+        ("a", (("b", 1, 12), ("a", 1, 1)), 2 * SCALE + 1),
+        ("a", (*(("a", tick, 50) for tick in range(1, 6)), *(("b", tick, 50) for tick in range(2, 6))), 6 * SCALE),
+        ("b", tuple(("b", tick, 50) for tick in range(1, 6)), 6 * SCALE),
     ],
-    ids=["it waits where waiting has a price", "it passes the place where it parks later"],
+    ids=[
+        "it waits where waiting has a price",
+        "it passes the place where it parks later",
+        "it leaves the place where it stands and parks",
+    ],
 )
-def test_the_cheapest_plan_is_found_where(prices: tuple[tuple[str, int, int], ...], least: int) -> None:
+def test_the_cheapest_plan_is_found_where(start: str, prices: tuple[tuple[str, int, int], ...], least: int) -> None:
     lane = ResourceGraph((Resource("a"), Resource("b"), Resource("c")), (("a", "b"), ("b", "c")))
-    instance = Instance(lane, (Robot("robot", "a", "b"),), "park")
+    instance = Instance(lane, (Robot("robot", start, "b"),), "park")
     empty = BoundDocument(BOUND_FORMAT, digest(instance), 0, SCALE, HORIZON, prices, (), (), ())
     assert completed(instance, empty).robots == (("robot", least),)
+
+
+@pytest.mark.parametrize("place", [("a", "b"), ("b", "a")])
+def test_an_exchange_needs_moves_both_ways(place: tuple[str, str]) -> None:
+    one_way = ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),), directed=True)
+    instance = Instance(one_way, (Robot("r", "a", "b"),))
+    certificate = msgspec.structs.replace(lower_bound(instance, steps=1), horizon=3, exchanges=((*place, 1, 1),))
+    with pytest.raises(Refusal, match="must be a resource, or two with a move each way") as refused:
+        verify_bound(instance, certificate)
+    assert (refused.value.path, refused.value.rule) == ("$.exchanges[0]", "bound/price")
