@@ -183,7 +183,7 @@ def with_cut(**fields: object) -> Tamper:
     [
         (with_cut(multiplier=-1), "$.cuts[0].multiplier", "must be a whole number of at least 0, and is -1"),
         (with_cut(multiplier=1.5), "$.cuts[0].multiplier", r"and is 1\.5"),
-        (with_cut(multiplier=1 << 17), "$.cuts[0].multiplier", "must add up to 65536 at most"),
+        (with_cut(multiplier=(1 << 16) + 1), "$.cuts[0].multiplier", "must add up to 65536 at most"),
         (with_cut(robots=("r0", "r0")), "$.cuts[0].robots", "must name robots of the instance once, also 'r0'"),
         (with_cut(robots=("r0", "moon")), "$.cuts[0].robots", "also 'moon'"),
         (with_cut(robots=("r1",)), "$.cuts[0]", "it must have a horizon of each of 1 robots"),
