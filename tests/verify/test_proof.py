@@ -219,8 +219,19 @@ def test_plans_in_the_model_are_judged(
 def test_a_formula_about_which_z3_finds_the_opposite_is_refused(
     proof: Path, name: str, answer: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    content = (proof / name).read_bytes()
-    monkeypatch.setattr("carp_verify.proof._ask_z3", lambda formula: answer if formula == content else "unknown")
+    content = (proof / name).read_text()
+
+    class Mistaken:
+        def set(self, option: str, value: int) -> None:
+            assert (option, value) == ("timeout", 60_000)
+
+        def from_string(self, formula: str) -> None:
+            self.formula = formula
+
+        def check(self) -> str:
+            return answer if self.formula == content else "unknown"
+
+    monkeypatch.setattr("z3.Solver", Mistaken)
     with pytest.raises(ProofError, match=f"^{name}: z3 finds it {answer}, against the evidence"):
         verify_proof(proof)
 

@@ -25,7 +25,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
-from typing import Literal
+from typing import Final, Literal
 
 import msgspec
 
@@ -37,7 +37,7 @@ from carp_verify.encoding import Encoding, Evidence
 from carp_verify.refutation import NotRefutedError, require_refutation
 from carp_verify.unsolvable import Clauses, Obstacle, describe, why_no_obstacle
 
-PROOF_FORMAT = "carproof-proof/2"
+PROOF_FORMAT: Final = "carproof-proof/2"
 OLD_FORMAT = "carproof-proof/1"
 FILES = ("instance.json", "reach.cnf", "reach.model", "variables.json", "beat.cnf", "beat.lrat")
 FILES_OF_CLAUSES = ("instance.json", "beat.cnf", "beat.lrat")
@@ -64,7 +64,7 @@ class ProofError(Exception):
 class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What a proof directory of an optimum claims, and what its formulas were made from."""
 
-    format: str
+    format: Literal["carproof-proof/2"]
     claim: Literal["optimum"]
     cost: int
     horizons: tuple[int, ...]
@@ -75,7 +75,7 @@ class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class UnsolvableManifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Why no plan set exists, as a proof directory claims."""
 
-    format: str
+    format: Literal["carproof-proof/2"]
     claim: Literal["unsolvable"]
     obstacle: Obstacle
     sha256: Mapping[str, str]
