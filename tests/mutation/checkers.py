@@ -21,18 +21,34 @@ from _pytest.runner import runtestprotocol
 from tests.mutation.forking import ROOT, Case, chosen, outcome, run_mutants
 from tests.mutation.mutants import Mutant, mutants
 
-FORMULAS = ("verify/test_encoding", "verify/test_proof", "verify/test_forgery", "verify/test_optimum")
+FORMULAS = ("verify/test_encoding", "verify/test_proof", "verify/test_forgery", "verify/test_bound")
+CONFORM = (
+    "oracle/test_conform_judges",
+    "oracle/test_conform_evasive",
+    "oracle/test_conform_classical",
+    "oracle/test_conform",
+)
 TESTS: Mapping[str, Sequence[str]] = {
-    "carp_verify.refutation": ("verify/test_refutation", "verify/test_forgery"),
-    "carp_verify.bound_cuts": ("verify/test_bound", "verify/test_forgery"),
-    "carp_verify.bound_rules": ("verify/test_bound", "verify/test_forgery", "verify/test_gap", "oracle/test_bound"),
     "carp_verify.verify_bound": ("verify/test_bound", "verify/test_forgery"),
-    "carp_verify.proof": ("verify/test_proof", "verify/test_forgery", "oracle/test_optimum"),
+    "carp_verify.bound_rules": ("verify/test_bound", "verify/test_forgery", "verify/test_gap", "oracle/test_bound"),
+    "carp_verify.bound_cuts": ("verify/test_bound", "verify/test_forgery"),
+    "carp_verify.refutation": ("verify/test_refutation", "verify/test_forgery"),
+    "carp_verify.proof": ("verify/test_proof", "verify/test_forgery", "verify/test_unsolvable", "oracle/test_optimum"),
+    "carp_verify.unsolvable": ("verify/test_unsolvable", "verify/test_optimum"),
     "carp_verify.certificate": ("verify/test_certificate",),
-    "carp_verify.clauses": (*FORMULAS, "verify/test_bound"),
-    "carp_verify.encoding": (*FORMULAS, "verify/test_bound"),
-    "carp_verify.robot_clauses": (*FORMULAS, "verify/test_bound"),
+    "carp_verify.clauses": FORMULAS,
+    "carp_verify.encoding": FORMULAS,
+    "carp_verify.robot_clauses": FORMULAS,
+    "carp_oracle.conform.judges": CONFORM,
+    "carp_oracle.conform.optimum": CONFORM,
+    "carp_oracle.conform.answers": CONFORM,
+    "carp_oracle.conform.levels": CONFORM,
+    "carp_oracle.conform.deciding": CONFORM,
+    "carp_oracle.conform.effort": CONFORM,
+    "carp_oracle.conform.run": CONFORM,
 }
+TINY = 60
+"""So many instances of test_tiny_optima.py are asked for, one by one, of the modules that make or check formulas."""
 PLANTED: Mapping[str, Sequence[tuple[str, str]]] = {
     "carp_verify.verify_bound": (
         ("is_weight(0, -left[robot])", "is_weight(certificate.scale, cut.multiplier)"),  # per cut, not per robot
@@ -89,7 +105,8 @@ class Tests:
         cases = {item: measured(item) for item in session.items}
         for name in self.names:
             own = [item for item in session.items if in_tests(item, TESTS[name])]
-            ordered = sorted((cases[item] for item in own), key=lambda case: case.seconds)
+            found = [cases[item] for item in own] + (tiny_cases() if TESTS[name] == FORMULAS else [])
+            ordered = sorted(found, key=lambda case: case.seconds)
             kept = [Case(case.run, 3 * case.seconds + 1) for case in ordered if case.seconds <= LONGEST]
             module = sys.modules[name]
             path = Path(str(module.__file__))
@@ -103,6 +120,17 @@ class Tests:
             print(f"{name}: {len(kept)} tests, {sum(case.seconds for case in ordered):.0f} s", flush=True)  # noqa: T201
             run_mutants(name, mutants(path, planted=PLANTED.get(name, ())), kept, load, 0)
         return True
+
+
+def tiny_cases() -> list[Case]:
+    """The search for optima and both formulas, beside the joint search."""
+    from tests.verify.test_tiny_optima import faults
+
+    def ask(number: int) -> int:
+        assert not list(faults(number))
+        return 0
+
+    return [Case(partial(ask, number), 0.1) for number in range(TINY)]
 
 
 def draw_less(item: pytest.Item) -> None:

@@ -390,6 +390,12 @@ def of_robot(more: int) -> Tamper:
         (reprice(place="moon"), "$.resources[0]", "bound/price", "moon must be a resource"),
         (exchange("north", "moon", 1, 1), "$.exchanges[0]", "bound/price", "north and moon must be"),
         (exchange("north", "east", 1, 1), "$.exchanges[0]", "bound/price", "with a move each way"),
+        (
+            lambda each: exchange("middle", "north", 0, 1)(exchange("north", "east", 1, 1)(each)),
+            "$.exchanges[1]",
+            "bound/price",
+            "with a move each way",
+        ),
         (change(robots=()), "$.robots", "bound/robots", "must name each robot of the instance once"),
         (lambda each: change(robots=each.robots[1:])(each), "$.robots", "bound/robots", "once, in its order"),
         (lambda each: change(robots=each.robots[::-1])(each), "$.robots", "bound/robots", "once, in its order"),
@@ -485,7 +491,7 @@ def test_who_pays_for_an_exchange_in_the_verifier_is_who_the_lemma_says() -> Non
 @pytest.mark.parametrize(
     ("start", "prices", "least"),
     [
-        ("a", (("b", 1, 12), ("a", 1, 1)), 2 * SCALE + 1),
+        ("a", (("b", 1, 12), ("a", 0, 3), ("a", 1, 1)), 2 * SCALE + 4),
         ("a", (*(("a", tick, 50) for tick in range(1, 6)), *(("b", tick, 50) for tick in range(2, 6))), 6 * SCALE),
         ("b", tuple(("b", tick, 50) for tick in range(1, 6)), 6 * SCALE),
     ],
