@@ -491,7 +491,7 @@ def test_who_pays_for_an_exchange_in_the_verifier_is_who_the_lemma_says() -> Non
 @pytest.mark.parametrize(
     ("start", "prices", "least"),
     [
-        ("a", (("b", 1, 12), ("a", 0, 3), ("a", 1, 1)), 2 * SCALE + 4),
+        ("a", (("b", 1, 12), ("a", 0, 3), ("a", 1, 1), ("a", 2, 5)), 2 * SCALE + 4),
         ("a", (*(("a", tick, 50) for tick in range(1, 6)), *(("b", tick, 50) for tick in range(2, 6))), 6 * SCALE),
         ("b", tuple(("b", tick, 50) for tick in range(1, 6)), 6 * SCALE),
     ],
