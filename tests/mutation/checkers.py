@@ -39,13 +39,13 @@ TESTS: Mapping[str, Sequence[str]] = {
     "carp_verify.clauses": FORMULAS,
     "carp_verify.encoding": FORMULAS,
     "carp_verify.robot_clauses": FORMULAS,
-    "carp_oracle.conform.judges": CONFORM,
-    "carp_oracle.conform.optimum": CONFORM,
-    "carp_oracle.conform.answers": CONFORM,
-    "carp_oracle.conform.levels": CONFORM,
-    "carp_oracle.conform.deciding": CONFORM,
-    "carp_oracle.conform.effort": CONFORM,
-    "carp_oracle.conform.run": CONFORM,
+    "carproof.conform.judges": CONFORM,
+    "carproof.conform.optimum": CONFORM,
+    "carproof.conform.answers": CONFORM,
+    "carproof.conform.levels": CONFORM,
+    "carproof.conform.deciding": CONFORM,
+    "carproof.conform.effort": CONFORM,
+    "carproof.conform.run": CONFORM,
 }
 TINY = 60
 """So many instances of test_tiny_optima.py are asked for, one by one, of the modules that make or check formulas."""
