@@ -1,9 +1,10 @@
 """Mutants of the modules that call something proved, verified or conforming, against their own tests.
 
-`python -m tests.mutation.checkers` lists the mutants that no test notices; with names of modules, of these alone. The
-tests are the gate's, but random ones draw at most `EXAMPLES`, and tests that take more than `LONGEST` seconds or start
-programs are left out. A mutant takes the place of its module in a process forked after all
-tests have passed once, so that what they remember, certificates for one, was made by the module as it is.
+`python -m tests.mutation.checkers` lists the mutants that no test notices; with names of modules, of these alone, and
+with a name and lines, `carp_verify.refutation:89:91`, of these lines alone. The tests are the gate's, but random ones
+draw at most `EXAMPLES`, and tests that take more than `LONGEST` seconds or start programs are left out. A mutant takes
+the place of its module in a process forked after all tests have passed once, so that what they remember, certificates
+for one, was made by the module as it is.
 """
 
 import os
@@ -95,15 +96,15 @@ EXAMPLES = 40
 class Tests:
     """A plugin of pytest that runs the collected tests against mutants, in place of running them once."""
 
-    def __init__(self, names: Sequence[str]) -> None:
-        self.names = names
+    def __init__(self, lines: Mapping[str, Sequence[int]]) -> None:
+        self.lines = lines
 
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         """Pass all tests once, then run the mutants of each module."""
         for item in session.items:
             draw_less(item)
         cases = {item: measured(item) for item in session.items}
-        for name in self.names:
+        for name, lines in self.lines.items():
             own = [item for item in session.items if in_tests(item, TESTS[name])]
             found = [cases[item] for item in own] + (tiny_cases() if TESTS[name] == FORMULAS else [])
             ordered = sorted(found, key=lambda case: case.seconds)
@@ -118,7 +119,8 @@ class Tests:
             if status:
                 sys.exit(f"the tests of {name} fail in a forked process without any mutation")
             print(f"{name}: {len(kept)} tests, {sum(case.seconds for case in ordered):.0f} s", flush=True)  # noqa: T201
-            run_mutants(name, mutants(path, planted=PLANTED.get(name, ())), kept, load, 0)
+            of_module = mutants(path, planted=PLANTED.get(name, ()))
+            run_mutants(name, (each for each in of_module if not lines or each.line in lines), kept, load, 0)
         return True
 
 
@@ -181,13 +183,14 @@ def replace(module: ModuleType, source: str) -> None:
                 setattr(other, name, getattr(module, name, None))
 
 
-def main(names: Sequence[str]) -> int:
-    modules = chosen(names, list(TESTS))
+def main(arguments: Sequence[str]) -> int:
+    lines = {name: [int(line) for line in of_name] for name, *of_name in (each.split(":") for each in arguments)}
+    modules = chosen(list(lines), list(TESTS))
     files = sorted({f"tests/{file}.py" for name in modules for file in TESTS[name]})
     plugins = ("cacheprovider", "xdist", "cov")
     left_out = " and ".join(f"not {name}" for name in LEFT_OUT)
     options = ["-qqs", "-k", left_out, *(f"-pno:{name}" for name in plugins)]
-    return pytest.main([*options, *files], plugins=[Tests(modules)])
+    return pytest.main([*options, *files], plugins=[Tests({name: lines.get(name, []) for name in modules})])
 
 
 if __name__ == "__main__":
