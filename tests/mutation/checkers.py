@@ -22,7 +22,8 @@ from _pytest.runner import runtestprotocol
 from tests.mutation.forking import ROOT, Case, chosen, outcome, run_mutants
 from tests.mutation.mutants import Mutant, mutants
 
-FORMULAS = ("verify/test_encoding", "verify/test_proof", "verify/test_forgery", "verify/test_bound")
+PIN = "verify/test_kept_formulas"
+FORMULAS = ("verify/test_encoding", PIN)
 CONFORM = (
     "oracle/test_conform_judges",
     "oracle/test_conform_evasive",
@@ -36,7 +37,7 @@ TESTS: Mapping[str, Sequence[str]] = {
     "carp_verify.refutation": ("verify/test_refutation", "verify/test_forgery"),
     "carp_verify.proof": (
         "verify/test_proof",
-        "verify/test_kept_formulas",
+        PIN,
         "verify/test_forgery",
         "verify/test_unsolvable",
         "oracle/test_optimum",
@@ -54,7 +55,7 @@ TESTS: Mapping[str, Sequence[str]] = {
     "carproof.conform.effort": CONFORM,
     "carproof.conform.run": CONFORM,
 }
-TINY = 60
+TINY = 40
 """So many instances of test_tiny_optima.py are asked for, one by one, of the modules that make or check formulas."""
 PLANTED: Mapping[str, Sequence[tuple[str, str]]] = {
     "carp_verify.verify_bound": (
@@ -113,16 +114,15 @@ class Tests:
         for name, lines in self.lines.items():
             own = [item for item in session.items if in_tests(item, TESTS[name])]
             found = [cases[item] for item in own] + (tiny_cases() if TESTS[name] == FORMULAS else [])
-            ordered = sorted(found, key=lambda case: case.seconds)
-            kept = [Case(case.run, 3 * case.seconds + 1) for case in ordered if case.seconds <= LONGEST]
+            ordered = sorted(found, key=lambda case: (case.is_pin, case.seconds))
+            kept = [Case(case.run, 3 * case.seconds + 1, case.is_pin) for case in ordered if case.seconds <= LONGEST]
             module = sys.modules[name]
             path = Path(str(module.__file__))
 
             def load(mutant: Mutant, module: ModuleType = module) -> None:
                 replace(module, mutant.source)
 
-            status, _ = outcome(partial(replace, module, path.read_text(encoding="utf-8")), kept)
-            if status:
+            if outcome(partial(replace, module, path.read_text(encoding="utf-8")), kept).status:
                 sys.exit(f"the tests of {name} fail in a forked process without any mutation")
             print(f"{name}: {len(kept)} tests, {sum(case.seconds for case in ordered):.0f} s", flush=True)  # noqa: T201
             of_module = mutants(path, planted=PLANTED.get(name, ()))
@@ -160,7 +160,7 @@ def measured(item: pytest.Item) -> Case:
         seconds = process_time() - started
         if seconds < LONGEST or seconds > 3 * LONGEST:
             break
-    return Case(partial(run, item), seconds)
+    return Case(partial(run, item), seconds, in_tests(item, [PIN]))
 
 
 def run(item: pytest.Item) -> int:

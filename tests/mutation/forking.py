@@ -22,19 +22,33 @@ BYTES = 4 << 30
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """A check, which fails by an exception, or takes longer than some seconds of the processor; it may count work."""
+    """A check, which fails by an exception, or takes longer than some seconds of the processor; it may count work.
+
+    One that is a `pin` comes last: it notices every change, right or wrong, and so shows what the others do not notice.
+    """
 
     run: Callable[[], int]
     seconds: float
+    is_pin: bool = False
 
 
 @dataclass(slots=True)
 class Score:
-    """How many mutants a module has, how many of them were noticed, and how many of these only by taking too long."""
+    """How many mutants a module has, how many were noticed, and of these only by a pin, or by taking too long."""
 
     mutants: int = 0
     noticed: int = 0
+    pinned: int = 0
     too_long: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """The exit status of a process, 0 if it passes all cases, the case that it came to, and the work counted."""
+
+    status: int
+    case: Case
+    work: int
 
 
 def run_mutants(
@@ -44,31 +58,32 @@ def run_mutants(
     score = Score()
     for mutant in mutants:
         score.mutants += 1
-        status, work = outcome(lambda mutant=mutant: load(mutant), cases)  # type: ignore[misc]
-        score.noticed += status != 0
-        score.too_long += os.WIFSIGNALED(status)
-        if status == 0:
-            more = "" if work == usual else f"  ({work - usual:+} queries)"
-            print(f"{name}:{mutant.line}  {mutant.change}{more}", flush=True)  # noqa: T201 - a report
-    counts = f"{score.mutants} mutants, {score.noticed} noticed, {score.too_long} of them by the time they take"
-    print(f"{name}: {counts}", flush=True)  # noqa: T201
+        found = outcome(lambda mutant=mutant: load(mutant), cases)  # type: ignore[misc]
+        is_pinned = found.status != 0 and found.case.is_pin
+        score.noticed += found.status != 0
+        score.pinned += is_pinned
+        score.too_long += os.WIFSIGNALED(found.status)
+        if found.status == 0 or is_pinned:
+            more = "" if is_pinned or found.work == usual else f"  ({found.work - usual:+} queries)"
+            only = "  (only by a pin)" if is_pinned else ""
+            print(f"{name}:{mutant.line}  {mutant.change}{more}{only}", flush=True)  # noqa: T201 - a report
+    ways = f"{score.pinned} of them only by a pin, {score.too_long} by the time they take"
+    print(f"{name}: {score.mutants} mutants, {score.noticed} noticed, {ways}", flush=True)  # noqa: T201
     return score
 
 
-def outcome(load: Callable[[], None], cases: list[Case]) -> tuple[int, int]:
-    """The exit status of a process that loads and passes the cases, 0 if it does, and the work counted.
-
-    The case that fails goes to the front.
-    """
+def outcome(load: Callable[[], None], cases: list[Case]) -> Outcome:
+    """What a process comes to that loads and passes the cases; one that fails, and is no pin, goes to the front."""
     place = mmap(-1, 1 << 12)
     child = os.fork()
     if child:
         status = os.waitpid(child, 0)[1]
         number, work = struct.unpack_from("qq", place)
         place.close()
-        if status:
+        reached = cases[number]
+        if status and not reached.is_pin:
             cases.insert(0, cases.pop(number))
-        return status, work
+        return Outcome(status, reached, work)
     try:
         resource.setrlimit(resource.RLIMIT_AS, (BYTES, BYTES))
         sys.stderr = sys.stdout = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 - until the end

@@ -132,15 +132,15 @@ def main(names: Sequence[str]) -> int:
     warnings.simplefilter("ignore")
     np.seterr(all="ignore")
     all_cases = cases()
-    status, usual = outcome(lambda: load("", ""), all_cases)
-    if status:
+    unchanged = outcome(lambda: load("", ""), all_cases)
+    if unchanged.status:
         sys.exit("the planner fails the checks without any mutation")
     for module in chosen(names, MODULES):
 
         def changed(mutant: Mutant, module: str = module) -> None:
             load(module, mutant.source)
 
-        run_mutants(module, mutants(FOLDER / f"{module}.py", omit=False), all_cases, changed, usual)
+        run_mutants(module, mutants(FOLDER / f"{module}.py", omit=False), all_cases, changed, unchanged.work)
     return 0
 
 

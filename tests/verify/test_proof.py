@@ -223,13 +223,13 @@ def test_a_formula_about_which_z3_finds_the_opposite_is_refused(
 
     class Mistaken:
         def set(self, option: str, value: int) -> None:
-            assert (option, value) == ("timeout", 60_000)
+            self.limits = {option: value}
 
         def from_string(self, formula: str) -> None:
             self.formula = formula
 
         def check(self) -> str:
-            return answer if self.formula == content else "unknown"
+            return answer if self.formula == content and self.limits == {"timeout": 60_000} else "unknown"
 
     monkeypatch.setattr("z3.Solver", Mistaken)
     with pytest.raises(ProofError, match=f"^{name}: z3 finds it {answer}, against the evidence"):
@@ -240,6 +240,14 @@ def test_a_manifest_with_a_name_twice_is_refused(proof: Path) -> None:
     manifest = (proof / "manifest.json").read_text()
     (proof / "manifest.json").write_text(manifest.replace("{", '{"cost":1,', 1))
     with pytest.raises(ProofError, match=r"^manifest\.json: .* has the name 'cost' 2 times"):
+        verify_proof(proof)
+
+
+@pytest.mark.parametrize("names", [FILES[:-1], FILES[1:], (*FILES, "more.json"), ()])
+def test_digests_of_other_files_are_refused(proof: Path, names: tuple[str, ...]) -> None:
+    digests = json.loads((proof / "manifest.json").read_text())["sha256"]
+    change_manifest(sha256={name: digests.get(name, "") for name in names})(proof)
+    with pytest.raises(ProofError, match=r"^manifest\.json: it must have the digests of instance\.json, "):
         verify_proof(proof)
 
 
