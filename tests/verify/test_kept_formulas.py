@@ -8,8 +8,8 @@ from tests.verify.test_proof import crossing
 
 from carp_spec import Instance, Robot
 from carp_verify.clauses import dimacs
-from carp_verify.optimum import Evidence
-from carp_verify.proof import _variables, beat_formula, reach_formula
+from carp_verify.encoding import Evidence
+from carp_verify.proof import beat_formula, reach_formula, variables
 
 WIDE = lane("park", Robot("r", "a", "c", pace=2), Robot("s", "d", "a"), Robot("t", "b", "b", release=2), capacity=2)
 
@@ -31,5 +31,5 @@ def test_the_formulas_of_format_2_stay(
     shortest = beat_formula(instance, None, evidence)
     reach = reach_formula(instance, shortest.shortest + 3, evidence)
     beat = beat_formula(instance, shortest.shortest + 3, evidence)
-    content = dimacs(shortest.formula) + dimacs(reach.formula) + dimacs(beat.formula) + _variables(reach).decode()
+    content = dimacs(shortest.formula) + dimacs(reach.formula) + dimacs(beat.formula) + variables(reach).decode()
     assert sha256(content.encode()).hexdigest()[:16] == digest
