@@ -120,9 +120,11 @@ let required field name read = Option.get (present field name read)
 let optional default field name read = Option.value ~default (present field name read)
 
 let elements read path (json : Yojson.Safe.t) =
-  match json with
-  | `List values -> List.mapi (fun position value -> read (Printf.sprintf "%s[%d]" path position) value) values
-  | _ -> shape path "an array"
+  let rec each position before = function
+    | [] -> List.rev before
+    | value :: rest -> each (position + 1) (read (Printf.sprintf "%s[%d]" path position) value :: before) rest
+  in
+  match json with `List values -> each 0 [] values | _ -> shape path "an array"
 
 let whole path (json : Yojson.Safe.t) =
   match json with `Int n -> Z.of_int n | `Intlit digits -> Z.of_string digits | _ -> shape path "a whole number"
