@@ -127,7 +127,7 @@ mutation-%: install
 
 # Check the proofs of the kernel, print what each theorem rests on, and make build/kernel/carproof-kernel: Coq and OCaml.
 kernel:
-	@$(MAKE) --no-print-directory -C verify/kernel
+	@$(MAKE) --no-print-directory -C verify/kernel -j 2
 
 # Plant errors in the kernel's definitions, each of which must break a proof.
 kernel-mutants: kernel

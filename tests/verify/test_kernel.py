@@ -194,6 +194,8 @@ BAD_INSTANCES = {
     "trailing comma": INSTANCE.replace('"capacity": 2', '"capacity": 2,'),
     "bad escape": INSTANCE.replace('"b"', r'"\x62"'),
     "half a pair of surrogates": INSTANCE.replace('"b"', r'"\ud800"'),
+    "a surrogate and a letter": INSTANCE.replace('"b"', r'"\ud800\u0041"'),
+    "the second of a pair alone": INSTANCE.replace('"b"', r'"\udc00"'),
     "a control character": INSTANCE.replace('"b"', '"b\x01"'),
     "nested too deep": "[" * 100_000,
     "a name twice": INSTANCE.replace('"capacity": 2', '"capacity": 2, "capacity": 2'),
@@ -226,6 +228,23 @@ def test_a_bad_instance_is_refused_with_the_rule_that_carp_spec_names(text: str,
     assert (code, verdict["verdict"], verdict["rule"]) == (2, "bad input", refusal.value.rule)
     assert verdict["path"] == refusal.value.path
     assert sentence.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("escaped", "plain"),
+    [
+        (r"\u0041", "A"),
+        (r"\/", "/"),
+        (r"\\", r"\\"),
+        (r"\u000a", r"\n"),
+        (r"\u00e9", "\u00e9"),
+        (r"\ud83d\ude00", "\U0001f600"),
+    ],
+)
+def test_an_escaped_id_is_the_same_id(escaped: str, plain: str, tmp_path: Path) -> None:
+    (tmp_path / "instance.json").write_text(INSTANCE.replace('"b"', f'"{escaped}"'))
+    (tmp_path / "solution.json").write_text(SOLUTION.replace('"b"', f'"{plain}"'))
+    assert run("check", tmp_path / "instance.json", tmp_path / "solution.json")[0] == 0
 
 
 @pytest.mark.parametrize("data", [b"\xff", b'"\xc0\xaf"', b'"\xed\xa0\x80"', b'"\xf5\x80\x80\x80"', b"\xef\xbb\xbf{}"])

@@ -27,6 +27,19 @@ let character_length text at =
           && (first <> 0xF0 || second >= 0x90) && (first <> 0xF4 || second < 0x90) then 4
   else 0
 
+(* The number of bytes of the escape at a place of the text; 0 for half a pair of surrogates. *)
+let escape_length text at =
+  let code at =
+    if at + 6 > String.length text || text.[at] <> '\\' || text.[at + 1] <> 'u' then None
+    else int_of_string_opt ("0x" ^ String.sub text (at + 2) 4)
+  in
+  let is_first c = c >= 0xD800 && c < 0xDC00 and is_second c = c >= 0xDC00 && c < 0xE000 in
+  match (code at, code (at + 6)) with
+  | Some first, Some second when is_first first && is_second second -> 12
+  | Some half, _ when is_first half || is_second half -> 0
+  | Some _, _ -> 6
+  | None, _ -> 2
+
 (* The word is a number as JSON has it. *)
 let is_number word =
   let digit at = at < String.length word && word.[at] >= '0' && word.[at] <= '9' in
@@ -65,7 +78,8 @@ let require_plain text =
     if at < String.length text then
       match text.[at] with
       | '"' -> outside (at + 1) depth
-      | '\\' -> inside (at + 2) depth
+      | '\\' when escape_length text at = 0 -> malformed (Printf.sprintf "half a pair of surrogates at byte %d" at)
+      | '\\' -> inside (at + escape_length text at) depth
       | control when control < ' ' -> malformed (Printf.sprintf "a string has a control character at byte %d" at)
       | _ ->
           let length = character_length text at in
@@ -120,9 +134,11 @@ let required field name read = Option.get (present field name read)
 let optional default field name read = Option.value ~default (present field name read)
 
 let elements read path (json : Yojson.Safe.t) =
-  match json with
-  | `List values -> List.mapi (fun position value -> read (Printf.sprintf "%s[%d]" path position) value) values
-  | _ -> shape path "an array"
+  let rec each position before = function
+    | [] -> List.rev before
+    | value :: rest -> each (position + 1) (read (Printf.sprintf "%s[%d]" path position) value :: before) rest
+  in
+  match json with `List values -> each 0 [] values | _ -> shape path "an array"
 
 let whole path (json : Yojson.Safe.t) =
   match json with `Int n -> Z.of_int n | `Intlit digits -> Z.of_string digits | _ -> shape path "a whole number"
@@ -354,7 +370,7 @@ let query_of_json { resource_numbers; robot_numbers; _ } path json =
 let lines_of_words contents =
   let words line = List.filter (( <> ) "") (String.split_on_char ' ' (String.trim line)) in
   let is_text = function [] -> false | first :: _ -> first.[0] <> 'c' in
-  List.filter is_text (List.map words (String.split_on_char '\n' contents))
+  List.filter is_text (List.concat_map (fun line -> [ words line ]) (String.split_on_char '\n' contents))
 
 let whole_of_word word =
   let sign = if word.[0] = '-' then 1 else 0 in
@@ -373,7 +389,7 @@ let formula_of_text contents =
   in
   match lines_of_words contents with
   | [ "p"; "cnf"; variables; count ] :: rest ->
-      let variables = whole_of_word variables and literals = List.map whole_of_word (List.concat rest) in
+      let variables = whole_of_word variables and literals = List.concat_map (List.map whole_of_word) rest in
       if List.exists (fun literal -> Z.gt (Z.abs literal) variables) literals then
         shape "$" "no variable beyond those counted";
       let formula = clauses [] [] literals in
@@ -385,4 +401,4 @@ let formula_of_text contents =
 (* The words of a proof's lines; whether they make steps, the kernel decides. *)
 let proof_of_text contents =
   let word = function "d" -> Refutation.Letter_d | word -> Refutation.Number (whole_of_word word) in
-  List.map (List.map word) (lines_of_words contents)
+  List.concat_map (fun words -> [ List.map word words ]) (lines_of_words contents)
