@@ -5,6 +5,7 @@ a whole number, which `document/shape` does not, and it cannot tell the `instanc
 """
 
 from collections.abc import Mapping
+from inspect import cleandoc
 from pathlib import Path
 
 import msgspec
@@ -27,6 +28,8 @@ DOCUMENTS: Mapping[str, type[msgspec.Struct]] = {
 def schema_text(kind: type[msgspec.Struct]) -> str:
     """The JSON Schema of a kind of document, as its file holds it."""
     schema = {"$schema": DRAFT, **msgspec.json.schema(kind)}
+    for each in schema["$defs"].values():
+        each["description"] = cleandoc(each["description"])  # from Python 3.13 on they are without indentation anyway
     return msgspec.json.format(msgspec.json.encode(schema, order="sorted"), indent=2).decode() + "\n"
 
 
