@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 import carp_optimized
-import carp_verify
+import carp_optimum
 from carp_optimized.compiling import is_cached
 from carp_optimized.neighbourhood import add_robot
 
@@ -57,7 +57,7 @@ def test_a_function_that_is_not_compiled_is_not_cached() -> None:
 
 def entries() -> set[str]:
     """The names of all functions that Python calls."""
-    folders = (Path(module.__file__ or "").parent for module in (carp_optimized, carp_verify))
+    folders = (Path(module.__file__ or "").parent for module in (carp_optimized, carp_optimum))
     functions = (
         node
         for folder in folders
