@@ -5,6 +5,7 @@ from typing import Any
 from carp_spec import RULES, Rule
 from carp_spec.limits import LIMIT_RULES
 from carp_verify.bound_rules import BOUND_RULES
+from carp_verify.kernel import KERNEL_RULES
 from carp_verify.optimum_rules import OPTIMUM_RULES
 from carp_verify.query_certificate_rules import QUERY_CERTIFICATE_RULES
 from carproof.adapters import ADAPTER_RULES
@@ -28,4 +29,5 @@ ALL_RULES: tuple[Rule[..., Any], ...] = (
     *OPTIMUM_RULES,
     *BOUND_RULES,
     *QUERY_CERTIFICATE_RULES,
+    *KERNEL_RULES,
 )
