@@ -8,6 +8,8 @@ import click
 
 from carp_experiments.crosscheck import FULL_QUESTIONS, QUICK_QUESTIONS, crosscheck_cases, crosscheck_report
 from carp_experiments.experiments import EXPERIMENTS, Experiment, Profile
+from carp_experiments.kernel_verdicts import FULL_VERDICTS, QUICK_VERDICTS, kernel_cases, kernel_report
+from carp_verify.kernel import program
 from carproof.answer import Answer
 from carproof.extras import require
 from carproof.files import print_document
@@ -32,6 +34,7 @@ F = TypeVar("F", bound=Callable[..., Any])
         "carproof experiment quality --store full.sqlite --workers 2",
         "carproof experiment quality --store full.sqlite --report report",
         "carproof experiment crosscheck --questions 50000 --seed 7",
+        "carproof experiment kernel --verdicts 100000",
     )
 )
 def command() -> None:
@@ -125,6 +128,23 @@ def crosscheck(quick: bool, questions: int, seed: int, **campaign: Any) -> Answe
     cases = crosscheck_cases(size, seed)
     command = f"carproof experiment crosscheck --questions {size} --seed {seed}"
     return go("crosscheck", "crosscheck", command, f"{size} questions", cases, crosscheck_report, **campaign)
+
+
+@command.command("kernel")
+@click.option("--quick", is_flag=True, help=f"{QUICK_VERDICTS} verdicts.")
+@click.option("--verdicts", type=click.IntRange(min=1), default=FULL_VERDICTS, help="How many random verdicts.")
+@click.option("--seed", type=click.IntRange(0, 2**64 - 1), default=0, help="The seed of the questions.")
+@campaign_options
+def kernel(quick: bool, verdicts: int, seed: int, **campaign: Any) -> Answer:  # noqa: ANN401 - click's
+    """Ask the proved kernel and the checkers in Python for the same verdicts.
+
+    Exit codes: 0 no difference, 1 a difference, 2 bad usage, or no kernel.
+    """
+    program()  # before the store is there
+    size = QUICK_VERDICTS if quick else verdicts
+    cases = kernel_cases(size, seed)
+    command = f"carproof experiment kernel --verdicts {size} --seed {seed}"
+    return go("kernel", "kernel", command, f"{size} verdicts", cases, kernel_report, **campaign)
 
 
 def go(  # noqa: PLR0913 - the campaign's options

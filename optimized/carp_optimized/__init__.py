@@ -4,7 +4,18 @@
 this page loads neither numpy nor numba.
 """
 
-from carp_optimized.planners import PLANNERS, add, plan, polish, query, steps, sum_of_shortest_paths
+from carp_optimized.planners import PLANNERS, add, certifier, plan, polish, query, steps, sum_of_shortest_paths
 from carp_optimized.reuse import Queries, Reuse
 
-__all__ = ["PLANNERS", "Queries", "Reuse", "add", "plan", "polish", "query", "steps", "sum_of_shortest_paths"]
+__all__ = [
+    "PLANNERS",
+    "Queries",
+    "Reuse",
+    "add",
+    "certifier",
+    "plan",
+    "polish",
+    "query",
+    "steps",
+    "sum_of_shortest_paths",
+]

@@ -111,8 +111,8 @@ class Search(NamedTuple):
 
     `reached[slot]` is the generation times 2^32 minus the tick at which the window is entered, so that a larger
     label is an earlier entry or a newer query; `parent[slot]` is the window it is entered from, and `goal[0]` the one
-    in which the plan found ends. `keys` and `nodes` are the heap. `expanded`, `ready` and `popped` tell which resources
-    were expanded, from which tick on they were left, and by which key.
+    in which the plan found ends. `keys` and `nodes` are the heap. `expanded`, `ready` and `popped` list the resources
+    that were expanded, the tick from which on each was left, and its key; `expansions[0]` is their number.
     """
 
     generation: Longs
@@ -124,6 +124,7 @@ class Search(NamedTuple):
     expanded: Ints
     ready: Ints
     popped: Longs
+    expansions: Longs
 
 
 class Records(NamedTuple):

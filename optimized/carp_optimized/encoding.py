@@ -183,6 +183,7 @@ def no_search(windows: int, edges: int) -> Search:
         expanded=np.zeros(entries, np.int32),
         ready=np.zeros(entries, np.int32),
         popped=np.zeros(entries, np.int64),
+        expansions=np.zeros(1, np.int64),
     )
 
 

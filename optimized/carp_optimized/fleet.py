@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -15,9 +15,12 @@ from carp_optimized.arrays import (
     NONE,
     PREFIX,
     SHARED,
+    TOO_FAR,
     UNCHANGED,
+    UNREACHABLE,
     Answers,
     Ints,
+    Longs,
     Options,
     Polish,
     Records,
@@ -35,6 +38,7 @@ from carp_spec import Instance, Neighbourhood, Plan, Refusal, RobotId, Shuffled
 from carp_spec.permutations import shuffle, splitmix64
 
 T = TypeVar("T")
+Labels: TypeAlias = list[tuple[int, int]]
 
 PART = 512  # robots of a pass
 MANY = 1 << 16  # visits and expansions of records that are no longer held
@@ -114,6 +118,44 @@ class Fleet:
         followed = NONE if before is None else self._write(before)
         record = self._call(lambda: passes.find_one(self._native, robot, followed, now))
         return None if record == NONE else self._plan(record)
+
+    def find_with_labels(self, robot: int, before: Plan | None, now: int) -> tuple[Plan | None, Labels]:
+        """The same plan, and the windows that its query expanded: their resources, each with the tick of its entry.
+
+        The start is entered as late as the robot may be there to leave it as early: the query does not come back to it,
+        but other plans may. Who has stayed at its goal too long to end there does come back, and has no such label.
+        """
+        self._state.search.expansions[0] = 0
+        plan = self.find(robot, before, now)
+        search = self._state.search
+        count = int(search.expansions[0])
+        if count == 0:
+            return plan, []
+        resources = search.expanded[:count]
+        enters = (search.popped[:count] - self._guide(robot)[resources]) >> 32
+        start, ready = int(resources[0]), int(search.ready[0])
+        ticks = int(self._state.robots.pace[robot]) * int(self._state.graph.duration[start])
+        overstayed = start == self._state.robots.goal[robot] and not self._state.parks and ready > enters[0] + ticks
+        first = 1 if overstayed else 0
+        enters[0] = ready - ticks
+        return plan, [*zip(resources[first:].tolist(), enters[first:].tolist(), strict=True)]
+
+    def potential(self, robot: int) -> list[tuple[int, int]]:
+        """The resources from which the robot can reach its goal, each with the ticks that it needs at least.
+
+        Ticks beyond the largest are counted as one more than that.
+        """
+        guide = self._guide(robot)
+        ticks = np.where(guide == TOO_FAR, LARGEST + 1, guide >> 32)
+        reaching = np.flatnonzero(guide != UNREACHABLE)
+        return [*zip(reaching.tolist(), ticks[reaching].tolist(), strict=True)]
+
+    def _guide(self, robot: int) -> Longs:
+        """The guide of the robot's destination."""
+        self.ticks_to_goal(robot)  # makes it
+        guides = self._state.guides
+        guide: Longs = guides.table[int(guides.slot[self._state.robots.destination[robot]])]
+        return guide
 
     def repeat_query(self, robot: int, times: int) -> None:
         """Ask the query of a robot without a plan that often; for benchmarks."""

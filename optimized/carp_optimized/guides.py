@@ -68,6 +68,7 @@ def make_level_guide(state: State, slot: int, goal: int, step: int) -> None:
         if level >= 0:
             guide[resource] = ((level * step) << 32) + first[level]
             first[level] += 1
+    spread_too_far(state, slot)
 
 
 @compiled
@@ -102,3 +103,29 @@ def make_guide(state: State, slot: int, goal: int, pace: int) -> None:
                 else:
                     push(keys, nodes, size, (further << 32) + source, source)
                     size += 1
+    spread_too_far(state, slot)
+
+
+@compiled
+def spread_too_far(state: State, slot: int) -> None:
+    """Mark the resources that lead to the goal only through those that are too far."""
+    graph = state.graph
+    guide = state.guides.table[slot]
+    queue = state.search.nodes
+    if queue.size < guide.size:
+        raise RoomExhausted
+    count = 0
+    for resource in range(guide.size):
+        if guide[resource] == TOO_FAR:
+            queue[count] = resource
+            count += 1
+    done = 0
+    while done < count:
+        resource = int(queue[done])
+        done += 1
+        for edge in range(int(graph.backward_first[resource]), int(graph.backward_first[resource + 1])):
+            source = int(graph.source[edge])
+            if guide[source] == UNREACHABLE:
+                guide[source] = TOO_FAR
+                queue[count] = source
+                count += 1

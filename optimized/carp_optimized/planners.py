@@ -24,6 +24,7 @@ from carp_spec import (
 from carp_spec.polish_rules import last_round, polishable, require_polish_options
 
 if TYPE_CHECKING:
+    from carp_optimized.certifying import Certifier
     from carp_optimized.fleet import Fleet
 
 ROUNDS = 50  # of a polish in one compiled call
@@ -45,6 +46,13 @@ def query(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: in
     fleet = _fleet(instance)
     fleet.commit([plan for plan in committed if plan.robot != robot])
     return fleet.find(fleet.index(robot), own[-1] if own else None, now)
+
+
+def certifier(instance: Instance) -> "Certifier":
+    """What gives plans with certificates, beside no plans as yet."""
+    from carp_optimized.certifying import Certifier  # noqa: PLC0415 - numba is slow to load
+
+    return Certifier(instance)
 
 
 def plan(

@@ -153,6 +153,7 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
         expansions += 1
         if resource == goal and (end == NEVER if parks else not (overstayed and node == STANDING)):
             state.search.goal[0] = node
+            state.search.expansions[0] = expansions
             return expansions
         exchanges = graph.capacity[resource] > 1
         source = int(windows.source[last])
@@ -222,4 +223,5 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
                     size += 1
     if beyond and not is_bounded:
         raise TicksExhausted
+    state.search.expansions[0] = expansions
     return 0

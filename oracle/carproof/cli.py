@@ -13,6 +13,7 @@ import click
 
 from carp_spec import Refusal
 from carp_verify.bound_rules import ContradictionError
+from carp_verify.kernel import UndecidedError
 from carproof.answer import INTERNAL_ERROR, INTERRUPTED, PIPE_CLOSED, Answer
 from carproof.commands import COMMANDS
 from carproof.extras import advice
@@ -108,6 +109,9 @@ def _answer(arguments: Sequence[str]) -> int:
         return _complain(f"{error.format_message()} (See {asked} --help.)")
     except click.ClickException as error:
         return _complain(error.format_message())
+    except UndecidedError as error:
+        click.echo(f"Undecided: {printable(str(error))}", err=True)
+        return Answer.UNDECIDED
     except Refusal as refusal:
         return _complain(f"{_option(refusal.path)}: {refusal.message} [{refusal.rule}]")
     return Answer(answer)

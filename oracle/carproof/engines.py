@@ -5,8 +5,21 @@ from importlib import import_module
 from typing import Protocol, cast
 
 from carp_spec import Instance, Neighbourhood, Plan, Planner, Refusal, RobotId, Solution, total_cost
+from carp_spec.query_certificates import QueryCertificateDocument
 
 ENGINES = ("optimized", "reference")
+
+
+class Certifier(Protocol):
+    """Plans robots one by one beside plans that are committed, each with its certificate."""
+
+    def commit(self, plans: Sequence[Plan]) -> None:
+        """Add plans that break no rule together with those committed."""
+
+    def certify(
+        self, robot: RobotId, followed: Plan | None = None, now: int = 0
+    ) -> tuple[Plan | None, QueryCertificateDocument]:
+        """The plan of a robot that arrives earliest, `None` if it has none, and its certificate."""
 
 
 class Engine(Protocol):
@@ -14,6 +27,9 @@ class Engine(Protocol):
 
     def query(self, instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0) -> Plan | None:
         """The plan of one robot against committed plans."""
+
+    def certifier(self, instance: Instance) -> Certifier:
+        """What gives plans with certificates, beside no plans as yet."""
 
     def plan(self, instance: Instance, planner: Planner, advance: Callable[[], None] = ...) -> Solution:
         """Plans of all robots; `advance` is called at each step."""
@@ -43,6 +59,10 @@ class FastestEngine:
     def query(self, instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0) -> Plan | None:
         """The plan of one robot against committed plans."""
         return engine_named("optimized").query(instance, committed, robot, now)
+
+    def certifier(self, instance: Instance) -> Certifier:
+        """What gives plans with certificates, beside no plans as yet."""
+        return engine_named("optimized").certifier(instance)
 
     def plan(self, instance: Instance, planner: Planner, advance: Callable[[], None] = lambda: None) -> Solution:
         """Plans of all robots; `advance` is called at each step."""

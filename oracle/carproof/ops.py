@@ -10,6 +10,8 @@ from typing import Any, TypeAlias, cast
 
 from carp_spec import Neighbourhood, Refusal, Solution, judge, planner_named
 from carp_spec.documents import solution_document, verdict_document
+from carp_spec.query_certificates import read_query_certificate
+from carp_verify.kernel import UndecidedError, is_answer
 from carproof.engines import Engine
 from carproof.extras import require
 from carproof.optima import optimum_document
@@ -128,6 +130,35 @@ def bound(request: Request, engine: Engine) -> Result:
         return lower_bound(instance, seconds, steps)
 
 
+def verify_query(request: Request, engine: Engine) -> Result:
+    """Check the certificate of a query."""
+    from carproof.verdicts import verify_query as verify  # noqa: PLC0415 - a server that is not asked need not load it
+
+    del engine
+    instance, solution = request.instance(), request.solution()
+    certificate = request.take("certificate", read_query_certificate)
+    kernel: bool = request.take("kernel", value_of(bool), False)
+    request.end()
+    return verify(instance, solution, certificate, kernel)
+
+
+def audit(request: Request, engine: Engine) -> Result:
+    """Certify each plan of a solution in its planning order."""
+    from carproof.audit import ask_kernel, audit_in_order  # noqa: PLC0415 - a server that is not asked need not load it
+    from carproof.results import audit_document  # noqa: PLC0415
+
+    instance, solution = request.instance(), request.solution()
+    kernel: bool = request.take("kernel", value_of(bool), False)
+    request.end()
+    with inside("$.solution"):
+        sound = sound_solution(instance, solution)
+    with inside("$.instance"):
+        found = audit_in_order(instance, sound, engine)
+    if kernel:
+        ask_kernel(instance, sound, found)
+    return audit_document(found, sound)
+
+
 def stop(request: Request, engine: Engine) -> Result:
     """Say goodbye; `serve` ends after it."""
     del engine
@@ -144,6 +175,8 @@ OPS: Mapping[str, Handler] = {
     "polish": polish,
     "optimum": optimum,
     "bound": bound,
+    "verify-query": verify_query,
+    "audit": audit,
     "stop": stop,
 }
 
@@ -152,7 +185,10 @@ def answer(request: Request, op: str, engine: Engine) -> Result:
     """The result of a request."""
     if op not in OPS:
         raise Refusal("request", "$.op", fields_are_right.id, f"the op must be one of {', '.join(OPS)}, not {op!r}")
-    return OPS[op](request, engine)
+    try:
+        return OPS[op](request, engine)
+    except UndecidedError as error:
+        raise Refusal("limit", "$.kernel", is_answer.id, str(error)) from error
 
 
 def _now(request: Request) -> int:

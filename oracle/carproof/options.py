@@ -59,6 +59,12 @@ def json_option(function: F) -> F:
     return click.option("--json", "as_json", is_flag=True, help=help)(function)
 
 
+def kernel_option(function: F) -> F:
+    """`--kernel`: who decides."""
+    help = "Have the proved kernel decide; `make kernel` builds it."
+    return click.option("--kernel", is_flag=True, help=help)(function)
+
+
 def engine_option(function: F) -> F:
     """`--engine`: whose planner."""
     help = (

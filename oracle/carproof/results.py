@@ -7,7 +7,9 @@ import msgspec
 
 from carp_spec import Instance, Plan, ResourceId, RobotId, Solution, total_cost, write_instance
 from carp_spec.documents import visits_document
+from carp_spec.rule import interval
 from carproof.answer import Answer
+from carproof.audit import Audit
 from carproof.engines import plan_beside, sum_of_shortest_paths, why_unplanned
 from carproof.files import print_document, write_whole
 from carproof.tables import print_line, print_table
@@ -76,6 +78,11 @@ def show_addition(instance: Instance, before: Solution, after: Solution, robot: 
     print_line(f"total cost {total_cost(instance, before.plans)} before, {total_cost(instance, after.plans)} now")
 
 
+def shown_plan(plan: Plan) -> str:
+    """A plan in one line."""
+    return " ".join(f"{visit.resource}{interval(visit.enter, visit.leave)}" for visit in plan.visits)
+
+
 class QueryDocument(msgspec.Struct, frozen=True):
     """The result of a query: the visits of the plan, or null if there is none."""
 
@@ -88,9 +95,62 @@ def query_document(plan: Plan | None) -> QueryDocument:
 
 
 class VerifiedBoundDocument(msgspec.Struct, frozen=True):
-    """The bound that a certificate proves, or null and where, by which rule and why it does not."""
+    """The bound that a certificate proves, or null and where, by which rule and why it does not.
+
+    `by` decided, and has `assumed` what it could not check.
+    """
 
     bound: int | None
     path: str | None
     rule: str | None
     reason: str | None
+    by: str
+    assumed: tuple[str, ...] = ()
+
+
+class VerifiedQueryDocument(msgspec.Struct, frozen=True):
+    """Whether a certificate proves its bound, null where there is no plan; else where, by which rule and why not."""
+
+    proved: bool
+    bound: int | None
+    path: str | None
+    rule: str | None
+    reason: str | None
+    by: str
+
+
+class LateDocument(msgspec.Struct, frozen=True):
+    """A robot whose plan arrives at a tick, and a plan with which it arrives earlier."""
+
+    robot: RobotId
+    arrival: int
+    earliest: int
+    plan: tuple[tuple[ResourceId, int, int | None], ...]
+
+
+class AuditDocument(msgspec.Struct, frozen=True):
+    """The robots whose plans are certified, in that order, those whose plans are late, and who decided."""
+
+    certified: tuple[RobotId, ...]
+    late: tuple[LateDocument, ...]
+    unplanned: int
+    by: str
+
+
+def audit_document(audit: Audit, solution: Solution) -> AuditDocument:
+    """The document of an audit."""
+    late = (
+        LateDocument(each.plan.robot, arrival_of(each.plan), arrival_of(each.earlier), visits_document(each.earlier))
+        for each in audit.late
+    )
+    return AuditDocument(
+        certified=tuple(plan.robot for plan in audit.certified),
+        late=tuple(late),
+        unplanned=len(solution.unplanned),
+        by=audit.by,
+    )
+
+
+def arrival_of(plan: Plan) -> int:
+    """The tick at which a plan enters its goal for the last time."""
+    return plan.visits[-1].enter

@@ -5,7 +5,9 @@ from typing import Any
 from carp_spec import RULES, Rule
 from carp_spec.limits import LIMIT_RULES
 from carp_verify.bound_rules import BOUND_RULES
+from carp_verify.kernel import KERNEL_RULES
 from carp_verify.optimum_rules import OPTIMUM_RULES
+from carp_verify.query_certificate_rules import QUERY_CERTIFICATE_RULES
 from carproof.adapters import ADAPTER_RULES
 from carproof.conform.findings import PROGRAM_RULES
 from carproof.generate.options import GENERATE_RULES
@@ -26,4 +28,6 @@ ALL_RULES: tuple[Rule[..., Any], ...] = (
     *VIEW_RULES,
     *OPTIMUM_RULES,
     *BOUND_RULES,
+    *QUERY_CERTIFICATE_RULES,
+    *KERNEL_RULES,
 )

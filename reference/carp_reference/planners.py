@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 
+from carp_reference.certifying import Certifier
 from carp_reference.fixed_paths import fixed_paths
 from carp_reference.neighbourhood import add_robot
 from carp_reference.orderings import Plans, carp, greedy, longest_first, shuffled
@@ -32,6 +33,11 @@ def query(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: in
     others = [plan for plan in committed if plan.robot != robot]
     problem = Problem(instance, {robot: ticks_to_goal(instance, instance.robot[robot])}, now, before)
     return find_plan(problem, others, robot)
+
+
+def certifier(instance: Instance) -> Certifier:
+    """What gives plans with certificates, beside no plans as yet."""
+    return Certifier(instance)
 
 
 def plan(instance: Instance, planner: Planner, advance: Callable[[], None] = lambda: None) -> Solution:

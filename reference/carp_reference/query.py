@@ -32,10 +32,12 @@ def find_plan(
     committed: Sequence[Plan],
     robot: RobotId,
     successors: Mapping[ResourceId, Sequence[ResourceId]] | None = None,
+    expanded: list[Node] | None = None,
 ) -> Plan | None:
     """The plan with the earliest arrival against the committed plans, or `None` if there is none.
 
-    `successors` are the moves allowed, where not all moves of the graph are.
+    `successors` are the moves allowed, where not all moves of the graph are. The nodes that the search expands are
+    added to `expanded`, if it is given.
     """
     context = context_of(problem.instance, committed)
     before = problem.before.get(robot)
@@ -45,7 +47,8 @@ def find_plan(
     start = _start(context, history)
     if start is None:
         return None
-    last = _search(problem, context, robot, start, successors or problem.instance.graph.successors)
+    moves = successors or problem.instance.graph.successors
+    last = _search(problem, context, robot, start, moves, [] if expanded is None else expanded)
     return None if last is None else _plan(problem, robot, history[:-1], last)
 
 
@@ -77,6 +80,7 @@ def _search(
     robot: RobotId,
     start: Node,
     successors: Mapping[ResourceId, Sequence[ResourceId]],
+    expanded: list[Node],
 ) -> Node | None:
     """A* in the order of `query/ties`: the node in which the robot ends its plan, or `None`.
 
@@ -98,6 +102,7 @@ def _search(
         _, node = heappop(queue)
         if _can_end(problem, robot, node):
             return node
+        expanded.append(node)
         for following in _expand(problem, context, robot, node, successors.get(node.resource, ())):
             key = (following.resource, following.window)
             if key not in entered or following.enter < entered[key]:

@@ -12,6 +12,7 @@ import msgspec
 
 from carp_spec.bounds import BoundDocument
 from carp_spec.documents import InstanceDocument, SolutionDocument, VerdictDocument
+from carp_spec.query_certificates import QueryCertificateDocument
 from carp_spec.vectors import VectorsDocument
 
 FOLDER = Path(__file__).with_name("schemas")
@@ -21,6 +22,7 @@ DOCUMENTS: Mapping[str, type[msgspec.Struct]] = {
     "solution": SolutionDocument,
     "verdict": VerdictDocument,
     "bound": BoundDocument,
+    "query": QueryCertificateDocument,
     "vectors": VectorsDocument,
 }
 

@@ -58,3 +58,13 @@ def test_a_planner_that_only_the_reference_has_is_refused() -> None:
     with pytest.raises(Refusal) as refused:
         carp_optimized.plan(two_cells(), FixedPaths())
     assert "reference" in refused.value.message
+
+
+@pytest.mark.parametrize("last", [2**29, 1])
+def test_a_goal_behind_resources_that_are_too_far_is_refused_and_not_called_out_of_reach(last: int) -> None:
+    cells = (*(Resource(cell, duration=2**29) for cell in "abcde"), Resource("f", duration=last))
+    graph = ResourceGraph(cells, tuple(zip("abcde", "bcdef", strict=True)))
+    for start in "abcd":
+        with pytest.raises(Refusal) as refused:
+            carp_optimized.query(Instance(graph, (Robot("r", start, "f"),)), [], "r")
+        assert refused.value.rule == "limit/ticks"

@@ -14,16 +14,19 @@ from pathlib import Path
 import msgspec
 import pytest
 from tests.verify.forging import FAR, changed, changed_lines
+from tests.verify.query_examples import QUESTIONS, Question, fleets
 from tests.verify.test_bound import completed, crossing, cut_certificate
 from tests.verify.test_proof import crossing as four_crossing
 from tests.verify.test_proof import with_digests
 
+import carp_reference
 from carp_optimum.bound import lower_bound
 from carp_optimum.optimum import optimum
 from carp_optimum.proving import write_proof
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
 from carp_spec.bounds import BoundDocument, CutDocument, digest, read_bound
 from carp_spec.documents import write
+from carp_spec.query_certificates import QueryCertificateDocument, read_query_certificate
 from carp_verify.bound_cuts import formula_of
 from carp_verify.clauses import dimacs
 from carp_verify.encoding import Evidence
@@ -31,6 +34,7 @@ from carp_verify.joint_search import least_total_cost
 from carp_verify.proof import FILES, ProofError, beat_formula, reach_formula, verify_proof
 from carp_verify.refutation import NotRefutedError, read_steps, require_refutation
 from carp_verify.verify_bound import verify_bound
+from carp_verify.verify_query import verify_query
 
 LONG = 60
 
@@ -169,6 +173,58 @@ def test_harmless_variants_of_a_bound_are_accepted() -> None:
     ):
         variant = msgspec.structs.replace(certificate, **changes)
         assert accepted(crossing(), put_right(crossing(), write(variant))) == certificate.bound
+
+
+def is_accepted(question: Question, certificate: QueryCertificateDocument) -> bool:
+    try:
+        verify_query(question.instance, question.solution, certificate)
+    except Refusal:
+        return False
+    return True
+
+
+def is_true(question: Question, certificate: QueryCertificateDocument) -> bool:
+    """Whether no plan of the robot named arrives before the bound, by the reference."""
+    plans, robot, now = question.solution.plans, certificate.robot, certificate.now
+    best = carp_reference.query(question.instance, plans, robot, now)
+    return best is None or (certificate.bound is not None and certificate.bound <= best.visits[-1].enter)
+
+
+@pytest.mark.parametrize("name", QUESTIONS)
+def test_no_change_of_a_query_certificate_makes_it_prove_too_much(name: str) -> None:
+    question = QUESTIONS[name]
+    honest = question.certified()[1]
+    outcomes: Counter[bool] = Counter()
+    for document in changed(json.loads(write(honest))):
+        try:
+            forged = read_query_certificate(json.dumps(document).encode())
+        except Refusal:
+            continue
+        accepted = is_accepted(question, forged)
+        assert not accepted or is_true(question, forged), document
+        outcomes[accepted] += 1
+    assert outcomes[False] > 2
+    assert outcomes[True] > 5
+
+
+def test_no_query_certificate_proves_too_much_beside_other_plans_or_of_another_robot() -> None:
+    for question in QUESTIONS.values():
+        for other in (each for every in QUESTIONS.values() for each in fleets(every)):
+            certificate = other.certified()[1]
+            assert not is_accepted(question, certificate) or is_true(question, certificate)
+
+
+def test_no_later_bound_is_accepted_with_the_labels_of_the_search_for_it() -> None:
+    """A forger labels every window from its first tick on."""
+    for question in QUESTIONS.values():
+        plan, honest = question.certified()
+        if plan is None:
+            continue
+        labels = {(each, tick) for each in question.instance.graph.index for tick in range(20)}
+        for bound in (plan.visits[-1].enter + 1, FAR, None):
+            for those in (honest.labels, (*honest.labels, *labels), ()):
+                forged = msgspec.structs.replace(honest, bound=bound, labels=tuple(those))
+                assert not is_accepted(question, forged)
 
 
 @cache

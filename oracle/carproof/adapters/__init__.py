@@ -14,7 +14,14 @@ from carproof.adapters.adapter import Adapter
 from carproof.adapters.networkx_graphs import instance_from_networkx, node_is_right
 from carproof.adapters.walks import WALK_RULES
 
-__all__ = ["ADAPTERS", "ADAPTER_RULES", "instance_from_networkx", "read_foreign_solution", "write_foreign_solution"]
+__all__ = [
+    "ADAPTERS",
+    "ADAPTER_RULES",
+    "format_of",
+    "instance_from_networkx",
+    "read_foreign_solution",
+    "write_foreign_solution",
+]
 
 ADAPTERS: Mapping[str, Adapter] = {
     each.name: each
@@ -56,10 +63,7 @@ def read_foreign_solution(data: bytes, instance: Instance, file: str = "file", f
 
     Raises `Refusal` with file and line, also where two formats are possible or none is.
     """
-    text = data.decode(errors="surrogateescape").replace("\r\n", "\n")
-    if format is None:
-        format = _format_of(text, instance, file)
-    return ADAPTERS[format].read(text, instance, file)
+    return ADAPTERS[format or format_of(data, instance, file)].read(_text(data), instance, file)
 
 
 def write_foreign_solution(instance: Instance, solution: Solution, format: str) -> bytes:
@@ -67,13 +71,19 @@ def write_foreign_solution(instance: Instance, solution: Solution, format: str) 
     return ADAPTERS[format].write(instance, solution).encode()
 
 
-def _format_of(text: str, instance: Instance, file: str) -> str:
+def format_of(data: bytes, instance: Instance, file: str = "file") -> str:
+    """The format that a solution looks like; raises `Refusal` where two are possible or none is."""
+    text = _text(data)
     possible = _possible(text, instance)
     if len(possible) == 1:
         return possible[0]
     looks = ", ".join(name for name, each in ADAPTERS.items() if each.looks_like(text))
     what = f"it could be {looks}" if looks else f"it looks like none of {', '.join(ADAPTERS)}"
     raise Refusal("document", file, format_is_clear.id, f"the format must be named by --from: {what}")
+
+
+def _text(data: bytes) -> str:
+    return data.decode(errors="surrogateescape").replace("\r\n", "\n")
 
 
 def _possible(text: str, instance: Instance) -> list[str]:

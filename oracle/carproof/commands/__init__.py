@@ -22,6 +22,8 @@ COMMANDS = (
     "verify-proof",
     "bound",
     "verify-bound",
+    "verify-query",
+    "audit",
     "gap",
     "crosscheck",
     "bench",

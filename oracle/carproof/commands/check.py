@@ -6,12 +6,15 @@ from pathlib import Path
 
 import click
 
-from carp_spec import RULES, Verdict, judge, write_verdict
+from carp_spec import RULES, Instance, Solution, Verdict, judge, write_verdict
 from carp_spec.check import MOST_LISTED
+from carp_spec.documents import solution_document, write
+from carp_verify.bound_rules import ContradictionError
+from carp_verify.kernel import KernelVerdict, running_kernel
 from carproof.answer import Answer
 from carproof.files import InputFile, print_document, read_instance_file, refuse_two_standard_inputs, write_whole
 from carproof.foreign import MovingAI, from_option, movingai_options, read_movingai, read_solution_of
-from carproof.options import examples, json_option, output_option
+from carproof.options import examples, json_option, kernel_option, output_option
 from carproof.tables import print_line, print_table
 
 
@@ -22,12 +25,14 @@ from carproof.tables import print_line, print_table
         "carproof plan town.json --json | carproof check town.json -",
         "carproof check town.json plans.json --json > verdict.json",
         "carproof check town.json result.txt --from lacam",
+        "carproof check town.json plans.json --kernel",
         "carproof check --map town.map --scen town.scen --agents 40 result.txt",
     ),
 )
 @click.argument("files", metavar="[INSTANCE] SOLUTION", nargs=-1, required=True, type=InputFile())
 @movingai_options
 @from_option
+@kernel_option
 @click.option("--all", "everything", is_flag=True, help="List every violation, however many there are.")
 @output_option
 @json_option
@@ -38,6 +43,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     scen: str | None,
     agents: int | None,
     format: str | None,
+    kernel: bool,
     everything: bool,
     output: Path | None,
     as_json: bool,
@@ -51,6 +57,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     path finding: robots are there from tick 0, move or wait in each tick, and stay at their goals for ever;
     following is allowed, swapping is not; durations and capacities are one unless INSTANCE says otherwise.
 
+    With --kernel the proved kernel decides, and --json prints its verdict.
+
     Exit codes: 0 no rule is broken, 1 a rule is broken, 2 bad input.
     """
     *instances, solution = files
@@ -60,15 +68,29 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     refuse_two_standard_inputs(*files, *(benchmark.names if benchmark else ()))
     instance = read_movingai(benchmark) if benchmark else read_instance_file(instances[0])
     most = None if everything else MOST_LISTED
-    verdict = judge(instance, read_solution_of(instance, solution, format), most)
-    document = write_verdict(verdict)
+    given = read_solution_of(instance, solution, format)
+    verdict = judge(instance, given, most)
+    decided = kernel_verdict(instance, given, verdict) if kernel else None
+    document = write_verdict(verdict) if decided is None else write(decided)
     if output is not None:
         write_whole(output, document)
     if as_json:
         print_document(document)
     else:
         print_verdict(verdict, most)
+        if decided is not None:
+            print_line(f"decided by {decided.by}")
     return Answer.of(verdict.valid)
+
+
+def kernel_verdict(instance: Instance, solution: Solution, verdict: Verdict) -> KernelVerdict:
+    """The verdict of the kernel; raises `ContradictionError` if that of `carp_spec` is another."""
+    with running_kernel() as kernel:
+        answer = kernel.ask("check", instance, solution=solution_document(solution))
+    says = (answer.accepted, answer.cost, answer.unplanned)
+    if says != ((True, verdict.cost, verdict.unplanned) if verdict.valid else (False, None, None)):
+        raise ContradictionError(f"carp_spec and {answer.by} differ: {answer.message or says}")
+    return answer
 
 
 def print_verdict(verdict: Verdict, most: int | None) -> None:

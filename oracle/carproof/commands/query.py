@@ -8,7 +8,14 @@ from carp_spec import plan_cost
 from carp_spec.documents import write
 from carproof.answer import Answer
 from carproof.engines import engine_named, why_unplanned
-from carproof.files import naming, read_instance_file, read_solution_file, refuse_two_standard_inputs
+from carproof.files import (
+    OutputFile,
+    naming,
+    read_instance_file,
+    read_solution_file,
+    refuse_two_standard_inputs,
+    write_whole,
+)
 from carproof.options import (
     engine_option,
     examples,
@@ -28,21 +35,32 @@ from carproof.tables import print_line, print_table
     epilog=examples(
         "carproof query town.json plans.json r7",
         "carproof query town.json plans.json r7 --now 12 --json",
+        "carproof query town.json plans.json r7 --certificate r7.json",
     ),
 )
 @instance_argument
 @solution_argument
 @click.argument("robot")
 @now_option
+@click.option("--certificate", type=OutputFile(), help="Write what shows that no plan arrives earlier to this file.")
 @engine_option
 @output_option
 @json_option
 def command(  # noqa: PLR0913 - one parameter for each argument and option
-    *, instance: str, solution: str, robot: str, now: int, engine: str | None, output: Path | None, as_json: bool
+    *,
+    instance: str,
+    solution: str,
+    robot: str,
+    now: int,
+    certificate: Path | None,
+    engine: str | None,
+    output: Path | None,
+    as_json: bool,
 ) -> Answer:
     """Find the plan with which ROBOT arrives earliest beside the plans of SOLUTION.
 
     Those plans stay as they are. A plan that SOLUTION has of ROBOT itself is what it has followed until --now.
+    The file of --certificate is for carproof verify-query, also where there is no plan.
 
     Exit codes: 0 here is the plan, 1 there is none, 2 bad input.
     """
@@ -53,11 +71,18 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     id = robot_called(problem, robot)
     with naming(solution):
         committed = sound_solution(problem, given, id)
+    others = [each for each in committed.plans if each.robot != id]
+    followed = next((each for each in committed.plans if each.robot == id), None)
     with naming(instance):
-        plan = engine_named(engine).query(problem, committed.plans, id, now)
+        if certificate is None:
+            plan = engine_named(engine).query(problem, committed.plans, id, now)
+        else:
+            certifier = engine_named(engine).certifier(problem)
+            certifier.commit(others)
+            plan, shown = certifier.certify(id, followed, now)
+            write_whole(certificate, write(shown))
     write_result(write(query_document(plan)), output, as_json)
     if plan is None and not as_json:
-        others = [each for each in committed.plans if each.robot != id]
         print_line(f"no plan: {why_unplanned(problem, others, id, now)}")
     elif plan is not None and not as_json:
         rows = [

@@ -2,7 +2,6 @@
 
 import click
 
-from carp_spec import Refusal
 from carp_spec.bounds import read_bound
 from carp_spec.documents import write
 from carproof.answer import Answer
@@ -14,11 +13,11 @@ from carproof.files import (
     read_instance_file,
     refuse_two_standard_inputs,
 )
-from carproof.options import examples, instance_argument, json_option
-from carproof.results import VerifiedBoundDocument
+from carproof.options import examples, instance_argument, json_option, kernel_option
 from carproof.tables import print_line, print_table
+from carproof.verdicts import verify_bound
 
-COLUMNS = ("lower bound", "robots", "prices", "cuts", "horizon")
+COLUMNS = ("lower bound", "robots", "prices", "cuts", "horizon", "decided by")
 
 
 @click.command(
@@ -29,37 +28,33 @@ COLUMNS = ("lower bound", "robots", "prices", "cuts", "horizon")
 )
 @instance_argument
 @click.argument("certificate", type=InputFile())
+@kernel_option
 @json_option
-def command(instance: str, certificate: str, as_json: bool) -> Answer:
+def command(*, instance: str, certificate: str, kernel: bool, as_json: bool) -> Answer:
     """Check that CERTIFICATE proves its lower bound on the total cost of plans for all robots of INSTANCE.
 
     The least cost with prices of each robot is found anew, in whole numbers, by code that shares nothing with the
-    search for the prices.
+    search for the prices. The proved kernel (--kernel) assumes of each cut that its formula is right.
 
-    Exit codes: 0 the bound is proved, 1 it is not, 2 bad input.
+    Exit codes: 0 the bound is proved, 1 it is not, 2 bad input, 3 the kernel cannot decide.
     """
-    from carp_verify.verify_bound import verify_bound  # noqa: PLC0415 - only for those who ask
-
     refuse_two_standard_inputs(instance, certificate)
     problem = read_instance_file(instance)
     data = read_bytes(certificate)
     with naming(certificate):
         document = read_bound(data)
-    try:
-        bound = verify_bound(problem, document)
-    except Refusal as refusal:
-        if as_json:
-            print_document(write(VerifiedBoundDocument(None, refusal.path, refusal.rule, refusal.message)))
-        else:
-            print_line(f"not proved: {refusal}")
-        return Answer.NO
+    verdict = verify_bound(problem, document, kernel)
     if as_json:
-        print_document(write(VerifiedBoundDocument(bound, None, None, None)))
-        return Answer.YES
-    prices = len(document.resources) + len(document.exchanges)
-    row = [bound, len(document.robots), prices, len(document.cuts), document.horizon]
-    print_table(COLUMNS, [row], numbers=COLUMNS)
-    for robot, least in document.robots:
-        if least is None:
-            print_line(f"robot {robot} has no way to its goal: the bound is that of the others")
-    return Answer.YES
+        print_document(write(verdict))
+    elif verdict.bound is None:
+        print_line(f"not proved: {verdict.path}: {verdict.reason} [{verdict.rule}]")
+    else:
+        prices = len(document.resources) + len(document.exchanges)
+        row = [verdict.bound, len(document.robots), prices, len(document.cuts), document.horizon, verdict.by]
+        print_table(COLUMNS, [row], numbers=COLUMNS[:-1])
+        for robot, least in document.robots:
+            if least is None:
+                print_line(f"robot {robot} has no way to its goal: the bound is that of the others")
+        for assumption in verdict.assumed:
+            print_line(f"assumed: {assumption}")
+    return Answer.of(verdict.bound is not None)

@@ -18,13 +18,13 @@ from carp_spec import (
 from carp_spec.bounds import BoundDocument
 from carp_spec.documents import VerdictDocument, verdict_document
 from carp_spec.polish_rules import is_kept
-from carp_spec.rule import interval
 from carproof.conform.answers import Answer, OptimumAnswer, QueryAnswer
 from carproof.conform.cases import POLISH_ROUNDS, Case
 from carproof.conform.findings import Finding, wrong
 from carproof.conform.levels import Level
 from carproof.conform.optimum import bound_findings, complete_findings, optimum_findings, plan_cost_findings
 from carproof.engines import engine_named
+from carproof.results import shown_plan
 
 
 def first_finding(case: Case, answer: Answer, level: Level) -> Finding | None:
@@ -48,11 +48,6 @@ def _findings(case: Case, answer: Answer, level: Level) -> Iterator[Finding]:
             yield from _polish_findings(case, answer, level)
         case Solution():
             yield from _plan_findings(case, answer, level)
-
-
-def shown_plan(plan: Plan) -> str:
-    """A plan in one line."""
-    return " ".join(f"{visit.resource}{interval(visit.enter, visit.leave)}" for visit in plan.visits)
 
 
 def _followed(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int) -> tuple[Plan, ...]:

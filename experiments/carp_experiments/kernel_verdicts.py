@@ -1,0 +1,182 @@
+"""A campaign of random verdicts: the proved kernel and the checkers in Python must agree on all.
+
+A question is a solution to check, sound or broken in one place, or a query certificate to verify, honest or changed.
+A case is a block of questions, put to a kernel that stays up.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import msgspec
+
+from carp_experiments.report import Report, Table
+from carp_experiments.small_questions import Draw, draw_fleet, draw_instance
+from carp_experiments.store import Row
+from carp_spec import Instance, RobotId, Solution, judge
+from carp_spec.documents import instance_document, solution_document
+from carp_spec.permutations import splitmix64
+from carp_spec.query_certificates import QueryCertificateDocument
+from carp_verify.kernel import Kernel, KernelVerdict, running_kernel
+
+BLOCK = 1000
+FULL_VERDICTS = 1_000_000
+QUICK_VERDICTS = 20_000
+SHOWN = 3
+
+
+@dataclass(frozen=True, slots=True)
+class KernelCase:
+    """The verdicts of a seed numbered from `first` on."""
+
+    first: int
+    verdicts: int = BLOCK
+    seed: int = 0
+
+    @property
+    def key(self) -> str:
+        """Blocks in their order."""
+        return f"seed {self.seed} verdicts {self.first:09} to {self.first + self.verdicts - 1:09}"
+
+    def run(self) -> Row:
+        """How many solutions and certificates were accepted and refused, and the questions on which verdicts differ."""
+        block = Verdicts(self.verdicts)
+        with running_kernel() as kernel:
+            for number in range(self.first, self.first + self.verdicts):
+                draw = Draw(splitmix64(next(splitmix64(self.seed)) + number))
+                (ask_about_query if draw.happens(3) else ask_about_solution)(block, kernel, draw, number)
+        return msgspec.to_builtins(block)  # type: ignore[no-any-return] # a struct becomes a dict
+
+
+class Verdicts(msgspec.Struct):
+    """A row of the campaign."""
+
+    verdicts: int
+    sound: int = 0
+    broken: int = 0
+    proved: int = 0
+    refused: int = 0
+    differences: list[dict[str, Any]] = msgspec.field(default_factory=list)
+
+
+def ask_about_solution(block: Verdicts, kernel: Kernel, draw: Draw, number: int) -> None:
+    """Have both check a solution: they must agree whether it is valid, on its cost, and on a rule that it breaks."""
+    instance = draw_instance(draw)
+    solution = draw_fleet(draw, instance).solution
+    if not draw.happens(3):
+        instance, solution = broken(draw, instance, solution)
+    verdict = judge(instance, solution)
+    answer = kernel.ask("check", instance, solution=solution_document(solution))
+    if verdict.valid:
+        block.sound += 1
+        agree = (answer.verdict, answer.cost, answer.unplanned) == ("accepted", verdict.cost, verdict.unplanned)
+    else:
+        block.broken += 1
+        agree = answer.verdict == "refused" and answer.rule in {violation.rule for violation in verdict.violations}
+    if not agree:
+        note(block, number, instance, solution, None, answer)
+
+
+def broken(draw: Draw, instance: Instance, solution: Solution) -> tuple[Instance, Solution]:
+    """The solution changed in one place so that it breaks a rule."""
+    from carproof.mutations import MUTATIONS  # noqa: PLC0415 - each worker loads it
+
+    mutants = [found for found in (list(mutation(instance, solution)) for mutation in MUTATIONS) if found]
+    chosen = draw.one_of(draw.one_of(mutants))
+    return chosen.instance, chosen.solution
+
+
+def ask_about_query(block: Verdicts, kernel: Kernel, draw: Draw, number: int) -> None:
+    """Have both verify a query certificate: they must agree whether it proves its bound."""
+    from carproof.verdicts import verify_query  # noqa: PLC0415 - each worker loads it
+
+    instance = draw_instance(draw)
+    fleet = draw_fleet(draw, instance)
+    solution, robot = fleet.solution, draw.one_of([*instance.robot])
+    certificate = certified(instance, solution, robot, draw.one_of([0, fleet.now, fleet.now + 1]))
+    if not draw.happens(3):
+        certificate = changed(draw, certificate)
+    if draw.happens(4):
+        instance, solution = broken(draw, instance, solution)
+    verdict = verify_query(instance, solution, certificate, kernel=False)
+    answer = kernel.ask("verify-query", instance, solution=solution_document(solution), certificate=certificate)
+    if verdict.proved:
+        block.proved += 1
+    else:
+        block.refused += 1
+    if answer.verdict != ("accepted" if verdict.proved else "refused"):
+        note(block, number, instance, solution, certificate, answer)
+
+
+def certified(instance: Instance, solution: Solution, robot: RobotId, now: int) -> QueryCertificateDocument:
+    """The certificate of the planner to read."""
+    from carp_reference import certifier  # noqa: PLC0415 - each worker loads it
+
+    own = [plan for plan in solution.plans if plan.robot == robot]
+    asked = certifier(instance)
+    asked.commit([plan for plan in solution.plans if plan.robot != robot])
+    return asked.certify(robot, own[0] if own else None, now)[1]
+
+
+def changed(draw: Draw, certificate: QueryCertificateDocument) -> QueryCertificateDocument:
+    """The certificate with another bound or tick, with a label lost or moved, or with another potential."""
+    labels, potential, bound = [*certificate.labels], [*certificate.potential], certificate.bound
+    kind = draw.one_of(("bound", "now", "label lost", "label moved", "potential"))
+    if kind == "bound":
+        bound = draw.one_of([None, 0, draw.between(-1, 20), (bound or 0) + draw.between(1, 2), (bound or 1) - 1])
+    elif kind == "now":
+        return msgspec.structs.replace(certificate, now=draw.between(0, 12))
+    elif kind == "label lost" and labels:
+        del labels[draw.between(0, len(labels) - 1)]
+    elif kind == "label moved" and labels:
+        place = draw.between(0, len(labels) - 1)
+        labels[place] = (labels[place][0], labels[place][1] + draw.one_of([-1, 1]))
+    elif potential:
+        place = draw.between(0, len(potential) - 1)
+        potential[place] = (potential[place][0], potential[place][1] + draw.one_of([-1, 1]))
+    return msgspec.structs.replace(certificate, bound=bound, labels=tuple(labels), potential=tuple(potential))
+
+
+def note(
+    block: Verdicts,
+    number: int,
+    instance: Instance,
+    solution: Solution,
+    certificate: QueryCertificateDocument | None,
+    answer: KernelVerdict,
+) -> None:
+    """Note a difference."""
+    question = {
+        "number": number,
+        "instance": instance_document(instance),
+        "solution": solution_document(solution),
+        "certificate": certificate,
+        "kernel": answer,
+    }
+    block.differences.append(msgspec.to_builtins(question))
+
+
+def kernel_cases(verdicts: int, seed: int) -> tuple[KernelCase, ...]:
+    """That many verdicts, in blocks."""
+    return tuple(KernelCase(first, min(BLOCK, verdicts - first), seed) for first in range(0, verdicts, BLOCK))
+
+
+def kernel_report(rows: Iterable[Row]) -> Report:
+    """How many verdicts of each kind there were, and which differ."""
+    blocks = [msgspec.convert(row, Verdicts) for row in rows]
+    differences = [each for block in blocks for each in block.differences]
+    counts = ("verdicts", "sound", "broken", "proved", "refused")
+    columns = (
+        "verdicts",
+        "sound solutions",
+        "broken solutions",
+        "certificates proved",
+        "certificates refused",
+        "differences",
+    )
+    sums = [str(sum(getattr(block, name) for block in blocks)) for name in counts]
+    shown = tuple(f"A DIFFERENCE: {msgspec.json.encode(each).decode()}" for each in differences[:SHOWN])
+    table = Table(
+        "kernel", "The kernel and the checkers in Python", columns, ((*sums, str(len(differences))),), columns
+    )
+    return Report({"differences": differences}, (table,), (), shown, holds=not differences)

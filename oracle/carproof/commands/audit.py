@@ -1,0 +1,104 @@
+"""`carproof audit`: whether each plan of a solution is optimal beside those before it."""
+
+from collections.abc import Sequence
+from time import perf_counter
+
+import click
+
+from carp_spec.documents import write
+from carproof.adapters import format_of, read_foreign_solution
+from carproof.answer import Answer
+from carproof.audit import Audit, ask_kernel, audit_in_order, audit_in_some_order
+from carproof.engines import engine_named
+from carproof.files import (
+    InputFile,
+    naming,
+    print_document,
+    read_bytes,
+    read_instance_file,
+    refuse_two_standard_inputs,
+    shown,
+)
+from carproof.foreign import MovingAI, from_option, movingai_options, read_movingai
+from carproof.options import engine_option, examples, json_option, kernel_option
+from carproof.progress import progress
+from carproof.requests import sound_solution
+from carproof.results import arrival_of, audit_document, shown_plan
+from carproof.tables import print_line, print_table
+
+COLUMNS = ("robots", "certified", "late", "unplanned", "decided by", "time")
+OWN_FORMAT = "carproof"
+
+
+@click.command(
+    short_help="Check that no plan can arrive earlier beside those before it.",
+    epilog=examples(
+        "carproof audit town.json plans.json",
+        "carproof audit town.json plans.json --kernel",
+        "carproof audit --map town.map --scen town.scen --agents 40 result.txt",
+    ),
+)
+@click.argument("files", metavar="[INSTANCE] SOLUTION", nargs=-1, required=True, type=InputFile())
+@movingai_options
+@from_option
+@click.option("--find-order", is_flag=True, help="Look for an order in which no plan is late, whatever SOLUTION says.")
+@kernel_option
+@engine_option
+@json_option
+def command(  # noqa: PLR0913 - one parameter for each argument and option
+    *,
+    files: Sequence[str],
+    map: str | None,
+    scen: str | None,
+    agents: int | None,
+    format: str | None,
+    find_order: bool,
+    kernel: bool,
+    engine: str | None,
+    as_json: bool,
+) -> Answer:
+    """Certify of each plan of SOLUTION that its robot cannot arrive earlier beside the plans before it.
+
+    The plans may be of any planner; they must break no rule. They are looked at in the planning order of SOLUTION, and
+    all are at tick 0: no robot is under way. Other planners' formats have no such order. There, as with --find-order,
+    one is looked for in which no plan is late, and if there is none, the plans are listed that are late in every order.
+
+    An audit does not say whether a plan has the ties that carproof prefers, whether another order would be better, or
+    whether robots without a plan could have one.
+
+    Exit codes: 0 each plan is certified, 1 a plan is late, 2 bad input.
+    """
+    *instances, solution = files
+    benchmark = MovingAI.of(map, scen, agents)
+    if len(instances) != (benchmark is None):
+        raise click.UsageError("Give INSTANCE and SOLUTION, or --map, --scen and SOLUTION.")
+    refuse_two_standard_inputs(*files, *(benchmark.names if benchmark else ()))
+    instance = read_movingai(benchmark) if benchmark else read_instance_file(instances[0])
+    data, name = read_bytes(solution), shown(solution)
+    format = format or format_of(data, instance, name)
+    given = read_foreign_solution(data, instance, name, format)
+    with naming(solution):
+        sound = sound_solution(instance, given)
+    look = audit_in_some_order if find_order or format != OWN_FORMAT else audit_in_order
+    started = perf_counter()
+    with progress("auditing", len(sound.plans)) as advance:
+        audit = look(instance, sound, engine_named(engine), advance)
+    if kernel:
+        ask_kernel(instance, sound, audit)
+    if as_json:
+        print_document(write(audit_document(audit, sound)))
+    else:
+        seconds = f"{perf_counter() - started:.2f} s"
+        row = [len(instance.robots), len(audit.certified), len(audit.late), len(sound.unplanned), audit.by, seconds]
+        print_table(COLUMNS, [row], numbers=COLUMNS[:4])
+        print_late(audit)
+        if look is audit_in_some_order and not audit.holds:
+            print_line("in no order are all plans optimal: these are late beside the plans that are certified")
+    return Answer.of(audit.holds)
+
+
+def print_late(audit: Audit) -> None:
+    """Print each late plan, one a line, with one that arrives earlier."""
+    for late in audit.late:
+        earlier = f"{arrival_of(late.earlier)}: {shown_plan(late.earlier)}"
+        print_line(f"robot {late.plan.robot} arrives at {arrival_of(late.plan)}, and can at {earlier}")

@@ -1,0 +1,58 @@
+"""`carproof verify-query`: check what `carproof query --certificate` wrote."""
+
+import click
+
+from carp_spec.documents import write
+from carp_spec.query_certificates import read_query_certificate
+from carproof.answer import Answer
+from carproof.files import (
+    InputFile,
+    naming,
+    print_document,
+    read_bytes,
+    read_instance_file,
+    read_solution_file,
+    refuse_two_standard_inputs,
+)
+from carproof.options import examples, instance_argument, json_option, kernel_option, solution_argument
+from carproof.tables import print_line, print_table
+from carproof.verdicts import verify_query
+
+COLUMNS = ("robot", "now", "earliest arrival", "labels", "decided by")
+
+
+@click.command(
+    short_help="Check that a robot cannot arrive earlier.",
+    epilog=examples(
+        "carproof verify-query town.json plans.json r7.json",
+        "carproof verify-query town.json plans.json r7.json --kernel",
+    ),
+)
+@instance_argument
+@solution_argument
+@click.argument("certificate", type=InputFile())
+@kernel_option
+@json_option
+def command(*, instance: str, solution: str, certificate: str, kernel: bool, as_json: bool) -> Answer:
+    """Check that CERTIFICATE proves how early its robot can arrive beside the plans of SOLUTION.
+
+    No plan of the robot that breaks no rule, alone or together with the plans of the others, and that keeps what the
+    robot has done of its own plan, arrives before the bound of the certificate; or it has no plan at all.
+
+    Exit codes: 0 this is proved, 1 it is not, 2 bad input.
+    """
+    refuse_two_standard_inputs(instance, solution, certificate)
+    problem, given = read_instance_file(instance), read_solution_file(solution)
+    data = read_bytes(certificate)
+    with naming(certificate):
+        document = read_query_certificate(data)
+    verdict = verify_query(problem, given, document, kernel)
+    if as_json:
+        print_document(write(verdict))
+    elif verdict.proved:
+        arrival = "never" if document.bound is None else document.bound
+        row = [document.robot, document.now, arrival, len(document.labels), verdict.by]
+        print_table(COLUMNS, [row], numbers=COLUMNS[1:4])
+    else:
+        print_line(f"not proved: {verdict.path}: {verdict.reason} [{verdict.rule}]")
+    return Answer.of(verdict.proved)

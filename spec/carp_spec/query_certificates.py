@@ -1,0 +1,39 @@
+"""The document that shows how early one robot can arrive beside the plans of the others: `carproof-query/1`.
+
+Planners make it and `carp_verify` checks it; its rules are `query-certificate/...`.
+"""
+
+from typing import Final, Literal
+
+import msgspec
+
+from carp_spec.documents import Tick, decode
+from carp_spec.model import ResourceId, RobotId
+from carp_spec.refusal import Refusal
+
+QUERY_FORMAT: Final = "carproof-query/1"
+
+
+class QueryCertificateDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A tick before which no plan of the robot arrives, or null where it has no plan, and what shows it.
+
+    It is about an instance and a solution, which are not in it: the robot is planned at the tick `now` beside the
+    plans of the others. `labels` are pairs of a resource and a tick: the robot enters the free
+    window that holds the tick no earlier than then. `potential` gives for a resource ticks that the robot needs at
+    least from entering it to entering its goal; from a resource that is not listed it cannot reach its goal.
+    """
+
+    format: Literal["carproof-query/1"]
+    robot: RobotId
+    now: Tick
+    bound: int | None
+    labels: tuple[tuple[ResourceId, int], ...]
+    potential: tuple[tuple[ResourceId, int], ...]
+
+
+def read_query_certificate(data: bytes) -> QueryCertificateDocument:
+    """Read a query certificate; raises `Refusal` if it is malformed. Whether it is right, `carp_verify` says."""
+    document = decode(data, QueryCertificateDocument, QUERY_FORMAT)
+    if document.now < 0:
+        raise Refusal("document", "$.now", "document/shape", "now must be at least 0")
+    return document

@@ -1,0 +1,184 @@
+"""`audit` and the op `audit`: plans certified optimal in their order, or an earlier one shown."""
+
+import json
+from dataclasses import replace
+from itertools import permutations
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from tests.oracle.running import EAST, ONE_PLANNED, TWO, TWO_PLANNED, Run, corridor, line, solution
+
+import carp_reference
+from carp_spec import Carp, Plan, RobotId, Solution, check, plan_cost, read_instance, read_solution
+from carp_spec.query_certificates import QueryCertificateDocument
+from carp_verify.bound_rules import ContradictionError
+from carproof.audit import audit_in_order, audit_in_some_order, in_order
+from carproof.engines import engine_named
+from carproof.generate import Fleet, Grid, grid_instance
+from carproof.strategies import PlannedInstance, planned_instances
+
+LATE = solution({"r1": [["a", 0, 1], ["b", 1, 3], ["c", 3, 4]]})
+ALONE = corridor([EAST])
+REFERENCE = engine_named("reference")
+
+
+def written(path: Path, document: object) -> Path:
+    path.write_text(json.dumps(document))
+    return path
+
+
+@pytest.fixture
+def town(tmp_path: Path) -> Path:
+    return written(tmp_path / "town.json", TWO)
+
+
+def last_row(stdout: str) -> list[str]:
+    return stdout.splitlines()[2].split()[:5]
+
+
+def test_plans_that_are_optimal_in_their_order_are_certified(carproof: Run, tmp_path: Path) -> None:
+    town = written(tmp_path / "town.json", TWO)
+    plans = written(tmp_path / "plans.json", {**TWO_PLANNED, "order": ["r2", "r1"]})
+    outcome = carproof("audit", town, plans)
+    assert (outcome.code, outcome.stderr) == (0, "")
+    assert last_row(outcome.stdout) == ["2", "2", "0", "0", "carp_verify"]
+    document = json.loads(carproof("audit", town, plans, "--json").stdout)
+    assert document == {"certified": ["r2", "r1"], "late": [], "unplanned": 0, "by": "carp_verify"}
+
+
+def test_a_late_plan_is_shown_with_an_earlier_one(carproof: Run, tmp_path: Path) -> None:
+    town, plans = written(tmp_path / "town.json", ALONE), written(tmp_path / "plans.json", LATE)
+    for engine in ("optimized", "reference"):
+        outcome = carproof("audit", town, plans, "--engine", engine)
+        assert outcome.code == 1
+        assert last_row(outcome.stdout)[:4] == ["1", "0", "1", "0"]
+        assert outcome.stdout.splitlines()[-1] == "robot r1 arrives at 3, and can at 2: a[0,1) b[1,2) c[2,3)"
+    late = json.loads(carproof("audit", town, plans, "--json").stdout)["late"]
+    assert late == [{"robot": "r1", "arrival": 3, "earliest": 2, "plan": [["a", 0, 1], ["b", 1, 2], ["c", 2, 3]]}]
+
+
+def test_robots_without_a_plan_are_counted(carproof: Run, town: Path, tmp_path: Path) -> None:
+    outcome = carproof("audit", town, written(tmp_path / "plans.json", ONE_PLANNED))
+    assert last_row(outcome.stdout)[:4] == ["2", "1", "0", "1"]
+
+
+def test_plans_that_break_a_rule_are_bad_input(carproof: Run, town: Path, tmp_path: Path) -> None:
+    broken = {**TWO_PLANNED, "order": ["r1"]}
+    outcome = carproof("audit", town, written(tmp_path / "plans.json", broken))
+    assert (outcome.code, outcome.stdout) == (2, "")
+    assert "[solution/order]" in outcome.stderr
+
+
+def test_an_order_is_found_for_plans_in_another_planners_format(carproof: Run, tmp_path: Path) -> None:
+    (tmp_path / "row.map").write_text("type octile\nheight 2\nwidth 3\nmap\n...\n@.@\n")
+    (tmp_path / "row.scen").write_text("version 1\n0\trow.map\t3\t2\t0\t0\t2\t0\t2\n0\trow.map\t3\t2\t1\t0\t1\t1\t1\n")
+    benchmark = ("--map", tmp_path / "row.map", "--scen", tmp_path / "row.scen")
+    result = tmp_path / "result.txt"
+    result.write_text("solution=\n0:(0,0),(1,0),\n1:(1,0),(1,1),\n2:(2,0),(1,1),\n")
+    outcome = carproof("audit", *benchmark, result)
+    assert (outcome.code, outcome.stderr) == (0, "")
+    assert last_row(outcome.stdout)[:4] == ["2", "2", "0", "0"]
+    result.write_text("solution=\n0:(0,0),(1,0),\n1:(0,0),(1,1),\n2:(1,0),(1,1),\n3:(2,0),(1,1),\n")
+    late = carproof("audit", *benchmark, result)
+    assert late.code == 1
+    assert late.stdout.splitlines()[-1].startswith("in no order are all plans optimal")
+    assert "robot r1 arrives at 3, and can at 2" in late.stdout
+
+
+def test_another_order_is_looked_for_where_it_is_asked_for(carproof: Run, tmp_path: Path) -> None:
+    """The second robot of the document crosses first."""
+    cells = [{"id": cell} for cell in ("north", "south", "west", "east", "middle")]
+    edges = [{"source": cell["id"], "target": "middle"} for cell in cells[:-1]]
+    robots = [{"id": "r1", "start": "north", "goal": "south"}, {"id": "r2", "start": "west", "goal": "east"}]
+    town = {**ALONE, "graph": {"nodes": cells, "edges": edges}, "robots": robots}
+    waits = [["north", 0, 2], ["middle", 2, 3], ["south", 3, 4]]
+    plans = solution({"r1": waits, "r2": [["west", 0, 1], ["middle", 1, 2], ["east", 2, 3]]})
+    files = written(tmp_path / "town.json", town), written(tmp_path / "plans.json", plans)
+    assert carproof("audit", *files).code == 1
+    outcome = carproof("audit", *files, "--find-order", "--json")
+    assert (outcome.code, json.loads(outcome.stdout)["certified"]) == (0, ["r2", "r1"])
+
+
+@given(planned_instances())
+def test_a_plan_is_late_just_where_the_reference_finds_an_earlier_one(planned: PlannedInstance) -> None:
+    audit = audit_in_order(planned.instance, planned.solution, REFERENCE)
+    plans = [*in_order(planned.solution)]
+    late = []
+    for position, plan in enumerate(plans):
+        best = carp_reference.query(planned.instance, plans[:position], plan.robot)
+        assert best is not None
+        if plan_cost(planned.instance, best) < plan_cost(planned.instance, plan):
+            late.append(plan)
+    assert [each.plan for each in audit.late] == late
+    assert [each for each in plans if each not in late] == audit.certified
+    for each in audit.late:
+        assert check(planned.instance, (*each.before, each.earlier)) == ()
+        assert each.earlier.visits[-1].enter < each.plan.visits[-1].enter
+
+
+@given(planned_instances())
+def test_an_order_is_found_if_there_is_one(planned: PlannedInstance) -> None:
+    audit = audit_in_some_order(planned.instance, planned.solution, REFERENCE)
+    orders = permutations(planned.solution.order)
+    possible = any(audit_in_order(planned.instance, _ordered(planned, order), REFERENCE).holds for order in orders)
+    assert audit.holds == possible
+    if possible:
+        order = tuple(plan.robot for plan in audit.certified)
+        assert audit_in_order(planned.instance, _ordered(planned, order), REFERENCE).holds
+
+
+def _ordered(planned: PlannedInstance, order: tuple[RobotId, ...]) -> Solution:
+    return replace(planned.solution, order=order)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_plans_of_both_engines_are_certified(seed: int) -> None:
+    instance = grid_instance(Grid(8, 8, map=8), Fleet(24, seed=seed))
+    planned = REFERENCE.plan(instance, Carp())
+    for engine in ("reference", "optimized"):
+        assert audit_in_order(instance, planned, engine_named(engine)).holds
+
+
+class Wrong:
+    """A planner that finds no plan, or one that breaks a rule, or shows nothing."""
+
+    def __init__(self, plan: Plan | None, certificate: QueryCertificateDocument) -> None:
+        self.found = plan, certificate
+
+    def commit(self, plans: object) -> None:
+        pass
+
+    def certify(self, *_: object) -> tuple[Plan | None, QueryCertificateDocument]:
+        return self.found
+
+
+@pytest.mark.parametrize(
+    ("plan", "message"),
+    [
+        (None, "was not found"),
+        (read_solution(line(**solution({"r1": [["a", 0, 1], ["c", 1, 2]]}))).plans[0], "breaks a rule"),
+        (read_solution(line(**LATE)).plans[0], "was refused"),
+    ],
+)
+def test_a_planner_that_is_wrong_is_a_contradiction(
+    monkeypatch: pytest.MonkeyPatch, plan: Plan | None, message: str
+) -> None:
+    certificate = QueryCertificateDocument("carproof-query/1", "r1", 0, 3, (), (("c", 0),))
+    monkeypatch.setattr(carp_reference, "certifier", lambda _: Wrong(plan, certificate))
+    with pytest.raises(ContradictionError, match=message):
+        audit_in_order(read_instance(line(**ALONE)), read_solution(line(**LATE)), REFERENCE)
+
+
+def test_the_op_audit_is_served(carproof: Run) -> None:
+    requests = [
+        line(id=1, op="audit", instance=TWO, solution=TWO_PLANNED),
+        line(id=2, op="audit", instance=ALONE, solution=LATE),
+        line(id=3, op="audit", instance=TWO, solution={**TWO_PLANNED, "order": []}),
+        line(id=4, op="audit", instance=TWO, solution=TWO_PLANNED, kernel=1),
+    ]
+    answers = [json.loads(each) for each in carproof("serve", stdin=b"".join(requests)).stdout.splitlines()]
+    assert (answers[0]["result"]["certified"], answers[0]["result"]["late"]) == (["r1", "r2"], [])
+    assert answers[1]["result"]["late"][0]["earliest"] == 2
+    assert (answers[2]["error"]["path"], answers[2]["error"]["rule"]) == ("$.solution.plans[0]", "solution/order")
+    assert (answers[3]["error"]["path"], answers[3]["error"]["rule"]) == ("$.kernel", "protocol/request")

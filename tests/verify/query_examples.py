@@ -1,0 +1,89 @@
+"""A small town with queries of every kind, and their honest certificates."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from carp_reference.certifying import Certifier
+from carp_spec import AfterGoal, Instance, Plan, Resource, ResourceGraph, Robot, RobotId, Solution, Visit
+from carp_spec.query_certificates import QueryCertificateDocument
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """A robot to plan at a tick beside the plans of the others; a plan of its own is what it has followed."""
+
+    instance: Instance
+    solution: Solution
+    robot: RobotId
+    now: int = 0
+
+    @property
+    def followed(self) -> Plan | None:
+        return next((plan for plan in self.solution.plans if plan.robot == self.robot), None)
+
+    def certified(self) -> tuple[Plan | None, QueryCertificateDocument]:
+        """The plan of the reference, and its certificate."""
+        certifier = Certifier(self.instance)
+        certifier.commit([plan for plan in self.solution.plans if plan.robot != self.robot])
+        return certifier.certify(self.robot, self.followed, self.now)
+
+
+def town(after_goal: AfterGoal, *robots: Robot, directed: bool = False, capacity: int = 1) -> Instance:
+    """A lane from a over b and c, which takes two ticks, to d, and e beside b."""
+    cells = tuple(Resource(cell, capacity if cell == "b" else 1, 2 if cell == "c" else 1) for cell in "abcde")
+    return Instance(
+        ResourceGraph(cells, (("a", "b"), ("b", "c"), ("c", "d"), ("b", "e")), directed), robots, after_goal
+    )
+
+
+def beside(instance: Instance, robot: RobotId, *plans: Plan, now: int = 0) -> Question:
+    """A question beside plans."""
+    order = tuple(plan.robot for plan in plans)
+    unplanned = tuple(each for each in instance.robot if each not in order)
+    return Question(instance, Solution(plans, order, unplanned), robot, now)
+
+
+def walk(robot: RobotId, *visits: tuple[str, int, int | None]) -> Plan:
+    return Plan(robot, tuple(Visit(*visit) for visit in visits))
+
+
+EAST = Robot("r", "a", "d")
+WEST = Robot("s", "d", "a")
+WESTWARDS = walk("s", ("d", 0, 1), ("c", 1, 3), ("b", 3, 4), ("a", 4, 5))
+VANISHING = town("vanish", EAST, WEST)
+PARKING = town("park", EAST, replace(WEST, goal="e"))
+HOME = town("vanish", Robot("r", "b", "b"), WEST)
+QUESTIONS = {
+    "alone": beside(VANISHING, "r"),
+    "head-on": beside(VANISHING, "r", WESTWARDS),
+    "blocked for ever": beside(
+        town("park", EAST, replace(WEST, goal="c")), "r", walk("s", ("d", 0, 1), ("c", 1, None))
+    ),
+    "parking": beside(PARKING, "r", walk("s", ("d", 0, 1), ("c", 1, 3), ("b", 3, 4), ("e", 4, None))),
+    "a goal that is passed later": beside(
+        town("park", replace(EAST, goal="b"), replace(WEST, goal="e")),
+        "r",
+        walk("s", ("d", 0, 1), ("c", 1, 3), ("b", 3, 4), ("e", 4, None)),
+    ),
+    "out of reach": beside(town("vanish", replace(WEST, id="r"), directed=True), "r"),
+    "room for two": beside(town("vanish", EAST, WEST, capacity=2), "r", WESTWARDS),
+    "slow": beside(town("vanish", replace(EAST, pace=2), WEST), "r", WESTWARDS),
+    "under way": beside(
+        VANISHING, "r", WESTWARDS, walk("r", ("a", 0, 1), ("b", 1, 2), ("c", 2, 4), ("d", 4, 5)), now=1
+    ),
+    "ended": beside(HOME, "r", walk("r", ("b", 0, 1)), now=4),
+    "in the way": beside(
+        VANISHING, "r", WESTWARDS, walk("r", ("a", 0, 4), ("b", 4, 5), ("c", 5, 7), ("d", 7, 8)), now=4
+    ),
+    "may leave its goal now": beside(HOME, "r", now=1),
+    "stayed too long at its goal": beside(
+        HOME, "r", walk("s", ("d", 0, 6), ("c", 6, 8), ("b", 8, 9), ("a", 9, 10)), now=3
+    ),
+}
+
+
+def fleets(question: Question) -> Iterator[Question]:
+    """The same plans, asked for each robot of the instance, at the start and at the tick."""
+    for robot in question.instance.robot:
+        for now in sorted({0, question.now}):
+            yield replace(question, robot=robot, now=now)

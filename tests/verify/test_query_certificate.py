@@ -1,0 +1,176 @@
+"""The checker of query certificates: it accepts what is true and shown, and nothing else."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import msgspec
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from tests.verify.query_examples import QUESTIONS, VANISHING, WESTWARDS, Question, beside, fleets, town, walk
+
+import carp_optimized.certifying
+import carp_reference
+import carp_verify.query_certificate_rules
+from carp_spec import Plan, Refusal, Robot
+from carp_spec.query_certificates import QueryCertificateDocument
+from carp_verify.query_certificate_rules import QUERY_CERTIFICATE_RULES
+from carp_verify.verify_query import verify_query
+from carproof.strategies import FleetUnderWay, Sizes, fleets_under_way
+
+SMALL_TICKS = st.integers(-1, 12)
+
+
+def arrival(plan: Plan | None) -> int | None:
+    return None if plan is None else plan.visits[-1].enter
+
+
+def rule_broken(question: Question, certificate: QueryCertificateDocument) -> str | None:
+    """The rule by which the certificate is refused, or `None`."""
+    try:
+        verify_query(question.instance, question.solution, certificate)
+    except Refusal as refusal:
+        return refusal.rule
+    return None
+
+
+def is_true(question: Question, bound: int | None) -> bool:
+    """Whether no plan arrives before the bound, by the reference."""
+    best = arrival(carp_reference.query(question.instance, question.solution.plans, question.robot, question.now))
+    return best is None or (bound is not None and bound <= best)
+
+
+@pytest.mark.parametrize("name", QUESTIONS)
+def test_an_honest_certificate_is_accepted(name: str) -> None:
+    question = QUESTIONS[name]
+    plan, certificate = question.certified()
+    assert verify_query(question.instance, question.solution, certificate) == arrival(plan)
+
+
+def test_the_examples_are_of_every_kind() -> None:
+    bounds = {name: question.certified()[1].bound for name, question in QUESTIONS.items()}
+    assert bounds == {
+        "alone": 4,
+        "head-on": 7,
+        "blocked for ever": None,
+        "parking": 7,
+        "a goal that is passed later": 4,
+        "out of reach": None,
+        "room for two": 6,
+        "slow": None,
+        "under way": 7,
+        "ended": 0,
+        "in the way": None,
+        "may leave its goal now": 0,
+        "stayed too long at its goal": 4,
+    }
+
+
+@given(fleets_under_way(Sizes(resources=5, robots=4, release=3)))
+def test_certificates_of_both_planners_are_accepted_with_the_arrival_of_the_plan(fleet: FleetUnderWay) -> None:
+    for question in fleets(Question(fleet.instance, fleet.solution, fleet.robot, fleet.now)):
+        certifier = carp_optimized.certifying.Certifier(question.instance)
+        certifier.commit([plan for plan in question.solution.plans if plan.robot != question.robot])
+        best = carp_reference.query(question.instance, question.solution.plans, question.robot, question.now)
+        for plan, certificate in (
+            question.certified(),
+            certifier.certify(question.robot, question.followed, question.now),
+        ):
+            assert plan == best
+            assert verify_query(question.instance, question.solution, certificate) == arrival(best)
+
+
+@given(fleets_under_way(), st.data())
+def test_whatever_is_accepted_is_true(fleet: FleetUnderWay, data: st.DataObject) -> None:
+    """The certificate of another question, with labels lost or moved, another bound, and a changed potential."""
+    question = Question(fleet.instance, fleet.solution, fleet.robot, fleet.now)
+    other = replace(question, now=data.draw(st.sampled_from([0, fleet.now])))
+    other = replace(other, robot=data.draw(st.sampled_from([*fleet.instance.robot])))
+    certificate = other.certified()[1]
+    labels = [(resource, tick + data.draw(st.sampled_from([0, 0, 0, 1, -1]))) for resource, tick in certificate.labels]
+    if labels:
+        labels = labels[: data.draw(st.integers(0, len(labels)))]
+    potential = [
+        (resource, ticks + data.draw(st.sampled_from([0, 0, 0, 1, -1]))) for resource, ticks in certificate.potential
+    ]
+    changed = msgspec.structs.replace(
+        certificate,
+        robot=data.draw(st.sampled_from([certificate.robot, question.robot])),
+        now=data.draw(st.sampled_from([0, fleet.now])),
+        bound=data.draw(st.sampled_from([certificate.bound, None]) | SMALL_TICKS),
+        labels=data.draw(st.sampled_from([certificate.labels, tuple(labels)])),
+        potential=data.draw(st.sampled_from([certificate.potential, tuple(potential), ()])),
+    )
+    if rule_broken(question, changed) is None:
+        asked = replace(question, robot=changed.robot, now=changed.now)
+        assert is_true(asked, changed.bound)
+
+
+BROKEN: Sequence[tuple[str, str, dict[str, Any]]] = (
+    ("query-certificate/robot", "alone", {"robot": "moon"}),
+    ("query-certificate/bound", "ended", {"bound": 1}),
+    ("query-certificate/potential", "alone", {"potential": ()}),
+    ("query-certificate/potential", "alone", {"potential": (("d", 1), ("c", 3), ("b", 4), ("a", 5), ("e", 5))}),
+    ("query-certificate/potential", "alone", {"potential": (("d", 0), ("c", 3), ("b", 3), ("a", 4), ("e", 4))}),
+    ("query-certificate/potential", "alone", {"potential": (("d", 0), ("c", 2), ("b", 3), ("a", 4))}),
+    ("query-certificate/closed", "head-on", {"labels": ()}),
+    ("query-certificate/closed", "alone", {"bound": 5, "labels": (("b", 1),)}),
+    ("query-certificate/closed", "may leave its goal now", {"bound": 1}),
+    ("query-certificate/closed", "alone", {"bound": 5, "labels": tuple((cell, 0) for cell in "abcde")}),
+)
+
+
+@pytest.mark.parametrize(("rule", "name", "changes"), BROKEN)
+def test_each_rule_refuses_what_breaks_it(rule: str, name: str, changes: dict[str, Any]) -> None:
+    question = QUESTIONS[name]
+    certificate = msgspec.structs.replace(question.certified()[1], **changes)
+    assert rule_broken(question, certificate) == rule
+
+
+def test_plans_that_break_a_rule_or_are_of_one_robot_or_of_none_are_refused() -> None:
+    certificate = QUESTIONS["head-on"].certified()[1]
+    jumping, stranger = walk("s", ("d", 0, 1), ("a", 1, 2)), walk("moon", ("a", 0, 1))
+    for plans in ((jumping,), (WESTWARDS, WESTWARDS), (stranger,)):
+        assert rule_broken(beside(VANISHING, "r", *plans), certificate) == "query-certificate/plans"
+
+
+def test_each_rule_has_a_test() -> None:
+    tested = {*(rule for rule, _, _ in BROKEN), "query-certificate/plans", "query-certificate/size"}
+    assert {rule.id for rule in QUERY_CERTIFICATE_RULES} == tested
+
+
+def test_a_size_that_is_too_large_is_refused_before_anything_is_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    question = QUESTIONS["head-on"]
+    certificate = question.certified()[1]
+    monkeypatch.setattr(carp_verify.query_certificate_rules, "LARGEST_CHECK", 10)
+    assert rule_broken(question, certificate) == "query-certificate/size"
+    far = msgspec.structs.replace(certificate, labels=certificate.labels * 3_000_000)
+    monkeypatch.undo()
+    assert rule_broken(question, far) == "query-certificate/size"
+
+
+def test_labels_and_potentials_of_resources_that_there_are_not_mean_nothing() -> None:
+    question = QUESTIONS["head-on"]
+    certificate = question.certified()[1]
+    more = msgspec.structs.replace(
+        certificate,
+        labels=(*certificate.labels, ("moon", 0), ("a", -5), ("a", 10**99)),
+        potential=(*certificate.potential, ("moon", 7)),
+    )
+    assert rule_broken(question, more) is None
+
+
+def test_a_bound_that_is_lower_is_accepted_too() -> None:
+    question = QUESTIONS["head-on"]
+    certificate = question.certified()[1]
+    assert certificate.bound is not None
+    for bound in (certificate.bound - 1, 0, -(10**99)):
+        assert rule_broken(question, msgspec.structs.replace(certificate, bound=bound)) is None
+
+
+def test_ticks_of_any_size_are_checked() -> None:
+    far = 10**90
+    slow = town("vanish", Robot("r", "a", "d", release=far, pace=far))
+    question = beside(slow, "r")
+    assert verify_query(slow, question.solution, question.certified()[1]) == 5 * far

@@ -1,0 +1,145 @@
+"""Asks `carproof-kernel`, the native program whose verdicts are proved in Coq (`kernel/`)."""
+
+import os
+import subprocess
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from shutil import which
+from tempfile import TemporaryDirectory
+from typing import Any, Final, Literal
+
+import msgspec
+
+from carp_spec import Instance, Refusal, Rule
+from carp_spec.bounds import BoundDocument
+from carp_spec.documents import instance_document, write, write_instance
+from carp_spec.rule import DESIGN, rule
+
+PROGRAM: Final = "carproof-kernel"
+VARIABLE: Final = "CARPROOF_KERNEL"
+BUILT: Final = Path(__file__).parents[2] / "build/kernel" / PROGRAM
+
+
+@rule(
+    "kernel/program",
+    f"The kernel is asked only where its program is: the file that {VARIABLE} names, else the one that `make kernel` "
+    f"builds, else {PROGRAM} on the PATH.",
+    DESIGN,
+)
+def program_is_there(program: str | None) -> bool:
+    """Whether a program was found."""
+    return program is not None
+
+
+@rule("kernel/answer", "The kernel answers each request by one line of JSON.", DESIGN)
+def is_answer(line: str) -> bool:
+    """Whether the line is an answer of the kernel."""
+    try:
+        msgspec.json.decode(line, type=KernelVerdict)
+    except (msgspec.DecodeError, UnicodeError):
+        return False
+    return True
+
+
+KERNEL_RULES: tuple[Rule[..., Any], ...] = (program_is_there, is_answer)
+
+
+class UndecidedError(RuntimeError):
+    """The kernel could not decide."""
+
+
+class KernelVerdict(msgspec.Struct, frozen=True):
+    """A verdict of the kernel's version `kernel`, with what it says besides."""
+
+    kernel: str
+    verdict: Literal["accepted", "refused", "undecided", "bad input"]
+    path: str = "$"
+    rule: str | None = None
+    message: str | None = None
+    cost: int | None = None
+    unplanned: int | None = None
+    bound: int | None = None
+    assumed: tuple[str, ...] = ()
+
+    @property
+    def by(self) -> str:
+        """Who decided."""
+        return f"{PROGRAM} {self.kernel}"
+
+    @property
+    def accepted(self) -> bool:
+        """Whether the kernel accepts; raises `Refusal` for documents that it does not read, and `UndecidedError`."""
+        if self.verdict == "bad input":
+            raise Refusal("document", self.path, self.rule or is_answer.id, f"{self.by}: {self.message}")
+        if self.verdict == "undecided":
+            raise UndecidedError(f"{self.by}: {self.message}")
+        return self.verdict == "accepted"
+
+
+def program() -> str:
+    """The kernel's program; raises `Refusal` if there is none."""
+    built = str(BUILT) if BUILT.is_file() else None
+    found = which(os.environ[VARIABLE]) if VARIABLE in os.environ else built or which(PROGRAM)
+    if found is None:
+        message = (
+            f"there is no program {PROGRAM}; `make kernel` builds it, with the Debian packages coq, ocaml, "
+            "ocaml-findlib, libyojson-ocaml-dev and libzarith-ocaml-dev"
+        )
+        raise Refusal("request", "$.kernel", program_is_there.id, message)
+    return found
+
+
+class Kernel:
+    """A kernel that stays up."""
+
+    def __init__(self, process: "subprocess.Popen[bytes]") -> None:
+        self._process = process
+
+    def ask(self, op: str, instance: Instance, **documents: object) -> KernelVerdict:
+        """Put one request; raises `Refusal` if there is no answer."""
+        request = {"op": op, "instance": instance_document(instance), **documents}
+        process = self._process
+        assert process.stdin is not None  # noqa: S101 - a pipe
+        assert process.stdout is not None  # noqa: S101
+        try:
+            process.stdin.write(msgspec.json.encode(request) + b"\n")
+            process.stdin.flush()
+        except BrokenPipeError:
+            return _verdict("")
+        return _verdict(process.stdout.readline().decode(errors="replace"))
+
+
+@contextmanager
+def running_kernel() -> Iterator[Kernel]:
+    """A kernel that ends with the block; raises `Refusal` if there is no program."""
+    command = [program(), "serve"]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:  # noqa: S603 - ours
+        try:
+            yield Kernel(process)
+        finally:
+            process.kill()
+
+
+def verify_bound(instance: Instance, certificate: BoundDocument, formulas: Mapping[int, str]) -> KernelVerdict:
+    """What the kernel says of a lower bound, with the formulas of its cuts in DIMACS by their numbers."""
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "instance.json").write_bytes(write_instance(instance))
+        (folder / "certificate.json").write_bytes(write(certificate))
+        options: list[str] = []
+        for number, formula in formulas.items():
+            (folder / f"{number}.cnf").write_text(formula)
+            options += ["--cut-formula", str(number), str(folder / f"{number}.cnf")]
+        return _run(["verify-bound", str(folder / "instance.json"), str(folder / "certificate.json"), *options])
+
+
+def _run(arguments: Sequence[str]) -> KernelVerdict:
+    done = subprocess.run([program(), *arguments], capture_output=True, text=True, check=False)  # noqa: S603 - ours
+    return _verdict(done.stdout)
+
+
+def _verdict(line: str) -> KernelVerdict:
+    if not is_answer(line):
+        raise Refusal("limit", "$.kernel", is_answer.id, f"{PROGRAM} ended without an answer")
+    return msgspec.json.decode(line, type=KernelVerdict)
