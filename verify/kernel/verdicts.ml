@@ -107,16 +107,14 @@ let refute formula proof =
 
 (* ---- verify-bound ---- *)
 
-(* A cut is decided by a formula of the caller's, which must say that its robots cost less: the kernel checks that it
-   has no solution. Without one, or without a refutation by unit propagation, it is undecided. *)
+(* A cut is decided by a formula of the caller's, which must say that its robots cost less: the kernel checks the
+   refutation of it. Without a formula, or with a refutation that does not hold, the bound is undecided. *)
 let why_undecided formulas number refutation =
   match List.assoc_opt number formulas with
   | None -> Some (Printf.sprintf "cut %d needs its formula: --cut-formula %d FILE" number number)
-  | Some formula -> (
-      match Hints.lines formula refutation with
-      | proof when Refutation.refutes formula proof -> None
-      | _ -> Some (Printf.sprintf "the refutation of cut %d does not hold" number)
-      | exception Hints.Not_found_out why -> Some (Printf.sprintf "cut %d: %s" number why))
+  | Some formula ->
+      if Refutation.refutes formula (Reading.proof_of_text refutation) then None
+      else Some (Printf.sprintf "the refutation of cut %d does not hold" number)
 
 let verify_bound formulas (read : Reading.instance) (bound : Reading.bound) =
   let { Reading.certificate; refutations; _ } = bound in
