@@ -110,9 +110,9 @@ def test_a_proof_directory_proves_its_cost(after_goal: str, tmp_path: Path) -> N
 
 
 def test_an_optimum_of_the_shortest_paths_is_proved_too(tmp_path: Path) -> None:
-    graph = ResourceGraph((Resource(0), Resource(1)), ((0, 1),))
-    assert prove(Instance(graph, (Robot("a", 0, 1),)), tmp_path) == 1
-    assert verify_proof(tmp_path).cost == 1
+    graph = ResourceGraph((Resource(0), Resource(1), Resource(2)), ((0, 1), (1, 2)))
+    assert prove(Instance(graph, (Robot("a", 0, 2),)), tmp_path) == 2
+    assert verify_proof(tmp_path).cost == 2
 
 
 @settings(max_examples=draws(150))
@@ -160,7 +160,16 @@ def test_a_file_that_was_changed_has_another_digest(proof: Path, name: str) -> N
         (change_text("beat.cnf", lambda text: text[:-1]), r"beat.cnf: it must have \d+ lines"),
         (change_text("reach.cnf", lambda text: text.replace("\n", "\r\n")), r"reach.cnf: it must have \d+ lines"),
         (change_text("reach.model", lambda text: text.replace(" 0\n", "\n")), "reach.model: it must be whole numbers"),
+        (
+            change_text("reach.model", lambda text: text.replace(" 0\n", " 7\n")),
+            "reach.model: it must be whole numbers",
+        ),
+        (
+            change_text("reach.model", lambda text: text.replace(" 0\n", "x 0\n")),
+            "reach.model: it must be whole numbers",
+        ),
         (change_text("reach.model", lambda text: text.replace("1 ", "x ", 1)), "reach.model: it must be whole numbers"),
+        (change_text("reach.model", lambda text: "1 -1 " + text.split(" ", 1)[1]), "reach.model: it must give each"),
         (change_text("reach.model", lambda text: text.split(" ", 1)[1]), "reach.model: it must give each"),
         (change_text("reach.model", lambda text: text.replace("-", "")), "reach.model: it breaks clause"),
         (change_text("variables.json", lambda text: text.replace("0,1", "1,0", 1)), "variables.json: line"),
@@ -183,8 +192,11 @@ def test_a_file_that_was_changed_has_another_digest(proof: Path, name: str) -> N
         (change_manifest(cost=7), r"manifest.json: the cost must be at least that of the shortest paths"),
         (change_manifest(cost=40), "manifest.json: the cost must be .* at most all horizons above it"),
         (change_manifest(horizons=[1, 1]), "manifest.json: it must have a horizon of each of 4 robots"),
+        (change_manifest(horizons=[1] * 5), "manifest.json: it must have a horizon of each of 4 robots"),
         (change_manifest(horizons=[99, 1, 1, 1]), "manifest.json: a horizon must be between 0 and the cost"),
+        (change_manifest(horizons=[9, -1, 1, 1]), "manifest.json: a horizon must be between 0 and the cost"),
         (change_manifest(order=[0, 1, 2, 2]), "manifest.json: it must have a horizon of each of 4 robots"),
+        (change_manifest(order=[0, 1, 2, 3, 3]), "manifest.json: it must have a horizon of each of 4 robots"),
         (change_manifest(horizons=[3, 3, 3, 3]), "reach.cnf: for this instance"),
     ],
 )
