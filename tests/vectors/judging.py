@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, TypeAlias, cast
 
+import msgspec
+
 from carp_spec import (
     RULES,
     Instance,
@@ -24,6 +26,7 @@ from carp_spec import (
     planner_named,
     total_cost,
 )
+from carp_spec.bounds import read_bound
 from carp_spec.documents import is_json
 from carp_spec.instance_rules import after_goal_is_known
 from carp_spec.neighbourhood_rules import (
@@ -53,7 +56,9 @@ from carp_spec.polish_rules import (
 from carp_spec.query_rules import expansion_key
 from carp_spec.vectors import Fields, Vector
 from carp_spec.windows import Window, free_windows, stay_fits, windows_are_free
+from carp_verify.bound_rules import BOUND_RULES
 from carp_verify.joint_search import least_total_cost
+from carp_verify.verify_bound import verify_bound
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +73,7 @@ def finding(subject: str, vector: Vector) -> Finding:
     """Judge a case about a subject."""
     if vector.op in _PROTOCOL:
         violated, answer = _PROTOCOL[vector.op](subject, vector)
-        return Finding(tuple(rule.id for rule in RULES if rule.id in violated), answer)
+        return Finding(tuple(rule.id for rule in (*RULES, *BOUND_RULES) if rule.id in violated), answer)
     if vector.op in _JUDGED:
         return Finding(() if _JUDGED[vector.op](vector.input) else (vector.op,), {})
     answer = _ANSWERED[vector.op](vector)
@@ -156,12 +161,22 @@ def _optimum(subject: str, vector: Vector) -> Found:
     return set(), {"cost": least_total_cost(vector.read_instance())}
 
 
+def _verify_bound(subject: str, vector: Vector) -> Found:
+    del subject
+    try:
+        certificate = read_bound(msgspec.json.encode(vector.input["certificate"]))
+        return set(), {"bound": verify_bound(vector.read_instance(), certificate)}
+    except Refusal as refusal:
+        return {refusal.rule}, {"refused": f"$.certificate{refusal.path[1:]}"}
+
+
 _PROTOCOL: Mapping[str, Callable[[str, Vector], Found]] = {
     "check": _check,
     "query": _query,
     "plan": _plan_all,
     "add": _add,
     "optimum": _optimum,
+    "verify-bound": _verify_bound,
 }
 
 
