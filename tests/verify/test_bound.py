@@ -22,6 +22,7 @@ from carp_spec.bounds import BOUND_FORMAT, BoundDocument, CutDocument, digest, r
 from carp_spec.documents import write
 from carp_spec.plan_rules import plan_cost
 from carp_verify import verify_bound as page
+from carp_verify.bound_cuts import formula_of
 from carp_verify.joint_search import least_total_cost
 from carp_verify.lemmas.prices_bound_the_total import at_most_paid, in_exchange, paid
 from carp_verify.smt import integers, truth, value_of
@@ -219,6 +220,12 @@ def cut_certificate() -> BoundDocument:
     with_it = msgspec.structs.replace(certificate, cuts=(cut.document,))
     assert (cut.document.least, verify_bound(crossing(), with_it)) == (7, certificate.bound)
     return with_it
+
+
+def test_horizons_of_a_cut_go_from_0_to_its_least_total() -> None:
+    (cut,) = cut_certificate().cuts
+    for horizons in ((0, cut.least), (cut.least, 0)):
+        assert formula_of(crossing(), msgspec.structs.replace(cut, horizons=horizons), 10**6).clauses
 
 
 def test_the_multipliers_of_all_cuts_of_a_robot_count_together() -> None:
