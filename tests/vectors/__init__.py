@@ -6,6 +6,7 @@ The cases are written by hand, what is expected of them too; `judging` is what c
 from collections.abc import Mapping, Sequence
 
 from tests.vectors import (
+    certificates,
     documents,
     instances,
     neighbourhoods,
@@ -29,4 +30,5 @@ CASES: Mapping[str, Sequence[Vector]] = {
     **neighbourhoods.CASES,
     **polishing.CASES,
     **optima.CASES,
+    **certificates.CASES,
 }

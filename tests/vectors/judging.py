@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, TypeAlias, cast
 
+import msgspec
+
 from carp_spec import (
     RULES,
     Instance,
@@ -50,10 +52,13 @@ from carp_spec.polish_rules import (
     spans,
     ticks_apart,
 )
+from carp_spec.query_certificates import read_query_certificate
 from carp_spec.query_rules import expansion_key
 from carp_spec.vectors import Fields, Vector
 from carp_spec.windows import Window, free_windows, stay_fits, windows_are_free
 from carp_verify.joint_search import least_total_cost
+from carp_verify.query_certificate_rules import QUERY_CERTIFICATE_RULES, plans_are_lawful, robot_is_known
+from carp_verify.verify_query import verify_query
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +73,7 @@ def finding(subject: str, vector: Vector) -> Finding:
     """Judge a case about a subject."""
     if vector.op in _PROTOCOL:
         violated, answer = _PROTOCOL[vector.op](subject, vector)
-        return Finding(tuple(rule.id for rule in RULES if rule.id in violated), answer)
+        return Finding(tuple(rule.id for rule in (*RULES, *QUERY_CERTIFICATE_RULES) if rule.id in violated), answer)
     if vector.op in _JUDGED:
         return Finding(() if _JUDGED[vector.op](vector.input) else (vector.op,), {})
     answer = _ANSWERED[vector.op](vector)
@@ -156,12 +161,30 @@ def _optimum(subject: str, vector: Vector) -> Found:
     return set(), {"cost": least_total_cost(vector.read_instance())}
 
 
+def _verify_query(subject: str, vector: Vector) -> Found:
+    import carp_reference
+
+    del subject
+    instance, solution = vector.read_instance(), vector.read_solution()
+    certificate = read_query_certificate(msgspec.json.encode(vector.input["certificate"]))
+    try:
+        verify_query(instance, solution, certificate)
+        violated = set()
+    except Refusal as refusal:
+        violated = {refusal.rule}
+    if violated & {robot_is_known.id, plans_are_lawful.id}:
+        return violated, {"arrival": None}
+    right = carp_reference.query(instance, solution.plans, certificate.robot, certificate.now)
+    return violated, {"arrival": None if right is None else right.visits[-1].enter}
+
+
 _PROTOCOL: Mapping[str, Callable[[str, Vector], Found]] = {
     "check": _check,
     "query": _query,
     "plan": _plan_all,
     "add": _add,
     "optimum": _optimum,
+    "verify-query": _verify_query,
 }
 
 
