@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from tests.vectors import (
     bounds,
+    certificates,
     documents,
     instances,
     neighbourhoods,
@@ -31,4 +32,5 @@ CASES: Mapping[str, Sequence[Vector]] = {
     **polishing.CASES,
     **optima.CASES,
     **bounds.CASES,
+    **certificates.CASES,
 }

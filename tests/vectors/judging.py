@@ -53,12 +53,15 @@ from carp_spec.polish_rules import (
     spans,
     ticks_apart,
 )
+from carp_spec.query_certificates import read_query_certificate
 from carp_spec.query_rules import expansion_key
 from carp_spec.vectors import Fields, Vector
 from carp_spec.windows import Window, free_windows, stay_fits, windows_are_free
 from carp_verify.bound_rules import BOUND_RULES
 from carp_verify.joint_search import least_total_cost
+from carp_verify.query_certificate_rules import QUERY_CERTIFICATE_RULES, plans_are_lawful, robot_is_known
 from carp_verify.verify_bound import verify_bound
+from carp_verify.verify_query import verify_query
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +76,8 @@ def finding(subject: str, vector: Vector) -> Finding:
     """Judge a case about a subject."""
     if vector.op in _PROTOCOL:
         violated, answer = _PROTOCOL[vector.op](subject, vector)
-        return Finding(tuple(rule.id for rule in (*RULES, *BOUND_RULES) if rule.id in violated), answer)
+        of_all = (*RULES, *BOUND_RULES, *QUERY_CERTIFICATE_RULES)
+        return Finding(tuple(rule.id for rule in of_all if rule.id in violated), answer)
     if vector.op in _JUDGED:
         return Finding(() if _JUDGED[vector.op](vector.input) else (vector.op,), {})
     answer = _ANSWERED[vector.op](vector)
@@ -170,6 +174,23 @@ def _verify_bound(subject: str, vector: Vector) -> Found:
         return {refusal.rule}, {"refused": f"$.certificate{refusal.path[1:]}"}
 
 
+def _verify_query(subject: str, vector: Vector) -> Found:
+    import carp_reference
+
+    del subject
+    instance, solution = vector.read_instance(), vector.read_solution()
+    certificate = read_query_certificate(msgspec.json.encode(vector.input["certificate"]))
+    try:
+        verify_query(instance, solution, certificate)
+        violated = set()
+    except Refusal as refusal:
+        violated = {refusal.rule}
+    if violated & {robot_is_known.id, plans_are_lawful.id}:
+        return violated, {"arrival": None}
+    right = carp_reference.query(instance, solution.plans, certificate.robot, certificate.now)
+    return violated, {"arrival": None if right is None else right.visits[-1].enter}
+
+
 _PROTOCOL: Mapping[str, Callable[[str, Vector], Found]] = {
     "check": _check,
     "query": _query,
@@ -177,6 +198,7 @@ _PROTOCOL: Mapping[str, Callable[[str, Vector], Found]] = {
     "add": _add,
     "optimum": _optimum,
     "verify-bound": _verify_bound,
+    "verify-query": _verify_query,
 }
 
 

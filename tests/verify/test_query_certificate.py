@@ -116,6 +116,7 @@ BROKEN: Sequence[tuple[str, str, dict[str, Any]]] = (
     ("query-certificate/potential", "alone", {"potential": (("d", 0), ("c", 2), ("b", 3), ("a", 4))}),
     ("query-certificate/closed", "head-on", {"labels": ()}),
     ("query-certificate/closed", "alone", {"bound": 5, "labels": (("b", 1),)}),
+    ("query-certificate/closed", "alone", {"bound": 5, "labels": (("b", 2),)}),
     ("query-certificate/closed", "may leave its goal now", {"bound": 1}),
     ("query-certificate/closed", "alone", {"bound": 5, "labels": tuple((cell, 0) for cell in "abcde")}),
 )

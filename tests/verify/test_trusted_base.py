@@ -17,6 +17,8 @@ VERDICTS: dict[str, tuple[tuple[str, ...], str]] = {
     "`check`: no rule is broken": ((), ""),
     "`verify-bound`, without cuts": (BOUND, ""),
     "`verify-bound`, with cuts": ((*BOUND, "bound_cuts", *ENCODER, "refutation"), ""),
+    "`verify-query` and `audit`": (("verify_query", "query_certificate_rules"), ""),
+    "with `--kernel`": (("kernel",), "[the proved kernel](kernel/README.md), and not the law in Python"),
     "`verify-proof`, an optimum": (("proof", *ENCODER, "refutation"), ""),
     "`verify-proof`, unsolvable by clauses": (("proof", "unsolvable", *ENCODER, "refutation"), ""),
     "`verify-proof`, unsolvable otherwise": (("proof", "unsolvable", "joint_search", "optimum_rules"), ""),

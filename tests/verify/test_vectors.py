@@ -16,9 +16,10 @@ from carp_spec import RULES, plan_cost
 from carp_spec.schema import schema_file
 from carp_spec.vectors import DIGESTS, FLAGS, FOLDER, Vector, subjects, vector_file, vectors
 from carp_verify.bound_rules import BOUND_RULES
+from carp_verify.query_certificate_rules import QUERY_CERTIFICATE_RULES
 
 BY_RULE = [rule.id for rule in RULES]
-KNOWN = {*BY_RULE, *(rule.id for rule in BOUND_RULES)}
+KNOWN = {*BY_RULE, *(rule.id for rule in (*BOUND_RULES, *QUERY_CERTIFICATE_RULES))}
 ALL = [pytest.param(subject, vector, id=vector.id) for subject in subjects() for vector in vectors(subject)]
 FIELD_BUGS = {
     "a stay one tick short": "plan-duration.a-tick-short",
@@ -77,6 +78,11 @@ def test_every_case_has_an_id_of_its_own_a_comment_and_rules_that_there_are() ->
     assert len({case.id for case in cases}) == len(cases)
     assert all(case.comment for case in cases)
     assert all(set(case.violated) <= KNOWN for case in cases)
+
+
+def test_every_rule_of_query_certificates_that_is_not_of_their_size_is_broken_by_a_case() -> None:
+    broken = {rule for case in vectors("verify-query") for rule in case.violated}
+    assert broken == {rule.id for rule in QUERY_CERTIFICATE_RULES} - {"query-certificate/size"}
 
 
 def test_the_question_does_not_tell_the_answer() -> None:

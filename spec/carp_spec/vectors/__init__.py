@@ -41,7 +41,7 @@ class Vector(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     `instance` is an instance document, which may be malformed, or null. `answer` has, for `check`, `plan` and `add`,
     the `cost` and the number of robots `unplanned`, or `refused`, the path to blame; for `query`, the `cost`, null
     where there is no plan; for `optimum`, the least `cost`; for `verify-bound`, the `bound` that the `certificate`
-    proves, or `refused`; for a rule's id, what its claims have.
+    proves, or `refused`; for `verify-query`, the earliest `arrival`, null too; for a rule's id, what its claims have.
     """
 
     id: str
@@ -86,7 +86,7 @@ def vector_file(subject: str) -> Path:
 
 def subjects() -> tuple[str, ...]:
     """What there are cases about: the ids of all rules, then ops."""
-    return (*(rule.id for rule in RULES), "optimum", "verify-bound")
+    return (*(rule.id for rule in RULES), "optimum", "verify-bound", "verify-query")
 
 
 def vectors(subject: str | None = None) -> Iterator[Vector]:
