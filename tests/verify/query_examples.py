@@ -72,6 +72,13 @@ QUESTIONS = {
         VANISHING, "r", WESTWARDS, walk("r", ("a", 0, 1), ("b", 1, 2), ("c", 2, 4), ("d", 4, 5)), now=1
     ),
     "ended": beside(HOME, "r", walk("r", ("b", 0, 1)), now=4),
+    "ended, and in the way": beside(
+        town("vanish", Robot("r", "b", "b"), Robot("s", "b", "e")),
+        "r",
+        walk("s", ("b", 0, 1), ("e", 1, 2)),
+        walk("r", ("b", 0, 1)),
+        now=4,
+    ),
     "in the way": beside(
         VANISHING, "r", WESTWARDS, walk("r", ("a", 0, 4), ("b", 4, 5), ("c", 5, 7), ("d", 7, 8)), now=4
     ),

@@ -61,6 +61,7 @@ def test_the_examples_are_of_every_kind() -> None:
         "slow": None,
         "under way": 7,
         "ended": 0,
+        "ended, and in the way": None,
         "in the way": None,
         "may leave its goal now": 0,
         "stayed too long at its goal": 4,
