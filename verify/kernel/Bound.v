@@ -42,9 +42,9 @@ Definition prices_are_different (c : certificate) : bool :=
   Pairs.distinct (flat_map (fun x => match key_here x with Some k => [k] | None => [] end) (prices c)) &&
   Triples.distinct (flat_map (fun x => match key_exchange x with Some k => [k] | None => [] end) (prices c)).
 
-(** bound/size: a table of the priced resources and the ticks would have 20,000,000 entries at most. *)
+(** bound/size: a table of the priced resources and the ticks, up to the last price, has 20,000,000 entries at most. *)
 Definition size_accepted (c : certificate) : bool :=
-  price_horizon c * Z.of_nat (Ids.S.cardinal (Ids.of_list (map place (prices c)))) <=? 20000000.
+  last_tick (prices c) * Z.of_nat (Ids.S.cardinal (Ids.of_list (map place (prices c)))) <=? 20000000.
 
 (** bound/cut: what a robot's own ticks count, in parts of a tick, where its cuts count the rest. *)
 Definition weight_of (c : certificate) (id : Z) : Z :=
