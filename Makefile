@@ -71,7 +71,7 @@ experiments-page: install
 generated: install
 	$(BIN)/python -m carp_spec.schema
 	$(BIN)/python -m tests.oracle.test_readme
-	$(BIN)/python -m tests.vectors
+	$(BIN)/python -m tests.vectors.writing
 	$(BIN)/python -m carp_spec.readme
 	$(BIN)/python -m tests.verify.test_trusted_base
 	$(BIN)/python -m carproof.viewer.samples

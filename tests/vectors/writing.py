@@ -1,28 +1,15 @@
-"""The files of the test vectors, and the list of digests that may only grow."""
+"""`python -m tests.vectors.writing` lays out the files of the test vectors, and lists the digests of new cases."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from hashlib import sha256
 
 import msgspec
-from tests.vectors import CASES
 
-from carp_spec.vectors import DIGESTS, FLAGS, VECTORS_FORMAT, Vector, VectorsDocument, subjects, vector_file
+from carp_spec.vectors import DIGESTS, Vector, VectorsDocument, subjects, vector_file, vectors, vectors_document
 
 
 class ChangedError(Exception):
     """A case that is on the list has changed or is gone."""
-
-
-def full_id(subject: str, vector: Vector) -> str:
-    """The id under which a case is published: the file's name before its own."""
-    return f"{subject.replace('/', '-')}.{vector.id}"
-
-
-def published() -> Iterator[VectorsDocument]:
-    """Every file's document, in the order of the subjects."""
-    for subject in subjects():
-        cases = tuple(msgspec.structs.replace(each, id=full_id(subject, each)) for each in CASES[subject])
-        yield VectorsDocument(VECTORS_FORMAT, subject, dict(FLAGS), cases)
 
 
 def file_text(document: VectorsDocument) -> str:
@@ -48,7 +35,7 @@ def digest(vector: Vector) -> str:
 
 def digests() -> Mapping[str, str]:
     """The digest of every case by its id."""
-    return {each.id: digest(each) for document in published() for each in document.cases}
+    return {each.id: digest(each) for each in vectors()}
 
 
 def listed(text: str) -> Mapping[str, str]:
@@ -58,15 +45,19 @@ def listed(text: str) -> Mapping[str, str]:
 
 def list_text(now: Mapping[str, str], before: Mapping[str, str]) -> str:
     """The list with the new cases at its end; raises `ChangedError` if a listed case is not what it was."""
-    changed: Sequence[str] = [id for id, digest in before.items() if now.get(id) != digest]
+    changed = [id for id, digest in before.items() if now.get(id) != digest]
     if changed:
         raise ChangedError(f"cases never change; give these a new id: {', '.join(changed)}")
     return "".join(f"{id} {digest}\n" for id, digest in {**before, **now}.items())
 
 
 def write_vectors() -> None:
-    """Write all files, unless a case that was published has changed."""
-    text = list_text(digests(), listed(DIGESTS.read_text()) if DIGESTS.exists() else {})
-    for document in published():
-        vector_file(document.subject).write_text(file_text(document))
+    """Lay out all files and list new cases, unless a case that was published has changed."""
+    text = list_text(digests(), listed(DIGESTS.read_text()))
+    for subject in subjects():
+        vector_file(subject).write_text(file_text(vectors_document(subject)))
     DIGESTS.write_text(text)
+
+
+if __name__ == "__main__":
+    write_vectors()

@@ -1,20 +1,22 @@
-"""The test vectors: what the files say is true, complete, and written by the generator."""
+"""The test vectors: what the files say is true, complete, and listed."""
 
 import json
+import shutil
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import pytest
 from jsonschema import Draft202012Validator
 from tests.vectors import writing
 from tests.vectors.judging import finding
-from tests.vectors.writing import ChangedError, digests, file_text, list_text, listed, published
+from tests.vectors.writing import ChangedError, digests, file_text, list_text, listed
 
 from carp_reference.time_expanded import find_plan_by_ticks
 from carp_spec import RULES, plan_cost
 from carp_spec.schema import schema_file
-from carp_spec.vectors import DIGESTS, FLAGS, FOLDER, Vector, subjects, vector_file, vectors
+from carp_spec.vectors import DIGESTS, FLAGS, FOLDER, Vector, subjects, vector_file, vectors, vectors_document
 from carp_verify.bound_rules import BOUND_RULES
 from carp_verify.query_certificate_rules import QUERY_CERTIFICATE_RULES
 
@@ -76,6 +78,9 @@ def test_a_file_obeys_its_schema_and_defines_its_flags(subject: str) -> None:
 def test_every_case_has_an_id_of_its_own_a_comment_and_rules_that_there_are() -> None:
     cases = list(vectors())
     assert len({case.id for case in cases}) == len(cases)
+    assert all(
+        case.id.startswith(f"{subject.replace('/', '-')}.") for subject in subjects() for case in vectors(subject)
+    )
     assert all(case.comment for case in cases)
     assert all(set(case.violated) <= KNOWN for case in cases)
 
@@ -92,10 +97,10 @@ def test_the_question_does_not_tell_the_answer() -> None:
     assert all(set(request) <= fields | options for request in asked)
 
 
-def test_the_files_are_written_by_the_generator() -> None:
-    generated = {vector_file(document.subject).name: file_text(document) for document in published()}
+def test_every_file_is_laid_out() -> None:
+    laid_out = {vector_file(subject).name: file_text(vectors_document(subject)) for subject in subjects()}
     there = {path.name: path.read_text() for path in FOLDER.glob("*.json")}
-    assert there == generated, "`make generated` writes them anew"
+    assert there == laid_out, "`make generated` lays them out"
 
 
 def test_every_case_is_listed_with_its_digest() -> None:
@@ -117,11 +122,22 @@ def test_only_flags_and_comment_may_be_reworded() -> None:
     assert writing.digest(Vector(**{**document, "answer": {"cost": 9}})) != writing.digest(case)
 
 
-def test_all_files_can_be_written_elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("carp_spec.vectors.FOLDER", tmp_path)
-    monkeypatch.setattr(writing, "DIGESTS", tmp_path / "digests.txt")
+def test_a_new_case_is_laid_out_and_listed_and_a_changed_one_is_not(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "vectors"
+    shutil.copytree(FOLDER, folder)
+    monkeypatch.setattr("carp_spec.vectors.FOLDER", folder)
+    monkeypatch.setattr(writing, "DIGESTS", folder / "digests.txt")
+    document = vectors_document("window/fits")
+    added = msgspec.structs.replace(document.cases[0], id="window-fits.added")
+    path = vector_file("window/fits")
+    path.write_bytes(msgspec.json.encode(msgspec.structs.replace(document, cases=(*document.cases, added))))
     writing.write_vectors()
-    writing.write_vectors()
-    there, here = ({path.name: path.read_bytes() for path in folder.glob("*.json")} for folder in (tmp_path, FOLDER))
-    assert there == here
-    assert sorted((tmp_path / "digests.txt").read_text().splitlines()) == sorted(DIGESTS.read_text().splitlines())
+    laid_out = path.read_text()
+    assert laid_out.startswith(vector_text := (FOLDER / path.name).read_text().removesuffix("\n  ]\n}\n"))
+    assert laid_out.removeprefix(vector_text).startswith(',\n  {\n    "id": "window-fits.added",\n')
+    assert (folder / "digests.txt").read_text() == f"{DIGESTS.read_text()}window-fits.added {writing.digest(added)}\n"
+    path.write_text(laid_out.replace('"expected": "valid"', '"expected": "invalid"', 1))
+    with pytest.raises(ChangedError, match=document.cases[0].id):
+        writing.write_vectors()

@@ -7,7 +7,7 @@ might give, or, where there is none, the question's own input. Where no op of th
 the rule's id and asks its predicate alone.
 
 An id means the same case for ever: `digests.txt` names every case with a digest of all but flags and comment, and
-only grows. `tests.vectors` writes the files anew; nothing here is read before somebody asks.
+only grows. The files are the cases' only source: a new case is written into them; nothing is read before somebody asks.
 """
 
 from collections.abc import Iterator, Mapping
@@ -89,7 +89,12 @@ def subjects() -> tuple[str, ...]:
     return (*(rule.id for rule in RULES), "optimum", "verify-bound", "verify-query")
 
 
+def vectors_document(subject: str) -> VectorsDocument:
+    """The file about a subject; raises `msgspec.ValidationError` if it has not the shape of one."""
+    return msgspec.json.decode(vector_file(subject).read_bytes(), type=VectorsDocument)
+
+
 def vectors(subject: str | None = None) -> Iterator[Vector]:
     """The cases about a subject, or all; each file is read when its first case is asked for."""
     for each in subjects() if subject is None else (subject,):
-        yield from msgspec.json.decode(vector_file(each).read_bytes(), type=VectorsDocument).cases
+        yield from vectors_document(each).cases
