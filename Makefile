@@ -39,7 +39,7 @@ quick: install
 QUICK := tests/spec tests/reference tests/optimized/test_limits.py tests/optimized/test_sorting.py \
     tests/verify/test_certificate.py tests/verify/test_encoding.py tests/verify/test_evidence.py tests/verify/test_joint_search.py \
     tests/oracle/test_rules.py tests/oracle/test_generate.py tests/oracle/test_networkx_graphs.py tests/oracle/test_view.py \
-    tests/experiments/test_statistics.py tests/experiments/test_page.py tests/test_house.py tests/test_programs.py
+    tests/experiments/test_statistics.py tests/experiments/test_page.py tests/test_house.py tests/test_programs.py tests/test_surface.py
 
 quick-tests: install
 	HYPOTHESIS_PROFILE=quick $(BIN)/pytest -q -m 'not nightly' -k 'not every_small_query' $(QUICK)
@@ -75,6 +75,7 @@ generated: install
 	$(BIN)/python -m carp_spec.readme
 	$(BIN)/python -m tests.verify.test_trusted_base
 	$(BIN)/python -m carproof.viewer.samples
+	$(BIN)/python -m tests.test_surface
 
 # Ask the reference questions of the paper's size, and write digests of its answers, with which the gate compares the
 # compiled planner's: about a quarter of an hour.

@@ -1,0 +1,79 @@
+"""The published surface: every line of `surface.txt` is there, and more may be.
+
+`python -m tests.test_surface` adds what is new. A line leaves the file by hand alone.
+"""
+
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import click
+import pytest
+
+from carp_spec.schema import FOLDER
+from carproof.cli import carproof
+from carproof.ops import OPS
+from carproof.rules import ALL_RULES
+
+ROOT = Path(__file__).parent.parent
+SURFACE = Path(__file__).with_name("surface.txt")
+FORMAT = re.compile(r'"(carproof-[a-z]+/\d+)"')
+
+
+def commands(group: click.Group, name: str = "") -> Iterator[str]:
+    """Every command with its options."""
+    context = click.Context(group)
+    for each in group.list_commands(context):
+        command = group.get_command(context, each)
+        assert command is not None
+        path = f"{name}{each}"
+        yield f"command {path}"
+        for parameter in command.params:
+            flags = (*parameter.opts, *parameter.secondary_opts) if isinstance(parameter, click.Option) else ()
+            yield from (f"command {path} {flag}" for flag in flags)
+        if isinstance(command, click.Group):
+            yield from commands(command, f"{path} ")
+
+
+def formats() -> Iterator[str]:
+    """Every document format that a package names, and the fields of those with a schema."""
+    for source in ROOT.glob("*/car*/**/*.py"):
+        yield from (f"format {found}" for found in FORMAT.findall(source.read_text()))
+    for schema in FOLDER.glob("*.json"):
+        kind = schema.name.partition(".")[0]
+        for name, definition in json.loads(schema.read_text())["$defs"].items():
+            yield from (f"field {kind} {name}.{field}" for field in definition.get("properties", ()))
+
+
+def surface() -> set[str]:
+    """Whatever there is now, a line each."""
+    ops = (f"op {name}" for name in OPS)
+    return {*commands(carproof), *formats(), *ops, *(f"rule {rule.id}" for rule in ALL_RULES)}
+
+
+def published() -> set[str]:
+    return set(SURFACE.read_text().splitlines())
+
+
+def test_nothing_published_is_missing() -> None:
+    assert sorted(published() - surface()) == []
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "command plan --planner",
+        "field solution PlanDocument.visits",
+        "format carproof-bound/1",
+        "op query",
+        "rule plan/move",
+    ],
+)
+def test_a_line_of_each_kind_is_published(line: str) -> None:
+    assert line in published()
+
+
+if __name__ == "__main__":
+    before = published() if SURFACE.exists() else set()
+    SURFACE.write_text("".join(f"{line}\n" for line in sorted(before | surface())))
