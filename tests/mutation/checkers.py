@@ -7,6 +7,7 @@ the place of its module in a process forked after all tests have passed once, so
 for one, was made by the module as it is.
 """
 
+import ast
 import os
 import sys
 from collections.abc import Mapping, Sequence
@@ -24,12 +25,9 @@ from tests.mutation.mutants import Mutant, mutants
 
 PIN = "verify/test_kept_formulas"
 FORMULAS = ("verify/test_encoding", PIN)
-CONFORM = (
-    "oracle/test_conform_judges",
-    "oracle/test_conform_evasive",
-    "oracle/test_conform_classical",
-    "oracle/test_conform",
-)
+QUERIES = ("verify/test_query_certificate", "verify/test_forgery", "verify/test_vectors", "oracle/test_audit")
+ANSWERS = ("oracle/test_conform_one_answer",)
+REPORT = ("oracle/test_conform_report", *ANSWERS)
 TESTS: Mapping[str, Sequence[str]] = {
     "carp_verify.verify_bound": ("verify/test_bound", "verify/test_forgery"),
     "carp_verify.bound_rules": ("verify/test_bound", "verify/test_forgery", "verify/test_gap", "oracle/test_bound"),
@@ -44,16 +42,18 @@ TESTS: Mapping[str, Sequence[str]] = {
     ),
     "carp_verify.unsolvable": ("verify/test_unsolvable", "verify/test_optimum"),
     "carp_verify.certificate": ("verify/test_certificate",),
+    "carp_verify.verify_query": QUERIES,
+    "carp_verify.query_certificate_rules": QUERIES,
     "carp_verify.clauses": FORMULAS,
     "carp_verify.encoding": FORMULAS,
     "carp_verify.robot_clauses": FORMULAS,
-    "carproof.conform.judges": CONFORM,
-    "carproof.conform.optimum": CONFORM,
-    "carproof.conform.answers": CONFORM,
-    "carproof.conform.levels": CONFORM,
-    "carproof.conform.deciding": CONFORM,
-    "carproof.conform.effort": CONFORM,
-    "carproof.conform.run": CONFORM,
+    "carproof.conform.judges": ANSWERS,
+    "carproof.conform.optimum": ANSWERS,
+    "carproof.conform.effort": ANSWERS,
+    "carproof.conform.answers": ("oracle/test_conform_replies",),
+    "carproof.conform.levels": REPORT,
+    "carproof.conform.deciding": REPORT,
+    "carproof.conform.run": REPORT,
 }
 TINY = 40
 """So many instances of test_tiny_optima.py are asked for, one by one, of the modules that make or check formulas."""
@@ -177,16 +177,28 @@ def in_tests(item: pytest.Item, files: Sequence[str]) -> bool:
 
 
 def replace(module: ModuleType, source: str) -> None:
-    """Run a source as the module, and give what it defines to all modules that have imported it."""
+    """Run a source as the module, and give what it defines to all modules that have imported it.
+
+    A class stays the same object if its text does: other modules' classes, and cases of tests, refer to it.
+    """
     before = dict(vars(module))
+    path = Path(str(module.__file__))
+    texts = class_texts(path.read_text(encoding="utf-8"))
     for name in [name for name in before if not name.startswith("__")]:
         delattr(module, name)
-    exec(compile(source, str(module.__file__), "exec"), vars(module))  # noqa: S102 - a mutant is to be run
+    exec(compile(source, str(path), "exec"), vars(module))  # noqa: S102 - a mutant is to be run
+    for name, text in class_texts(source).items():
+        if text == texts.get(name):
+            setattr(module, name, before[name])
     for other in list(sys.modules.values()):
         names = vars(other) if str(getattr(other, "__file__", "")).startswith(str(ROOT)) else {}
         for name in [name for name in names if name in before and other is not module and not name.startswith("__")]:
             if names[name] is before[name]:
                 setattr(other, name, getattr(module, name, None))
+
+
+def class_texts(source: str) -> Mapping[str, str]:
+    return {each.name: ast.dump(each) for each in ast.parse(source).body if isinstance(each, ast.ClassDef)}
 
 
 def main(arguments: Sequence[str]) -> int:

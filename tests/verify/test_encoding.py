@@ -1,8 +1,9 @@
+import pytest
 from hypothesis import given, settings
 from tests.profiles import draws
 
 from carp_optimum.solver import Deadline, Solver
-from carp_spec import Instance, Resource, ResourceGraph, Robot, check, total_cost
+from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, check, total_cost
 from carp_verify.encoding import Conflict, Encoding, violated
 from carp_verify.joint_search import least_total_cost
 from carproof.strategies import PlannedInstance, Sizes, instances, planned_instances
@@ -85,6 +86,36 @@ def test_models_with_no_conflict_forbidden_hold_plans_that_break_joint_rules_onl
         assert {violation.rule for violation in broken} <= {"joint/capacity", "joint/exchange"}
         assert bool(violated(instance, plans)) == bool(broken)
         assert total_cost(instance, plans) >= encoding.shortest
+
+
+@settings(max_examples=draws(300))
+@given(instances(TINY, least_robots=1))
+def test_the_nodes_of_a_horizon_are_counted_before_they_are_made(instance: Instance) -> None:
+    for horizon in (0, 1, 4):
+        encoding = Encoding(instance)
+        counted = [robot.nodes_within(horizon) for robot in encoding.robots]
+        encoding.grow_to([horizon] * len(instance.robots))
+        assert [len(robot.node) for robot in encoding.robots] == counted
+
+
+def test_horizons_that_need_too_many_clauses_are_refused_at_once() -> None:
+    instance = Instance(line(1, 1), (Robot("a", 0, 1), Robot("b", 1, 0)))
+    for most, horizons in ((30, (9, 5)), (29, (9, 5)), (10**6, (10**99, 0)), (10**6, (0, 10**99))):
+        encoding = Encoding(instance, most=most)
+        with pytest.raises(Refusal, match=f"the clauses of the formula must be at most {most}"):
+            encoding.grow_to(horizons)
+        assert bool(encoding.formula.clauses) == (most == 30)
+
+
+def test_delays_are_never_below_zero() -> None:
+    for bound in (0, -1, -(10**99)):
+        assert bounded(Instance(line(1, 1), (Robot("a", 0, 1),)), [1], bound, closed=False).formula.clauses[-1] == ()
+
+
+def test_the_time_is_looked_at_before_each_robot() -> None:
+    looks: list[int] = []
+    Encoding(Instance(line(1, 1), (Robot("a", 0, 1), Robot("b", 1, 0))), lambda: looks.append(1))
+    assert len(looks) == 2
 
 
 def test_a_conflict_is_named_by_its_tick_and_its_resources() -> None:

@@ -1,0 +1,346 @@
+"""Single answers: by which rule each is refused from which level on, and whether it shows anything."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any, TypeAlias
+
+import msgspec
+import pytest
+from tests.oracle.test_conform_judges import later, right_reply
+
+import carp_verify.verify_bound
+from carp_spec import Carp, Greedy, Instance, Neighbourhood, Plan, Planner, Resource, ResourceGraph, Robot, Solution
+from carp_spec.bounds import BoundDocument
+from carp_spec.documents import VerdictDocument
+from carproof.conform import effort as efforts
+from carproof.conform import judges
+from carproof.conform import optimum as optima
+from carproof.conform.answers import Answer, OptimumAnswer, QueryAnswer
+from carproof.conform.cases import Case, Op
+from carproof.conform.effort import Effort, effort, why_undecided
+from carproof.conform.judges import first_finding
+from carproof.conform.levels import Level
+from carproof.conform.optimum import cost_alone, found_cost
+from carproof.conform.smoke import EAST, FIRST, FIRST_GOES, WEST, Stay, committed, passing_place, row
+
+Row: TypeAlias = tuple[Case, Answer, Level | None, str]
+HURRIES: Sequence[Stay] = (("a", 0, 1), ("b", 1, 1), ("c", 1, 2), ("d", 2, 3))
+WESTWARDS: Sequence[Stay] = (("d", 0, 1), ("c", 1, 2), ("b", 2, 3), ("a", 3, 4))
+WAITS: Sequence[Stay] = (("a", 0, 4), ("b", 4, 5), ("c", 5, 6), ("d", 6, 7))
+BEHIND_GOES: Sequence[Stay] = (("b", 0, 1), ("c", 1, 2), ("d", 2, 3))
+ASIDE: Sequence[Stay] = (("a", 0, 1), ("b", 1, 2), ("p", 2, 3), ("b", 3, 4), ("c", 4, 5), ("d", 5, 6))
+ALONE = row([EAST])
+DIAMOND = Instance(
+    ResourceGraph(tuple(map(Resource, "abcd")), (("a", "b"), ("b", "d"), ("a", "c"), ("c", "d"))), (EAST,)
+)
+BEHIND = row([FIRST, Robot("new", "b", "d")])
+MEETING = passing_place([FIRST, WEST])
+BLOCKED = row([FIRST, WEST])
+HEAD_ON = row([FIRST, WEST], capacity="2222")
+STANDING = row([EAST, Robot("other", "b", "b")])
+ISLANDS = Instance(ResourceGraph((Resource("a"), Resource("b")), ()), (Robot("new", "a", "b"),))
+FOUR = row([Robot(id, cell, cell) for id, cell in (("first", "a"), ("new", "b"), ("third", "c"), ("fourth", "d"))])
+LAST_FIRST = passing_place(
+    [Robot("first", "c", "b"), Robot("second", "p", "c", release=2), Robot("third", "d", "a", release=1)]
+)
+
+
+def case(op: Op, instance: Instance, now: int = 0, planner: Planner | None = None, **plans: Sequence[Stay]) -> Case:
+    return Case("smoke", "one", op, instance, committed(instance, **plans), "new", now, planner)
+
+
+def plan(robot: str, *stays: Stay) -> Plan:
+    return committed(ALONE, **{robot: stays}).plans[0]
+
+
+def goes(*stays: Stay) -> QueryAnswer:
+    return QueryAnswer(plan("new", *stays))
+
+
+def in_order(solution: Solution, *order: str) -> Solution:
+    return replace(solution, order=order)
+
+
+def right(asked: Case) -> Any:  # noqa: ANN401 - an answer of the kind that the case asks for
+    return right_reply(asked)
+
+
+QUERY = case("query", ALONE)
+QUERY_EXCHANGE = case("query", HEAD_ON, first=FIRST_GOES)
+QUERY_UNDER_WAY = case("query", ALONE, 2, new=FIRST_GOES)
+QUERY_STANDING = case("query", STANDING, 2, other=[("b", 0, 1)])
+OTHER_WAY = goes(("a", 0, 1), ("c", 1, 2), ("d", 2, 3))
+QUERIES: Sequence[Row] = (
+    (QUERY, goes(*FIRST_GOES), None, ""),
+    (QUERY, QueryAnswer(None), Level.COMPLETE, "query/complete"),
+    (QUERY, QueryAnswer(later(plan("new", *FIRST_GOES))), Level.CONTEXT_OPTIMAL, "query/optimal"),
+    (QUERY, goes(*HURRIES), Level.SOUND, "plan/duration"),
+    (case("query", DIAMOND), right(case("query", DIAMOND)), None, ""),
+    (case("query", DIAMOND), OTHER_WAY, Level.EXACT, "query/ties"),
+    (QUERY_EXCHANGE, right(QUERY_EXCHANGE), None, ""),
+    (QUERY_EXCHANGE, goes(*WESTWARDS), Level.SOUND, "joint/exchange"),
+    (case("query", BEHIND, first=FIRST_GOES), goes(("b", 0, 2), *BEHIND_GOES[1:]), Level.SOUND, "plan/contiguous"),
+    (case("query", BLOCKED, first=FIRST_GOES), QueryAnswer(None), None, ""),
+    (QUERY_UNDER_WAY, goes(*FIRST_GOES), None, ""),
+    (QUERY_UNDER_WAY, QueryAnswer(later(plan("new", *FIRST_GOES))), Level.SOUND, "fleet/history"),
+    (QUERY_STANDING, right(QUERY_STANDING), None, ""),
+    (QUERY_STANDING, goes(*FIRST_GOES), Level.SOUND, "fleet/history"),
+    (
+        case("query", row([replace(EAST, release=3)]), 2),
+        goes(("a", 3, 4), ("b", 4, 5), ("c", 5, 6), ("d", 6, 7)),
+        None,
+        "",
+    ),
+)
+PLAN = case("plan", BEHIND, planner=Carp())
+FREE = case("plan", MEETING)
+CLASSICAL = replace(FREE, classical=True)
+ASIDE_SECOND = in_order(committed(MEETING, new=WESTWARDS, first=ASIDE), "new", "first")
+PLANS: Sequence[Row] = (
+    (PLAN, committed(BEHIND, first=FIRST_GOES, new=BEHIND_GOES), None, ""),
+    (PLAN, committed(BEHIND, first=FIRST_GOES), Level.COMPLETE, "query/complete"),
+    (PLAN, committed(BEHIND, new=BEHIND_GOES), Level.COMPLETE, "query/complete"),
+    (PLAN, committed(BEHIND, first=WAITS, new=BEHIND_GOES), Level.CONTEXT_OPTIMAL, "query/optimal"),
+    (PLAN, committed(BEHIND, first=HURRIES, new=BEHIND_GOES), Level.SOUND, "plan/duration"),
+    (case("plan", MEETING, planner=Carp()), committed(MEETING, first=FIRST_GOES), None, ""),
+    (
+        case("plan", DIAMOND, planner=Carp()),
+        Solution((OTHER_WAY.plan or later(plan("new")),), ("new",)),
+        Level.EXACT,
+        "query/ties",
+    ),
+    (case("plan", BEHIND, planner=Greedy()), right(case("plan", BEHIND, planner=Greedy())), None, ""),
+    (case("plan", BEHIND, planner=Greedy()), committed(BEHIND, first=FIRST_GOES), Level.EXACT, "query/ties"),
+    (
+        case("plan", BEHIND, planner=Greedy()),
+        committed(BEHIND, first=FIRST_GOES, new=BEHIND_GOES),
+        Level.EXACT,
+        "query/ties",
+    ),
+    (
+        case("plan", DIAMOND, planner=Greedy()),
+        Solution((OTHER_WAY.plan or later(plan("new")),), ("new",)),
+        Level.EXACT,
+        "query/ties",
+    ),
+    (FREE, ASIDE_SECOND, None, ""),
+    (FREE, committed(MEETING, first=FIRST_GOES), Level.OPTIMAL, "program/optimal"),
+    (FREE, committed(MEETING, new=WESTWARDS), Level.COMPLETE, "query/complete"),
+    (FREE, committed(MEETING, first=HURRIES), Level.SOUND, "plan/duration"),
+    (case("plan", DIAMOND), Solution((OTHER_WAY.plan or later(plan("new")),), ("new",)), None, ""),
+    (case("plan", LAST_FIRST), right(case("plan", LAST_FIRST, planner=Carp())), Level.OPTIMAL, "program/optimal"),
+    (case("plan", BLOCKED), committed(BLOCKED, first=FIRST_GOES), None, ""),
+    (CLASSICAL, ASIDE_SECOND, None, ""),
+    (CLASSICAL, committed(MEETING, first=FIRST_GOES), Level.COMPLETE, "program/complete"),
+    (replace(case("plan", ALONE), classical=True), committed(ALONE, new=WAITS), Level.OPTIMAL, "program/optimal"),
+    (replace(case("plan", BLOCKED), classical=True), committed(BLOCKED, first=FIRST_GOES), None, ""),
+)
+ADD = case("add", BEHIND, planner=Neighbourhood(), first=FIRST_GOES)
+ADD_ANYHOW = replace(ADD, planner=Neighbourhood(baseline=False))
+ADD_LATE = replace(ADD, now=2)
+ADDED = committed(BEHIND, first=FIRST_GOES, new=BEHIND_GOES)
+LATE = committed(BEHIND, first=FIRST_GOES, new=[("b", 0, 1), ("c", 1, 2), ("d", 2, 2 + 1)])
+ADDITIONS: Sequence[Row] = (
+    (ADD, right(ADD), None, ""),
+    (ADD, ADDED, None, ""),
+    (ADD, committed(BEHIND, first=FIRST_GOES), Level.COMPLETE, "query/complete"),
+    (ADD, committed(BEHIND, first=WAITS, new=BEHIND_GOES), Level.COMPLETE, "neighbourhood/baseline"),
+    (ADD_ANYHOW, committed(BEHIND, first=WAITS, new=BEHIND_GOES), Level.EXACT, "query/ties"),
+    (ADD_ANYHOW, committed(BEHIND, first=FIRST_GOES), Level.EXACT, "query/ties"),
+    (ADD, committed(BEHIND, new=BEHIND_GOES), Level.SOUND, "fleet/history"),
+    (ADD, committed(BEHIND, first=HURRIES, new=BEHIND_GOES), Level.SOUND, "plan/duration"),
+    (ADD, in_order(ADDED, "new", "first"), Level.EXACT, "query/ties"),
+    (ADD_LATE, right(ADD_LATE), None, ""),
+    (ADD_LATE, ADDED, Level.SOUND, "fleet/history"),
+    (ADD_LATE, committed(BEHIND, first=WAITS), Level.SOUND, "fleet/history"),
+    (case("add", ISLANDS), committed(ISLANDS), None, ""),
+)
+POLISH = case("polish", row([FIRST]), first=WAITS)
+POLISH_TWO = case("polish", BEHIND, first=FIRST_GOES, new=[("b", 0, 1), ("c", 1, 2), ("d", 2, 3)])
+POLISHES: Sequence[Row] = (
+    (POLISH, committed(row([FIRST]), first=FIRST_GOES), None, ""),
+    (POLISH, POLISH.solution, Level.EXACT, "query/ties"),
+    (POLISH, committed(row([FIRST])), Level.SOUND, "polish/kept"),
+    (POLISH, committed(row([FIRST]), first=HURRIES), Level.SOUND, "plan/duration"),
+    (POLISH_TWO, POLISH_TWO.solution, None, ""),
+    (POLISH_TWO, committed(BEHIND, new=BEHIND_GOES), Level.SOUND, "polish/kept"),
+    (POLISH_TWO, committed(BEHIND, first=WAITS, new=BEHIND_GOES), Level.SOUND, "polish/kept"),
+)
+CHECK = case("check", HEAD_ON, first=FIRST_GOES, new=WESTWARDS)
+CHECK_RIGHT = case("check", BEHIND, first=FIRST_GOES)
+VERDICT: VerdictDocument = right(CHECK)
+VALID: VerdictDocument = right(CHECK_RIGHT)
+changed = msgspec.structs.replace
+(EXCHANGE,) = VERDICT.violations
+CHECKS: Sequence[Row] = (
+    (CHECK, VERDICT, None, ""),
+    (CHECK, changed(VERDICT, valid=True), Level.SOUND, "program/result"),
+    (CHECK, changed(VERDICT, violations=()), Level.SOUND, "joint/exchange"),
+    (CHECK, changed(VERDICT, cost=VERDICT.cost + 1), Level.SOUND, "cost/total"),
+    (CHECK, changed(VERDICT, unplanned=1), Level.SOUND, "cost/total"),
+    (CHECK, changed(VERDICT, violations=(EXCHANGE, changed(EXCHANGE, rule="plan/start"))), Level.SOUND, "plan/start"),
+    (CHECK, changed(VERDICT, violations=(changed(EXCHANGE, resource="a"),)), Level.EXACT, "program/result"),
+    (CHECK_RIGHT, VALID, None, ""),
+    (CHECK_RIGHT, changed(VALID, valid=False), Level.SOUND, "program/result"),
+    (CHECK_RIGHT, changed(VALID, violations=VERDICT.violations), Level.SOUND, "joint/exchange"),
+)
+OPTIMUM = case("optimum", LAST_FIRST)
+BEST: OptimumAnswer = right(OPTIMUM)
+CARP = right(case("plan", LAST_FIRST, planner=Carp()))
+UNDECIDED = OptimumAnswer(None, None, proved=False, solution=None)
+NONE = OptimumAnswer(None, None, proved=True, solution=None)
+ONE_OF_TWO = committed(BEHIND, first=FIRST_GOES)
+OPTIMA: Sequence[Row] = (
+    (OPTIMUM, BEST, None, ""),
+    (OPTIMUM, UNDECIDED, None, ""),
+    (OPTIMUM, replace(UNDECIDED, lower=7), None, ""),
+    (OPTIMUM, replace(UNDECIDED, lower=8), Level.OPTIMAL, "program/lower"),
+    (OPTIMUM, replace(UNDECIDED, cost=9), Level.SOUND, "cost/total"),
+    (OPTIMUM, OptimumAnswer(9, 7, proved=False, solution=CARP), None, ""),
+    (OPTIMUM, OptimumAnswer(9, 7, proved=True, solution=CARP), Level.OPTIMAL, "program/optimal"),
+    (OPTIMUM, OptimumAnswer(7, 7, proved=True, solution=CARP), Level.SOUND, "cost/total"),
+    (OPTIMUM, OptimumAnswer(None, 7, proved=True, solution=CARP), Level.SOUND, "cost/total"),
+    (OPTIMUM, NONE, Level.OPTIMAL, "program/optimal"),
+    (case("optimum", BEHIND), OptimumAnswer(3, 3, proved=False, solution=ONE_OF_TWO), Level.SOUND, "solution/covers"),
+    (
+        case("optimum", row([FIRST])),
+        OptimumAnswer(2, 2, proved=False, solution=committed(row([FIRST]), first=HURRIES)),
+        Level.SOUND,
+        "plan/duration",
+    ),
+    (case("optimum", BLOCKED), NONE, None, ""),
+    (case("optimum", BLOCKED), replace(NONE, lower=10**9), None, ""),
+)
+BOUND: BoundDocument = right(case("bound", LAST_FIRST))
+BOUNDS: Sequence[Row] = (
+    (case("bound", LAST_FIRST), BOUND, None, ""),
+    (case("bound", LAST_FIRST), changed(BOUND, bound=BOUND.bound + 1), Level.SOUND, "bound/total"),
+    (case("bound", ALONE), BOUND, Level.SOUND, "bound/instance"),
+    (case("bound", ISLANDS), right(case("bound", ISLANDS)), None, ""),
+)
+ROWS = (*QUERIES, *PLANS, *ADDITIONS, *POLISHES, *CHECKS, *OPTIMA, *BOUNDS)
+
+
+@pytest.mark.parametrize(("asked", "answer", "least", "rule"), ROWS)
+def test_an_answer_is_refused_by_its_rule_from_a_level_on(
+    asked: Case, answer: Answer, least: Level | None, rule: str
+) -> None:
+    found = {level: first_finding(asked, answer, level) for level in Level}
+    told = {level: None if finding is None else finding.rule for level, finding in found.items()}
+    assert told == {level: rule if least is not None and level >= least else None for level in Level}
+
+
+def test_a_late_plan_is_told_with_the_best_one() -> None:
+    finding = first_finding(QUERY, QueryAnswer(later(plan("new", *FIRST_GOES))), Level.CONTEXT_OPTIMAL)
+    assert finding is not None
+    assert finding.message == "robot new arrives at 4, and can at 3: a[0,1) b[1,2) c[2,3) d[3,4)"
+
+
+def test_carproof_and_a_plan_that_contradict_each_other_are_a_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+    for best, message in (
+        (None, "has no plan, and"),
+        (later(plan("new", *FIRST_GOES)), "arrives at 4 at best: not so"),
+    ):
+        engine = SimpleNamespace(query=lambda *_, best=best: best)
+        monkeypatch.setattr(judges, "engine_named", lambda _, engine=engine: engine)
+        with pytest.raises(RuntimeError, match=message):
+            first_finding(QUERY, goes(*FIRST_GOES), Level.COMPLETE)
+
+
+@pytest.mark.parametrize(
+    ("instance", "bound", "rule"),
+    [
+        (LAST_FIRST, 7, None),
+        (LAST_FIRST, 8, "program/lower"),
+        (row([]), 1, "program/lower"),
+        (FOUR, 1, "program/lower"),
+        (ISLANDS, 10**9, None),
+    ],
+)
+def test_a_false_certificate_that_passes_is_refused_where_plans_cost_less(
+    instance: Instance, bound: int, rule: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(carp_verify.verify_bound, "verify_bound", lambda *_: bound)
+    finding = first_finding(case("bound", instance), BOUND, Level.SOUND)
+    assert (None if finding is None else finding.rule) == rule
+
+
+def test_a_bound_that_robots_need_alone_is_compared_with_no_optimum(monkeypatch: pytest.MonkeyPatch) -> None:
+    def searched(instance: Instance) -> None:
+        raise AssertionError(instance)
+
+    monkeypatch.setattr(optima, "found_cost", searched)
+    assert first_finding(case("bound", ALONE), right(case("bound", ALONE)), Level.SOUND) is None
+    assert first_finding(case("bound", ISLANDS), right(case("bound", ISLANDS)), Level.SOUND) is None
+
+
+def test_where_carproof_is_undecided_nothing_is_called_wrong_nor_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in (optima, efforts):
+        monkeypatch.setattr(module, "found_cost", lambda _: (False, 1))
+    monkeypatch.setattr(carp_verify.verify_bound, "verify_bound", lambda *_: 8)
+    asked: Sequence[tuple[Case, Answer]] = (
+        (OPTIMUM, OptimumAnswer(9, 9, proved=True, solution=CARP)),
+        (FREE, ASIDE_SECOND),
+        (CLASSICAL, committed(MEETING, first=FIRST_GOES)),
+        (case("bound", LAST_FIRST), BOUND),
+    )
+    assert [first_finding(*each, Level.OPTIMAL) for each in asked] == [None] * 4
+    undecided = "carproof does not find the optimum in 3 s, with which to compare"
+    assert [why_undecided(*each, Level.OPTIMAL) for each in asked] == [undecided] * 3 + [None]
+    assert why_undecided(FREE, ASIDE_SECOND, Level.CONTEXT_OPTIMAL) is None
+    assert why_undecided(PLAN, ADDED, Level.OPTIMAL) is None
+    assert why_undecided(POLISH, POLISH.solution, Level.OPTIMAL) is None
+
+
+def test_an_optimum_that_is_not_proved_counts_as_no_answer() -> None:
+    assert why_undecided(OPTIMUM, UNDECIDED, Level.OPTIMAL) == "it leaves the optimum undecided"
+    assert why_undecided(OPTIMUM, OptimumAnswer(9, 7, proved=False, solution=CARP), Level.OPTIMAL) is not None
+    assert why_undecided(OPTIMUM, BEST, Level.OPTIMAL) is None
+    assert why_undecided(FREE, ASIDE_SECOND, Level.OPTIMAL) is None
+
+
+ONE = committed(FOUR, first=[("a", 0, 1)])
+TWO = committed(FOUR, first=[("a", 0, 1)], new=[("b", 0, 1)])
+THREE = committed(FOUR, first=[("a", 0, 1)], new=[("b", 0, 1)], third=[("c", 0, 1)])
+CROWDED = replace(case("plan", MEETING), classical=True)
+
+
+@pytest.mark.parametrize(
+    ("asked", "answer", "shown"),
+    [
+        (QUERY, goes(*FIRST_GOES), Effort.TRIED),
+        (QUERY, QueryAnswer(None), Effort.GAVE_UP),
+        (case("query", BLOCKED, first=FIRST_GOES), QueryAnswer(None), Effort.NOTHING_TO_DO),
+        (ADD, ADDED, Effort.TRIED),
+        (ADD, committed(BEHIND, first=FIRST_GOES), Effort.GAVE_UP),
+        (case("add", ISLANDS), committed(ISLANDS), Effort.NOTHING_TO_DO),
+        (POLISH, committed(row([FIRST]), first=FIRST_GOES), Effort.TRIED),
+        (POLISH, POLISH.solution, Effort.GAVE_UP),
+        (POLISH_TWO, POLISH_TWO.solution, Effort.NOTHING_TO_DO),
+        (case("plan", FOUR), committed(FOUR), Effort.GAVE_UP),
+        (case("plan", FOUR), ONE, Effort.GAVE_UP),
+        (case("plan", FOUR), TWO, Effort.GAVE_UP),
+        (case("plan", FOUR), THREE, Effort.TRIED),
+        (case("plan", row([])), committed(row([])), Effort.NOTHING_TO_DO),
+        (case("plan", MEETING), committed(MEETING), Effort.GAVE_UP),
+        (case("plan", MEETING), committed(MEETING, first=FIRST_GOES), Effort.TRIED),
+        (CROWDED, committed(MEETING), Effort.NOTHING_TO_DO),
+        (CROWDED, committed(MEETING, first=FIRST_GOES), Effort.TRIED),
+        (replace(case("plan", FOUR), classical=True), committed(FOUR), Effort.GAVE_UP),
+        (case("bound", LAST_FIRST), BOUND, Effort.TRIED),
+        (case("bound", LAST_FIRST), changed(BOUND, bound=6), Effort.TRIED),
+        (case("bound", LAST_FIRST), changed(BOUND, bound=5), Effort.GAVE_UP),
+        (case("bound", row([])), changed(BOUND, bound=0), Effort.NOTHING_TO_DO),
+        (case("bound", ISLANDS), changed(BOUND, bound=0), Effort.NOTHING_TO_DO),
+        (CHECK, VERDICT, Effort.TRIED),
+        (OPTIMUM, BEST, Effort.TRIED),
+    ],
+)
+def test_an_answer_shows_something_or_gives_up(asked: Case, answer: Answer, shown: Effort) -> None:
+    assert effort(asked, answer) == shown
+
+
+def test_what_robots_need_alone_is_added_up() -> None:
+    assert [cost_alone(each) for each in (LAST_FIRST, row([]), ISLANDS)] == [6, 0, None]
+    assert found_cost(LAST_FIRST) == (True, 7)

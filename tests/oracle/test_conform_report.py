@@ -1,0 +1,284 @@
+"""Counts of a run, what they decide, and which cases are asked."""
+
+from collections.abc import Sequence
+
+import pytest
+from tests.oracle.test_conform_judges import Tampered, as_it_is, no_plan
+
+from carp_spec import Robot
+from carproof.conform import run
+from carproof.conform.answers import QueryAnswer, Reply, Skipped
+from carproof.conform.cases import Case, Op, Stage
+from carproof.conform.deciding import Tally, random_shortfalls, smoke_shortfalls
+from carproof.conform.effort import Effort
+from carproof.conform.findings import Category, Fault, Finding, wrong
+from carproof.conform.levels import JUDGED_OPS, Level
+from carproof.conform.outcome import Outcome
+from carproof.conform.run import MOST_FAULTS, Options, Report, conform, label
+from carproof.conform.smoke import row, smoke_cases
+from carproof.conform.vector_cases import vector_cases
+from carproof.movingai_writer import is_classical
+
+NOBODY = QueryAnswer(None)
+WRONG = wrong("plan/move", "it jumps")
+CRASH = Finding(Category.CRASH, "program/alive", "it is gone")
+
+
+def case(stage: Stage = "random", op: Op = "query", robots: int = 0, name: str = "one") -> Case:
+    return Case(stage, name, op, row([Robot(number, "a", "b") for number in range(robots)]))
+
+
+def tried(stage: Stage = "random", op: Op = "query", effort: Effort = Effort.TRIED) -> Outcome:
+    return Outcome(case(stage, op), None, NOBODY, effort=effort)
+
+
+def skipped(stage: Stage = "random", op: Op = "query") -> Outcome:
+    return Outcome(case(stage, op), skipped="no time")
+
+
+def not_asked(stage: Stage = "random", op: Op = "query") -> Outcome:
+    return Outcome(case(stage, op), skipped="no words", asked=False)
+
+
+def failed(stage: Stage = "random", op: Op = "query", finding: Finding = WRONG, robots: int = 0) -> Outcome:
+    return Outcome(case(stage, op, robots), finding, NOBODY)
+
+
+def tally(*outcomes: Outcome) -> Tally:
+    counted = Tally()
+    for outcome in outcomes:
+        counted.add(outcome)
+    return counted
+
+
+def report(level: Level, *outcomes: Outcome) -> Report:
+    made = Report(Options(level))
+    for outcome in outcomes:
+        made.add(outcome)
+    return made
+
+
+def test_a_tally_counts_right_answers_of_cases_that_could_be_asked() -> None:
+    outcomes = (tried(), tried(effort=Effort.GAVE_UP), tried(effort=Effort.NOTHING_TO_DO), skipped(), not_asked())
+    counted = tally(*outcomes, failed())
+    assert (counted.asked, counted.answered, counted.tried, counted.gave_up) == (5, 3, 1, 1)
+    assert str(counted) == "3 of 5, 1 given up"
+    assert str(tally(tried(), tried())) == "2 of 2"
+
+
+@pytest.mark.parametrize(
+    ("efforts", "decides"),
+    [((), False), ((Effort.NOTHING_TO_DO,), False), ((Effort.GAVE_UP,), True), ((Effort.TRIED,), True)],
+)
+def test_a_tally_decides_where_there_was_something_to_do(efforts: Sequence[Effort], decides: bool) -> None:
+    assert tally(*(tried(effort=effort) for effort in efforts)).decides is decides
+
+
+def test_smoke_cases_that_could_be_asked_must_be_answered() -> None:
+    assert list(smoke_shortfalls([tried("smoke"), not_asked("smoke"), skipped(), skipped("vectors")])) == []
+    silent = Outcome(case("smoke", name="two"), skipped="too hard")
+    (shortfall,) = smoke_shortfalls([tried("smoke"), skipped("smoke"), silent, not_asked("smoke")])
+    assert shortfall == "it did not answer 2 of 3 smoke cases, the first of them one (no time) [program/answers]"
+
+
+def test_nine_in_ten_random_cases_of_each_op_must_be_answered_and_half_of_them_tried() -> None:
+    gave_up = tried(effort=Effort.GAVE_UP)
+    assert list(random_shortfalls({"query": tally(*[tried()] * 9, skipped()), "add": tally(tried(), gave_up)})) == []
+    few: dict[Op, Tally] = {
+        "query": tally(tried()),
+        "plan": tally(*[tried()] * 8, skipped()),
+        "add": tally(tried(), gave_up, gave_up),
+    }
+    assert list(random_shortfalls(few)) == [
+        "it answered 8 of 9 random cases of plan, and 90 in 100 are needed [program/answers]",
+        "it gave up 2 of 3 random cases of add, and may give up 50 in 100 [program/tries]",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("outcome", "words"),
+    [
+        (tried(), "passed"),
+        (tried(effort=Effort.NOTHING_TO_DO), "passed"),
+        (tried(effort=Effort.GAVE_UP), "gave up"),
+        (skipped(), "skipped"),
+        (not_asked(), "not asked"),
+        (failed(), "wrong answer"),
+        (failed(finding=CRASH), "crash"),
+    ],
+)
+def test_random_cases_are_counted_by_what_came_of_them(outcome: Outcome, words: str) -> None:
+    assert label(outcome) == words
+    made = report(Level.SOUND, outcome, outcome, tried("smoke"))
+    assert made.random == {words: 2}
+    assert made.judged["query"] == 1 + 2 * (outcome.answer is not None)
+    assert list(made.tallies) == ["query"]
+    assert len(made.outcomes) == 1
+
+
+@pytest.mark.parametrize(
+    ("outcomes", "conforms"),
+    [
+        ((tried(),), True),
+        ((tried("smoke"), tried()), True),
+        ((tried("smoke"),), None),
+        ((tried("smoke"), tried(effort=Effort.NOTHING_TO_DO)), None),
+        ((skipped("smoke"), tried()), False),
+        ((tried(), skipped()), False),
+        ((tried(effort=Effort.GAVE_UP),), False),
+        ((failed("smoke"), tried()), False),
+        ((tried(op="bound"),), False),
+        ((), False),
+    ],
+)
+def test_counts_decide_whether_a_program_conforms(outcomes: Sequence[Outcome], conforms: bool | None) -> None:
+    made = report(Level.CONTEXT_OPTIMAL, *outcomes)
+    assert made.conforms is conforms
+    assert made.reaches_level == (conforms is True or bool(made.findings))
+
+
+def test_an_interruption_leaves_undecided_what_is_not_wrong() -> None:
+    for outcomes, conforms in (((tried(),), None), ((skipped("smoke"),), None), ((failed("smoke"),), False)):
+        made = report(Level.SOUND, *outcomes)
+        made.interrupted = True
+        assert (made.conforms, made.shortfalls) == (conforms, [])
+
+
+def test_a_level_is_shown_by_its_own_ops_and_by_plan_where_whole_instances_are_asked() -> None:
+    for level in Level:
+        for op in ("check", "query", "plan", "add", "polish", "optimum", "bound"):
+            made = report(level, tried("smoke", op), tried(op=op))
+            assert made.conforms is (op in JUDGED_OPS[level])
+    assert Options(Level.OPTIMAL, whole=True).ops == ("plan",)
+    assert report(Level.OPTIMAL, tried("smoke", "optimum"), tried(op="check")).conforms is None
+
+
+def test_of_failures_of_one_rule_the_smallest_is_shown_and_counted_once() -> None:
+    made = report(Level.SOUND, failed("smoke", robots=3), failed("vectors", robots=2), tried("smoke"))
+    made.add(failed("vectors", finding=CRASH, robots=5))
+    assert [len(outcome.case.instance.robots) for outcome in made.failures] == [2, 5]
+    made.smallest = failed(robots=1)
+    assert [len(outcome.case.instance.robots) for outcome in made.failures] == [1, 5]
+    made.faults.append(CRASH)
+    assert made.findings == [CRASH, WRONG, CRASH]
+    assert made.processes_lost == 1
+
+
+def test_smoke_cases_are_tallied_alone() -> None:
+    made = report(Level.SOUND, tried("smoke"), skipped("smoke"), tried("vectors"), tried())
+    assert str(made.smoke) == "1 of 2"
+
+
+class Scripted(Tampered):
+    """A subject that ends as it is told, and remembers what became of it."""
+
+    def __init__(self, **fails: BaseException) -> None:
+        super().__init__(as_it_is)
+        self.ops = ("query",)
+        self.fails = fails
+        self.calls: list[str] = []
+
+    def _call(self, name: str) -> None:
+        self.calls.append(name)
+        if name in self.fails:
+            raise self.fails[name]
+
+    def start(self) -> None:
+        self._call("start")
+
+    def ask(self, case: Case, seconds: float | None = None) -> Reply:
+        self._call("ask")
+        return super().ask(case, seconds)
+
+    def finish(self) -> None:
+        self._call("finish")
+        self.name = "renamed"
+
+    def kill(self) -> None:
+        self._call("kill")
+
+
+@pytest.fixture(name="few")
+def few_cases(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Four smoke cases, and one vector."""
+    monkeypatch.setattr(run, "smoke_cases", lambda *each: list(smoke_cases(*each))[:4])
+    monkeypatch.setattr(run, "vector_cases", lambda *each: list(vector_cases(*each))[:1])
+
+
+@pytest.mark.usefixtures("few")
+@pytest.mark.parametrize(
+    ("fails", "calls", "rules", "interrupted"),
+    [
+        ({}, ["start", *["ask"] * 5, "finish", "kill"], [], False),
+        ({"start": Fault(CRASH)}, ["start", "kill"], ["program/alive"], False),
+        ({"finish": Fault(CRASH)}, ["start", *["ask"] * 5, "finish", "kill"], ["program/alive"], False),
+        ({"ask": Fault(CRASH)}, ["start", *["ask"] * MOST_FAULTS, "finish", "kill"], ["program/alive"], False),
+        ({"ask": KeyboardInterrupt()}, ["start", "ask", "kill"], [], True),
+    ],
+)
+def test_whatever_happens_there_is_a_report_and_the_subject_is_ended(
+    fails: dict[str, BaseException], calls: list[str], rules: list[str], interrupted: bool
+) -> None:
+    subject, asked = Scripted(**fails), []
+    made = conform(subject, Options(examples=0), lambda: asked.append(1))
+    assert subject.calls == calls
+    assert [finding.rule for finding in made.findings] == rules
+    assert made.interrupted is interrupted
+    assert len(asked) == (0 if interrupted else calls.count("ask"))
+    assert made.program == subject.name
+
+
+@pytest.mark.usefixtures("few")
+@pytest.mark.parametrize(
+    ("ops", "examples", "asked"),
+    [
+        (("query",), 5, {"query": 5}),
+        (("query", "plan"), 5, {"query": 2, "plan": 3}),
+        (("query", "plan", "check"), 2, {"query": 1, "plan": 1}),
+    ],
+)
+def test_random_cases_are_shared_out_among_the_ops(
+    ops: tuple[Op, ...], examples: int, asked: dict[Op, int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(run, "smoke_cases", lambda *_: [])
+    monkeypatch.setattr(run, "vector_cases", lambda *_: [])
+    subject = Tampered(as_it_is)
+    subject.ops = ops
+    made = conform(subject, Options(examples=examples, seed=3))
+    assert sum(count.asked for count in made.tallies.values()) == examples
+    assert sorted(count.asked for count in made.tallies.values()) == sorted(asked.values())
+
+
+@pytest.mark.usefixtures("few")
+def test_after_the_first_random_failure_the_smallest_is_looked_for_alone() -> None:
+    def fails(asked: Case, reply: Reply) -> Reply:
+        return no_plan(asked, reply) if asked.stage == "random" else reply
+
+    subject = Tampered(fails)
+    subject.ops = ("query", "plan")
+    made = conform(subject, Options(Level.COMPLETE, examples=40, seed=1, shrink_seconds=1))
+    assert made.smallest is not None
+    assert made.random["wrong answer"] == 1
+    assert [finding.rule for finding in made.findings] == ["query/complete"]
+    assert len(made.smallest.case.instance.robots) == 1
+
+
+@pytest.mark.usefixtures("few")
+def test_planners_of_whole_instances_are_asked_classical_ones_if_they_are_classical() -> None:
+    asked: list[Case] = []
+
+    class Silent(Tampered):
+        def ask(self, case: Case, seconds: float | None = None) -> Reply:
+            del seconds
+            asked.append(case)
+            return Skipped("no time")
+
+    for classical in (False, True):
+        subject = Silent(as_it_is)
+        subject.ops = ("plan",)
+        conform(subject, Options(examples=3, whole=True, classical=classical))
+    assert {(each.op, each.planner) for each in asked} == {("plan", None)}
+    half = len(asked) // 2
+    assert [each.classical for each in asked] == [False] * half + [True] * half
+    drawn = [each.instance for each in asked[half:] if each.stage == "random"]
+    assert all(is_classical(each) for each in drawn)
