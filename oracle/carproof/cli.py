@@ -32,8 +32,9 @@ Examples:
   carproof plan town.json --json | carproof check town.json -
 
 \b
-Exit codes: 0 yes, 1 no (a broken rule, a robot without a plan),
-2 bad input or usage, 3 undecided within the limit given.
+Exit codes: 0 yes, 1 no (a broken rule; of commands that plan, and of
+check --require-all, a robot without a plan), 2 bad input or usage,
+3 undecided within the limit given.
 """
 
 

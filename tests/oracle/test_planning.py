@@ -188,6 +188,16 @@ def test_check_writes_a_verdict(carproof: Run, file: Write, tmp_path: Path) -> N
     assert json.loads((tmp_path / "verdict.json").read_text()) == verdict
 
 
+def test_check_asks_for_plans_of_all_robots_only_where_it_is_asked_to(carproof: Run, file: Write) -> None:
+    files = file(TWO), file(solution({}, ["r1", "r2"]), "empty.json")
+    outcome = carproof("check", *files)
+    assert (outcome.code, outcome.stdout) == (0, "no rule is broken: total cost 0, unplanned robots 2\n")
+    outcome = carproof("check", *files, "--require-all")
+    assert (outcome.code, outcome.stdout) == (1, "INCOMPLETE: total cost 0, unplanned robots 2\n")
+    assert carproof("check", file(TWO), file(TWO_PLANNED, "plans.json"), "--require-all").code == 0
+    assert carproof("check", file(TWO), file(BROKEN, "broken.json"), "--require-all").stdout.endswith("robots 0\n")
+
+
 def test_ids_with_control_characters_are_shown_and_not_obeyed(carproof: Run, file: Write) -> None:
     evil = corridor([{"id": "r\n\x1b[2J", "start": "a", "goal": "c"}])
     outcome = carproof("check", file(evil), file(solution({"r\n\x1b[2J": [["a", 0, 1]]}), "plans.json"))

@@ -24,6 +24,7 @@ from carproof.tables import print_line, print_table
         "carproof check town.json plans.json",
         "carproof plan town.json --json | carproof check town.json -",
         "carproof check town.json plans.json --json > verdict.json",
+        "carproof check town.json plans.json --require-all",
         "carproof check town.json result.txt --from lacam",
         "carproof check town.json plans.json --kernel",
         "carproof check --map town.map --scen town.scen --agents 40 result.txt",
@@ -33,6 +34,7 @@ from carproof.tables import print_line, print_table
 @movingai_options
 @from_option
 @kernel_option
+@click.option("--require-all", is_flag=True, help="Answer no also if a robot has no plan.")
 @click.option("--all", "everything", is_flag=True, help="List every violation, however many there are.")
 @output_option
 @json_option
@@ -44,6 +46,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     agents: int | None,
     format: str | None,
     kernel: bool,
+    require_all: bool,
     everything: bool,
     output: Path | None,
     as_json: bool,
@@ -51,7 +54,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     """Check the plans of SOLUTION against INSTANCE, or against a MovingAI map and scenario.
 
     Prints the first 100 violations of each rule with their reasons (--all: every one), and how often each rule
-    is broken. Robots without a plan break no rule; they are counted. Either file may be - for standard input.
+    is broken. Robots without a plan break no rule; they are counted, and with --require-all the answer is no.
+    Either file may be - for standard input.
 
     SOLUTION is carproof's document or another planner's output (--from). Such output is of classical multi-agent
     path finding: robots are there from tick 0, move or wait in each tick, and stay at their goals for ever;
@@ -59,7 +63,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
     With --kernel the proved kernel decides, and --json prints its verdict.
 
-    Exit codes: 0 no rule is broken, 1 a rule is broken, 2 bad input.
+    Exit codes: 0 no rule is broken, 1 a rule is broken (--require-all: or a robot has no plan), 2 bad input.
     """
     *instances, solution = files
     benchmark = MovingAI.of(map, scen, agents)
@@ -77,10 +81,10 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     if as_json:
         print_document(document)
     else:
-        print_verdict(verdict, most)
+        print_verdict(verdict, most, require_all)
         if decided is not None:
             print_line(f"decided by {decided.by}")
-    return Answer.of(verdict.valid)
+    return Answer.of(verdict.valid and not (require_all and verdict.unplanned))
 
 
 def kernel_verdict(instance: Instance, solution: Solution, verdict: Verdict) -> KernelVerdict:
@@ -93,7 +97,7 @@ def kernel_verdict(instance: Instance, solution: Solution, verdict: Verdict) -> 
     return answer
 
 
-def print_verdict(verdict: Verdict, most: int | None) -> None:
+def print_verdict(verdict: Verdict, most: int | None, require_all: bool = False) -> None:
     """Print the violations one a line, then how many there are of each rule; `most` of a rule may stand for more."""
     for violation in verdict.violations:
         print_line(str(violation))
@@ -104,5 +108,6 @@ def print_verdict(verdict: Verdict, most: int | None) -> None:
         broken = [(rule.id, numbers[rule.id]) for rule in RULES if rule.id in numbers]
         print_table(["rule", "violations"], broken, numbers=["violations"])
         click.echo()
-    result = "no rule is broken" if verdict.valid else "INVALID"
+    broken_or_not = "no rule is broken" if verdict.valid else "INVALID"
+    result = "INCOMPLETE" if verdict.valid and verdict.unplanned and require_all else broken_or_not
     print_line(f"{result}: total cost {verdict.cost}, unplanned robots {verdict.unplanned}")
