@@ -188,6 +188,14 @@ def test_a_format_that_is_not_clear_is_to_be_named(text: str, error: str) -> Non
     assert not format_is_clear(text, INSTANCE)
 
 
+@pytest.mark.parametrize("position", ["(0,0)", "(1,1)"])
+def test_a_format_need_not_be_named_where_it_makes_no_difference(position: str) -> None:
+    text = f"Agent 0: {position}->\n"
+    solution = read(text)
+    assert solution == read(text, "paths-row-column") == read(text, "paths-x-y")
+    assert format_is_clear(text, INSTANCE)
+
+
 @pytest.mark.parametrize(
     "instance",
     [

@@ -19,6 +19,7 @@ __all__ = [
     "ADAPTER_RULES",
     "format_of",
     "instance_from_networkx",
+    "looks_like_none",
     "read_foreign_solution",
     "write_foreign_solution",
 ]
@@ -39,7 +40,7 @@ ADAPTERS: Mapping[str, Adapter] = {
 @rule(
     "adapter/format",
     "A solution whose format is not named looks like one format; of those that it looks like, it is the one in which "
-    "every robot begins at its start.",
+    "every robot begins at its start, or it means the same in each.",
     DESIGN,
 )
 def format_is_clear(text: str, instance: Instance) -> bool:
@@ -82,19 +83,33 @@ def format_of(data: bytes, instance: Instance, file: str = "file") -> str:
     raise Refusal("document", file, format_is_clear.id, f"the format must be named by --from: {what}")
 
 
+def looks_like_none(data: bytes) -> bool:
+    """Whether the data look like no format at all."""
+    return not any(each.looks_like(_text(data)) for each in ADAPTERS.values())
+
+
 def _text(data: bytes) -> str:
     return data.decode(errors="surrogateescape").replace("\r\n", "\n")
 
 
 def _possible(text: str, instance: Instance) -> list[str]:
-    """The formats that it looks like; if they are more than one, those in which robots begin at their starts."""
+    """The formats that it looks like; of several, those in which robots begin at their starts, or one if all agree."""
     names = [name for name, each in ADAPTERS.items() if each.looks_like(text)]
-    return names if len(names) == 1 else [name for name in names if _begins_at_starts(text, instance, ADAPTERS[name])]
+    if len(names) == 1:
+        return names
+    read = {name: solution for name in names if (solution := _solution(text, instance, name)) is not None}
+    begin = [name for name, solution in read.items() if _begins_at_starts(solution, instance)]
+    likely = begin or list(read)
+    agree = all(read[name] == read[likely[0]] for name in likely)
+    return likely[:1] if agree else begin
 
 
-def _begins_at_starts(text: str, instance: Instance, adapter: Adapter) -> bool:
+def _solution(text: str, instance: Instance, format: str) -> Solution | None:
     try:
-        solution = adapter.read(text, instance, "file")
+        return ADAPTERS[format].read(text, instance, "file")
     except Refusal:
-        return False
+        return None
+
+
+def _begins_at_starts(solution: Solution, instance: Instance) -> bool:
     return all(plan.visits[0].resource == instance.robot[plan.robot].start for plan in solution.plans)

@@ -2,18 +2,22 @@
 
 import subprocess
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from carp_spec import Instance, Refusal, Solution, write_instance
-from carproof.adapters import carproof_documents, read_foreign_solution
+from carp_spec import Instance, Refusal, Robot, Solution, write_instance
+from carproof.adapters import carproof_documents, format_of, looks_like_none, read_foreign_solution
 from carproof.conform.answers import NotAsked, Reply, decode_solution, protocol_error, shown
 from carproof.conform.cases import Case
 from carproof.conform.child import Limits, end_group, ending, environment, exit_code, limited
 from carproof.conform.findings import Category, Fault, Finding, is_alive, is_in_time, is_result
+from carproof.movingai import GridMap, movingai_instance
 from carproof.movingai_writer import MAP_NAME, is_classical, write_movingai
 
 INSTANCE, MAP, SCEN, AGENTS, SOLUTION = "{instance}", "{map}", "{scen}", "{agents}", "{solution}"
+PROBE = movingai_instance(GridMap(3, 2, ("...", "...")), [Robot("r1", "2,0", "0,1")], "park")
+"""An instance in which a right answer is in one format: in one order only is the start of the robot a cell."""
 _KEPT_STDERR = 8 * 2**10
 
 
@@ -43,7 +47,19 @@ class OneShot:
         self.ops: tuple[str, ...] = ("plan",)
 
     def start(self) -> None:
-        """It is started for each case."""
+        """Find out the format that it writes; raises `Refusal` if that must be named. It is started for each case."""
+        if self.is_classical and self._format is None:
+            with suppress(Fault), TemporaryDirectory(prefix="carproof-") as folder:
+                self._format = self._format_of(self._written(PROBE, Path(folder), self._limits.seconds))
+
+    def _format_of(self, written: bytes) -> str | None:
+        """The format of the probe's answer; `None` if it looks like none, which the cases will show."""
+        try:
+            return format_of(written, PROBE, "its output")
+        except Refusal:
+            if looks_like_none(written):
+                return None
+            raise
 
     def ask(self, case: Case, seconds: float | None = None) -> Reply:
         """Run the program on the case's instance."""
@@ -52,11 +68,13 @@ class OneShot:
         if self.is_classical and not is_classical(case.instance):
             return NotAsked("it plans classical grids")
         with TemporaryDirectory(prefix="carproof-") as folder:
-            return self._run(case, Path(folder), seconds or self._limits.seconds)
+            written = self._written(case.instance, Path(folder), seconds or self._limits.seconds)
+        return self._read(written, case.instance) if written else Solution((), (), tuple(case.instance.robot))
 
-    def _run(self, case: Case, folder: Path, seconds: float) -> Reply:
+    def _written(self, instance: Instance, folder: Path, seconds: float) -> bytes:
+        """Run the program on an instance, and return its answer; only a classical one may be empty."""
         solution, output, errors = folder / "solution", folder / "output", folder / "errors"
-        command = self._command(case.instance, folder, solution)
+        command = self._command(instance, folder, solution)
         with output.open("wb") as stdout, errors.open("wb") as stderr:
             code = self._wait(command, stdout.fileno(), stderr.fileno(), seconds)
         told = self._beginning(errors)[-_KEPT_STDERR:].decode("utf-8", "backslashreplace")
@@ -66,12 +84,10 @@ class OneShot:
         written = self._beginning(answer) if answer.is_file() else b""
         if code not in (0, 1) or (code == 1 and not written):
             raise Fault(Finding(Category.CRASH, is_alive.id, ending(code), told))
-        if self.is_classical and not written:
-            return Solution((), (), tuple(case.instance.robot))
-        if not written or len(written) > self._limits.output:
+        if not (written or self.is_classical) or len(written) > self._limits.output:
             much = "nothing" if not written else f"more than {self._limits.output} bytes"
             raise Fault(Finding(Category.PROTOCOL_ERROR, is_result.id, f"it wrote {much} as its answer", told))
-        return self._read(written, case.instance)
+        return written
 
     def _command(self, instance: Instance, folder: Path, solution: Path) -> list[str]:
         """Write the files that the program reads, and put all files' names into the template."""
