@@ -1,11 +1,14 @@
 """Compilation by numba, typed: the same source runs uncompiled where NUMBA_DISABLE_JIT is 1."""
 
+import os
 import sys
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache, wraps
 from inspect import unwrap
 from pathlib import Path
+from stat import S_ISDIR
+from tempfile import gettempdir
 from typing import Any, ParamSpec, TypeVar, cast
 
 import numba
@@ -18,6 +21,9 @@ R = TypeVar("R")
 
 # No compiled function makes an array, so none counts references.
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "_nrt": False}
+
+_ENTRIES: list[Callable[..., object]] = []
+"""The entries of the modules that are loaded."""
 
 
 class RoomExhausted(Exception):  # noqa: N818 - nothing went wrong: the caller makes larger arrays and asks again
@@ -39,7 +45,7 @@ def compiled(function: F) -> F:
 
 def entry(function: Callable[P, R]) -> Callable[P, R]:
     """Compile a function that Python calls, by position; the machine code is cached on disk, with all that it calls."""
-    dispatcher: Any = numba.njit(cache=True, **OPTIONS)(function)
+    dispatcher = _dispatcher(function)
     if not hasattr(dispatcher, "signatures"):  # compilation is switched off
         return function
 
@@ -52,11 +58,43 @@ def entry(function: Callable[P, R]) -> Callable[P, R]:
             is_prepared = True
             if not is_cached(call):
                 _forget(call)
-                say_that_it_compiles()
+                say_that_it_compiles(call.cache is not None)  # type: ignore[attr-defined]
         return cast("R", dispatcher(*[each.address if type(each) is Native else each for each in arguments]))
 
-    call.cache = Path(dispatcher.stats.cache_path)  # type: ignore[attr-defined]
+    kept_in = dispatcher.stats.cache_path
+    call.cache = None if kept_in is None else Path(kept_in)  # type: ignore[attr-defined]
+    _ENTRIES.append(call)
     return call
+
+
+def _dispatcher(function: Callable[P, R]) -> Any:  # noqa: ANN401 - numba is untyped
+    """The function, to be compiled; numba keeps its machine code where it can, else among the temporary files."""
+    with suppress(RuntimeError):  # neither the sources' folder nor the user's can be written
+        return numba.njit(cache=True, **OPTIONS)(function)
+    if (folder := _temporary_cache()) is not None:
+        os.environ["NUMBA_CACHE_DIR"] = str(folder)
+        numba.config.CACHE_DIR = str(folder)  # type: ignore[attr-defined]
+        with suppress(RuntimeError):
+            return numba.njit(cache=True, **OPTIONS)(function)
+    return numba.njit(**OPTIONS)(function)
+
+
+@cache
+def _temporary_cache() -> Path | None:
+    """A folder that the user alone can write, as machine code from it is run; `None` if there can be none."""
+    try:
+        folder = Path(gettempdir()) / f"carproof-{os.getuid()}"
+        folder.mkdir(mode=0o700, exist_ok=True)
+        found = folder.lstat()
+    except OSError:
+        return None
+    is_own = S_ISDIR(found.st_mode) and found.st_uid == os.getuid() and not found.st_mode & 0o077
+    return folder if is_own else None
+
+
+def is_compiled() -> bool:
+    """Whether the machine code of all entries that are loaded is on disk."""
+    return all(map(is_cached, _ENTRIES))
 
 
 def is_cached(function: Callable[..., object]) -> bool:
@@ -85,7 +123,8 @@ def _forget(function: Callable[..., object]) -> None:
 
 
 @cache
-def say_that_it_compiles() -> None:
-    """Tell whoever waits why it takes so long, once."""
-    message = "carproof compiles its planner, once: it takes about half a minute ..."
+def say_that_it_compiles(is_kept: bool) -> None:
+    """Say to the person who waits why it takes so long, once, and whether it will again."""
+    how_often = "once" if is_kept else "in each process, as it finds no folder in which to keep that"
+    message = f"carproof compiles its planner, {how_often}: it takes about half a minute ..."
     print(message, file=sys.stderr, flush=True)  # noqa: T201 - no command does this, so none can say it

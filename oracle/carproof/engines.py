@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from importlib import import_module
+from importlib.util import find_spec
 from typing import Protocol, cast
 
 from carp_spec import Instance, Neighbourhood, Plan, Planner, Refusal, RobotId, Solution, total_cost
@@ -94,6 +95,21 @@ class FastestEngine:
 def engine_named(name: str | None) -> Engine:
     """Load an engine; without a name, the fastest that has what is asked."""
     return FastestEngine() if name is None else cast("Engine", import_module(f"carp_{name}"))
+
+
+def warm() -> bool:
+    """Compile what plans and, where its libraries are installed, what finds bounds; whether that was still to do.
+
+    It is one step, which says so on standard error. What has a limit of time does it before that begins.
+    """
+    package = "carp_optimized" if find_spec("pysat") is None else "carp_optimum"
+    compile_all = import_module(f"{package}.__main__").compile_all
+    from carp_optimized.compiling import is_compiled  # noqa: PLC0415 - loaded when it is first used
+
+    if is_compiled():
+        return False
+    compile_all()
+    return True
 
 
 def _engine_with(planner: Planner) -> Engine:

@@ -12,7 +12,7 @@ from carp_spec import Neighbourhood, Refusal, Solution, judge, planner_named
 from carp_spec.documents import solution_document, verdict_document
 from carp_spec.query_certificates import read_query_certificate
 from carp_verify.kernel import UndecidedError, is_answer
-from carproof.engines import Engine
+from carproof.engines import Engine, warm
 from carproof.extras import require
 from carproof.optima import optimum_document
 from carproof.options import DEFAULT_LIMIT, DEFAULT_SECONDS
@@ -92,6 +92,8 @@ def polish(request: Request, engine: Engine) -> Result:
         raise Refusal("request", f"$.{name}", fields_are_right.id, "the op has no such field")
     with inside("$.solution"):
         before = sound_solution(instance, solution)
+    if "seconds" in options:
+        warm()
     with inside("$.instance"):
         return solution_document(engine.polish(instance, before, **options))
 
@@ -126,6 +128,7 @@ def bound(request: Request, engine: Engine) -> Result:
         raise Refusal("request", "$.seconds", limit_is_positive.id, message)
     if not limit_is_positive(steps):
         raise Refusal("request", "$.steps", limit_is_positive.id, f"it must be a number above 0, not {steps}")
+    warm()
     with inside("$.instance"):
         return lower_bound(instance, seconds, steps)
 

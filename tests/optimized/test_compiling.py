@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 import carp_optimized
 import carp_optimum
 from carp_optimized.compiling import is_cached
@@ -26,17 +28,22 @@ CALLS = "import entries; print(entries.twice(2), entries.thrice(2))"
 NOTICE = "carproof compiles its planner, once: it takes about half a minute ...\n"
 
 
-def call_entries(folder: Path) -> tuple[str, str]:
-    """What a new process writes that calls both entries."""
+def start(folder: Path, **variables: str) -> "subprocess.Popen[str]":
+    """A new process that calls both entries."""
     environment = {name: value for name, value in os.environ.items() if not name.startswith("NUMBA_")}
-    done = subprocess.run(
+    return subprocess.Popen(
         [sys.executable, "-c", CALLS],
-        env={**environment, "PYTHONPATH": str(folder)},
-        capture_output=True,
+        env={**environment, "PYTHONPATH": str(folder), **variables},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
         text=True,
-        check=True,
     )
-    return done.stdout, done.stderr
+
+
+def call_entries(folder: Path, **variables: str) -> tuple[str, str]:
+    """What a new process writes that calls both entries."""
+    with start(folder, **variables) as process:
+        return process.communicate()
 
 
 def test_compiling_is_told_once_and_done_again_only_after_a_change(tmp_path: Path) -> None:
@@ -49,6 +56,40 @@ def test_compiling_is_told_once_and_done_again_only_after_a_change(tmp_path: Pat
     other.touch()
     os.utime(other, (later, later))
     assert call_entries(tmp_path) == ("4 6\n", NOTICE)
+
+
+def test_two_first_runs_at_the_same_time_do_not_disturb_each_other(tmp_path: Path) -> None:
+    (tmp_path / "entries.py").write_text(ENTRIES)
+    processes = [start(tmp_path) for _ in range(2)]
+    assert {process.communicate()[0] for process in processes} == {"4 6\n"}
+    assert call_entries(tmp_path) == ("4 6\n", "")
+
+
+@pytest.fixture
+def read_only(tmp_path: Path) -> dict[str, str]:
+    """Sources beside which nothing can be written, and a home that is not there."""
+    (tmp_path / "entries.py").write_text(ENTRIES)
+    (tmp_path / "__pycache__").touch()
+    return {"HOME": "/dev/null", "XDG_CACHE_HOME": "/dev/null", "TMPDIR": str(tmp_path / "temporary")}
+
+
+def test_what_cannot_be_kept_beside_its_source_is_kept_among_the_temporary_files(
+    tmp_path: Path, read_only: dict[str, str]
+) -> None:
+    (tmp_path / "temporary").mkdir()
+    assert call_entries(tmp_path, **read_only) == ("4 6\n", NOTICE)
+    assert call_entries(tmp_path, **read_only) == ("4 6\n", "")
+    (folder,) = (tmp_path / "temporary").iterdir()
+    assert folder.stat().st_mode & 0o777 == 0o700
+
+
+def test_a_folder_that_others_can_write_is_not_trusted(tmp_path: Path, read_only: dict[str, str]) -> None:
+    folder = tmp_path / "temporary" / f"carproof-{os.getuid()}"
+    folder.mkdir(parents=True)
+    folder.chmod(0o777)
+    output, errors = call_entries(tmp_path, **read_only)
+    assert (output, errors.count("in each process, as it finds no folder")) == ("4 6\n", 1)
+    assert list(folder.iterdir()) == []
 
 
 def test_a_function_that_is_not_compiled_is_not_cached() -> None:

@@ -27,5 +27,6 @@ COMMANDS = (
     "gap",
     "crosscheck",
     "bench",
+    "warm",
     "rules",
 )

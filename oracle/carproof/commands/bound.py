@@ -8,6 +8,7 @@ import click
 from carp_spec import Instance, judge, total_cost
 from carp_spec.documents import write
 from carproof.answer import Answer
+from carproof.engines import warm
 from carproof.extras import require
 from carproof.files import InputFile, print_document, read_instance_file, read_solution_file, write_whole
 from carproof.options import DEFAULT_SECONDS, examples, instance_argument, json_option, output_option
@@ -56,6 +57,7 @@ def command(
         seen[1:] = [progress]
         show(progress.steps, found_so_far(known, progress.bound))
 
+    warm()
     started = perf_counter()
     with search_progress("bounding", steps, limit) as show:
         certificate = lower_bound(problem, limit, steps, keep)

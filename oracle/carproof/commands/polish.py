@@ -8,7 +8,7 @@ import click
 from carp_spec import Instance, Solution, check, total_cost, write_solution
 from carp_spec.polish_rules import ITERATIONS, last_round, require_polish_options
 from carproof.answer import Answer
-from carproof.engines import engine_named, sum_of_shortest_paths
+from carproof.engines import engine_named, sum_of_shortest_paths, warm
 from carproof.files import (
     InputFile,
     naming,
@@ -79,6 +79,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
         before = sound_solution(problem, given)
     least = bound_of(problem, bound)
     played = 0
+    if seconds is not None:
+        warm()
     started = perf_counter()
     with naming(instance), search_progress("polishing", last_round(iterations, seconds), seconds) as show:
 

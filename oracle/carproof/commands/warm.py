@@ -1,0 +1,22 @@
+"""`carproof warm`: compile the planner before it is needed."""
+
+import click
+
+from carproof.answer import Answer
+from carproof.engines import warm
+from carproof.options import examples
+from carproof.tables import print_line
+
+
+@click.command(short_help="Compile the planner before it is needed.", epilog=examples("carproof warm"))
+def command() -> Answer:
+    """Compile the planner, so that no later command has to: half a minute, once for an installation.
+
+    Without it the first command that plans does so, and says so. The machine code is kept beside the sources of
+    carproof, in the user's cache folder, or among the temporary files: in the first of these that can be written,
+    or in the folder that NUMBA_CACHE_DIR names.
+
+    Exit codes: 0 it is compiled, 2 bad usage.
+    """
+    print_line("carproof's planner is compiled" + ("" if warm() else " already"))
+    return Answer.YES
