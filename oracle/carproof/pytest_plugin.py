@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from carp_spec import Instance, Solution
     from carproof.conform.run import Report
 
-LevelName = Literal["sound", "complete", "context-optimal", "optimal", "exact"]
+LevelName = Literal["sound", "complete-in-context", "context-optimal", "complete", "optimal"]
 FOLDER = "conform-failure"
 
 
@@ -69,9 +69,11 @@ class Conformance:
         except ModuleNotFoundError as error:
             pytest.fail(f"carproof.conforms {advice(error)}", pytrace=False)
         from carproof.conform.function import Function, by_documents  # noqa: PLC0415
-        from carproof.conform.levels import LEVELS  # noqa: PLC0415
+        from carproof.conform.levels import LEVELS, WHOLE_LEVELS  # noqa: PLC0415
         from carproof.conform.run import Options, conform  # noqa: PLC0415
 
+        if level not in [each.label for each in WHOLE_LEVELS]:
+            pytest.fail(f"level must be one of {', '.join(each.label for each in WHOLE_LEVELS)}", pytrace=False)
         name = getattr(planner, "__name__", type(planner).__name__)
         called = by_documents(planner) if documents else cast("Callable[[Instance], Solution]", planner)
         report = conform(Function(called, name), Options(LEVELS[level], examples, seed, whole=True))

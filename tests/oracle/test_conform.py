@@ -1,6 +1,7 @@
 """The command conform: what it prints, what it writes, and its exit codes."""
 
 import json
+import re
 import sys
 from pathlib import Path
 from xml.etree import ElementTree as ET
@@ -16,7 +17,9 @@ SERVE = [sys.executable, "-m", "carproof", "serve"]
 def test_carproof_conforms_to_its_strictest_level(process: Run, engine: list[str]) -> None:
     outcome = process("conform", "--level", "exact", "--examples", "60", "--", *SERVE, *engine)
     assert outcome.code == 0, outcome
-    assert outcome.stdout.splitlines()[-1].startswith("CONFORMS: carproof ")
+    last = outcome.stdout.splitlines()[-1]
+    assert last.startswith("CONFORMS: carproof ")
+    assert re.search(r"level exact \(the plans are carproof's, visit for visit\), tested on \d\d+ answers; ", last)
 
 
 def test_a_program_that_is_not_there_is_bad_usage(carproof: Run) -> None:
@@ -36,6 +39,8 @@ def test_json_and_junit_tell_the_same(process: Run, elsewhere: Path) -> None:
     assert outcome.code == 0, outcome
     report = json.loads(outcome.stdout)
     assert report["conforms"]
+    assert report["statement"] == "no plan breaks a rule"
+    assert report["tested"] >= 20
     assert report["cases"]["random"] == {"passed": 20}
     suite = ET.parse(elsewhere / "conform.xml").getroot()  # noqa: S314 - written by the test
     fixed = report["cases"]["smoke"]["passed"] + report["cases"]["vectors"]["passed"]

@@ -12,8 +12,9 @@ from tests.oracle.foreign_files import INSTANCE
 from tests.oracle.running import Run
 from tests.profiles import draws
 
+import carp_reference
 from carp_optimum.optimum import optimum
-from carp_spec import Instance, Resource, ResourceGraph, Robot, Solution
+from carp_spec import Carp, Instance, Resource, ResourceGraph, Robot, Solution
 from carproof.conform.classical_cases import classical_instances
 from carproof.conform.findings import is_complete
 from carproof.conform.function import Function
@@ -91,7 +92,8 @@ def report_of(process: Run, *arguments: str) -> dict[str, Any]:
     ("options", "template"),
     [
         ([], [*PLANNER, *FILES, "-o", "{solution}"]),
-        (["--from", "paths-x-y"], [*PLANNER, *FILES, "--paths"]),
+        (["--from", "paths-x-y"], [*PLANNER, *FILES, "--paths", "x-y"]),
+        ([], [*PLANNER, *FILES, "--paths", "row-column"]),
     ],
 )
 def test_a_right_planner_conforms_and_is_not_asked_what_its_files_cannot_say(
@@ -133,6 +135,14 @@ def test_an_answer_in_no_format_is_a_protocol_error(process: Run) -> None:
     assert "the format must be named by --from" in report["failures"][0]["message"]
 
 
+def test_a_format_that_could_be_two_is_asked_for_before_any_case(process: Run, elsewhere: Path) -> None:
+    template = [*PLANNER, *FILES, "--paths", "row-column", "--forget", "start"]
+    outcome = process("conform", "--one-shot", "--", *template)
+    assert (outcome.code, outcome.stdout) == (2, "")
+    assert "the format must be named by --from: it could be paths-row-column, paths-x-y" in outcome.stderr
+    assert list(elsewhere.iterdir()) == []
+
+
 @pytest.mark.usefixtures("elsewhere")
 def test_a_program_that_never_writes_a_plan_does_not_conform(process: Run) -> None:
     report = report_of(process, "--examples", "40", "--", "true", "{map}", "{scen}")
@@ -156,6 +166,23 @@ def test_who_plans_best_reaches_the_highest_level_of_such_planners() -> None:
     assert conform(Function(best, "best"), options).conforms
 
 
+def prioritized(instance: Instance) -> Solution:
+    return carp_reference.plan(instance, Carp())
+
+
+def test_a_prioritized_planner_is_complete_in_context_and_not_complete() -> None:
+    planner = Function(prioritized, "prioritized")
+    assert conform(planner, Options(Level.CONTEXT_OPTIMAL, examples=30, whole=True)).conforms
+    report = conform(planner, Options(Level.COMPLETE, examples=0, whole=True))
+    assert [finding.rule for finding in report.findings] == ["program/complete"]
+    wrong = [outcome.case.name for outcome in report.outcomes if outcome.finding is not None]
+    assert "plan: one must make room for the other, park" in wrong
+
+
+def test_a_planner_of_all_robots_together_is_not_judged_by_the_order_of_its_plans() -> None:
+    assert conform(Function(best, "best"), Options(Level.OPTIMAL, examples=40, seed=2, whole=True)).conforms
+
+
 def test_all_robots_planned_or_a_proof_that_this_cannot_be() -> None:
     assert [is_complete(*each) for each in ((0, 5), (0, None), (2, None), (1, 5))] == [True, True, True, False]
 
@@ -170,6 +197,7 @@ def test_all_robots_planned_or_a_proof_that_this_cannot_be() -> None:
             ["--one-shot", "--level", "exact", "--", "cat", "{map}", "{scen}"],
             "--level must be one of sound, complete, optimal",
         ),
+        (["--one-shot", "--level", "exact", "--", "cat", "{instance}"], "--level must be one of sound, complete-in"),
     ],
 )
 def test_wrong_usage_is_one_sentence(carproof: Run, arguments: list[str], error: str) -> None:

@@ -176,6 +176,11 @@ def optimum_without_plans(case: Case, reply: Reply) -> Reply:
     return replace(reply, solution=None)
 
 
+def optimum_is_denied(case: Case, reply: Reply) -> Reply:
+    del case, reply
+    return OptimumAnswer(None, None, proved=True, solution=None)
+
+
 def bound_too_high(case: Case, reply: Reply) -> Reply:
     del case
     assert isinstance(reply, BoundDocument)
@@ -191,22 +196,23 @@ def as_it_is(case: Case, reply: Reply) -> Reply:
 def test_right_answers_conform_to_every_level(level: Level) -> None:
     report = run(as_it_is, level)
     assert report.conforms, report.findings
-    assert set(report.judged) == {*OPS} - (set() if level >= Level.OPTIMAL else {"optimum"})
+    assert set(report.judged) == {*OPS} - (set() if level >= Level.COMPLETE else {"optimum"})
 
 
 @pytest.mark.parametrize(
     ("tamper", "op", "level", "rules"),
     [
-        (no_plan, "query", Level.COMPLETE, {"query/complete"}),
+        (no_plan, "query", Level.COMPLETE_IN_CONTEXT, {"query/complete"}),
         (late_plan, "query", Level.CONTEXT_OPTIMAL, LATE),
         (verdict_is_always_valid, "check", Level.SOUND, {"joint/capacity", "plan/start"}),
         (cost_is_wrong, "check", Level.SOUND, {"cost/total"}),
-        (adds_nobody, "add", Level.COMPLETE, {"query/complete"}),
+        (adds_nobody, "add", Level.COMPLETE_IN_CONTEXT, {"query/complete"}),
         (drops_others, "add", Level.SOUND, {"fleet/history"}),
         (reverses_order, "plan", Level.EXACT, {"query/ties"}),
         (reverses_order, "add", Level.EXACT, {"query/ties"}),
         (optimum_too_high, "optimum", Level.OPTIMAL, {"program/optimal"}),
         (optimum_without_plans, "optimum", Level.OPTIMAL, {"cost/total"}),
+        (optimum_is_denied, "optimum", Level.COMPLETE, {"program/complete"}),
         (bound_too_high, "bound", Level.SOUND, {"bound/total"}),
         (polishes_into_each_other, "polish", Level.SOUND, {"joint/capacity", "joint/exchange"}),
         (polishes_to_more, "polish", Level.SOUND, {"polish/kept"}),
@@ -237,7 +243,7 @@ def test_polished_plans_need_not_be_better_each_time_below_the_exact_level() -> 
 
 def test_who_offers_only_check_is_sound_and_no_more() -> None:
     assert run(as_it_is, Level.SOUND, ("check",)).conforms
-    report = run(as_it_is, Level.COMPLETE, ("check",))
+    report = run(as_it_is, Level.COMPLETE_IN_CONTEXT, ("check",))
     assert (report.conforms, report.findings) == (False, [])
 
 
@@ -250,7 +256,7 @@ def test_an_interruption_keeps_what_was_found() -> None:
         return no_plan(case, reply)
 
     subject.tamper = stop_later
-    report = conform(subject, Options(Level.COMPLETE))
+    report = conform(subject, Options(Level.COMPLETE_IN_CONTEXT))
     assert report.interrupted
     assert report.conforms is False
     assert [finding.rule for finding in report.findings] == ["query/complete"]
@@ -259,12 +265,12 @@ def test_an_interruption_keeps_what_was_found() -> None:
 def test_a_program_that_is_wrong_only_now_and_then_is_refused_all_the_same() -> None:
     subject = Tampered(as_it_is)
     subject.tamper = lambda case, reply: no_plan(case, reply) if subject.asked["query"] % 29 == 0 else reply
-    report = conform(subject, Options(Level.COMPLETE, examples=200, shrink_seconds=1))
+    report = conform(subject, Options(Level.COMPLETE_IN_CONTEXT, examples=200, shrink_seconds=1))
     assert report.conforms is False
 
 
 def test_a_failure_is_saved_as_a_vector_that_asks_it_again(tmp_path: Path) -> None:
-    smallest = run(no_plan, Level.COMPLETE, ("query",)).failures[0]
+    smallest = run(no_plan, Level.COMPLETE_IN_CONTEXT, ("query",)).failures[0]
     save(smallest, tmp_path)
     (vector,) = msgspec.json.decode((tmp_path / "vector.json").read_bytes(), type=VectorsDocument).cases
     assert vector.read_instance() == smallest.case.instance

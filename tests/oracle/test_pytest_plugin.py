@@ -64,7 +64,7 @@ def test_planners_that_are_right_pass(tmp_path: Path) -> None:
     ("test", "category", "rule"),
     [
         ("carproof.conforms(hurries)", "wrong answer", "plan/start"),
-        ('carproof.conforms(gives_up, level="complete")', "wrong answer", "query/complete"),
+        ('carproof.conforms(gives_up, level="complete-in-context")', "wrong answer", "query/complete"),
         ("carproof.conforms(fails)", "crash", "program/alive"),
         ("carproof.conforms(returns_nothing)", "protocol error", "program/result"),
         ("carproof.conforms(no_document, documents=True)", "protocol error", "program/result"),

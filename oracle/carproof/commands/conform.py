@@ -13,7 +13,8 @@ import click
 
 from carproof.adapters import ADAPTERS
 from carproof.answer import Answer
-from carproof.conform.levels import CLASSICAL_LEVELS, LEVELS, Level
+from carproof.conform.levels import CLASSICAL_LEVELS, LEVELS, WHOLE_LEVELS, Level
+from carproof.engines import warm
 from carproof.extras import require
 from carproof.files import OutputFile, print_document, write_whole
 from carproof.options import examples, json_option
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 _STAGES = "passed", "gave up", "skipped", "not asked", "wrong answer", "crash", "timeout", "protocol error"
 _SEED_BITS = 32
 _LEVELS = "\n".join(
-    ["\b", "Levels, each with all before it:", *(f"  {level.label:17}{level.statement}" for level in Level), "", ""]
+    ["\b", "Levels, each with all before it:", *(f"  {level.label:20}{level.statement}" for level in Level), "", ""]
 )
 
 
@@ -37,7 +38,7 @@ _LEVELS = "\n".join(
     epilog=_LEVELS
     + examples(
         "carproof conform -- carproof serve",
-        "carproof conform --level complete --examples 2000 -- ./planner --quiet",
+        "carproof conform --level complete-in-context --examples 2000 -- ./planner",
         "carproof conform --one-shot -- ./planner {instance} {solution}",
         "carproof conform --one-shot -- ./planner {map} {scen} {agents} {solution}",
         "carproof conform --junit conform.xml --save found -- ./planner",
@@ -101,7 +102,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     With --one-shot it is started for each instance, and plans the file {instance}. It writes the file {solution},
     if its arguments name that, or else to its standard output. If they name {map} and {scen}, these are MovingAI
     files with {agents} agents, and what it writes may be in any format that carproof check reads; all else than
-    classical grids is not asked, and the levels are sound, complete (all robots, where all can have plans) and optimal.
+    classical grids is not asked, and the levels are sound, complete and optimal.
 
     Exit codes: 0 it conforms, 1 it does not, 2 bad usage, 3 undecided: it was interrupted, or no random case decided
     it.
@@ -117,12 +118,15 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
         raise click.UsageError("--from is of the files that programs write with --one-shot.")
     if shutil.which(program[0]) is None:
         raise click.UsageError(f"{program[0]}: there is no such program, or it may not be run.")
+    warm()
     limits = Limits(timeout, memory)
     subject: Subject = _one_shot(program, limits, format) if one_shot else Program(program, limits, seed)
     classical = isinstance(subject, OneShot) and subject.is_classical
-    if classical and LEVELS[level] not in CLASSICAL_LEVELS:
-        right = ", ".join(each.label for each in CLASSICAL_LEVELS)
-        raise click.UsageError(f"Of a planner for MovingAI files --level must be one of {right}.")
+    askable = CLASSICAL_LEVELS if classical else WHOLE_LEVELS if one_shot else tuple(Level)
+    if LEVELS[level] not in askable:
+        what = "MovingAI files" if classical else "whole instances"
+        right = ", ".join(each.label for each in askable)
+        raise click.UsageError(f"Of a planner for {what} --level must be one of {right}.")
     options = Options(LEVELS[level], number, seed, timeout, shrinking, whole=one_shot, classical=classical)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     with progress("asking", number) as advance, _nothing_kept():
@@ -197,13 +201,13 @@ def _show(report: "Report", saved: Path | None) -> None:
 def _verdict(report: "Report") -> str:
     """The last line, with the answers that decided it."""
     level = report.options.level
-    about = f"{report.program}, level {level.label}"
+    tested = f"{report.program}, level {level.label} ({level.statement}), tested on {report.tested} answers"
     if report.conforms:
-        return f"CONFORMS: {about}: {level.statement}; {_answered(report)}"
+        return f"CONFORMS: {tested}; {_answered(report)}"
     if report.conforms is None:
         why = "interrupted before anything wrong was found" if report.interrupted else "no random case decided it"
-        return f"UNDECIDED: {about}: {why}; {_answered(report)}"
-    return f"DOES NOT CONFORM: {about}; {_answered(report)}"
+        return f"UNDECIDED: {tested}: {why}; {_answered(report)}"
+    return f"DOES NOT CONFORM: {tested}; {_answered(report)}"
 
 
 def _answered(report: "Report") -> str:

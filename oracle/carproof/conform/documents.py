@@ -35,6 +35,8 @@ def report_document(report: Report, saved: Path | None) -> bytes:
         "format": FORMAT,
         "program": report.program,
         "level": report.options.level.label,
+        "statement": report.options.level.statement,
+        "tested": report.tested,
         "conforms": report.conforms,
         "reaches_level": report.reaches_level,
         "interrupted": report.interrupted,

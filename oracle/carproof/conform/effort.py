@@ -22,13 +22,18 @@ class Effort(Enum):
 
 def why_undecided(case: Case, answer: Answer, level: Level) -> str | None:
     """Why a right answer counts as none: it is undecided, or carproof is, so that nobody can judge it."""
-    if isinstance(answer, OptimumAnswer) and not answer.proved:
+    if case.op not in ("plan", "optimum") or case.planner is not None or level < Level.COMPLETE:
+        return None
+    if isinstance(answer, OptimumAnswer) and not answer.proved and (level >= Level.OPTIMAL or answer.solution is None):
         return "it leaves the optimum undecided"
-    is_judged_by_proof = isinstance(answer, OptimumAnswer) or (isinstance(answer, Solution) and case.planner is None)
-    needs_proof = case.op in ("plan", "optimum") and is_judged_by_proof and level >= Level.OPTIMAL
-    if needs_proof and not found_cost(case.instance)[0]:
+    if (level >= Level.OPTIMAL or not _plans_all(answer)) and not found_cost(case.instance)[0]:
         return f"carproof does not find the optimum in {OPTIMUM_SECONDS} s, with which to compare"
     return None
+
+
+def _plans_all(answer: Answer) -> bool:
+    solution = answer.solution if isinstance(answer, OptimumAnswer) else answer
+    return isinstance(solution, Solution) and not solution.unplanned
 
 
 def effort(case: Case, answer: Answer) -> Effort:

@@ -73,7 +73,7 @@ def _against_best(
     case: Case, committed: Sequence[Plan], robot: RobotId, plan: Plan | None, level: Level
 ) -> Iterator[Finding]:
     """Compare with the best plan against the committed ones."""
-    if level < Level.COMPLETE:
+    if level < Level.COMPLETE_IN_CONTEXT:
         return
     best = engine_named("reference").query(case.instance, committed, robot, case.now)
     if best is None:
@@ -97,11 +97,10 @@ def _plan_findings(case: Case, solution: Solution, level: Level) -> Iterator[Fin
         yield wrong(violation.rule, violation.message)
     if isinstance(case.planner, Carp):
         yield from _in_order_findings(case, solution, list(case.instance.robot), level)
-    elif case.classical:
-        yield from complete_findings(case.instance, solution) if level >= Level.COMPLETE else ()
+    elif case.planner is None and level >= Level.COMPLETE:
+        yield from complete_findings(case.instance, solution)
     elif case.planner is None:
-        order = [*solution.order, *solution.unplanned]
-        yield from _in_order_findings(case, solution, order, min(level, Level.CONTEXT_OPTIMAL))
+        yield from _in_order_findings(case, solution, [*solution.order, *solution.unplanned], level)
     if case.planner is None and level >= Level.OPTIMAL:
         yield from plan_cost_findings(case.instance, solution)
     if case.planner is not None and level >= Level.EXACT:
@@ -141,7 +140,7 @@ def _add_findings(case: Case, after: Solution, level: Level) -> Iterator[Finding
     followed = (*before, *_followed(case.instance, before, case.robot, case.now))
     for violation in check_update(followed, after.plans, case.now):
         yield wrong(violation.rule, violation.message)
-    if level >= Level.COMPLETE:
+    if level >= Level.COMPLETE_IN_CONTEXT:
         yield from _against_keeping(case, after)
     if level >= Level.EXACT:
         expected = engine_named("reference").add(case.instance, case.solution, case.robot, case.now, case.options)

@@ -1,4 +1,8 @@
-"""The levels of conformance; each asks all that the ones before it ask."""
+"""The levels of conformance.
+
+Two questions of completeness are not the same. A prioritized planner can find each robot's plan beside the plans before
+it (complete in context), and leave out a robot that would have a plan had the others made room (not complete).
+"""
 
 from collections.abc import Mapping
 from enum import IntEnum
@@ -7,13 +11,18 @@ from carproof.conform.cases import Op
 
 
 class Level(IntEnum):
-    """What is asked of a program."""
+    """The level at which a program is judged; each asks everything that the ones before it ask.
+
+    Planners of whole instances are asked either in the order of their plans, up to `CONTEXT_OPTIMAL`, or about all
+    robots together: then the order of their plans does not count.
+    """
 
     SOUND = 1
-    COMPLETE = 2
+    COMPLETE_IN_CONTEXT = 2
     CONTEXT_OPTIMAL = 3
-    OPTIMAL = 4
-    EXACT = 5
+    COMPLETE = 4
+    OPTIMAL = 5
+    EXACT = 6
 
     @property
     def label(self) -> str:
@@ -22,26 +31,30 @@ class Level(IntEnum):
 
     @property
     def statement(self) -> str:
-        """What a program of the level does."""
+        """The claim that a program of the level makes."""
         return _STATEMENTS[self]
 
 
 _STATEMENTS = {
     Level.SOUND: "no plan breaks a rule",
-    Level.COMPLETE: "a robot is left without a plan only where there is none",
-    Level.CONTEXT_OPTIMAL: "each query arrives as early as the plans before it allow",
+    Level.COMPLETE_IN_CONTEXT: "no plan is missed that the plans before it allow",
+    Level.CONTEXT_OPTIMAL: "each plan arrives as early as the plans before it allow",
+    Level.COMPLETE: "no robot is left out where all can have plans",
     Level.OPTIMAL: "the total cost is the optimum that carproof's search finds",
     Level.EXACT: "the plans are carproof's, visit for visit",
 }
+LEVELS = {level.label: level for level in Level}
+WHOLE_LEVELS = tuple(level for level in Level if level != Level.EXACT)
+"""The levels of planners of whole instances, which choose planner and order themselves."""
 CLASSICAL_LEVELS = (Level.SOUND, Level.COMPLETE, Level.OPTIMAL)
 """The levels of planners whose answers do not tell in which order the plans were made."""
-LEVELS = {level.label: level for level in Level}
 JUDGED_OPS: Mapping[Level, tuple[Op, ...]] = {
     Level.SOUND: ("check", "query", "plan", "add", "polish", "bound"),
-    Level.COMPLETE: ("query", "plan", "add"),
+    Level.COMPLETE_IN_CONTEXT: ("query", "plan", "add"),
     Level.CONTEXT_OPTIMAL: ("query", "plan"),
+    Level.COMPLETE: ("optimum",),
     Level.OPTIMAL: ("optimum",),
     Level.EXACT: ("query", "plan", "add", "polish"),
 }
 """The ops by which a level is shown: a program that offers none of them has not reached it. `optimum` is asked from
-`optimal` on; `check`, `polish` and `bound` are asked at all levels, but show `complete` of nobody."""
+`complete` on; `check`, `polish` and `bound` are asked at all levels, but show completeness of nobody."""

@@ -40,6 +40,8 @@ def optimum_findings(instance: Instance, answer: OptimumAnswer, level: Level) ->
             yield wrong("cost/total", f"the cost must be {total}, the total of the plans, not {answer.cost}")
     elif answer.cost is not None:
         yield wrong("cost/total", f"a cost of {answer.cost} needs a solution that has it")
+    if level >= Level.COMPLETE and answer.proved and answer.solution is None:
+        yield from complete_findings(instance, Solution((), (), tuple(instance.robot)))
     if level >= Level.OPTIMAL:
         yield from _against_proof(instance, answer)
 

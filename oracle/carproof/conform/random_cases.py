@@ -144,6 +144,6 @@ def random_cases(ops: Sequence[str], level: Level, whole: bool) -> Mapping[Op, s
         "polish": _polishes(),
         "bound": small.map(lambda instance: Case("random", "bound", "bound", instance)),
     }
-    if level >= Level.OPTIMAL:
+    if level >= Level.COMPLETE:
         by_op["optimum"] = small.map(lambda instance: Case("random", "optimum", "optimum", instance))
     return {op: cases for op, cases in by_op.items() if op in ops}

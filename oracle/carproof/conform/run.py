@@ -15,6 +15,7 @@ from carproof.conform.smoke import smoke_cases
 from carproof.conform.subjects import Subject
 from carproof.conform.vector_cases import vector_cases
 
+_IN_CONTEXT = Level.COMPLETE_IN_CONTEXT
 MOST_FAULTS = 3
 """After so many crashes, timeouts and protocol errors no further fixed case is asked: each costs a new process."""
 
@@ -96,8 +97,22 @@ class Report:
             return []
         ops = self.options.ops
         if not any(outcome.case.op in ops for outcome in self.outcomes) and not any(op in self.tallies for op in ops):
-            return [f"it offers nothing that shows the level, which is one of {', '.join(ops)}"]
+            return [self._nothing_offered]
         return [*smoke_shortfalls(self.outcomes), *random_shortfalls(self.tallies)]
+
+    @property
+    def _nothing_offered(self) -> str:
+        level, ops = self.options.level, self.options.ops
+        offer = f"its answer to start must name {' or '.join(ops)}"
+        other = (
+            f" (level {_IN_CONTEXT.label}: {' or '.join(JUDGED_OPS[_IN_CONTEXT])})" if level == Level.COMPLETE else ""
+        )
+        return f"it offers nothing that shows the level {level.label}: {offer}{other}"
+
+    @property
+    def tested(self) -> int:
+        """How many answers to the ops that show the level were judged."""
+        return sum(self.judged[op] for op in self.options.ops)
 
     @property
     def is_decided(self) -> bool:

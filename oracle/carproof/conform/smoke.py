@@ -121,6 +121,9 @@ def _whole(planner: Carp | None) -> Iterator[Case]:
         "one behind the other": row([FIRST, Robot("new", "b", "d")]),
         "head-on": passing_place([FIRST, WEST]),
         "head-on, park": passing_place([Robot("first", "a", "c"), Robot("new", "d", "b")], "park"),
+        "one must make room for the other, park": passing_place(
+            [Robot("first", "a", "c"), Robot("new", "c", "a")], "park"
+        ),
         "goal on the other's way, park": row([Robot("first", "b", "c"), EAST], "park"),
         "ids 1 and '1'": row([Robot(1, "a", "b"), Robot("1", "c", "d")]),
         "ids of resources are numbers": Instance(
@@ -186,5 +189,5 @@ def smoke_cases(ops: Sequence[str], level: Level, whole: bool) -> Iterator[Case]
     yield from (case for case in each if case.op in ops)
     if "bound" in ops:
         yield from (Case("smoke", f"bound: {case.name[6:]}", "bound", case.instance) for case in _whole(None))
-    if "optimum" in ops and level >= Level.OPTIMAL:
+    if "optimum" in ops and level >= Level.COMPLETE:
         yield from (Case("smoke", f"optimum: {case.name[6:]}", "optimum", case.instance) for case in _whole(None))

@@ -22,7 +22,7 @@ def _is_asked(vector: Vector, level: Level, whole: bool) -> bool:
     """Whether the level speaks of it: below `exact` programs are asked for no planner but CARP."""
     if vector.op == "plan":
         return whole or level >= Level.EXACT or isinstance(_planner(vector), Carp)
-    return vector.op != "optimum" or level >= Level.OPTIMAL
+    return vector.op != "optimum" or level >= Level.COMPLETE
 
 
 def _planner(vector: Vector) -> Planner:
