@@ -17,7 +17,7 @@ from carp_optimum.solver import NANOSECONDS, Deadline, TimeOver
 from carp_spec import Instance, Refusal
 from carp_spec.bounds import CutDocument
 from carp_verify.bound_cuts import group_of
-from carp_verify.proof import beat_formula
+from carp_verify.encoding import beat_formula
 
 LOOKS = 400  # of the search for a group's optimum at its clock
 STEPS = 120

@@ -12,16 +12,9 @@ from carp_optimum.solver import Deadline, Solver
 from carp_spec import Instance, Refusal, write_instance
 from carp_verify.bound_rules import ContradictionError
 from carp_verify.clauses import Formula, dimacs
-from carp_verify.encoding import Evidence
+from carp_verify.encoding import Evidence, beat_formula, reach_formula
 from carp_verify.optimum_rules import is_provable
-from carp_verify.proof import (
-    PROOF_FORMAT,
-    Manifest,
-    UnsolvableManifest,
-    beat_formula,
-    reach_formula,
-    variables,
-)
+from carp_verify.proof import PROOF_FORMAT, Manifest, UnsolvableManifest, variables
 from carp_verify.unsolvable import Clauses
 
 

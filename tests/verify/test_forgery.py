@@ -29,9 +29,9 @@ from carp_spec.documents import write
 from carp_spec.query_certificates import QueryCertificateDocument, read_query_certificate
 from carp_verify.bound_cuts import formula_of
 from carp_verify.clauses import dimacs
-from carp_verify.encoding import Evidence
+from carp_verify.encoding import Evidence, beat_formula, reach_formula
 from carp_verify.joint_search import least_total_cost
-from carp_verify.proof import FILES, ProofError, beat_formula, reach_formula, verify_proof
+from carp_verify.proof import FILES, ProofError, verify_proof
 from carp_verify.refutation import NotRefutedError, read_steps, require_refutation
 from carp_verify.verify_bound import verify_bound
 from carp_verify.verify_query import verify_query

@@ -8,8 +8,8 @@ from tests.verify.test_proof import crossing
 
 from carp_spec import Instance, Robot
 from carp_verify.clauses import dimacs
-from carp_verify.encoding import Evidence
-from carp_verify.proof import beat_formula, reach_formula, variables
+from carp_verify.encoding import Evidence, beat_formula, reach_formula
+from carp_verify.proof import variables
 
 WIDE = lane("park", Robot("r", "a", "c", pace=2), Robot("s", "d", "a"), Robot("t", "b", "b", release=2), capacity=2)
 

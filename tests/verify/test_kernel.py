@@ -40,8 +40,7 @@ from carp_spec.documents import instance_document, solution_document, write
 from carp_spec.vectors import Vector, vectors
 from carp_verify.bound_cuts import group_of
 from carp_verify.clauses import dimacs
-from carp_verify.encoding import Evidence
-from carp_verify.proof import beat_formula
+from carp_verify.encoding import Evidence, beat_formula
 from carp_verify.verify_bound import verify_bound
 from carproof.mutations import BrokenSolution
 from carproof.strategies import (

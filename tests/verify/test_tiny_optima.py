@@ -10,9 +10,9 @@ from carp_optimum.optimum import optimum
 from carp_optimum.solver import Deadline, Solver
 from carp_spec import Instance, Solution, judge
 from carp_spec.permutations import shuffle
-from carp_verify.encoding import Encoding, Evidence
+from carp_verify.encoding import Encoding, Evidence, beat_formula, reach_formula
 from carp_verify.joint_search import least_total_cost
-from carp_verify.proof import beat_formula, reach_formula, solution_of
+from carp_verify.proof import solution_of
 from carp_verify.robot_clauses import Node, RobotClauses
 from carp_verify.unsolvable import FullGoal, NoWay, Obstacle, why_no_obstacle
 

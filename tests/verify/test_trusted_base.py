@@ -1,6 +1,7 @@
 """The table of what must be trusted, in verify/README.md; run as a module it writes the table."""
 
 import io
+import re
 import tokenize
 from pathlib import Path
 
@@ -66,6 +67,17 @@ def test_docstrings_and_comments_are_no_lines_of_code(tmp_path: Path) -> None:
     text = '"""A page.\n\nOf three lines.\n"""\n\n# why\nNUMBER = (\n    1\n)\n\n\n'
     path.write_text(text + 'def one() -> int:\n    """One."""\n    return 1\n')
     assert lines_of_code(path) == 5
+
+
+@pytest.mark.parametrize("verdict", VERDICTS)
+def test_what_a_trusted_module_imports_is_trusted_too(verdict: str) -> None:
+    """A proof directory has one of three claims, and each needs a part of what `proof` imports."""
+    named = {*VERDICTS[verdict][0]}
+    of_proofs = {name for modules, _ in VERDICTS.values() if "proof" in modules for name in modules}
+    known = of_proofs if "proof" in named else named
+    for name in named:
+        source = (ROOT / "verify" / "carp_verify" / f"{name}.py").read_text()
+        assert set(re.findall(r"^from carp_verify\.(\w+) import", source, re.MULTILINE)) <= known
 
 
 @pytest.mark.parametrize("name", sorted({name for modules, _ in VERDICTS.values() for name in modules}))

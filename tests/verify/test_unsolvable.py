@@ -16,9 +16,9 @@ from carp_optimum.proving import write_proof
 from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot, write_instance
 from carp_verify import unsolvable
 from carp_verify.clauses import dimacs
-from carp_verify.encoding import Evidence
+from carp_verify.encoding import Evidence, beat_formula
 from carp_verify.joint_search import least_total_cost
-from carp_verify.proof import PROOF_FORMAT, ProofError, beat_formula, verify_proof
+from carp_verify.proof import PROOF_FORMAT, ProofError, verify_proof
 from carp_verify.unsolvable import Clauses, FullGoal, NoWay, Obstacle, States, why_no_obstacle
 
 SECONDS = 60

@@ -11,8 +11,7 @@ from carp_spec import Instance, RobotId
 from carp_spec.bounds import CutDocument
 from carp_spec.rule import is_whole
 from carp_verify.clauses import Formula
-from carp_verify.encoding import Encoding, Evidence
-from carp_verify.proof import beat_formula
+from carp_verify.encoding import Encoding, Evidence, beat_formula
 from carp_verify.refutation import NotRefutedError, require_refutation
 
 

@@ -15,7 +15,7 @@ from itertools import pairwise
 
 from carp_spec import Instance, Move, Plan, ResourceId, Robot
 from carp_verify.clauses import Clause, Formula, Literal
-from carp_verify.optimum_rules import LARGEST_FORMULA
+from carp_verify.optimum_rules import LARGEST_FORMULA, LARGEST_PROOF
 from carp_verify.robot_clauses import RobotClauses, predecessors
 
 
@@ -54,7 +54,6 @@ class Encoding:
             check()
             self.robots.append(RobotClauses(instance, robot, before, self.formula))
         self._presence: dict[tuple[int, ResourceId, int], tuple[Literal, set[Clause]]] = {}
-        self._forbidden: set[Clause] = set()
 
     @property
     def wayless(self) -> list[Robot]:
@@ -155,6 +154,33 @@ class Encoding:
     def plans(self, model: Sequence[bool]) -> list[Plan | None]:
         """The plans in a model, given by the truth of each variable; `None` for a robot later than its horizon."""
         return [robot.plan(model) for robot in self.robots]
+
+
+def reach_formula(instance: Instance, cost: int, evidence: Evidence, most: int = LARGEST_PROOF) -> Encoding:
+    """The encoding of plans whose total is at most `cost`, each within its robot's horizon.
+
+    Raises `Refusal` beyond `most` clauses.
+    """
+    encoding = _bounded(instance, cost + 1, evidence, most)
+    encoding.close()
+    return encoding
+
+
+def beat_formula(instance: Instance, cost: int | None, evidence: Evidence, most: int = LARGEST_PROOF) -> Encoding:
+    """The relaxed encoding of plans whose total is less than `cost`, or of any plans where it is `None`.
+
+    Raises `Refusal` beyond `most` clauses.
+    """
+    return _bounded(instance, cost, evidence, most)
+
+
+def _bounded(instance: Instance, bound: int | None, evidence: Evidence, most: int) -> Encoding:
+    encoding = Encoding(instance, most=most)
+    encoding.grow_to(evidence.horizons)
+    encoding.forbid_all()
+    if bound is not None:
+        encoding.bound_delays(bound - encoding.shortest, evidence.order)
+    return encoding
 
 
 def violated(instance: Instance, plans: Sequence[Plan]) -> list[Conflict]:

@@ -6,6 +6,7 @@ from carp_spec import Refusal, Rule
 from carp_spec.rule import DESIGN, rule
 
 LARGEST_FORMULA = 20_000_000
+LARGEST_PROOF = 5_000_000
 LARGEST_SEARCH = 2_000_000
 MOST_ORDERED = 9
 

@@ -33,7 +33,8 @@ from carp_spec import Instance, Plan, Refusal, Solution, judge, read_instance, w
 from carp_spec.documents import decode, has_format
 from carp_spec.model import ResourceId, RobotId
 from carp_verify.clauses import dimacs
-from carp_verify.encoding import Encoding, Evidence
+from carp_verify.encoding import Encoding, Evidence, beat_formula, reach_formula
+from carp_verify.optimum_rules import LARGEST_PROOF
 from carp_verify.refutation import NotRefutedError, require_refutation
 from carp_verify.unsolvable import Clauses, Obstacle, describe, why_no_obstacle
 
@@ -43,7 +44,6 @@ FILES = ("instance.json", "reach.cnf", "reach.model", "variables.json", "beat.cn
 FILES_OF_CLAUSES = ("instance.json", "beat.cnf", "beat.lrat")
 FILES_OF_OBSTACLE = ("instance.json",)
 LONGEST_Z3_MS = 60_000
-LARGEST_PROOF = 5_000_000
 LARGEST_FILE = 1 << 30
 _LITERAL = re.compile(b"-?[1-9][0-9]{0,17}")
 
@@ -111,33 +111,6 @@ class Verified:
     def is_decided(self) -> bool:
         """Whether z3 has answered; if not, the claim rests on the refutation alone."""
         return "unknown" not in (self.z3_reach, self.z3_beat)
-
-
-def reach_formula(instance: Instance, cost: int, evidence: Evidence, most: int = LARGEST_PROOF) -> Encoding:
-    """The encoding of plans whose total is at most `cost`, each within its robot's horizon.
-
-    Raises `Refusal` beyond `most` clauses.
-    """
-    encoding = _bounded(instance, cost + 1, evidence, most)
-    encoding.close()
-    return encoding
-
-
-def beat_formula(instance: Instance, cost: int | None, evidence: Evidence, most: int = LARGEST_PROOF) -> Encoding:
-    """The relaxed encoding of plans whose total is less than `cost`, or of any plans where it is `None`.
-
-    Raises `Refusal` beyond `most` clauses.
-    """
-    return _bounded(instance, cost, evidence, most)
-
-
-def _bounded(instance: Instance, bound: int | None, evidence: Evidence, most: int) -> Encoding:
-    encoding = Encoding(instance, most=most)
-    encoding.grow_to(evidence.horizons)
-    encoding.forbid_all()
-    if bound is not None:
-        encoding.bound_delays(bound - encoding.shortest, evidence.order)
-    return encoding
 
 
 def variables(encoding: Encoding) -> bytes:
