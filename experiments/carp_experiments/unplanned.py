@@ -7,7 +7,7 @@ and so all robots, can have no plans together, or their plans are kept and the o
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import permutations
 from math import factorial
 from statistics import fmean
@@ -96,7 +96,7 @@ def repaired(instance: Instance, solution: Solution, rounds: int, seed: int) -> 
 
 def part_of(instance: Instance, robots: Sequence[RobotId]) -> Instance:
     """The instance with these of its robots alone, in this order."""
-    return Instance(instance.graph, tuple(instance.robot[robot] for robot in robots), instance.after_goal)
+    return replace(instance, robots=tuple(instance.robot[robot] for robot in robots))
 
 
 def is_stuck(instance: Instance, robots: Sequence[RobotId], rounds: int, seed: int) -> bool:

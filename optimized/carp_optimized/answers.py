@@ -51,7 +51,9 @@ def has_clash(state: State, answers: Answers, plan: int, given: int) -> bool:
     new = given & ~int(answers.compared[plan])
     other = 0
     while new >> other != 0:
-        if (new >> other) & 1 == 1 and clash(state.records, int(answers.record[plan]), int(answers.record[other])):
+        if (new >> other) & 1 == 1 and clash(
+            state.records, int(answers.record[plan]), int(answers.record[other]), state.gap
+        ):
             answers.clashes[plan] |= 1 << other
         other += 1
     answers.compared[plan] |= new

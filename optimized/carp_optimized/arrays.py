@@ -184,7 +184,8 @@ class State(NamedTuple):
     `rank` grows in planning order when a robot is added. A query for a robot `behind` a rank takes no account of those
     of a larger rank.
     No duration is above `longest`, and none below, if they `last_alike`. `roots` are the terms of
-    `neighbourhood/distance` of small squares; all are split after `split` bits.
+    `neighbourhood/distance` of small squares; all are split after `split` bits. A place is free for `gap` ticks before
+    another robot enters it: then windows begin and end so much later and earlier, and may be of negative length.
     """
 
     graph: Graph
@@ -203,6 +204,7 @@ class State(NamedTuple):
     roots: Longs
     split: int
     parks: bool
+    gap: int
 
 
 class Work(NamedTuple):

@@ -269,6 +269,7 @@ def encode(instance: Instance) -> State:
         roots=roots_of_small_squares(),
         split=split_of_terms(graph),
         parks=instance.after_goal == "park",
+        gap=instance.gap,
     )
 
 

@@ -138,8 +138,11 @@ def same_plan(records: Records, one: int, other: int) -> bool:
 
 
 @compiled
-def clash(records: Records, one: int, other: int) -> bool:
-    """Whether two plans are ever in one resource at a tick, or exchange two; capacities are not looked at."""
+def clash(records: Records, one: int, other: int, gap: int) -> bool:
+    """Whether two plans are ever in one resource at a tick, or exchange two; capacities are not looked at.
+
+    With a `gap` they must not follow each other either.
+    """
     i = int(records.visits_at[one])
     j = int(records.visits_at[other])
     i_last = i + int(records.visits[one]) - 1
@@ -147,10 +150,16 @@ def clash(records: Records, one: int, other: int) -> bool:
     while True:
         i_leave = int(records.enter[i + 1]) if i < i_last else int(records.leave[one])
         j_leave = int(records.enter[j + 1]) if j < j_last else int(records.leave[other])
-        if records.resource[i] == records.resource[j] and records.enter[i] < j_leave and records.enter[j] < i_leave:
+        if (
+            records.resource[i] == records.resource[j]
+            and records.enter[i] < j_leave + gap
+            and records.enter[j] < i_leave + gap
+        ):
             return True
         if i_leave == j_leave and i < i_last and j < j_last:
-            if records.resource[i] == records.resource[j + 1] and records.resource[j] == records.resource[i + 1]:
+            meetings = int(records.resource[i] == records.resource[j + 1])
+            meetings += int(records.resource[j] == records.resource[i + 1])
+            if meetings > 1 - gap:
                 return True
             i += 1
             j += 1

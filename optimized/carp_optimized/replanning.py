@@ -46,8 +46,9 @@ def note_freed(state: State, record: int) -> None:
     source = NONE
     for k in range(first, last + 1):
         resource = int(records.resource[k])
-        enter = int(records.enter[k])
+        enter = int(records.enter[k]) - state.gap
         leave = int(records.enter[k + 1]) if k < last else int(records.leave[record])
+        leave = min(leave + state.gap, NEVER)
         if freed.mark[resource] == mark:
             freed.earliest[resource] = min(int(freed.earliest[resource]), enter)
             freed.latest[resource] = max(int(freed.latest[resource]), leave)

@@ -1,8 +1,8 @@
 """Free windows under reservations (`window/free`): reserving a plan and withdrawing it are exact inverses.
 
 The windows of a resource of capacity 1 are the gaps between its stays, those of no length included, which are too
-short for any stay: a reservation splits the gap in which it falls, and its withdrawal joins the two. The windows of
-other resources are made anew from their stays.
+short for any stay: a reservation splits the gap in which it falls, and its withdrawal joins the two. Where following is
+forbidden, a gap is a tick shorter at both ends. The windows of other resources are made anew from their stays.
 """
 
 from carp_optimized.arrays import BLOCK, NEVER, NONE, Ints, Records, Rows, State
@@ -57,8 +57,13 @@ def make_room(rows: Rows, resource: int) -> None:
 
 
 @compiled
-def split_window(windows: Rows, resource: int, enter: int, leave: int, source: int, robot: int, rank: int) -> None:
-    """Take [enter, leave) out of the window that holds it, for the robot, which comes from `source`."""
+def split_window(
+    windows: Rows, resource: int, enter: int, leave: int, gap: int, source: int, robot: int, rank: int
+) -> None:
+    """Take [enter, leave), and the gap on both sides, out of the window that holds the stay, for the robot.
+
+    It comes from `source`.
+    """
     make_room(windows, resource)
     slot = last_by(windows, resource, enter)
     for k in range(int(windows.offset[resource]) + int(windows.size[resource]), slot, -1):
@@ -67,11 +72,11 @@ def split_window(windows: Rows, resource: int, enter: int, leave: int, source: i
         windows.source[k] = windows.source[k - 1]
         windows.robot[k] = windows.robot[k - 1]
         windows.rank[k] = windows.rank[k - 1]
-    windows.end[slot] = enter
+    windows.end[slot] = enter - gap
     windows.robot[slot] = robot
     windows.rank[slot] = rank
     windows.source[slot] = source
-    windows.start[slot + 1] = leave
+    windows.start[slot + 1] = min(leave + gap, NEVER)
     windows.size[resource] += 1
 
 
@@ -161,8 +166,8 @@ def append_window(windows: Rows, resource: int, start: int, end: int) -> None:
 
 
 @compiled
-def sweep_windows(windows: Rows, stays: Rows, resource: int, capacity: int) -> None:
-    """Make the windows of the resource anew from its stays."""
+def sweep_windows(windows: Rows, stays: Rows, resource: int, capacity: int, gap: int) -> None:
+    """Make the windows of the resource anew from its stays, which last `gap` ticks longer than the robots are there."""
     clear_row(windows, resource)
     into = int(stays.offset[resource])
     out = into
@@ -181,13 +186,13 @@ def sweep_windows(windows: Rows, stays: Rows, resource: int, capacity: int) -> N
             inside -= 1
             out += 1
         if before < capacity <= inside:
-            append_window(windows, resource, opened, tick)
+            append_window(windows, resource, opened, tick - gap)
         elif inside < capacity <= before:
             opened = tick
     while inside < capacity and into < last:  # what is left are stays for ever
         inside += 1
         if inside == capacity:
-            append_window(windows, resource, opened, int(stays.start[into]))
+            append_window(windows, resource, opened, int(stays.start[into]) - gap)
         into += 1
     if inside < capacity:
         append_window(windows, resource, opened, NEVER)
@@ -208,10 +213,11 @@ def reserve(state: State, record: int) -> None:
         enter = int(records.enter[k])
         leave = int(records.enter[k + 1]) if k < last else int(records.leave[record])
         if state.graph.capacity[resource] == 1:
-            split_window(state.windows, resource, enter, leave, source, robot, rank)
+            met_from = source if state.gap == 0 else NONE
+            split_window(state.windows, resource, enter, leave, state.gap, met_from, robot, rank)
         else:
-            add_stay(state.stays, resource, enter, leave, source)
-            sweep_windows(state.windows, state.stays, resource, int(state.graph.capacity[resource]))
+            add_stay(state.stays, resource, enter, min(leave + state.gap, NEVER), source)
+            sweep_windows(state.windows, state.stays, resource, int(state.graph.capacity[resource]), state.gap)
         source = resource
 
 
@@ -230,8 +236,8 @@ def withdraw(state: State, record: int) -> None:
             join_windows(state.windows, resource, enter)
         else:
             leave = int(records.enter[k + 1]) if k < last else int(records.leave[record])
-            drop_stay(state.stays, resource, enter, leave, source)
-            sweep_windows(state.windows, state.stays, resource, int(state.graph.capacity[resource]))
+            drop_stay(state.stays, resource, enter, min(leave + state.gap, NEVER), source)
+            sweep_windows(state.windows, state.stays, resource, int(state.graph.capacity[resource]), state.gap)
         source = resource
 
 
@@ -239,7 +245,8 @@ def withdraw(state: State, record: int) -> None:
 def is_exchange(state: State, slot: int, tick: int, target: int) -> bool:
     """Whether leaving the window at the tick for `target` meets a committed robot that comes from there.
 
-    In a resource of capacity 1 that robot is the one that ends the window, so the tick is the window's end.
+    In a resource of capacity 1 that robot is the one that ends the window, so the tick is the window's end; where
+    following is forbidden, there is none.
     """
     resource = int(state.windows.resource[slot])
     if state.graph.capacity[resource] == 1:

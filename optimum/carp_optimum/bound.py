@@ -16,6 +16,7 @@ from msgspec.structs import replace
 from carp_optimum.solver import Deadline, TimeOver
 from carp_spec import Instance
 from carp_spec.bounds import BOUND_FORMAT, BoundDocument, digest
+from carp_spec.limits import require_following
 
 if TYPE_CHECKING:
     from carp_optimum.cut_search import CutSearch
@@ -47,6 +48,7 @@ def lower_bound(
     With steps alone, the same instance gives the same certificate. `on_step` is called after each step, and now and
     then while cuts are searched for. Raises `Refusal` for numbers that are too large.
     """
+    require_following(instance)
     from carp_optimum.cut_search import CutSearch  # noqa: PLC0415 - numba is slow to load
     from carp_optimum.price_search import PriceSearch  # noqa: PLC0415
 

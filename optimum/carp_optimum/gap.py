@@ -13,6 +13,7 @@ from carp_optimum.optimum import Optimum, optimum
 from carp_optimum.solver import Deadline, TimeOver
 from carp_reference import plan, query
 from carp_spec import Instance, Plan, Planner, RobotId, plan_cost, total_cost
+from carp_spec.limits import require_following
 from carp_verify.bound_rules import require_kept
 from carp_verify.encoding import Encoding
 from carp_verify.optimum_rules import MOST_ORDERED, refuse_size
@@ -62,6 +63,7 @@ def best_order(instance: Instance, limit: float, floor: int = 0) -> int | None:
     is less than `floor`; where an order reaches it, the others are not tried.
     Raises `TimeOver` after `limit` seconds, and `Refusal` for more than `MOST_ORDERED` robots.
     """
+    require_following(instance)
     refuse_size("the robots whose orders are all tried", len(instance.robots), MOST_ORDERED)
     encoding = Encoding(instance)
     if encoding.wayless:

@@ -24,6 +24,7 @@ from time import monotonic_ns
 from carp_optimum.heuristics import plans_of_all
 from carp_optimum.solver import Deadline, Solver, TimeOver
 from carp_spec import Instance, Plan, Refusal, Solution, total_cost
+from carp_spec.limits import require_following
 from carp_verify.bound_rules import require_kept
 from carp_verify.clauses import Literal, Unary
 from carp_verify.encoding import Encoding, Evidence, violated
@@ -60,6 +61,7 @@ def optimum(instance: Instance, limit: float, clock: Callable[[], int] = monoton
 
     What is found does not depend on the clock, which tells nanoseconds: the same instance gives the same solution.
     """
+    require_following(instance)
     deadline = Deadline(limit, clock)
     try:
         encoding = Encoding(instance, deadline.check)

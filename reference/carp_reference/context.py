@@ -22,7 +22,8 @@ class Context:
 
     def windows(self, resource: ResourceId) -> tuple[Window, ...]:
         """The free windows of the resource, in order of time."""
-        return free_windows(self.occupations.get(resource, ()), self.instance.graph.resource[resource].capacity)
+        capacity = self.instance.graph.resource[resource].capacity
+        return free_windows(self.occupations.get(resource, ()), capacity, self.instance.gap)
 
     def window_around(self, visit: Visit) -> Window | None:
         """The free window that holds the whole visit, if there is one."""

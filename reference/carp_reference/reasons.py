@@ -36,4 +36,4 @@ def leads(graph: ResourceGraph, start: ResourceId, goal: ResourceId) -> bool:
 def windows(instance: Instance, committed: Sequence[Plan], resource: ResourceId) -> tuple[Window, ...]:
     """The free windows that the committed plans leave at one resource."""
     stays = [(visit.enter, visit.leave) for plan in committed for visit in plan.visits if visit.resource == resource]
-    return free_windows(stays, instance.graph.resource[resource].capacity)
+    return free_windows(stays, instance.graph.resource[resource].capacity, instance.gap)

@@ -28,8 +28,8 @@ class Table:
         return self.occupied[resource, min(tick, self.still)] < self.instance.graph.resource[resource].capacity
 
     def is_free_during(self, resource: ResourceId, enter: int, leave: int | None) -> bool:
-        """Whether one more robot may occupy the resource in [enter, leave)."""
-        last = max(enter, self.still) + 1 if leave is None else leave
+        """Whether one more robot may occupy the resource in [enter, leave), and a tick longer without following."""
+        last = max(enter, self.still) + 1 if leave is None else leave + self.instance.gap
         return all(self.is_free(resource, tick) for tick in range(enter, last))
 
     def allows(self, visits: Sequence[Visit]) -> bool:
@@ -52,13 +52,13 @@ class Moment:
 def table_of(instance: Instance, committed: Sequence[Plan]) -> Table:
     """Write the committed plans into a table; raises `Refusal` by `limit/ticks`."""
     ticks = [tick for plan in committed for visit in plan.visits for tick in (visit.enter, visit.leave or 0)]
-    still = max(ticks, default=0)
+    still = max(ticks, default=0) + instance.gap
     size = sum((still + 1 if v.leave is None else v.leave) - v.enter for plan in committed for v in plan.visits)
     _refuse_too_many("the committed plans occupy", size)
     occupied: Counter[tuple[ResourceId, int]] = Counter()
     for plan in committed:
         for visit in plan.visits:
-            leave = still + 1 if visit.leave is None else visit.leave
+            leave = still + 1 if visit.leave is None else visit.leave + instance.gap
             occupied.update((visit.resource, tick) for tick in range(visit.enter, leave))
     moves = frozenset(
         (visit.resource, following.resource, following.enter)
@@ -140,7 +140,7 @@ def _next_moments(table: Table, robot: RobotId, moment: Moment) -> Iterator[Mome
     tick = moment.tick + 1
     if table.is_free(moment.resource, tick):
         yield Moment(moment.resource, tick, max(moment.rest - 1, 0), False, moment)
-    if moment.rest == 0:
+    if moment.rest == 0 and (table.instance.following == "allowed" or table.is_free(moment.resource, tick)):
         for target in table.instance.graph.successors[moment.resource]:
             if table.is_free(target, tick) and (target, moment.resource, tick) not in table.moves:
                 rest = table.instance.duration(robot, target) - 1

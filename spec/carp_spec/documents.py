@@ -15,6 +15,7 @@ from carp_spec.check import Verdict
 from carp_spec.instance_rules import instance_faults
 from carp_spec.model import (
     AfterGoal,
+    Following,
     Instance,
     Plan,
     Resource,
@@ -95,6 +96,7 @@ class InstanceDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     graph: GraphDocument
     after_goal: AfterGoal
     robots: tuple[RobotDocument, ...]
+    following: Following | msgspec.UnsetType = msgspec.UNSET
 
 
 class PlanDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -253,6 +255,7 @@ def read_instance(data: bytes) -> Instance:
         ),
         robots=tuple(Robot(each.id, each.start, each.goal, each.release, each.pace) for each in document.robots),
         after_goal=document.after_goal,
+        following="allowed" if document.following is msgspec.UNSET else document.following,
     )
     for fault in instance_faults(instance):
         raise Refusal("document", fault.path, fault.rule, fault.message)
@@ -280,6 +283,7 @@ def instance_document(instance: Instance) -> InstanceDocument:
         robots=tuple(
             RobotDocument(each.id, each.start, each.goal, each.release, each.pace) for each in instance.robots
         ),
+        following=msgspec.UNSET if instance.following == "allowed" else instance.following,
     )
 
 

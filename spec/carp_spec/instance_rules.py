@@ -117,6 +117,13 @@ def after_goal_is_known(instance: Instance) -> Iterator[Fault]:
         yield Fault("instance/after-goal", "$.after_goal", message)
 
 
+@rule("instance/following", 'Following is "allowed" or "forbidden"; where it is left out, it is allowed.', DESIGN)
+def following_is_known(instance: Instance) -> Iterator[Fault]:
+    if instance.following not in ("allowed", "forbidden"):
+        message = f'it must be "allowed" or "forbidden", not {instance.following!r}'
+        yield Fault("instance/following", "$.following", message)
+
+
 INSTANCE_RULES: tuple[Rule[[Instance], Iterator[Fault]], ...] = (
     resource_ids_are_unique,
     capacities_are_positive,
@@ -128,6 +135,7 @@ INSTANCE_RULES: tuple[Rule[[Instance], Iterator[Fault]], ...] = (
     releases_are_ticks,
     paces_are_positive,
     after_goal_is_known,
+    following_is_known,
 )
 
 

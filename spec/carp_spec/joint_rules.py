@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import TypeAlias
 
-from carp_spec.model import Instance, Move, Plan, ResourceId, RobotId, Solution
+from carp_spec.model import Instance, Move, Plan, Resource, ResourceId, RobotId, Solution
 from carp_spec.rule import DESIGN, MORS, Rule, Violation, rule, violation_of_robots
 
 Changes: TypeAlias = dict[int, Counter[RobotId]]
@@ -19,18 +19,38 @@ Changes: TypeAlias = dict[int, Counter[RobotId]]
     f"paper, section II; {MORS}",
 )
 def capacity_is_kept(instance: Instance, plans: Sequence[Plan]) -> Iterator[Violation]:
+    for resource, robots, start, end in _crowded(instance, plans, 0):
+        yield Violation("joint/capacity", robots, resource.id, start, end, f"capacity {resource.capacity}")
+
+
+@rule(
+    "joint/following",
+    "Where following is forbidden, at no tick are more robots in a resource than its capacity if those count that "
+    "leave it at the tick: where there is room for one, a robot enters only after a free tick.",
+    DESIGN,
+)
+def following_is_avoided(instance: Instance, plans: Sequence[Plan]) -> Iterator[Violation]:
+    if instance.following == "forbidden":
+        for resource, robots, start, end in _crowded(instance, plans, instance.gap):
+            reason = f"capacity {resource.capacity}, with a free tick after each robot"
+            yield Violation("joint/following", robots, resource.id, start, end, reason)
+
+
+def _crowded(
+    instance: Instance, plans: Sequence[Plan], gap: int
+) -> Iterator[tuple[Resource, tuple[RobotId, ...], int, int | None]]:
+    """The resources that are too full, by which robots and when, if each stay lasts `gap` ticks longer."""
     changes: dict[ResourceId, Changes] = defaultdict(lambda: defaultdict(Counter))
     for plan in plans:
         for visit in plan.visits:
             if visit.leave is None or visit.enter < visit.leave:
                 changes[visit.resource][visit.enter][plan.robot] += 1
                 if visit.leave is not None:
-                    changes[visit.resource][visit.leave][plan.robot] -= 1
+                    changes[visit.resource][visit.leave + gap][plan.robot] -= 1
     arrival = {robot: position for position, robot in enumerate(instance.robot)}
     for resource in instance.graph.resources:
         for start, end, crowd in _crowds(resource.capacity, changes[resource.id]):
-            robots = tuple(sorted(crowd, key=arrival.__getitem__))
-            yield Violation("joint/capacity", robots, resource.id, start, end, f"capacity {resource.capacity}")
+            yield resource, tuple(sorted(crowd, key=arrival.__getitem__)), start, end
 
 
 def _crowds(capacity: int, changes: Changes) -> Iterator[tuple[int, int | None, set[RobotId]]]:
@@ -80,6 +100,7 @@ def exchanges_are_avoided(instance: Instance, plans: Sequence[Plan]) -> Iterator
 JOINT_RULES: tuple[Rule[[Instance, Sequence[Plan]], Iterator[Violation]], ...] = (
     capacity_is_kept,
     exchanges_are_avoided,
+    following_is_avoided,
 )
 
 

@@ -17,6 +17,7 @@ ResourceId: TypeAlias = str | int
 RobotId: TypeAlias = str | int
 Move: TypeAlias = tuple[ResourceId, ResourceId]
 AfterGoal: TypeAlias = Literal["vanish", "park"]
+Following: TypeAlias = Literal["allowed", "forbidden"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,12 +98,14 @@ class Instance:
     """A resource graph, robots in the order of their arrival, and what a robot does after its goal.
 
     `vanish`: it leaves the system one duration after it enters its goal for the last time. `park`: it stays.
+    Where `following` is forbidden, a robot enters a resource only after a free tick.
     `robot` is a look-up of the robots by id.
     """
 
     graph: ResourceGraph
     robots: tuple[Robot, ...]
     after_goal: AfterGoal = "vanish"
+    following: Following = "allowed"
     robot: Mapping[RobotId, Robot] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -111,11 +114,16 @@ class Instance:
 
     def __reduce__(self) -> tuple[type["Instance"], tuple[object, ...]]:
         """Copy and pickle the fields; the look-up, which does not pickle, is made again."""
-        return type(self), (self.graph, self.robots, self.after_goal)
+        return type(self), (self.graph, self.robots, self.after_goal, self.following)
 
     def duration(self, robot: RobotId, resource: ResourceId) -> int:
         """Ticks that the robot needs at least in the resource: the resource's duration times its pace."""
         return self.robot[robot].pace * self.graph.resource[resource].duration
+
+    @property
+    def gap(self) -> int:
+        """Ticks for which a place that a robot has left stays free: 1 where following is forbidden, 0 elsewhere."""
+        return int(self.following == "forbidden")
 
 
 @dataclass(frozen=True, slots=True)

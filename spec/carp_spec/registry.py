@@ -3,6 +3,7 @@
 from typing import Any
 
 from carp_spec.documents import has_format, has_shape, is_json
+from carp_spec.execution_rules import EXECUTION_RULES, TRACE_RULES, is_acyclic
 from carp_spec.instance_rules import INSTANCE_RULES
 from carp_spec.joint_rules import JOINT_RULES, SOLUTION_RULES
 from carp_spec.neighbourhood_rules import (
@@ -46,5 +47,8 @@ RULES: tuple[Rule[..., Any], ...] = (
     next_trajectory,
     *POLISH_RULES,
     plan_keeps_history,
+    *TRACE_RULES,
+    *EXECUTION_RULES,
+    is_acyclic,
     options_are_right,
 )

@@ -13,6 +13,7 @@ import msgspec
 from carp_spec.bounds import BoundDocument
 from carp_spec.documents import InstanceDocument, SolutionDocument, VerdictDocument
 from carp_spec.query_certificates import QueryCertificateDocument
+from carp_spec.traces import TraceDocument
 from carp_spec.vectors import VectorsDocument
 
 FOLDER = Path(__file__).with_name("schemas")
@@ -23,6 +24,7 @@ DOCUMENTS: Mapping[str, type[msgspec.Struct]] = {
     "verdict": VerdictDocument,
     "bound": BoundDocument,
     "query": QueryCertificateDocument,
+    "trace": TraceDocument,
     "vectors": VectorsDocument,
 }
 

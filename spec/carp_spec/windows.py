@@ -30,8 +30,12 @@ def occupancy(occupations: Sequence[Occupation], tick: int) -> int:
     return sum(enter <= tick and (leave is None or tick < leave) for enter, leave in occupations)
 
 
-def free_windows(occupations: Sequence[Occupation], capacity: int) -> tuple[Window, ...]:
-    """Make the windows that `window/free` describes, in order of time."""
+def free_windows(occupations: Sequence[Occupation], capacity: int, gap: int = 0) -> tuple[Window, ...]:
+    """Make the windows that `window/free` describes, in order of time; `gap` is that of the instance."""
+    if gap > 0:
+        longer = free_windows(_longer(occupations, gap), capacity)
+        shorter = (Window(each.start, None if each.end is None else each.end - gap) for each in longer)
+        return tuple(each for each in shorter if each.end is None or each.start < each.end)
     change = {0: 0}
     for enter, leave in occupations:
         change[enter] = change.get(enter, 0) + 1
@@ -53,18 +57,28 @@ def free_windows(occupations: Sequence[Occupation], capacity: int) -> tuple[Wind
 @rule(
     "window/free",
     "The free windows of a resource are the maximal intervals, from tick 0, in which fewer committed plans occupy it "
-    "than its capacity, so that there is room for one robot more.",
+    "than its capacity, so that there is room for one robot more. Where following is forbidden, a plan counts for a "
+    "tick longer, and a window ends a tick earlier.",
     f"paper, section III; {MORS}",
 )
-def windows_are_free(windows: Sequence[Window], occupations: Sequence[Occupation], capacity: int) -> bool:
-    ends = [end for _, end in occupations if end is not None]
+def windows_are_free(windows: Sequence[Window], occupations: Sequence[Occupation], capacity: int, gap: int = 0) -> bool:
+    longer = _longer(occupations, gap)
+    ends = [end for _, end in longer if end is not None]
     bounds = [bound for window in windows for bound in (window.start, window.end) if bound is not None]
-    ticks = {0, *(enter for enter, _ in occupations), *ends, *bounds}
+    starts = [tick for enter, _ in occupations for tick in (max(enter - gap, 0), enter)]
+    ticks = {0, *starts, *ends, *bounds}
     told = [(tick, any(window.start <= tick and window.lasts_until(tick + 1) for window in windows)) for tick in ticks]
-    all_told_rightly = all(free == (occupancy(occupations, tick) < capacity) for tick, free in told)
+    all_told_rightly = all(
+        free == all(occupancy(longer, each) < capacity for each in (tick, tick + gap)) for tick, free in told
+    )
     each_lasts = all(window.start >= 0 and (window.end is None or window.start < window.end) for window in windows)
     gaps_between = all(one.end is not None and one.end < two.start for one, two in pairwise(windows))
     return all_told_rightly and each_lasts and gaps_between
+
+
+def _longer(occupations: Sequence[Occupation], gap: int) -> list[Occupation]:
+    """The occupations, each by `gap` ticks longer."""
+    return [(enter, None if leave is None else leave + gap) for enter, leave in occupations]
 
 
 @rule(

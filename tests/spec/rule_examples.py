@@ -7,15 +7,17 @@ is the answer that somebody claims.
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any, Final
+from typing import Any, Final, TypeAlias
 
-from tests.spec.making import PARKED, PARKING, SOLVED, VANISHING, instance_on, line, plan_of, solution_of
+from tests.spec.making import PARKED, PARKING, SOLVED, VANISHING, Stay, instance_on, line, plan_of, solution_of
 
 from carp_spec import Carp, FixedPaths, Instance, Neighbourhood, Resource, ResourceGraph, Robot, Shuffled, Solution
 from carp_spec.documents import INSTANCE_FORMAT, InstanceDocument
 from carp_spec.permutations import splitmix64
+from carp_spec.traces import Trace
 from carp_spec.windows import Window
 
+Stays: TypeAlias = tuple[Stay, ...]
 NOTHING_CLAIMED: Final = object()
 
 
@@ -69,6 +71,43 @@ FREE = [(2, 4), (3, 6), (8, None)]
 ROW = instance_on(line("abcde"), Robot("r1", "a", "c"), Robot("r2", "e", "d", release=1))
 WALK = plan_of("r1", ("a", 0, 1), ("b", 1, 2), ("c", 2, 3))
 STEP = plan_of("r2", ("e", 1, 2), ("d", 2, 3))
+FREE_TICKS = replace(VANISHING, following="forbidden")
+FOLLOWED = (plan_of("r1", ("a", 0, 1), ("c", 1, 3), ("d", 3, 4)), plan_of("r2", ("e", 0, 1), ("a", 1, 2)))
+A_NOW: Stays = (("a", 0, None),)
+E_NOW: Stays = (("e", 1, None),)
+CROSSED = (
+    instance_on(line("abcd"), Robot("r1", "b", "d"), Robot("r2", "a", "c")),
+    solution_of(
+        [
+            plan_of("r1", ("b", 0, 1), ("c", 1, 2), ("d", 2, 3)),
+            plan_of("r2", ("a", 0, 1), ("b", 1, 2), ("c", 2, 3)),
+        ]
+    ),
+)
+FREE_CROSSED = solution_of([CROSSED[1].plans[0], plan_of("r2", ("a", 0, 2), ("b", 2, 3), ("c", 3, 4))])
+ROOMY = ResourceGraph((Resource("a", capacity=2), Resource("b", capacity=2)), (("a", "b"),))
+EXCHANGED = (
+    instance_on(ROOMY, Robot("r1", "a", "b"), Robot("r2", "b", "a")),
+    solution_of([plan_of("r1", ("a", 0, 1), ("b", 1, 2)), plan_of("r2", ("b", 0, 2), ("a", 2, 3))]),
+)
+RING = ResourceGraph(line("abc").resources, (("a", "b"), ("b", "c"), ("c", "a")))
+TURNING = (
+    (Robot("r1", "a", "b"), Robot("r2", "b", "c"), Robot("r3", "c", "a")),
+    tuple(plan_of(robot, (at, 0, 1), (to, 1, 2)) for robot, at, to in (("r1", *"ab"), ("r2", *"bc"), ("r3", *"ca"))),
+)
+
+
+def traced_on(planned: tuple[Instance, Solution], now: int, **done: Stays) -> Example:
+    trace = Trace(now, tuple(plan_of(robot, *stays) for robot, stays in done.items()))
+    return example(*planned, trace)
+
+
+def traced(now: int, **done: Stays) -> Example:
+    return traced_on((ROW, solution_of([WALK, STEP])), now, **done)
+
+
+LEFT = traced(9, r1=(("a", 0, 1), ("b", 1, None)), r2=E_NOW)
+LATER = traced_on(CROSSED, 5, r1=(("b", 0, 4), ("c", 4, None)), r2=(("a", 0, 4), ("b", 4, None)))
 
 EXAMPLES: Mapping[str, Examples] = {
     "document/json": Examples(
@@ -146,6 +185,10 @@ EXAMPLES: Mapping[str, Examples] = {
         (example(VANISHING), example(PARKING)),
         (example(replace(PARKING, after_goal="stay")), example(replace(PARKING, after_goal=None))),  # type: ignore[arg-type]
     ),
+    "instance/following": Examples(
+        (example(VANISHING), example(replace(VANISHING, following="forbidden"))),
+        (example(replace(VANISHING, following=True)), example(replace(VANISHING, following=""))),  # type: ignore[arg-type]
+    ),
     "solution/covers": Examples(
         (whole(), whole(plans=SOLVED[:2], unplanned=("r3",)), example(VANISHING, Solution((), (), ("r3", "r2", "r1")))),
         (
@@ -218,6 +261,18 @@ EXAMPLES: Mapping[str, Examples] = {
         ),
         (second_plan(("b", 0, 2), ("a", 2, 3)), second_plan(("c", 1, 3), ("b", 3, 4))),
     ),
+    "joint/following": Examples(
+        (
+            example(VANISHING, FOLLOWED),
+            example(FREE_TICKS, FOLLOWED[:1]),
+            example(FREE_TICKS, [FOLLOWED[0], plan_of("r2", ("e", 0, 5), ("d", 5, 6))]),
+        ),
+        (
+            example(FREE_TICKS, FOLLOWED),
+            example(FREE_TICKS, [FOLLOWED[0], plan_of("r2", ("a", 1, 2))]),
+            example(FREE_TICKS, [FOLLOWED[0], plan_of("r2", ("c", 3, 5))]),
+        ),
+    ),
     "cost/robot": Examples(
         (example(VANISHING, SOLVED[0], 5), example(VANISHING, SOLVED[1], 3), example(VANISHING, SOLVED[2], 0)),
         (example(VANISHING, SOLVED[0], 6), example(VANISHING, SOLVED[0], 4)),
@@ -232,6 +287,8 @@ EXAMPLES: Mapping[str, Examples] = {
             example([Window(0, 3), Window(4, None)], FREE, 2),
             example([Window(0, None)], FREE, 3),
             example([], [(0, None)], 1),
+            example([Window(0, 1)], FREE, 1, 1),
+            example([Window(0, 2), Window(5, None)], FREE, 2, 1),
         ),
         (
             example([Window(0, 2)], FREE, 1),
@@ -239,6 +296,9 @@ EXAMPLES: Mapping[str, Examples] = {
             example([Window(0, 2), Window(4, 4), Window(6, 8)], FREE, 1),
             example([Window(0, None)], FREE, 2),
             example([Window(4, None), Window(0, 3)], FREE, 2),
+            example([Window(0, 2), Window(7, 8)], FREE, 1, 1),
+            example([Window(0, 1), Window(7, 7)], FREE, 1, 1),
+            example([Window(0, 1), Window(6, 7)], FREE, 1, 1),
         ),
     ),
     "window/fits": Examples(
@@ -418,6 +478,71 @@ EXAMPLES: Mapping[str, Examples] = {
             example(SOLVED[0], plan_of("r1"), 0),
             example(SOLVED[0], plan_of("r1", ("a", 0, 2), ("b", 2, 2)), 3),
             example(SOLVED[2], plan_of("r3", ("f", 0, 1), ("c", 1, 3)), 1),
+        ),
+    ),
+    "trace/robots": Examples(
+        (traced(0, r1=A_NOW, r2=()), traced(2, r2=E_NOW, r1=A_NOW)),
+        (traced(0, r1=A_NOW), traced(2, r1=A_NOW, r2=E_NOW, r3=()), example(*traced(2, r2=E_NOW).arguments)),
+    ),
+    "trace/prefix": Examples(
+        (traced(2, r1=(("a", 0, 1), ("b", 1, None)), r2=E_NOW),),
+        (
+            traced(2, r1=(("b", 0, None),), r2=E_NOW),
+            traced(9, r1=A_NOW, r2=(("e", 1, 2), ("d", 2, 3), ("e", 3, None))),
+        ),
+    ),
+    "trace/ticks": Examples(
+        (
+            traced(2, r1=(("a", 1, 2), ("b", 2, None)), r2=E_NOW),
+            traced(9, r1=A_NOW, r2=(("e", 1, 2), ("d", 2, 3))),
+        ),
+        (
+            traced(2, r1=A_NOW, r2=(("e", 0, None),)),
+            traced(2, r1=(("a", 0, 1), ("b", 2, None)), r2=E_NOW),
+            traced(2, r1=(("a", 0, None), ("b", 1, None)), r2=E_NOW),
+            traced(2, r1=(("a", 0, 3),), r2=E_NOW),
+            traced(2, r1=(("a", 0, 2),), r2=E_NOW),
+            traced(2, r1=(("a", 3, None),), r2=E_NOW),
+            traced(4, r1=(("a", 2, 1), ("b", 1, None)), r2=E_NOW),
+            example(replace(ROW, after_goal="park"), *traced(9, r2=(("e", 1, 2), ("d", 2, 3))).arguments[1:]),
+        ),
+    ),
+    "execution/duration": Examples(
+        (traced(9, r1=(("a", 0, 5), ("b", 5, None)), r2=E_NOW),),
+        (
+            example(replace(ROW, robots=(replace(ROW.robots[0], pace=2), ROW.robots[1])), *LEFT.arguments[1:]),
+            traced(9, r1=A_NOW, r2=(("e", 1, 2), ("d", 2, 2))),
+        ),
+    ),
+    "execution/order": Examples(
+        (LATER, traced_on(CROSSED, 2, r1=(("b", 0, 1), ("c", 1, 2), ("d", 2, None)), r2=(("a", 0, 1), ("b", 1, None)))),
+        (
+            traced_on(CROSSED, 2, r1=(("b", 0, None),), r2=(("a", 0, 2), ("b", 2, None))),
+            traced_on(CROSSED, 3, r1=(("b", 0, 2), ("c", 2, None)), r2=(("a", 0, 1), ("b", 1, None))),
+            example(replace(LATER.arguments[0], following="forbidden"), FREE_CROSSED, LATER.arguments[2]),
+        ),
+    ),
+    "execution/exchange": Examples(
+        (
+            traced_on(EXCHANGED, 5, r1=(("a", 0, 3), ("b", 3, None)), r2=(("b", 0, 4), ("a", 4, None))),
+            traced_on(EXCHANGED, 5, r1=(("a", 0, None),), r2=(("b", 0, None),)),
+        ),
+        (
+            traced_on(EXCHANGED, 5, r1=(("a", 0, 3), ("b", 3, None)), r2=(("b", 0, 3), ("a", 3, None))),
+            traced_on(EXCHANGED, 5, r1=(("a", 0, None),), r2=(("b", 0, 3), ("a", 3, None))),
+            traced_on(EXCHANGED, 5, r1=(("a", 0, 4), ("b", 4, None)), r2=(("b", 0, 3), ("a", 3, None))),
+        ),
+    ),
+    "execution/acyclic": Examples(
+        (
+            example(VANISHING, solution_of(SOLVED)),
+            example(VANISHING, solution_of(PARKED)),
+            example(*CROSSED),
+            example(*EXCHANGED),
+        ),
+        (
+            example(instance_on(RING, *TURNING[0]), solution_of(TURNING[1])),
+            example(instance_on(RING, *TURNING[0], after_goal="park"), solution_of(TURNING[1])),
         ),
     ),
     "planner/options": Examples(

@@ -1,6 +1,7 @@
 """The checker as a whole: silent on correct plans, and exactly right about each planted violation."""
 
 from collections import Counter
+from dataclasses import replace
 from time import process_time
 
 import pytest
@@ -67,6 +68,7 @@ def first_plan(*stays: Stay) -> tuple[Plan, ...]:
     return (plan_of("r1", *stays), *SOLVED[1:])
 
 
+FOLLOWING = "joint/following"
 PLANTED: dict[str, tuple[tuple[Plan, ...], list[str]]] = {
     "starts late": (first_plan(("a", 1, 2), ("b", 2, 3), ("c", 3, 5), ("d", 5, 6)), ["plan/start"]),
     "starts elsewhere": (first_plan(("c", 0, 2), ("b", 2, 3), ("c", 3, 5), ("d", 5, 6)), ["plan/start"]),
@@ -131,8 +133,16 @@ def test_each_planted_violation_is_found_among_parking_robots(planted: str) -> N
     assert rules_broken(PARKING, plans) == expected
 
 
+def test_a_robot_that_follows_another_is_found_where_that_is_forbidden() -> None:
+    plans = (*SOLVED[:2], plan_of("r3", ("f", 0, 1)))
+    instance = replace(VANISHING, following="forbidden")
+    assert rules_broken(instance, plans) == []
+    assert rules_broken(instance, (*plans[:2], plan_of("r3", ("f", 0, 5), ("c", 5, 7), ("f", 7, 8)))) == [FOLLOWING]
+    assert rules_broken(VANISHING, (*plans[:2], plan_of("r3", ("f", 0, 5), ("c", 5, 7), ("f", 7, 8)))) == []
+
+
 def test_every_rule_of_plans_is_planted() -> None:
-    planted = {rule for _, expected in PLANTED.values() for rule in expected}
+    planted = {FOLLOWING, *(rule for _, expected in PLANTED.values() for rule in expected)}
     assert planted == {rule.id for rule in RULES if rule.id.startswith(("plan/", "joint/"))}
 
 

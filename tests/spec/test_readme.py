@@ -20,11 +20,13 @@ from carp_spec import (
     read_solution,
     write_verdict,
 )
+from carp_spec.execution_rules import trace_violations
 from carp_spec.neighbourhood_rules import distance
 from carp_spec.readme import README, rule_table, with_rules, write_rules
+from carp_spec.traces import read_trace
 
 TEXT = README.read_text()
-INSTANCE, SOLUTION, VERDICT = re.findall(r"```json\n(.*?)```", TEXT, re.DOTALL)
+INSTANCE, SOLUTION, VERDICT, TRACE = re.findall(r"```json\n(.*?)```", TEXT, re.DOTALL)
 
 
 def test_the_table_of_rules_is_the_registry() -> None:
@@ -52,6 +54,9 @@ def test_the_example_is_right_where_one_robot_goes_round() -> None:
     solution["plans"][1]["visits"] = json.loads(round_about)
     verdict = judge(read_instance(INSTANCE.encode()), read_solution(json.dumps(solution).encode()))
     assert (verdict.valid, verdict.cost) == (True, 3)
+    assert not trace_violations(
+        read_instance(INSTANCE.encode()), read_solution(json.dumps(solution).encode()), read_trace(TRACE.encode())
+    )
 
 
 def test_the_count_of_replanned_robots_in_the_paper_has_one_round_too_many() -> None:

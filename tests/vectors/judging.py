@@ -28,7 +28,8 @@ from carp_spec import (
 )
 from carp_spec.bounds import read_bound
 from carp_spec.documents import is_json
-from carp_spec.instance_rules import after_goal_is_known
+from carp_spec.execution_rules import is_acyclic, trace_violations
+from carp_spec.instance_rules import after_goal_is_known, following_is_known
 from carp_spec.neighbourhood_rules import (
     baseline_is_tried,
     distance,
@@ -55,6 +56,7 @@ from carp_spec.polish_rules import (
 )
 from carp_spec.query_certificates import read_query_certificate
 from carp_spec.query_rules import expansion_key
+from carp_spec.traces import read_trace
 from carp_spec.vectors import Fields, Vector
 from carp_spec.windows import Window, free_windows, stay_fits, windows_are_free
 from carp_verify.bound_rules import BOUND_RULES
@@ -191,6 +193,19 @@ def _verify_query(subject: str, vector: Vector) -> Found:
     return violated, {"arrival": None if right is None else right.visits[-1].enter}
 
 
+def _check_trace(subject: str, vector: Vector) -> Found:
+    del subject
+    instance, solution = vector.read_instance(), vector.read_solution()
+    assert judge(instance, solution).valid
+    trace = read_trace(msgspec.json.encode(vector.input["trace"]))
+    return {violation.rule for violation in trace_violations(instance, solution, trace)}, {}
+
+
+def _dependencies(subject: str, vector: Vector) -> Found:
+    cycles = {violation.rule for violation in is_acyclic(vector.read_instance(), vector.read_solution())}
+    return cycles, {"acyclic": subject not in cycles}
+
+
 _PROTOCOL: Mapping[str, Callable[[str, Vector], Found]] = {
     "check": _check,
     "query": _query,
@@ -199,6 +214,8 @@ _PROTOCOL: Mapping[str, Callable[[str, Vector], Found]] = {
     "optimum": _optimum,
     "verify-bound": _verify_bound,
     "verify-query": _verify_query,
+    "check-trace": _check_trace,
+    "dependencies": _dependencies,
 }
 
 
@@ -210,6 +227,10 @@ def _after_goal(input: Fields) -> bool:
     return not list(after_goal_is_known(Instance(ResourceGraph((), ()), (), input["after_goal"])))
 
 
+def _following(input: Fields) -> bool:
+    return not list(following_is_known(Instance(ResourceGraph((), ()), (), following=input["following"])))
+
+
 def _fits(input: Fields) -> bool:
     return stay_fits(Window(*input["window"]), input["enter"], input["leave"], input["duration"])
 
@@ -217,6 +238,7 @@ def _fits(input: Fields) -> bool:
 _JUDGED: Mapping[str, Callable[[Fields], bool]] = {
     "document/json": _json,
     "instance/after-goal": _after_goal,
+    "instance/following": _following,
     "window/fits": _fits,
 }
 

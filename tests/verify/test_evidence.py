@@ -18,6 +18,7 @@ _TICKS = "spec/test_check.py::test_the_checker_agrees_with_the_rules_spelt_out_t
 _RULES = "verify/test_rules_as_properties.py"
 _TWINS = "reference/test_twins.py"
 _NEIGHBOURS = "reference/test_neighbourhood_properties.py"
+_EXECUTION = "spec/test_execution_properties.py"
 _POLISH = "spec/test_polish_rules.py"
 PROPERTIES: Mapping[str, str] = {
     "document/json": f"{_RULES}::test_a_document_cut_short_is_no_json",
@@ -33,6 +34,7 @@ PROPERTIES: Mapping[str, str] = {
     "instance/release": _FAULTS,
     "instance/pace": _FAULTS,
     "instance/after-goal": _FAULTS,
+    "instance/following": _FAULTS,
     "solution/covers": _BROKEN,
     "solution/order": _BROKEN,
     "plan/start": _PLANS,
@@ -43,6 +45,7 @@ PROPERTIES: Mapping[str, str] = {
     "plan/duration": _PLANS,
     "joint/capacity": _TICKS,
     "joint/exchange": _TICKS,
+    "joint/following": f"{_EXECUTION}::test_following_is_what_is_too_full_if_robots_count_a_tick_longer",
     "cost/robot": f"{_RULES}::test_costs_are_the_ticks_before_the_last_visits",
     "cost/total": f"{_RULES}::test_costs_are_the_ticks_before_the_last_visits",
     "window/free": "spec/test_windows.py::test_free_windows_are_the_maximal_runs_of_free_ticks",
@@ -72,6 +75,13 @@ PROPERTIES: Mapping[str, str] = {
     "polish/kept": f"{_POLISH}::test_what_is_kept_leaves_fewer_unplanned_or_as_many_at_no_larger_total",
     "polish/options": f"{_POLISH}::test_options_are_numbers_within_their_bounds",
     "fleet/history": "spec/test_plan_rules.py::test_history_is_kept_if_the_robot_was_tick_by_tick_where_it_was",
+    "trace/robots": f"{_EXECUTION}::test_a_trace_that_is_none_is_found_before_rules_of_execution",
+    "trace/prefix": f"{_EXECUTION}::test_a_trace_that_is_none_is_found_before_rules_of_execution",
+    "trace/ticks": f"{_EXECUTION}::test_a_trace_that_is_none_is_found_before_rules_of_execution",
+    "execution/duration": f"{_EXECUTION}::test_a_trace_breaks_the_rules_spelt_out_pair_by_pair",
+    "execution/order": f"{_EXECUTION}::test_a_trace_breaks_the_rules_spelt_out_pair_by_pair",
+    "execution/exchange": f"{_EXECUTION}::test_a_trace_breaks_the_rules_spelt_out_pair_by_pair",
+    "execution/acyclic": f"{_EXECUTION}::test_a_solution_has_a_cycle_if_its_edges_spelt_out_have_one",
     "planner/options": f"{_RULES}::test_options_are_whole_numbers_within_their_bounds",
 }
 

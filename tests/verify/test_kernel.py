@@ -122,7 +122,13 @@ def run(*arguments: str | Path) -> tuple[int, Json, str]:
 
 
 def questions() -> Iterator[Vector]:
-    return (case for case in vectors() if case.op == "check")
+    return (case for case in vectors() if case.op == "check" and "following" not in case.instance)
+
+
+@pytest.mark.parametrize("case", [*vectors("joint/following")][1:], ids=lambda case: case.id)
+def test_the_kernel_refuses_instances_that_forbid_following(case: Vector) -> None:
+    verdict = ask(encoded(**case.request))
+    assert (verdict["verdict"], verdict["rule"]) == ("bad input", "document/shape")
 
 
 @pytest.mark.parametrize("case", list(questions()), ids=lambda case: case.id)

@@ -84,6 +84,11 @@ def _policy(instance: Instance, data: st.DataObject) -> Instance:
     return replace(instance, after_goal=data.draw(wrong))
 
 
+def _following(instance: Instance, data: st.DataObject) -> Instance:
+    wrong: st.SearchStrategy[Any] = st.none() | st.text().filter(lambda text: text not in ("allowed", "forbidden"))
+    return replace(instance, following=data.draw(wrong))
+
+
 PLANTS: Mapping[str, Plant] = {
     "instance/resource-id": _repeated_resource,
     "instance/capacity": _resource("capacity", TOO_SMALL),
@@ -95,6 +100,7 @@ PLANTS: Mapping[str, Plant] = {
     "instance/release": _robot("release", st.integers(max_value=-1) | st.sampled_from([False, 0.0, None])),
     "instance/pace": _robot("pace", TOO_SMALL),
     "instance/after-goal": _policy,
+    "instance/following": _following,
 }
 
 

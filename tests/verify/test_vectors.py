@@ -91,7 +91,7 @@ def test_every_rule_of_query_certificates_that_is_not_of_their_size_is_broken_by
 
 
 def test_the_question_does_not_tell_the_answer() -> None:
-    fields = {"op", "instance", "solution", "robot", "now", "planner", "certificate"}
+    fields = {"op", "instance", "solution", "robot", "now", "planner", "certificate", "trace"}
     options = {"m", "sample", "seed", "baseline", "fallback", "attempts", "k", "paths"}
     asked = [case.request for case in vectors() if "/" not in case.op]
     assert all(set(request) <= fields | options for request in asked)

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from carp_spec import Instance, Move, Plan, ResourceId, Robot
+from carp_spec.limits import require_following
 from carp_verify.clauses import Clause, Formula, Literal
 from carp_verify.optimum_rules import LARGEST_FORMULA, LARGEST_PROOF
 from carp_verify.robot_clauses import RobotClauses, predecessors
@@ -175,6 +176,7 @@ def beat_formula(instance: Instance, cost: int | None, evidence: Evidence, most:
 
 
 def _bounded(instance: Instance, bound: int | None, evidence: Evidence, most: int) -> Encoding:
+    require_following(instance)
     encoding = Encoding(instance, most=most)
     encoding.grow_to(evidence.horizons)
     encoding.forbid_all()

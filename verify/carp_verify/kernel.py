@@ -14,6 +14,7 @@ import msgspec
 from carp_spec import Instance, Refusal, Rule
 from carp_spec.bounds import BoundDocument
 from carp_spec.documents import instance_document, write, write_instance
+from carp_spec.limits import require_following
 from carp_spec.rule import DESIGN, rule
 
 PROGRAM: Final = "carproof-kernel"
@@ -98,6 +99,7 @@ class Kernel:
 
     def ask(self, op: str, instance: Instance, **documents: object) -> KernelVerdict:
         """Put one request; raises `Refusal` if there is no answer."""
+        require_following(instance)
         request = {"op": op, "instance": instance_document(instance), **documents}
         process = self._process
         assert process.stdin is not None  # noqa: S101 - a pipe
@@ -123,6 +125,7 @@ def running_kernel() -> Iterator[Kernel]:
 
 def verify_bound(instance: Instance, certificate: BoundDocument, formulas: Mapping[int, str]) -> KernelVerdict:
     """What the kernel says of a lower bound, with the formulas of its cuts in DIMACS by their numbers."""
+    require_following(instance)
     with TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "instance.json").write_bytes(write_instance(instance))

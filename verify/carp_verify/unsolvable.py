@@ -16,6 +16,7 @@ from typing import TypeAlias
 import msgspec
 
 from carp_spec import Instance, Refusal, ResourceId, RobotId
+from carp_spec.limits import require_following
 from carp_verify.encoding import Encoding
 from carp_verify.joint_search import joint_states, least_total_cost
 
@@ -64,6 +65,7 @@ def describe(instance: Instance, obstacle: Obstacle) -> str:
 
 def why_no_obstacle(instance: Instance, obstacle: Obstacle) -> str | None:
     """Why the instance does not have the obstacle, or `None` if it has; clauses are still to be refuted."""
+    require_following(instance)
     match obstacle:
         case NoWay(id):
             return _why_way(instance, id)

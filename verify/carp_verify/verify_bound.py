@@ -24,6 +24,7 @@ from typing import TypeAlias
 
 from carp_spec import Instance, Refusal, ResourceGraph, ResourceId, Robot, RobotId, Rule
 from carp_spec.bounds import BoundDocument, CutDocument, digest
+from carp_spec.limits import require_following
 from carp_spec.rule import is_whole
 from carp_verify.bound_rules import (
     LARGEST_FORMULA,
@@ -47,6 +48,7 @@ def verify_bound(instance: Instance, certificate: BoundDocument) -> int:
 
     No plans of all robots that can reach their goals have a smaller total cost. Where one cannot, `robots` has null.
     """
+    require_following(instance)
     _require(is_about, is_about(certificate.instance, digest(instance)), "$.instance", "it is about another instance")
     scale = certificate.scale
     _require(is_scale, is_scale(scale), "$.scale", f"the scale must be a power of two, and is {scale!r}")

@@ -20,6 +20,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from carp_spec import Instance, Plan, Refusal, ResourceId, Robot, Rule, Solution, Visit, has_ended
+from carp_spec.limits import require_following
 from carp_spec.query_certificates import QueryCertificateDocument
 from carp_spec.windows import Window
 from carp_verify.query_certificate_rules import (
@@ -105,6 +106,7 @@ def verify_query(instance: Instance, solution: Solution, certificate: QueryCerti
     A plan of the robot itself in the solution is what it has followed until the tick `now`. Raises `Refusal` with what
     is wrong with the certificate.
     """
+    require_following(instance)
     message = "the plans must each break no rule, and be of different robots of the instance"
     _require(plans_are_lawful, plans_are_lawful(instance, solution.plans), "$", message)
     robot = certificate.robot
@@ -123,6 +125,7 @@ def require_certificate(traffic: Traffic, certificate: QueryCertificateDocument,
 
     The plan followed until now, and the plans committed, must be lawful.
     """
+    require_following(traffic.instance)
     if followed is not None and has_ended(followed, certificate.now):
         if traffic.allows(followed.visits):
             arrival = followed.visits[-1].enter

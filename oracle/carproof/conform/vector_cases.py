@@ -11,10 +11,14 @@ _NO_OPTIONS = frozenset({"solution", "robot", "now", "planner", "limit"})
 
 
 def vector_cases(ops: Sequence[str], level: Level, whole: bool) -> Iterator[Case]:
-    """The vectors of the ops that are offered; those with malformed documents are for readers of documents."""
+    """The vectors of the ops that are offered; those with malformed documents are for readers of documents.
+
+    A program need not know of instances that forbid following.
+    """
     for vector in vectors():
         op = next((op for op in OPS if op == vector.op), None)
-        if op is not None and op in ops and "refused" not in vector.answer and _is_asked(vector, level, whole):
+        is_known = "refused" not in vector.answer and "following" not in (vector.instance or {})
+        if op is not None and op in ops and is_known and _is_asked(vector, level, whole):
             yield _case(vector, op, whole)
 
 

@@ -1,0 +1,131 @@
+"""The dependency graph of a solution: which visits must wait for which others if the robots keep the plan's order.
+
+One visit to a resource is *before* another if its robot has left, by the plans, when the other is entered (a tick
+earlier where following is forbidden). The nodes are the visits; an edge leads from the visit whose *entering* is waited
+for to the visit that waits, with the least ticks between their enterings.
+"""
+
+from bisect import bisect_right
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from carp_spec.model import Instance, Plan, ResourceId, RobotId, Visit
+
+Node: TypeAlias = tuple[RobotId, int]
+"""A robot and the position of a visit in its plan."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stay:
+    """A visit of a lawful plan with its place there, and the resources before and after it (`None`: none)."""
+
+    node: Node
+    visit: Visit
+    source: ResourceId | None
+    target: ResourceId | None
+
+
+@dataclass(frozen=True, slots=True)
+class Dependency:
+    """The visit `after` is entered no earlier than `ticks` after the visit `before` has been.
+
+    By `travel` a robot stays in a resource for its duration. By `order` it enters a resource when another has left it:
+    entered its next visit, or stayed in its last one for its duration. Then `resource` is what they share.
+    """
+
+    kind: Literal["travel", "order"]
+    before: Node
+    after: Node
+    ticks: int
+    resource: ResourceId
+
+
+def stays_by_resource(plans: Sequence[Plan]) -> dict[ResourceId, list[Stay]]:
+    """The stays of all plans in each resource."""
+    stays: dict[ResourceId, list[Stay]] = defaultdict(list)
+    for plan in plans:
+        ways = [None, *(visit.resource for visit in plan.visits), None]
+        for place, visit in enumerate(plan.visits):
+            stays[visit.resource].append(Stay((plan.robot, place), visit, ways[place], ways[place + 2]))
+    return stays
+
+
+def is_before(instance: Instance, one: Visit, other: Visit) -> bool:
+    """Whether by the plans the one robot has left the resource when the other enters it."""
+    return one.leave is not None and one.leave + instance.gap <= other.enter
+
+
+def is_opposite(one: Stay, other: Stay) -> bool:
+    """Whether the one leaves the resource to where the other comes from."""
+    return one.target is not None and one.target == other.source
+
+
+def dependencies(instance: Instance, plans: Sequence[Plan]) -> Iterator[Dependency]:
+    """The edges of the dependency graph of lawful plans, but for those that follow from others."""
+    for plan in plans:
+        for place, visit in enumerate(plan.visits[:-1]):
+            ticks = instance.duration(plan.robot, visit.resource)
+            yield Dependency("travel", (plan.robot, place), (plan.robot, place + 1), ticks, visit.resource)
+    for resource, stays in stays_by_resource(plans).items():
+        for one, other in _direct(instance, stays):
+            ticks = max(instance.gap, int(is_opposite(one, other)))
+            robot, place = one.node
+            if one.target is None:
+                duration = instance.duration(robot, resource)
+                yield Dependency("order", one.node, other.node, duration + ticks, resource)
+            else:
+                yield Dependency("order", (robot, place + 1), other.node, ticks, resource)
+
+
+def _direct(instance: Instance, stays: Sequence[Stay]) -> Iterator[tuple[Stay, Stay]]:
+    """The pairs of stays of which one is before the other, with none between the two."""
+    left = sorted(
+        ((stay.visit.leave + instance.gap, place) for place, stay in enumerate(stays) if stay.visit.leave is not None),
+    )
+    ends = [end for end, _ in left]
+    latest: list[int] = []
+    for _, place in left:
+        latest.append(max(stays[place].visit.enter, latest[-1] if latest else 0))
+    for other in stays:
+        count = bisect_right(ends, other.visit.enter)
+        if count:
+            for _, place in left[bisect_right(ends, latest[count - 1]) : count]:
+                yield stays[place], other
+
+
+def shortest_cycle(edges: Sequence[Dependency]) -> tuple[Dependency, ...]:
+    """The edges of a shortest cycle, the first by the order of the edges; none if the graph has no cycle.
+
+    A lawful solution has only cycles of robots that enter each other's places at one tick, so edges that take time are
+    in no cycle.
+    """
+    following: dict[Node, list[Dependency]] = defaultdict(list)
+    for edge in edges:
+        if edge.ticks == 0:
+            following[edge.before].append(edge)
+    shortest: tuple[Dependency, ...] = ()
+    for start in following:
+        found = _way_back(following, start)
+        if found and (not shortest or len(found) < len(shortest)):
+            shortest = found
+    return shortest
+
+
+def _way_back(following: dict[Node, list[Dependency]], start: Node) -> tuple[Dependency, ...]:
+    """The shortest way from a node back to it."""
+    came_by: dict[Node, Dependency] = {}
+    waiting = [start]
+    for node in waiting:
+        for edge in following.get(node, ()):
+            if edge.after in came_by:
+                continue
+            came_by[edge.after] = edge
+            if edge.after == start:
+                way = [edge]
+                while way[-1].before != start:
+                    way.append(came_by[way[-1].before])
+                return (*reversed(way),)
+            waiting.append(edge.after)
+    return ()

@@ -1,0 +1,199 @@
+"""The rules of an execution: `trace/...`, `execution/...`. A trace that keeps them follows a solution.
+
+Each predicate takes the instance, the solution, which must be lawful, and the trace; those of `execution/...` take a
+trace that keeps `trace/...`.
+"""
+
+from collections import Counter, defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import islice
+from typing import TypeAlias
+
+from carp_spec.check import MOST_LISTED
+from carp_spec.dependencies import Node, Stay, dependencies, shortest_cycle, stays_by_resource
+from carp_spec.model import Instance, Plan, ResourceId, Solution, Visit
+from carp_spec.rule import DESIGN, Rule, Violation, interval, rule, violation_at_visit, violation_of_robots
+from carp_spec.traces import Trace
+
+ADG = "Hönig et al. 2019, action dependency graph; ter Mors 2010"
+Happened: TypeAlias = Mapping[Node, Visit]
+
+
+@rule("trace/robots", "A trace names each robot that has a plan exactly once, and no other.", DESIGN)
+def trace_names_robots(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Violation]:
+    del instance
+    planned = {plan.robot for plan in solution.plans}
+    named = Counter(plan.robot for plan in trace.plans)
+    for robot in dict.fromkeys([*(plan.robot for plan in solution.plans), *named]):
+        if named[robot] != (robot in planned):
+            reason = f"the trace must name it {'once' if robot in planned else 'never'}, and does {named[robot]} times"
+            yield violation_of_robots("trace/robots", [robot], reason)
+
+
+@rule("trace/prefix", "The resources that a robot has visited are the first ones of its plan, in their order.", DESIGN)
+def trace_is_prefix(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Violation]:
+    del instance
+    for plan, done in _pairs(solution, trace):
+        for place, visit in enumerate(done.visits):
+            if place >= len(plan.visits):
+                yield violation_at_visit("trace/prefix", plan.robot, visit, "its plan has ended before")
+            elif visit.resource != plan.visits[place].resource:
+                reason = f"visit {place} of its plan is to {plan.visits[place].resource}"
+                yield violation_at_visit("trace/prefix", plan.robot, visit, reason)
+
+
+@rule(
+    "trace/ticks",
+    "A robot enters its first visit at its release or later, and each other one at the tick at which it leaves the one "
+    "before. No visit is left before it is entered, and nothing happens after the tick now. Only the last visit of a "
+    "plan is left for good, and with `park` none is.",
+    DESIGN,
+)
+def trace_keeps_time(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Violation]:
+    for plan, done in _pairs(solution, trace):
+        due: int | None = None
+        for place, visit in enumerate(done.visits):
+            release = instance.robot[plan.robot].release
+            is_last = place == len(done.visits) - 1
+            stays = len(done.visits) < len(plan.visits) or instance.after_goal == "park"
+            reason = None
+            if place == 0 and visit.enter < release:
+                reason = f"it must enter at its release {release} or later"
+            elif place > 0 and visit.enter != due:
+                reason = f"it must enter when it leaves the visit before, {'never' if due is None else f'at {due}'}"
+            elif visit.enter > trace.now or (visit.leave is not None and not visit.enter <= visit.leave <= trace.now):
+                reason = f"the trace ends at {trace.now}, and no visit is left before it is entered"
+            elif is_last and stays and visit.leave is not None:
+                reason = "it must be left by entering the next visit, or never"
+            if reason is not None:
+                yield violation_at_visit("trace/ticks", plan.robot, visit, reason)
+            due = visit.leave
+
+
+@rule("execution/duration", "A visit that is left has lasted at least the resource's duration times the pace.", ADG)
+def durations_are_kept(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Violation]:
+    del solution
+    for done in trace.plans:
+        for visit in done.visits:
+            least = instance.duration(done.robot, visit.resource)
+            if visit.leave is not None and visit.leave - visit.enter < least:
+                reason = f"it stayed {visit.leave - visit.enter} of at least {least} ticks"
+                yield violation_at_visit("execution/duration", done.robot, visit, reason)
+
+
+@rule(
+    "execution/order",
+    "A robot enters a resource only when each robot has left it that, by the plans, has left it when the robot enters; "
+    "where following is forbidden, a tick after that.",
+    ADG,
+)
+def order_is_kept(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Violation]:
+    happened = _happened(trace)
+    for stays in stays_by_resource(solution.plans).values():
+        yield from _too_early("execution/order", stays, stays, happened, instance.gap, instance.gap)
+
+
+@rule(
+    "execution/exchange",
+    "Of two robots that, by the plans, make the moves (r, s) and (s, r) at different ticks, the first moves at an "
+    "earlier tick than the second.",
+    ADG,
+)
+def exchange_order_is_kept(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Violation]:
+    del instance
+    happened = _happened(trace)
+    for stays in stays_by_resource(solution.plans).values():
+        leaving: dict[ResourceId | None, list[Stay]] = defaultdict(list)
+        entering: dict[ResourceId | None, list[Stay]] = defaultdict(list)
+        for stay in stays:
+            leaving[stay.target].append(stay)
+            entering[stay.source].append(stay)
+        for neighbour in leaving.keys() - {None}:
+            yield from _too_early("execution/exchange", leaving[neighbour], entering[neighbour], happened, 1, 1)
+
+
+def _too_early(
+    rule: str, leaving: Sequence[Stay], entering: Sequence[Stay], happened: Happened, planned: int, least: int
+) -> Iterator[Violation]:
+    """The robots that entered too early: another, by the plans `planned` ticks ahead, was not `least` ahead.
+
+    Both are swept in the order of the plans; of those that should have left, the one that left last is blamed.
+    """
+    left = sorted((stay for stay in leaving if stay.visit.leave is not None), key=lambda stay: stay.visit.leave or 0)
+    last: Stay | None = None
+    last_left: int | None = -1
+    place = 0
+    for stay in sorted(entering, key=lambda stay: stay.visit.enter):
+        while place < len(left) and (left[place].visit.leave or 0) + planned <= stay.visit.enter:
+            done = happened.get(left[place].node)
+            leave = None if done is None else done.leave
+            if last_left is not None and (leave is None or leave > last_left):
+                last, last_left = left[place], leave
+            place += 1
+        entered = happened.get(stay.node)
+        if last is not None and entered is not None and (last_left is None or last_left + least > entered.enter):
+            when = "has not left" if last_left is None else f"left at {last_left}"
+            reason = (
+                f"by the plans robot {last.node[0]} leaves first, in {interval(last.visit.enter, last.visit.leave)}"
+            )
+            yield violation_at_visit(rule, stay.node[0], entered, f"{reason}, and {when}")
+
+
+@rule(
+    "execution/acyclic",
+    "The dependency graph of a solution has no cycle: at no tick do robots enter each other's places in a circle.",
+    ADG,
+)
+def is_acyclic(instance: Instance, solution: Solution) -> Iterator[Violation]:
+    cycle = shortest_cycle(tuple(dependencies(instance, solution.plans)))
+    if cycle:
+        plans = {plan.robot: plan for plan in solution.plans}
+        robots = [edge.after[0] for edge in cycle]
+        ways = ", ".join(str(edge.resource) for edge in cycle)
+        robot, place = cycle[0].after
+        yield Violation(
+            "execution/acyclic",
+            tuple(robots),
+            cycle[0].resource,
+            plans[robot].visits[place].enter,
+            plans[robot].visits[place].enter + 1,
+            f"each enters as the next one leaves: {ways}",
+        )
+
+
+TRACE_RULES: tuple[Rule[[Instance, Solution, Trace], Iterator[Violation]], ...] = (
+    trace_names_robots,
+    trace_is_prefix,
+    trace_keeps_time,
+)
+EXECUTION_RULES: tuple[Rule[[Instance, Solution, Trace], Iterator[Violation]], ...] = (
+    durations_are_kept,
+    order_is_kept,
+    exchange_order_is_kept,
+)
+
+
+def trace_violations(
+    instance: Instance, solution: Solution, trace: Trace, most: int | None = MOST_LISTED
+) -> tuple[Violation, ...]:
+    """Where the trace does not follow the lawful solution, rule by rule; at most the first `most` of each rule.
+
+    The rules of execution are asked only of a trace that keeps those of traces.
+    """
+    for rules in (TRACE_RULES, EXECUTION_RULES):
+        violations = [violation for each in rules for violation in islice(each(instance, solution, trace), most)]
+        if violations:
+            return tuple(violations)
+    return ()
+
+
+def _pairs(solution: Solution, trace: Trace) -> Iterator[tuple[Plan, Plan]]:
+    """Each robot's plan with what it has done."""
+    plans = {plan.robot: plan for plan in solution.plans}
+    for done in trace.plans:
+        if done.robot in plans:
+            yield plans[done.robot], done
+
+
+def _happened(trace: Trace) -> Happened:
+    return {(done.robot, place): visit for done in trace.plans for place, visit in enumerate(done.visits)}

@@ -1,0 +1,153 @@
+"""The rules of an execution once more, pair by pair, and what follows from them, on drawn solutions and traces."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import product
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from tests.profiles import draws
+
+import carp_reference
+from carp_spec import Carp, Instance, Plan, Solution, Visit, check
+from carp_spec.dependencies import Stay, dependencies, is_before, shortest_cycle, stays_by_resource
+from carp_spec.execution_rules import is_acyclic, trace_violations
+from carp_spec.joint_rules import following_is_avoided
+from carp_spec.traces import Trace
+from carproof.strategies import PlannedInstance, Sizes, instances, planned_instances
+
+SIZES = Sizes(resources=4, robots=4)
+
+
+@st.composite
+def followed(draw: st.DrawFn) -> tuple[Instance, Solution, Trace]:
+    """A solution and what robots have done of it, each for itself: most are somewhat late, some keep no rule at all."""
+    instance = draw(instances(SIZES))
+    if draw(st.booleans()):
+        instance = replace(instance, following="forbidden")
+    solution = carp_reference.plan(instance, Carp())
+    now = draw(st.integers(0, 12))
+    odd = draw(st.integers(0, 4)) == 0
+    late = st.sampled_from((0, 0, 0, 0, 1, 1, 2, *((-1,) if odd else ())))
+    done = []
+    for plan in solution.plans:
+        visits, shift = [], draw(late)
+        for visit in plan.visits:
+            enter = visit.enter + shift
+            shift += draw(late)
+            if enter > now:
+                break
+            leave = None if visit.leave is None or visit.leave + shift > now else visit.leave + shift
+            visits.append(Visit(visit.resource, enter, leave))
+        done.append(Plan(plan.robot, tuple(visits)))
+    if odd and done and draw(st.booleans()):
+        done.pop()
+    return instance, solution, Trace(now, tuple(done))
+
+
+def broken(instance: Instance, solution: Solution, trace: Trace) -> set[str]:
+    """The rules of execution that a trace breaks, pair by pair."""
+    done = {(plan.robot, place): visit for plan in trace.plans for place, visit in enumerate(plan.visits)}
+    rules = set()
+    for (robot, _), visit in done.items():
+        if visit.leave is not None and visit.leave < visit.enter + instance.duration(robot, visit.resource):
+            rules.add("execution/duration")
+    for one, other in pairs(instance, solution):
+        left = done[one.node].leave if one.node in done else None
+        if other.node in done:
+            entered = done[other.node].enter
+            if left is None or left + instance.gap > entered:
+                rules.add("execution/order")
+            opposite = one.target is not None and one.target == other.source and one.visit.leave != other.visit.enter
+            if opposite and (left is None or left >= entered):
+                rules.add("execution/exchange")
+    return rules
+
+
+def pairs(instance: Instance, solution: Solution) -> Iterator[tuple[Stay, Stay]]:
+    for stays in stays_by_resource(solution.plans).values():
+        yield from ((one, other) for one, other in product(stays, stays) if is_before(instance, one.visit, other.visit))
+
+
+@settings(max_examples=draws(400))
+@given(followed())
+def test_a_trace_breaks_the_rules_spelt_out_pair_by_pair(case: tuple[Instance, Solution, Trace]) -> None:
+    found = {violation.rule for violation in trace_violations(*case)}
+    if not any(rule.startswith("trace/") for rule in found):
+        exchanges = {"execution/exchange"}
+        assert found - exchanges == broken(*case) - exchanges
+        assert broken(*case) & exchanges <= found
+
+
+@settings(max_examples=draws(200))
+@given(followed(), st.data())
+def test_a_trace_that_is_none_is_found_before_rules_of_execution(
+    case: tuple[Instance, Solution, Trace], data: st.DataObject
+) -> None:
+    instance, solution, trace = case
+    if not trace.plans or trace_violations(*case):
+        return
+    at = data.draw(st.integers(0, len(trace.plans) - 1))
+    plan = trace.plans[at]
+    wrong = {
+        "trace/robots": (*trace.plans, plan),
+        "trace/prefix": (*trace.plans[:at], replace(plan, visits=(Visit("nowhere", 0, None),)), *trace.plans[at + 1 :]),
+    }
+    for rule, plans in wrong.items():
+        assert {each.rule for each in trace_violations(instance, solution, Trace(trace.now, plans))} >= {rule}
+    if plan.visits:
+        gone = replace(plan, visits=(*plan.visits[:-1], replace(plan.visits[-1], enter=trace.now + 1)))
+        plans = (*trace.plans[:at], gone, *trace.plans[at + 1 :])
+        assert {each.rule for each in trace_violations(instance, solution, Trace(trace.now, plans))} == {"trace/ticks"}
+
+
+@settings(max_examples=draws(400))
+@given(followed())
+def test_what_has_happened_by_a_trace_that_follows_breaks_no_rule_of_robots_together(
+    case: tuple[Instance, Solution, Trace],
+) -> None:
+    instance, _, trace = case
+    if not trace_violations(*case):
+        together = {violation.rule for violation in check(instance, trace.plans)}
+        assert not {rule for rule in together if rule.startswith("joint/")} - {"joint/exchange"}
+        rotation_free = "joint/exchange" not in together
+        assert rotation_free
+
+
+@settings(max_examples=draws(400))
+@given(planned_instances(SIZES))
+def test_a_solution_has_a_cycle_if_its_edges_spelt_out_have_one(case: PlannedInstance) -> None:
+    instance, plans = case.instance, case.solution.plans
+    edges = {(edge.before, edge.after) for edge in dependencies(instance, plans)}
+    all_edges = set(edges)
+    for one, other in pairs(instance, case.solution):
+        robot, place = one.node
+        all_edges.add(((robot, place + 1) if one.target is not None else one.node, other.node))
+    nodes = {node for edge in all_edges for node in edge}
+    while True:
+        ends = {node for node in nodes if not any(before == node and after in nodes for before, after in all_edges)}
+        if not ends:
+            break
+        nodes -= ends
+    assert bool(nodes) == bool(list(is_acyclic(instance, case.solution)))
+    assert bool(nodes) == bool(shortest_cycle(tuple(dependencies(instance, plans))))
+
+
+@settings(max_examples=draws(400))
+@given(planned_instances(SIZES))
+def test_following_is_what_is_too_full_if_robots_count_a_tick_longer(case: PlannedInstance) -> None:
+    forbidding = replace(case.instance, following="forbidden")
+    last = max((visit.leave or visit.enter for plan in case.solution.plans for visit in plan.visits), default=0)
+    crowded = {
+        resource.id
+        for resource in case.instance.graph.resources
+        for tick in range(last + 2)
+        if sum(
+            visit.resource == resource.id and visit.enter <= tick and (visit.leave is None or tick <= visit.leave)
+            for plan in case.solution.plans
+            for visit in plan.visits
+        )
+        > resource.capacity
+    }
+    assert {violation.resource for violation in following_is_avoided(forbidding, case.solution.plans)} == crowded
+    assert not list(following_is_avoided(case.instance, case.solution.plans))

@@ -1,0 +1,131 @@
+"""Traces and the dependency graph: what the rules of an execution promise, and how traces are read."""
+
+import random
+from dataclasses import replace
+
+import pytest
+from tests.spec.making import SOLVED, VANISHING, solution_of
+from tests.spec.rule_examples import CROSSED, RING, TURNING, traced
+
+from carp_spec import Instance, Plan, Refusal, Solution, Visit, check
+from carp_spec.dependencies import Node, dependencies, is_before, shortest_cycle
+from carp_spec.execution_rules import is_acyclic, trace_violations
+from carp_spec.traces import Trace, read_trace, trace_document, write_trace
+
+TRACE = Trace(2, (Plan("r1", (Visit("a", 0, 1), Visit("b", 1, None))), Plan("r2", ())))
+
+
+def test_a_trace_is_read_as_it_was_written() -> None:
+    assert read_trace(write_trace(TRACE)) == TRACE
+
+
+@pytest.mark.parametrize(
+    ("change", "path", "rule"),
+    [
+        ({"now": -1}, "$.now", "document/shape"),
+        ({"now": True}, "$.now", "document/shape"),
+        ({"format": "carproof-trace/2"}, "$.format", "document/format"),
+        ({"plans": [{"robot": "r1", "visits": [["a", 0]]}]}, "$.plans[0].visits[0]", "document/shape"),
+        ({"more": 1}, "$", "document/shape"),
+    ],
+)
+def test_a_malformed_trace_is_refused_with_path_and_rule(change: dict[str, object], path: str, rule: str) -> None:
+    import msgspec
+
+    data = msgspec.json.encode({**msgspec.to_builtins(trace_document(TRACE)), **change})
+    with pytest.raises(Refusal) as refused:
+        read_trace(data)
+    assert (refused.value.path, refused.value.rule) == (path, rule)
+
+
+def test_rules_of_execution_are_asked_only_of_what_is_a_trace() -> None:
+    instance, solution, trace = traced(2, r1=(("b", 0, None),), r2=(("e", 1, None),)).arguments
+    assert {violation.rule for violation in trace_violations(instance, solution, trace)} == {"trace/prefix"}
+
+
+def test_no_more_violations_than_asked_for_are_listed_of_each_rule() -> None:
+    empty = Trace(0, ())
+    solution = solution_of(SOLVED)
+    assert len(trace_violations(VANISHING, solution, empty)) == len(SOLVED)
+    assert len(trace_violations(VANISHING, solution, empty, most=1)) == 1
+
+
+def test_edges_that_follow_from_others_are_left_out_and_none_else() -> None:
+    """Every pair of visits of which one is before the other is joined by a way that takes long enough."""
+    for seed in range(40):
+        instance, solution = wide_case(seed)
+        edges = list(dependencies(instance, solution.plans))
+        visits = {(plan.robot, place): visit for plan in solution.plans for place, visit in enumerate(plan.visits)}
+        reached = longest_ways(edges, list(visits))
+        for (robot, place), visit in visits.items():
+            for other, later in visits.items():
+                if visit.resource == later.resource and is_before(instance, visit, later):
+                    following = (robot, place + 1)
+                    assert other in ((*reached[following], following) if following in visits else reached[robot, place])
+        orders = [edge for edge in edges if edge.kind == "order"]
+        assert len({(edge.before, edge.after) for edge in orders}) == len(orders)
+
+
+def longest_ways(edges: list, nodes: list[Node]) -> dict[Node, set[Node]]:  # type: ignore[type-arg]
+    """The nodes that can be reached from each."""
+    following: dict[Node, list[Node]] = {}
+    for edge in edges:
+        following.setdefault(edge.before, []).append(edge.after)
+    reached = {}
+    for node in nodes:
+        found: set[Node] = set()
+        waiting = [node]
+        while waiting:
+            for after in following.get(waiting.pop(), ()):
+                if after not in found:
+                    found.add(after)
+                    waiting.append(after)
+        reached[node] = found
+    return reached
+
+
+def wide_case(seed: int) -> tuple[Instance, Solution]:
+    """Robots that cross one place with room for two, one after the other."""
+    from carp_spec import Resource, ResourceGraph, Robot
+
+    draw = random.Random(seed)  # noqa: S311 - no secret
+    graph = ResourceGraph((Resource("m", capacity=2), Resource("a", 99), Resource("b", 99)), (("a", "m"), ("m", "b")))
+    robots = tuple(Robot(f"r{number}", *draw.choice((("a", "b"), ("b", "a")))) for number in range(6))
+    instance = Instance(graph, robots, following=draw.choice(("allowed", "forbidden")))
+    plans: list[Plan] = []
+    for robot in robots:
+        for enter in range(1, 40):
+            leave = enter + draw.randint(1, 3)
+            stays = (Visit(robot.start, 0, enter), Visit("m", enter, leave), Visit(robot.goal, leave, leave + 1))
+            plan = Plan(robot.id, stays)
+            if not check(instance, [*plans, plan]):
+                plans.append(plan)
+                break
+    return instance, solution_of(plans)
+
+
+def test_a_cycle_is_a_rotation_and_is_named_with_robots_resources_and_tick() -> None:
+    instance, solution = Instance(RING, TURNING[0]), solution_of(TURNING[1])
+    cycle = shortest_cycle(tuple(dependencies(instance, solution.plans)))
+    assert len(cycle) == 3
+    (violation,) = is_acyclic(instance, solution)
+    assert (sorted(map(str, violation.robots)), violation.start) == (["r1", "r2", "r3"], 1)
+
+
+def test_the_shortest_of_several_cycles_is_named() -> None:
+    from carp_spec import Resource, ResourceGraph, Robot
+
+    ring = "defg"
+    edges = (*RING.edges, *((ring[at - 1], ring[at]) for at in range(4)))
+    graph = ResourceGraph((*(Resource(id) for id in ring), *RING.resources), edges)
+    robots = (*(Robot(f"s{at}", ring[at - 1], ring[at]) for at in range(4)), *TURNING[0])
+    plans = [Plan(robot.id, (Visit(robot.start, 0, 1), Visit(robot.goal, 1, 2))) for robot in robots]
+    instance = Instance(graph, robots)
+    assert not check(instance, plans)
+    assert len(shortest_cycle(tuple(dependencies(instance, plans)))) == 3
+
+
+def test_without_following_there_is_no_edge_that_takes_no_time() -> None:
+    instance, solution = CROSSED
+    assert any(edge.ticks == 0 for edge in dependencies(instance, solution.plans))
+    assert all(edge.ticks > 0 for edge in dependencies(replace(instance, following="forbidden"), solution.plans))
