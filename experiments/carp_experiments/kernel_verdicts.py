@@ -1,12 +1,12 @@
 """A campaign of random verdicts: the proved kernel and the checkers in Python must agree on all.
 
 A question is a solution to check, sound or broken in one place, or a query certificate to verify, honest or changed.
-A case is a block of questions, put to a kernel that stays up.
+A case is a block of questions, put to one run of the kernel.
 """
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import msgspec
 
@@ -14,10 +14,10 @@ from carp_experiments.report import Report, Table
 from carp_experiments.small_questions import Draw, draw_fleet, draw_instance
 from carp_experiments.store import Row
 from carp_spec import Instance, RobotId, Solution, judge
-from carp_spec.documents import instance_document, solution_document
+from carp_spec.documents import solution_document
 from carp_spec.permutations import splitmix64
 from carp_spec.query_certificates import QueryCertificateDocument
-from carp_verify.kernel import Kernel, KernelVerdict, running_kernel
+from carp_verify.kernel import KernelVerdict, ask, request
 
 BLOCK = 1000
 FULL_VERDICTS = 1_000_000
@@ -40,11 +40,8 @@ class KernelCase:
 
     def run(self) -> Row:
         """How many solutions and certificates were accepted and refused, and the questions on which verdicts differ."""
-        block = Verdicts(self.verdicts)
-        with running_kernel() as kernel:
-            for number in range(self.first, self.first + self.verdicts):
-                draw = Draw(splitmix64(next(splitmix64(self.seed)) + number))
-                (ask_about_query if draw.happens(3) else ask_about_solution)(block, kernel, draw, number)
+        questions = [question(self.seed, number) for number in range(self.first, self.first + self.verdicts)]
+        block = compared(self.first, questions, ask([each.request for each in questions]))
         return msgspec.to_builtins(block)  # type: ignore[no-any-return] # a struct becomes a dict
 
 
@@ -59,22 +56,42 @@ class Verdicts(msgspec.Struct):
     differences: list[dict[str, Any]] = msgspec.field(default_factory=list)
 
 
-def ask_about_solution(block: Verdicts, kernel: Kernel, draw: Draw, number: int) -> None:
-    """Have both check a solution: they must agree whether it is valid, on its cost, and on a rule that it breaks."""
+@dataclass(frozen=True, slots=True)
+class Question:
+    """What the kernel is asked, and what the checkers in Python answer."""
+
+    request: bytes
+    kind: Literal["sound", "broken", "proved", "refused"]
+    rules: Collection[str | None]
+    cost: int | None = None
+    unplanned: int | None = None
+    bound: int | None = None
+
+    def agrees(self, answer: KernelVerdict) -> bool:
+        """Whether the kernel says the same: the figures of what is accepted, or one of the rules that are broken."""
+        if self.kind in ("sound", "proved"):
+            figures = (answer.cost, answer.unplanned, answer.bound)
+            return answer.verdict == "accepted" and figures == (self.cost, self.unplanned, self.bound)
+        return answer.verdict == "refused" and answer.rule in self.rules
+
+
+def question(seed: int, number: int) -> Question:
+    """The question of that number."""
+    draw = Draw(splitmix64(next(splitmix64(seed)) + number))
+    return (about_query if draw.happens(3) else about_solution)(draw)
+
+
+def about_solution(draw: Draw) -> Question:
+    """A solution to check: the verdicts must agree whether it is valid, on its cost, and on a rule that it breaks."""
     instance = draw_instance(draw)
     solution = draw_fleet(draw, instance).solution
     if not draw.happens(3):
         instance, solution = broken(draw, instance, solution)
     verdict = judge(instance, solution)
-    answer = kernel.ask("check", instance, solution=solution_document(solution))
+    asked = request("check", instance, solution=solution_document(solution))
     if verdict.valid:
-        block.sound += 1
-        agree = (answer.verdict, answer.cost, answer.unplanned) == ("accepted", verdict.cost, verdict.unplanned)
-    else:
-        block.broken += 1
-        agree = answer.verdict == "refused" and answer.rule in {violation.rule for violation in verdict.violations}
-    if not agree:
-        note(block, number, instance, solution, None, answer)
+        return Question(asked, "sound", (), verdict.cost, verdict.unplanned)
+    return Question(asked, "broken", {violation.rule for violation in verdict.violations})
 
 
 def broken(draw: Draw, instance: Instance, solution: Solution) -> tuple[Instance, Solution]:
@@ -86,8 +103,8 @@ def broken(draw: Draw, instance: Instance, solution: Solution) -> tuple[Instance
     return chosen.instance, chosen.solution
 
 
-def ask_about_query(block: Verdicts, kernel: Kernel, draw: Draw, number: int) -> None:
-    """Have both verify a query certificate: they must agree whether it proves its bound."""
+def about_query(draw: Draw) -> Question:
+    """A query certificate to verify: the verdicts must agree whether it proves its bound, and which rule it breaks."""
     from carproof.verdicts import verify_query  # noqa: PLC0415 - each worker loads it
 
     instance = draw_instance(draw)
@@ -99,13 +116,8 @@ def ask_about_query(block: Verdicts, kernel: Kernel, draw: Draw, number: int) ->
     if draw.happens(4):
         instance, solution = broken(draw, instance, solution)
     verdict = verify_query(instance, solution, certificate, kernel=False)
-    answer = kernel.ask("verify-query", instance, solution=solution_document(solution), certificate=certificate)
-    if verdict.proved:
-        block.proved += 1
-    else:
-        block.refused += 1
-    if answer.verdict != ("accepted" if verdict.proved else "refused"):
-        note(block, number, instance, solution, certificate, answer)
+    asked = request("verify-query", instance, solution=solution_document(solution), certificate=certificate)
+    return Question(asked, "proved" if verdict.proved else "refused", (verdict.rule,), bound=verdict.bound)
 
 
 def certified(instance: Instance, solution: Solution, robot: RobotId, now: int) -> QueryCertificateDocument:
@@ -137,23 +149,15 @@ def changed(draw: Draw, certificate: QueryCertificateDocument) -> QueryCertifica
     return msgspec.structs.replace(certificate, bound=bound, labels=tuple(labels), potential=tuple(potential))
 
 
-def note(
-    block: Verdicts,
-    number: int,
-    instance: Instance,
-    solution: Solution,
-    certificate: QueryCertificateDocument | None,
-    answer: KernelVerdict,
-) -> None:
-    """Note a difference."""
-    question = {
-        "number": number,
-        "instance": instance_document(instance),
-        "solution": solution_document(solution),
-        "certificate": certificate,
-        "kernel": answer,
-    }
-    block.differences.append(msgspec.to_builtins(question))
+def compared(first: int, questions: Sequence[Question], answers: Sequence[KernelVerdict]) -> Verdicts:
+    """How many questions of each kind there are, and those on which the kernel differs."""
+    block = Verdicts(len(questions))
+    for number, (asked, answer) in enumerate(zip(questions, answers, strict=True), first):
+        setattr(block, asked.kind, getattr(block, asked.kind) + 1)
+        if not asked.agrees(answer):
+            difference = {"number": number, "request": msgspec.json.decode(asked.request), "kernel": answer}
+            block.differences.append(msgspec.to_builtins(difference))
+    return block
 
 
 def kernel_cases(verdicts: int, seed: int) -> tuple[KernelCase, ...]:

@@ -13,7 +13,7 @@ from carp_spec import Instance, Plan, Refusal, Solution
 from carp_spec.documents import solution_document
 from carp_spec.query_certificates import QueryCertificateDocument
 from carp_verify.bound_rules import ContradictionError
-from carp_verify.kernel import running_kernel
+from carp_verify.kernel import ask, request
 from carp_verify.query_certificate_rules import plans_are_lawful, size_fits
 from carp_verify.verify_query import Traffic, require_certificate
 from carproof.engines import Engine
@@ -142,15 +142,14 @@ def ask_kernel(instance: Instance, solution: Solution, audit: Audit) -> None:
 
     Raises `ContradictionError` if it decides otherwise.
     """
-    with running_kernel() as kernel:
-        if audit.holds:
-            order = tuple(plan.robot for plan in audit.certified)
-            document = solution_document(replace(solution, order=order))
-            answers = [kernel.ask("audit", instance, solution=document, certificates=audit.certificates)]
-        else:
-            solutions = [_planned(instance, (*late.before, late.earlier)) for late in audit.late]
-            answers = [kernel.ask("check", instance, solution=solution_document(each)) for each in solutions]
-    for answer in answers:
+    if audit.holds:
+        order = tuple(plan.robot for plan in audit.certified)
+        document = solution_document(replace(solution, order=order))
+        requests = [request("audit", instance, solution=document, certificates=audit.certificates)]
+    else:
+        solutions = [_planned(instance, (*late.before, late.earlier)) for late in audit.late]
+        requests = [request("check", instance, solution=solution_document(each)) for each in solutions]
+    for answer in ask(requests):
         if not answer.accepted:
             raise ContradictionError(f"{CHECKER} and {answer.by} differ: {answer.message} [{answer.rule}]")
         audit.by = answer.by

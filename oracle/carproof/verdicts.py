@@ -4,7 +4,7 @@ from carp_spec import Instance, Refusal, Solution
 from carp_spec.bounds import BoundDocument
 from carp_spec.documents import solution_document
 from carp_spec.query_certificates import QueryCertificateDocument
-from carp_verify.kernel import running_kernel
+from carp_verify.kernel import ask, request
 from carp_verify.kernel import verify_bound as ask_about_bound
 from carproof.audit import CHECKER
 from carproof.results import VerifiedBoundDocument, VerifiedQueryDocument
@@ -15,10 +15,8 @@ def verify_query(
 ) -> VerifiedQueryDocument:
     """Whether a query certificate proves its bound."""
     if kernel:
-        with running_kernel() as program:
-            answer = program.ask(
-                "verify-query", instance, solution=solution_document(solution), certificate=certificate
-            )
+        question = request("verify-query", instance, solution=solution_document(solution), certificate=certificate)
+        (answer,) = ask([question])
         if answer.accepted:
             return VerifiedQueryDocument(True, certificate.bound, None, None, None, answer.by)
         return VerifiedQueryDocument(False, None, answer.path, answer.rule, answer.message, answer.by)

@@ -2,8 +2,7 @@
 
 import os
 import subprocess
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from shutil import which
 from tempfile import TemporaryDirectory
@@ -91,36 +90,18 @@ def program() -> str:
     return found
 
 
-class Kernel:
-    """A kernel that stays up."""
-
-    def __init__(self, process: "subprocess.Popen[bytes]") -> None:
-        self._process = process
-
-    def ask(self, op: str, instance: Instance, **documents: object) -> KernelVerdict:
-        """Put one request; raises `Refusal` if there is no answer."""
-        require_following(instance)
-        request = {"op": op, "instance": instance_document(instance), **documents}
-        process = self._process
-        assert process.stdin is not None  # noqa: S101 - a pipe
-        assert process.stdout is not None  # noqa: S101
-        try:
-            process.stdin.write(msgspec.json.encode(request) + b"\n")
-            process.stdin.flush()
-        except BrokenPipeError:
-            return _verdict("")
-        return _verdict(process.stdout.readline().decode(errors="replace"))
+def request(op: str, instance: Instance, **documents: object) -> bytes:
+    """One line that asks the kernel; raises `Refusal` if it does not know the instance's rules."""
+    require_following(instance)
+    return msgspec.json.encode({"op": op, "instance": instance_document(instance), **documents}) + b"\n"
 
 
-@contextmanager
-def running_kernel() -> Iterator[Kernel]:
-    """A kernel that ends with the block; raises `Refusal` if there is no program."""
+def ask(requests: Sequence[bytes]) -> list[KernelVerdict]:
+    """Put requests to one run of the kernel; raises `Refusal` if there is no program, or no answer to one."""
     command = [program(), "serve"]
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:  # noqa: S603 - ours
-        try:
-            yield Kernel(process)
-        finally:
-            process.kill()
+    done = subprocess.run(command, input=b"".join(requests), stdout=subprocess.PIPE, check=False)  # noqa: S603 - ours
+    lines = done.stdout.decode(errors="replace").split("\n")
+    return [_verdict(lines[number] if number < len(lines) else "") for number in range(len(requests))]
 
 
 def verify_bound(instance: Instance, certificate: BoundDocument, formulas: Mapping[int, str]) -> KernelVerdict:

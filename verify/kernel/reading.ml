@@ -356,9 +356,13 @@ let query_of_json { resource_numbers; robot_numbers; _ } path json =
     | `List [ place; tick ] -> (number resource_numbers (id (path ^ "[0]") place), whole (path ^ "[1]") tick)
     | _ -> shape path "an array of a resource and a whole number"
   in
+  let since_0 path json =
+    let tick = whole path json in
+    if Z.sign tick < 0 then shape path "a whole number of at least 0" else tick
+  in
   let field = fields path ~required:[ "format"; "robot"; "now"; "bound"; "labels"; "potential" ] ~optional:[] json in
   { query_robot = number robot_numbers (required field "robot" id);
-    now = required field "now" whole;
+    now = required field "now" since_0;
     query_certificate =
       { QueryCertificate.bound = required field "bound" whole_or_null;
         labels = required field "labels" (elements place_and_tick);

@@ -85,7 +85,7 @@ let verify_query (read : Reading.instance) (solution : Law.solution) (query : Re
   if Audit.query_accepted read.instance solution query_robot now query_certificate then
     Accepted [ ("bound", Option.fold ~none:`Null ~some:whole query_certificate.bound) ]
   else if not (Audit.plans_accepted read.instance (Checker.lookup_of read.instance) solution.plans) then
-    Refused ("query/sound", "each plan must be lawful by itself, and of a robot of its own")
+    Refused ("query-certificate/plans", "each plan must be lawful by itself, and of a robot of its own")
   else
     let rule, message = query_fault read solution query in
     Refused (rule, message)

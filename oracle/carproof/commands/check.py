@@ -10,7 +10,7 @@ from carp_spec import RULES, Instance, Solution, Verdict, judge, write_verdict
 from carp_spec.check import MOST_LISTED
 from carp_spec.documents import solution_document, write
 from carp_verify.bound_rules import ContradictionError
-from carp_verify.kernel import KernelVerdict, running_kernel
+from carp_verify.kernel import KernelVerdict, ask, request
 from carproof.answer import Answer
 from carproof.files import InputFile, print_document, read_instance_file, refuse_two_standard_inputs, write_whole
 from carproof.foreign import MovingAI, from_option, movingai_options, read_movingai, read_solution_of
@@ -89,8 +89,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
 def kernel_verdict(instance: Instance, solution: Solution, verdict: Verdict) -> KernelVerdict:
     """The verdict of the kernel; raises `ContradictionError` if that of `carp_spec` is another."""
-    with running_kernel() as kernel:
-        answer = kernel.ask("check", instance, solution=solution_document(solution))
+    (answer,) = ask([request("check", instance, solution=solution_document(solution))])
     says = (answer.accepted, answer.cost, answer.unplanned)
     if says != ((True, verdict.cost, verdict.unplanned) if verdict.valid else (False, None, None)):
         raise ContradictionError(f"carp_spec and {answer.by} differ: {answer.message or says}")
