@@ -15,7 +15,7 @@ from carp_experiments.small_questions import Draw, draw_fleet, draw_instance
 from carp_experiments.store import Row
 from carp_spec import Instance, RobotId, Solution, judge
 from carp_spec.documents import solution_document
-from carp_spec.permutations import splitmix64
+from carp_spec.permutations import shuffle, splitmix64
 from carp_spec.query_certificates import QueryCertificateDocument
 from carp_verify.kernel import KernelVerdict, ask, request
 
@@ -82,11 +82,16 @@ def question(seed: int, number: int) -> Question:
 
 
 def about_solution(draw: Draw) -> Question:
-    """A solution to check: the verdicts must agree whether it is valid, on its cost, and on a rule that it breaks."""
+    """A question about a solution, sound or broken."""
     instance = draw_instance(draw)
     solution = draw_fleet(draw, instance).solution
     if not draw.happens(3):
         instance, solution = broken(draw, instance, solution)
+    return checked(instance, solution)
+
+
+def checked(instance: Instance, solution: Solution) -> Question:
+    """A solution to check: the verdicts must agree whether it is valid, on its cost, and on a rule that it breaks."""
     verdict = judge(instance, solution)
     asked = request("check", instance, solution=solution_document(solution))
     if verdict.valid:
@@ -98,15 +103,13 @@ def broken(draw: Draw, instance: Instance, solution: Solution) -> tuple[Instance
     """The solution changed in one place so that it breaks a rule."""
     from carproof.mutations import MUTATIONS  # noqa: PLC0415 - each worker loads it
 
-    mutants = [found for found in (list(mutation(instance, solution)) for mutation in MUTATIONS) if found]
-    chosen = draw.one_of(draw.one_of(mutants))
+    kinds = (list(mutation(instance, solution)) for mutation in shuffle(MUTATIONS, draw.stream))
+    chosen = draw.one_of(next(mutants for mutants in kinds if mutants))
     return chosen.instance, chosen.solution
 
 
 def about_query(draw: Draw) -> Question:
-    """A query certificate to verify: the verdicts must agree whether it proves its bound, and which rule it breaks."""
-    from carproof.verdicts import verify_query  # noqa: PLC0415 - each worker loads it
-
+    """A question about a query certificate, honest or changed."""
     instance = draw_instance(draw)
     fleet = draw_fleet(draw, instance)
     solution, robot = fleet.solution, draw.one_of([*instance.robot])
@@ -115,6 +118,13 @@ def about_query(draw: Draw) -> Question:
         certificate = changed(draw, certificate)
     if draw.happens(4):
         instance, solution = broken(draw, instance, solution)
+    return verified(instance, solution, certificate)
+
+
+def verified(instance: Instance, solution: Solution, certificate: QueryCertificateDocument) -> Question:
+    """A query certificate to verify: the verdicts must agree whether it proves its bound, or which rule it breaks."""
+    from carproof.verdicts import verify_query  # noqa: PLC0415 - each worker loads it
+
     verdict = verify_query(instance, solution, certificate, kernel=False)
     asked = request("verify-query", instance, solution=solution_document(solution), certificate=certificate)
     return Question(asked, "proved" if verdict.proved else "refused", (verdict.rule,), bound=verdict.bound)

@@ -1,20 +1,18 @@
 """The proved kernel: it agrees with `carp_spec` on every verdict, and refuses what it should not read."""
 
-import fcntl
 import json
-import os
 import subprocess
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from shutil import which
 from typing import Any
 
 import msgspec
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from tests.verify.kernel_program import program
 from tests.verify.test_bound import TINY, certificates, crossing, cut_certificate
 
 from carp_reference.context import context_of
@@ -52,28 +50,7 @@ from carproof.strategies import (
     planned_instances,
 )
 
-ROOT = Path(__file__).parents[2]
-PROGRAM = ROOT / "build/kernel/carproof-kernel"
-PACKAGES = "coq, ocaml, ocaml-findlib, libyojson-ocaml-dev and libzarith-ocaml-dev"
 Json = Any
-
-
-@cache
-def program() -> str:
-    """The kernel, made by `make kernel` if its sources have changed."""
-    if not all(map(which, ("coqc", "ocamlfind", "ocamlopt"))):
-        reason = f"the kernel needs the Debian packages {PACKAGES}"
-        if os.environ.get("CARPROOF_REQUIRE_ALL") == "1":
-            pytest.fail(reason)
-        pytest.skip(reason)
-    PROGRAM.parent.mkdir(parents=True, exist_ok=True)
-    with (PROGRAM.parent / "lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        made = subprocess.run(
-            [which("make") or "make", "kernel"], cwd=ROOT, capture_output=True, text=True, check=False
-        )
-    assert made.returncode == 0, made.stderr
-    return str(PROGRAM)
 
 
 @cache
@@ -121,8 +98,8 @@ def run(*arguments: str | Path) -> tuple[int, Json, str]:
     return done.returncode, json.loads(done.stdout) if done.stdout else None, done.stderr
 
 
-def questions() -> Iterator[Vector]:
-    return (case for case in vectors() if case.op == "check" and "following" not in case.instance)
+def vectors_of(op: str) -> list[Vector]:
+    return [case for case in vectors() if case.op == op and "following" not in case.instance]
 
 
 @pytest.mark.parametrize("case", [*vectors("joint/following")][1:], ids=lambda case: case.id)
@@ -131,7 +108,7 @@ def test_the_kernel_refuses_instances_that_forbid_following(case: Vector) -> Non
     assert (verdict["verdict"], verdict["rule"]) == ("bad input", "document/shape")
 
 
-@pytest.mark.parametrize("case", list(questions()), ids=lambda case: case.id)
+@pytest.mark.parametrize("case", vectors_of("check"), ids=lambda case: case.id)
 def test_the_kernel_answers_every_vector_of_check_rightly(case: Vector) -> None:
     verdict = ask(encoded(**case.request))
     if "refused" in case.answer:
@@ -144,6 +121,37 @@ def test_the_kernel_answers_every_vector_of_check_rightly(case: Vector) -> None:
     else:
         assert verdict["verdict"] == "refused"
         assert verdict["rule"] in case.violated
+
+
+@pytest.mark.parametrize("case", vectors_of("verify-query"), ids=lambda case: case.id)
+def test_the_kernel_answers_every_vector_of_verify_query_rightly(case: Vector) -> None:
+    verdict = ask(encoded(**case.request))
+    if case.expected == "valid":
+        assert (verdict["verdict"], verdict["bound"]) == ("accepted", case.request["certificate"]["bound"])
+    else:
+        assert (verdict["verdict"], [verdict["rule"]]) == ("refused", list(case.violated))
+
+
+@pytest.mark.parametrize("case", vectors_of("verify-bound"), ids=lambda case: case.id)
+def test_the_kernel_answers_every_vector_of_verify_bound_rightly(case: Vector) -> None:
+    verdict = ask(encoded(**case.request))
+    if case.expected == "valid" or case.violated == ("bound/instance",):
+        assert (verdict["verdict"], verdict["bound"]) == ("accepted", case.request["certificate"]["bound"])
+    elif case.violated == ("bound/cut",):
+        assert verdict["verdict"] == "undecided"
+    else:
+        assert verdict["verdict"] in ("refused", "bad input")
+        assert [verdict["rule"]] == list(case.violated)
+
+
+def test_the_kernel_reads_no_tick_now_before_0() -> None:
+    certificate = {**vectors_of("verify-query")[0].request["certificate"], "now": -1}
+    verdict = ask(encoded(**{**vectors_of("verify-query")[0].request, "certificate": certificate}))
+    assert (verdict["verdict"], verdict["path"], verdict["rule"]) == (
+        "bad input",
+        "$.certificate.now",
+        "document/shape",
+    )
 
 
 @given(planned_instances())

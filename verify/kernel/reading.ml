@@ -143,6 +143,10 @@ let elements read path (json : Yojson.Safe.t) =
 let whole path (json : Yojson.Safe.t) =
   match json with `Int n -> Z.of_int n | `Intlit digits -> Z.of_string digits | _ -> shape path "a whole number"
 
+let natural path json =
+  let n = whole path json in
+  if Z.sign n < 0 then shape path "a whole number of at least 0" else n
+
 let whole_or_null path (json : Yojson.Safe.t) = match json with `Null -> None | _ -> Some (whole path json)
 let text path (json : Yojson.Safe.t) = match json with `String s -> s | _ -> shape path "a string"
 let truth path (json : Yojson.Safe.t) = match json with `Bool b -> b | _ -> shape path "true or false"
@@ -337,7 +341,7 @@ let bound_of_json { resource_numbers; robot_numbers; _ } path json =
   { certificate =
       { Bound.bound = required field "bound" whole;
         scale = required field "scale" whole;
-        price_horizon = required field "horizon" whole;
+        price_horizon = required field "horizon" natural;
         prices = List.rev_append (List.rev resource_prices) exchange_prices;
         cuts = List.map fst cuts;
         claims = required field "robots" (elements claim) };
@@ -356,13 +360,9 @@ let query_of_json { resource_numbers; robot_numbers; _ } path json =
     | `List [ place; tick ] -> (number resource_numbers (id (path ^ "[0]") place), whole (path ^ "[1]") tick)
     | _ -> shape path "an array of a resource and a whole number"
   in
-  let since_0 path json =
-    let tick = whole path json in
-    if Z.sign tick < 0 then shape path "a whole number of at least 0" else tick
-  in
   let field = fields path ~required:[ "format"; "robot"; "now"; "bound"; "labels"; "potential" ] ~optional:[] json in
   { query_robot = number robot_numbers (required field "robot" id);
-    now = required field "now" since_0;
+    now = required field "now" natural;
     query_certificate =
       { QueryCertificate.bound = required field "bound" whole_or_null;
         labels = required field "labels" (elements place_and_tick);
