@@ -1,11 +1,12 @@
 """A campaign of random verdicts: the proved kernel and the checkers in Python must agree on all.
 
 A question is a solution to check, sound or broken in one place, or a query certificate to verify, honest or changed.
-A case is a block of questions, put to one run of the kernel.
+Each fleet that is drawn gives some of all. A case is a block of questions, put to one run of the kernel.
 """
 
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
+from itertools import chain, count, islice
 from typing import Any, Literal
 
 import msgspec
@@ -22,6 +23,9 @@ from carp_verify.kernel import KernelVerdict, ask, request
 BLOCK = 1000
 FULL_VERDICTS = 1_000_000
 QUICK_VERDICTS = 20_000
+BROKEN = 4
+CHANGED = 3
+OF_A_FLEET = BROKEN + CHANGED + 3
 SHOWN = 3
 
 
@@ -40,7 +44,8 @@ class KernelCase:
 
     def run(self) -> Row:
         """How many solutions and certificates were accepted and refused, and the questions on which verdicts differ."""
-        questions = [question(self.seed, number) for number in range(self.first, self.first + self.verdicts)]
+        fleets = (fleet_questions(self.seed, number) for number in count(self.first // OF_A_FLEET))
+        questions = list(islice(chain.from_iterable(fleets), self.verdicts))
         block = compared(self.first, questions, ask([each.request for each in questions]))
         return msgspec.to_builtins(block)  # type: ignore[no-any-return] # a struct becomes a dict
 
@@ -75,19 +80,21 @@ class Question:
         return answer.verdict == "refused" and answer.rule in self.rules
 
 
-def question(seed: int, number: int) -> Question:
-    """The question of that number."""
+def fleet_questions(seed: int, number: int) -> list[Question]:
+    """The questions about the fleet of that number."""
     draw = Draw(splitmix64(next(splitmix64(seed)) + number))
-    return (about_query if draw.happens(3) else about_solution)(draw)
-
-
-def about_solution(draw: Draw) -> Question:
-    """A question about a solution, sound or broken."""
     instance = draw_instance(draw)
-    solution = draw_fleet(draw, instance).solution
-    if not draw.happens(3):
-        instance, solution = broken(draw, instance, solution)
-    return checked(instance, solution)
+    fleet = draw_fleet(draw, instance)
+    solution, robot = fleet.solution, draw.one_of([*instance.robot])
+    mutants = [broken(draw, instance, solution) for _ in range(BROKEN)]
+    honest = certified(instance, solution, robot, draw.one_of([0, fleet.now, fleet.now + 1]))
+    certificates = [honest, *(changed(draw, honest) for _ in range(CHANGED))]
+    return [
+        checked(instance, solution),
+        *(checked(*mutant) for mutant in mutants),
+        *(verified(instance, solution, certificate) for certificate in certificates),
+        verified(*mutants[0], honest),
+    ]
 
 
 def checked(instance: Instance, solution: Solution) -> Question:
@@ -106,19 +113,6 @@ def broken(draw: Draw, instance: Instance, solution: Solution) -> tuple[Instance
     kinds = (list(mutation(instance, solution)) for mutation in shuffle(MUTATIONS, draw.stream))
     chosen = draw.one_of(next(mutants for mutants in kinds if mutants))
     return chosen.instance, chosen.solution
-
-
-def about_query(draw: Draw) -> Question:
-    """A question about a query certificate, honest or changed."""
-    instance = draw_instance(draw)
-    fleet = draw_fleet(draw, instance)
-    solution, robot = fleet.solution, draw.one_of([*instance.robot])
-    certificate = certified(instance, solution, robot, draw.one_of([0, fleet.now, fleet.now + 1]))
-    if not draw.happens(3):
-        certificate = changed(draw, certificate)
-    if draw.happens(4):
-        instance, solution = broken(draw, instance, solution)
-    return verified(instance, solution, certificate)
 
 
 def verified(instance: Instance, solution: Solution, certificate: QueryCertificateDocument) -> Question:
