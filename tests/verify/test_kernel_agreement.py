@@ -65,15 +65,15 @@ def small_questions(case: SmallCase) -> Iterator[Question]:
 
 
 @pytest.mark.parametrize(
-    ("pattern", "step"),
+    ("pattern", "last", "step"),
     [
-        pytest.param(PATTERNS[3], 101, id="some"),
-        *(pytest.param(pattern, 1, id=str(pattern.durations), marks=pytest.mark.nightly) for pattern in PATTERNS),
+        pytest.param(PATTERNS[3], 3000, 7, id="some"),
+        *(pytest.param(pattern, None, 1, id=str(pattern.durations), marks=pytest.mark.nightly) for pattern in PATTERNS),
     ],
 )
-def test_the_kernel_agrees_on_every_small_instance(pattern: Pattern, step: int) -> None:
-    """Connected graphs of up to 4 resources, three robots, both policies."""
-    cases = islice(small_cases(pattern), 0, None, step)
+def test_the_kernel_agrees_on_every_small_instance(pattern: Pattern, last: int | None, step: int) -> None:
+    """Connected graphs of up to 4 resources, three robots, both policies; the first 3,000 have up to 3 resources."""
+    cases = islice(small_cases(pattern), 0, last, step)
     assert differences(question for case in cases for question in small_questions(case)) == []
 
 
