@@ -44,6 +44,14 @@ def failed(stage: Stage = "random", op: Op = "query", finding: Finding = WRONG, 
     return Outcome(case(stage, op, robots), finding, NOBODY)
 
 
+def crashed() -> Outcome:
+    return Outcome(case(), CRASH)
+
+
+def undecided() -> Outcome:
+    return Outcome(case(), None, NOBODY, "it leaves the optimum undecided")
+
+
 def tally(*outcomes: Outcome) -> Tally:
     counted = Tally()
     for outcome in outcomes:
@@ -104,14 +112,15 @@ def test_nine_in_ten_random_cases_of_each_op_must_be_answered_and_half_of_them_t
         (skipped(), "skipped"),
         (not_asked(), "not asked"),
         (failed(), "wrong answer"),
-        (failed(finding=CRASH), "crash"),
+        (crashed(), "crash"),
+        (undecided(), "skipped"),
     ],
 )
 def test_random_cases_are_counted_by_what_came_of_them(outcome: Outcome, words: str) -> None:
     assert label(outcome) == words
     made = report(Level.SOUND, outcome, outcome, tried("smoke"))
     assert made.random == {words: 2}
-    assert made.judged["query"] == 1 + 2 * (outcome.answer is not None)
+    assert made.judged["query"] == 1 + 2 * (words in ("passed", "gave up", "wrong answer"))
     assert list(made.tallies) == ["query"]
     assert len(made.outcomes) == 1
 
@@ -142,6 +151,10 @@ def test_an_interruption_leaves_undecided_what_is_not_wrong() -> None:
         made = report(Level.SOUND, *outcomes)
         made.interrupted = True
         assert (made.conforms, made.shortfalls) == (conforms, [])
+
+
+def test_where_something_is_wrong_nothing_is_said_to_be_missing() -> None:
+    assert report(Level.SOUND, failed("smoke"), skipped("smoke")).shortfalls == []
 
 
 def test_a_level_is_shown_by_its_own_ops_and_by_plan_where_whole_instances_are_asked() -> None:
@@ -244,8 +257,9 @@ def test_random_cases_are_shared_out_among_the_ops(
     monkeypatch.setattr(run, "vector_cases", lambda *_: [])
     subject = Tampered(as_it_is)
     subject.ops = ops
-    made = conform(subject, Options(examples=examples, seed=3))
-    assert sum(count.asked for count in made.tallies.values()) == examples
+    advanced: list[int] = []
+    made = conform(subject, Options(examples=examples, seed=3), lambda: advanced.append(1))
+    assert sum(count.asked for count in made.tallies.values()) == len(advanced) == examples
     assert sorted(count.asked for count in made.tallies.values()) == sorted(asked.values())
 
 

@@ -112,6 +112,12 @@ def test_delays_are_never_below_zero() -> None:
         assert bounded(Instance(line(1, 1), (Robot("a", 0, 1),)), [1], bound, closed=False).formula.clauses[-1] == ()
 
 
+def test_a_robot_that_is_later_than_its_horizon_has_no_plan() -> None:
+    encoding = Encoding(Instance(line(1, 1), (Robot("a", 0, 1), Robot("b", 1, 1))))
+    encoding.grow_to([1, 0])
+    assert encoding.plans([True] * (encoding.formula.variables + 1)) == [None, None]
+
+
 def test_the_time_is_looked_at_before_each_robot() -> None:
     looks: list[int] = []
     Encoding(Instance(line(1, 1), (Robot("a", 0, 1), Robot("b", 1, 0))), lambda: looks.append(1))

@@ -1,3 +1,4 @@
+from dataclasses import replace
 from itertools import permutations
 
 import pytest
@@ -5,6 +6,7 @@ from hypothesis import given, settings
 from tests.profiles import draws
 
 from carp_optimum.gap import best_order, gap
+from carp_optimum.optimum import optimum
 from carp_optimum.solver import TimeOver
 from carp_reference import query
 from carp_spec import (
@@ -19,6 +21,7 @@ from carp_spec import (
     Shuffled,
     total_cost,
 )
+from carp_verify.bound_rules import ContradictionError
 from carproof.strategies import Sizes, instances
 
 SECONDS = 60
@@ -79,6 +82,14 @@ def test_a_search_for_the_best_order_keeps_its_limit() -> None:
     with pytest.raises(TimeOver):
         best_order(Instance(ROOM, (Robot("a", 0, 4),)), 0)
     assert gap(Instance(ROOM, (Robot("a", 0, 4),)), [Carp()], 0).best_order is None
+
+
+def test_plans_that_cost_less_than_a_lower_bound_are_a_contradiction(monkeypatch: pytest.MonkeyPatch) -> None:
+    instance = Instance(ROOM, (Robot("a", 0, 4),))
+    too_much = replace(optimum(instance, SECONDS), lower=4)
+    monkeypatch.setattr("carp_optimum.gap.optimum", lambda *_: too_much)
+    with pytest.raises(ContradictionError, match="plans that break no rule cost 3, less than the lower bound 4"):
+        gap(instance, [Carp()], SECONDS)
 
 
 def test_robots_without_a_way_have_no_best_order() -> None:
