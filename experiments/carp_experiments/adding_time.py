@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from carp_experiments.campaign import key_on_map
-from carp_experiments.quality import ALGORITHMS, ROBOTS, grid_fleet, outcome, seeded
+from carp_experiments.map_cases import MapCase, fleet_of
+from carp_experiments.quality import ALGORITHMS, outcome, seeded
 from carp_experiments.report import Figure, Report, Table
 from carp_experiments.store import MEASURED, Row
 from carp_spec import Neighbourhood, Planner, Shuffled
@@ -38,30 +38,17 @@ PAPER: Mapping[str, tuple[float, float]] = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class TimeCase:
-    """One assignment on one map, its robots presented one by one to every algorithm of the paper."""
-
-    map: int
-    assignment: int
-    robots: int = ROBOTS
-
-    @property
-    def key(self) -> str:
-        """Assignments and maps in their order."""
-        return key_on_map(self.map, self.assignment)
-
-    def run(self) -> Row:
-        """Nanoseconds at the first robot, at every fifth and at the last; and how many robots each planned."""
-        fleet = grid_fleet(self.map, 0, self.robots, self.assignment)
-        planners = {name: seeded(ALGORITHMS[name], self.assignment) for name in PAPER}
-        for planner in planners.values():
-            warm_up(fleet, planner)
-        measured, planned = {}, {}
-        for name, planner in planners.items():
-            measured[name] = times_of(fleet, planner)
-            planned[name] = outcome(fleet)[0]
-        return {"map": self.map, "assignment": self.assignment, "planned": planned, MEASURED: measured}
+def time_row(case: MapCase) -> Row:
+    """Nanoseconds at the first robot, at every fifth and at the last; and how many robots each algorithm planned."""
+    fleet = fleet_of(case)
+    planners = {name: seeded(ALGORITHMS[name], case.assignment) for name in PAPER}
+    for planner in planners.values():
+        warm_up(fleet, planner)
+    measured, planned = {}, {}
+    for name, planner in planners.items():
+        measured[name] = times_of(fleet, planner)
+        planned[name] = outcome(fleet)[0]
+    return {"planned": planned, MEASURED: measured}
 
 
 def warm_up(fleet: "Fleet", planner: Planner) -> None:
@@ -155,12 +142,7 @@ def time_table(summary: Sequence[Time]) -> Table:
         for k in shown:
             place = SHOWN.index(k) if k in SHOWN else 0
             each = by_place[name, k]
-            cells += [spread(each.milliseconds), spread(each.ratio), f"{paper[place] / PAPER['CARP'][place]:.1f}"]
+            cells += [f"{each.milliseconds:.2f}", f"{each.ratio:.2f}", f"{paper[place] / PAPER['CARP'][place]:.1f}"]
         rows.append(tuple(cells))
     title = "Time to plan when the k-th robot comes, in milliseconds and as a ratio to CARP's mean, with 95 % intervals"
     return Table("time", title, tuple(columns), tuple(rows), tuple(columns[1:]))
-
-
-def spread(interval: Interval) -> str:
-    """The estimate and half its interval."""
-    return f"{interval.estimate:.2f} ± {interval.high - interval.estimate:.2f}"

@@ -5,12 +5,11 @@ from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from time import process_time_ns
-from typing import Literal, Protocol, TypeAlias, TypeVar
+from typing import Literal, Protocol, TypeAlias
 
 from carp_experiments.store import Row, Store
 from carp_spec import Refusal
 
-T = TypeVar("T")
 Result: TypeAlias = tuple[str, Row, int]
 Backend: TypeAlias = Literal["loky", "dask"]
 UNUSED = ".*You could benefit from adjusting the input task"
@@ -34,19 +33,6 @@ class Workers:
     count: int = 1
     backend: Backend = "loky"
     scheduler: str | None = None
-
-
-def over_maps(case: Callable[[int, int, int], T], assignments: int, maps: Sequence[int], robots: int) -> tuple[T, ...]:
-    """Cases of a map, an assignment and a number of robots, assignment by assignment.
-
-    So a run that is stopped has whole assignments.
-    """
-    return tuple(case(map, assignment, robots) for assignment in range(assignments) for map in maps)
-
-
-def key_on_map(map: int, assignment: int) -> str:
-    """The key of such a case: assignments and maps in their order."""
-    return f"assignment {assignment:03} map {map:02}"
 
 
 def run_campaign(cases: Sequence[Case], store: Store, workers: Workers, advance: Callable[[], None]) -> None:

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 from carp_experiments.adding_time import PAPER, SHOWN, Time
-from carp_experiments.quality import FULL_MAP, RIVALS, QualitySummary, Saving
+from carp_experiments.map_cases import FULL_MAP
+from carp_experiments.quality import RIVALS, QualitySummary, Saving
 from carp_experiments.quality_report import FEWEST_SHOWN
 from carp_experiments.related_work import FIXED, Related
 from carp_experiments.reuse_counts import PAPERS_SHARES, ReuseOf
@@ -120,7 +121,7 @@ def up_to(saved: Savings, own: Means, map: int, names: Sequence[str], paper: int
     found = f"map {map}: {listed(here)}"
     if known:
         most = max(known, key=lambda each: each.saving.estimate)
-        found += f"; the most is on map {most.map}: {most.algorithm} {plain(most.saving)} ({most.cases} cases)"
+        found += f"; the most is on map {most.map}: {most.algorithm} {most.saving:.1f} ({most.cases} cases)"
     between = {name: own[map, "CARP"].estimate - own[map, name].estimate for name in here}
     if between:
         found += "; between each one's own means: " + ", ".join(f"{name} {less:.1f}" for name, less in between.items())
@@ -157,7 +158,7 @@ def reuse_claims(summary: Sequence[ReuseOf]) -> Iterator[Claim]:
     yield Claim(
         "in Proposed_6 to test all orders takes longer than to plan the other robots again",
         "queries for orders and for the others, with the paper's two reductions: "
-        + ", ".join(f"Proposed_{each.m} {plain(each.orders)} and {plain(each.outside)}" for each in summary),
+        + ", ".join(f"Proposed_{each.m} {each.orders:.1f} and {each.outside:.1f}" for each in summary),
         verdict_of([longer[6]]),
     )
 
@@ -206,7 +207,7 @@ def related_claims(summary: Sequence[Related]) -> Iterator[Claim]:
         "greedy best-first has the best joint plan cost of the orders by priority (ter Mors' heuristics)",
         "totals above that of the order given, CARP's, in per cent, of greedy and of LF, on the maps where these plan "
         "all robots in a quarter of the assignments: "
-        + ", ".join(f"map {map} {plain(ours)} and {plain(theirs)}" for map, ours, theirs in both),
+        + ", ".join(f"map {map} {ours:.1f} and {theirs:.1f}" for map, ours, theirs in both),
         verdict_of([part for _, ours, theirs in both for part in (below_zero(ours), below(ours, theirs))])
         if both
         else "undecided",
@@ -269,11 +270,4 @@ def scaled(interval: Interval, by: float) -> Interval:
 
 def listed(intervals: Mapping[str, Interval], by: float = 1, unit: str = "") -> str:
     """Each name with its interval."""
-    return ", ".join(
-        f"{name} {plain(scaled(each, by))}{' ' + unit if unit else ''}" for name, each in intervals.items()
-    )
-
-
-def plain(interval: Interval) -> str:
-    """The estimate and half its interval."""
-    return f"{interval.estimate:.1f} ± {interval.high - interval.estimate:.1f}"
+    return ", ".join(f"{name} {scaled(each, by):.1f}{' ' + unit if unit else ''}" for name, each in intervals.items())

@@ -107,7 +107,7 @@ def command_of(experiment: Experiment) -> click.Command:
             f"carproof experiment {experiment.name} {profile.options}",
             str(profile),
             experiment.cases(profile),
-            lambda rows: experiment.report(rows, profile),
+            lambda rows: experiment.report(rows, profile.robots),
             **campaign,
         )
 

@@ -2,21 +2,22 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from itertools import product
 
-from carp_experiments import quality
-from carp_experiments.adding_time import PAPERS_MAP, TimeCase, time_report
-from carp_experiments.campaign import Case, over_maps
-from carp_experiments.polishing import PolishCase, polish_report
+from carp_experiments.adding_time import PAPERS_MAP, time_report, time_row
+from carp_experiments.map_cases import FULL_MAP, MapCase
+from carp_experiments.polishing import polish_report, polish_row
+from carp_experiments.quality import quality_row
 from carp_experiments.quality_report import quality_report
-from carp_experiments.related_work import RelatedCase, related_report
+from carp_experiments.related_work import related_report, related_row
 from carp_experiments.report import Report
-from carp_experiments.reuse_counts import ReuseCase, reuse_report
-from carp_experiments.small_gaps import SIDE, GapCase, gap_report
+from carp_experiments.reuse_counts import reuse_report, reuse_row
+from carp_experiments.small_gaps import SIDE, gap_report, gap_row
 from carp_experiments.store import Row
-from carp_experiments.unplanned import UnplannedCase, unplanned_report
+from carp_experiments.unplanned import unplanned_report, unplanned_row
 from carp_spec import Refusal
 
-ALL_MAPS = tuple(range(quality.FULL_MAP + 1))
+ALL_MAPS = tuple(range(FULL_MAP + 1))
 SOME_MAPS = (0, 5, 10, 15, 20)
 SPARSE_MAPS = tuple(range(8))
 
@@ -50,9 +51,14 @@ class Experiment:
     sentence: str
     full: Profile
     quick: Profile
-    cases: Callable[[Profile], Sequence[Case]]
-    report: Callable[[Iterable[Row], Profile], Report]
+    compute: Callable[[MapCase], Row]
+    report: Callable[[Iterable[Row], int], Report]
     places: int = 400
+
+    def cases(self, profile: Profile) -> Sequence[MapCase]:
+        """The cases, assignment by assignment, so that a run that is stopped has whole assignments."""
+        places = product(range(profile.assignments), profile.maps)
+        return [MapCase(self.compute, map, assignment, profile.robots) for assignment, map in places]
 
     def refuse(self, profile: Profile) -> None:
         """Raise `Refusal` where the maps have no place for so many robots."""
@@ -69,15 +75,15 @@ EXPERIMENTS = (
         "Experiment 1 of the paper: failures and total cost, over the maps.",
         Profile(500, 100, ALL_MAPS),
         Profile(20, 30, SOME_MAPS),
-        lambda profile: over_maps(quality.QualityCase, profile.assignments, profile.maps, profile.robots),
-        lambda rows, profile: quality_report(rows, profile.robots),
+        quality_row,
+        quality_report,
     ),
     Experiment(
         "time",
         "Experiment 2 of the paper: time to plan when the k-th robot comes.",
         Profile(500, 100, (PAPERS_MAP,)),
         Profile(20, 50, (PAPERS_MAP,)),
-        lambda profile: over_maps(TimeCase, profile.assignments, profile.maps, profile.robots),
+        time_row,
         lambda rows, _: time_report(rows),
     ),
     Experiment(
@@ -85,16 +91,16 @@ EXPERIMENTS = (
         "Queries asked to add a robot, avoided, and why.",
         Profile(500, 100, (PAPERS_MAP,)),
         Profile(20, 50, (PAPERS_MAP,)),
-        lambda profile: over_maps(ReuseCase, profile.assignments, profile.maps, profile.robots),
-        lambda rows, profile: reuse_report(rows, profile.robots),
+        reuse_row,
+        reuse_report,
     ),
     Experiment(
         "gap",
         f"Small maps, {SIDE} x {SIDE}, against the optimum.",
         Profile(100, 10, ALL_MAPS),
         Profile(20, 6, SOME_MAPS),
-        lambda profile: over_maps(GapCase, profile.assignments, profile.maps, profile.robots),
-        lambda rows, profile: gap_report(rows, profile.robots),
+        gap_row,
+        gap_report,
         places=SIDE * SIDE,
     ),
     Experiment(
@@ -102,23 +108,23 @@ EXPERIMENTS = (
         "Fixed paths, k shortest and k disjoint, and greedy best-first, against CARP.",
         Profile(100, 100, ALL_MAPS),
         Profile(5, 10, (10, 20)),
-        lambda profile: over_maps(RelatedCase, profile.assignments, profile.maps, profile.robots),
-        lambda rows, profile: related_report(rows, profile.robots),
+        related_row,
+        related_report,
     ),
     Experiment(
         "polish",
         "How far the planner is from a proved lower bound, and the polished planner.",
         Profile(100, 100, ALL_MAPS),
         Profile(8, 20, (10, 20)),
-        lambda profile: over_maps(PolishCase, profile.assignments, profile.maps, profile.robots),
-        lambda rows, profile: polish_report(rows, profile.robots),
+        polish_row,
+        polish_report,
     ),
     Experiment(
         "unplanned",
         "What polish leaves unplanned on the sparse maps, and whether it could be planned.",
         Profile(20, 100, SPARSE_MAPS),
         Profile(5, 60, (0, 5)),
-        lambda profile: over_maps(UnplannedCase, profile.assignments, profile.maps, profile.robots),
+        unplanned_row,
         lambda rows, _: unplanned_report(rows),
     ),
 )

@@ -5,7 +5,6 @@ which also tries to plan robots that have no plan. Both by a number of steps, no
 come out anywhere: on the paper's maps these are about ten seconds of the bound and one and three of the polish.
 """
 
-from collections import defaultdict
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from statistics import fmean
@@ -13,9 +12,8 @@ from time import process_time_ns
 
 import msgspec
 
-from carp_experiments.campaign import key_on_map
-from carp_experiments.quality import ALGORITHMS, ROBOTS, seeded
-from carp_experiments.quality_report import MAP_AXIS
+from carp_experiments.map_cases import MAP_AXIS, MapCase, instance_of, rows_by_map
+from carp_experiments.quality import ALGORITHMS, seeded
 from carp_experiments.report import Figure, Report, Table
 from carp_experiments.store import MEASURED, Row
 from carp_spec import Instance, RobotId, Solution, total_cost
@@ -35,56 +33,40 @@ CLOSE_PER_CENT = 1.0
 NANOSECONDS = 1_000_000_000
 
 
-@dataclass(frozen=True, slots=True)
-class PolishCase:
-    """One assignment on one map, bounded, planned and polished."""
+def polish_row(case: MapCase) -> Row:
+    """The sum of shortest paths, the bound, and of each method the robots planned and the total cost.
 
-    map: int
-    assignment: int
-    robots: int = ROBOTS
+    Also the robots that the longest polish leaves unplanned, and the processor time of the bound, and of a
+    polish, in nanoseconds.
+    """
+    import carp_optimized as engine  # noqa: PLC0415 - each worker loads it
+    from carp_optimum.bound import lower_bound  # noqa: PLC0415
 
-    @property
-    def key(self) -> str:
-        """Assignments and maps in their order."""
-        return key_on_map(self.map, self.assignment)
-
-    def run(self) -> Row:
-        """The sum of shortest paths, the bound, and of each method the robots planned and the total cost.
-
-        Also the robots that the longest polish leaves unplanned, and the processor time of the bound, and of a
-        polish, in nanoseconds.
-        """
-        import carp_optimized as engine  # noqa: PLC0415 - each worker loads it
-        from carp_optimum.bound import lower_bound  # noqa: PLC0415
-        from carproof.generate import Fleet, Grid, grid_instance  # noqa: PLC0415
-
-        instance = grid_instance(Grid(map=self.map), Fleet(robots=self.robots, seed=self.assignment))
-        results: dict[str, tuple[int, int]] = {}
-        left: dict[str, Sequence[RobotId]] = {}
-        measured = {}
-        for name, lengths in POLISHED.items():
-            solution = engine.plan(instance, seeded(ALGORITHMS[name], self.assignment))
-            started = process_time_ns()
-            better, at = polish_to(instance, solution, [*lengths.values()], self.assignment)
-            measured[name] = process_time_ns() - started
-            results |= dict(zip((name, *(f"{name} + {length}" for length in lengths)), at, strict=True))
-            left[name] = better.unplanned
+    instance = instance_of(case)
+    results: dict[str, tuple[int, int]] = {}
+    left: dict[str, Sequence[RobotId]] = {}
+    measured = {}
+    for name, lengths in POLISHED.items():
+        solution = engine.plan(instance, seeded(ALGORITHMS[name], case.assignment))
         started = process_time_ns()
-        certificate = lower_bound(instance, steps=STEPS)
-        measured["bound"] = process_time_ns() - started
-        for planned, total in results.values():
-            if planned == len(instance.robots):
-                require_kept(certificate.bound, total)
-        return {
-            "map": self.map,
-            "assignment": self.assignment,
-            "shortest": lower_bound(instance, steps=0).bound,
-            "bound": certificate.bound,
-            "cuts": len(certificate.cuts),
-            "results": results,
-            "left": left,
-            MEASURED: measured,
-        }
+        better, at = polish_to(instance, solution, [*lengths.values()], case.assignment)
+        measured[name] = process_time_ns() - started
+        results |= dict(zip((name, *(f"{name} + {length}" for length in lengths)), at, strict=True))
+        left[name] = better.unplanned
+    started = process_time_ns()
+    certificate = lower_bound(instance, steps=STEPS)
+    measured["bound"] = process_time_ns() - started
+    for planned, total in results.values():
+        if planned == len(instance.robots):
+            require_kept(certificate.bound, total)
+    return {
+        "shortest": lower_bound(instance, steps=0).bound,
+        "bound": certificate.bound,
+        "cuts": len(certificate.cuts),
+        "results": results,
+        "left": left,
+        MEASURED: measured,
+    }
 
 
 def polish_to(
@@ -168,11 +150,7 @@ class PolishSummary:
 
 def polish_report(rows: Iterable[Row], robots: int) -> Report:
     """Tables of gaps, of bounds and of failures; figures of the gaps and of the totals."""
-    by_map: dict[int, list[PolishRow]] = defaultdict(list)
-    for row in rows:
-        measured = msgspec.convert(row, PolishRow)
-        by_map[measured.map].append(measured)
-    maps = sorted(by_map.items())
+    maps = rows_by_map(rows, PolishRow).items()
     floors = tuple(floor(map, each) for map, each in maps)
     methods = tuple(polished(map, name, each, robots) for map, each in maps for name in METHODS)
     tables = (gaps_table(methods), bounds_table(floors, methods), failures_table(methods))
@@ -285,5 +263,4 @@ def _gap(each: Polished) -> str:
 
 
 def _per_cent(interval: Interval) -> str:
-    spread = interval.high - interval.estimate
-    return f"{interval.estimate:.2f} ± {spread:.2f}" if spread else f"{interval.estimate:.2f}"
+    return f"{interval:.2f}" if interval.high > interval.estimate else f"{interval.estimate:.2f}"

@@ -11,19 +11,13 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from carp_experiments.campaign import key_on_map
+from carp_experiments.map_cases import ROBOTS, MapCase, fleet_of, rows_by_map
 from carp_experiments.store import Row
 from carp_spec import Carp, LongestFirst, Neighbourhood, Planner, Shuffled, total_cost
 from carproof.statistics import Interval, mean_interval, proportion_interval
 
 if TYPE_CHECKING:
     from carp_optimized.fleet import Fleet
-
-FULL_MAP = 20
-ROBOTS = 100
-FULL_ASSIGNMENTS = 500
-QUICK_ASSIGNMENTS = 20
-QUICK_ROBOTS = 40
 
 ALGORITHMS: Mapping[str, Planner] = {
     "CARP": Carp(),
@@ -44,46 +38,22 @@ BEFORE_FALLBACK = {"Proposed_4 + CARP100": "Proposed_4"}
 RIVALS = ("CARP", "CARP10", "CARP100", "Proposed_10")
 
 
-@dataclass(frozen=True, slots=True)
-class QualityCase:
-    """One assignment of start and goal nodes to robots, on one map, by every algorithm."""
+def quality_row(case: MapCase) -> Row:
+    """For each algorithm the robots planned and the total cost; beside them the sum of shortest paths.
 
-    map: int
-    assignment: int
-    robots: int = ROBOTS
-    map_seed: int = 0
-
-    @property
-    def key(self) -> str:
-        """Maps and assignments in their order."""
-        return key_on_map(self.map, self.assignment)
-
-    def run(self) -> Row:
-        """For each algorithm the robots planned and the total cost; beside them the sum of shortest paths.
-
-        An algorithm that adds robots one by one stops at the first that stays unplanned: the assignment is a failure
-        then, whatever becomes of the others.
-        """
-        fleet = grid_fleet(self.map, self.map_seed, self.robots, self.assignment)
-        results: dict[str, tuple[int, int]] = {}
-        for name, planner in ALGORITHMS.items():
-            if name not in BEFORE_FALLBACK:
-                plan_all(fleet, seeded(planner, self.assignment))
-                results[name] = outcome(fleet)
-            for fallback in [other for other, before in BEFORE_FALLBACK.items() if before == name]:
-                add_until_failure(fleet, seeded(ALGORITHMS[fallback], self.assignment), results[name][0])
-                results[fallback] = outcome(fleet)
-        shortest = sum(fleet.ticks_to_goal(robot) for robot in range(self.robots))
-        return {"map": self.map, "assignment": self.assignment, "shortest": shortest, "results": results}
-
-
-def grid_fleet(map: int, map_seed: int, robots: int, seed: int) -> "Fleet":
-    """A fleet without plans on a map of the paper; raises `Refusal` where there can be no such fleet."""
-    from carp_optimized.fleet import Fleet  # noqa: PLC0415 - each worker loads it
-    from carproof.generate import Fleet as RandomFleet  # noqa: PLC0415
-    from carproof.generate import Grid, grid_instance  # noqa: PLC0415
-
-    return Fleet(grid_instance(Grid(map=map, map_seed=map_seed), RandomFleet(robots=robots, seed=seed)))
+    An algorithm that adds robots one by one stops at the first that stays unplanned: the assignment is a failure
+    then, whatever becomes of the others.
+    """
+    fleet = fleet_of(case)
+    results: dict[str, tuple[int, int]] = {}
+    for name, planner in ALGORITHMS.items():
+        if name not in BEFORE_FALLBACK:
+            plan_all(fleet, seeded(planner, case.assignment))
+            results[name] = outcome(fleet)
+        for fallback in [other for other, before in BEFORE_FALLBACK.items() if before == name]:
+            add_until_failure(fleet, seeded(ALGORITHMS[fallback], case.assignment), results[name][0])
+            results[fallback] = outcome(fleet)
+    return {"shortest": sum(fleet.ticks_to_goal(robot) for robot in range(case.robots)), "results": results}
 
 
 def plan_all(fleet: "Fleet", planner: Planner) -> None:
@@ -189,11 +159,7 @@ class QualityRow(msgspec.Struct, frozen=True):
 
 def summarise(rows: Iterable[Row], robots: int = ROBOTS) -> QualitySummary:
     """Summaries by map and algorithm; an assignment with an unplanned robot is a failure."""
-    by_map: dict[int, list[QualityRow]] = defaultdict(list)
-    for row in rows:
-        measured = msgspec.convert(row, QualityRow)
-        by_map[measured.map].append(measured)
-    maps = sorted(by_map.items())
+    maps = rows_by_map(rows, QualityRow).items()
     everything = [row for _, each in maps for row in each]
     algorithms = [summary_of(map, name, each, robots) for map, each in maps for name in ALGORITHMS]
     places: list[tuple[int | None, list[QualityRow]]] = [*maps, (None, everything)]

@@ -2,14 +2,13 @@
 
 from collections.abc import Iterable
 
-from carp_experiments.quality import ALGORITHMS, FULL_MAP, QualitySummary, Summary, summarise
+from carp_experiments.map_cases import MAP_AXIS, shown_maps
+from carp_experiments.quality import ALGORITHMS, QualitySummary, Summary, summarise
 from carp_experiments.report import Figure, Report, Table
 from carp_experiments.store import Row
 from carproof.statistics import Interval
 
-SHOWN_MAPS = (0, 5, 10, 15, 20)
 FEWEST_SHOWN = 4  # a mean over less than a quarter of the assignments is no point in a figure
-MAP_AXIS = f"map (0: spanning tree, {FULL_MAP}: full grid)"
 
 
 def quality_report(rows: Iterable[Row], robots: int) -> Report:
@@ -20,8 +19,7 @@ def quality_report(rows: Iterable[Row], robots: int) -> Report:
 def report_of(summary: QualitySummary) -> Report:
     """Two tables over some of the maps, and two figures over all."""
     by_place = {(each.algorithm, each.map): each for each in summary.algorithms}
-    measured = sorted({each.map for each in summary.algorithms})
-    maps = [map for map in SHOWN_MAPS if map in measured] or measured
+    maps = shown_maps(each.map for each in summary.algorithms)
     columns = ("algorithm", *(f"map {map}" for map in maps))
     rates = tuple((name, *(_percent(by_place[name, map].failure_rate) for map in maps)) for name in ALGORITHMS)
     totals = tuple((name, *(_mean(by_place[name, map].total) for map in maps)) for name in ALGORITHMS)
@@ -72,4 +70,4 @@ def _percent(rate: Interval) -> str:
 
 
 def _mean(total: Interval | None) -> str:
-    return "all failed" if total is None else f"{total.estimate:.1f} ± {total.high - total.estimate:.1f}"
+    return "all failed" if total is None else f"{total:.1f}"

@@ -5,16 +5,14 @@ up to the first that one of the two methods leaves without. As each robot is pla
 are those of an instance with no more robots.
 """
 
-from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import takewhile
 
 import msgspec
 
-from carp_experiments.campaign import key_on_map
-from carp_experiments.quality import ROBOTS, grid_fleet, plan_all
-from carp_experiments.quality_report import MAP_AXIS, SHOWN_MAPS
+from carp_experiments.map_cases import MAP_AXIS, MapCase, fleet_of, rows_by_map, shown_maps
+from carp_experiments.quality import plan_all
 from carp_experiments.report import Figure, Report, Table
 from carp_experiments.store import Row
 from carp_spec import Instance, LongestFirst, Plan, ResourceId, Robot, plan_cost
@@ -34,31 +32,20 @@ ORDERED = ("LF", "greedy")
 METHODS = (*ONE_BY_ONE, *ORDERED)
 
 
-@dataclass(frozen=True, slots=True)
-class RelatedCase:
-    """One assignment on one map, by every method; robots are planned in the order given, but by LF and greedy."""
+def related_row(case: MapCase) -> Row:
+    """For each method the cost of each robot's plan, or `None` for a robot without one.
 
-    map: int
-    assignment: int
-    robots: int = ROBOTS
-
-    @property
-    def key(self) -> str:
-        """Assignments and maps in their order."""
-        return key_on_map(self.map, self.assignment)
-
-    def run(self) -> Row:
-        """For each method the cost of each robot's plan, or `None` for a robot without one."""
-        fleet = grid_fleet(self.map, 0, self.robots, self.assignment)
-        plans = fixed_plans(fleet.instance)
-        fleet.carp(range(self.robots))
-        plans["CARP"] = fleet.plans
-        plan_all(fleet, LongestFirst())
-        plans["LF"] = fleet.plans
-        fleet.greedy(lambda: None)
-        plans["greedy"] = fleet.plans
-        costs = {name: costs_of(fleet.instance, found) for name, found in plans.items()}
-        return {"map": self.map, "assignment": self.assignment, "costs": costs}
+    Robots are planned in the order given, but by LF and greedy.
+    """
+    fleet = fleet_of(case)
+    plans = fixed_plans(fleet.instance)
+    fleet.carp(range(case.robots))
+    plans["CARP"] = fleet.plans
+    plan_all(fleet, LongestFirst())
+    plans["LF"] = fleet.plans
+    fleet.greedy(lambda: None)
+    plans["greedy"] = fleet.plans
+    return {"costs": {name: costs_of(fleet.instance, found) for name, found in plans.items()}}
 
 
 def costs_of(instance: Instance, plans: Sequence[Plan]) -> list[int | None]:
@@ -127,15 +114,12 @@ class RelatedRow(msgspec.Struct, frozen=True):
 
 def related_report(rows: Iterable[Row], robots: int) -> Report:
     """Tables over some of the maps, a figure over all."""
-    by_map: dict[int, list[RelatedRow]] = defaultdict(list)
-    for row in rows:
-        measured = msgspec.convert(row, RelatedRow)
-        by_map[measured.map].append(measured)
-    summary = tuple(related_of(map, name, each) for map, each in sorted(by_map.items()) for name in METHODS)
-    maps = [map for map in SHOWN_MAPS if map in by_map] or sorted(by_map)
+    by_map = rows_by_map(rows, RelatedRow)
+    summary = tuple(related_of(map, name, each) for map, each in by_map.items() for name in METHODS)
+    maps = shown_maps(by_map)
     by_place = {(each.method, each.map): each for each in summary}
     columns = ("method", *(f"map {map}" for map in maps))
-    unplanned = [(name, *(_plain(by_place[name, map].unplanned) for map in maps)) for name in METHODS]
+    unplanned = [(name, *(f"{by_place[name, map].unplanned:.1f}" for map in maps)) for name in METHODS]
     above = [(name, *(_compared(by_place[name, map]) for map in maps)) for name in METHODS if name != "CARP"]
     tables = (
         Table(
@@ -184,12 +168,8 @@ def same_robots(
     return [our for our, _ in both if our is not None], [their for _, their in both if their is not None]
 
 
-def _plain(interval: Interval) -> str:
-    return f"{interval.estimate:.1f} ± {interval.high - interval.estimate:.1f}"
-
-
 def _compared(related: Related) -> str:
     if related.above_carp is None:
         return "-"
     of = "" if related.compared == related.assignments else f" ({related.compared} of {related.assignments})"
-    return _plain(related.above_carp) + of
+    return f"{related.above_carp:.1f}{of}"

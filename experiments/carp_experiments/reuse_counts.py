@@ -7,8 +7,7 @@ from math import factorial
 
 import msgspec
 
-from carp_experiments.campaign import key_on_map
-from carp_experiments.quality import ROBOTS, grid_fleet
+from carp_experiments.map_cases import MapCase, fleet_of
 from carp_experiments.report import Report, Table
 from carp_experiments.store import Row
 from carp_optimized.reuse import Reuse
@@ -28,37 +27,27 @@ SAMPLED = 10
 PAPERS_SHARES = {4: 67, 5: 54, 6: 45}
 
 
-@dataclass(frozen=True, slots=True)
-class ReuseCase:
-    """One assignment on one map: the last robot is added to the others, which CARP has planned."""
+def reuse_row(case: MapCase) -> Row:
+    """Queries of adding the last robot to the others, which CARP has planned.
 
-    map: int
-    assignment: int
-    robots: int = ROBOTS
-
-    @property
-    def key(self) -> str:
-        """Assignments and maps in their order."""
-        return key_on_map(self.map, self.assignment)
-
-    def run(self) -> Row:
-        """The queries asked by size of the neighbourhood and kinds of reuse, and those avoided by each kind of ours."""
-        asked: dict[str, dict[str, int]] = {}
-        avoided: dict[str, dict[str, int]] = {}
-        for setting, reuse in SETTINGS.items():
-            fleet = grid_fleet(self.map, 0, self.robots, self.assignment)
-            fleet.reuse = reuse
-            asked[setting] = {}
-            for m in (*SIZES, SAMPLED):
-                fleet.carp(range(self.robots - 1))
-                before = fleet.queries
-                sample = 150 if m == SAMPLED else None
-                fleet.add(self.robots - 1, 0, Neighbourhood(m, sample, self.assignment, baseline=False))
-                after = fleet.queries
-                asked[setting][str(m)] = after.asked - before.asked
-                if setting == "all":
-                    avoided[str(m)] = {kind: getattr(after, kind) - getattr(before, kind) for kind in after.avoided}
-        return {"map": self.map, "assignment": self.assignment, "asked": asked, "avoided": avoided}
+    Those asked by size of the neighbourhood and kinds of reuse, and those avoided by each kind of ours.
+    """
+    asked: dict[str, dict[str, int]] = {}
+    avoided: dict[str, dict[str, int]] = {}
+    for setting, reuse in SETTINGS.items():
+        fleet = fleet_of(case)
+        fleet.reuse = reuse
+        asked[setting] = {}
+        for m in (*SIZES, SAMPLED):
+            fleet.carp(range(case.robots - 1))
+            before = fleet.queries
+            sample = 150 if m == SAMPLED else None
+            fleet.add(case.robots - 1, 0, Neighbourhood(m, sample, case.assignment, baseline=False))
+            after = fleet.queries
+            asked[setting][str(m)] = after.asked - before.asked
+            if setting == "all":
+                avoided[str(m)] = {kind: getattr(after, kind) - getattr(before, kind) for kind in after.avoided}
+    return {"asked": asked, "avoided": avoided}
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,4 +153,4 @@ def outside_left(row: ReuseRow, m: int, robots: int) -> int:
 
 def percent(share: Interval | None) -> str:
     """A share in per cent with its interval."""
-    return "-" if share is None else f"{share.estimate:.1f} ± {share.high - share.estimate:.1f} %"
+    return "-" if share is None else f"{share:.1f} %"

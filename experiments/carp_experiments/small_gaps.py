@@ -3,15 +3,13 @@
 Also what a polish of Proposed_4 leaves, and how far below the optimum the lower bound of `carp_optimum.bound` is.
 """
 
-from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import msgspec
 
-from carp_experiments.campaign import key_on_map
+from carp_experiments.map_cases import MAP_AXIS, MapCase, rows_by_map, shown_maps
 from carp_experiments.quality import ALGORITHMS, outcome, plan_all, seeded
-from carp_experiments.quality_report import MAP_AXIS, SHOWN_MAPS
 from carp_experiments.report import Figure, Report, Table
 from carp_experiments.store import Row
 from carp_spec import Greedy, Planner, total_cost
@@ -32,58 +30,44 @@ ROUNDS = 2_000
 STEPS = 1_000
 
 
-@dataclass(frozen=True, slots=True)
-class GapCase:
-    """One assignment on a small map of its own, by every algorithm and by the search for the optimum."""
+def gap_row(case: MapCase) -> Row:
+    """The optimum, or nothing where it was not found in a minute or there is none; robots planned, and total cost.
 
-    map: int
-    assignment: int
-    robots: int
+    Each assignment has a small map of its own. Only a search that comes near its minute can end otherwise on another
+    machine.
+    """
+    import carp_optimized as engine  # noqa: PLC0415 - each worker loads it
+    from carp_optimized.fleet import Fleet  # noqa: PLC0415
+    from carp_optimum.bound import lower_bound  # noqa: PLC0415
+    from carp_optimum.optimum import optimum  # noqa: PLC0415
+    from carproof.generate import Fleet as RandomFleet  # noqa: PLC0415
+    from carproof.generate import Grid, grid_instance  # noqa: PLC0415
 
-    @property
-    def key(self) -> str:
-        """Assignments and maps in their order."""
-        return key_on_map(self.map, self.assignment)
-
-    def run(self) -> Row:
-        """The optimum, or nothing where it was not found in a minute or there is none; robots planned, and total cost.
-
-        Only a search that comes near its minute can end otherwise on another machine.
-        """
-        import carp_optimized as engine  # noqa: PLC0415 - each worker loads it
-        from carp_optimized.fleet import Fleet  # noqa: PLC0415
-        from carp_optimum.bound import lower_bound  # noqa: PLC0415
-        from carp_optimum.optimum import optimum  # noqa: PLC0415
-        from carproof.generate import Fleet as RandomFleet  # noqa: PLC0415
-        from carproof.generate import Grid, grid_instance  # noqa: PLC0415
-
-        grid = Grid(SIDE, SIDE, self.map, map_seed=self.assignment)
-        instance = grid_instance(grid, RandomFleet(robots=self.robots, seed=self.assignment))
-        fleet = Fleet(instance)
-        results = {}
-        for name, planner in COMPARED.items():
-            if isinstance(planner, Greedy):
-                fleet.greedy(lambda: None)
-            else:
-                plan_all(fleet, seeded(planner, self.assignment))
-            results[name] = outcome(fleet)
-        solution = engine.plan(instance, seeded(COMPARED[GIVEN], self.assignment))
-        polished = engine.polish(instance, solution, iterations=ROUNDS, seed=self.assignment)
-        results[POLISHED] = len(polished.plans), total_cost(instance, polished.plans)
-        best = optimum(instance, LIMIT_IN_SECONDS)
-        bound = lower_bound(instance, steps=STEPS).bound
-        for planned, total in results.values():
-            if planned == len(instance.robots):
-                require_kept(max(best.lower, bound), total)
-        return {
-            "map": self.map,
-            "assignment": self.assignment,
-            "shortest": best.shortest,
-            "bound": bound,
-            "optimum": best.cost if best.decided else None,
-            "decided": best.decided,
-            "results": results,
-        }
+    grid = Grid(SIDE, SIDE, case.map, map_seed=case.assignment)
+    instance = grid_instance(grid, RandomFleet(robots=case.robots, seed=case.assignment))
+    fleet = Fleet(instance)
+    results = {}
+    for name, planner in COMPARED.items():
+        if isinstance(planner, Greedy):
+            fleet.greedy(lambda: None)
+        else:
+            plan_all(fleet, seeded(planner, case.assignment))
+        results[name] = outcome(fleet)
+    solution = engine.plan(instance, seeded(COMPARED[GIVEN], case.assignment))
+    polished = engine.polish(instance, solution, iterations=ROUNDS, seed=case.assignment)
+    results[POLISHED] = len(polished.plans), total_cost(instance, polished.plans)
+    best = optimum(instance, LIMIT_IN_SECONDS)
+    bound = lower_bound(instance, steps=STEPS).bound
+    for planned, total in results.values():
+        if planned == len(instance.robots):
+            require_kept(max(best.lower, bound), total)
+    return {
+        "shortest": best.shortest,
+        "bound": bound,
+        "optimum": best.cost if best.decided else None,
+        "decided": best.decided,
+        "results": results,
+    }
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,11 +97,8 @@ class GapRow(msgspec.Struct, frozen=True):
 
 def gap_report(rows: Iterable[Row], robots: int) -> Report:
     """A table over some of the maps, and a figure over all."""
-    by_map: dict[int, list[GapRow]] = defaultdict(list)
-    for row in rows:
-        measured = msgspec.convert(row, GapRow)
-        by_map[measured.map].append(measured)
-    summary = tuple(gap_of(map, name, each, robots) for map, each in sorted(by_map.items()) for name in TOLD)
+    by_map = rows_by_map(rows, GapRow)
+    summary = tuple(gap_of(map, name, each, robots) for map, each in by_map.items() for name in TOLD)
     lines = {name: [(each.map, each.gap) for each in summary if each.algorithm == name] for name in TOLD}
     title = f"Above the optimum that the search found, {robots} robots on {SIDE} x {SIDE} maps"
     figure = Figure("gap", title, (MAP_AXIS, "per cent above the optimum"), lines)
@@ -138,7 +119,7 @@ def gap_of(map: int, name: str, rows: Sequence[GapRow], robots: int) -> GapOf:
 
 def gap_table(summary: Sequence[GapOf], by_map: Mapping[int, Sequence[GapRow]], title: str) -> Table:
     """The gaps on some of the maps, with the failures; above them how many assignments are decided and solvable."""
-    maps = [map for map in SHOWN_MAPS if map in by_map] or sorted(by_map)
+    maps = shown_maps(by_map)
     by_place = {(each.algorithm, each.map): each for each in summary}
     columns = ("algorithm", *(f"map {map}" for map in maps))
     decided = ("optimum known", *(f"{by_place['CARP', map].solvable}/{len(by_map[map])}" for map in maps))
@@ -149,8 +130,4 @@ def gap_table(summary: Sequence[GapOf], by_map: Mapping[int, Sequence[GapRow]], 
 
 def _cell(each: GapOf) -> str:
     failed = f" ({each.failures} failed)" if each.failures else ""
-    return (
-        f"-{failed}"
-        if each.gap is None
-        else f"{each.gap.estimate:.2f} ± {each.gap.high - each.gap.estimate:.2f}{failed}"
-    )
+    return f"-{failed}" if each.gap is None else f"{each.gap:.2f}{failed}"

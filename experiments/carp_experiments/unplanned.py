@@ -5,7 +5,6 @@ planned. Of the few that are left, every order is tried, and the optimum is sear
 and so all robots, can have no plans together, or their plans are kept and the other robots planned around them.
 """
 
-from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import permutations
@@ -14,8 +13,8 @@ from statistics import fmean
 
 import msgspec
 
-from carp_experiments.campaign import key_on_map
-from carp_experiments.quality import ALGORITHMS, ROBOTS, seeded
+from carp_experiments.map_cases import MapCase, instance_of, rows_by_map
+from carp_experiments.quality import ALGORITHMS, seeded
 from carp_experiments.report import Report, Table
 from carp_experiments.store import Row
 from carp_spec import Carp, Instance, Plan, RobotId, Solution, judge, total_cost
@@ -30,41 +29,27 @@ LIMIT_IN_SECONDS = 60
 ATTEMPTS = 5
 
 
-@dataclass(frozen=True, slots=True)
-class UnplannedCase:
-    """One assignment on one map, polished until every robot has a plan, and looked into where one has none."""
+def unplanned_row(case: MapCase) -> Row:
+    """How many robots are unplanned before; after how many rounds none is; what became of those that stay so.
 
-    map: int
-    assignment: int
-    robots: int = ROBOTS
+    Only the search for a group's optimum that comes near its minute can end otherwise on another machine.
+    """
+    import carp_optimized as engine  # noqa: PLC0415 - each worker loads it
 
-    @property
-    def key(self) -> str:
-        """Assignments and maps in their order."""
-        return key_on_map(self.map, self.assignment)
-
-    def run(self) -> Row:
-        """How many robots are unplanned before; after how many rounds none is; what became of those that stay so.
-
-        Only the search for a group's optimum that comes near its minute can end otherwise on another machine.
-        """
-        import carp_optimized as engine  # noqa: PLC0415 - each worker loads it
-        from carproof.generate import Fleet, Grid, grid_instance  # noqa: PLC0415
-
-        instance = grid_instance(Grid(map=self.map), Fleet(robots=self.robots, seed=self.assignment))
-        solution = engine.plan(instance, seeded(ALGORITHMS[GIVEN], self.assignment))
-        better, rounds = repaired(instance, solution, ROUNDS[-1], self.assignment)
-        row = {"map": self.map, "assignment": self.assignment, "before": len(solution.unplanned), "rounds": rounds}
-        if not better.unplanned:
-            return {**row, "left": [], "groups": [], "whole": total_cost(instance, better.plans)}
-        groups = [group_facts(instance, group) for group in blocking_groups(instance, self.assignment)]
-        whole = planned_around(instance, [robot for group in groups for robot in group.robots], self.assignment)
-        return {
-            **row,
-            "left": better.unplanned,
-            "groups": [msgspec.to_builtins(group) for group in groups],
-            "whole": None if whole is None else total_cost(instance, whole.plans),
-        }
+    instance = instance_of(case)
+    solution = engine.plan(instance, seeded(ALGORITHMS[GIVEN], case.assignment))
+    better, rounds = repaired(instance, solution, ROUNDS[-1], case.assignment)
+    row = {"before": len(solution.unplanned), "rounds": rounds}
+    if not better.unplanned:
+        return {**row, "left": [], "groups": [], "whole": total_cost(instance, better.plans)}
+    groups = [group_facts(instance, group) for group in blocking_groups(instance, case.assignment)]
+    whole = planned_around(instance, [robot for group in groups for robot in group.robots], case.assignment)
+    return {
+        **row,
+        "left": better.unplanned,
+        "groups": [msgspec.to_builtins(group) for group in groups],
+        "whole": None if whole is None else total_cost(instance, whole.plans),
+    }
 
 
 class Group(msgspec.Struct, frozen=True):
@@ -227,12 +212,9 @@ class UnplannedSummary:
 
 def unplanned_report(rows: Iterable[Row]) -> Report:
     """A table of the maps, and one of the groups."""
-    by_map: dict[int, list[UnplannedRow]] = defaultdict(list)
-    for row in rows:
-        read = msgspec.convert(row, UnplannedRow)
-        by_map[read.map].append(read)
-    maps = tuple(unplanned_on(map, each) for map, each in sorted(by_map.items()))
-    stuck = tuple(row for _, each in sorted(by_map.items()) for row in each if row.left)
+    by_map = rows_by_map(rows, UnplannedRow)
+    maps = tuple(unplanned_on(map, each) for map, each in by_map.items())
+    stuck = tuple(row for each in by_map.values() for row in each if row.left)
     tables = (maps_table(maps), groups_table(stuck)) if stuck else (maps_table(maps),)
     return Report(UnplannedSummary(maps, stuck), tables)
 

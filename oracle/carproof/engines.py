@@ -7,6 +7,7 @@ from typing import Protocol, cast
 
 from carp_spec import Instance, Neighbourhood, Plan, Planner, Refusal, RobotId, Solution, total_cost
 from carp_spec.query_certificates import QueryCertificateDocument
+from carproof.progress import progress
 
 ENGINES = ("optimized", "reference")
 
@@ -32,11 +33,8 @@ class Engine(Protocol):
     def certifier(self, instance: Instance) -> Certifier:
         """What gives plans with certificates, beside no plans as yet."""
 
-    def plan(self, instance: Instance, planner: Planner, advance: Callable[[], None] = ...) -> Solution:
-        """Plans of all robots; `advance` is called at each step."""
-
-    def steps(self, instance: Instance, planner: Planner) -> int:
-        """How many steps `plan` takes at most."""
+    def plan(self, instance: Instance, planner: Planner) -> Solution:
+        """Plans of all robots."""
 
     def add(self, instance: Instance, solution: Solution, robot: RobotId, now: int, options: Neighbourhood) -> Solution:
         """Plans with one robot more."""
@@ -65,13 +63,9 @@ class FastestEngine:
         """What gives plans with certificates, beside no plans as yet."""
         return engine_named("optimized").certifier(instance)
 
-    def plan(self, instance: Instance, planner: Planner, advance: Callable[[], None] = lambda: None) -> Solution:
-        """Plans of all robots; `advance` is called at each step."""
-        return _engine_with(planner).plan(instance, planner, advance)
-
-    def steps(self, instance: Instance, planner: Planner) -> int:
-        """How many steps `plan` takes at most."""
-        return _engine_with(planner).steps(instance, planner)
+    def plan(self, instance: Instance, planner: Planner) -> Solution:
+        """Plans of all robots."""
+        return engine_named(_fastest_with(planner)).plan(instance, planner)
 
     def add(self, instance: Instance, solution: Solution, robot: RobotId, now: int, options: Neighbourhood) -> Solution:
         """Plans with one robot more."""
@@ -112,10 +106,20 @@ def warm() -> bool:
     return True
 
 
-def _engine_with(planner: Planner) -> Engine:
+def plan_showing(label: str, engine: str | None, instance: Instance, planner: Planner) -> Solution:
+    """Plans of all robots; where the planner to run makes them, a terminal shows how far it is."""
+    if (engine or _fastest_with(planner)) == "reference":
+        return engine_named("reference").plan(instance, planner)
+    from carp_optimized import plan, steps  # noqa: PLC0415 - loaded when it is first used
+
+    with progress(label, steps(instance, planner)) as advance:
+        return plan(instance, planner, advance)
+
+
+def _fastest_with(planner: Planner) -> str:
     from carp_optimized import PLANNERS  # noqa: PLC0415 - loaded when it is first used
 
-    return engine_named("optimized" if isinstance(planner, PLANNERS) else "reference")
+    return "optimized" if isinstance(planner, PLANNERS) else "reference"
 
 
 def sum_of_shortest_paths(instance: Instance, robots: Iterable[RobotId]) -> int:

@@ -54,9 +54,7 @@ class Excess:
 
     def __str__(self) -> str:
         """Print like `1.9 ± 1.6`."""
-        if self.per_cent is None:
-            return "-"
-        return f"{self.per_cent.estimate:.1f} ± {self.per_cent.high - self.per_cent.estimate:.1f}"
+        return "-" if self.per_cent is None else f"{self.per_cent:.1f}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,6 +15,10 @@ class Interval:
     low: float
     high: float
 
+    def __format__(self, digits: str) -> str:
+        """Print like `1.9 ± 1.6`: the estimate and half the interval, each formatted as a number."""
+        return f"{self.estimate:{digits}} ± {self.high - self.estimate:{digits}}"
+
 
 def mean_interval(values: Sequence[float]) -> Interval:
     """The mean of at least one value, with the interval of the normal distribution."""

@@ -1,6 +1,6 @@
 """Fixed-path scheduling: each robot takes the best of a few paths chosen on the empty graph beforehand."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import islice, pairwise
 
 from carp_reference.orderings import Plans
@@ -12,7 +12,7 @@ Path = tuple[ResourceId, ...]
 Flow = dict[tuple[str, ResourceId], dict[tuple[str, ResourceId], int]]
 
 
-def fixed_paths(problem: Problem, options: FixedPaths, advance: Callable[[], None]) -> Plans:
+def fixed_paths(problem: Problem, options: FixedPaths) -> Plans:
     """Plan the robots in the order given, each on the first of its paths that arrives earliest."""
     paths_of = shortest_paths if options.paths == "shortest" else disjoint_paths
     plans: list[Plan] = []
@@ -21,7 +21,6 @@ def fixed_paths(problem: Problem, options: FixedPaths, advance: Callable[[], Non
         found = [plan for plan in scheduled if plan is not None]
         if found:
             plans.append(min(found, key=lambda plan: plan_cost(problem.instance, plan)))
-        advance()
     return tuple(plans)
 
 

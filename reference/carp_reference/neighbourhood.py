@@ -33,7 +33,7 @@ def add_robot(problem: Problem, committed: Plans, new: RobotId, options: Neighbo
     plans = _best_candidate(problem, committed, new, options)
     if plans is None and options.fallback is not None:
         order = [*problem.before, new]
-        plans = shuffled(problem, order, options.fallback, options.seed, lambda: None)
+        plans = shuffled(problem, order, options.fallback, options.seed)
         return plans if len(plans) == len(order) else None
     return plans
 

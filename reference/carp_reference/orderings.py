@@ -1,6 +1,6 @@
 """Planners that plan the robots one after the other, each against the plans before it; they differ in the order."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from carp_reference.problem import Problem
 from carp_reference.query import find_plan
@@ -20,19 +20,15 @@ def carp(problem: Problem, order: Sequence[RobotId]) -> Plans:
     return tuple(plans)
 
 
-def shuffled(
-    problem: Problem, order: Sequence[RobotId], attempts: int, seed: int, advance: Callable[[], None]
-) -> Plans:
+def shuffled(problem: Problem, order: Sequence[RobotId], attempts: int, seed: int) -> Plans:
     """The best of several passes of CARP; the first in the order given, each later one in a shuffle of the last."""
     stream = splitmix64(seed)
     best = carp(problem, order)
-    advance()
     for _ in range(attempts - 1):
         order = shuffle(order, stream)
         plans = carp(problem, order)
         if _worth(problem, plans) < _worth(problem, best):
             best = plans
-        advance()
     return best
 
 
@@ -47,7 +43,7 @@ def longest_first(problem: Problem) -> Plans:
     return carp(problem, sorted(shortest, key=lambda robot: -shortest[robot]))
 
 
-def greedy(problem: Problem, advance: Callable[[], None]) -> Plans:
+def greedy(problem: Problem) -> Plans:
     """Plan, in each round, the robot whose plan costs least; a tie goes to the earlier in the instance."""
     plans: list[Plan] = []
     waiting = [robot.id for robot in problem.instance.robots]
@@ -58,5 +54,4 @@ def greedy(problem: Problem, advance: Callable[[], None]) -> Plans:
         cheapest = min(found, key=lambda plan: plan_cost(problem.instance, plan))
         plans.append(cheapest)
         waiting.remove(cheapest.robot)
-        advance()
     return tuple(plans)

@@ -1,6 +1,6 @@
 """The planner's face: `query`, `plan`, `add`, the same as `carp_optimized` has."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from carp_reference.certifying import Certifier
 from carp_reference.fixed_paths import fixed_paths
@@ -40,14 +40,9 @@ def certifier(instance: Instance) -> Certifier:
     return Certifier(instance)
 
 
-def plan(instance: Instance, planner: Planner, advance: Callable[[], None] = lambda: None) -> Solution:
-    """Plan all robots of the instance at tick 0; `advance` is called once for each of `steps`."""
-    return _solution(instance, _plans(prepare(instance, 0), planner, advance))
-
-
-def steps(instance: Instance, planner: Planner) -> int:
-    """How often `plan` calls `advance` at most."""
-    return planner.attempts if isinstance(planner, Shuffled) else len(instance.robots)
+def plan(instance: Instance, planner: Planner) -> Solution:
+    """Plan all robots of the instance at tick 0."""
+    return _solution(instance, _plans(prepare(instance, 0), planner))
 
 
 def add(instance: Instance, solution: Solution, robot: RobotId, now: int, options: Neighbourhood) -> Solution:
@@ -62,27 +57,26 @@ def add(instance: Instance, solution: Solution, robot: RobotId, now: int, option
     return _solution(instance, committed if plans is None else plans, named)
 
 
-def _plans(problem: Problem, planner: Planner, advance: Callable[[], None]) -> Plans:  # noqa: PLR0911 - one return a planner
+def _plans(problem: Problem, planner: Planner) -> Plans:  # noqa: PLR0911 - one return a planner
     order = [robot.id for robot in problem.instance.robots]
     match planner:
         case Carp():
             return carp(problem, order)
         case Shuffled(attempts, seed):
-            return shuffled(problem, order, attempts, seed, advance)
+            return shuffled(problem, order, attempts, seed)
         case LongestFirst():
             return longest_first(problem)
         case Greedy():
-            return greedy(problem, advance)
+            return greedy(problem)
         case Neighbourhood():
             plans: Plans = ()
             for robot in order:
                 plans = add_robot(problem, plans, robot, planner) or plans
-                advance()
             return plans
         case FixedPaths():
-            return fixed_paths(problem, planner, advance)
+            return fixed_paths(problem, planner)
         case _:
-            return time_expanded(problem.instance, advance)
+            return time_expanded(problem.instance)
 
 
 def _solution(instance: Instance, plans: Plans, named: set[RobotId] | None = None) -> Solution:

@@ -5,7 +5,7 @@ same tick, or none where there is none. Its plans may differ where several arriv
 """
 
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from heapq import heappop, heappush
 from itertools import pairwise
@@ -177,12 +177,11 @@ def _visits(instance: Instance, robot: RobotId, last: Moment) -> tuple[Visit, ..
     return tuple(Visit(moment.resource, enter, leave) for moment, enter, leave in stays if enter is not None)
 
 
-def time_expanded(instance: Instance, advance: Callable[[], None]) -> tuple[Plan, ...]:
+def time_expanded(instance: Instance) -> tuple[Plan, ...]:
     """Plan the robots in the order given."""
     plans: list[Plan] = []
     for robot in instance.robots:
         plan = find_plan_by_ticks(instance, plans, robot.id)
         if plan is not None:
             plans.append(plan)
-        advance()
     return tuple(plans)

@@ -8,20 +8,20 @@ import pytest
 import carp_optimized
 import carp_reference
 from carp_experiments import polishing
-from carp_experiments.adding_time import PAPER, TimeCase, time_report
+from carp_experiments.adding_time import PAPER, time_report, time_row
 from carp_experiments.claims import related_claims, reuse_claims
 from carp_experiments.experiments import EXPERIMENTS, Experiment, Profile
-from carp_experiments.quality import grid_fleet
-from carp_experiments.related_work import FIXED, METHODS, Related, RelatedCase, related_report
-from carp_experiments.reuse_counts import ReuseCase, ReuseOf, reuse_report
-from carp_experiments.small_gaps import COMPARED, POLISHED, GapCase, GapRow, gap_report
+from carp_experiments.map_cases import MapCase, instance_of
+from carp_experiments.related_work import FIXED, METHODS, Related, related_report, related_row
+from carp_experiments.reuse_counts import ReuseOf, reuse_report, reuse_row
+from carp_experiments.small_gaps import COMPARED, POLISHED, GapRow, gap_report, gap_row
 from carp_experiments.store import digest_of
 from carp_spec import Carp, FixedPaths, Greedy, LongestFirst, Planner, plan_cost
 from carproof.statistics import Interval
 
 
 def test_times_are_measured_and_do_not_count_in_the_digest() -> None:
-    rows = [TimeCase(15, 0, robots=6).run(), TimeCase(15, 0, robots=6).run()]
+    rows = [MapCase(time_row, 15, 0, 6).run() for _ in range(2)]
     assert rows[0]["measured"] != rows[1]["measured"]
     assert digest_of(rows[0]) == digest_of(rows[1])
 
@@ -38,7 +38,7 @@ def test_the_table_of_times_compares_with_carp() -> None:
 
 
 def test_prefixes_leave_the_papers_shares_of_the_last_round() -> None:
-    report = reuse_report([ReuseCase(20, seed, robots=20).run() for seed in (1, 2)], 20)
+    report = reuse_report([MapCase(reuse_row, 20, seed, 20).run() for seed in (1, 2)], 20)
     lines = {line[0]: line for line in report.tables[0].rows}
     assert lines["Proposed_4"][6] == "66.7 ± 0.0 %"
     assert lines["Proposed_5"][6] == "54.2 ± 0.0 %"
@@ -62,7 +62,7 @@ def test_queries_are_told_apart_by_what_they_are_for() -> None:
 
 
 def test_a_gap_is_measured_from_the_optimum() -> None:
-    case = GapCase(map=3, assignment=0, robots=5)
+    case = MapCase(gap_row, 3, 0, 5)
     row = case.run()
     assert row["decided"]
     results = row["results"]
@@ -86,8 +86,8 @@ def test_a_gap_is_measured_from_the_optimum() -> None:
 
 
 def test_related_methods_are_those_of_the_reference() -> None:
-    case = RelatedCase(5, 2, robots=20)
-    instance = grid_fleet(5, 0, 20, 2).instance
+    case = MapCase(related_row, 5, 2, 20)
+    instance = instance_of(case)
     costs = case.run()["costs"]
     assert isinstance(costs, dict)
     assert set(costs) == set(METHODS)
@@ -107,15 +107,15 @@ def test_related_methods_are_those_of_the_reference() -> None:
     assert [table.name for table in report.tables] == ["related-unplanned", "related-totals"]
 
 
-def related_row(fixed: list[int | None], **ordered: list[int | None]) -> dict[str, object]:
+def stored_costs(fixed: list[int | None], **ordered: list[int | None]) -> dict[str, object]:
     orders: dict[str, list[int | None]] = {name: [10, 10, 10] for name in ("CARP", "LF", "greedy")}
     return {"map": 7, "costs": {**dict.fromkeys(FIXED, fixed), **orders, **ordered}}
 
 
 def test_fixed_paths_are_compared_over_the_first_robots_and_orders_over_all() -> None:
     rows = [
-        related_row([11, 12, None], greedy=[8, None, 8], LF=[9, 9, 9]),
-        related_row([None, 4, 5], greedy=[9, 9, 9]),
+        stored_costs([11, 12, None], greedy=[8, None, 8], LF=[9, 9, 9]),
+        stored_costs([None, 4, 5], greedy=[9, 9, 9]),
     ]
     unplanned, totals = ({line[0]: line[1] for line in table.rows} for table in related_report(rows, 3).tables)
     assert unplanned["3 disjoint paths"] == "1.0 ± 0.0"
@@ -138,12 +138,12 @@ def test_fixed_paths_are_compared_over_the_first_robots_and_orders_over_all() ->
 def test_what_the_paper_cites_is_judged_by_intervals(
     carp: int | None, greedy: int, longest: int, verdicts: list[str]
 ) -> None:
-    row = related_row([10, 11, None], CARP=[10, 10, carp], greedy=[greedy] * 3, LF=[longest] * 3)
+    row = stored_costs([10, 11, None], CARP=[10, 10, carp], greedy=[greedy] * 3, LF=[longest] * 3)
     assert related_verdicts([row, row]) == verdicts
 
 
 def test_one_assignment_decides_no_claim() -> None:
-    assert related_verdicts([related_row([10, 11, None], greedy=[9, 9, 9])]) == ["undecided", "undecided"]
+    assert related_verdicts([stored_costs([10, 11, None], greedy=[9, 9, 9])]) == ["undecided", "undecided"]
 
 
 def related_verdicts(rows: list[dict[str, object]]) -> list[str]:
@@ -156,17 +156,17 @@ def test_polished_plans_lie_between_the_bound_and_the_planner(monkeypatch: pytes
         polishing, "POLISHED", {"Proposed_4": {"polish": 100, "long polish": 300}, "Proposed_10": {"polish": 100}}
     )
     monkeypatch.setattr(polishing, "STEPS", 20)
-    row = polishing.PolishCase(12, 0, robots=10).run()
+    row = MapCase(polishing.polish_row, 12, 0, 10).run()
     told = msgspec.convert(row, polishing.PolishRow)
     planned, polished, longer = (told.results[name][1] for name in polishing.METHODS[:3])
     assert told.shortest <= told.bound <= longer <= polished <= planned
     assert row["left"] == {"Proposed_4": (), "Proposed_10": ()}
-    again = dict(polishing.PolishCase(12, 0, robots=10).run())
+    again = dict(MapCase(polishing.polish_row, 12, 0, 10).run())
     assert digest_of(row) == digest_of(again)
 
 
 def test_what_a_polish_reaches_on_its_way_is_what_a_shorter_one_reaches() -> None:
-    instance = grid_fleet(3, 0, 20, 1).instance
+    instance = instance_of(MapCase(polishing.polish_row, 3, 1, 20))
     solution = carp_optimized.plan(instance, Carp())
     lengths = [50, 100, 400]
     _, (before, *after) = polishing.polish_to(instance, solution, lengths, 9)
@@ -179,7 +179,7 @@ def test_what_a_polish_reaches_on_its_way_is_what_a_shorter_one_reaches() -> Non
 
 
 def test_a_polish_with_nothing_to_do_reaches_what_was_there() -> None:
-    instance = grid_fleet(20, 0, 1, 1).instance
+    instance = instance_of(MapCase(polishing.polish_row, 20, 1, 1))
     solution = carp_optimized.plan(instance, Carp())
     assert len(set(polishing.polish_to(instance, solution, [50, 100], 9)[1])) == 1
 

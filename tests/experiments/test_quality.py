@@ -3,16 +3,17 @@
 import pytest
 
 import carp_optimized
-from carp_experiments.campaign import over_maps
-from carp_experiments.quality import ALGORITHMS, QualityCase, QualityRow, grid_fleet, seeded, summarise
+from carp_experiments.experiments import EXPERIMENTS, Profile
+from carp_experiments.map_cases import MapCase, instance_of
+from carp_experiments.quality import ALGORITHMS, QualityRow, quality_row, seeded, summarise
 from carp_experiments.quality_report import quality_report
 from carp_experiments.store import Row
 from carp_spec import Refusal, total_cost
 
 
-@pytest.mark.parametrize("case", [QualityCase(map=4, assignment=1, robots=30), QualityCase(17, 2, robots=20)])
-def test_a_case_has_the_totals_of_the_planners_alone(case: QualityCase) -> None:
-    instance = grid_fleet(case.map, 0, case.robots, case.assignment).instance
+@pytest.mark.parametrize("case", [MapCase(quality_row, 4, 1, 30), MapCase(quality_row, 17, 2, 20)])
+def test_a_case_has_the_totals_of_the_planners_alone(case: MapCase) -> None:
+    instance = instance_of(case)
     results = case.run()["results"]
     assert isinstance(results, dict)
     for name, planner in ALGORITHMS.items():
@@ -56,12 +57,8 @@ def test_what_is_measured_on_one_assignment_counts_as_one_over_all_maps() -> Non
 
 
 def test_cases_come_assignment_by_assignment() -> None:
-    assert [(case.assignment, case.map) for case in over_maps(QualityCase, 2, (3, 5), 30)] == [
-        (0, 3),
-        (0, 5),
-        (1, 3),
-        (1, 5),
-    ]
+    cases = EXPERIMENTS[0].cases(Profile(2, 30, (3, 5)))
+    assert [(case.assignment, case.map) for case in cases] == [(0, 3), (0, 5), (1, 3), (1, 5)]
 
 
 def test_rows_are_read_as_they_were_written() -> None:
@@ -70,4 +67,4 @@ def test_rows_are_read_as_they_were_written() -> None:
 
 def test_more_robots_than_places_are_refused() -> None:
     with pytest.raises(Refusal, match="401 robots need as many distinct starts, and the map has 400"):
-        QualityCase(0, 0, robots=401).run()
+        MapCase(quality_row, 0, 0, 401).run()

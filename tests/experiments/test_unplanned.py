@@ -2,10 +2,9 @@
 
 import pytest
 
-from carp_experiments.quality import grid_fleet
+from carp_experiments.map_cases import MapCase, instance_of
 from carp_experiments.unplanned import (
     ROUNDS,
-    UnplannedCase,
     blocking_group,
     blocking_groups,
     group_facts,
@@ -13,6 +12,7 @@ from carp_experiments.unplanned import (
     planned_around,
     repaired,
     unplanned_report,
+    unplanned_row,
 )
 from carp_spec import Instance, Resource, ResourceGraph, Robot, Solution, judge
 
@@ -22,7 +22,7 @@ BLOCKED = ("r3", "r22", "r42", "r66")
 @pytest.fixture(scope="module")
 def tree() -> Instance:
     """A tree on which four robots at one end can be planned in no order one after the other."""
-    instance = grid_fleet(0, 0, 100, 1).instance
+    instance = instance_of(MapCase(unplanned_row, 0, 1))
     robots = tuple(robot for robot in instance.robots if robot.id in (*BLOCKED, "r1", "r9", "r40", "r71"))
     return Instance(instance.graph, robots, instance.after_goal)
 
@@ -52,7 +52,7 @@ def test_what_cannot_be_planned_at_all_is_found() -> None:
 
 
 def test_a_repair_ends_when_every_robot_has_a_plan() -> None:
-    instance = grid_fleet(20, 0, 10, 1).instance
+    instance = instance_of(MapCase(unplanned_row, 20, 1, 10))
     nobody = Solution((), (), tuple(instance.robot))
     better, rounds = repaired(instance, nobody, 20_000, 1)
     assert not better.unplanned
@@ -61,7 +61,7 @@ def test_a_repair_ends_when_every_robot_has_a_plan() -> None:
 
 
 def test_robots_are_planned_around_those_that_are() -> None:
-    instance = grid_fleet(10, 0, 6, 2).instance
+    instance = instance_of(MapCase(unplanned_row, 10, 2, 6))
     first = one_by_one(instance, (), ["r5"])
     whole = one_by_one(instance, first.plans, ["r4", "r1"])
     assert whole.order == ("r5", "r4", "r1")
@@ -71,7 +71,7 @@ def test_robots_are_planned_around_those_that_are() -> None:
 
 
 def test_an_assignment_without_failures_is_told_as_such() -> None:
-    row = UnplannedCase(12, 0, robots=10).run()
+    row = MapCase(unplanned_row, 12, 0, 10).run()
     assert (row["before"], row["rounds"], row["left"], row["groups"]) == (0, 0, [], [])
 
 

@@ -36,7 +36,12 @@ def tests_of(module: Path) -> Iterator[Path]:
         yield folder
         return
     yield own
-    for name in ["../verify/test_vectors.py", "test_registry.py", "test_frozen.py", *ALSO.get(f"{package}.{module.stem}", [])]:
+    for name in [
+        "../verify/test_vectors.py",
+        "test_registry.py",
+        "test_frozen.py",
+        *ALSO.get(f"{package}.{module.stem}", []),
+    ]:
         if (folder / name).exists() and name != own.name:
             yield folder / name
 

@@ -18,3 +18,14 @@ def test_the_digest_is_that_of_the_document() -> None:
 def test_a_document_with_a_field_too_few_is_refused() -> None:
     with pytest.raises(Refusal, match="instance"):
         read_bound(json.dumps({"format": BOUND_FORMAT}).encode())
+
+
+@pytest.mark.parametrize("horizon", [-1, 0])
+def test_a_horizon_is_at_least_0(horizon: int) -> None:
+    fields = {"instance": "", "bound": 0, "scale": 1, "horizon": horizon, "resources": [], "exchanges": []}
+    data = json.dumps({"format": BOUND_FORMAT, **fields, "cuts": [], "robots": []}).encode()
+    if horizon < 0:
+        with pytest.raises(Refusal, match="at least 0"):
+            read_bound(data)
+    else:
+        assert read_bound(data).horizon == 0

@@ -7,13 +7,15 @@ from tests.spec.making import PARKED, SOLVED, VANISHING, plan_of
 from tests.spec.strategies import FEWER
 
 from carp_spec import Plan, Visit, has_ended, plan_cost, total_cost
-from carp_spec.plan_rules import plan_keeps_history
+from carp_spec.plan_rules import is_plan_cost, is_total_cost, plan_keeps_history
 
 
 def test_costs_count_from_the_release_to_entering_the_goal() -> None:
     assert [plan_cost(VANISHING, plan) for plan in SOLVED] == [5, 3, 0]
     assert total_cost(VANISHING, SOLVED) == 8
     assert total_cost(VANISHING, ()) == 0
+    assert [is_plan_cost(VANISHING, SOLVED[0], cost) for cost in (4, 5, 6)] == [False, True, False]
+    assert [is_total_cost(VANISHING, SOLVED, cost) for cost in (7, 8, 9)] == [False, True, False]
 
 
 @pytest.mark.parametrize(

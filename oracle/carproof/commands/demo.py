@@ -9,12 +9,11 @@ import click
 
 from carp_spec import Carp, Instance, Neighbourhood, Planner, judge, total_cost, write_instance, write_solution
 from carproof.answer import Answer
-from carproof.engines import engine_named, sum_of_shortest_paths
+from carproof.engines import plan_showing, sum_of_shortest_paths
 from carproof.files import OutputFile, write_whole
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.movingai import movingai_instance, read_map, read_scenario
 from carproof.options import examples
-from carproof.progress import progress
 from carproof.tables import print_line, print_table
 
 COLUMNS = ("instance", "planner", "robots", "unplanned", "total\ncost", "shortest\npaths", "rules\nbroken", "time")
@@ -70,10 +69,8 @@ def depot(folder: Path) -> Instance:
 
 def planned(folder: Path, name: str, instance: Instance, planner: str) -> Result:
     """Plan an instance, check the plans and write them."""
-    engine = engine_named(None)
     started = perf_counter()
-    with progress(f"{name}, {planner}", engine.steps(instance, PLANNERS[planner])) as advance:
-        solution = engine.plan(instance, PLANNERS[planner], advance)
+    solution = plan_showing(f"{name}, {planner}", None, instance, PLANNERS[planner])
     seconds = perf_counter() - started
     write_whole(_file(folder / f"{name}-{planner.split(maxsplit=1)[0]}.json"), write_solution(solution))
     verdict = judge(instance, solution)

@@ -8,7 +8,7 @@ import click
 
 from carp_spec import write_solution
 from carproof.answer import Answer
-from carproof.engines import engine_named
+from carproof.engines import plan_showing
 from carproof.files import naming, read_instance_file
 from carproof.options import (
     PLANNING,
@@ -21,7 +21,6 @@ from carproof.options import (
     planner_option,
     planner_options,
 )
-from carproof.progress import progress
 from carproof.results import show_solution, write_result
 
 
@@ -58,10 +57,9 @@ def command(
     """
     chosen = chosen_planner(planner, options)
     problem = read_instance_file(instance)
-    run = engine_named(engine)
     started = perf_counter()
-    with naming(instance), progress("planning", run.steps(problem, chosen)) as advance:
-        solution = run.plan(problem, chosen, advance)
+    with naming(instance):
+        solution = plan_showing("planning", engine, problem, chosen)
     seconds = perf_counter() - started
     write_result(write_solution(solution), output, as_json)
     if not as_json:

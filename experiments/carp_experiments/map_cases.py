@@ -1,0 +1,78 @@
+"""Cases of the experiments on the paper's maps: an assignment of start and goal to robots, on one of the maps."""
+
+from collections import defaultdict
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol, TypeVar
+
+import msgspec
+
+from carp_experiments.store import Row
+from carp_spec import Instance
+
+if TYPE_CHECKING:
+    from carp_optimized.fleet import Fleet
+
+ROBOTS = 100
+FULL_MAP = 20
+MAP_AXIS = f"map (0: spanning tree, {FULL_MAP}: full grid)"
+SHOWN_MAPS = (0, 5, 10, 15, 20)
+
+
+class OnMap(Protocol):
+    """A stored row of such an experiment."""
+
+    @property
+    def map(self) -> int:
+        """The number of its map."""
+
+
+R = TypeVar("R", bound=OnMap)
+
+
+@dataclass(frozen=True, slots=True)
+class MapCase:
+    """One assignment of so many robots on one map, and the function that computes its row."""
+
+    compute: "Callable[[MapCase], Row]"
+    map: int
+    assignment: int
+    robots: int = ROBOTS
+
+    @property
+    def key(self) -> str:
+        """Assignments and maps in their order."""
+        return f"assignment {self.assignment:03} map {self.map:02}"
+
+    def run(self) -> Row:
+        """The row that is computed, with map and assignment."""
+        return {"map": self.map, "assignment": self.assignment, **self.compute(self)}
+
+
+def instance_of(case: MapCase) -> Instance:
+    """The paper's grid with the robots; raises `Refusal` where they have no place on it."""
+    from carproof.generate import Fleet, Grid, grid_instance  # noqa: PLC0415 - each worker loads it
+
+    return grid_instance(Grid(map=case.map), Fleet(robots=case.robots, seed=case.assignment))
+
+
+def fleet_of(case: MapCase) -> "Fleet":
+    """A fleet of these robots without plans."""
+    from carp_optimized.fleet import Fleet  # noqa: PLC0415 - each worker loads it
+
+    return Fleet(instance_of(case))
+
+
+def rows_by_map(rows: Iterable[Row], shape: type[R]) -> dict[int, list[R]]:
+    """The stored rows of each map, the maps in their order."""
+    by_map: dict[int, list[R]] = defaultdict(list)
+    for row in rows:
+        stored = msgspec.convert(row, shape)
+        by_map[stored.map].append(stored)
+    return dict(sorted(by_map.items()))
+
+
+def shown_maps(maps: Iterable[int]) -> list[int]:
+    """The maps that a table shows: some of those measured, or all."""
+    measured = sorted(set(maps))
+    return [map for map in SHOWN_MAPS if map in measured] or measured
