@@ -64,3 +64,22 @@ PARKED = (
     plan_of("r2", ("e", 1, 2), ("b", 2, 4), ("a", 4, None)),
     plan_of("r3", ("f", 0, None)),
 )
+
+# Robots that follow each other along a row, and three that change places in a ring.
+ROW = instance_on(line("abcde"), Robot("r1", "a", "c"), Robot("r2", "e", "d", release=1))
+WALK = plan_of("r1", ("a", 0, 1), ("b", 1, 2), ("c", 2, 3))
+STEP = plan_of("r2", ("e", 1, 2), ("d", 2, 3))
+CROSSED = (
+    instance_on(line("abcd"), Robot("r1", "b", "d"), Robot("r2", "a", "c")),
+    solution_of(
+        [
+            plan_of("r1", ("b", 0, 1), ("c", 1, 2), ("d", 2, 3)),
+            plan_of("r2", ("a", 0, 1), ("b", 1, 2), ("c", 2, 3)),
+        ]
+    ),
+)
+RING = ResourceGraph(line("abc").resources, (("a", "b"), ("b", "c"), ("c", "a")))
+TURNING = (
+    (Robot("r1", "a", "b"), Robot("r2", "b", "c"), Robot("r3", "c", "a")),
+    tuple(plan_of(robot, (at, 0, 1), (to, 1, 2)) for robot, at, to in (("r1", *"ab"), ("r2", *"bc"), ("r3", *"ca"))),
+)

@@ -4,8 +4,7 @@ import random
 from dataclasses import replace
 
 import pytest
-from tests.spec.making import SOLVED, VANISHING, solution_of
-from tests.spec.rule_examples import CROSSED, RING, TURNING, traced
+from tests.spec.making import CROSSED, RING, ROW, SOLVED, STEP, TURNING, VANISHING, WALK, plan_of, solution_of
 
 from carp_spec import Instance, Plan, Refusal, Solution, Visit, check
 from carp_spec.dependencies import Node, dependencies, is_before, shortest_cycle
@@ -39,8 +38,8 @@ def test_a_malformed_trace_is_refused_with_path_and_rule(change: dict[str, objec
 
 
 def test_rules_of_execution_are_asked_only_of_what_is_a_trace() -> None:
-    instance, solution, trace = traced(2, r1=(("b", 0, None),), r2=(("e", 1, None),)).arguments
-    assert {violation.rule for violation in trace_violations(instance, solution, trace)} == {"trace/prefix"}
+    trace = Trace(2, (plan_of("r1", ("b", 0, None)), plan_of("r2", ("e", 1, None))))
+    assert {violation.rule for violation in trace_violations(ROW, solution_of([WALK, STEP]), trace)} == {"trace/prefix"}
 
 
 def test_no_more_violations_than_asked_for_are_listed_of_each_rule() -> None:
