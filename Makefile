@@ -73,6 +73,7 @@ generated: install
 	$(BIN)/python -m tests.oracle.test_readme
 	$(BIN)/python -m tests.vectors.writing
 	$(BIN)/python -m carp_spec.readme
+	$(BIN)/python -m carproof.ops.published
 	$(BIN)/python -m tests.verify.test_trusted_base
 	$(BIN)/python -m carproof.viewer.samples
 	$(BIN)/python -m tests.test_surface

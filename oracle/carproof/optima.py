@@ -11,16 +11,16 @@ if TYPE_CHECKING:
     from carp_verify.proof import Verified
 
 
-class OptimumDocument(msgspec.Struct, frozen=True, omit_defaults=True):
-    """The result of a search for the optimum.
+class OptimumDocument(msgspec.Struct, frozen=True, omit_defaults=True, forbid_unknown_fields=True):
+    """The least total cost, a lower bound, and the solution that has it.
 
-    Proved, and a cost of null: the robots cannot all be planned. Not proved: the solution is the best known, or
-    null if none is. `proved` means that the search ended with an answer; like `lower`, the answer rests on the solver.
+    `proved` means that the search ended with an answer, which nothing checked: it rests on the solver. Proved, and a
+    cost of null: the robots cannot all be planned. Not proved: the solution is the best known, or null if none is.
     `checked` is there, and true, where a proof was written and then checked as by `carproof verify-proof`.
     """
 
     cost: int | None
-    lower: int
+    lower: int | None
     proved: bool
     solution: SolutionDocument | None
     checked: bool = False

@@ -16,7 +16,7 @@ from typing import Any, Literal, TypeVar
 
 import msgspec
 
-from carp_spec import Instance, Refusal, RobotId, Rule, Solution, read_instance, read_solution
+from carp_spec import Refusal, Rule
 from carp_spec.documents import require_json
 from carp_spec.rule import DESIGN, rule
 from carproof.requests import inside
@@ -81,12 +81,14 @@ class Request:
             raise Refusal("request", "$", fields_are_right.id, "a request must be an object") from error
         self.id = self._fields.pop("id", MISSING)
 
-    def take(self, name: str, decode: Callable[[bytes], T], default: T | None = None) -> T:
-        """Decode a field and take it out; one without default must be there."""
+    def __contains__(self, name: str) -> bool:
+        """Whether the field is there and not taken yet."""
+        return name in self._fields
+
+    def take(self, name: str, decode: Callable[[bytes], T]) -> T:
+        """Decode a field and take it out."""
         if name not in self._fields:
-            if default is None:
-                raise Refusal("request", f"$.{name}", fields_are_right.id, "the field must be there")
-            return default
+            raise Refusal("request", f"$.{name}", fields_are_right.id, "the field must be there")
         with inside(f"$.{name}"):
             return decode(bytes(self._fields.pop(name)))
 
@@ -96,19 +98,6 @@ class Request:
             raise Refusal("request", "$.id", fields_are_right.id, "the field must be there")
         op: str = self.take("op", value_of(str))
         return op
-
-    def instance(self) -> Instance:
-        """The instance."""
-        return self.take("instance", read_instance)
-
-    def solution(self) -> Solution:
-        """The solution."""
-        return self.take("solution", read_solution)
-
-    def robot(self) -> RobotId:
-        """The robot."""
-        robot: RobotId = self.take("robot", value_of(RobotId))
-        return robot
 
     def options(self) -> dict[str, Any]:
         """All that is left, as options of a planner."""
@@ -127,8 +116,8 @@ def value_of(kind: Any) -> Callable[[bytes], Any]:  # noqa: ANN401 - msgspec's o
         try:
             return msgspec.json.decode(data, type=kind)
         except msgspec.ValidationError as error:
-            message = str(error).partition(" - at ")[0].replace("`", "")
-            raise Refusal("request", "$", fields_are_right.id, message[:1].lower() + message[1:]) from error
+            message, _, path = str(error).replace("`", "").partition(" - at ")
+            raise Refusal("request", path or "$", fields_are_right.id, message[:1].lower() + message[1:]) from error
 
     return decode
 

@@ -83,17 +83,6 @@ def shown_plan(plan: Plan) -> str:
     return " ".join(f"{visit.resource}{interval(visit.enter, visit.leave)}" for visit in plan.visits)
 
 
-class QueryDocument(msgspec.Struct, frozen=True):
-    """The result of a query: the visits of the plan, or null if there is none."""
-
-    plan: tuple[tuple[ResourceId, int, int | None], ...] | None
-
-
-def query_document(plan: Plan | None) -> QueryDocument:
-    """The document of a query's result."""
-    return QueryDocument(None if plan is None else visits_document(plan))
-
-
 class VerifiedBoundDocument(msgspec.Struct, frozen=True):
     """The bound that a certificate proves, or null and where, by which rule and why it does not.
 

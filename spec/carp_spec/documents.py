@@ -289,7 +289,11 @@ def instance_document(instance: Instance) -> InstanceDocument:
 
 def read_solution(data: bytes) -> Solution:
     """Read a solution document; raises `Refusal` if it is malformed. Whether it is right, the checker says."""
-    document = decode(data, SolutionDocument, SOLUTION_FORMAT)
+    return solution_of(decode(data, SolutionDocument, SOLUTION_FORMAT))
+
+
+def solution_of(document: SolutionDocument) -> Solution:
+    """The solution of a document."""
     plans = tuple(Plan(each.robot, tuple(Visit(*visit) for visit in each.visits)) for each in document.plans)
     return Solution(plans, document.order, document.unplanned)
 

@@ -1,31 +1,43 @@
-"""The table of rules in `spec/README.md`, made from the registry; `python -m carp_spec.readme` writes it anew."""
+"""Sections of pages that programs write, and the first of them: `python -m carp_spec.readme` writes the table of rules.
 
+A section of the name `rules` stands between `<!-- rules: begin -->` and `<!-- rules: end -->`.
+"""
+
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from carp_spec.registry import RULES
 
 README = Path(__file__).parents[1] / "README.md"
-START = "<!-- rules: made by `make generated` -->\n"
-END = "<!-- end of rules -->\n"
+
+
+def markdown_table(columns: Sequence[str], rows: Iterable[Sequence[object]], numbers: Sequence[str] = ()) -> str:
+    """A table in Markdown; the columns of numbers are aligned to the right."""
+    lines = (columns, ["---:" if column in numbers else "---" for column in columns], *rows)
+    return "".join(f"| {' | '.join(map(str, line))} |\n" for line in lines)
+
+
+def with_section(page: str, name: str, text: str) -> str:
+    """The page with the text as its section of that name; raises `ValueError` if it has no such section."""
+    begin, end = (f"<!-- {name}: {mark} -->\n" for mark in ("begin", "end"))
+    before, has_begin, rest = page.partition(begin)
+    _, has_end, after = rest.partition(end)
+    if not (has_begin and has_end):
+        raise ValueError(f"the page must have a section between {begin.strip()} and {end.strip()}")
+    return f"{before}{begin}{text}{end}{after}"
+
+
+def write_section(file: Path, name: str, text: str) -> None:
+    """Write the text into a page, as its section of that name."""
+    file.write_text(with_section(file.read_text(encoding="utf-8"), name, text), encoding="utf-8")
 
 
 def rule_table() -> str:
     """Every rule as a row of a Markdown table."""
-    rows = [f"| `{rule.id}` | {rule.statement} | {rule.source} |\n" for rule in RULES]
-    return "".join(["| id | statement | source |\n", "|---|---|---|\n", *rows])
-
-
-def with_rules(readme: str) -> str:
-    """The text with the table of rules between its two markers."""
-    before, _, rest = readme.partition(START)
-    _, _, after = rest.partition(END)
-    return f"{before}{START}{rule_table()}{END}{after}"
-
-
-def write_rules() -> None:
-    """Write the table into the README."""
-    README.write_text(with_rules(README.read_text()))
+    return markdown_table(
+        ("id", "statement", "source"), ((f"`{rule.id}`", rule.statement, rule.source) for rule in RULES)
+    )
 
 
 if __name__ == "__main__":
-    write_rules()
+    write_section(README, "rules", rule_table())

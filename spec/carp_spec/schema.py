@@ -7,6 +7,7 @@ a whole number, which `document/shape` does not, and it cannot tell the `instanc
 from collections.abc import Mapping
 from inspect import cleandoc
 from pathlib import Path
+from typing import Any
 
 import msgspec
 
@@ -29,12 +30,18 @@ DOCUMENTS: Mapping[str, type[msgspec.Struct]] = {
 }
 
 
-def schema_text(kind: type[msgspec.Struct]) -> str:
-    """The JSON Schema of a kind of document, as its file holds it."""
-    schema = {"$schema": DRAFT, **msgspec.json.schema(kind)}
+def schema_text(name: str, schema: Mapping[str, Any]) -> str:
+    """A JSON Schema as its file holds it."""
     for each in schema["$defs"].values():
-        each["description"] = cleandoc(each["description"])  # from Python 3.13 on they are without indentation anyway
-    return msgspec.json.format(msgspec.json.encode(schema, order="sorted"), indent=2).decode() + "\n"
+        if "description" in each:  # from Python 3.13 on they are without indentation anyway
+            each["description"] = cleandoc(each["description"])
+    head = {"$schema": DRAFT, "$id": f"urn:carproof:{name}:1"}
+    return msgspec.json.format(msgspec.json.encode({**head, **schema}, order="sorted"), indent=2).decode() + "\n"
+
+
+def document_schema(name: str) -> str:
+    """The schema of a document."""
+    return schema_text(name, msgspec.json.schema(DOCUMENTS[name]))
 
 
 def schema_file(name: str) -> Path:
@@ -45,8 +52,8 @@ def schema_file(name: str) -> Path:
 def write_schemas() -> None:
     """Write every schema to its file."""
     FOLDER.mkdir(exist_ok=True)
-    for name, kind in DOCUMENTS.items():
-        schema_file(name).write_text(schema_text(kind))
+    for name in DOCUMENTS:
+        schema_file(name).write_text(document_schema(name))
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """A program that answers rightly, by carproof itself, as far as it cannot help it; its argument says how it evades.
 
-`python evasive.py HOW OPS`: it offers the ops, which are joined by commas.
+`python evasive.py HOW ASKED_OPS`: it offers the ops, which are joined by commas.
 """
 
 import json
@@ -11,7 +11,7 @@ import msgspec
 
 from carp_spec import Refusal, read_instance
 from carp_spec.bounds import digest
-from carproof.conform.cases import OPS, request_fields
+from carproof.conform.cases import ASKED_OPS, request_fields
 from carproof.conform.levels import Level
 from carproof.conform.smoke import smoke_cases
 from carproof.conform.vector_cases import vector_cases
@@ -45,7 +45,7 @@ def question(request: Request) -> str:
 
 def published() -> set[str]:
     """The questions that everybody knows."""
-    cases = [case for all in (smoke_cases, vector_cases) for case in all(OPS, Level.EXACT, whole=False)]
+    cases = [case for all in (smoke_cases, vector_cases) for case in all(ASKED_OPS, Level.EXACT, whole=False)]
     documents = [json.loads(msgspec.json.encode(request_fields(case))) for case in cases]
     return {question({"op": case.op, **each}) for case, each in zip(cases, documents, strict=True)}
 

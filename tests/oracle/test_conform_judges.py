@@ -10,44 +10,27 @@ import msgspec
 import pytest
 
 import carp_reference
-from carp_optimum.bound import lower_bound
-from carp_optimum.optimum import optimum
 from carp_spec import Carp, Plan, Solution, judge
 from carp_spec.bounds import BoundDocument
-from carp_spec.documents import VerdictDocument, verdict_document
+from carp_spec.documents import VerdictDocument, solution_document
 from carp_spec.vectors import VectorsDocument
-from carproof.conform.answers import OptimumAnswer, QueryAnswer, Reply
-from carproof.conform.cases import OPS, POLISH_ROUNDS, Case, request_fields
+from carproof.conform.answers import Reply
+from carproof.conform.cases import ASKED_OPS, Case, request_fields, request_of
 from carproof.conform.levels import Level
 from carproof.conform.run import Options, Report, conform
 from carproof.conform.saving import save
+from carproof.engines import engine_named
+from carproof.ops import OPS
+from carproof.ops.planning import QueryDocument, query_document
+from carproof.optima import OptimumDocument
 
 LATE = {"query/optimal", "joint/capacity", "joint/exchange", "fleet/history"}
 Tamper = Callable[[Case, Reply], Reply]
 
 
 def right_reply(case: Case) -> Reply:
-    instance, solution = case.instance, case.solution
-    if case.op in ("check", "optimum", "bound"):
-        return right_proof(case)
-    if case.op == "polish":
-        return carp_reference.polish(instance, solution, iterations=POLISH_ROUNDS)
-    if case.op == "plan":
-        assert case.planner is not None
-        return carp_reference.plan(instance, case.planner)
-    assert case.robot is not None
-    if case.op == "query":
-        return QueryAnswer(carp_reference.query(instance, solution.plans, case.robot, case.now))
-    return carp_reference.add(instance, solution, case.robot, case.now, case.options)
-
-
-def right_proof(case: Case) -> Reply:
-    if case.op == "check":
-        return verdict_document(judge(case.instance, case.solution))
-    if case.op == "bound":
-        return lower_bound(case.instance, steps=20)
-    best = optimum(case.instance, 5)
-    return OptimumAnswer(best.cost, best.lower, best.decided, best.solution)
+    reply: Reply = OPS[case.op].handle(request_of(case), engine_named("reference"))
+    return reply
 
 
 class Tampered:
@@ -55,7 +38,7 @@ class Tampered:
 
     def __init__(self, tamper: Tamper) -> None:
         self.name = "tampered"
-        self.ops: tuple[str, ...] = OPS
+        self.ops: tuple[str, ...] = ASKED_OPS
         self.tamper = tamper
         self.asked: Counter[str] = Counter()
 
@@ -71,7 +54,7 @@ class Tampered:
     def kill(self) -> None: ...
 
 
-def run(tamper: Tamper, level: Level, ops: tuple[str, ...] = OPS, examples: int = 40) -> Report:
+def run(tamper: Tamper, level: Level, ops: tuple[str, ...] = ASKED_OPS, examples: int = 40) -> Report:
     subject = Tampered(tamper)
     subject.ops = ops
     return conform(subject, Options(level, examples, shrink_seconds=1))
@@ -90,14 +73,13 @@ def later(plan: Plan) -> Plan:
 
 def no_plan(case: Case, reply: Reply) -> Reply:
     del case
-    return QueryAnswer(None) if isinstance(reply, QueryAnswer) else reply
+    return QueryDocument(None) if isinstance(reply, QueryDocument) else reply
 
 
 def late_plan(case: Case, reply: Reply) -> Reply:
-    del case
-    if isinstance(reply, QueryAnswer) and reply.plan is not None:
-        return QueryAnswer(later(reply.plan))
-    return reply
+    assert case.robot is not None
+    plan = reply.plan_of(case.robot) if isinstance(reply, QueryDocument) else None
+    return reply if plan is None else query_document(later(plan))
 
 
 def verdict_is_always_valid(case: Case, reply: Reply) -> Reply:
@@ -164,21 +146,23 @@ def polishes_nothing(case: Case, reply: Reply) -> Reply:
 
 
 def optimum_too_high(case: Case, reply: Reply) -> Reply:
-    assert isinstance(reply, OptimumAnswer)
+    assert isinstance(reply, OptimumDocument)
     solution = carp_reference.plan(case.instance, Carp())
     cost = judge(case.instance, solution).cost
-    return reply if solution.unplanned else OptimumAnswer(cost, cost, proved=True, solution=solution)
+    return (
+        reply if solution.unplanned else OptimumDocument(cost, cost, proved=True, solution=solution_document(solution))
+    )
 
 
 def optimum_without_plans(case: Case, reply: Reply) -> Reply:
     del case
-    assert isinstance(reply, OptimumAnswer)
-    return replace(reply, solution=None)
+    assert isinstance(reply, OptimumDocument)
+    return msgspec.structs.replace(reply, solution=None)
 
 
 def optimum_is_denied(case: Case, reply: Reply) -> Reply:
     del case, reply
-    return OptimumAnswer(None, None, proved=True, solution=None)
+    return OptimumDocument(None, None, proved=True, solution=None)
 
 
 def bound_too_high(case: Case, reply: Reply) -> Reply:
@@ -196,7 +180,7 @@ def as_it_is(case: Case, reply: Reply) -> Reply:
 def test_right_answers_conform_to_every_level(level: Level) -> None:
     report = run(as_it_is, level)
     assert report.conforms, report.findings
-    assert set(report.judged) == {*OPS} - (set() if level >= Level.COMPLETE else {"optimum"})
+    assert set(report.judged) == {*ASKED_OPS} - (set() if level >= Level.COMPLETE else {"optimum"})
 
 
 @pytest.mark.parametrize(

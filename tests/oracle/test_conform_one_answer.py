@@ -12,11 +12,11 @@ from tests.oracle.test_conform_judges import later, right_reply
 import carp_verify.verify_bound
 from carp_spec import Carp, Greedy, Instance, Neighbourhood, Plan, Planner, Resource, ResourceGraph, Robot, Solution
 from carp_spec.bounds import BoundDocument
-from carp_spec.documents import VerdictDocument
+from carp_spec.documents import VerdictDocument, solution_document
 from carproof.conform import effort as efforts
 from carproof.conform import judges
 from carproof.conform import optimum as optima
-from carproof.conform.answers import Answer, OptimumAnswer, QueryAnswer
+from carproof.conform.answers import Answer
 from carproof.conform.cases import Case, Op
 from carproof.conform.effort import Effort, effort, why_undecided
 from carproof.conform.findings import wrong
@@ -24,6 +24,8 @@ from carproof.conform.judges import first_finding
 from carproof.conform.levels import Level
 from carproof.conform.optimum import cost_alone, found_cost
 from carproof.conform.smoke import EAST, FIRST, FIRST_GOES, WEST, Stay, committed, passing_place, row
+from carproof.ops.planning import QueryDocument, query_document
+from carproof.optima import OptimumDocument
 
 Row: TypeAlias = tuple[Case, Answer, Mapping[Level, str | None]]
 HURRIES: Sequence[Stay] = (("a", 0, 1), ("b", 1, 1), ("c", 1, 2), ("d", 2, 3))
@@ -56,8 +58,12 @@ def plan(robot: str, *stays: Stay) -> Plan:
     return committed(ALONE, **{robot: stays}).plans[0]
 
 
-def goes(*stays: Stay) -> QueryAnswer:
-    return QueryAnswer(plan("new", *stays))
+def goes(*stays: Stay) -> QueryDocument:
+    return query_document(plan("new", *stays))
+
+
+def claimed(cost: int | None, lower: int | None, *, proved: bool, solution: Solution | None) -> OptimumDocument:
+    return OptimumDocument(cost, lower, proved, None if solution is None else solution_document(solution))
 
 
 def in_order(solution: Solution, *order: str) -> Solution:
@@ -72,25 +78,26 @@ QUERY = case("query", ALONE)
 QUERY_EXCHANGE = case("query", HEAD_ON, first=FIRST_GOES)
 QUERY_UNDER_WAY = case("query", ALONE, 2, new=FIRST_GOES)
 QUERY_STANDING = case("query", STANDING, 2, other=[("b", 0, 1)])
-OTHER_WAY = goes(("a", 0, 1), ("c", 1, 2), ("d", 2, 3))
+OTHER_PLAN = plan("new", ("a", 0, 1), ("c", 1, 2), ("d", 2, 3))
+OTHER_WAY = query_document(OTHER_PLAN)
 QUERIES: Sequence[Row] = (
     (QUERY, goes(*FIRST_GOES), {}),
-    (QUERY, QueryAnswer(None), {Level.COMPLETE_IN_CONTEXT: "query/complete"}),
-    (QUERY, QueryAnswer(later(plan("new", *FIRST_GOES))), {Level.CONTEXT_OPTIMAL: "query/optimal"}),
+    (QUERY, QueryDocument(None), {Level.COMPLETE_IN_CONTEXT: "query/complete"}),
+    (QUERY, query_document(later(plan("new", *FIRST_GOES))), {Level.CONTEXT_OPTIMAL: "query/optimal"}),
     (QUERY, goes(*HURRIES), {Level.SOUND: "plan/duration"}),
     (case("query", DIAMOND), right(case("query", DIAMOND)), {}),
     (case("query", DIAMOND), OTHER_WAY, {Level.EXACT: "query/ties"}),
     (QUERY_EXCHANGE, right(QUERY_EXCHANGE), {}),
     (QUERY_EXCHANGE, goes(*WESTWARDS), {Level.SOUND: "joint/exchange"}),
     (case("query", BEHIND, first=FIRST_GOES), goes(("b", 0, 2), *BEHIND_GOES[1:]), {Level.SOUND: "plan/contiguous"}),
-    (case("query", BLOCKED, first=FIRST_GOES), QueryAnswer(None), {}),
+    (case("query", BLOCKED, first=FIRST_GOES), QueryDocument(None), {}),
     (
         case("query", AMONG_OTHERS, zed=FIRST_GOES),
         goes(("b", 1, 2), ("c", 2, 3), ("d", 3, 4)),
         {Level.SOUND: "joint/capacity"},
     ),
     (QUERY_UNDER_WAY, goes(*FIRST_GOES), {}),
-    (QUERY_UNDER_WAY, QueryAnswer(later(plan("new", *FIRST_GOES))), {Level.SOUND: "fleet/history"}),
+    (QUERY_UNDER_WAY, query_document(later(plan("new", *FIRST_GOES))), {Level.SOUND: "fleet/history"}),
     (QUERY_STANDING, right(QUERY_STANDING), {}),
     (QUERY_STANDING, goes(*FIRST_GOES), {Level.SOUND: "fleet/history"}),
     (
@@ -113,7 +120,7 @@ PLANS: Sequence[Row] = (
     (case("plan", MEETING, planner=Carp()), committed(MEETING, first=FIRST_GOES), {}),
     (
         case("plan", DIAMOND, planner=Carp()),
-        Solution((OTHER_WAY.plan or later(plan("new")),), ("new",)),
+        Solution((OTHER_PLAN,), ("new",)),
         {Level.EXACT: "query/ties"},
     ),
     (GREEDY, right(GREEDY), {}),
@@ -126,7 +133,7 @@ PLANS: Sequence[Row] = (
     ),
     (
         case("plan", DIAMOND, planner=Greedy()),
-        Solution((OTHER_WAY.plan or later(plan("new")),), ("new",)),
+        Solution((OTHER_PLAN,), ("new",)),
         {Level.EXACT: "query/ties"},
     ),
     (FREE, ASIDE_SECOND, {}),
@@ -137,7 +144,7 @@ PLANS: Sequence[Row] = (
         {Level.COMPLETE_IN_CONTEXT: "query/complete", Level.COMPLETE: "program/complete"},
     ),
     (FREE, committed(MEETING, first=HURRIES), {Level.SOUND: "plan/duration"}),
-    (case("plan", DIAMOND), Solution((OTHER_WAY.plan or later(plan("new")),), ("new",)), {}),
+    (case("plan", DIAMOND), Solution((OTHER_PLAN,), ("new",)), {}),
     (case("plan", LAST_FIRST), right(case("plan", LAST_FIRST, planner=Carp())), {Level.OPTIMAL: "program/optimal"}),
     (case("plan", BLOCKED), committed(BLOCKED, first=FIRST_GOES), {}),
     (CLASSICAL, ASIDE_SECOND, {}),
@@ -203,30 +210,30 @@ CHECKS: Sequence[Row] = (
     (CHECK_RIGHT, changed(VALID, violations=VERDICT.violations), {Level.SOUND: "joint/exchange"}),
 )
 OPTIMUM = case("optimum", LAST_FIRST)
-BEST: OptimumAnswer = right(OPTIMUM)
+BEST: OptimumDocument = right(OPTIMUM)
 CARP = right(case("plan", LAST_FIRST, planner=Carp()))
-UNDECIDED = OptimumAnswer(None, None, proved=False, solution=None)
-NONE = OptimumAnswer(None, None, proved=True, solution=None)
+UNDECIDED = claimed(None, None, proved=False, solution=None)
+NONE = claimed(None, None, proved=True, solution=None)
 ONE_OF_TWO = committed(BEHIND, first=FIRST_GOES)
 OPTIMA: Sequence[Row] = (
     (OPTIMUM, BEST, {}),
     (OPTIMUM, UNDECIDED, {}),
-    (OPTIMUM, replace(UNDECIDED, lower=7), {}),
-    (OPTIMUM, replace(UNDECIDED, lower=8), {Level.OPTIMAL: "program/lower"}),
-    (OPTIMUM, replace(UNDECIDED, cost=9), {Level.SOUND: "cost/total"}),
-    (OPTIMUM, OptimumAnswer(9, 7, proved=False, solution=CARP), {}),
-    (OPTIMUM, OptimumAnswer(9, 7, proved=True, solution=CARP), {Level.OPTIMAL: "program/optimal"}),
-    (OPTIMUM, OptimumAnswer(7, 7, proved=True, solution=CARP), {Level.SOUND: "cost/total"}),
-    (OPTIMUM, OptimumAnswer(None, 7, proved=True, solution=CARP), {Level.SOUND: "cost/total"}),
+    (OPTIMUM, changed(UNDECIDED, lower=7), {}),
+    (OPTIMUM, changed(UNDECIDED, lower=8), {Level.OPTIMAL: "program/lower"}),
+    (OPTIMUM, changed(UNDECIDED, cost=9), {Level.SOUND: "cost/total"}),
+    (OPTIMUM, claimed(9, 7, proved=False, solution=CARP), {}),
+    (OPTIMUM, claimed(9, 7, proved=True, solution=CARP), {Level.OPTIMAL: "program/optimal"}),
+    (OPTIMUM, claimed(7, 7, proved=True, solution=CARP), {Level.SOUND: "cost/total"}),
+    (OPTIMUM, claimed(None, 7, proved=True, solution=CARP), {Level.SOUND: "cost/total"}),
     (OPTIMUM, NONE, {Level.COMPLETE: "program/complete"}),
-    (case("optimum", BEHIND), OptimumAnswer(3, 3, proved=False, solution=ONE_OF_TWO), {Level.SOUND: "solution/covers"}),
+    (case("optimum", BEHIND), claimed(3, 3, proved=False, solution=ONE_OF_TWO), {Level.SOUND: "solution/covers"}),
     (
         case("optimum", row([FIRST])),
-        OptimumAnswer(2, 2, proved=False, solution=committed(row([FIRST]), first=HURRIES)),
+        claimed(2, 2, proved=False, solution=committed(row([FIRST]), first=HURRIES)),
         {Level.SOUND: "plan/duration"},
     ),
     (case("optimum", BLOCKED), NONE, {}),
-    (case("optimum", BLOCKED), replace(NONE, lower=10**9), {}),
+    (case("optimum", BLOCKED), changed(NONE, lower=10**9), {}),
 )
 BOUND: BoundDocument = right(case("bound", LAST_FIRST))
 BOUNDS: Sequence[Row] = (
@@ -250,7 +257,7 @@ def test_an_answer_is_refused_by_its_rule_from_a_level_on(
 
 
 def test_a_late_plan_is_told_with_the_best_one() -> None:
-    finding = first_finding(QUERY, QueryAnswer(later(plan("new", *FIRST_GOES))), Level.CONTEXT_OPTIMAL)
+    finding = first_finding(QUERY, query_document(later(plan("new", *FIRST_GOES))), Level.CONTEXT_OPTIMAL)
     assert finding is not None
     assert finding.message == "robot new arrives at 4, and can at 3: a[0,1) b[1,2) c[2,3) d[3,4)"
 
@@ -310,7 +317,7 @@ def test_where_carproof_is_undecided_nothing_is_called_wrong_nor_counted(monkeyp
         monkeypatch.setattr(module, "found_cost", lambda _: (False, 1))
     monkeypatch.setattr(carp_verify.verify_bound, "verify_bound", lambda *_: 8)
     asked: Sequence[tuple[Case, Answer]] = (
-        (OPTIMUM, OptimumAnswer(9, 9, proved=True, solution=CARP)),
+        (OPTIMUM, claimed(9, 9, proved=True, solution=CARP)),
         (FREE, ASIDE_SECOND),
         (CLASSICAL, committed(MEETING, first=FIRST_GOES)),
         (case("bound", LAST_FIRST), BOUND),
@@ -326,7 +333,7 @@ def test_where_carproof_is_undecided_nothing_is_called_wrong_nor_counted(monkeyp
 
 def test_an_optimum_that_is_not_proved_counts_as_no_answer() -> None:
     assert why_undecided(OPTIMUM, UNDECIDED, Level.OPTIMAL) == "it leaves the optimum undecided"
-    assert why_undecided(OPTIMUM, OptimumAnswer(9, 7, proved=False, solution=CARP), Level.OPTIMAL) is not None
+    assert why_undecided(OPTIMUM, claimed(9, 7, proved=False, solution=CARP), Level.OPTIMAL) is not None
     assert why_undecided(OPTIMUM, BEST, Level.OPTIMAL) is None
     assert why_undecided(case("optimum", BLOCKED), NONE, Level.OPTIMAL) is None
     assert why_undecided(FREE, ASIDE_SECOND, Level.OPTIMAL) is None
@@ -343,8 +350,8 @@ CROWDED = replace(case("plan", MEETING), classical=True)
     ("asked", "answer", "shown"),
     [
         (QUERY, goes(*FIRST_GOES), Effort.TRIED),
-        (QUERY, QueryAnswer(None), Effort.GAVE_UP),
-        (case("query", BLOCKED, first=FIRST_GOES), QueryAnswer(None), Effort.NOTHING_TO_DO),
+        (QUERY, QueryDocument(None), Effort.GAVE_UP),
+        (case("query", BLOCKED, first=FIRST_GOES), QueryDocument(None), Effort.NOTHING_TO_DO),
         (ADD, ADDED, Effort.TRIED),
         (ADD, committed(BEHIND, first=FIRST_GOES), Effort.GAVE_UP),
         (case("add", ISLANDS), committed(ISLANDS), Effort.NOTHING_TO_DO),

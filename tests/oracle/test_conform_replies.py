@@ -6,22 +6,20 @@ from typing import Any
 import msgspec
 import pytest
 
-from carp_spec import Carp, Solution
+from carp_spec import Solution
 from carp_spec.bounds import BoundDocument
-from carp_spec.documents import VerdictDocument
+from carp_spec.documents import VerdictDocument, solution_document
 from carproof.conform.answers import (
     MOST_SHOWN,
-    OptimumAnswer,
-    QueryAnswer,
     Skipped,
-    decode_answer,
+    read_result,
     result_of,
     shown,
-    start_result,
 )
-from carproof.conform.cases import Case, Op
 from carproof.conform.findings import Category, Fault
 from carproof.conform.smoke import EAST, FIRST_GOES, committed, row
+from carproof.ops.planning import QueryDocument
+from carproof.optima import OptimumDocument
 
 ALONE = row([EAST])
 GOES = committed(ALONE, new=FIRST_GOES)
@@ -30,10 +28,6 @@ SOLUTION = {"format": "carproof-solution/1", "plans": [{"robot": "new", "visits"
 WHOLE = {**SOLUTION, "unplanned": []}
 OPTIMUM = {"cost": 3, "lower": 3, "proved": True, "solution": WHOLE}
 VERDICT = {"format": "carproof-verdict/1", "valid": True, "cost": 3, "unplanned": 0, "violations": []}
-
-
-def case(op: Op, robot: str | None = "new") -> Case:
-    return Case("smoke", "one", op, ALONE, robot=robot, planner=Carp())
 
 
 @pytest.mark.parametrize(
@@ -105,23 +99,22 @@ def test_of_a_long_line_the_beginning_is_shown() -> None:
     assert shown(b"\xff") == r"'\\xff'"
 
 
-def decoded(asked: Case, document: Any) -> Any:  # noqa: ANN401 - JSON, and an answer
-    return decode_answer(asked, msgspec.Raw(json.dumps(document).encode()))
+def decoded(op: str, document: Any) -> Any:  # noqa: ANN401 - JSON, and a result
+    return read_result(op, json.dumps(document).encode())
 
 
 def test_each_op_has_its_answer() -> None:
-    assert decoded(case("query"), {"plan": None}) == QueryAnswer(None)
-    assert decoded(case("query"), {"plan": VISITS}) == QueryAnswer(GOES.plans[0])
-    assert decoded(case("query", None), {"plan": VISITS}) == QueryAnswer(GOES.plans[0])
+    assert decoded("query", {"plan": None}) == QueryDocument(None)
+    assert decoded("query", {"plan": VISITS}).plan_of("new") == GOES.plans[0]
     for op in ("plan", "add", "polish"):
-        assert decoded(case(op), WHOLE) == Solution(GOES.plans, ("new",))
-    assert decoded(case("optimum"), OPTIMUM) == OptimumAnswer(3, 3, proved=True, solution=GOES)
+        assert decoded(op, WHOLE) == Solution(GOES.plans, ("new",))
+    assert decoded("optimum", OPTIMUM) == OptimumDocument(3, 3, proved=True, solution=solution_document(GOES))
     nothing = {"cost": None, "lower": None, "proved": False, "solution": None}
-    assert decoded(case("optimum"), nothing) == OptimumAnswer(None, None, proved=False, solution=None)
-    assert isinstance(decoded(case("check"), VERDICT), VerdictDocument)
+    assert decoded("optimum", nothing) == OptimumDocument(None, None, proved=False, solution=None)
+    assert isinstance(decoded("check", VERDICT), VerdictDocument)
     bound = {"format": "carproof-bound/1", "instance": "0", "bound": 0, "scale": 1, "horizon": 0}
     lists: dict[str, list[Any]] = {"resources": [], "exchanges": [], "robots": [], "cuts": []}
-    assert isinstance(decoded(case("bound"), bound | lists), BoundDocument)
+    assert isinstance(decoded("bound", bound | lists), BoundDocument)
 
 
 @pytest.mark.parametrize(
@@ -144,9 +137,9 @@ def test_each_op_has_its_answer() -> None:
         ("bound", {}),
     ],
 )
-def test_a_result_of_another_shape_is_refused(op: Op, document: Any) -> None:  # noqa: ANN401 - JSON
+def test_a_result_of_another_shape_is_refused(op: str, document: Any) -> None:  # noqa: ANN401 - JSON
     with pytest.raises(Fault) as refused:
-        decoded(case(op), document)
+        decoded(op, document)
     finding = refused.value.finding
     assert (finding.category, finding.rule) == (Category.PROTOCOL_ERROR, "program/result")
 
@@ -154,12 +147,12 @@ def test_a_result_of_another_shape_is_refused(op: Op, document: Any) -> None:  #
 @pytest.mark.parametrize("data", [b"[" * 100_000, b'{"format": "carproof-solution/1", "order": [1e999]}', b"\xff"])
 def test_a_solution_that_cannot_be_read_is_refused(data: bytes) -> None:
     with pytest.raises(Fault) as refused:
-        decode_answer(case("plan"), msgspec.Raw(data))
+        read_result("plan", data)
     assert refused.value.finding.rule == "program/result"
 
 
 def test_a_start_names_the_program_and_its_ops() -> None:
-    started = start_result(msgspec.Raw(b'{"name": "mine", "version": "1", "ops": ["query"]}'))
+    started = read_result("start", (b'{"name": "mine", "version": "1", "ops": ["query"]}'))
     assert (started.name, started.version, started.ops) == ("mine", "1", ("query",))
     for wrong in (
         b"{}",
@@ -168,4 +161,4 @@ def test_a_start_names_the_program_and_its_ops() -> None:
         b'{"name": "", "version": "", "ops": "q"}',
     ):
         with pytest.raises(Fault, match="the result of start is not as it must be"):
-            start_result(msgspec.Raw(wrong))
+            read_result("start", (wrong))

@@ -7,7 +7,7 @@ from tests.oracle.test_conform_judges import Tampered, as_it_is, no_plan
 
 from carp_spec import Robot
 from carproof.conform import run
-from carproof.conform.answers import QueryAnswer, Reply, Skipped
+from carproof.conform.answers import Reply, Skipped
 from carproof.conform.cases import Case, Op, Stage
 from carproof.conform.deciding import Tally, random_shortfalls, smoke_shortfalls
 from carproof.conform.effort import Effort
@@ -18,8 +18,9 @@ from carproof.conform.run import MOST_FAULTS, Options, Report, conform, label
 from carproof.conform.smoke import row, smoke_cases
 from carproof.conform.vector_cases import vector_cases
 from carproof.movingai_writer import is_classical
+from carproof.ops.planning import QueryDocument
 
-NOBODY = QueryAnswer(None)
+NOBODY = QueryDocument(None)
 WRONG = wrong("plan/move", "it jumps")
 CRASH = Finding(Category.CRASH, "program/alive", "it is gone")
 

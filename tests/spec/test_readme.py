@@ -22,7 +22,7 @@ from carp_spec import (
 )
 from carp_spec.execution_rules import trace_violations
 from carp_spec.neighbourhood_rules import distance
-from carp_spec.readme import README, rule_table, with_rules, write_rules
+from carp_spec.readme import README, rule_table, with_section, write_section
 from carp_spec.traces import read_trace
 
 TEXT = README.read_text()
@@ -30,17 +30,22 @@ INSTANCE, SOLUTION, VERDICT, TRACE = re.findall(r"```json\n(.*?)```", TEXT, re.D
 
 
 def test_the_table_of_rules_is_the_registry() -> None:
-    assert with_rules(TEXT) == TEXT, "`make generated` writes it anew"
+    assert with_section(TEXT, "rules", rule_table()) == TEXT, "`make generated` writes it anew"
     assert rule_table().count("\n") == len(RULES) + 2
     assert all("|" not in rule.statement + rule.source for rule in RULES)
 
 
-def test_writing_the_table_replaces_it_and_nothing_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    old = tmp_path / "README.md"
-    old.write_text(TEXT.replace(rule_table(), "| old |\n"))
-    monkeypatch.setattr("carp_spec.readme.README", old)
-    write_rules()
-    assert old.read_text() == TEXT
+def test_writing_a_section_replaces_it_and_nothing_else(tmp_path: Path) -> None:
+    page = tmp_path / "README.md"
+    page.write_text(TEXT.replace(rule_table(), "| old |\n"))
+    write_section(page, "rules", rule_table())
+    assert page.read_text() == TEXT
+
+
+@pytest.mark.parametrize("page", ["", "<!-- rules: begin -->\n", "<!-- rules: end -->\n<!-- rules: begin -->\n"])
+def test_a_page_without_the_section_is_refused(page: str) -> None:
+    with pytest.raises(ValueError, match="rules: begin"):
+        with_section(page, "rules", "")
 
 
 def test_the_example_is_judged_as_told() -> None:

@@ -13,10 +13,12 @@ import click
 
 from carproof.adapters import ADAPTERS
 from carproof.answer import Answer
+from carproof.conform.cases import ASKED_OPS
 from carproof.conform.levels import CLASSICAL_LEVELS, LEVELS, WHOLE_LEVELS, Level
 from carproof.engines import warm
 from carproof.extras import require
 from carproof.files import OutputFile, print_document, write_whole
+from carproof.ops.published import op_list
 from carproof.options import examples, json_option
 from carproof.progress import progress
 from carproof.tables import print_line, print_table
@@ -36,6 +38,7 @@ _LEVELS = "\n".join(
 
 @click.command(
     epilog=_LEVELS
+    + op_list(ASKED_OPS)
     + examples(
         "carproof conform -- carproof serve",
         "carproof conform --level complete-in-context --examples 2000 -- ./planner",
@@ -90,9 +93,9 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 ) -> Answer:
     """Ask PROGRAM questions, and judge its answers.
 
-    PROGRAM stays up and answers requests, one a line, as carproof serve does: start, and as many of check, query,
-    plan, add, polish, optimum and bound as it likes; what it does not offer is not asked. A failing case is shrunk,
-    and written to the folder of --save: the request, the documents, a test vector and a picture.
+    PROGRAM stays up and answers requests, one a line, as carproof serve does: start, stop, and as many of the ops
+    below as it likes; what it does not offer is not asked. A failing case is shrunk, and written to the folder of
+    --save: the request, the documents, a test vector and a picture.
 
     It must answer all smoke cases, and 90 in 100 random cases of each op that it offers; to skip a case, or to leave
     an optimum undecided, is no answer. It may give up at most half of the random cases of an op that have an answer.

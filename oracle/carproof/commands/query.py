@@ -16,6 +16,7 @@ from carproof.files import (
     refuse_two_standard_inputs,
     write_whole,
 )
+from carproof.ops.planning import query_document
 from carproof.options import (
     engine_option,
     examples,
@@ -26,7 +27,7 @@ from carproof.options import (
     solution_argument,
 )
 from carproof.requests import require_tick, robot_called, sound_solution
-from carproof.results import query_document, write_result
+from carproof.results import write_result
 from carproof.tables import print_line, print_table
 
 

@@ -7,13 +7,15 @@ import click
 
 from carproof.answer import Answer
 from carproof.engines import engine_named
+from carproof.ops.published import op_list
 from carproof.options import engine_option, examples
 from carproof.server import serve
 
 
 @click.command(
     short_help="Answer requests, one a line.",
-    epilog=examples(
+    epilog=op_list()
+    + examples(
         """echo '{"id": 1, "op": "start", "version": 1}' | carproof serve""",
         "carproof serve < requests.jsonl > responses.jsonl",
     ),
@@ -22,9 +24,9 @@ from carproof.server import serve
 def command(engine: str | None) -> Answer:
     """Answer requests, one a line, until stop or the end of the input.
 
-    Each line of standard input is a JSON object with id and op (start, check, query, plan, add, stop) and the
-    fields of the op; each gets one line on standard output. A bad line gets an error response, and never ends
-    the process. oracle/README.md tells all fields.
+    Each line of standard input is a JSON object with id and op and the fields of the op; each gets one line on
+    standard output. A bad line gets an error response, and never ends the process. oracle/README.md lists the
+    fields of each op.
     """
     requests, responses = sys.stdin.buffer, sys.stdout.buffer
     with redirect_stdout(sys.stderr):

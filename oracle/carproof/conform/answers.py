@@ -1,17 +1,19 @@
 """What a program answers, decoded as strictly as documents are."""
 
 from dataclasses import dataclass
-from typing import TypeAlias, TypeVar
+from typing import Any, TypeAlias
 
 import msgspec
 
-from carp_spec import Plan, Refusal, ResourceId, Solution, Visit, read_solution
+from carp_spec import Refusal, Solution
 from carp_spec.bounds import BoundDocument
-from carp_spec.documents import VerdictDocument, is_json
-from carproof.conform.cases import Case
+from carp_spec.documents import UNREADABLE, VerdictDocument, is_json
 from carproof.conform.findings import Category, Fault, Finding, is_accepted, is_response, is_result
+from carproof.ops import OPS
+from carproof.ops.op import reader_of
+from carproof.ops.planning import QueryDocument
+from carproof.optima import OptimumDocument
 
-T = TypeVar("T")
 MOST_SHOWN = 200
 
 
@@ -29,24 +31,7 @@ class NotAsked:
     why: str
 
 
-@dataclass(frozen=True, slots=True)
-class QueryAnswer:
-    """The answer to `query`."""
-
-    plan: Plan | None
-
-
-@dataclass(frozen=True, slots=True)
-class OptimumAnswer:
-    """The answer to `optimum`; `solution` is `None` where there is no solution with a plan for each robot."""
-
-    cost: int | None
-    lower: int | None
-    proved: bool
-    solution: Solution | None
-
-
-Answer: TypeAlias = QueryAnswer | Solution | VerdictDocument | OptimumAnswer | BoundDocument
+Answer: TypeAlias = QueryDocument | Solution | VerdictDocument | OptimumDocument | BoundDocument
 Reply: TypeAlias = Answer | Skipped | NotAsked
 
 
@@ -55,25 +40,6 @@ class _Response(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     result: msgspec.Raw | msgspec.UnsetType = msgspec.UNSET
     skipped: str | msgspec.UnsetType = msgspec.UNSET
     error: msgspec.Raw | msgspec.UnsetType = msgspec.UNSET
-
-
-class StartResult(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What a program says of itself."""
-
-    name: str
-    version: str
-    ops: tuple[str, ...]
-
-
-class _QueryResult(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    plan: tuple[tuple[ResourceId, int, int | None], ...] | None
-
-
-class _OptimumResult(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    cost: int | None
-    lower: int | None
-    proved: bool
-    solution: msgspec.Raw
 
 
 def protocol_error(rule: str, message: str) -> Fault:
@@ -87,19 +53,16 @@ def shown(data: bytes) -> str:
     return repr(text) + (f" and {len(data) - MOST_SHOWN} more bytes" if len(data) > MOST_SHOWN else "")
 
 
-def _decoded(data: bytes | msgspec.Raw, kind: type[T], rule: str, what: str) -> T:
-    try:
-        return msgspec.json.decode(data, type=kind)
-    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError, ValueError) as error:
-        reason = str(error).replace("`", "")
-        raise protocol_error(rule, f"{what}: {reason[:1].lower()}{reason[1:]}, in {shown(bytes(data))}") from error
-
-
 def result_of(line: bytes, id: object) -> msgspec.Raw | Skipped:
     """The result in a response to the request with the id."""
     if not is_json(line):
         raise protocol_error(is_response.id, f"the response must obey {is_json.id}: {shown(line)}")
-    response = _decoded(line, _Response, is_response.id, "the response is not as it must be")
+    try:
+        response = msgspec.json.decode(line, type=_Response)
+    except (*UNREADABLE, ValueError) as error:
+        reason = str(error).replace("`", "")
+        message = f"the response is not as it must be: {reason[:1].lower()}{reason[1:]}, in {shown(line)}"
+        raise protocol_error(is_response.id, message) from error
     fields = {name for name in ("id", "result", "skipped", "error") if getattr(response, name) is not msgspec.UNSET}
     if not is_response(fields):
         message = f"the response must have one of result, skipped and error: {shown(line)}"
@@ -109,8 +72,8 @@ def result_of(line: bytes, id: object) -> msgspec.Raw | Skipped:
     if isinstance(response.skipped, str):
         return Skipped(response.skipped)
     if not is_accepted(None if response.error is msgspec.UNSET else response.error):
-        error = bytes(response.error) if isinstance(response.error, msgspec.Raw) else b""
-        message = f"the program refuses a right request: {shown(error)}"
+        refusal = bytes(response.error) if isinstance(response.error, msgspec.Raw) else b""
+        message = f"the program refuses a right request: {shown(refusal)}"
         raise Fault(Finding(Category.WRONG_ANSWER, is_accepted.id, message))
     return response.result if isinstance(response.result, msgspec.Raw) else msgspec.Raw(b"null")
 
@@ -120,35 +83,19 @@ def _same_id(data: bytes, id: object) -> bool:
     return type(decoded) is type(id) and bool(decoded == id)
 
 
-def start_result(data: msgspec.Raw) -> StartResult:
-    """The result of `start`."""
-    return _decoded(data, StartResult, is_result.id, "the result of start is not as it must be")
-
-
-def decode_answer(case: Case, data: msgspec.Raw) -> Answer:
-    """The result of a case's op."""
-    what = f"the result of {case.op} is not as it must be"
-    if case.op == "check":
-        return _decoded(data, VerdictDocument, is_result.id, what)
-    if case.op == "bound":
-        return _decoded(data, BoundDocument, is_result.id, what)
-    if case.op == "query":
-        visits = _decoded(data, _QueryResult, is_result.id, what).plan
-        robot = case.instance.robots[0].id if case.robot is None else case.robot
-        return QueryAnswer(None if visits is None else Plan(robot, tuple(Visit(*visit) for visit in visits)))
-    if case.op == "optimum":
-        found = _decoded(data, _OptimumResult, is_result.id, what)
-        solution = None if bytes(found.solution) == b"null" else decode_solution(bytes(found.solution))
-        return OptimumAnswer(found.cost, found.lower, found.proved, solution)
-    return decode_solution(bytes(data))
+def read_result(op: str, data: bytes | msgspec.Raw) -> Any:  # noqa: ANN401 - the result of the op
+    """The result of an op, read as its type in the table says."""
+    what = f"the result of {op} is not as it must be"
+    try:
+        return reader_of(OPS[op].result)(bytes(data))
+    except Refusal as refusal:
+        message = f"{what}: {refusal.path}: {refusal.message}, in {shown(bytes(data))}"
+        raise protocol_error(is_result.id, message) from refusal
+    except (*UNREADABLE, ValueError) as error:
+        raise protocol_error(is_result.id, f"{what}: {error}") from error
 
 
 def decode_solution(data: bytes) -> Solution:
-    """A solution document."""
-    try:
-        return read_solution(data)
-    except Refusal as refusal:
-        message = f"the solution is not as it must be, at {refusal}; it is {shown(data)}"
-        raise protocol_error(is_result.id, message) from refusal
-    except (ValueError, RecursionError) as error:
-        raise protocol_error(is_result.id, f"the solution cannot be read: {error}") from error
+    """A solution, as the result of `plan` is one."""
+    solution: Solution = read_result("plan", data)
+    return solution

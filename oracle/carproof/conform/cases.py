@@ -1,14 +1,15 @@
 """A case: one question to a program. It holds nothing of the answer."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, fields
 from typing import Any, Literal, TypeAlias, get_args
 
 from carp_spec import Instance, Neighbourhood, Planner, RobotId, Solution
-from carp_spec.documents import instance_document, solution_document
+from carproof.ops import OPS
+from carproof.ops import op as wire
+from carproof.ops.op import PolishOptions
 
 Op: TypeAlias = Literal["check", "query", "plan", "add", "polish", "optimum", "bound"]
-OPS: tuple[Op, ...] = get_args(Op)
-WITH_SOLUTION: tuple[Op, ...] = ("check", "query", "add", "polish")
+ASKED_OPS: tuple[Op, ...] = get_args(Op)
 Stage: TypeAlias = Literal["smoke", "vectors", "random"]
 OPTIMUM_SECONDS = 3
 BOUND_STEPS = 100
@@ -20,10 +21,9 @@ NO_PLANS = Solution((), ())
 class Case:
     """A question: an op of the protocol with its fields.
 
-    `check` and `polish` need the solution, `query` and `add` the solution, the robot and the tick `now`. A planner of
-    `None` for `plan` leaves the choice to the program: that is what programs are asked that only plan whole
-    instances. A `classical` one is answered in a format of classical planners, which does not tell the order of the
-    plans.
+    A planner of `None` for `plan` leaves the choice to the program: that is what programs are asked that only plan
+    whole instances. A `classical` one is answered in a format of classical planners, which does not tell the order of
+    the plans.
     """
 
     stage: Stage
@@ -49,25 +49,23 @@ class Case:
         return self.planner if isinstance(self.planner, Neighbourhood) else Neighbourhood()
 
 
-def case_input(case: Case) -> dict[str, Any]:
-    """The fields of the request besides the op and the instance."""
-    fields: dict[str, Any] = {"solution": solution_document(case.solution)} if case.op in WITH_SOLUTION else {}
-    match case.op:
-        case "query":
-            fields |= {"robot": case.robot, "now": case.now}
-        case "add":
-            fields |= {"robot": case.robot, "now": case.now, **asdict(case.options)}
-        case "polish":
-            fields |= {"iterations": POLISH_ROUNDS}
-        case "plan" if case.planner is not None:
-            fields |= {"planner": case.planner.name, **asdict(case.planner)}
-        case "optimum":
-            fields |= {"limit": OPTIMUM_SECONDS}
-        case "bound":
-            fields |= {"steps": BOUND_STEPS}
-    return fields
+def request_of(case: Case) -> Any:  # noqa: ANN401 - the request of its op
+    """The request, as the op's type in the table says."""
+    settings: dict[str, dict[str, Any]] = {
+        "polish": {"options": PolishOptions(POLISH_ROUNDS)},
+        "optimum": {"limit": OPTIMUM_SECONDS},
+        "bound": {"steps": BOUND_STEPS},
+    }
+    kind = OPS[case.op].request
+    of_case = {field.name: getattr(case, field.name) for field in fields(kind) if hasattr(case, field.name)}
+    return kind(**{**of_case, **settings.get(case.op, {})})
 
 
 def request_fields(case: Case) -> dict[str, Any]:
     """The fields of the request besides its id and op."""
-    return {"instance": instance_document(case.instance), **case_input(case)}
+    return wire.request_fields(request_of(case))
+
+
+def case_input(case: Case) -> dict[str, Any]:
+    """The fields of the request besides the op and the instance."""
+    return {name: value for name, value in request_fields(case).items() if name != "instance"}

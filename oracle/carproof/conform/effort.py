@@ -4,12 +4,15 @@ from enum import Enum
 
 from carp_spec import Carp, Solution
 from carp_spec.bounds import BoundDocument
-from carproof.conform.answers import Answer, OptimumAnswer, QueryAnswer
+from carp_spec.documents import SolutionDocument
+from carproof.conform.answers import Answer
 from carproof.conform.cases import OPTIMUM_SECONDS, POLISH_ROUNDS, Case
 from carproof.conform.judges import worth
 from carproof.conform.levels import Level
 from carproof.conform.optimum import cost_alone, found_cost
 from carproof.engines import engine_named
+from carproof.ops.planning import QueryDocument
+from carproof.optima import OptimumDocument
 
 
 class Effort(Enum):
@@ -24,7 +27,8 @@ def why_undecided(case: Case, answer: Answer, level: Level) -> str | None:
     """Why a right answer counts as none: it is undecided, or carproof is, so that nobody can judge it."""
     if case.op not in ("plan", "optimum") or case.planner is not None or level < Level.COMPLETE:
         return None
-    if isinstance(answer, OptimumAnswer) and not answer.proved and (level >= Level.OPTIMAL or answer.solution is None):
+    is_open = isinstance(answer, OptimumDocument) and not answer.proved
+    if is_open and (level >= Level.OPTIMAL or not _plans_all(answer)):
         return "it leaves the optimum undecided"
     if (level >= Level.OPTIMAL or not _plans_all(answer)) and not found_cost(case.instance)[0]:
         return f"carproof does not find the optimum in {OPTIMUM_SECONDS} s, with which to compare"
@@ -32,14 +36,14 @@ def why_undecided(case: Case, answer: Answer, level: Level) -> str | None:
 
 
 def _plans_all(answer: Answer) -> bool:
-    solution = answer.solution if isinstance(answer, OptimumAnswer) else answer
-    return isinstance(solution, Solution) and not solution.unplanned
+    solution = answer.solution if isinstance(answer, OptimumDocument) else answer
+    return isinstance(solution, Solution | SolutionDocument) and not solution.unplanned
 
 
 def effort(case: Case, answer: Answer) -> Effort:
     """Whether a right answer shows something; a verdict does in any case."""
     match answer:
-        case QueryAnswer():
+        case QueryDocument():
             return _planned(case, answer.plan is not None)
         case Solution() if case.op == "add":
             return _planned(case, case.robot not in answer.unplanned)

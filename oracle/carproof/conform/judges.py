@@ -18,12 +18,14 @@ from carp_spec import (
 from carp_spec.bounds import BoundDocument
 from carp_spec.documents import VerdictDocument, verdict_document
 from carp_spec.polish_rules import is_kept
-from carproof.conform.answers import Answer, OptimumAnswer, QueryAnswer
+from carproof.conform.answers import Answer
 from carproof.conform.cases import POLISH_ROUNDS, Case
 from carproof.conform.findings import Finding, wrong
 from carproof.conform.levels import Level
 from carproof.conform.optimum import bound_findings, complete_findings, optimum_findings, plan_cost_findings
 from carproof.engines import engine_named
+from carproof.ops.planning import QueryDocument
+from carproof.optima import OptimumDocument
 from carproof.results import shown_plan
 
 
@@ -34,11 +36,11 @@ def first_finding(case: Case, answer: Answer, level: Level) -> Finding | None:
 
 def _findings(case: Case, answer: Answer, level: Level) -> Iterator[Finding]:
     match answer:
-        case QueryAnswer():
-            yield from _query_findings(case, answer.plan, level)
+        case QueryDocument():
+            yield from _query_findings(case, answer, level)
         case VerdictDocument():
             yield from _check_findings(case, answer, level)
-        case OptimumAnswer():
+        case OptimumDocument():
             yield from optimum_findings(case.instance, answer, level)
         case BoundDocument():
             yield from bound_findings(case.instance, answer)
@@ -58,8 +60,9 @@ def _followed(instance: Instance, committed: Sequence[Plan], robot: RobotId, now
     return own or standing
 
 
-def _query_findings(case: Case, plan: Plan | None, level: Level) -> Iterator[Finding]:
+def _query_findings(case: Case, answer: QueryDocument, level: Level) -> Iterator[Finding]:
     assert case.robot is not None  # noqa: S101 - a promise of ours
+    plan = answer.plan_of(case.robot)
     committed = case.solution.plans
     others = [each for each in committed if each.robot != case.robot]
     if plan is not None:

@@ -5,11 +5,12 @@ from functools import lru_cache
 
 from carp_spec import Instance, Refusal, Solution, judge, total_cost
 from carp_spec.bounds import BoundDocument
-from carproof.conform.answers import OptimumAnswer
+from carp_spec.documents import solution_of
 from carproof.conform.cases import OPTIMUM_SECONDS
 from carproof.conform.findings import Finding, is_complete, is_lower, is_optimal, wrong
 from carproof.conform.levels import Level
 from carproof.engines import engine_named
+from carproof.optima import OptimumDocument
 
 
 @lru_cache(maxsize=1)
@@ -28,14 +29,15 @@ def cost_alone(instance: Instance) -> int | None:
     return total_cost(instance, known) if len(known) == len(plans) else None
 
 
-def optimum_findings(instance: Instance, answer: OptimumAnswer, level: Level) -> Iterator[Finding]:
+def optimum_findings(instance: Instance, answer: OptimumDocument, level: Level) -> Iterator[Finding]:
     """What is wrong with an answer to `optimum`."""
     if answer.solution is not None:
-        for violation in judge(instance, answer.solution).violations:
+        solution = solution_of(answer.solution)
+        for violation in judge(instance, solution).violations:
             yield wrong(violation.rule, violation.message)
-        if answer.solution.unplanned:
-            yield wrong("solution/covers", f"an optimum has plans for all robots, also {answer.solution.unplanned[0]}")
-        total = total_cost(instance, answer.solution.plans)
+        if solution.unplanned:
+            yield wrong("solution/covers", f"an optimum has plans for all robots, also {solution.unplanned[0]}")
+        total = total_cost(instance, solution.plans)
         if answer.cost != total:
             yield wrong("cost/total", f"the cost must be {total}, the total of the plans, not {answer.cost}")
     elif answer.cost is not None:
@@ -63,7 +65,7 @@ def bound_findings(instance: Instance, certificate: BoundDocument) -> Iterator[F
         yield wrong(is_lower.id, f"{message}: the certificate is false, and carproof's check of it has a fault")
 
 
-def _against_proof(instance: Instance, answer: OptimumAnswer) -> Iterator[Finding]:
+def _against_proof(instance: Instance, answer: OptimumDocument) -> Iterator[Finding]:
     is_found, least = found_cost(instance)
     if is_found and answer.proved and not is_optimal(answer.cost, least):
         yield wrong(is_optimal.id, f"the least total cost is {_shown(least)}, not {_shown(answer.cost)}")

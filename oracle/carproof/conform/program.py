@@ -6,7 +6,7 @@ from typing import Any
 import msgspec
 
 from carp_spec.permutations import splitmix64
-from carproof.conform.answers import Reply, Skipped, decode_answer, protocol_error, result_of, start_result
+from carproof.conform.answers import Reply, Skipped, protocol_error, read_result, result_of
 from carproof.conform.cases import Case, request_fields
 from carproof.conform.child import Child, Limits
 from carproof.conform.findings import Fault, Finding, is_response
@@ -41,7 +41,7 @@ class Program:
         if isinstance(result, Skipped):
             raise self._broken(protocol_error(is_response.id, "a program must answer start"))
         try:
-            said = start_result(result)
+            said = read_result("start", result)
         except Fault as fault:
             raise self._broken(fault) from fault
         self.name = f"{said.name} {said.version}"
@@ -55,9 +55,10 @@ class Program:
         if isinstance(result, Skipped):
             return result
         try:
-            return decode_answer(case, result)
+            reply: Reply = read_result(case.op, result)
         except Fault as fault:
             raise self._broken(fault) from fault
+        return reply
 
     def _request(self, op: str, fields: dict[str, Any], seconds: float) -> msgspec.Raw | Skipped:
         """Send a request; whoever breaks the protocol is started anew before the next one."""

@@ -8,14 +8,16 @@ import click
 import msgspec
 
 from carp_spec import Refusal, Solution, write_instance, write_solution
-from carp_spec.bounds import BoundDocument
-from carp_spec.documents import VerdictDocument, instance_document, solution_document, visits_document
-from carproof.conform.answers import Answer, OptimumAnswer, QueryAnswer
+from carp_spec.documents import instance_document, solution_of
+from carproof.conform.answers import Answer
 from carproof.conform.cases import POLISH_ROUNDS, Case, case_input, request_fields
 from carproof.conform.drawing import drawing
 from carproof.conform.outcome import Outcome
 from carproof.files import write_whole
 from carproof.movingai_writer import MAP_NAME, write_movingai
+from carproof.ops.op import made
+from carproof.ops.planning import QueryDocument
+from carproof.optima import OptimumDocument
 from carproof.rules import ALL_RULES
 
 NO_PICTURE = '<svg xmlns="http://www.w3.org/2000/svg" width="900" height="40"><text x="8" y="24">{}</text></svg>\n'
@@ -65,13 +67,14 @@ def judged_solution(outcome: Outcome) -> Solution:
     answer, given = outcome.answer, outcome.case.solution
     if isinstance(answer, Solution):
         return answer
-    if isinstance(answer, OptimumAnswer) and answer.solution is not None:
-        return answer.solution
-    if isinstance(answer, QueryAnswer) and answer.plan is not None:
-        robot = answer.plan.robot
+    if isinstance(answer, OptimumDocument) and answer.solution is not None:
+        return solution_of(answer.solution)
+    robot = outcome.case.robot
+    plan = answer.plan_of(robot) if isinstance(answer, QueryDocument) and robot is not None else None
+    if plan is not None:
         others = tuple(plan for plan in given.plans if plan.robot != robot)
-        order = (*(plan.robot for plan in others), robot)
-        return Solution((*others, answer.plan), order, tuple(each for each in given.unplanned if each != robot))
+        order = (*(plan.robot for plan in others), plan.robot)
+        return Solution((*others, plan), order, tuple(each for each in given.unplanned if each != robot))
     return given
 
 
@@ -111,14 +114,7 @@ def vectors_document(outcome: Outcome) -> dict[str, Any]:
 
 def claim(answer: Answer) -> dict[str, Any]:
     """A program's answer as the result that it gave."""
-    if isinstance(answer, QueryAnswer):
-        return {"plan": None if answer.plan is None else visits_document(answer.plan)}
-    if isinstance(answer, Solution):
-        return cast("dict[str, Any]", msgspec.to_builtins(solution_document(answer)))
-    if isinstance(answer, VerdictDocument | BoundDocument):
-        return cast("dict[str, Any]", msgspec.to_builtins(answer))
-    solution = None if answer.solution is None else solution_document(answer.solution)
-    return {"cost": answer.cost, "lower": answer.lower, "proved": answer.proved, "solution": solution}
+    return cast("dict[str, Any]", msgspec.to_builtins(made(answer)))
 
 
 def right_answer(case: Case) -> dict[str, Any]:

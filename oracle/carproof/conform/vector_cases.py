@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from carp_spec import Carp, Neighbourhood, Planner, planner_named
 from carp_spec.vectors import Vector, vectors
-from carproof.conform.cases import OPS, Case, Op
+from carproof.conform.cases import ASKED_OPS, Case, Op
 from carproof.conform.levels import Level
 
 _NO_OPTIONS = frozenset({"solution", "robot", "now", "planner", "limit"})
@@ -16,7 +16,7 @@ def vector_cases(ops: Sequence[str], level: Level, whole: bool) -> Iterator[Case
     A program need not know of instances that forbid following.
     """
     for vector in vectors():
-        op = next((op for op in OPS if op == vector.op), None)
+        op = next((op for op in ASKED_OPS if op == vector.op), None)
         is_known = "refused" not in vector.answer and "following" not in (vector.instance or {})
         if op is not None and op in ops and is_known and _is_asked(vector, level, whole):
             yield _case(vector, op, whole)

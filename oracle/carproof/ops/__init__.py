@@ -1,0 +1,87 @@
+"""The ops of the protocol, in one table; the server, `conform`, the schema, the documentation and help are made of it.
+
+To add an op, write a dataclass of its request, a class of its result and a handler into a module of this package, and
+put the handler into `OPS`. `make generated` then writes the schema and the documentation anew.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from importlib.metadata import version
+from typing import Any
+
+import msgspec
+
+from carp_spec import Refusal
+from carp_verify.kernel import UndecidedError, is_answer
+from carproof.engines import Engine
+from carproof.ops.judging import audit, check, verify_bound, verify_query
+from carproof.ops.op import Op, op_of
+from carproof.ops.planning import add, plan, polish, query
+from carproof.ops.searching import bound, optimum
+from carproof.protocol import VERSION, Request, fields_are_right, version_is_spoken
+
+
+@dataclass(frozen=True, slots=True)
+class StartRequest:
+    """The version of the protocol that is spoken."""
+
+    version: int
+
+
+class StartDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Who answers, and which ops."""
+
+    name: str
+    version: str
+    ops: tuple[str, ...]
+
+
+def start(request: StartRequest, engine: Engine) -> StartDocument:
+    """Agree on the version of the protocol, and list the ops that may be asked."""
+    del engine
+    if not version_is_spoken(request.version):
+        message = f"the version must be {VERSION}, not {request.version}"
+        raise Refusal("request", "$.version", version_is_spoken.id, message)
+    return StartDocument("carproof", version("carproof"), tuple(OPS))
+
+
+@dataclass(frozen=True, slots=True)
+class StopRequest:
+    """Nothing."""
+
+
+class StopDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """An empty object."""
+
+
+def stop(request: StopRequest, engine: Engine) -> StopDocument:
+    """End the process after this response."""
+    del request, engine
+    return StopDocument()
+
+
+_HANDLERS: tuple[Callable[[Any, Engine], object], ...] = (
+    start,
+    check,
+    query,
+    plan,
+    add,
+    polish,
+    optimum,
+    bound,
+    verify_bound,
+    verify_query,
+    audit,
+    stop,
+)
+OPS: Mapping[str, Op] = {op.name: op for op in map(op_of, _HANDLERS)}
+
+
+def answer(request: Request, name: str, engine: Engine) -> object:
+    """The result of a request, as JSON holds it."""
+    if name not in OPS:
+        raise Refusal("request", "$.op", fields_are_right.id, f"the op must be one of {', '.join(OPS)}, not {name!r}")
+    try:
+        return OPS[name].answer(request, engine)
+    except UndecidedError as error:
+        raise Refusal("limit", "$.kernel", is_answer.id, str(error)) from error

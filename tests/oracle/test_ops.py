@@ -1,0 +1,129 @@
+"""The table of ops: what is made of it, and that requests and results keep to the schema made of it."""
+
+import importlib
+import json
+from dataclasses import dataclass
+from functools import cache
+from typing import Any, cast
+
+import msgspec
+import pytest
+from click.testing import CliRunner
+from jsonschema import Draft202012Validator
+from tests.oracle.running import ONE_PLANNED, TWO, TWO_PLANNED, line
+
+from carp_spec import Instance
+from carp_spec.readme import with_section
+from carp_spec.schema import schema_file
+from carp_spec.vectors import vectors
+from carproof.commands import conform as conform_command
+from carproof.commands import serve as serve_command
+from carproof.conform.cases import ASKED_OPS
+from carproof.engines import Engine, engine_named
+from carproof.ops import OPS
+from carproof.ops.op import Op, op_of, request_fields
+from carproof.ops.published import NAME, README, schema, table
+from carproof.protocol import Request
+from carproof.server import respond
+
+REQUESTS: dict[str, dict[str, Any]] = {
+    "start": {"version": 1},
+    "check": {"instance": TWO, "solution": TWO_PLANNED},
+    "query": {"instance": TWO, "solution": ONE_PLANNED, "robot": "r2"},
+    "plan": {"instance": TWO, "planner": "shuffled", "attempts": 2},
+    "add": {"instance": TWO, "solution": ONE_PLANNED, "robot": "r2", "now": 0, "m": 1},
+    "polish": {"instance": TWO, "solution": TWO_PLANNED, "iterations": 3},
+    "optimum": {"instance": TWO, "limit": 10},
+    "bound": {"instance": TWO, "steps": 3},
+    "audit": {"instance": TWO, "solution": TWO_PLANNED},
+    "stop": {},
+}
+
+
+@cache
+def validator(definition: str | None = None) -> Draft202012Validator:
+    published = json.loads(schema_file(NAME).read_text())
+    if definition is not None:
+        published = {"$ref": f"#/$defs/{definition}", "$defs": published["$defs"]}
+    return Draft202012Validator(published)
+
+
+def asked(op: str, fields: dict[str, Any]) -> dict[str, Any]:
+    response, _ = respond(line(id=1, op=op, **fields), engine_named("reference"))
+    answered: dict[str, Any] = json.loads(msgspec.json.encode(response))
+    return answered
+
+
+def test_schema_and_documentation_are_made_of_the_table() -> None:
+    Draft202012Validator.check_schema(json.loads(schema()))
+    assert schema_file(NAME).read_text() == schema(), "`make generated` writes it"
+    assert with_section(README.read_text(), "ops", table()) == README.read_text(), "`make generated` writes it"
+
+
+@pytest.mark.parametrize("op", REQUESTS)
+def test_requests_and_responses_keep_to_the_schema(op: str) -> None:
+    request = {"id": 1, "op": op, **REQUESTS[op]}
+    validator().validate(request)
+    assert not validator().is_valid({**request, "colour": "red"})
+    validator(OPS[op].request.__name__.replace("Request", "Response")).validate(asked(op, REQUESTS[op]))
+    validator("Refused").validate(asked(op, {**REQUESTS[op], "colour": "red"}))
+
+
+@pytest.mark.parametrize("op", REQUESTS)
+def test_a_request_written_is_read_as_it_was(op: str) -> None:
+    request = OPS[op].read(Request(json.dumps(REQUESTS[op]).encode()))
+    again = OPS[op].read(Request(msgspec.json.encode(request_fields(request))))
+    assert again == request
+
+
+def test_every_vector_of_an_op_is_a_request() -> None:
+    for vector in vectors():
+        if vector.op in OPS and "refused" not in vector.answer:
+            request = {"id": vector.id, **vector.request}
+            assert validator().is_valid(request), vector.id
+            read = Request(msgspec.json.encode(request))
+            OPS[read.op()].read(read)
+
+
+def test_every_op_of_a_vector_is_in_the_table() -> None:
+    assert {vector.op for vector in vectors() if "/" not in vector.op} <= set(OPS)
+    assert set(ASKED_OPS) <= set(OPS)
+
+
+@dataclass(frozen=True, slots=True)
+class FlyRequest:
+    """A robot that flies."""
+
+    instance: Instance
+    height: int = 7
+
+
+class FlyDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """How it went."""
+
+    landed: bool
+
+
+def fly_low(request: FlyRequest, engine: Engine) -> FlyDocument:
+    """Fly over it. Mind the racks."""
+    del engine
+    return FlyDocument(request.height < 10)
+
+
+def test_an_op_in_the_table_is_answered_and_shows_up_everywhere(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(cast("dict[str, Op]", OPS), "fly-low", op_of(fly_low))
+    assert asked("fly-low", {"instance": TWO}) == {"id": 1, "result": {"landed": True}}
+    assert asked("fly-low", {"instance": TWO, "height": "7"})["error"]["path"] == "$.height"
+    assert "fly-low" in asked("start", {"version": 1})["result"]["ops"]
+    published = json.loads(schema())
+    assert {"$ref": "#/$defs/FlyRequest"} in published["anyOf"]
+    assert published["$defs"]["FlyRequest"]["properties"]["height"] == {"type": "integer", "default": 7}
+    row = "| `fly-low` | Fly over it. Mind the racks. | `instance`, `height` (default 7) | `landed`. How it went. |"
+    assert row in table()
+    monkeypatch.setattr("carproof.conform.cases.ASKED_OPS", (*ASKED_OPS, "fly-low"))
+    for module in (serve_command, conform_command):
+        text = CliRunner().invoke(importlib.reload(module).command, ["--help"]).output
+        assert "fly-low       Fly over it\n" in text
+    monkeypatch.undo()
+    for module in (serve_command, conform_command):
+        assert "fly-low" not in CliRunner().invoke(importlib.reload(module).command, ["--help"]).output
