@@ -14,11 +14,11 @@ from carp_experiments.claims import Claim, quality_claims, related_claims, reuse
 from carp_experiments.quality import QualitySummary
 from carp_experiments.related_work import Related
 from carp_experiments.reuse_counts import ReuseOf
+from carp_spec.readme import write_section
 
 T = TypeVar("T")
 PAGE = Path(__file__).parents[1] / "README.md"
 RESULTS = PAGE.parent / "results"
-BEGIN, END = "<!-- results: begin -->\n", "<!-- results: end -->\n"
 TITLES = {
     "quality": "Experiment 1: failures and total cost",
     "time": "Experiment 2: the time to plan when the k-th robot comes",
@@ -108,12 +108,5 @@ def section(name: str, run: Run) -> str:
     return f"## {TITLES[name]}\n\n{made}\n{note}\n\n{tables}{figures}"
 
 
-def page() -> str:
-    """The page with the results between its marks."""
-    before, _, rest = PAGE.read_text(encoding="utf-8").partition(BEGIN)
-    _, _, after = rest.partition(END)
-    return f"{before}{BEGIN}{results()}{END}{after}"
-
-
 if __name__ == "__main__":
-    PAGE.write_text(page(), encoding="utf-8")
+    write_section(PAGE, "results", results())

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from carp_spec.readme import markdown_table, write_section
 from carproof.gap_family import Cell, Excess, Family, measured
 from carproof.gap_report import PLANNERS
 from carproof.generate import Range
@@ -11,7 +12,6 @@ from carproof.progress import progress
 FAMILY = Family(Range(3, 8), (0, 5, 10, 20))
 LIMIT = 1
 COLUMNS = ("grid", "map", "robots", "decided", "delay", "best order", *(planner.name for planner in PLANNERS))
-BEGIN, END = "<!-- gap table: begin -->\n", "<!-- gap table: end -->\n"
 
 
 def row(cell: Cell) -> Sequence[str]:
@@ -27,20 +27,12 @@ def _shown(excess: Excess, of: int, without: str) -> str:
     return f"{excess} ({of - excess.instances} {without})" if excess.instances < of else str(excess)
 
 
-def table(rows: Sequence[Sequence[str]]) -> str:
-    """The rows as a table in Markdown."""
-    lines = [COLUMNS, ["---", *(["---:"] * (len(COLUMNS) - 1))], *rows]
-    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
-
-
-def write_table(page: Path, family: Family) -> None:
-    """Measure, and put the table between its marks on the page."""
-    before, _, rest = page.read_text(encoding="utf-8").partition(BEGIN)
-    _, _, after = rest.partition(END)
+def gap_table(family: Family) -> str:
+    """Measure a family, and lay its cells out in Markdown."""
     with progress("measuring gaps", len(family.cells) * family.count) as advance:
         rows = [row(cell) for cell in measured(family, PLANNERS, LIMIT, advance)]
-    page.write_text(f"{before}{BEGIN}{table(rows)}{END}{after}", encoding="utf-8")
+    return markdown_table(COLUMNS, rows, numbers=COLUMNS[1:])
 
 
 if __name__ == "__main__":
-    write_table(Path(__file__).parents[2] / "optimum" / "README.md", FAMILY)
+    write_section(Path(__file__).parents[2] / "optimum" / "README.md", "gap table", gap_table(FAMILY))

@@ -5,12 +5,14 @@ Everything but the clock is decided by seeds.
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from math import inf
 from pathlib import Path
 from statistics import median
 from time import perf_counter
 
 from carp_optimum.optimum import optimum
 from carp_spec import AfterGoal, Instance
+from carp_spec.readme import markdown_table, write_section
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 from carproof.generate.options import JUST_ONE
 from carproof.progress import progress
@@ -18,7 +20,6 @@ from carproof.progress import progress
 LIMIT = 30
 FULL, SPARSE = 20, 5
 COLUMNS = ("map", "robots", "after the goal", "decided", "median s", "worst s")
-BEGIN, END = "<!-- optimum table: begin -->\n", "<!-- optimum table: end -->\n"
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,52 +64,30 @@ FAMILIES = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Search:
-    """How long a search took, and whether it decided the instance."""
-
-    seconds: float
-    is_decided: bool
-
-
-def searches(family: Family, advance: Callable[[], None]) -> Iterator[Search]:
-    """Search for the optimum of every instance of the family."""
+def seconds_of(family: Family, advance: Callable[[], None]) -> Iterator[float]:
+    """How long the search for the optimum of each instance of the family takes; infinite if it ends undecided."""
     for seed in range(family.instances):
         instance = family.instance(seed)
         started = perf_counter()
         best = optimum(instance, LIMIT)
-        yield Search(perf_counter() - started, best.decided)
+        yield perf_counter() - started if best.decided else inf
         advance()
 
 
-def row(family: Family, measured: Sequence[Search]) -> Sequence[str]:
-    """A row of the table; an undecided search counts as one that takes longer than the limit."""
-    decided = sum(search.is_decided for search in measured)
-    times = [search.seconds if search.is_decided else float("inf") for search in measured]
-    head = (str(family), str(family.robots), family.after_goal, f"{decided}/{len(measured)}")
-    return (*head, _seconds(median(times)), _seconds(max(times)))
+def row(family: Family, seconds: Sequence[float]) -> Sequence[str]:
+    """A row of the table."""
+    decided = sum(each < inf for each in seconds)
+    head = (str(family), str(family.robots), family.after_goal, f"{decided}/{len(seconds)}")
+    return (*head, *(f"{each:.2f}" if each <= LIMIT else f"over {LIMIT}" for each in (median(seconds), max(seconds))))
 
 
-def _seconds(time: float) -> str:
-    return f"{time:.2f}" if time <= LIMIT else f"over {LIMIT}"
-
-
-def table(rows: Sequence[Sequence[str]]) -> str:
-    """The rows as a table in Markdown."""
-    lines = [COLUMNS, ["---", "---:", "---", *["---:"] * (len(COLUMNS) - 3)], *rows]
-    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
-
-
-def write_table(page: Path) -> str:
-    """Measure, and put the table between its marks on the page."""
-    before, _, rest = page.read_text(encoding="utf-8").partition(BEGIN)
-    _, _, after = rest.partition(END)
-    optimum(FAMILIES[0].instance(0), LIMIT)  # loads the solver
-    with progress("searching for optima", sum(family.instances for family in FAMILIES)) as advance:
-        rows = [row(family, list(searches(family, advance))) for family in FAMILIES]
-    page.write_text(f"{before}{BEGIN}{table(rows)}{END}{after}", encoding="utf-8")
-    return table(rows)
+def optimum_table(families: Sequence[Family]) -> str:
+    """Measure families, and lay the times out in Markdown."""
+    optimum(families[0].instance(0), LIMIT)  # loads the solver
+    with progress("searching for optima", sum(family.instances for family in families)) as advance:
+        rows = [row(family, list(seconds_of(family, advance))) for family in families]
+    return markdown_table(COLUMNS, rows, numbers=("robots", *COLUMNS[3:]))
 
 
 if __name__ == "__main__":
-    print(write_table(Path(__file__).parents[2] / "optimum" / "README.md"), end="")  # noqa: T201 - the command's output
+    write_section(Path(__file__).parents[2] / "optimum" / "README.md", "optimum table", optimum_table(FAMILIES))

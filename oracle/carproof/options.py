@@ -37,59 +37,33 @@ def examples(*lines: str) -> str:
     return "\n".join(["\b", "Examples:", *(f"  {line}" for line in lines)])
 
 
-def instance_argument(function: F) -> F:
-    """INSTANCE, a document or `-`."""
-    return click.argument("instance", type=InputFile())(function)
-
-
-def solution_argument(function: F) -> F:
-    """SOLUTION, a document or `-`."""
-    return click.argument("solution", type=InputFile())(function)
-
-
-def output_option(function: F) -> F:
-    """`--output`: where the document goes."""
-    help = "Write the document to this file, whole or not at all."
-    return click.option("--output", "-o", type=OutputFile(), help=help)(function)
-
-
-def json_option(function: F) -> F:
-    """`--json`: a document in place of text."""
-    help = "Print the document on standard output, and nothing else."
-    return click.option("--json", "as_json", is_flag=True, help=help)(function)
-
-
-def kernel_option(function: F) -> F:
-    """`--kernel`: who decides."""
-    help = "Have the proved kernel decide; `make kernel` builds it."
-    return click.option("--kernel", is_flag=True, help=help)(function)
-
-
-def engine_option(function: F) -> F:
-    """`--engine`: whose planner."""
-    help = (
-        "The compiled planner, or the one to read; their plans are the same.  [default: optimized, and reference for "
-        "planners that only it has]"
-    )
-    return click.option("--engine", type=click.Choice(ENGINES), help=help)(function)
-
-
-def now_option(function: F) -> F:
-    """`--now`: the tick of the request."""
-    help = "The tick at which the request is made; robots keep what they have done by then."
-    return click.option("--now", type=int, default=0, help=help)(function)
-
-
-def limit_option(function: F) -> F:
-    """`--limit`: for how long to search."""
-    help = "For how many seconds to search."
-    return click.option("--limit", type=click.IntRange(min=1), default=DEFAULT_LIMIT, help=help)(function)
-
-
-def planner_option(function: F) -> F:
-    """`--planner`: which planner."""
-    help = f"One of {', '.join(PLANNERS)}."
-    return click.option("--planner", metavar="NAME", default=Neighbourhood.name, help=help)(function)
+instance_argument = click.argument("instance", type=InputFile())
+solution_argument = click.argument("solution", type=InputFile())
+output_option = click.option(
+    "--output", "-o", type=OutputFile(), help="Write the document to this file, whole or not at all."
+)
+json_option = click.option(
+    "--json", "as_json", is_flag=True, help="Print the document on standard output, and nothing else."
+)
+kernel_option = click.option("--kernel", is_flag=True, help="Have the proved kernel decide; `make kernel` builds it.")
+engine_option = click.option(
+    "--engine",
+    type=click.Choice(ENGINES),
+    help="The compiled planner, or the one to read; their plans are the same.  [default: optimized, and reference for "
+    "planners that only it has]",
+)
+now_option = click.option(
+    "--now",
+    type=int,
+    default=0,
+    help="The tick at which the request is made; robots keep what they have done by then.",
+)
+limit_option = click.option(
+    "--limit", type=click.IntRange(min=1), default=DEFAULT_LIMIT, help="For how many seconds to search."
+)
+planner_option = click.option(
+    "--planner", metavar="NAME", default=Neighbourhood.name, help=f"One of {', '.join(PLANNERS)}."
+)
 
 
 def planner_options(*names: str) -> Callable[[F], F]:

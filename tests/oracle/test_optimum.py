@@ -1,6 +1,7 @@
 """`optimum`, `verify-proof`, `gap` and the op `optimum`."""
 
 import json
+from math import inf
 from pathlib import Path
 
 import pytest
@@ -279,30 +280,17 @@ def test_a_row_of_the_gap_table_tells_means_intervals_and_failures() -> None:
     assert all("±" in cell or "failed" in cell for row in rows for cell in row[4:])
 
 
-def test_the_gap_table_replaces_what_stands_between_its_marks(tmp_path: Path) -> None:
-    page = tmp_path / "README.md"
-    page.write_text(f"before\n{gap_table.BEGIN}old\n{gap_table.END}after\n")
-    gap_table.write_table(page, Family(Range(3, 3), ()))
-    heading = gap_table.table([])
-    assert page.read_text() == f"before\n{gap_table.BEGIN}{heading}{gap_table.END}after\n"
-
-
 def test_a_row_of_the_optimum_table_counts_what_is_undecided_as_over_the_limit() -> None:
     family = optimum_table.Family(3, 20, 2, "park", Range(1, 3))
-    found = [
-        optimum_table.Search(seconds, is_decided) for seconds, is_decided in ((2, True), (30, False), (0.25, True))
-    ]
     head = ("3 x 3, full grid, durations 1..3", "2", "park")
-    assert optimum_table.row(family, found) == (*head, "2/3", "2.00", "over 30")
-    assert optimum_table.row(family, found[::2]) == (*head, "2/2", "1.12", "2.00")
+    assert optimum_table.row(family, [2, inf, 0.25]) == (*head, "2/3", "2.00", "over 30")
+    assert optimum_table.row(family, [2, 0.25]) == (*head, "2/2", "1.12", "2.00")
 
 
-def test_the_optimum_table_replaces_what_stands_between_its_marks(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(optimum_table, "FAMILIES", (optimum_table.Family(3, 5, 2, "vanish", instances=2),))
-    page = tmp_path / "README.md"
-    page.write_text(f"before\n{optimum_table.BEGIN}old\n{optimum_table.END}after\n")
-    table = optimum_table.write_table(page)
-    assert page.read_text() == f"before\n{optimum_table.BEGIN}{table}{optimum_table.END}after\n"
-    assert table.splitlines()[-1].startswith("| 3 x 3, map 5 | 2 | vanish | 2/2 | 0.")
+def test_the_tables_of_measurements_fit_the_page_that_holds_them() -> None:
+    page = (Path(__file__).parents[2] / "optimum" / "README.md").read_text()
+    gaps = gap_table.gap_table(Family(Range(3, 3), ()))
+    times = optimum_table.optimum_table([optimum_table.Family(3, 5, 2, "vanish", instances=2)])
+    assert f"<!-- gap table: begin -->\n{gaps}" in page
+    assert times.partition("| 3 x 3")[0] in page
+    assert times.splitlines()[-1].startswith("| 3 x 3, map 5 | 2 | vanish | 2/2 | 0.")

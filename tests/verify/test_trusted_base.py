@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from carp_spec.readme import markdown_table, with_section, write_section
+
 ROOT = Path(__file__).parents[2]
 README = ROOT / "verify" / "README.md"
-START = "<!-- trusted base: made by `make generated` -->\n"
-END = "<!-- end of trusted base -->\n"
 LAW = ("check", "joint_rules", "plan_rules", "instance_rules", "documents", "model", "rule", "refusal")
 BOUND = ("verify_bound", "bound_rules")
 ENCODER = ("encoding", "robot_clauses", "clauses", "optimum_rules")
@@ -44,22 +44,18 @@ def lines_of_code(path: Path) -> int:
 
 
 def table() -> str:
-    rows = ["| verdict | beside the law, in `carp_verify` | lines | also |", "|---|---|---:|---|"]
+    columns, rows = ("verdict", "beside the law, in `carp_verify`", "lines", "also"), []
     law = sum(lines_of_code(ROOT / "spec" / "carp_spec" / f"{name}.py") for name in LAW)
     for verdict, (modules, others) in VERDICTS.items():
         lines = sum(lines_of_code(ROOT / "verify" / "carp_verify" / f"{name}.py") for name in modules)
         named = ", ".join(f"`{name}`" for name in modules) or f"nothing; the law is {law} lines of `carp_spec`"
-        rows.append(f"| {verdict} | {named} | {lines} | {others} |")
-    return "".join(f"{row}\n" for row in rows)
-
-
-def with_table(text: str) -> str:
-    before, _, rest = text.partition(START)
-    return f"{before}{START}{table()}{END}{rest.partition(END)[2]}"
+        rows.append((verdict, named, lines, others))
+    return markdown_table(columns, rows, numbers=("lines",))
 
 
 def test_the_page_lists_what_must_be_trusted_with_its_lines_of_code() -> None:
-    assert README.read_text() == with_table(README.read_text()), "make generated"
+    page = README.read_text()
+    assert page == with_section(page, "trusted base", table()), "make generated"
 
 
 def test_docstrings_and_comments_are_no_lines_of_code(tmp_path: Path) -> None:
@@ -87,4 +83,4 @@ def test_what_is_trusted_imports_no_search(name: str) -> None:
 
 
 if __name__ == "__main__":
-    README.write_text(with_table(README.read_text()))
+    write_section(README, "trusted base", table())
