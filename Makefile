@@ -16,7 +16,7 @@ install: .venv/installed
 	touch $@
 	$(BIN)/python -m carp_optimum
 
-# Compile what bounds and the planner run, if a source has changed: half a minute, in place of some test's or the demo's.
+# Compile what bounds and the planner run, if a source has changed: a minute, in place of some test's or the demo's.
 compiled: install
 	$(BIN)/python -m carp_optimum
 

@@ -21,6 +21,7 @@ R = TypeVar("R")
 
 # No compiled function makes an array, so none counts references.
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "_nrt": False}
+INNER: dict[str, Any] = {**OPTIONS, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 _ENTRIES: list[Callable[..., object]] = []
 """The entries of the modules that are loaded."""
@@ -39,8 +40,18 @@ class TicksExhausted(Exception):  # noqa: N818 - the caller refuses the input
 
 
 def compiled(function: F) -> F:
-    """Compile a function that other compiled functions call."""
-    return cast("F", numba.njit(**OPTIONS)(function))
+    """Compile a function that other compiled functions call, once for all whole numbers, whatever their types there."""
+    dispatcher: Any = numba.njit(**INNER)(function)
+    if hasattr(dispatcher, "get_call_template"):  # compilation is switched on
+        template = dispatcher.get_call_template
+        dispatcher.get_call_template = lambda types, names: template([_widest(each) for each in types], names)
+    return cast("F", dispatcher)
+
+
+def _widest(type: Any) -> Any:  # noqa: ANN401 - numba is untyped
+    """The type of 64 bits in place of that of a constant or of a shorter number, each of which numba compiles apart."""
+    plain = numba.types.unliteral(type)  # type: ignore[no-untyped-call]
+    return numba.types.int64 if plain in numba.types.signed_domain else plain
 
 
 def entry(function: Callable[P, R]) -> Callable[P, R]:
@@ -126,5 +137,5 @@ def _forget(function: Callable[..., object]) -> None:
 def say_that_it_compiles(is_kept: bool) -> None:
     """Say to the person who waits why it takes so long, once, and whether it will again."""
     how_often = "once" if is_kept else "in each process, as it finds no folder in which to keep that"
-    message = f"carproof compiles its planner, {how_often}: it takes about half a minute ..."
+    message = f"carproof compiles its planner, {how_often}: it takes about a minute ..."
     print(message, file=sys.stderr, flush=True)  # noqa: T201 - no command does this, so none can say it

@@ -25,7 +25,7 @@ def thrice(number: int) -> int:
     return 3 * number
 """
 CALLS = "import entries; print(entries.twice(2), entries.thrice(2))"
-NOTICE = "carproof compiles its planner, once: it takes about half a minute ...\n"
+NOTICE = "carproof compiles its planner, once: it takes about a minute ...\n"
 
 
 def start(folder: Path, **variables: str) -> "subprocess.Popen[str]":

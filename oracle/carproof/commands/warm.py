@@ -10,7 +10,7 @@ from carproof.tables import print_line
 
 @click.command(short_help="Compile the planner before it is needed.", epilog=examples("carproof warm"))
 def command() -> Answer:
-    """Compile the planner, so that no later command has to: half a minute, once for an installation.
+    """Compile the planner, so that no later command has to: a minute, once for an installation.
 
     Without it the first command that plans does so, and says so. The machine code is kept beside the sources of
     carproof, in the user's cache folder, or among the temporary files: in the first of these that can be written,
