@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Sequence
 from importlib import import_module
 from importlib.util import find_spec
-from typing import Protocol, cast
+from typing import Any, Protocol, cast
 
 from carp_spec import Instance, Neighbourhood, Plan, Planner, Refusal, RobotId, Solution, total_cost
 from carp_spec.query_certificates import QueryCertificateDocument
@@ -55,40 +55,18 @@ class Engine(Protocol):
 class FastestEngine:
     """The engine to run, and for planners that it does not have the one to read."""
 
-    def query(self, instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0) -> Plan | None:
-        """The plan of one robot against committed plans."""
-        return engine_named("optimized").query(instance, committed, robot, now)
-
-    def certifier(self, instance: Instance) -> Certifier:
-        """What gives plans with certificates, beside no plans as yet."""
-        return engine_named("optimized").certifier(instance)
+    def __getattr__(self, name: str) -> Any:  # noqa: ANN401 - a function of an engine
+        """Load the engine to run when it is first used."""
+        return getattr(engine_named("optimized"), name)
 
     def plan(self, instance: Instance, planner: Planner) -> Solution:
         """Plans of all robots."""
         return engine_named(_fastest_with(planner)).plan(instance, planner)
 
-    def add(self, instance: Instance, solution: Solution, robot: RobotId, now: int, options: Neighbourhood) -> Solution:
-        """Plans with one robot more."""
-        return engine_named("optimized").add(instance, solution, robot, now, options)
-
-    def polish(
-        self,
-        instance: Instance,
-        solution: Solution,
-        *,
-        iterations: int | None = None,
-        seconds: float | None = None,
-        seed: int = 0,
-        advance: Callable[[int, int, int], None] = lambda _rounds, _unplanned, _total: None,
-    ) -> Solution:
-        """Better plans; `advance` is told rounds, unplanned robots and total."""
-        run = engine_named("optimized").polish
-        return run(instance, solution, iterations=iterations, seconds=seconds, seed=seed, advance=advance)
-
 
 def engine_named(name: str | None) -> Engine:
     """Load an engine; without a name, the fastest that has what is asked."""
-    return FastestEngine() if name is None else cast("Engine", import_module(f"carp_{name}"))
+    return cast("Engine", FastestEngine() if name is None else import_module(f"carp_{name}"))
 
 
 def warm() -> bool:

@@ -1,8 +1,7 @@
 """What `carproof gap` shows of gaps: rows for people, documents for programs."""
 
 from collections.abc import Iterator, Sequence
-
-import msgspec
+from typing import Any
 
 from carp_optimum.gap import Gap, PlannerGap
 from carp_spec import Carp, FixedPaths, Greedy, LongestFirst, Neighbourhood, Planner, Shuffled
@@ -11,75 +10,23 @@ from carproof.gap_family import Cell, Excess
 PLANNERS: tuple[Planner, ...] = (Carp(), Shuffled(), LongestFirst(), Greedy(), FixedPaths(), Neighbourhood())
 
 
-class PlannerGapDocument(msgspec.Struct, frozen=True):
-    """What a planner reached; the total is of the robots that it planned."""
-
-    planner: str
-    unplanned: int
-    total: int
-
-
-class GapDocument(msgspec.Struct, frozen=True):
+def gap_document(gap: Gap) -> dict[str, Any]:
     """The optimum, or null and the lower bound; the least total over all orders, if known; and the planners.
 
-    `proved` means that the search for the optimum ended with an answer, which rests on its solver.
+    `proved` means that the search for the optimum ended with an answer, which rests on its solver. The total of a
+    planner is of the robots that it planned.
     """
-
-    optimum: int | None
-    lower: int
-    proved: bool
-    best_order: int | None
-    planners: tuple[PlannerGapDocument, ...]
-
-
-class MeanDocument(msgspec.Struct, frozen=True):
-    """A mean in per cent with the ends of its 95 % interval, and over how many instances."""
-
-    instances: int
-    mean: float | None
-    low: float | None
-    high: float | None
-
-
-class PlannerMeansDocument(msgspec.Struct, frozen=True):
-    """How far a planner is from the optimum and from the best order, in per cent of the optimum."""
-
-    planner: str
-    above_optimum: MeanDocument
-    price_of_the_search: MeanDocument
-
-
-class SeedGapDocument(msgspec.Struct, frozen=True):
-    """The gap of the instance of a seed."""
-
-    seed: int
-    gap: GapDocument
-
-
-class CellDocument(msgspec.Struct, frozen=True):
-    """The instances of one size and map: means over those with a known optimum, and the gap of each."""
-
-    size: int
-    map: int
-    robots: int
-    decided: int
-    delay: MeanDocument
-    price_of_an_order: MeanDocument
-    planners: tuple[PlannerMeansDocument, ...]
-    instances: tuple[SeedGapDocument, ...]
-
-
-class FamilyDocument(msgspec.Struct, frozen=True):
-    """The cells of a family."""
-
-    cells: tuple[CellDocument, ...]
-
-
-def gap_document(gap: Gap) -> GapDocument:
-    """The document of a gap."""
-    planners = tuple(PlannerGapDocument(each.planner.name, each.unplanned, each.total) for each in gap.planners)
-    cost = gap.optimum.cost if gap.optimum.decided else None
-    return GapDocument(cost, gap.optimum.lower, gap.optimum.decided, gap.best_order, planners)
+    best = gap.optimum
+    planners = [
+        {"planner": each.planner.name, "unplanned": each.unplanned, "total": each.total} for each in gap.planners
+    ]
+    return {
+        "optimum": best.cost if best.decided else None,
+        "lower": best.lower,
+        "proved": best.decided,
+        "best_order": gap.best_order,
+        "planners": planners,
+    }
 
 
 def gap_rows(gap: Gap) -> Iterator[Sequence[object]]:
@@ -112,35 +59,39 @@ def _difference(total: int | None, least: int | None) -> str:
     return f"{total - least:+d} ({tenths // 10}.{tenths % 10} %)" if tenths >= 0 else f"{total - least:+d}"
 
 
-def family_document(cells: Sequence[Cell]) -> FamilyDocument:
-    """The document of a family."""
-    return FamilyDocument(tuple(map(_cell_document, cells)))
+def family_document(cells: Sequence[Cell]) -> dict[str, Any]:
+    """The cells of a family: for each size and map means in per cent, and the gap of each instance."""
+    return {"cells": [_cell_document(cell) for cell in cells]}
 
 
-def _cell_document(cell: Cell) -> CellDocument:
-    planners = (
-        PlannerMeansDocument(
-            planner.name, _mean(cell.above_optimum(position)), _mean(cell.price_of_the_search(position))
-        )
+def _cell_document(cell: Cell) -> dict[str, Any]:
+    planners = [
+        {
+            "planner": planner.name,
+            "above_optimum": _mean(cell.above_optimum(position)),
+            "price_of_the_search": _mean(cell.price_of_the_search(position)),
+        }
         for position, planner in enumerate(PLANNERS)
-    )
-    return CellDocument(
-        cell.size,
-        cell.map,
-        cell.robots,
-        len(cell.decided),
-        _mean(cell.delay),
-        _mean(cell.price_of_an_order),
-        tuple(planners),
-        tuple(SeedGapDocument(seed, gap_document(gap)) for seed, gap in zip(cell.seeds, cell.gaps, strict=True)),
-    )
+    ]
+    return {
+        "size": cell.size,
+        "map": cell.map,
+        "robots": cell.robots,
+        "decided": len(cell.decided),
+        "delay": _mean(cell.delay),
+        "price_of_an_order": _mean(cell.price_of_an_order),
+        "planners": planners,
+        "instances": [
+            {"seed": seed, "gap": gap_document(gap)} for seed, gap in zip(cell.seeds, cell.gaps, strict=True)
+        ],
+    }
 
 
-def _mean(excess: Excess) -> MeanDocument:
-    interval = excess.per_cent
-    if interval is None:
-        return MeanDocument(excess.instances, None, None, None)
-    return MeanDocument(excess.instances, interval.estimate, interval.low, interval.high)
+def _mean(excess: Excess) -> dict[str, float | None]:
+    """A mean with the ends of its 95 % interval, and over how many instances."""
+    found = excess.per_cent
+    mean, low, high = (None,) * 3 if found is None else (found.estimate, found.low, found.high)
+    return {"instances": excess.instances, "mean": mean, "low": low, "high": high}
 
 
 def cell_rows(cell: Cell) -> Iterator[Sequence[object]]:

@@ -4,9 +4,8 @@ import sys
 import traceback
 from typing import BinaryIO
 
-import msgspec
-
 from carp_spec import Refusal
+from carp_spec.documents import write
 from carproof.engines import Engine
 from carproof.extras import advice
 from carproof.ops import answer
@@ -34,7 +33,7 @@ def serve(requests: BinaryIO, responses: BinaryIO, engine: Engine) -> None:
         else:
             _skip_line(requests)
             response = Response(NULL, error=refused(_too_long()))
-        responses.write(msgspec.json.encode(response) + b"\n")
+        responses.write(write(response))
         responses.flush()
 
 

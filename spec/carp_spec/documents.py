@@ -331,7 +331,7 @@ def _violation_document(violation: Violation) -> ViolationDocument:
     )
 
 
-def write(document: msgspec.Struct) -> bytes:
+def write(document: object) -> bytes:
     """Write a document as one line of JSON."""
     return msgspec.json.encode(document) + b"\n"
 

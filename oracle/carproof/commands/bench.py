@@ -5,8 +5,8 @@ from dataclasses import asdict
 from typing import Any
 
 import click
-import msgspec
 
+from carp_spec.documents import write
 from carproof.answer import Answer
 from carproof.bench import GROWTH, PARTS, Added, OnGrid, OnMap, on_grid, on_map, weight
 from carproof.files import print_document
@@ -38,7 +38,7 @@ def command(assignments: int, growth: bool, as_json: bool) -> Answer:
         maps = [on_map(number, assignments, advance) for number in MAPS]
         grids = [on_grid(side, advance) for side in sides]
     if as_json:
-        print_document(msgspec.json.encode(document(maps, grids)) + b"\n")
+        print_document(write(document(maps, grids)))
     else:
         show(maps, grids)
     return Answer.YES

@@ -10,7 +10,7 @@ from carproof.conform.effort import Effort
 from carproof.conform.findings import Category, Fault, Finding
 from carproof.conform.levels import JUDGED_OPS, Level
 from carproof.conform.outcome import Outcome, ask
-from carproof.conform.shrinking import SHRINK_SECONDS, Search
+from carproof.conform.shrinking import SHRINK_SECONDS, FailureSearch
 from carproof.conform.smoke import smoke_cases
 from carproof.conform.subjects import Subject
 from carproof.conform.vector_cases import vector_cases
@@ -202,7 +202,7 @@ def _ask_random(subject: Subject, report: Report, advance: Callable[[], None]) -
             advance()
         return outcome
 
-    search = Search(ask_one, options.limit, options.shrink_seconds)
+    search = FailureSearch(ask_one, options.limit, options.shrink_seconds)
     try:
         for number, cases in enumerate(by_op.values()):
             examples = (options.examples + number) // len(by_op)

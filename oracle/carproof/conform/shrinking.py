@@ -23,7 +23,7 @@ _PATIENCE = 20
 Ask = Callable[[Case, float | None], Outcome]
 
 
-class Search:
+class FailureSearch:
     """Draws cases until one fails, and then smaller ones that fail alike; `best` is the smallest so far."""
 
     def __init__(self, ask: Ask, limit: float, shrink_seconds: float) -> None:

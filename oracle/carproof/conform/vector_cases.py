@@ -1,13 +1,15 @@
 """The test vectors that a program can be asked. It sees their questions alone; the judges find the answers anew."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
-from carp_spec import Carp, Neighbourhood, Planner, planner_named
+from carp_spec import Carp
+from carp_spec.documents import write
 from carp_spec.vectors import Vector, vectors
 from carproof.conform.cases import ASKED_OPS, Case, Op
 from carproof.conform.levels import Level
-
-_NO_OPTIONS = frozenset({"solution", "robot", "now", "planner", "limit"})
+from carproof.ops import OPS
+from carproof.protocol import Request
 
 
 def vector_cases(ops: Sequence[str], level: Level, whole: bool) -> Iterator[Case]:
@@ -18,26 +20,22 @@ def vector_cases(ops: Sequence[str], level: Level, whole: bool) -> Iterator[Case
     for vector in vectors():
         op = next((op for op in ASKED_OPS if op == vector.op), None)
         is_known = "refused" not in vector.answer and "following" not in (vector.instance or {})
-        if op is not None and op in ops and is_known and _is_asked(vector, level, whole):
-            yield _case(vector, op, whole)
+        if op is not None and op in ops and is_known:
+            case = _case(vector, op)
+            if _is_asked(case, level, whole):
+                yield replace(case, planner=None) if whole else case
 
 
-def _is_asked(vector: Vector, level: Level, whole: bool) -> bool:
+def _is_asked(case: Case, level: Level, whole: bool) -> bool:
     """Whether the level speaks of it: below `exact` programs are asked for no planner but CARP."""
-    if vector.op == "plan":
-        return whole or level >= Level.EXACT or isinstance(_planner(vector), Carp)
-    return vector.op != "optimum" or level >= Level.COMPLETE
+    if case.op == "plan":
+        return whole or level >= Level.EXACT or isinstance(case.planner, Carp)
+    return case.op != "optimum" or level >= Level.COMPLETE
 
 
-def _planner(vector: Vector) -> Planner:
-    options = {name: value for name, value in vector.input.items() if name not in _NO_OPTIONS}
-    return planner_named(vector.input.get("planner", Neighbourhood.name), options)
-
-
-def _case(vector: Vector, op: Op, whole: bool) -> Case:
-    planner = None if whole or op not in ("plan", "add") else _planner(vector)
-    instance = vector.read_instance()
-    if "solution" not in vector.input:
-        return Case("vectors", vector.id, op, instance, planner=planner)
-    robot, now = vector.input.get("robot"), vector.input.get("now", 0)
-    return Case("vectors", vector.id, op, instance, vector.read_solution(), robot, now, planner)
+def _case(vector: Vector, op: Op) -> Case:
+    request = Request(write({"id": vector.id, **vector.request}))
+    asked = OPS[request.op()].read(request)
+    fields = {name: getattr(asked, name) for name in ("solution", "robot", "now", "planner") if hasattr(asked, name)}
+    options = {"planner": asked.options} if op == "add" else {}
+    return Case("vectors", vector.id, op, asked.instance, **fields, **options)
