@@ -6,7 +6,7 @@ export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 .DELETE_ON_ERROR:
-.PHONY: bench install compiled demo quick quick-tests test thorough paper-sized nightly coverage mutation conform lint format gap optimum-figures experiments-page generated kernel kernel-mutants clean
+.PHONY: bench install compiled demo quick quick-tests test thorough paper-sized nightly coverage mutation conform lint format docs gap optimum-figures generated kernel kernel-mutants clean
 
 install: .venv/installed
 
@@ -32,6 +32,10 @@ format: install
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
 
+# The documentation site, in build/site: open build/site/index.html.
+docs: install
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --quiet
+
 # In under a minute: lint, types, and the fastest tests of every package, with few examples.
 quick: install
 	$(MAKE) --jobs 2 lint quick-tests
@@ -56,25 +60,19 @@ thorough: compiled
 bench: install
 	$(BIN)/pytest -o addopts= -o filterwarnings= --import-mode=importlib -q -s tests/bench/bench_speed.py
 
-# Measure how far planners are from the optimum, and put the table into optimum/README.md; takes a few minutes.
+# Measure how far planners are from the optimum, and put the table into docs/results/gaps.md; takes a few minutes.
 gap: install
 	$(BIN)/python -m carproof.gap_table
 
-# Measure how long the search for an optimum takes, and put the table into optimum/README.md; takes up to five minutes.
+# Measure how long the search for an optimum takes, and put the table into docs/results/gaps.md; takes up to five minutes.
 optimum-figures: install
 	$(BIN)/python -m carproof.optimum_table
-
-# Put the results of stored runs, in experiments/results, into experiments/README.md.
-experiments-page: install
-	$(BIN)/python -m carp_experiments.page
 
 generated: install
 	$(BIN)/python -m carp_spec.schema
 	$(BIN)/python -m tests.oracle.test_readme
 	$(BIN)/python -m tests.vectors.writing
-	$(BIN)/python -m carp_spec.readme
 	$(BIN)/python -m carproof.ops.published
-	$(BIN)/python -m tests.verify.test_trusted_base
 	$(BIN)/python -m carproof.viewer.samples
 	$(BIN)/python -m tests.test_surface
 

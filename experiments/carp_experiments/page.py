@@ -1,4 +1,4 @@
-"""The page experiments/README.md, from the results of stored runs in experiments/results; `make experiments-page`.
+"""The page of results in the documentation, from the stored runs in experiments/results.
 
 `carproof experiment NAME --store FILE --report experiments/results` writes the results of a run there.
 """
@@ -14,11 +14,9 @@ from carp_experiments.claims import Claim, quality_claims, related_claims, reuse
 from carp_experiments.quality import QualitySummary
 from carp_experiments.related_work import Related
 from carp_experiments.reuse_counts import ReuseOf
-from carp_spec.readme import write_section
 
 T = TypeVar("T")
-PAGE = Path(__file__).parents[1] / "README.md"
-RESULTS = PAGE.parent / "results"
+RESULTS = Path(__file__).parents[1] / "results"
 TITLES = {
     "quality": "Experiment 1: failures and total cost",
     "time": "Experiment 2: the time to plan when the k-th robot comes",
@@ -87,7 +85,7 @@ def summary_of(run: Run, type: type[T]) -> T:
 
 
 def results() -> str:
-    """Everything between the marks: the claims, then each experiment with its run, tables and figures."""
+    """The claims, then each experiment with its run, tables and figures."""
     runs = {name: run for name in TITLES if (run := read_run(name)) is not None}
     claims = [claim for run in runs.values() for claim in claims_of(run)]
     lines = [
@@ -104,9 +102,5 @@ def section(name: str, run: Run) -> str:
     made = f"`{run.command}`: {run.size}; {run.cases} cases took {run.processor_seconds} s of processor time."
     note = f"{run.note} Digest: `{run.digest}`.".strip()
     tables = (RESULTS / f"{name}.md").read_text(encoding="utf-8")
-    figures = "".join(f"\n![{path.stem}](results/{path.name})\n" for path in sorted(RESULTS.glob(f"{name}*.svg")))
+    figures = "".join(f"\n![{path.stem}](figures/{path.name})\n" for path in sorted(RESULTS.glob(f"{name}*.svg")))
     return f"## {TITLES[name]}\n\n{made}\n{note}\n\n{tables}{figures}"
-
-
-if __name__ == "__main__":
-    write_section(PAGE, "results", results())

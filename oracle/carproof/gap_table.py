@@ -1,4 +1,4 @@
-"""The table of gaps over small maps, from spanning tree to full grid, in optimum/README.md, made by `make gap`."""
+"""The table of gaps over small maps, from spanning tree to full grid, in docs/results/gaps.md, made by `make gap`."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -35,4 +35,4 @@ def gap_table(family: Family) -> str:
 
 
 if __name__ == "__main__":
-    write_section(Path(__file__).parents[2] / "optimum" / "README.md", "gap table", gap_table(FAMILY))
+    write_section(Path(__file__).parents[2] / "docs" / "results" / "gaps.md", "gap table", gap_table(FAMILY))

@@ -1,14 +1,7 @@
-"""Sections of pages that programs write, and the first of them: `python -m carp_spec.readme` writes the table of rules.
-
-A section of the name `rules` stands between `<!-- rules: begin -->` and `<!-- rules: end -->`.
-"""
+"""Sections of pages that programs write: `rules` is between `<!-- rules: begin -->` and `<!-- rules: end -->`."""
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-
-from carp_spec.registry import RULES
-
-README = Path(__file__).parents[1] / "README.md"
 
 
 def markdown_table(columns: Sequence[str], rows: Iterable[Sequence[object]], numbers: Sequence[str] = ()) -> str:
@@ -30,14 +23,3 @@ def with_section(page: str, name: str, text: str) -> str:
 def write_section(file: Path, name: str, text: str) -> None:
     """Write the text into a page, as its section of that name."""
     file.write_text(with_section(file.read_text(encoding="utf-8"), name, text), encoding="utf-8")
-
-
-def rule_table() -> str:
-    """Every rule as a row of a Markdown table."""
-    return markdown_table(
-        ("id", "statement", "source"), ((f"`{rule.id}`", rule.statement, rule.source) for rule in RULES)
-    )
-
-
-if __name__ == "__main__":
-    write_section(README, "rules", rule_table())

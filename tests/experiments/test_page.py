@@ -5,20 +5,15 @@ import re
 import pytest
 
 from carp_experiments.claims import above_zero, below_zero, up_to, verdict_of
-from carp_experiments.page import PAGE, RESULTS, results
+from carp_experiments.page import RESULTS, results
 from carp_experiments.quality import Saving
-from carp_spec.readme import with_section
 from carproof.statistics import Interval
 
 
-def test_the_page_is_that_of_the_results() -> None:
-    page = PAGE.read_text()
-    assert page == with_section(page, "results", results())
-
-
-def test_every_figure_on_the_page_is_there_and_every_result_is_on_it() -> None:
-    shown = {PAGE.parent / name for name in re.findall(r"!\[.*?\]\((.*?)\)", PAGE.read_text())}
-    assert shown == set(RESULTS.glob("*.svg"))
+def test_the_page_shows_every_figure_and_the_tables_of_every_stored_run() -> None:
+    page = results()
+    assert set(re.findall(r"!\[.*?\]\(figures/(.*?)\)", page)) == {path.name for path in RESULTS.glob("*.svg")}
+    assert all(path.read_text() in page for path in RESULTS.glob("*.md"))
 
 
 @pytest.mark.parametrize(

@@ -1,8 +1,7 @@
-"""The commands in the READMEs are run here, and print what the READMEs say.
+"""The commands in the READMEs and in the documentation are run here, and print what the pages say.
 
-A block of `console` is run line by line; times are the only thing that may differ. A block of `json NAME` or
-`text NAME` is that file, and one of `python` is run.
-`make generated` takes over new output.
+A block of `console` is run line by line; times are the only thing that may differ. A block with a `title` is a file of
+that name, and one of `python` without a title is run. `make generated` takes over new output.
 """
 
 import os
@@ -16,8 +15,13 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parent.parent.parent
-PAGES = ["README.md", "oracle/README.md"]
-BLOCK = re.compile(r"```(console|json|text|python) ?(\S*)\n(.*?)```", re.DOTALL)
+READMES = [str(path.relative_to(ROOT)) for path in [*ROOT.glob("*.md"), *ROOT.glob("*/README.md")]]
+BLOCK = re.compile(r'^```(\w+)(?: title="(\S+)")?\n(.*?)^```', re.DOTALL | re.MULTILINE)
+PAGES = [
+    str(path.relative_to(ROOT))
+    for path in [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+    if any(kind in {"console", "python"} for kind, _, _ in BLOCK.findall(path.read_text()))
+]
 TIME = re.compile(r" +\d+\.\d\d s$", re.MULTILINE)
 WIDTH = re.compile(r"(?<=[ ─])[ ─]+")
 
@@ -49,13 +53,13 @@ def run_page(text: str, folder: Path) -> str:
 
     def run_block(block: re.Match[str]) -> str:
         kind, name, content = block.groups()
-        if kind == "python":
-            subprocess.run([sys.executable, "-c", content], cwd=folder, check=True)
-            return block[0]
-        if kind != "console":
+        if kind == "console":
+            return f"```console\n{run_console(content, folder)}```"
+        if name:
             (folder / name).write_text(content)
-            return block[0]
-        return f"```console\n{run_console(content, folder)}```"
+        elif kind == "python":
+            subprocess.run([sys.executable, "-c", content], cwd=folder, check=True, stdout=subprocess.PIPE)
+        return block[0]
 
     return BLOCK.sub(run_block, text)
 
@@ -66,7 +70,7 @@ def test_every_command_prints_what_the_page_says(page: str, tmp_path: Path) -> N
     assert comparable(run_page(text, tmp_path)) == comparable(text)
 
 
-@pytest.mark.parametrize("page", PAGES)
+@pytest.mark.parametrize("page", READMES)
 def test_every_link_leads_somewhere(page: str) -> None:
     links = re.findall(r"\]\(([^)#]+)", (ROOT / page).read_text())
     assert [link for link in links if not ((ROOT / page).parent / link).exists()] == []
@@ -80,7 +84,7 @@ def test_make_knows_the_two_commands() -> None:
 
 
 if __name__ == "__main__":
-    for page in PAGES:
+    for page in sys.argv[1:] or PAGES:
         text = (ROOT / page).read_text()
         with tempfile.TemporaryDirectory() as folder:
             new = run_page(text, Path(folder))

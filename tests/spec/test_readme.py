@@ -1,101 +1,20 @@
-"""What spec/README.md says is so: its table of rules, its example, and the figures in its errata."""
+"""Sections of pages that programs write."""
 
-import json
-import re
-from fractions import Fraction
-from math import factorial, perm, prod
 from pathlib import Path
 
 import pytest
-from tests.spec.making import plan_of
 
-from carp_spec import (
-    RULES,
-    Instance,
-    Resource,
-    ResourceGraph,
-    Robot,
-    judge,
-    read_instance,
-    read_solution,
-    write_verdict,
-)
-from carp_spec.execution_rules import trace_violations
-from carp_spec.neighbourhood_rules import distance
-from carp_spec.readme import README, rule_table, with_section, write_section
-from carp_spec.traces import read_trace
-
-TEXT = README.read_text()
-INSTANCE, SOLUTION, VERDICT, TRACE = re.findall(r"```json\n(.*?)```", TEXT, re.DOTALL)
-
-
-def test_the_table_of_rules_is_the_registry() -> None:
-    assert with_section(TEXT, "rules", rule_table()) == TEXT, "`make generated` writes it anew"
-    assert rule_table().count("\n") == len(RULES) + 2
-    assert all("|" not in rule.statement + rule.source for rule in RULES)
+from carp_spec.readme import with_section, write_section
 
 
 def test_writing_a_section_replaces_it_and_nothing_else(tmp_path: Path) -> None:
     page = tmp_path / "README.md"
-    page.write_text(TEXT.replace(rule_table(), "| old |\n"))
-    write_section(page, "rules", rule_table())
-    assert page.read_text() == TEXT
+    page.write_text("before\n<!-- rules: begin -->\nold\n<!-- rules: end -->\nafter\n")
+    write_section(page, "rules", "new\n")
+    assert page.read_text() == "before\n<!-- rules: begin -->\nnew\n<!-- rules: end -->\nafter\n"
 
 
 @pytest.mark.parametrize("page", ["", "<!-- rules: begin -->\n", "<!-- rules: end -->\n<!-- rules: begin -->\n"])
 def test_a_page_without_the_section_is_refused(page: str) -> None:
     with pytest.raises(ValueError, match="rules: begin"):
         with_section(page, "rules", "")
-
-
-def test_the_example_is_judged_as_told() -> None:
-    verdict = judge(read_instance(INSTANCE.encode()), read_solution(SOLUTION.encode()))
-    assert json.loads(write_verdict(verdict)) == json.loads(VERDICT)
-
-
-def test_the_example_is_right_where_one_robot_goes_round() -> None:
-    (round_about,) = re.findall(r"goes round instead, `(.*?)`", TEXT)
-    solution = json.loads(SOLUTION)
-    solution["plans"][1]["visits"] = json.loads(round_about)
-    verdict = judge(read_instance(INSTANCE.encode()), read_solution(json.dumps(solution).encode()))
-    assert (verdict.valid, verdict.cost) == (True, 3)
-    assert not trace_violations(
-        read_instance(INSTANCE.encode()), read_solution(json.dumps(solution).encode()), read_trace(TRACE.encode())
-    )
-
-
-def test_the_count_of_replanned_robots_in_the_paper_has_one_round_too_many() -> None:
-    for k, m in ((100, 4), (50, 6), (7, 2)):
-        rounds = [k - 1 - i for i in range(1, m)]
-        assert sum(rounds) == (m - 1) * (2 * k - m - 2) // 2
-        assert sum([*rounds, k - m - 1]) == m * (2 * k - m - 3) // 2
-    assert (sum([98, 97, 96, 95]), sum([98, 97, 96])) == (386, 291)
-
-
-def test_the_counts_of_permutations_in_the_paper_are_those_of_the_last_round() -> None:
-    def shared(size: int) -> int:
-        return sum(perm(size, first) for first in range(1, size + 1))
-
-    assert [size * factorial(size) for size in (4, 5, 6)] == [96, 600, 4320]
-    assert [shared(size) for size in (4, 5, 6)] == [64, 325, 1956]
-    every = [sum(size * factorial(size) for size in range(2, m + 1)) for m in (4, 5, 6)]
-    assert every == [factorial(m + 1) - 2 for m in (4, 5, 6)] == [118, 718, 5038]
-    reused = [sum(shared(size) for size in range(2, m + 1)) for m in (4, 5, 6)]
-    assert reused == [83, 408, 2364]
-    assert [round(100 * some / all_) for some, all_ in zip(reused, every, strict=True)] == [70, 57, 47]
-
-
-def test_dividing_by_one_term_too_few_takes_the_farther_robot_for_the_nearer() -> None:
-    graph = ResourceGraph((Resource("a", x=0, y=0), Resource("b", x=5, y=0), Resource("c", x=6, y=0)), ())
-    robots = (Robot("new", "a", "a"), Robot("near", "b", "b"), Robot("far", "c", "c"))
-    instance = Instance(graph, robots)
-    new = plan_of("new", ("a", 0, 1))
-    near, far = plan_of("near", ("b", 0, 1), ("b", 1, 2)), plan_of("far", ("c", 0, 10), ("c", 10, 11))
-    ours = [distance(instance, new, plan) / 2**16 for plan in (near, far)]
-    assert ours == [5, 6]
-    papers = [mean * terms / (terms - 1) for mean, terms in zip(ours, (2, 11), strict=True)]
-    assert papers == [10, Fraction(66, 10)]
-
-
-def test_a_hundred_starts_drawn_with_replacement_are_hardly_ever_distinct() -> None:
-    assert f"{float(prod(1 - Fraction(i, 400) for i in range(100))):.1e}" == "1.3e-06"

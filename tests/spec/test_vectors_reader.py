@@ -6,12 +6,14 @@ import json
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 from carp_spec import Refusal
-from carp_spec.readme import README
 from carp_spec.vectors import subjects, vectors
+
+PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "vectors.md").read_text()
 
 
 def test_a_case_tells_its_question_and_its_documents() -> None:
@@ -42,14 +44,14 @@ def test_importing_the_reader_reads_no_file() -> None:
 
 
 def test_the_page_shows_a_case_as_it_is() -> None:
-    (shown,) = re.findall(r'```text\n("id".*?)```', README.read_text(), re.DOTALL)
+    (shown,) = re.findall(r'```text\n("id".*?)```', PAGE, re.DOTALL)
     case = next(case for case in vectors("window/fits") if case.id == "window-fits.a-tick-short")
     told = json.loads("{" + shown + "}")
     assert told == {name: json.loads(json.dumps(getattr(case, name))) for name in case.__struct_fields__}
 
 
 def test_the_example_on_the_page_runs() -> None:
-    (example,) = re.findall(r"```python\n(from carp_spec.vectors.*?)```", README.read_text(), re.DOTALL)
+    (example,) = re.findall(r"```python\n(from carp_spec.vectors.*?)```", PAGE, re.DOTALL)
     with contextlib.redirect_stdout(io.StringIO()) as printed:
         exec(example, {})  # noqa: S102 - the page is ours
     assert "joint-exchange.swap invalid [{'robot': 'r1'" in printed.getvalue()

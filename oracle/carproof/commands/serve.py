@@ -25,8 +25,8 @@ def command(engine: str | None) -> Answer:
     """Answer requests, one a line, until stop or the end of the input.
 
     Each line of standard input is a JSON object with id and op and the fields of the op; each gets one line on
-    standard output. A bad line gets an error response, and never ends the process. oracle/README.md lists the
-    fields of each op.
+    standard output. A bad line gets an error response, and never ends the process. docs/reference/protocol.md
+    lists the fields of each op.
     """
     requests, responses = sys.stdin.buffer, sys.stdout.buffer
     with redirect_stdout(sys.stderr):

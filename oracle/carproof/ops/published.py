@@ -1,23 +1,21 @@
-"""What is published of the ops: a JSON Schema, a table in oracle/README.md, lists in help.
+"""What is published of the ops: a JSON Schema, a table in the documentation, lists in help.
 
-`python -m carproof.ops.published` writes schema and table.
+`python -m carproof.ops.published` writes the schema.
 """
 
 from collections.abc import Iterable
 from dataclasses import MISSING
-from pathlib import Path
 from typing import Any, Literal, get_args
 
 import msgspec
 
-from carp_spec.readme import markdown_table, write_section
+from carp_spec.readme import markdown_table
 from carp_spec.schema import schema_file, schema_text
 from carproof.ops import OPS
 from carproof.ops.op import Field, Op, document_of
 from carproof.protocol import ErrorDocument
 
 NAME = "protocol"
-README = Path(__file__).parents[2] / "README.md"
 ABOUT = "A request of the protocol. The response to an XRequest is an XResponse, a Refused or, by a program, a Skipped."
 
 
@@ -96,4 +94,3 @@ def op_list(names: Iterable[str] = OPS) -> str:
 
 if __name__ == "__main__":
     schema_file(NAME).write_text(schema())
-    write_section(README, "ops", table())

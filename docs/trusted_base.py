@@ -1,0 +1,50 @@
+"""What each verdict of carproof rests on, with its lines of code."""
+
+import io
+import tokenize
+from pathlib import Path
+
+from carp_spec.readme import markdown_table
+
+ROOT = Path(__file__).parents[1]
+LAW = ("check", "joint_rules", "plan_rules", "instance_rules", "documents", "model", "rule", "refusal")
+BOUND = ("verify_bound", "bound_rules")
+ENCODER = ("encoding", "robot_clauses", "clauses", "optimum_rules")
+VERDICTS: dict[str, tuple[tuple[str, ...], str]] = {
+    "`check`: no rule is broken": ((), ""),
+    "`verify-bound`, without cuts": (BOUND, ""),
+    "`verify-bound`, with cuts": ((*BOUND, "bound_cuts", *ENCODER, "refutation"), ""),
+    "`verify-query` and `audit`": (("verify_query", "query_certificate_rules"), ""),
+    "with `--kernel`": (("kernel",), "[the proved kernel](#the-proved-kernel), and not the law in Python"),
+    "`verify-proof`, an optimum": (("proof", *ENCODER, "refutation"), ""),
+    "`verify-proof`, unsolvable by clauses": (("proof", "unsolvable", *ENCODER, "refutation"), ""),
+    "`verify-proof`, unsolvable otherwise": (("proof", "unsolvable", "joint_search", "optimum_rules"), ""),
+    "`certify`: z3 agrees on capacity and exchange": (("certificate", "smt"), "z3"),
+    "`theorems`: a lemma holds": (("engine", "smt", "vocabulary"), "z3, the argument by hand in the docstring"),
+}
+
+
+def lines_of_code(path: Path) -> int:
+    """The lines that hold more than a comment or a docstring."""
+    source = path.read_text()
+    skipped = {tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.ENDMARKER}
+    lines: set[int] = set()
+    begins = True
+    for token in tokenize.generate_tokens(io.StringIO(source).readline):
+        is_docstring = begins and token.type == tokenize.STRING
+        if token.type not in skipped and not is_docstring:
+            lines.update(range(token.start[0], token.end[0] + 1))
+        if token.type not in {tokenize.COMMENT, tokenize.NL}:
+            begins = token.type in {tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT}
+    return len(lines)
+
+
+def table() -> str:
+    """The verdicts as a table in Markdown."""
+    columns, rows = ("verdict", "beside the law, in `carp_verify`", "lines", "also"), []
+    law = sum(lines_of_code(ROOT / "spec" / "carp_spec" / f"{name}.py") for name in LAW)
+    for verdict, (modules, others) in VERDICTS.items():
+        lines = sum(lines_of_code(ROOT / "verify" / "carp_verify" / f"{name}.py") for name in modules)
+        named = ", ".join(f"`{name}`" for name in modules) or f"nothing; the law is {law} lines of `carp_spec`"
+        rows.append((verdict, named, lines, others))
+    return markdown_table(columns, rows, numbers=("lines",))
