@@ -12,44 +12,46 @@ from typing import TypeAlias
 from carp_spec.check import MOST_LISTED
 from carp_spec.dependencies import Node, Stay, dependencies, shortest_cycle, stays_by_resource
 from carp_spec.model import Instance, Plan, ResourceId, Solution, Visit
-from carp_spec.rule import DESIGN, Rule, Violation, interval, rule, violation_at_visit, violation_of_robots
+from carp_spec.rule import DESIGN, Breach, Rule, Violation, at_visit, interval, of_robots, violation_rule
 from carp_spec.traces import Trace
 
 ADG = "Hönig et al. 2019, action dependency graph; ter Mors 2010"
 Happened: TypeAlias = Mapping[Node, Visit]
 
 
-@rule("trace/robots", "A trace names each robot that has a plan exactly once, and no other.", DESIGN)
-def trace_names_robots(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Violation]:
+@violation_rule("trace/robots", "A trace names each robot that has a plan exactly once, and no other.", DESIGN)
+def trace_names_robots(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Breach]:
     del instance
     planned = {plan.robot for plan in solution.plans}
     named = Counter(plan.robot for plan in trace.plans)
     for robot in dict.fromkeys([*(plan.robot for plan in solution.plans), *named]):
         if named[robot] != (robot in planned):
             reason = f"the trace must name it {'once' if robot in planned else 'never'}, and does {named[robot]} times"
-            yield violation_of_robots("trace/robots", [robot], reason)
+            yield of_robots([robot], reason)
 
 
-@rule("trace/prefix", "The resources that a robot has visited are the first ones of its plan, in their order.", DESIGN)
-def trace_is_prefix(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Violation]:
+@violation_rule(
+    "trace/prefix", "The resources that a robot has visited are the first ones of its plan, in their order.", DESIGN
+)
+def trace_is_prefix(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Breach]:
     del instance
     for plan, done in _pairs(solution, trace):
         for place, visit in enumerate(done.visits):
             if place >= len(plan.visits):
-                yield violation_at_visit("trace/prefix", plan.robot, visit, "its plan has ended before")
+                yield at_visit(plan.robot, visit, "its plan has ended before")
             elif visit.resource != plan.visits[place].resource:
                 reason = f"visit {place} of its plan is to {plan.visits[place].resource}"
-                yield violation_at_visit("trace/prefix", plan.robot, visit, reason)
+                yield at_visit(plan.robot, visit, reason)
 
 
-@rule(
+@violation_rule(
     "trace/ticks",
     "A robot enters its first visit at its release or later, and each other one at the tick at which it leaves the one "
     "before. No visit is left before it is entered, and nothing happens after the tick now. Only the last visit of a "
     "plan is left for good, and with `park` none is.",
     DESIGN,
 )
-def trace_keeps_time(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Violation]:
+def trace_keeps_time(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Breach]:
     for plan, done in _pairs(solution, trace):
         due: int | None = None
         for place, visit in enumerate(done.visits):
@@ -66,40 +68,42 @@ def trace_keeps_time(instance: Instance, solution: Solution, trace: Trace) -> It
             elif is_last and stays and visit.leave is not None:
                 reason = "it must be left by entering the next visit, or never"
             if reason is not None:
-                yield violation_at_visit("trace/ticks", plan.robot, visit, reason)
+                yield at_visit(plan.robot, visit, reason)
             due = visit.leave
 
 
-@rule("execution/duration", "A visit that is left has lasted at least the resource's duration times the pace.", ADG)
-def durations_are_kept(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Violation]:
+@violation_rule(
+    "execution/duration", "A visit that is left has lasted at least the resource's duration times the pace.", ADG
+)
+def durations_are_kept(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Breach]:
     del solution
     for done in trace.plans:
         for visit in done.visits:
             least = instance.duration(done.robot, visit.resource)
             if visit.leave is not None and visit.leave - visit.enter < least:
                 reason = f"it stayed {visit.leave - visit.enter} of at least {least} ticks"
-                yield violation_at_visit("execution/duration", done.robot, visit, reason)
+                yield at_visit(done.robot, visit, reason)
 
 
-@rule(
+@violation_rule(
     "execution/order",
     "A robot enters a resource only when each robot has left it that, by the plans, has left it when the robot enters; "
     "where following is forbidden, a tick after that.",
     ADG,
 )
-def order_is_kept(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Violation]:
+def order_is_kept(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Breach]:
     happened = _happened(trace)
     for stays in stays_by_resource(solution.plans).values():
-        yield from _too_early("execution/order", stays, stays, happened, instance.gap, instance.gap)
+        yield from _too_early(stays, stays, happened, instance.gap, instance.gap)
 
 
-@rule(
+@violation_rule(
     "execution/exchange",
     "Of two robots that, by the plans, make the moves (r, s) and (s, r) at different ticks, the first moves at an "
     "earlier tick than the second.",
     ADG,
 )
-def exchange_order_is_kept(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Violation]:
+def exchange_order_is_kept(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Breach]:
     del instance
     happened = _happened(trace)
     for stays in stays_by_resource(solution.plans).values():
@@ -109,12 +113,12 @@ def exchange_order_is_kept(instance: Instance, solution: Solution, trace: Trace)
             leaving[stay.target].append(stay)
             entering[stay.source].append(stay)
         for neighbour in leaving.keys() - {None}:
-            yield from _too_early("execution/exchange", leaving[neighbour], entering[neighbour], happened, 1, 1)
+            yield from _too_early(leaving[neighbour], entering[neighbour], happened, 1, 1)
 
 
 def _too_early(
-    rule: str, leaving: Sequence[Stay], entering: Sequence[Stay], happened: Happened, planned: int, least: int
-) -> Iterator[Violation]:
+    leaving: Sequence[Stay], entering: Sequence[Stay], happened: Happened, planned: int, least: int
+) -> Iterator[Breach]:
     """The robots that entered too early: another, by the plans `planned` ticks ahead, was not `least` ahead.
 
     Both are swept in the order of the plans; of those that should have left, the one that left last is blamed.
@@ -136,23 +140,22 @@ def _too_early(
             reason = (
                 f"by the plans robot {last.node[0]} leaves first, in {interval(last.visit.enter, last.visit.leave)}"
             )
-            yield violation_at_visit(rule, stay.node[0], entered, f"{reason}, and {when}")
+            yield at_visit(stay.node[0], entered, f"{reason}, and {when}")
 
 
-@rule(
+@violation_rule(
     "execution/acyclic",
     "The dependency graph of a solution has no cycle: at no tick do robots enter each other's places in a circle.",
     ADG,
 )
-def is_acyclic(instance: Instance, solution: Solution) -> Iterator[Violation]:
+def is_acyclic(instance: Instance, solution: Solution) -> Iterator[Breach]:
     cycle = shortest_cycle(tuple(dependencies(instance, solution.plans)))
     if cycle:
         plans = {plan.robot: plan for plan in solution.plans}
         robots = [edge.after[0] for edge in cycle]
         ways = ", ".join(str(edge.resource) for edge in cycle)
         robot, place = cycle[0].after
-        yield Violation(
-            "execution/acyclic",
+        yield (
             tuple(robots),
             cycle[0].resource,
             plans[robot].visits[place].enter,

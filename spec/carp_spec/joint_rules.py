@@ -6,34 +6,34 @@ from itertools import pairwise
 from typing import TypeAlias
 
 from carp_spec.model import Instance, Move, Plan, Resource, ResourceId, RobotId, Solution
-from carp_spec.rule import DESIGN, MORS, Rule, Violation, rule, violation_of_robots
+from carp_spec.rule import DESIGN, MORS, Breach, Rule, Violation, of_robots, violation_rule
 
 Changes: TypeAlias = dict[int, Counter[RobotId]]
 """By tick and robot, how many of its stays begin at the tick, less those that end."""
 
 
-@rule(
+@violation_rule(
     "joint/capacity",
     "At no tick do more robots occupy a resource than its capacity. A robot occupies it from the tick at which it "
     "enters up to, not including, the tick at which it leaves.",
     f"paper, section II; {MORS}",
 )
-def capacity_is_kept(instance: Instance, plans: Sequence[Plan]) -> Iterator[Violation]:
+def capacity_is_kept(instance: Instance, plans: Sequence[Plan]) -> Iterator[Breach]:
     for resource, robots, start, end in _crowded(instance, plans, 0):
-        yield Violation("joint/capacity", robots, resource.id, start, end, f"capacity {resource.capacity}")
+        yield robots, resource.id, start, end, f"capacity {resource.capacity}"
 
 
-@rule(
+@violation_rule(
     "joint/following",
     "Where following is forbidden, at no tick are more robots in a resource than its capacity if those count that "
     "leave it at the tick: where there is room for one, a robot enters only after a free tick.",
     DESIGN,
 )
-def following_is_avoided(instance: Instance, plans: Sequence[Plan]) -> Iterator[Violation]:
+def following_is_avoided(instance: Instance, plans: Sequence[Plan]) -> Iterator[Breach]:
     if instance.following == "forbidden":
         for resource, robots, start, end in _crowded(instance, plans, instance.gap):
             reason = f"capacity {resource.capacity}, with a free tick after each robot"
-            yield Violation("joint/following", robots, resource.id, start, end, reason)
+            yield robots, resource.id, start, end, reason
 
 
 def _crowded(
@@ -75,13 +75,13 @@ def _crowds(capacity: int, changes: Changes) -> Iterator[tuple[int, int | None, 
         yield start, None, crowd
 
 
-@rule(
+@violation_rule(
     "joint/exchange",
     "No two robots make the moves (r, s) and (s, r) at the same tick, whatever the capacities. A robot makes the move "
     "(r, s) at the tick at which it leaves r and enters s.",
     DESIGN,
 )
-def exchanges_are_avoided(instance: Instance, plans: Sequence[Plan]) -> Iterator[Violation]:
+def exchanges_are_avoided(instance: Instance, plans: Sequence[Plan]) -> Iterator[Breach]:
     movers: dict[tuple[int, Move], list[RobotId]] = defaultdict(list)
     for plan in plans:
         for visit, following in pairwise(plan.visits):
@@ -94,7 +94,7 @@ def exchanges_are_avoided(instance: Instance, plans: Sequence[Plan]) -> Iterator
         robots = tuple(dict.fromkeys(there + back))
         if index[source] < index[target] and back and len(robots) > 1:
             reason = f"they exchange {source} and {target} at tick {tick}"
-            yield Violation("joint/exchange", robots, source, tick, tick + 1, reason)
+            yield robots, source, tick, tick + 1, reason
 
 
 JOINT_RULES: tuple[Rule[[Instance, Sequence[Plan]], Iterator[Violation]], ...] = (
@@ -104,32 +104,34 @@ JOINT_RULES: tuple[Rule[[Instance, Sequence[Plan]], Iterator[Violation]], ...] =
 )
 
 
-@rule(
+@violation_rule(
     "solution/covers",
     "Each robot of the instance has exactly one plan or is listed once as unplanned, not both, and no robot that the "
     "instance does not have is named.",
     DESIGN,
 )
-def solution_covers_robots(instance: Instance, solution: Solution) -> Iterator[Violation]:
+def solution_covers_robots(instance: Instance, solution: Solution) -> Iterator[Breach]:
     planned = Counter(plan.robot for plan in solution.plans)
     unplanned = Counter(solution.unplanned)
     for robot in dict.fromkeys([*instance.robot, *planned, *unplanned]):
         if robot not in instance.robot:
-            yield violation_of_robots("solution/covers", [robot], "the instance has no such robot")
+            yield of_robots([robot], "the instance has no such robot")
         elif planned[robot] + unplanned[robot] != 1:
             reason = f"it must have one plan or be unplanned once, and has {planned[robot]} and {unplanned[robot]}"
-            yield violation_of_robots("solution/covers", [robot], reason)
+            yield of_robots([robot], reason)
 
 
-@rule("solution/order", "The planning order names each robot that has a plan exactly once, and no other robot.", DESIGN)
-def solution_orders_plans(instance: Instance, solution: Solution) -> Iterator[Violation]:
+@violation_rule(
+    "solution/order", "The planning order names each robot that has a plan exactly once, and no other robot.", DESIGN
+)
+def solution_orders_plans(instance: Instance, solution: Solution) -> Iterator[Breach]:
     del instance
     planned = {plan.robot for plan in solution.plans}
     named = Counter(solution.order)
     for robot in dict.fromkeys([*(plan.robot for plan in solution.plans), *solution.order]):
         if named[robot] != (robot in planned):
             reason = f"the order must name it {'once' if robot in planned else 'never'}, and does {named[robot]} times"
-            yield violation_of_robots("solution/order", [robot], reason)
+            yield of_robots([robot], reason)
 
 
 SOLUTION_RULES: tuple[Rule[[Instance, Solution], Iterator[Violation]], ...] = (

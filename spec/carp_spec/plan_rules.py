@@ -7,81 +7,83 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise, zip_longest
 
 from carp_spec.model import Instance, Plan
-from carp_spec.rule import DESIGN, MORS, Rule, Violation, rule, violation_at_visit, violation_of_robots
+from carp_spec.rule import DESIGN, MORS, Breach, Rule, Violation, at_visit, of_robots, rule, violation_rule
 
 
-@rule("plan/start", "The first visit is to the robot's start and enters at its release tick.", f"{MORS}; {DESIGN}")
-def plan_starts_at_release(instance: Instance, plan: Plan) -> Iterator[Violation]:
+@violation_rule(
+    "plan/start", "The first visit is to the robot's start and enters at its release tick.", f"{MORS}; {DESIGN}"
+)
+def plan_starts_at_release(instance: Instance, plan: Plan) -> Iterator[Breach]:
     robot = instance.robot[plan.robot]
     right = f"the first visit must be to {robot.start} at the release tick {robot.release}"
     if not plan.visits:
-        yield violation_of_robots("plan/start", [plan.robot], f"{right}, and there is no visit")
+        yield of_robots([plan.robot], f"{right}, and there is no visit")
     elif (plan.visits[0].resource, plan.visits[0].enter) != (robot.start, robot.release):
-        yield violation_at_visit("plan/start", plan.robot, plan.visits[0], right)
+        yield at_visit(plan.robot, plan.visits[0], right)
 
 
-@rule(
+@violation_rule(
     "plan/goal",
     "The last visit is to the robot's goal. With `vanish` it is left exactly one duration (times the robot's pace) "
     "after it was entered; with `park` it is never left.",
     "paper, section IV (experiments); decision of carproof",
 )
-def plan_ends_at_goal(instance: Instance, plan: Plan) -> Iterator[Violation]:
+def plan_ends_at_goal(instance: Instance, plan: Plan) -> Iterator[Breach]:
     goal = instance.robot[plan.robot].goal
     if not plan.visits:
-        yield violation_of_robots("plan/goal", [plan.robot], f"the last visit must be to {goal}, and there is no visit")
+        yield of_robots([plan.robot], f"the last visit must be to {goal}, and there is no visit")
         return
     last = plan.visits[-1]
     leave = None if instance.after_goal == "park" else last.enter + instance.duration(plan.robot, goal)
     if last.resource != goal:
-        yield violation_at_visit("plan/goal", plan.robot, last, f"the last visit must be to {goal}")
+        yield at_visit(plan.robot, last, f"the last visit must be to {goal}")
     elif last.leave != leave:
         right = "stay at the goal for ever" if leave is None else f"leave the goal at {leave}"
-        yield violation_at_visit("plan/goal", plan.robot, last, f"it must {right}")
+        yield at_visit(plan.robot, last, f"it must {right}")
 
 
-@rule("plan/resource", "Every visit is to a resource of the graph.", DESIGN)
-def plan_visits_resources(instance: Instance, plan: Plan) -> Iterator[Violation]:
+@violation_rule("plan/resource", "Every visit is to a resource of the graph.", DESIGN)
+def plan_visits_resources(instance: Instance, plan: Plan) -> Iterator[Breach]:
     for visit in plan.visits:
         if visit.resource not in instance.graph.index:
-            yield violation_at_visit("plan/resource", plan.robot, visit, "the graph has no such resource")
+            yield at_visit(plan.robot, visit, "the graph has no such resource")
 
 
-@rule(
+@violation_rule(
     "plan/move",
     "Consecutive visits are joined by a move of the graph. To wait is to make a visit longer, not to add one.",
     "paper, section II",
 )
-def plan_follows_moves(instance: Instance, plan: Plan) -> Iterator[Violation]:
+def plan_follows_moves(instance: Instance, plan: Plan) -> Iterator[Breach]:
     for visit, following in pairwise(plan.visits):
         known = visit.resource in instance.graph.index and following.resource in instance.graph.index
         if known and not instance.graph.has_move(visit.resource, following.resource):
             reason = f"the graph has no move to it from {visit.resource}"
-            yield violation_at_visit("plan/move", plan.robot, following, reason)
+            yield at_visit(plan.robot, following, reason)
 
 
-@rule("plan/contiguous", "Each visit enters at the tick at which the one before leaves.", MORS)
-def plan_is_contiguous(instance: Instance, plan: Plan) -> Iterator[Violation]:
+@violation_rule("plan/contiguous", "Each visit enters at the tick at which the one before leaves.", MORS)
+def plan_is_contiguous(instance: Instance, plan: Plan) -> Iterator[Breach]:
     del instance
     for visit, following in pairwise(plan.visits):
         if following.enter != visit.leave:
             leaves = "never left" if visit.leave is None else f"left at {visit.leave}"
             reason = f"it must enter when it leaves {visit.resource}, which is {leaves}"
-            yield violation_at_visit("plan/contiguous", plan.robot, following, reason)
+            yield at_visit(plan.robot, following, reason)
 
 
-@rule(
+@violation_rule(
     "plan/duration",
     "A visit lasts at least the resource's duration times the robot's pace; it may last longer, which is waiting.",
     f"paper, section II; {MORS}",
 )
-def plan_respects_durations(instance: Instance, plan: Plan) -> Iterator[Violation]:
+def plan_respects_durations(instance: Instance, plan: Plan) -> Iterator[Breach]:
     for visit in plan.visits:
         if visit.resource in instance.graph.index and visit.leave is not None:
             least = instance.duration(plan.robot, visit.resource)
             if visit.leave - visit.enter < least:
                 reason = f"it stays {visit.leave - visit.enter} of at least {least} ticks"
-                yield violation_at_visit("plan/duration", plan.robot, visit, reason)
+                yield at_visit(plan.robot, visit, reason)
 
 
 PLAN_RULES: tuple[Rule[[Instance, Plan], Iterator[Violation]], ...] = (
@@ -122,28 +124,28 @@ def is_total_cost(instance: Instance, plans: Sequence[Plan], cost: int) -> bool:
     return cost == total_cost(instance, plans)
 
 
-@rule(
+@violation_rule(
     "fleet/history",
     "A plan made anew at the tick now keeps every visit that it had entered by now: the last of them is entered at "
     "the same tick and left no earlier than now, those before it are unchanged. A plan that has ended by now is "
     "unchanged.",
     DESIGN,
 )
-def plan_keeps_history(before: Plan, after: Plan, now: int) -> Iterator[Violation]:
+def plan_keeps_history(before: Plan, after: Plan, now: int) -> Iterator[Breach]:
     history = [visit for visit in before.visits if visit.enter <= now]
     for visit, again in zip_longest(history, after.visits[: len(history)]):
         ended = visit.leave is not None and visit.leave <= now
         end = f"left at {visit.leave}" if ended else f"left no earlier than {now}"
         right = f"by {now} it was in {visit.resource}, entered at {visit.enter} and {end}"
         if again is None:
-            yield violation_at_visit("fleet/history", before.robot, visit, right)
+            yield at_visit(before.robot, visit, right)
             continue
         kept_end = again.leave == visit.leave if ended else again.leave is None or again.leave >= now
         if (again.resource, again.enter) != (visit.resource, visit.enter) or not kept_end:
-            yield violation_at_visit("fleet/history", before.robot, again, right)
+            yield at_visit(before.robot, again, right)
     if has_ended(before, now):
         for added in after.visits[len(history) :]:
-            yield violation_at_visit("fleet/history", before.robot, added, f"its plan had ended by {now}")
+            yield at_visit(before.robot, added, f"its plan had ended by {now}")
 
 
 def has_ended(plan: Plan, now: int) -> bool:

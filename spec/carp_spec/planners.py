@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass, fields
 from typing import Any, ClassVar, Literal, TypeAlias, cast, get_args
 
 from carp_spec.refusal import Refusal
-from carp_spec.rule import DESIGN, Fault, is_whole, rule
+from carp_spec.rule import DESIGN, fault_rule, is_whole
 
 LARGEST_SEED = 2**64 - 1
 LARGEST_SAMPLE = 1_000_000
@@ -95,29 +95,29 @@ def _is_between(value: object, least: int, most: int | None) -> bool:
     return is_whole(value) and value >= least and (most is None or value <= most)
 
 
-@rule(
+@fault_rule(
     "planner/options",
     f"Counts (m, k, attempts, fallback, sample) are whole numbers of at least 1, a sample at most {LARGEST_SAMPLE}; "
     "a seed is between 0 and 2^64 - 1; baseline is true or false; paths is shortest or disjoint; sample and fallback "
     "may be null.",
     DESIGN,
 )
-def options_are_right(planner: Planner) -> Iterator[Fault]:
+def options_are_right(planner: Planner) -> Iterator[tuple[str, str]]:
     limits = {"seed": (0, LARGEST_SEED), "sample": (1, LARGEST_SAMPLE)}
     for name, value in asdict(planner).items():
         path = f"$.{name}"
         if name == "baseline":
             if not isinstance(value, bool):
-                yield Fault("planner/options", path, f"the baseline must be true or false, not {value!r}")
+                yield path, f"the baseline must be true or false, not {value!r}"
         elif name == "paths":
             if value not in get_args(PathKind):
-                yield Fault("planner/options", path, f'the paths must be "shortest" or "disjoint", not {value!r}')
+                yield path, f'the paths must be "shortest" or "disjoint", not {value!r}'
         elif not (value is None and name in ("sample", "fallback")):
             least, most = limits.get(name, (1, None))
             if not _is_between(value, least, most):
                 bounds = f"of at least {least}" if most is None else f"between {least} and {most}"
                 message = f"the {name} must be a whole number {bounds}, not {value!r}"
-                yield Fault("planner/options", path, message)
+                yield path, message
 
 
 def planner_named(name: object, options: Mapping[str, object]) -> Planner:

@@ -19,7 +19,7 @@ from carp_spec.model import Instance, Plan, ResourceId, Solution, Visit
 from carp_spec.permutations import shuffle
 from carp_spec.planners import LARGEST_SEED
 from carp_spec.refusal import Refusal
-from carp_spec.rule import DESIGN, Fault, Rule, is_whole, rule
+from carp_spec.rule import DESIGN, Rule, fault_rule, is_whole, rule
 
 T = TypeVar("T")
 Kind: TypeAlias = Literal["repair", "delayed", "contested", "near"]
@@ -168,22 +168,21 @@ def is_kept(before: tuple[int, int], after: tuple[int, int]) -> bool:
     return after <= before
 
 
-@rule(
+@fault_rule(
     "polish/options",
     f"A polish has a number of rounds, iterations, a whole number of at least 0, or a time, seconds, a number above 0, "
     f"or neither, which is {ITERATIONS} iterations; and a seed between 0 and 2^64 - 1.",
     DESIGN,
 )
-def options_are_right(iterations: object, seconds: object, seed: object) -> Iterator[Fault]:
-    id = "polish/options"
+def options_are_right(iterations: object, seconds: object, seed: object) -> Iterator[tuple[str, str]]:
     if iterations is not None and seconds is not None:
-        yield Fault(id, "$.seconds", "there must be either iterations or seconds, not both")
+        yield "$.seconds", "there must be either iterations or seconds, not both"
     if iterations is not None and not (is_whole(iterations) and iterations >= 0):
-        yield Fault(id, "$.iterations", f"the iterations must be a whole number of at least 0, not {iterations!r}")
+        yield "$.iterations", f"the iterations must be a whole number of at least 0, not {iterations!r}"
     if seconds is not None and not _is_time(seconds):
-        yield Fault(id, "$.seconds", f"the seconds must be a number above 0, not {seconds!r}")
+        yield "$.seconds", f"the seconds must be a number above 0, not {seconds!r}"
     if not (is_whole(seed) and 0 <= seed <= LARGEST_SEED):
-        yield Fault(id, "$.seed", f"the seed must be a whole number between 0 and {LARGEST_SEED}, not {seed!r}")
+        yield "$.seed", f"the seed must be a whole number between 0 and {LARGEST_SEED}, not {seed!r}"
 
 
 def _is_time(seconds: object) -> bool:

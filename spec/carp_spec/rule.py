@@ -4,9 +4,10 @@ A rule has a stable id, one statement, a source and one predicate, the function 
 that speaks of a rule quotes its id. `carp_spec.registry` lists them all.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Generic, ParamSpec, TypeGuard, TypeVar
+from functools import wraps
+from typing import Generic, ParamSpec, TypeAlias, TypeGuard, TypeVar
 
 from carp_spec.model import ResourceId, RobotId, Visit
 
@@ -99,11 +100,45 @@ def named(robots: Sequence[RobotId]) -> str:
     return f"{'robot' if len(robots) == 1 else 'robots'} {names}{others}"
 
 
-def violation_at_visit(rule: str, robot: RobotId, visit: Visit, reason: str) -> Violation:
+Breach: TypeAlias = tuple[tuple[RobotId, ...], ResourceId | None, int | None, int | None, str]
+"""A violation without the rule: robots, resource, start, end and reason."""
+
+
+def at_visit(robot: RobotId, visit: Visit, reason: str) -> Breach:
     """Blame one visit of one robot."""
-    return Violation(rule, (robot,), visit.resource, visit.enter, visit.leave, reason)
+    return (robot,), visit.resource, visit.enter, visit.leave, reason
 
 
-def violation_of_robots(rule: str, robots: Sequence[RobotId], reason: str) -> Violation:
+def of_robots(robots: Sequence[RobotId], reason: str) -> Breach:
     """Blame robots, but no resource and no tick."""
-    return Violation(rule, tuple(robots), None, None, None, reason)
+    return tuple(robots), None, None, None, reason
+
+
+def violation_rule(
+    id: str, statement: str, source: str
+) -> Callable[[Callable[P, Iterator[Breach]]], Rule[P, Iterator[Violation]]]:
+    """Make the decorated predicate, which yields breaches, a rule that yields them as violations of itself."""
+
+    def decorate(predicate: Callable[P, Iterator[Breach]]) -> Rule[P, Iterator[Violation]]:
+        @wraps(predicate)
+        def violations(*args: P.args, **kwargs: P.kwargs) -> Iterator[Violation]:
+            return (Violation(id, *breach) for breach in predicate(*args, **kwargs))
+
+        return Rule(id, statement, source, violations)
+
+    return decorate
+
+
+def fault_rule(
+    id: str, statement: str, source: str
+) -> Callable[[Callable[P, Iterator[tuple[str, str]]]], Rule[P, Iterator[Fault]]]:
+    """Make the decorated predicate, which yields paths and messages, a rule that yields them as faults of itself."""
+
+    def decorate(predicate: Callable[P, Iterator[tuple[str, str]]]) -> Rule[P, Iterator[Fault]]:
+        @wraps(predicate)
+        def faults(*args: P.args, **kwargs: P.kwargs) -> Iterator[Fault]:
+            return (Fault(id, *found) for found in predicate(*args, **kwargs))
+
+        return Rule(id, statement, source, faults)
+
+    return decorate

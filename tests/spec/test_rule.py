@@ -4,7 +4,7 @@ import pytest
 from tests.spec.making import PARKING, SOLVED, VANISHING, plan_of
 
 from carp_spec import Violation, Visit, check
-from carp_spec.rule import interval, is_whole, rule, violation_at_visit, violation_of_robots
+from carp_spec.rule import at_visit, interval, is_whole, of_robots, rule
 
 
 def test_a_violation_prints_rule_place_time_robots_and_reason() -> None:
@@ -20,12 +20,12 @@ def test_a_violation_of_many_robots_names_the_first_five_and_counts_the_others()
 
 
 def test_a_violation_for_ever_prints_so() -> None:
-    violation = violation_at_visit("plan/goal", 7, Visit("d", 4, None), "the last visit must be to c")
+    violation = Violation("plan/goal", *at_visit(7, Visit("d", 4, None), "the last visit must be to c"))
     assert str(violation) == "[plan/goal] resource d in [4,for ever): robot 7 (the last visit must be to c)"
 
 
 def test_a_violation_without_place_and_time_prints_neither() -> None:
-    violation = violation_of_robots("solution/covers", ["r1", "r2"], "the instance has no such robot")
+    violation = Violation("solution/covers", *of_robots(["r1", "r2"], "the instance has no such robot"))
     assert str(violation) == "[solution/covers] robots r1, r2 (the instance has no such robot)"
     assert (violation.resource, violation.start, violation.end) == (None, None, None)
 

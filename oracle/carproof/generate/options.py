@@ -4,9 +4,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
 from typing import Any, Literal, TypeAlias, get_args
 
-from carp_spec import Fault, Refusal, Rule
+from carp_spec import Refusal, Rule
 from carp_spec.planners import LARGEST_SEED
-from carp_spec.rule import DESIGN, is_whole, rule
+from carp_spec.rule import DESIGN, fault_rule, is_whole, rule
 
 LARGEST = 2**30
 MOST_RESOURCES = 250_000
@@ -59,20 +59,20 @@ class Traits:
     duration: Range = JUST_ONE
 
 
-@rule(
+@fault_rule(
     "generate/options",
     f"A seed is between 0 and 2^64 - 1, a map between 0 and 20, robots between 0 and {MOST_ROBOTS}, a release between "
     "0 and 2^30, any other number between 1 and 2^30; a range does not fall; a word is one of those that the option "
     "names.",
     DESIGN,
 )
-def options_are_right(options: Any) -> Iterator[Fault]:  # noqa: ANN401 - any of the dataclasses of options
+def options_are_right(options: Any) -> Iterator[tuple[str, str]]:  # noqa: ANN401 - any of the dataclasses of options
     """Yield the faults of a dataclass of options, each with its path."""
     for each in fields(options):
         value = getattr(options, each.name)
         message = _wrong(each.name, value)
         if message is not None:
-            yield Fault("generate/options", f"$.{each.name}", message)
+            yield f"$.{each.name}", message
 
 
 def _wrong(name: str, value: object) -> str | None:
