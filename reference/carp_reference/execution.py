@@ -1,0 +1,291 @@
+"""Executing a solution in the order of its plans: when each visit is entered, what delays do, and plans for the rest.
+
+All follows from the dependency graph (`carp_spec.dependencies`). Each of its edges leads from a visit to one that the
+plans enter no earlier, and, where it takes no time, perhaps at the same tick: so visits are looked at tick by tick of
+the plans, and within a tick until nothing changes.
+"""
+
+from collections import defaultdict, deque
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+from carp_spec import Instance, Plan, Refusal, ResourceId, RobotId, Solution, Visit
+from carp_spec.dependencies import Dependency, Node, dependencies, stays_by_resource
+from carp_spec.execution_rules import trace_violations
+from carp_spec.plan_rules import plan_ends_at_goal, plan_starts_at_release
+from carp_spec.traces import Trace
+
+
+@dataclass(frozen=True, slots=True)
+class Delay:
+    """The robot needs `ticks` more for that visit of its plan than the duration."""
+
+    robot: RobotId
+    visit: int
+    ticks: int
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """A lawful solution with its dependency graph; `nodes` are in the order in which the plans enter them."""
+
+    instance: Instance
+    solution: Solution
+    plans: Mapping[RobotId, Plan]
+    nodes: tuple[Node, ...]
+    edges: tuple[Dependency, ...]
+    out_of: Mapping[Node, Sequence[Dependency]]
+
+    def visit(self, node: Node) -> Visit:
+        """The visit of the plan."""
+        return self.plans[node[0]].visits[node[1]]
+
+    def is_last(self, node: Node) -> bool:
+        """Whether the plan ends with the visit."""
+        return node[1] == len(self.plans[node[0]].visits) - 1
+
+    def duration(self, node: Node) -> int:
+        """Ticks that the visit takes at least."""
+        return self.instance.duration(node[0], self.visit(node).resource)
+
+
+def order_of(instance: Instance, solution: Solution) -> Order:
+    """Make the dependency graph of a lawful solution."""
+    plans = {plan.robot: plan for plan in solution.plans}
+    nodes = [(plan.robot, place) for plan in solution.plans for place in range(len(plan.visits))]
+    edges = tuple(dependencies(instance, solution.plans))
+    return order_with(instance, solution, plans, nodes, edges)
+
+
+def order_with(
+    instance: Instance,
+    solution: Solution,
+    plans: Mapping[RobotId, Plan],
+    nodes: Iterable[Node],
+    edges: tuple[Dependency, ...],
+) -> Order:
+    """Put an order together."""
+    out_of: dict[Node, list[Dependency]] = defaultdict(list)
+    for edge in edges:
+        out_of[edge.before].append(edge)
+    by_tick = tuple(sorted(nodes, key=lambda node: plans[node[0]].visits[node[1]].enter))
+    return Order(instance, solution, plans, by_tick, edges, out_of)
+
+
+def earliest(order: Order, least: Mapping[Node, int], delays: Iterable[Delay] = ()) -> dict[Node, int]:
+    """When each visit is entered at the earliest, none before the tick `least` that is given for it."""
+    longer = {(delay.robot, delay.visit): delay.ticks for delay in delays}
+    enters = {node: least.get(node, 0) for node in order.nodes}
+    for _, group in groupby(order.nodes, key=lambda node: order.visit(node).enter):
+        waiting = deque(group)
+        alike = set(waiting)
+        while waiting:
+            node = waiting.popleft()
+            for edge in order.out_of.get(node, ()):
+                ticks = edge.ticks + (longer.get(node, 0) if waits_for_leaving(order, edge) else 0)
+                if enters[edge.after] < enters[node] + ticks:
+                    enters[edge.after] = enters[node] + ticks
+                    if edge.after in alike:
+                        waiting.append(edge.after)
+    return enters
+
+
+def waits_for_leaving(order: Order, edge: Dependency) -> bool:
+    """Whether the edge holds the duration of the visit that it leads from."""
+    return edge.kind == "travel" or edge.resource == order.visit(edge.before).resource
+
+
+def planned(order: Order) -> dict[Node, int]:
+    """When each visit is entered by the plans."""
+    return {node: order.visit(node).enter for node in order.nodes}
+
+
+def slack(order: Order) -> dict[Node, int | None]:
+    """The longest delay at each visit by which no robot arrives later than planned; `None`: any.
+
+    Robots wait for others, and otherwise keep to the ticks of their plans.
+    """
+    ticks = planned(order)
+    horizon = max(ticks.values(), default=0)
+    latest = {node: tick if order.is_last(node) else horizon for node, tick in ticks.items()}
+    into: dict[Node, list[Dependency]] = defaultdict(list)
+    for edge in order.edges:
+        into[edge.after].append(edge)
+    for _, group in groupby(reversed(order.nodes), key=lambda node: order.visit(node).enter):
+        waiting = deque(group)
+        alike = set(waiting)
+        while waiting:
+            node = waiting.popleft()
+            for edge in into.get(node, ()):
+                if latest[edge.before] > latest[node] - edge.ticks:
+                    latest[edge.before] = latest[node] - edge.ticks
+                    if edge.before in alike:
+                        waiting.append(edge.before)
+    return {node: _slack_at(order, latest, node) for node in order.nodes}
+
+
+def _slack_at(order: Order, latest: Mapping[Node, int], node: Node) -> int | None:
+    edges = (edge for edge in order.out_of.get(node, ()) if waits_for_leaving(order, edge))
+    return min((latest[edge.after] - edge.ticks - order.visit(node).enter for edge in edges), default=None)
+
+
+def late_robots(order: Order, delays: Sequence[Delay]) -> dict[RobotId, int]:
+    """By how many ticks robots arrive later than planned; those that do not are left out."""
+    enters = earliest(order, planned(order), delays)
+    last = [(plan.robot, len(plan.visits) - 1) for plan in order.solution.plans]
+    return {node[0]: late for node in last if (late := enters[node] - order.visit(node).enter) > 0}
+
+
+def smallest_collision(instance: Instance, solution: Solution) -> tuple[Delay, ...] | None:
+    """Delays of the least sum by which robots that keep to the clock collide; `None` if no delays do that.
+
+    A robot on the clock enters each visit at its planned tick, or as soon after it as its own durations and delays
+    allow. So it is later nowhere, and a delay is spent best at the visit that it makes too long: too many robots are in
+    a resource as one enters, or two exchange their places. Of equal sums the fewest delays are taken.
+    """
+    best: tuple[Delay, ...] | None = None
+    for delays in _collisions(instance, solution):
+        if best is None or _worth(delays) < _worth(best):
+            best = delays
+    return best
+
+
+def _worth(delays: Sequence[Delay]) -> tuple[int, int]:
+    return (sum(delay.ticks for delay in delays), len(delays))
+
+
+def _collisions(instance: Instance, solution: Solution) -> Iterator[tuple[Delay, ...]]:
+    """For each visit and all that may be there when it is entered, the shortest delays that make a collision."""
+    for resource, stays in stays_by_resource(solution.plans).items():
+        capacity = instance.graph.resource[resource].capacity
+        for stay in stays:
+            tick = stay.visit.enter
+            present = {
+                each.node[0]
+                for each in stays
+                if each.visit.enter <= tick and (each.visit.leave is None or tick < each.visit.leave)
+            }
+            longer: dict[RobotId, Delay] = {}
+            for each in stays:
+                robot, place = each.node
+                if robot in present or each.visit.leave is None or each.visit.leave > tick:
+                    continue
+                ticks = tick + 1 - each.visit.enter - instance.duration(robot, resource)
+                if each.target is not None and each.target == stay.source and ticks > 1:
+                    yield (Delay(robot, place, ticks - 1),)
+                if robot not in longer or ticks < longer[robot].ticks:
+                    longer[robot] = Delay(robot, place, ticks)
+            missing = capacity + 1 - len(present)
+            if missing <= len(longer):
+                yield tuple(sorted(longer.values(), key=lambda delay: delay.ticks)[:missing])
+
+
+def on_the_clock(order: Order, delays: Iterable[Delay]) -> dict[Node, int]:
+    """When each visit is entered if every robot keeps to the ticks of its own plan as well as it can."""
+    longer = {(delay.robot, delay.visit): delay.ticks for delay in delays}
+    enters: dict[Node, int] = {}
+    for plan in order.solution.plans:
+        ready = 0
+        for place, visit in enumerate(plan.visits):
+            enters[plan.robot, place] = max(visit.enter, ready)
+            ready = enters[plan.robot, place] + order.duration((plan.robot, place)) + longer.get((plan.robot, place), 0)
+    return enters
+
+
+def in_order(order: Order, delays: Iterable[Delay]) -> dict[Node, int]:
+    """When each visit is entered if every robot goes on as soon as its dependencies allow.
+
+    Robots that wait for each other in a circle, and those that wait for them, never enter: they are left out.
+    """
+    releases = {(robot.id, 0): robot.release for robot in order.instance.robots}
+    never = stuck(order)
+    return {node: tick for node, tick in earliest(order, releases, delays).items() if node not in never}
+
+
+def stuck(order: Order) -> frozenset[Node]:
+    """The visits in a circle of dependencies, and those that wait for one."""
+    missing = dict.fromkeys(order.nodes, 0)
+    for edge in order.edges:
+        missing[edge.after] += 1
+    ready = [node for node in order.nodes if missing[node] == 0]
+    for node in ready:
+        for edge in order.out_of.get(node, ()):
+            missing[edge.after] -= 1
+            if missing[edge.after] == 0:
+                ready.append(edge.after)
+    return frozenset(order.nodes) - frozenset(ready)
+
+
+def executed(order: Order, enters: Mapping[Node, int], delays: Iterable[Delay] = (), now: int | None = None) -> Trace:
+    """The trace of an execution by the tick now, or by its last event."""
+    longer = {(delay.robot, delay.visit): delay.ticks for delay in delays}
+    plans = []
+    last = max(enters.values(), default=0)
+    for plan in order.solution.plans:
+        visits = []
+        for place, visit in enumerate(plan.visits):
+            node = (plan.robot, place)
+            if node not in enters or (now is not None and enters[node] > now):
+                break
+            leave = enters.get((plan.robot, place + 1))
+            if order.is_last(node) and visit.leave is not None:
+                leave = enters[node] + order.duration(node) + longer.get(node, 0)
+            if leave is not None and (now is None or leave <= now):
+                last = max(last, leave)
+            visits.append(Visit(visit.resource, enters[node], leave if now is None or (leave or 0) <= now else None))
+        plans.append(Plan(plan.robot, tuple(visits)))
+    return Trace(last if now is None else now, tuple(plans))
+
+
+def retime(instance: Instance, solution: Solution, trace: Trace) -> Solution:
+    """The plans for the rest of the way, in the same order and as early as possible; what has happened is kept.
+
+    What has not happened by the tick `trace.now` happens after it. Raises `Refusal` if the trace does not follow the
+    solution, and where no lawful plan has the history: a robot appears late, or stays too long at its goal.
+    """
+    for violation in trace_violations(instance, solution, trace, most=1):
+        raise Refusal("document", path_in_trace(trace, violation.robots[0]), violation.rule, violation.message)
+    order = order_of(instance, solution)
+    least = {(robot.id, 0): robot.release for robot in instance.robots}
+    for node in order.nodes:
+        if node[1] > 0 or least[node] <= trace.now:
+            least[node] = trace.now + 1
+    happened = {(plan.robot, place): visit for plan in trace.plans for place, visit in enumerate(plan.visits)}
+    enters = earliest(order, {**least, **{node: visit.enter for node, visit in happened.items()}})
+    after = solution_at(order, enters)
+    refuse_odd_ends(instance, after, trace)
+    return after
+
+
+def refuse_odd_ends(instance: Instance, after: Solution, trace: Trace) -> None:
+    """Raise `Refusal` where a robot appears late, or stays at its goal for longer than a plan may."""
+    done = {plan.robot: plan for plan in trace.plans}
+    for plan in after.plans:
+        for violation in (*plan_starts_at_release(instance, plan), *plan_ends_at_goal(instance, plan)):
+            message = f"no plan can have this history: {violation.message}"
+            raise Refusal("document", path_in_trace(trace, plan.robot), violation.rule, message)
+        visits = done[plan.robot].visits
+        due = plan.visits[-1].leave
+        is_there = len(visits) == len(plan.visits) and due is not None
+        if is_there and visits[-1].leave != due and (visits[-1].leave is not None or (due or 0) <= trace.now):
+            message = f"no plan can have this history: robot {plan.robot} must leave its goal at {due}"
+            raise Refusal("document", path_in_trace(trace, plan.robot), plan_ends_at_goal.id, message)
+
+
+def path_in_trace(trace: Trace, robot: RobotId) -> str:
+    """Where the trace speaks of the robot."""
+    places = [place for place, plan in enumerate(trace.plans) if plan.robot == robot]
+    return f"$.plans[{places[0]}]" if places else "$.plans"
+
+
+def solution_at(order: Order, enters: Mapping[Node, int]) -> Solution:
+    """The solution with its visits at these ticks."""
+    plans = []
+    for plan in order.solution.plans:
+        ticks = [enters[plan.robot, place] for place in range(len(plan.visits))]
+        parks = plan.visits[-1].leave is None
+        ends = [*ticks[1:], None if parks else ticks[-1] + order.duration((plan.robot, len(ticks) - 1))]
+        resources: list[ResourceId] = [visit.resource for visit in plan.visits]
+        plans.append(Plan(plan.robot, tuple(Visit(*visit) for visit in zip(resources, ticks, ends, strict=True))))
+    return Solution(tuple(plans), order.solution.order, order.solution.unplanned)
