@@ -138,10 +138,14 @@ class Timetable:
         lasts = self.starts[1:] - 1
         ends[lasts] = times[lasts] + self.duration[lasts]
         begins, leaves = times.tolist(), ends.tolist()
-        plans = []
-        for plan, start in zip(self.solution.plans, self.starts.tolist(), strict=False):
+        plans: list[Plan] = []
+        has_changed = np.append(np.add.reduceat(times != self.enter, self.starts[:-1]) if times.size else [], 0)
+        for number, (plan, start) in enumerate(zip(self.solution.plans, self.starts.tolist(), strict=False)):
+            if not has_changed[number]:
+                plans.append(plan)
+                continue
             visits = [
-                Visit(visit.resource, begins[number], leaves[number]) for number, visit in enumerate(plan.visits, start)
+                Visit(visit.resource, begins[place], leaves[place]) for place, visit in enumerate(plan.visits, start)
             ]
             if plan.visits[-1].leave is None:
                 visits[-1] = Visit(visits[-1].resource, visits[-1].enter, None)

@@ -11,6 +11,7 @@ from typing import TypeVar
 import click
 
 from carp_spec import Instance, Refusal, Solution, read_instance, read_solution
+from carp_spec.traces import Trace, read_trace
 
 T = TypeVar("T")
 STANDARD_INPUT = "-"
@@ -69,6 +70,11 @@ def read_instance_file(name: str) -> Instance:
 def read_solution_file(name: str) -> Solution:
     """Read a solution from a file or standard input."""
     return _read(name, read_solution)
+
+
+def read_trace_file(name: str) -> Trace:
+    """Read a trace from a file or standard input."""
+    return _read(name, read_trace)
 
 
 def _read(name: str, decode: Callable[[bytes], T]) -> T:

@@ -39,6 +39,7 @@ def examples(*lines: str) -> str:
 
 instance_argument = click.argument("instance", type=InputFile())
 solution_argument = click.argument("solution", type=InputFile())
+trace_argument = click.argument("trace", type=InputFile())
 output_option = click.option(
     "--output", "-o", type=OutputFile(), help="Write the document to this file, whole or not at all."
 )

@@ -10,6 +10,7 @@ from carp_verify.optimum_rules import OPTIMUM_RULES
 from carp_verify.query_certificate_rules import QUERY_CERTIFICATE_RULES
 from carproof.adapters import ADAPTER_RULES
 from carproof.conform.findings import PROGRAM_RULES
+from carproof.executing import delays_are_right
 from carproof.generate.options import GENERATE_RULES
 from carproof.movingai import MOVINGAI_RULES
 from carproof.protocol import PROTOCOL_RULES
@@ -20,6 +21,7 @@ ALL_RULES: tuple[Rule[..., Any], ...] = (
     *RULES,
     *LIMIT_RULES,
     *REQUEST_RULES,
+    delays_are_right,
     *GENERATE_RULES,
     *MOVINGAI_RULES,
     *ADAPTER_RULES,

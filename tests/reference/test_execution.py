@@ -7,8 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.profiles import draws
-from tests.spec.making import plan_of, solution_of
-from tests.spec.rule_examples import CROSSED, RING, TURNING
+from tests.spec.making import CROSSED, RING, TURNING, plan_of, solution_of
 
 import carp_reference
 from carp_reference.execution import (

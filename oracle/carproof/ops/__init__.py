@@ -14,6 +14,7 @@ import msgspec
 from carp_spec import Refusal
 from carp_verify.kernel import UndecidedError, is_answer
 from carproof.engines import Engine
+from carproof.ops.executing import check_trace, dependencies, execute, give_way, retime, untangle
 from carproof.ops.judging import audit, check, verify_bound, verify_query
 from carproof.ops.op import Op, op_of
 from carproof.ops.planning import add, plan, polish, query
@@ -72,6 +73,12 @@ _HANDLERS: tuple[Callable[[Any, Engine], object], ...] = (
     verify_bound,
     verify_query,
     audit,
+    check_trace,
+    dependencies,
+    execute,
+    retime,
+    untangle,
+    give_way,
     stop,
 )
 OPS: Mapping[str, Op] = {op.name: op for op in map(op_of, _HANDLERS)}

@@ -18,6 +18,7 @@ from carp_spec.documents import InstanceDocument, SolutionDocument, instance_doc
 from carp_spec.planners import PLANNERS
 from carp_spec.polish_rules import require_polish_options
 from carp_spec.query_certificates import QueryCertificateDocument, read_query_certificate
+from carp_spec.traces import Trace, TraceDocument, read_trace, trace_document
 from carproof.engines import Engine
 from carproof.protocol import Request, fields_are_right, value_of
 
@@ -35,6 +36,7 @@ DOCUMENTS: Mapping[Any, Form] = {
     Instance: Form(InstanceDocument, read_instance, instance_document),
     Solution: Form(SolutionDocument, read_solution, solution_document),
     BoundDocument: Form(BoundDocument, read_bound),
+    Trace: Form(TraceDocument, read_trace, trace_document),
     QueryCertificateDocument: Form(QueryCertificateDocument, read_query_certificate),
 }
 

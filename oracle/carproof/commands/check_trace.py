@@ -1,0 +1,51 @@
+"""`carproof check-trace`: whether what has happened follows a solution."""
+
+import click
+
+from carp_spec import Verdict, total_cost, write_verdict
+from carp_spec.execution_rules import trace_violations
+from carproof.answer import Answer
+from carproof.files import (
+    naming,
+    print_document,
+    read_instance_file,
+    read_solution_file,
+    read_trace_file,
+    refuse_two_standard_inputs,
+)
+from carproof.options import examples, instance_argument, json_option, solution_argument, trace_argument
+from carproof.requests import sound_solution
+from carproof.tables import print_line
+
+
+@click.command(
+    short_help="Check what robots have done against their plans.",
+    epilog=examples("carproof check-trace town.json plans.json trace.json"),
+)
+@instance_argument
+@solution_argument
+@trace_argument
+@json_option
+def command(*, instance: str, solution: str, trace: str, as_json: bool) -> Answer:
+    """Check that the TRACE of what has happened follows SOLUTION: ways, durations, and the order of the plans.
+
+    The ticks may be any. SOLUTION must break no rule.
+
+    Exit codes: 0 no rule is broken, 1 a rule is broken, 2 bad input.
+    """
+    refuse_two_standard_inputs(instance, solution, trace)
+    problem, given, done = read_instance_file(instance), read_solution_file(solution), read_trace_file(trace)
+    with naming(solution):
+        sound = sound_solution(problem, given)
+    violations = trace_violations(problem, sound, done)
+    verdict = Verdict(total_cost(problem, sound.plans), len(sound.unplanned), violations)
+    if as_json:
+        print_document(write_verdict(verdict))
+        return Answer.of(verdict.valid)
+    for violation in violations:
+        print_line(str(violation))
+    lengths = {plan.robot: len(plan.visits) for plan in sound.plans}
+    arrived = sum(len(plan.visits) == lengths.get(plan.robot) for plan in done.plans)
+    result = "no rule is broken" if verdict.valid else "INVALID"
+    print_line(f"{result}: by tick {done.now}, {arrived} of {len(lengths)} robots are at their goals")
+    return Answer.of(verdict.valid)

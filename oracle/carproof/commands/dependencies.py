@@ -1,0 +1,81 @@
+"""`carproof dependencies`: which visits wait for which, and what delays do."""
+
+from pathlib import Path
+
+import click
+
+from carp_reference.execution import late_robots, order_of
+from carp_spec.documents import write
+from carproof.answer import Answer
+from carproof.executing import DependenciesDocument, delay_named, dependencies_document, dot
+from carproof.files import (
+    OutputFile,
+    naming,
+    read_instance_file,
+    read_solution_file,
+    refuse_two_standard_inputs,
+    write_whole,
+)
+from carproof.options import examples, instance_argument, json_option, output_option, solution_argument
+from carproof.requests import sound_solution
+from carproof.results import write_result
+from carproof.tables import print_line, print_table
+
+
+@click.command(
+    short_help="Show what waits for what, and what delays do.",
+    epilog=examples(
+        "carproof dependencies town.json plans.json",
+        "carproof dependencies town.json plans.json --delay r7:3:5",
+        "carproof dependencies town.json plans.json --dot graph.dot",
+    ),
+)
+@instance_argument
+@solution_argument
+@click.option("--delay", "delays", metavar="ROBOT:VISIT:TICKS", multiple=True, help="A delay at a visit, from 0 on.")
+@click.option("--dot", "picture", type=OutputFile(), help="Write the graph for Graphviz to this file.")
+@output_option
+@json_option
+def command(
+    *, instance: str, solution: str, delays: tuple[str, ...], picture: Path | None, output: Path | None, as_json: bool
+) -> Answer:
+    """Make the dependency graph of SOLUTION: which visits wait for which if robots keep the order of the plans.
+
+    Says whether the graph has no cycle, so that an execution in order never stops, and else the shortest one; which
+    delays of the least sum make robots collide that keep to the clock; and, for delays asked about, who is late.
+
+    Exit codes: 0 there is no cycle, 1 there is one, 2 bad input.
+    """
+    refuse_two_standard_inputs(instance, solution)
+    problem = read_instance_file(instance)
+    given = read_solution_file(solution)
+    with naming(solution):
+        sound = sound_solution(problem, given)
+    asked = [delay_named(delay, problem, sound) for delay in delays]
+    order = order_of(problem, sound)
+    document = dependencies_document(order, late_robots(order, asked) if asked else None)
+    if picture is not None:
+        write_whole(picture, dot(order).encode())
+    write_result(write(document), output, as_json)
+    if not as_json:
+        show(document)
+    return Answer.of(document.acyclic)
+
+
+def show(document: DependenciesDocument) -> None:
+    """Print what matters to people."""
+    spare = [visit.slack for visit in document.visits if visit.slack is not None]
+    columns = ["visits", "dependencies", "least slack", "visits without slack", "cycle"]
+    row = [len(document.visits), len(document.edges), min(spare, default="-"), spare.count(0)]
+    print_table(columns, [[*row, "none" if document.acyclic else "yes"]], numbers=columns[:4])
+    if document.cycle is not None:
+        moves = zip(document.cycle.robots, document.cycle.resources, strict=True)
+        ways = ", ".join(f"robot {robot} into {resource}" for robot, resource in moves)
+        print_line(f"cycle at tick {document.cycle.tick}: {ways}")
+    if document.collision is not None:
+        delays = ", ".join(f"robot {robot} at visit {visit} by {ticks}" for robot, visit, ticks in document.collision)
+        print_line(f"on the clock, robots collide by these delays: {delays}")
+    for robot, ticks in document.late or ():
+        print_line(f"robot {robot} is late by {ticks}")
+    if document.late == ():
+        print_line("nobody is late")

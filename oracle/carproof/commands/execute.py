@@ -1,0 +1,106 @@
+"""`carproof execute`: what drivers make of a solution when robots are delayed."""
+
+from pathlib import Path
+
+import click
+
+from carp_spec import write_solution
+from carp_spec.documents import write
+from carp_spec.traces import write_trace
+from carproof.answer import Answer
+from carproof.executing import DRIVERS, Driver, Execution, delays_named, execute, execution_document
+from carproof.files import (
+    OutputFile,
+    naming,
+    print_document,
+    read_instance_file,
+    read_solution_file,
+    refuse_two_standard_inputs,
+    write_whole,
+)
+from carproof.options import examples, instance_argument, json_option, solution_argument
+from carproof.requests import sound_solution
+from carproof.tables import print_line, print_table
+
+COLUMNS = ("driver", "robots", "delays", "arrived", "late", "mean", "worst", "collisions", "standing", "switches")
+MOST_SHOWN = 3
+
+
+@click.command(
+    short_help="Simulate robots that are delayed.",
+    epilog=examples(
+        "carproof execute town.json plans.json --delays 0.05:3",
+        "carproof execute town.json plans.json --driver order --delays 0.1 --seed 7 --trace trace.json",
+        "carproof execute town.json plans.json --driver clock --delays delays.json",
+    ),
+)
+@instance_argument
+@solution_argument
+@click.option("--driver", type=click.Choice(DRIVERS), help="How robots are driven.  [default: all three]")
+@click.option("--delays", metavar="CHANCE[:TICKS]|FILE", default="0.05", help="Delays: a model, or a list in a file.")
+@click.option("--seed", type=click.IntRange(0, 2**64 - 1), default=0, help="The seed of the delays.")
+@click.option("--trace", type=OutputFile(), help="Write what happened to this file; needs --driver.")
+@click.option("--followed", type=OutputFile(), help="Write the solution whose order was kept; needs --driver.")
+@json_option
+def command(  # noqa: PLR0913 - one parameter for each argument and option
+    *,
+    instance: str,
+    solution: str,
+    driver: Driver | None,
+    delays: str,
+    seed: int,
+    trace: Path | None,
+    followed: Path | None,
+    as_json: bool,
+) -> Answer:
+    """Execute SOLUTION with robots that need longer at some visits than planned.
+
+    Robots on the `clock` keep to the ticks of their own plans as well as they can. Robots in `order` enter a resource
+    when all have left it that leave first by the plans. With `switching`, a robot that waits for a late one may go
+    first where this is safe and makes the sum of arrivals less. --delays 0.05:3 delays each visit but a robot's last
+    with a chance of 0.05 by 1 to 3 ticks; a file has a list of [robot, visit, ticks], visits counted from 0.
+
+    Mean and worst are ticks by which robots arrive later than planned.
+
+    Exit codes: 0 nobody collides or stands for ever, 1 somebody does, 2 bad input.
+    """
+    refuse_two_standard_inputs(instance, solution)
+    if driver is None and not (trace is None and followed is None):
+        raise click.UsageError("--trace and --followed need --driver.")
+    problem = read_instance_file(instance)
+    given = read_solution_file(solution)
+    with naming(solution):
+        sound = sound_solution(problem, given)
+    chosen = delays_named(delays, sound, seed)
+    executions = [execute(problem, sound, each, chosen) for each in ([driver] if driver else DRIVERS)]
+    if trace is not None:
+        write_whole(trace, write_trace(executions[0].trace))
+    if followed is not None:
+        write_whole(followed, write_solution(executions[0].followed))
+    if as_json:
+        for execution in executions:
+            print_document(write(execution_document(execution)))
+    else:
+        print_table(COLUMNS, [row_of(execution) for execution in executions], numbers=COLUMNS[1:])
+        for execution in executions:
+            for violation in execution.collisions[:MOST_SHOWN]:
+                print_line(f"{execution.driver}: {violation}")
+    return Answer.of(all(execution.is_safe for execution in executions))
+
+
+def row_of(execution: Execution) -> list[object]:
+    """A row of the table."""
+    late = [max(ticks, 0) for ticks in execution.late.values()]
+    robots = len(execution.followed.plans)
+    return [
+        execution.driver,
+        robots,
+        len(execution.delays),
+        robots - len(execution.standing),
+        sum(ticks > 0 for ticks in late),
+        f"{sum(late) / len(late):.2f}" if late else "-",
+        max(late, default="-"),
+        len(execution.collisions),
+        len(execution.standing),
+        execution.switches,
+    ]

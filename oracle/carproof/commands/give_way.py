@@ -1,0 +1,98 @@
+"""`carproof give-way`: a robot with priority goes first, and the others give way."""
+
+from pathlib import Path
+
+import click
+import msgspec
+
+from carp_spec import Refusal, ResourceId, Visit, write_solution
+from carproof.answer import Answer
+from carproof.engines import engine_named
+from carproof.files import (
+    InputFile,
+    naming,
+    read_bytes,
+    read_instance_file,
+    read_solution_file,
+    refuse_two_standard_inputs,
+)
+from carproof.giving_way import give_way
+from carproof.options import (
+    engine_option,
+    examples,
+    instance_argument,
+    json_option,
+    now_option,
+    output_option,
+    solution_argument,
+)
+from carproof.requests import require_tick, robot_called, sound_solution
+from carproof.results import write_result
+from carproof.tables import print_line, print_table
+
+
+@click.command(
+    short_help="Let one robot go first, and plan the others around it.",
+    epilog=examples(
+        "carproof give-way town.json plans.json person --now 12 -o after.json",
+        "carproof give-way town.json plans.json person --now 12 --route route.json",
+    ),
+)
+@instance_argument
+@solution_argument
+@click.argument("robot")
+@now_option
+@click.option("--route", type=InputFile(), help="A list of visits [resource, enter, leave] that ROBOT keeps to.")
+@engine_option
+@output_option
+@json_option
+def command(  # noqa: PLR0913 - one parameter for each argument and option
+    *,
+    instance: str,
+    solution: str,
+    robot: str,
+    now: int,
+    route: str | None,
+    engine: str | None,
+    output: Path | None,
+    as_json: bool,
+) -> Answer:
+    """Give ROBOT the earliest plan that the histories of the others allow, and plan the others around it.
+
+    What robots have done by --now is kept. As few others as is seen get new plans. Where one finds no plan around the
+    earliest one, it keeps its own, and ROBOT goes as early as that allows.
+
+    Exit codes: 0 no lawful update lets ROBOT arrive earlier, 1 it goes, but perhaps not first, or there is no plan and
+    nothing is written, 2 bad input.
+    """
+    refuse_two_standard_inputs(instance, solution, *([route] if route else []))
+    require_tick(now, "$.now")
+    problem = read_instance_file(instance)
+    given = read_solution_file(solution)
+    id = robot_called(problem, robot)
+    with naming(solution):
+        sound = sound_solution(problem, given)
+    visits = None if route is None else read_route(route)
+    found = give_way(problem, sound, id, now, engine_named(engine), visits)
+    for each in found.stuck:
+        click.echo(f"Robot {each} finds no plan around the earliest one of robot {id}.", err=True)
+    if found.solution is None:
+        click.echo(f"Robot {id} gets no plan, and no other plan has changed.", err=True)
+        return Answer.NO
+    write_result(write_solution(found.solution), output, as_json)
+    if not as_json:
+        proved = "no lawful update is earlier" if found.is_first else f"none is earlier than {found.least}"
+        print_line(f"robot {id} arrives at tick {found.arrival}: {proved}")
+        print_table(["planned anew", "later by"], found.extra.items(), numbers=["later by"])
+    return Answer.of(found.is_first)
+
+
+def read_route(name: str) -> tuple[Visit, ...]:
+    """The visits of a route."""
+    with naming(name):
+        try:
+            visits = msgspec.json.decode(read_bytes(name), type=tuple[tuple[ResourceId, int, int | None], ...])
+        except msgspec.DecodeError as error:
+            message = f"a route must be a list of [resource, enter, leave]: {error}"
+            raise Refusal("document", "$", "document/shape", message) from error
+    return tuple(Visit(*visit) for visit in visits)

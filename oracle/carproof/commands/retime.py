@@ -1,0 +1,63 @@
+"""`carproof retime`: plans for the rest of the way, after delays."""
+
+from pathlib import Path
+
+import click
+
+from carp_reference.execution import retime
+from carp_spec import total_cost, write_solution
+from carproof.answer import Answer
+from carproof.files import (
+    naming,
+    read_instance_file,
+    read_solution_file,
+    read_trace_file,
+    refuse_two_standard_inputs,
+)
+from carproof.options import (
+    examples,
+    instance_argument,
+    json_option,
+    output_option,
+    solution_argument,
+    trace_argument,
+)
+from carproof.requests import sound_solution
+from carproof.results import write_result
+from carproof.tables import print_line
+
+
+@click.command(
+    short_help="Make plans for the rest, in the same order, after delays.",
+    epilog=examples(
+        "carproof retime town.json plans.json trace.json -o late.json",
+        "carproof query town.json late.json r7 --now 12",
+    ),
+)
+@instance_argument
+@solution_argument
+@trace_argument
+@output_option
+@json_option
+def command(*, instance: str, solution: str, trace: str, output: Path | None, as_json: bool) -> Answer:
+    """Give the plans of SOLUTION new ticks: what TRACE has stays, and the rest follows in order as early as possible.
+
+    The result is a solution under way at the tick of the trace: `add` and `query` take it with --now.
+
+    Exit codes: 0 here are the plans, 2 bad input, or no lawful plan has such a history.
+    """
+    refuse_two_standard_inputs(instance, solution, trace)
+    problem, given, done = read_instance_file(instance), read_solution_file(solution), read_trace_file(trace)
+    with naming(solution):
+        sound = sound_solution(problem, given)
+    with naming(trace):
+        after = retime(problem, sound, done)
+    write_result(write_solution(after), output, as_json)
+    if not as_json:
+        arrivals = {plan.robot: plan.visits[-1].enter for plan in sound.plans}
+        print_line(f"total cost {total_cost(problem, sound.plans)} before, {total_cost(problem, after.plans)} now")
+        for plan in after.plans:
+            ticks = plan.visits[-1].enter - arrivals[plan.robot]
+            if ticks:
+                print_line(f"robot {plan.robot} arrives {abs(ticks)} ticks {'later' if ticks > 0 else 'earlier'}")
+    return Answer.YES

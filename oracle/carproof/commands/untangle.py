@@ -1,0 +1,56 @@
+"""`carproof untangle`: a solution that robots can follow in order."""
+
+from pathlib import Path
+
+import click
+
+from carp_spec import total_cost, write_solution
+from carproof.answer import Answer
+from carproof.engines import engine_named
+from carproof.files import naming, read_instance_file, read_solution_file, refuse_two_standard_inputs
+from carproof.options import (
+    engine_option,
+    examples,
+    instance_argument,
+    json_option,
+    output_option,
+    solution_argument,
+)
+from carproof.requests import sound_solution
+from carproof.results import write_result
+from carproof.tables import print_table
+from carproof.untangling import untangle
+
+
+@click.command(
+    short_help="Remove rotations from plans.",
+    epilog=examples("carproof untangle town.json plans.json -o in-order.json"),
+)
+@instance_argument
+@solution_argument
+@engine_option
+@output_option
+@json_option
+def command(*, instance: str, solution: str, engine: str | None, output: Path | None, as_json: bool) -> Answer:
+    """Plan robots of SOLUTION anew until no robots enter each other's places in a circle.
+
+    In each such rotation the robot is planned anew whose plan then costs least more; the others keep their plans.
+
+    Exit codes: 0 no rotation is left, 1 out of one no robot finds another plan, and nothing is written, 2 bad input.
+    """
+    refuse_two_standard_inputs(instance, solution)
+    problem = read_instance_file(instance)
+    given = read_solution_file(solution)
+    with naming(solution):
+        sound = sound_solution(problem, given)
+    found = untangle(problem, sound, engine_named(engine))
+    if found.rotation:
+        names = ", ".join(map(str, found.rotation))
+        click.echo(f"Out of the rotation of the robots {names} none finds another plan.", err=True)
+        return Answer.NO
+    write_result(write_solution(found.solution), output, as_json)
+    if not as_json:
+        columns = ["robots", "rotations removed", "total cost", "extra"]
+        row = [len(sound.plans), found.rounds, total_cost(problem, found.solution.plans), found.extra]
+        print_table(columns, [row], numbers=columns)
+    return Answer.YES

@@ -1,0 +1,159 @@
+"""People first: a robot with priority gets the earliest plan that the others' histories allow, and they give way.
+
+By the tick now each other robot has a history that it cannot undo (`fleet/history`): the visits entered by then, and
+the current one for as long as it takes at least. A robot that appears later stands at its start from its release. No
+plan beside these arrives earlier than the one that is asked for first (`query/optimal`). So if all others can be
+planned around it, no lawful update has an earlier arrival (`priority/first`).
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from carp_spec import Instance, Plan, Refusal, RobotId, Solution, Visit, check, check_update, has_ended, plan_cost
+from carproof.engines import Engine
+
+
+@dataclass(frozen=True, slots=True)
+class GivenWay:
+    """What came of it.
+
+    `solution` has the new plans, or is `None` where the robot itself or those that are `stuck` have none; then nothing
+    is to be committed. `extra` has the robots that were planned anew, each with the ticks by which it arrives later.
+    No lawful update arrives before `least`; `arrival` is proved to be first if it is that tick.
+    """
+
+    robot: RobotId
+    solution: Solution | None
+    arrival: int | None
+    least: int | None
+    extra: Mapping[RobotId, int]
+    stuck: tuple[RobotId, ...]
+
+    @property
+    def is_first(self) -> bool:
+        """Whether no lawful update has an earlier arrival."""
+        return self.solution is not None and self.arrival == self.least
+
+
+def history(instance: Instance, plan: Plan, now: int) -> Plan:
+    """What the robot has done by now and cannot undo, the current visit left as early as may be."""
+    if has_ended(plan, now):
+        return plan
+    entered = [visit for visit in plan.visits if visit.enter <= now] or [plan.visits[0]]
+    current = entered[-1]
+    ready = max(current.enter + instance.duration(plan.robot, current.resource), now)
+    return Plan(plan.robot, (*entered[:-1], Visit(current.resource, current.enter, ready)))
+
+
+def give_way(
+    instance: Instance,
+    solution: Solution,
+    robot: RobotId,
+    now: int,
+    engine: Engine,
+    route: Sequence[Visit] | None = None,
+) -> GivenWay:
+    """Plan the robot first, or take its fixed route, and the others around it.
+
+    Where some find no plan around the earliest one, they keep theirs and the robot gets the earliest plan beside those.
+    Raises `Refusal` for a route that breaks a rule.
+    """
+    plans = {plan.robot: plan for plan in solution.plans}
+    others = [plans[each] for each in solution.order if each != robot]
+    own = [plans[robot]] if robot in plans else []
+    kept: set[RobotId] = set()
+    stuck: dict[RobotId, None] = {}
+    least: int | None = None
+    while True:
+        fixed = [plan if plan.robot in kept else history(instance, plan, now) for plan in others]
+        first = engine.query(instance, [*fixed, *own], robot, now) if route is None else Plan(robot, tuple(route))
+        if route is not None:
+            refuse_route(instance, fixed, own, Plan(robot, tuple(route)), now)
+        if first is None:
+            return GivenWay(robot, None, None, least, {}, tuple(stuck))
+        arrival = first.visits[-1].enter
+        least = arrival if least is None else least
+        around = plan_around(instance, others, first, now, engine, kept)
+        if isinstance(around, dict):
+            after = solution_with(solution, around, first)
+            extra = {
+                plan.robot: plan_cost(instance, around[plan.robot]) - plan_cost(instance, plan)
+                for plan in others
+                if around[plan.robot] != plan
+            }
+            return GivenWay(robot, after, arrival, least, extra, tuple(stuck))
+        stuck[around] = None
+        if route is not None or around in kept:
+            return GivenWay(robot, None, arrival, least, {}, tuple(stuck))
+        kept.add(around)
+
+
+def refuse_route(instance: Instance, fixed: Sequence[Plan], own: Sequence[Plan], route: Plan, now: int) -> None:
+    """Raise `Refusal` if the route breaks a rule, alone, with its own history, or with the histories of others."""
+    alone = [each for each in check(instance, [route]) if each.robots == (route.robot,)]
+    together = [each for each in check(instance, [*fixed, route]) if each.rule.startswith("joint/")]
+    for violation in (*alone, *together, *check_update(own, [route], now)):
+        raise Refusal("request", "$.route", violation.rule, f"the route breaks a rule: {violation.message}")
+
+
+def plan_around(
+    instance: Instance, others: Sequence[Plan], first: Plan, now: int, engine: Engine, kept: set[RobotId]
+) -> dict[RobotId, Plan] | RobotId:
+    """The plans of the others around the first plan, as few of them new as is seen, or a robot that finds none.
+
+    Those that collide are planned anew in their order. If one finds no plan, the robots that its plan beside histories
+    alone would run into are planned anew after it.
+    """
+    before = {plan.robot: plan for plan in others}
+    moving = colliding(instance, [first], others)
+    while True:
+        plans = {robot: plan for robot, plan in before.items() if robot not in moving}
+        waiting = [history(instance, before[robot], now) for robot in moving]
+        failed: RobotId | None = None
+        for robot in moving:
+            waiting = waiting[1:]
+            plan = engine.query(instance, [first, *plans.values(), *waiting, before[robot]], robot, now)
+            if plan is None:
+                failed = robot
+                break
+            plans[robot] = plan
+        if failed is None:
+            return {robot: plans[robot] for robot in before}
+        if failed in kept:
+            return failed
+        histories = [history(instance, plan, now) for robot, plan in before.items() if robot != failed]
+        wished = engine.query(instance, [first, *histories, before[failed]], failed, now)
+        if wished is None:
+            return failed
+        in_way = colliding(instance, [first, wished], [plan for robot, plan in before.items() if robot != failed])
+        wider = list(dict.fromkeys([failed, *moving, *(robot for robot in in_way if robot not in kept)]))
+        if wider == moving:
+            return failed
+        moving = wider
+
+
+def colliding(instance: Instance, first: Sequence[Plan], others: Sequence[Plan]) -> list[RobotId]:
+    """The robots, in their order, that must be taken out so that no rule of robots together is broken."""
+    fixed = {plan.robot for plan in first}
+    taken: list[RobotId] = []
+    rest = list(others)
+    place = {plan.robot: number for number, plan in enumerate(others)}
+    while True:
+        crowds = [
+            [robot for robot in violation.robots if robot not in fixed]
+            for violation in check(instance, [*first, *rest], most=None)
+            if violation.rule.startswith("joint/") and not fixed.isdisjoint(violation.robots)
+        ]
+        out = {max(crowd, key=place.__getitem__) for crowd in crowds if crowd}
+        if not out:
+            return sorted(taken, key=place.__getitem__)
+        taken += out
+        rest = [plan for plan in rest if plan.robot not in out]
+
+
+def solution_with(solution: Solution, plans: Mapping[RobotId, Plan], first: Plan) -> Solution:
+    """The solution with these plans; the robot with priority comes first in the planning order."""
+    unchanged = [robot for robot in solution.order if robot != first.robot]
+    changed = (first, *(plans[robot] for robot in unchanged))
+    unplanned = tuple(robot for robot in solution.unplanned if robot != first.robot)
+    return Solution(changed, (first.robot, *unchanged), unplanned)

@@ -1,0 +1,193 @@
+"""The ops about executions: what has happened, what waits for what, plans for the rest, and who goes first."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import msgspec
+
+from carp_reference.execution import Delay, late_robots, order_of
+from carp_reference.execution import retime as retimed
+from carp_spec import Instance, Refusal, ResourceId, RobotId, Solution, Verdict, Visit, total_cost
+from carp_spec.documents import SolutionDocument, VerdictDocument, solution_document, verdict_document
+from carp_spec.execution_rules import trace_violations
+from carp_spec.traces import Trace, TraceDocument, trace_document
+from carproof.engines import Engine
+from carproof.executing import (
+    DependenciesDocument,
+    delays_are_right,
+    dependencies_document,
+)
+from carproof.executing import (
+    execute as executed,
+)
+from carproof.giving_way import give_way as given_way
+from carproof.requests import inside, require_robot, require_tick, sound_solution
+from carproof.untangling import untangle as untangled
+
+
+@dataclass(frozen=True, slots=True)
+class CheckTraceRequest:
+    """What has happened of a solution."""
+
+    instance: Instance
+    solution: Solution
+    trace: Trace
+
+
+def check_trace(request: CheckTraceRequest, engine: Engine) -> VerdictDocument:
+    """Judge whether a trace follows a solution: ways, durations, and the order of the plans."""
+    del engine
+    with inside("$.solution"):
+        sound = sound_solution(request.instance, request.solution)
+    violations = trace_violations(request.instance, sound, request.trace)
+    cost = total_cost(request.instance, sound.plans)
+    return verdict_document(Verdict(cost, len(sound.unplanned), violations))
+
+
+@dataclass(frozen=True, slots=True)
+class DependenciesRequest:
+    """A solution, and delays about which is asked: each is [robot, position of the visit, ticks]."""
+
+    instance: Instance
+    solution: Solution
+    delays: tuple[tuple[RobotId, int, int], ...] = ()
+
+
+def dependencies(request: DependenciesRequest, engine: Engine) -> DependenciesDocument:
+    """Make the dependency graph of a solution, and say what delays do."""
+    del engine
+    with inside("$.solution"):
+        sound = sound_solution(request.instance, request.solution)
+    delays = _delays(sound, request.delays)
+    order = order_of(request.instance, sound)
+    return dependencies_document(order, late_robots(order, delays) if delays else None)
+
+
+@dataclass(frozen=True, slots=True)
+class ExecuteRequest:
+    """A solution, who drives, and delays: each is [robot, position of the visit, ticks]."""
+
+    instance: Instance
+    solution: Solution
+    driver: Literal["clock", "order", "switching"]
+    delays: tuple[tuple[RobotId, int, int], ...] = ()
+
+
+class ExecutedDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What happened, the solution whose order was kept, who collided, and who stands for ever."""
+
+    trace: TraceDocument
+    followed: SolutionDocument
+    collisions: tuple[str, ...]
+    standing: tuple[RobotId, ...]
+
+
+def execute(request: ExecuteRequest, engine: Engine) -> ExecutedDocument:
+    """Simulate robots that need longer at some visits than planned."""
+    del engine
+    with inside("$.solution"):
+        sound = sound_solution(request.instance, request.solution)
+    found = executed(request.instance, sound, request.driver, _delays(sound, request.delays))
+    return ExecutedDocument(
+        trace_document(found.trace),
+        solution_document(found.followed),
+        tuple(map(str, found.collisions)),
+        found.standing,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class RetimeRequest:
+    """What has happened of a solution."""
+
+    instance: Instance
+    solution: Solution
+    trace: Trace
+
+
+def retime(request: RetimeRequest, engine: Engine) -> Solution:
+    """Make plans for the rest of the way, in the same order and as early as possible."""
+    del engine
+    with inside("$.solution"):
+        sound = sound_solution(request.instance, request.solution)
+    with inside("$.trace"):
+        return retimed(request.instance, sound, request.trace)
+
+
+@dataclass(frozen=True, slots=True)
+class UntangleRequest:
+    """A solution that may have rotations."""
+
+    instance: Instance
+    solution: Solution
+
+
+class UntangledDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The solution without rotations and the ticks that it costs more.
+
+    `rotation` has the robots of a rotation that is left because none of them finds another plan.
+    """
+
+    solution: SolutionDocument
+    extra: int
+    rotation: tuple[RobotId, ...]
+
+
+def untangle(request: UntangleRequest, engine: Engine) -> UntangledDocument:
+    """Plan robots anew until no robots enter each other's places in a circle."""
+    with inside("$.solution"):
+        sound = sound_solution(request.instance, request.solution)
+    with inside("$.instance"):
+        found = untangled(request.instance, sound, engine)
+    return UntangledDocument(solution_document(found.solution), found.extra, found.rotation)
+
+
+@dataclass(frozen=True, slots=True)
+class GiveWayRequest:
+    """A robot that is to go first at the tick `now`, perhaps on a route: visits as those of a plan."""
+
+    instance: Instance
+    solution: Solution
+    robot: RobotId
+    now: int = 0
+    route: tuple[tuple[ResourceId, int, int | None], ...] | None = None
+
+
+class GivenWayDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The new plans, null if there are none; the arrival, and a tick before which no lawful update arrives.
+
+    `extra` are pairs of a robot planned anew and the ticks by which it arrives later; `stuck` are robots that find no
+    plan around the earliest one.
+    """
+
+    solution: SolutionDocument | None
+    arrival: int | None
+    least: int | None
+    extra: tuple[tuple[RobotId, int], ...]
+    stuck: tuple[RobotId, ...]
+
+
+def give_way(request: GiveWayRequest, engine: Engine) -> GivenWayDocument:
+    """Give a robot the earliest plan that the histories of the others allow, and plan the others around it."""
+    require_tick(request.now, "$.now")
+    require_robot(request.instance, request.robot, "$.robot")
+    with inside("$.solution"):
+        sound = sound_solution(request.instance, request.solution)
+    route = None if request.route is None else tuple(Visit(*visit) for visit in request.route)
+    found = given_way(request.instance, sound, request.robot, request.now, engine, route)
+    return GivenWayDocument(
+        None if found.solution is None else solution_document(found.solution),
+        found.arrival,
+        found.least,
+        tuple(found.extra.items()),
+        found.stuck,
+    )
+
+
+def _delays(solution: Solution, delays: tuple[tuple[RobotId, int, int], ...]) -> tuple[Delay, ...]:
+    """The delays of a request; raises `Refusal` if they are not right."""
+    found = tuple(Delay(*delay) for delay in delays)
+    if not delays_are_right(solution, found):
+        message = "each delay must be of another visit that is planned, for at least a tick"
+        raise Refusal("request", "$.delays", delays_are_right.id, message)
+    return found

@@ -1,0 +1,86 @@
+"""Solutions that an executor can follow in order: rotations are removed, each by one robot that is planned anew.
+
+In a rotation, robots enter each other's places at one tick. One of them is kept from its place at that tick, and asks
+for the earliest plan beside the others; of the robots in the rotation the one is taken whose plan costs least more.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from carp_spec import Instance, Plan, Robot, RobotId, Solution, Visit, plan_cost
+from carp_spec.dependencies import dependencies, shortest_cycle
+from carproof.engines import Engine
+
+MOST_ROUNDS = 10_000
+
+
+@dataclass(frozen=True, slots=True)
+class Untangled:
+    """The solution without rotations, how many rounds it took, and the ticks that it costs more.
+
+    `rotation` has the robots of a rotation out of which no robot finds another plan; it then is in the solution still.
+    """
+
+    solution: Solution
+    rounds: int
+    extra: int
+    rotation: tuple[RobotId, ...]
+
+
+def untangle(
+    instance: Instance, solution: Solution, engine: Engine, advance: Callable[[], None] = lambda: None
+) -> Untangled:
+    """Remove all rotations of a lawful solution, the shortest first."""
+    plans = {plan.robot: plan for plan in solution.plans}
+    kept_out: dict[RobotId, list[Visit]] = {}
+    extra = 0
+    for done in range(MOST_ROUNDS):
+        cycle = shortest_cycle(tuple(dependencies(instance, list(plans.values()))))
+        found: list[tuple[int, int, Plan, Visit]] = []
+        for number, edge in enumerate(cycle):
+            robot, place = edge.after
+            entered = plans[robot].visits[place]
+            block = Visit(entered.resource, entered.enter, entered.enter + 1)
+            others = [plan for plan in plans.values() if plan.robot != robot]
+            plan = query_kept_out(instance, others, robot, [*kept_out.get(robot, ()), block], engine)
+            if plan is not None:
+                found.append((plan_cost(instance, plan) - plan_cost(instance, plans[robot]), number, plan, block))
+        if not found:
+            order = tuple(plans[robot] for robot in solution.order)
+            return Untangled(replace(solution, plans=order), done, extra, tuple(edge.after[0] for edge in cycle))
+        more, _, plan, block = min(found, key=lambda each: each[:2])
+        extra += more
+        plans[plan.robot] = plan
+        kept_out.setdefault(plan.robot, []).append(block)
+        advance()
+    raise AssertionError("each round keeps a robot from one more place and tick")
+
+
+def query_kept_out(
+    instance: Instance, others: Sequence[Plan], robot: RobotId, blocks: Sequence[Visit], engine: Engine
+) -> Plan | None:
+    """The earliest plan of the robot beside the others that is in none of these visits.
+
+    Each is made by as many robots as there is room for, which are in no instance but the one that is asked about.
+    """
+    guards: list[Plan] = []
+    taken = {each.id for each in instance.robots}
+    number = len(taken)
+    for block in blocks:
+        here = sum(
+            visit.resource == block.resource
+            and visit.enter <= block.enter
+            and (visit.leave is None or block.enter < visit.leave)
+            for plan in others
+            for visit in plan.visits
+        )
+        for _ in range(instance.graph.resource[block.resource].capacity - here):
+            while number in taken:
+                number += 1
+            taken.add(number)
+            guards.append(Plan(number, (block,)))
+    robots = (
+        *instance.robots,
+        *(Robot(guard.robot, guard.visits[0].resource, guard.visits[0].resource) for guard in guards),
+    )
+    return engine.query(replace(instance, robots=robots), [*others, *guards], robot)
