@@ -107,7 +107,7 @@ class Fleet:
 
     def commit(self, plans: Sequence[Plan]) -> None:
         """Take over plans made elsewhere, which must fit those there are."""
-        records = np.array([self._write(plan) for plan in plans], np.int32)
+        records = np.array([self.record(plan) for plan in plans], np.int32)
         robots = np.array([self._index[plan.robot] for plan in plans], np.int32)
         self._call(lambda: passes.reserve_all(self._native, records))
         self._hold(np.concatenate([self._order, robots]), np.concatenate([self._records[self._order], records]))
@@ -115,9 +115,22 @@ class Fleet:
     def find(self, robot: int, before: Plan | None, now: int) -> Plan | None:
         """The plan of a robot that is not in the fleet, which has followed the plan `before` until now."""
         encoding.refuse_tick("$.now", now)
-        followed = NONE if before is None else self._write(before)
+        followed = NONE if before is None else self.record(before)
         record = self._call(lambda: passes.find_one(self._native, robot, followed, now))
         return None if record == NONE else self._plan(record)
+
+    def find_beside(self, robot: int, records: Sequence[int]) -> Plan | None:
+        """The plan of a robot as `find` makes it without history, beside further plans, which `record` has taken up."""
+        further = np.array(records, np.int32)
+
+        def attempt() -> int:
+            passes.reserve_all(self._native, further)
+            found = passes.find_one(self._native, robot, NONE, 0)
+            passes.withdraw_all(self._native, further)
+            return found
+
+        found = self._call(attempt)
+        return None if found == NONE else self._plan(found)
 
     def find_with_labels(self, robot: int, before: Plan | None, now: int) -> tuple[Plan | None, Labels]:
         """The same plan, and the windows that its query expanded: their resources, each with the tick of its entry.
@@ -372,7 +385,8 @@ class Fleet:
         self._records = self._state.reserved.copy()
         self._many = 4 * (int(used[1]) + int(used[2])) + MANY
 
-    def _write(self, plan: Plan) -> int:
+    def record(self, plan: Plan) -> int:
+        """Take up a plan without reserving it; the number by which it is known."""
         for position, visit in enumerate(plan.visits):
             encoding.refuse_tick(f"$.plans[{self._index[plan.robot]}].visits[{position}]", visit.leave or visit.enter)
         record = self._call(lambda: write_plan(self._native, self.instance, self._index[plan.robot], plan))

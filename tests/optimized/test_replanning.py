@@ -87,7 +87,7 @@ def test_a_query_is_repeated_only_where_the_lemma_says_and_else_finds_the_same(
     freed = data.draw(st.lists(st.sampled_from(others), min_size=1, unique=True))
     fleet = fleet_of(instance, others)
     state = fleet._state
-    before = NONE if followed is None else fleet._write(followed)
+    before = NONE if followed is None else fleet.record(followed)
     record = passes.find_one(fleet._native, fleet.index(robot), before, under_way.now)
     assume(record != NONE)
     forget_freed(state.freed)

@@ -56,7 +56,7 @@ def assert_windows_are(fleet: Fleet, instance: Instance, plans: Sequence[Plan]) 
 def test_withdrawing_undoes_reserving_in_any_order(planned: PlannedInstance, random: Random) -> None:
     plans = list(planned.solution.plans)
     fleet = Fleet(planned.instance)
-    records = [fleet._write(plan) for plan in plans]
+    records = [fleet.record(plan) for plan in plans]
     there: list[int] = []
     empty = held(fleet)
     for _ in range(2 * len(plans)):

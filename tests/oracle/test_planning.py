@@ -1,10 +1,11 @@
 """`plan`, `add`, `query` and `check`: what people see, what programs get, and the exit codes."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import pytest
 from tests.oracle.running import (
@@ -139,10 +140,10 @@ def test_without_an_engine_asked_for_the_fastest_plans_that_has_the_planner(
         return import_module(name)
 
     monkeypatch.setattr("carproof.engines.import_module", watched)
-    for planner, engine in (("neighbourhood", "carp_optimized"), ("fixed-paths", "carp_reference")):
+    for planner, readable in (("neighbourhood", set()), ("fixed-paths", {"carp_reference"})):
         asked.clear()
         outcome = carproof("plan", file(TWO), "--planner", planner, "--json")
-        assert (outcome.code, outcome.stderr, set(asked)) == (0, "", {engine})
+        assert (outcome.code, outcome.stderr, set(asked)) == (0, "", readable)
     asked.clear()
     assert carproof("add", file(TWO), file(ONE_PLANNED, "one.json"), "r2", "--json").code == 0
     assert asked == ["carp_optimized"]
@@ -279,3 +280,41 @@ def test_a_robot_whose_id_is_a_number_is_found_by_it(carproof: Run, file: Write)
     assert json.loads(carproof("query", file(numbered), empty, "7", "--json").stdout) == {"plan": EAST_PLAN}
     twice = {**TWO, "robots": [{"id": 7, "start": "a", "goal": "c"}, {"id": "7", "start": "b", "goal": "c"}]}
     assert "2 print as 7" in carproof("query", file(twice), empty, "7").stderr
+
+
+def swapping_at_a_pocket() -> dict[str, Any]:
+    """Two robots that park at each other's start, and no planning order leaves room for both."""
+    return {
+        "format": "carproof-instance/1",
+        "graph": {
+            "nodes": [{"id": id} for id in "amep"],
+            "edges": [{"source": other, "target": "m"} for other in "aep"],
+        },
+        "after_goal": "park",
+        "robots": [{"id": "r1", "start": "a", "goal": "e"}, {"id": "r2", "start": "e", "goal": "a"}],
+    }
+
+
+@pytest.mark.parametrize(
+    ("options", "name"),
+    [([], "neighbourhood, repaired"), (["--planner", "carp", "--repair"], "carp, repaired")],
+)
+def test_plan_leaves_nobody_out_as_it_is_first_called(
+    carproof: Run, file: Write, options: Sequence[str], name: str
+) -> None:
+    outcome = carproof("plan", file(swapping_at_a_pocket()), *options)
+    assert (outcome.code, outcome.stderr) == (0, "")
+    assert outcome.stdout.splitlines()[2].split("  ")[0] == name
+
+
+@pytest.mark.parametrize("options", [["--planner", "carp"], ["--no-baseline"], ["--no-repair"]])
+def test_the_pure_result_of_a_planner_is_not_repaired(carproof: Run, file: Write, options: Sequence[str]) -> None:
+    outcome = carproof("plan", file(swapping_at_a_pocket()), *options)
+    assert outcome.code == 1
+    assert "repaired" not in outcome.stdout
+
+
+def test_polish_plans_small_groups_jointly(carproof: Run, file: Write, tmp_path: Path) -> None:
+    instance = file(swapping_at_a_pocket(), "instance.json")
+    carproof("plan", instance, "--planner", "carp", "-o", tmp_path / "plans.json")
+    assert carproof("polish", instance, tmp_path / "plans.json", "--iterations", "20").code == 0

@@ -1,12 +1,13 @@
 """`carproof plan`: plan all robots of an instance."""
 
+from contextlib import suppress
 from pathlib import Path
 from time import perf_counter
 from typing import Any
 
 import click
 
-from carp_spec import write_solution
+from carp_spec import Refusal, write_solution
 from carproof.answer import Answer
 from carproof.engines import plan_showing
 from carproof.files import naming, read_instance_file
@@ -37,12 +38,22 @@ from carproof.results import show_solution, write_result
 @instance_argument
 @planner_option
 @planner_options(*PLANNING)
+@click.option(
+    "--repair/--no-repair",
+    default=None,
+    help="Plan robots that are left out together with others.  [default: unless --planner or --no-baseline is given]",
+)
 @engine_option
 @output_option
 @json_option
-def command(
+@click.pass_context
+def command(  # noqa: PLR0913 - one parameter for each argument and option
+    context: click.Context,
+    /,
+    *,
     instance: str,
     planner: str,
+    repair: bool | None,
     engine: str | None,
     output: Path | None,
     as_json: bool,
@@ -51,7 +62,8 @@ def command(
     """Plan all robots of INSTANCE, a document or - for standard input.
 
     An option that is not given keeps the planner's default; one that the planner does not have is refused.
-    Robots that cannot be planned are listed with the reason, and the others are planned all the same.
+    Where the planner leaves robots out, some rounds of a polish and small groups planned jointly repair that. Robots
+    that cannot be planned are listed with the reason, and the others are planned all the same.
 
     Exit codes: 0 every robot has a plan, 1 some robot has none, 2 bad input.
     """
@@ -60,8 +72,21 @@ def command(
     started = perf_counter()
     with naming(instance):
         solution = plan_showing("planning", engine, problem, chosen)
+        name = chosen.name
+        if solution.unplanned and (repairs_unasked(context, options) if repair is None else repair):
+            from carp_optimum.joint_repair import repair as repaired  # noqa: PLC0415 - numba is slow to load
+
+            with suppress(Refusal):  # numbers that only the reference holds
+                solution = repaired(problem, solution)
+                name += ", repaired"
     seconds = perf_counter() - started
     write_result(write_solution(solution), output, as_json)
     if not as_json:
-        show_solution(problem, solution, chosen.name, seconds)
+        show_solution(problem, solution, name, seconds)
     return Answer.of(not solution.unplanned)
+
+
+def repairs_unasked(context: click.Context, options: dict[str, Any]) -> bool:
+    """Whether plans are repaired if nothing is said of it: not those of a planner that is named, nor the paper's."""
+    is_named = context.get_parameter_source("planner") is not click.core.ParameterSource.DEFAULT
+    return not is_named and options["baseline"] is not False

@@ -92,6 +92,10 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
         after = engine_named(engine).polish(
             problem, before, iterations=iterations, seconds=seconds, seed=seed, advance=advance
         )
+        if after.unplanned:
+            from carp_optimum.joint_repair import repair_jointly  # noqa: PLC0415 - numba is slow to load
+
+            after = repair_jointly(problem, after)
     time = perf_counter() - started
     for violation in check(problem, after.plans):
         raise AssertionError(violation)

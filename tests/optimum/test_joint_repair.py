@@ -1,0 +1,58 @@
+"""Robots that no planning order leaves room for get plans in small groups, and the law judges them."""
+
+import pytest
+from hypothesis import given
+
+from carp_optimized import plan
+from carp_optimum.joint_repair import repair, repair_jointly
+from carp_spec import Carp, Instance, Resource, ResourceGraph, Robot, Solution, judge
+from carp_spec.model import Following
+from carproof.strategies import PlannedInstance, Sizes, planned_instances
+
+
+def passage(pocket: bool, *, capacity: int = 1, others: int = 0, following: Following = "allowed") -> Instance:
+    """Two robots that park and have to swap the ends of a passage of three resources, with or without a pocket.
+
+    Other robots stand in the pocket.
+    """
+    pairs = [("west", "middle"), ("middle", "east"), ("middle", "pocket")][: 3 if pocket else 2]
+    resources = tuple(
+        Resource(id, capacity=capacity if id == "pocket" else 1) for id in ("west", "middle", "east", "pocket")
+    )
+    robots = [Robot("r1", "west", "east", 0, 1), Robot("r2", "east", "west", 0, 1)]
+    robots += [Robot(f"p{number}", "pocket", "pocket", 0, 1) for number in range(others)]
+    return Instance(ResourceGraph(resources, tuple(pairs)), tuple(robots), "park", following)
+
+
+@pytest.mark.parametrize("following", ["allowed", "forbidden"])
+def test_two_robots_that_swap_at_a_pocket_are_planned_jointly(following: Following) -> None:
+    instance = passage(pocket=True, following=following)
+    given = plan(instance, Carp())
+    assert len(given.unplanned) == 1
+    for repaired in (repair(instance, given), repair_jointly(instance, given)):
+        assert not repaired.unplanned
+        assert judge(instance, repaired).valid
+
+
+def test_robots_that_cannot_swap_stay_as_they_are() -> None:
+    instance = passage(pocket=False)
+    given = plan(instance, Carp())
+    assert repair(instance, given) == given
+
+
+def test_a_pocket_is_used_up_to_its_capacity() -> None:
+    for capacity, others, left_out in ((2, 1, 0), (2, 2, 1), (3, 2, 0)):
+        instance = passage(pocket=True, capacity=capacity, others=others)
+        repaired = repair(instance, plan(instance, Carp()))
+        assert judge(instance, repaired).valid
+        assert len(repaired.unplanned) == left_out
+
+
+@given(planned_instances(Sizes(resources=7, robots=6)))
+def test_repaired_plans_break_no_rule_and_nobody_loses_a_plan(planned: PlannedInstance) -> None:
+    instance, given = planned.instance, planned.solution
+    whole = Solution(given.plans, given.order, tuple(each for each in instance.robot if each not in given.order))
+    repaired = repair_jointly(instance, whole)
+    assert judge(instance, repaired).valid
+    assert {*given.order} <= {*repaired.order}
+    assert repair_jointly(instance, whole) == repaired
