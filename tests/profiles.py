@@ -1,7 +1,7 @@
 """How many examples hypothesis draws, by the environment's HYPOTHESIS_PROFILE; test where it names none.
 
-quick is for `make quick`, test for `make test`, ci for `make thorough`, nightly for runs of hours, mutation for one
-mutant.
+quick is for `make quick`, test for `make test`, ci for `make ci`, thorough for `make thorough`, nightly for runs of
+hours, mutation for one mutant.
 """
 
 import os
@@ -12,18 +12,19 @@ import pytest
 from hypothesis import HealthCheck, Phase, settings
 
 PROFILE = os.environ.get("HYPOTHESIS_PROFILE", "test")
-EXAMPLES = {"quick": 20, "test": 200, "ci": 1000, "nightly": 50_000, "mutation": 25}
+EXAMPLES = {"quick": 20, "test": 60, "ci": 200, "thorough": 1000, "nightly": 50_000, "mutation": 25}
 
 
 def draws(count: int) -> int:
-    """How many examples a test draws that draws `count` in the profile ci; a mutant meets as many."""
-    return count if PROFILE == "mutation" else max(5, count * EXAMPLES[PROFILE] // EXAMPLES["ci"])
+    """How many examples a test draws that draws `count` in the profile thorough; a mutant meets as many."""
+    return count if PROFILE == "mutation" else max(5, count * EXAMPLES[PROFILE] // EXAMPLES["thorough"])
 
 
-def rest_nightly(values: Sequence[Any], now: int) -> list[Any]:
-    """Parameters of which `make test` runs the one at the index alone."""
+def rest_in(marked: str, values: Sequence[Any], *now: int) -> list[Any]:
+    """Parameters of which those at the indices are always run, and the others where what is so marked is."""
+    mark = getattr(pytest.mark, marked)
     return [
-        value if position == now else pytest.param(value, marks=pytest.mark.nightly)
+        value if position in now else pytest.param(*(value if isinstance(value, tuple) else [value]), marks=mark)
         for position, value in enumerate(values)
     ]
 

@@ -85,6 +85,7 @@ def test_a_gap_is_measured_from_the_optimum() -> None:
     assert cells["lower bound"] == "-10.00 ± 0.00"
 
 
+@pytest.mark.ci
 def test_related_methods_are_those_of_the_reference() -> None:
     case = MapCase(related_row, 5, 2, 20)
     instance = instance_of(case)

@@ -2,12 +2,13 @@
 
 import pytest
 from tests.optimized.arrivals import arrivals, convoy, scaled
+from tests.profiles import rest_in
 
 QUESTIONS = 600
 PARTS = 6
 
 
-@pytest.mark.parametrize("part", range(PARTS))
+@pytest.mark.parametrize("part", rest_in("ci", range(PARTS), 0))
 def test_robots_that_arrive_while_time_passes_are_planned_alike(part: int) -> None:
     for number in range(part, QUESTIONS, PARTS):
         question = arrivals(number)
@@ -21,7 +22,8 @@ def test_nearest_robots_are_the_same_however_far_and_slow(space: int, time: int)
         assert question.by_fleet()[0] == question.by_reference(), number
 
 
-def test_robots_of_a_convoy_are_planned_alike() -> None:
-    for number in range(40):
+@pytest.mark.parametrize("part", rest_in("ci", range(4), 0))
+def test_robots_of_a_convoy_are_planned_alike(part: int) -> None:
+    for number in range(part, 40, 4):
         question = convoy(number)
         assert question.by_fleet()[0] == question.by_reference(), number

@@ -6,7 +6,7 @@ from itertools import groupby, product
 
 import pytest
 from tests.enumeration import ASKED, PATTERNS, Pattern, SmallCase, small_cases
-from tests.profiles import rest_nightly
+from tests.profiles import rest_in
 
 from carp_optimized.fleet import Fleet
 from carp_reference.problem import Problem, ticks_to_goal
@@ -48,7 +48,8 @@ def answers(pattern: Pattern) -> Iterator[tuple[SmallCase, Plan | None]]:
             yield case, plan and replace(plan, robot=ASKED)
 
 
-@pytest.mark.parametrize("pattern", rest_nightly(PATTERNS, RICHEST), ids=str)
+@pytest.mark.ci
+@pytest.mark.parametrize("pattern", rest_in("nightly", PATTERNS, RICHEST), ids=str)
 def test_every_small_query_has_the_same_answer(pattern: Pattern) -> None:
     asked = 0
     graph: ResourceGraph | None = None

@@ -5,6 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[2]
 UNCOMPILED = ("test_replanning", "test_sorting")
 CROSSCHECK = "from carproof.crosscheck import first_difference; print(first_difference(60, seed=3))"
@@ -17,6 +19,7 @@ def uncompiled(*arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, env=environment, capture_output=True, text=True, check=False, cwd=ROOT)
 
 
+@pytest.mark.ci
 def test_the_engines_agree_with_compilation_switched_off() -> None:
     done = uncompiled("-c", CROSSCHECK)
     assert done.stdout == "None\n", done.stderr

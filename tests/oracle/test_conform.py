@@ -8,12 +8,13 @@ from xml.etree import ElementTree as ET
 
 import pytest
 from tests.oracle.running import Run
+from tests.profiles import rest_in
 
 SERVE = [sys.executable, "-m", "carproof", "serve"]
 
 
 @pytest.mark.usefixtures("elsewhere")
-@pytest.mark.parametrize("engine", [["--engine", "reference"], []])
+@pytest.mark.parametrize("engine", rest_in("ci", [["--engine", "reference"], []], 1))
 def test_carproof_conforms_to_its_strictest_level(process: Run, engine: list[str]) -> None:
     outcome = process("conform", "--level", "exact", "--examples", "60", "--", *SERVE, *engine)
     assert outcome.code == 0, outcome

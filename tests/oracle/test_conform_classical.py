@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from tests.oracle.foreign_files import INSTANCE
 from tests.oracle.running import Run
-from tests.profiles import draws
+from tests.profiles import draws, rest_in
 
 import carp_reference
 from carp_optimum.optimum import optimum
@@ -107,7 +107,9 @@ def test_a_right_planner_conforms_and_is_not_asked_what_its_files_cannot_say(
     assert list(elsewhere.iterdir()) == [], "nothing is left behind"
 
 
-@pytest.mark.parametrize(("forgotten", "rule"), [("swaps", "joint/exchange"), ("parked", "joint/capacity")])
+@pytest.mark.parametrize(
+    ("forgotten", "rule"), rest_in("ci", [("swaps", "joint/exchange"), ("parked", "joint/capacity")], 0)
+)
 def test_a_bug_is_refused_by_its_rule_with_a_small_benchmark(
     process: Run, elsewhere: Path, forgotten: str, rule: str
 ) -> None:

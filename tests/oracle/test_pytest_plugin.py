@@ -65,8 +65,8 @@ def test_planners_that_are_right_pass(tmp_path: Path) -> None:
     [
         ("carproof.conforms(hurries)", "wrong answer", "plan/start"),
         ('carproof.conforms(gives_up, level="complete-in-context")', "wrong answer", "query/complete"),
-        ("carproof.conforms(fails)", "crash", "program/alive"),
-        ("carproof.conforms(returns_nothing)", "protocol error", "program/result"),
+        pytest.param("carproof.conforms(fails)", "crash", "program/alive", marks=pytest.mark.ci),
+        pytest.param("carproof.conforms(returns_nothing)", "protocol error", "program/result", marks=pytest.mark.ci),
         ("carproof.conforms(no_document, documents=True)", "protocol error", "program/result"),
     ],
 )

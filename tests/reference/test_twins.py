@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from tests.enumeration import ASKED, PATTERNS, Pattern, small_cases
-from tests.profiles import rest_nightly
+from tests.profiles import rest_in
 
 from carp_reference import query
 from carp_reference.time_expanded import find_plan_by_ticks
@@ -65,8 +65,9 @@ def test_a_robot_replanned_against_other_plans_arrives_as_early_by_windows_as_by
             committed = tuple(replanned if plan.robot == robot else plan for plan in committed)
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(
-    "pattern", rest_nightly(PATTERNS, RICHEST), ids=lambda pattern: f"durations {pattern.durations}"
+    "pattern", rest_in("nightly", PATTERNS, RICHEST), ids=lambda pattern: f"durations {pattern.durations}"
 )
 def test_the_twins_agree_on_every_small_query(pattern: Pattern) -> None:
     """Connected graphs of up to 4 resources, two robots committed, both policies: 208,792 queries in four patterns."""

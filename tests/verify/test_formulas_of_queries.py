@@ -9,6 +9,7 @@ from itertools import combinations, product
 
 import pytest
 from tests.enumeration import ASKED, PATTERNS, Pattern, SmallCase, small_cases
+from tests.profiles import rest_in
 
 from carp_reference.context import Context, context_of
 from carp_reference.problem import Problem, ticks_to_goal
@@ -134,7 +135,7 @@ def test_a_node_may_be_taken_where_the_key_of_the_specification_lets_it() -> Non
         assert may_be_taken(enter, to_goal, queued) == any(one <= another for one, another in keys)
 
 
-@pytest.mark.parametrize("pattern", PATTERNS[1::2], ids=str)
+@pytest.mark.parametrize("pattern", rest_in("ci", PATTERNS[1::2], 0), ids=str)
 def test_the_first_entry_taken_is_final_and_every_other_way_has_a_node_in_the_queue(
     trace: Trace, pattern: Pattern, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -162,7 +163,7 @@ def test_the_first_entry_taken_is_final_and_every_other_way_has_a_node_in_the_qu
     assert ways > 100, "there are windows with several ways to them"
 
 
-@pytest.mark.parametrize("pattern", PATTERNS[1::2], ids=str)
+@pytest.mark.parametrize("pattern", rest_in("ci", PATTERNS[1::2], 0), ids=str)
 def test_a_query_goes_the_same_way_until_an_answer_differs(trace: Trace, pattern: Pattern) -> None:
     """So a state is a function of the answers before it, and a query all whose answers stay the same is the same."""
     same = different = 0
@@ -243,7 +244,7 @@ def plans_with_and_without(trace: Trace, pattern: Pattern, formula: Lateness) ->
                 yield plan, ask(case, others, trace)
 
 
-@pytest.mark.parametrize("pattern", PATTERNS[1::2], ids=str)
+@pytest.mark.parametrize("pattern", rest_in("ci", PATTERNS[1::2], 0), ids=str)
 def test_stays_that_are_freed_too_late_change_no_plan(trace: Trace, pattern: Pattern) -> None:
     pairs = list(plans_with_and_without(trace, pattern, is_too_late))
     assert len(pairs) > 100
