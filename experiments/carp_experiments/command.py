@@ -38,7 +38,7 @@ F = TypeVar("F", bound=Callable[..., Any])
     )
 )
 def command() -> None:
-    """Run an experiment, or go on with the one in a store.
+    """Run an experiment, or continue the one in a store.
 
     Results are written to the store as they come. A run that is stopped, also
     killed, goes on where it was when it is called again with the same store, and

@@ -15,20 +15,21 @@ from carp_spec import Refusal
 from carp_verify.bound_rules import ContradictionError
 from carp_verify.kernel import UndecidedError
 from carproof.answer import INTERNAL_ERROR, INTERRUPTED, PIPE_CLOSED, Answer
-from carproof.commands import COMMANDS
+from carproof.commands import COMMANDS, GROUPS
 from carproof.extras import advice
 from carproof.tables import printable
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoints
 
+WIDEST_SUMMARY = 200
 SETTINGS = {"help_option_names": ["-h", "--help"], "show_default": True}
 EPILOG = """\b
 Examples:
   carproof generate grid -o town.json             20 x 20 grid, 100 robots
   carproof plan town.json -o plans.json           plan them
   carproof check town.json plans.json             judge the plans
-  carproof rules joint/capacity                   what a rule says
+  carproof rules joint/capacity                   explain a rule
   carproof plan town.json --json | carproof check town.json -
 
 \b
@@ -57,6 +58,18 @@ class LazyCommands(click.Group):
             return None
         assert isinstance(command, click.Command)  # noqa: S101 - a promise of ours, not of the user's
         return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """List the commands group by group, each with its whole summary; commands of other packages come last."""
+        for group, names in GROUPS.items():
+            shown = names if group != "Run" else (*names, *_added_commands().names)
+            with formatter.section(group):
+                formatter.write_dl([(name, self._summary(ctx, name)) for name in shown])
+
+    def _summary(self, ctx: click.Context, name: str) -> str:
+        command = self.get_command(ctx, name)
+        assert command is not None  # noqa: S101 - a listed command exists
+        return command.get_short_help_str(limit=WIDEST_SUMMARY)
 
 
 def _added_commands() -> "EntryPoints":

@@ -1,38 +1,19 @@
 """The commands, one a module; its `command` is loaded when somebody asks for it.
 
-To add one, write the module and its name here. A `-` in a command's name is a `_` in its module's. A package of its own
-adds a command by an entry point of the group `carproof.commands`, as `carp_experiments` does.
+To add one, write the module and put its name into a group here. A `-` in a command's name is a `_` in its module's.
+Another package adds a command by an entry point of the group `carproof.commands`, as `carp_experiments` does.
 """
 
-COMMANDS = (
-    "demo",
-    "plan",
-    "add",
-    "polish",
-    "query",
-    "check",
-    "view",
-    "generate",
-    "convert",
-    "serve",
-    "certify",
-    "theorems",
-    "conform",
-    "optimum",
-    "verify-proof",
-    "bound",
-    "verify-bound",
-    "verify-query",
-    "check-trace",
-    "dependencies",
-    "execute",
-    "retime",
-    "untangle",
-    "give-way",
-    "audit",
-    "gap",
-    "crosscheck",
-    "bench",
-    "warm",
-    "rules",
-)
+from collections.abc import Mapping
+
+GROUPS: Mapping[str, tuple[str, ...]] = {
+    "Check": ("check", "audit", "conform", "view", "rules"),
+    "Plan": ("plan", "add", "query", "polish", "generate", "convert"),
+    "Prove": ("optimum", "verify-proof", "bound", "verify-bound", "verify-query", "certify", "theorems"),
+    "Execute": ("check-trace", "dependencies", "execute", "retime", "untangle", "give-way"),
+    "Compare": ("gap", "crosscheck", "bench"),
+    "Run": ("demo", "serve", "warm"),
+}
+"""The commands by what they are for, in the order in which help lists them."""
+
+COMMANDS = tuple(name for names in GROUPS.values() for name in names)

@@ -26,7 +26,7 @@ from carproof.results import show_addition, write_result
 
 
 @click.command(
-    short_help="Add one robot to plans that are there.",
+    short_help="Add one robot to given plans.",
     epilog=examples(
         "carproof add town.json plans.json r101 -o plans.json",
         "carproof add town.json plans.json r101 --now 12 --m 5",

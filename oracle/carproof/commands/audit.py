@@ -31,7 +31,7 @@ OWN_FORMAT = "carproof"
 
 
 @click.command(
-    short_help="Check that no plan can arrive earlier beside those before it.",
+    short_help="Check that no robot can arrive earlier.",
     epilog=examples(
         "carproof audit town.json plans.json",
         "carproof audit town.json plans.json --kernel",

@@ -17,7 +17,10 @@ from carproof.tables import print_table
 MAPS = (10, 20)
 
 
-@click.command(epilog=examples("carproof bench", "carproof bench --assignments 5 --json > bench.json"))
+@click.command(
+    short_help="Measure queries, passes of CARP and additions.",
+    epilog=examples("carproof bench", "carproof bench --assignments 5 --json > bench.json"),
+)
 @click.option("--assignments", type=click.IntRange(min=1), default=20, help="How many random assignments a map.")
 @click.option("--growth/--no-growth", default=True, help="Measure larger and larger grids too.")
 @json_option

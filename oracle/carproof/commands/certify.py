@@ -18,10 +18,11 @@ if TYPE_CHECKING:
 
 
 @click.command(
+    short_help="Check plans, with z3's second opinion.",
     epilog=examples(
         "carproof certify town.json plans.json",
         "carproof plan town.json --json | carproof certify town.json -",
-    )
+    ),
 )
 @instance_argument
 @solution_argument

@@ -37,6 +37,7 @@ _LEVELS = "\n".join(
 
 
 @click.command(
+    short_help="Ask a program questions, and judge its answers.",
     epilog=_LEVELS
     + op_list(ASKED_OPS)
     + examples(
@@ -45,7 +46,7 @@ _LEVELS = "\n".join(
         "carproof conform --one-shot -- ./planner {instance} {solution}",
         "carproof conform --one-shot -- ./planner {map} {scen} {agents} {solution}",
         "carproof conform --junit conform.xml --save found -- ./planner",
-    )
+    ),
 )
 @click.argument("program", nargs=-1, required=True, metavar="-- PROGRAM ...")
 @click.option("--level", type=click.Choice(list(LEVELS)), default=Level.SOUND.label, help="What is asked of it.")

@@ -15,7 +15,7 @@ from carproof.results import show_instance
 
 
 @click.command(
-    short_help="Make an instance of MovingAI files.",
+    short_help="Convert MovingAI files and solutions.",
     epilog=examples(
         "carproof convert demo/depot.map demo/depot.scen -o depot.json",
         "carproof convert town.map town.scen --agents 40 | carproof plan -",

@@ -19,7 +19,8 @@ from carproof.tables import print_line
 
 
 @click.command(
-    epilog=examples("carproof crosscheck --examples 10000", "carproof crosscheck --seed 7 -o difference.json")
+    short_help="Ask both engines the same random questions.",
+    epilog=examples("carproof crosscheck --examples 10000", "carproof crosscheck --seed 7 -o difference.json"),
 )
 @click.option("--examples", "count", type=click.IntRange(min=1), default=1000, help="How many random questions.")
 @click.option("--seed", type=click.IntRange(min=0), default=0, help="The seed of the questions.")

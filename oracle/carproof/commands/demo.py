@@ -29,7 +29,7 @@ class Result:
 
 
 @click.command(
-    short_help="Make, plan and check two instances, and compare planners.",
+    short_help="Make, plan and check two instances.",
     epilog=examples("carproof demo", "carproof demo /tmp/somewhere"),
 )
 @click.argument("folder", type=click.Path(file_okay=False, path_type=Path), default=Path("demo"))

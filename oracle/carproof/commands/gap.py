@@ -26,12 +26,13 @@ MOST_INSTANCES = 10_000
 
 
 @click.command(
+    short_help="Compare every planner with the optimum.",
     epilog=examples(
         "carproof gap town.json",
         "carproof gap town.json --limit 300 --json",
         "carproof gap --size 3..6 --map 0 --map 20 --limit 1",
         "carproof gap --size 5 --robots 7 --after-goal park --count 100 --seed 1",
-    )
+    ),
 )
 @click.argument("instance", type=InputFile(), required=False)
 @limit_option

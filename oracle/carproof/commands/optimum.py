@@ -22,11 +22,12 @@ COLUMNS = ("robots", "shortest paths", "lower bound", "cost", "answer", "time")
 
 
 @click.command(
+    short_help="Find the least total cost, and plans that have it.",
     epilog=examples(
         "carproof optimum town.json",
         "carproof optimum town.json --limit 300 -o best.json",
         "carproof optimum town.json --proof proof && carproof verify-proof proof",
-    )
+    ),
 )
 @instance_argument
 @limit_option

@@ -34,7 +34,7 @@ COLUMNS = ("plans", "unplanned", "total cost", "bound", "gap", "rounds", "time")
 
 
 @click.command(
-    short_help="Improve plans that are there.",
+    short_help="Improve given plans.",
     epilog=examples(
         "carproof polish town.json plans.json -o better.json",
         "carproof polish town.json plans.json --seconds 5 -o better.json",

@@ -32,7 +32,7 @@ from carproof.tables import print_line, print_table
 
 
 @click.command(
-    short_help="Plan one robot beside plans that stay as they are.",
+    short_help="Plan one robot beside given plans.",
     epilog=examples(
         "carproof query town.json plans.json r7",
         "carproof query town.json plans.json r7 --now 12 --json",

@@ -13,7 +13,7 @@ from carproof.tables import print_table
 
 
 @click.command(
-    short_help="List all rules, or tell one in full.",
+    short_help="List all rules, or explain one.",
     epilog=examples("carproof rules", "carproof rules joint/capacity"),
 )
 @click.argument("id", required=False)

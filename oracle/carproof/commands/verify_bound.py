@@ -21,10 +21,11 @@ COLUMNS = ("lower bound", "robots", "prices", "cuts", "horizon", "decided by")
 
 
 @click.command(
+    short_help="Check the certificate of a lower bound.",
     epilog=examples(
         "carproof verify-bound town.json certificate.json",
         "carproof bound town.json --json | carproof verify-bound town.json -",
-    )
+    ),
 )
 @instance_argument
 @click.argument("certificate", type=InputFile())

@@ -13,7 +13,10 @@ from carproof.options import examples, json_option
 from carproof.tables import print_line, print_table
 
 
-@click.command(epilog=examples("carproof verify-proof proof", "carproof verify-proof proof --instance town.json"))
+@click.command(
+    short_help="Check the files that prove an optimum.",
+    epilog=examples("carproof verify-proof proof", "carproof verify-proof proof --instance town.json"),
+)
 @click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path))
 @click.option("--instance", type=InputFile(), help="The instance that the proof must be about.")
 @json_option

@@ -22,7 +22,7 @@ COLUMNS = ("robot", "now", "earliest arrival", "labels", "decided by")
 
 
 @click.command(
-    short_help="Check that a robot cannot arrive earlier.",
+    short_help="Check the certificate of a query.",
     epilog=examples(
         "carproof verify-query town.json plans.json r7.json",
         "carproof verify-query town.json plans.json r7.json --kernel",

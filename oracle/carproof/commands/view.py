@@ -20,12 +20,13 @@ from carproof.viewer.stills import chart_still, map_still
 
 
 @click.command(
+    short_help="Show plans on the map, in one HTML file.",
     epilog=examples(
         "carproof view town.json plans.json -o plans.html",
         "carproof view town.json plans.json --at 12 -o tick-12.svg",
         "carproof view town.json plans.json --chart -o chart.svg",
         "carproof plan town.json --json | carproof view town.json - -o plans.html",
-    )
+    ),
 )
 @instance_argument
 @solution_argument
