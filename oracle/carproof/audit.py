@@ -147,7 +147,7 @@ def ask_kernel(instance: Instance, solution: Solution, audit: Audit) -> None:
         document = solution_document(replace(solution, order=order))
         requests = [request("audit", instance, solution=document, certificates=audit.certificates)]
     else:
-        solutions = [_planned(instance, (*late.before, late.earlier)) for late in audit.late]
+        solutions = [solution_of(instance, (*late.before, late.earlier)) for late in audit.late]
         requests = [request("check", instance, solution=solution_document(each)) for each in solutions]
     for answer in ask(requests):
         if not answer.accepted:
@@ -155,7 +155,7 @@ def ask_kernel(instance: Instance, solution: Solution, audit: Audit) -> None:
         audit.by = answer.by
 
 
-def _planned(instance: Instance, plans: Sequence[Plan]) -> Solution:
+def solution_of(instance: Instance, plans: Sequence[Plan]) -> Solution:
     """The solution of these plans in which all other robots are unplanned."""
     order = tuple(plan.robot for plan in plans)
     planned = set(order)

@@ -104,6 +104,11 @@ def ask(requests: Sequence[bytes]) -> list[KernelVerdict]:
     return [_verdict(lines[number] if number < len(lines) else "") for number in range(len(requests))]
 
 
+def version() -> str:
+    """The kernel's name and version; raises `Refusal` if there is no program."""
+    return ask([b"{}\n"])[0].by
+
+
 def verify_bound(instance: Instance, certificate: BoundDocument, formulas: Mapping[int, str]) -> KernelVerdict:
     """What the kernel says of a lower bound, with the formulas of its cuts in DIMACS by their numbers."""
     require_following(instance)

@@ -4,6 +4,7 @@ import shutil
 import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from secrets import randbits
 from tempfile import TemporaryDirectory
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from carp_verify.kernel import version
 from carproof.adapters import ADAPTERS
 from carproof.answer import Answer
 from carproof.conform.cases import ASKED_OPS
@@ -19,7 +21,7 @@ from carproof.engines import warm
 from carproof.extras import require
 from carproof.files import OutputFile, print_document, write_whole
 from carproof.ops.published import op_list
-from carproof.options import examples, json_option
+from carproof.options import examples, json_option, kernel_option
 from carproof.progress import progress
 from carproof.tables import print_line, print_table
 
@@ -45,6 +47,7 @@ _LEVELS = "\n".join(
         "carproof conform --level complete-in-context --examples 2000 -- ./planner",
         "carproof conform --one-shot -- ./planner {instance} {solution}",
         "carproof conform --one-shot -- ./planner {map} {scen} {agents} {solution}",
+        "carproof conform --level context-optimal --kernel -- ./planner",
         "carproof conform --junit conform.xml --save found -- ./planner",
     ),
 )
@@ -74,6 +77,7 @@ _LEVELS = "\n".join(
     metavar="FORMAT",
     help=f"What it writes then: {', '.join(ADAPTERS)}.  [default: found out]",
 )
+@kernel_option
 @click.option("--save", type=click.Path(path_type=Path, file_okay=False), default="conform-failure", help="Folder.")
 @click.option("--junit", type=OutputFile(), help="Write the results to this file, as XML for continuous integration.")
 @json_option
@@ -88,6 +92,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     memory: int,
     one_shot: bool,
     format: str | None,
+    kernel: bool,
     save: Path,
     junit: Path | None,
     as_json: bool,
@@ -107,6 +112,10 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     if its arguments name that, or else to its standard output. If they name {map} and {scen}, these are MovingAI
     files with {agents} agents, and what it writes may be in any format that carproof check reads; all else than
     classical grids is not asked, and the levels are sound, complete and optimal.
+
+    With --kernel the proved kernel decides whether plans break a rule, and whether each arrives as early as it can,
+    at the levels sound, complete-in-context and context-optimal. carp_spec decides the rest: what robots under way have
+    done, and instances that forbid following.
 
     Exit codes: 0 it conforms, 1 it does not, 2 bad usage, 3 undecided: it was interrupted, or no random case decided
     it.
@@ -131,7 +140,11 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
         what = "MovingAI files" if classical else "whole instances"
         right = ", ".join(each.label for each in askable)
         raise click.UsageError(f"Of a planner for {what} --level must be one of {right}.")
+    if kernel and LEVELS[level] > Level.CONTEXT_OPTIMAL:
+        raise click.UsageError(f"With --kernel --level must be at most {Level.CONTEXT_OPTIMAL.label}.")
     options = Options(LEVELS[level], number, seed, timeout, shrinking, whole=one_shot, classical=classical)
+    if kernel:
+        options = replace(options, kernel=version())
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     with progress("asking", number) as advance, _nothing_kept():
         report = conform(subject, options, advance)
@@ -200,6 +213,8 @@ def _show(report: "Report", saved: Path | None) -> None:
     if saved is not None:
         print_line(f"the smallest failing case is in {saved}")
     print_line(_verdict(report))
+    if report.options.kernel is not None:
+        print_line(f"decided by {report.options.by}")
 
 
 def _verdict(report: "Report") -> str:

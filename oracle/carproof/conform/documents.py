@@ -38,6 +38,7 @@ def report_document(report: Report, saved: Path | None) -> bytes:
         "statement": report.options.level.statement,
         "tested": report.tested,
         "conforms": report.conforms,
+        "by": report.options.by,
         "reaches_level": report.reaches_level,
         "interrupted": report.interrupted,
         "seed": report.options.seed,

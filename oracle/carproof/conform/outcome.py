@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from time import monotonic
 
 from carproof.conform.answers import Answer, NotAsked, Skipped
+from carproof.conform.by_kernel import require_agreement
 from carproof.conform.cases import Case
 from carproof.conform.effort import Effort, effort, why_undecided
 from carproof.conform.findings import Fault, Finding
@@ -33,8 +34,11 @@ class Outcome:
         return self.skipped is None
 
 
-def ask(subject: Subject, case: Case, level: Level, seconds: float | None = None) -> Outcome:
-    """Ask a subject one case, and judge its answer by the level; `seconds` is the time of the subject alone."""
+def ask(subject: Subject, case: Case, level: Level, seconds: float | None = None, by_kernel: bool = False) -> Outcome:
+    """Ask a subject one case, and judge its answer by the level; `seconds` is the time of the subject alone.
+
+    Raises `ContradictionError` if the proved kernel, where it is to decide, decides otherwise.
+    """
     started = monotonic()
     try:
         reply = subject.ask(case, seconds)
@@ -44,6 +48,8 @@ def ask(subject: Subject, case: Case, level: Level, seconds: float | None = None
     if isinstance(reply, Skipped | NotAsked):
         return Outcome(case, skipped=reply.why, asked=isinstance(reply, Skipped), seconds=taken)
     finding = first_finding(case, reply, level)
+    if by_kernel:
+        require_agreement(case, reply, level, finding)
     if finding is not None:
         return Outcome(case, finding, reply, seconds=taken)
     undecided = why_undecided(case, reply, level)

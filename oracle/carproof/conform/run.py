@@ -24,7 +24,8 @@ MOST_FAULTS = 3
 class Options:
     """How a program is asked; `whole`: whole instances, each by a planner of the program's own.
 
-    `classical`: besides, random ones are classical multi-agent path finding.
+    `classical`: besides, random ones are classical multi-agent path finding. `kernel`: the name and version of the
+    proved kernel, if it decides.
     """
 
     level: Level = Level.SOUND
@@ -34,6 +35,12 @@ class Options:
     shrink_seconds: float = SHRINK_SECONDS
     whole: bool = False
     classical: bool = False
+    kernel: str | None = None
+
+    @property
+    def by(self) -> str:
+        """Who decides."""
+        return self.kernel or "carp_spec"
 
     @property
     def ops(self) -> tuple[Op, ...]:
@@ -182,7 +189,7 @@ def _ask_fixed(subject: Subject, report: Report, cases: Iterable[Case], advance:
         if report.processes_lost >= MOST_FAULTS:
             return
         asked = replace(case, classical=report.options.classical)
-        report.add(ask(subject, asked, report.options.level))
+        report.add(ask(subject, asked, report.options.level, by_kernel=report.options.kernel is not None))
         advance()
 
 
@@ -196,7 +203,7 @@ def _ask_random(subject: Subject, report: Report, advance: Callable[[], None]) -
     by_op = {"plan": classical_cases()} if options.classical else ours
 
     def ask_one(case: Case, seconds: float | None) -> Outcome:
-        outcome = ask(subject, case, options.level, seconds)
+        outcome = ask(subject, case, options.level, seconds, options.kernel is not None)
         if search.best is None:
             report.add(outcome)
             advance()

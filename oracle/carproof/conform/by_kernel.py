@@ -1,0 +1,105 @@
+"""Has the proved kernel decide what it can of an answer: whether its plans break a rule, and whether they are late.
+
+The kernel checks all plans together. From the level complete-in-context on it gets, for each robot beside the plans
+before it, a certificate that no plan arrives before the best one that carproof finds, and checks that this plan breaks
+no rule. It does not know `fleet/history`, the rules of what a planner chooses, nor instances that forbid following.
+"""
+
+from carp_spec import Carp, Instance, Plan, Solution
+from carp_spec.documents import VerdictDocument, solution_document
+from carp_spec.limits import following_is_allowed
+from carp_verify.bound_rules import ContradictionError
+from carp_verify.kernel import ask, request
+from carproof.audit import solution_of
+from carproof.conform.answers import Answer
+from carproof.conform.cases import Case
+from carproof.conform.findings import Finding
+from carproof.conform.levels import Level
+from carproof.engines import engine_named
+from carproof.ops.planning import QueryDocument
+
+LAWFUL = ("solution/", "plan/", "joint/")
+EARLY = ("query/complete", "query/optimal")
+
+
+def require_agreement(case: Case, answer: Answer, level: Level, finding: Finding | None) -> None:
+    """Raise `ContradictionError` if the kernel refuses what was accepted, or accepts what breaks a rule of its own."""
+    if not following_is_allowed(case.instance):
+        return
+    match answer:
+        case VerdictDocument():
+            agree = finding is not None or accepts(case.instance, case.solution) == answer.valid
+        case QueryDocument() | Solution():
+            agree = _agrees_on_plans(case, answer, level, finding)
+        case _:
+            return
+    if not agree:
+        found = "nothing wrong" if finding is None else f"{finding.message} [{finding.rule}]"
+        raise ContradictionError(f"carp_spec and the kernel differ on {case.name}: carp_spec finds {found}")
+
+
+def accepts(instance: Instance, solution: Solution) -> bool:
+    """Whether the kernel accepts a solution."""
+    (answer,) = ask([request("check", instance, solution=solution_document(solution))])
+    return answer.accepted
+
+
+def _agrees_on_plans(case: Case, answer: QueryDocument | Solution, level: Level, finding: Finding | None) -> bool:
+    given = _solution_with(case, answer) if isinstance(answer, QueryDocument) else answer
+    is_lawful = accepts(case.instance, given)
+    if finding is not None and finding.rule.startswith(LAWFUL):
+        return not is_lawful
+    if not is_lawful or case.op not in ("query", "plan") or level < Level.COMPLETE_IN_CONTEXT:
+        return is_lawful
+    if finding is not None and finding.rule not in EARLY:
+        return True
+    return _is_early(case, answer, level) == (finding is None)
+
+
+def _solution_with(case: Case, answer: QueryDocument) -> Solution:
+    """The plans of the others, and the one that was found."""
+    assert case.robot is not None  # noqa: S101 - a promise of ours
+    others = [plan for plan in case.solution.plans if plan.robot != case.robot]
+    found = answer.plan_of(case.robot)
+    return solution_of(case.instance, others if found is None else [*others, found])
+
+
+def _is_early(case: Case, answer: QueryDocument | Solution, level: Level) -> bool:
+    """Whether no robot has a better plan; the kernel must accept why, or the better plan."""
+    instance = case.instance
+    if isinstance(answer, QueryDocument):
+        assert case.robot is not None  # noqa: S101 - a promise of ours
+        asked = [case.robot]
+        plans = {case.robot: answer.plan_of(case.robot)}
+        committed = [plan for plan in case.solution.plans if plan.robot != case.robot]
+        followed = [plan for plan in case.solution.plans if plan.robot == case.robot]
+    else:
+        asked = [*instance.robot] if isinstance(case.planner, Carp) else [*answer.order, *answer.unplanned]
+        plans = dict.fromkeys(asked) | {plan.robot: plan for plan in answer.plans}
+        committed, followed = [], []
+    certifier = engine_named("reference").certifier(instance)
+    certifier.commit(committed)
+    requests, is_early = [], True
+    for robot in asked:
+        best, certificate = certifier.certify(robot, followed[0] if followed else None, case.now)
+        before = solution_document(solution_of(instance, [*committed, *followed]))
+        requests.append(request("verify-query", instance, solution=before, certificate=certificate))
+        if best is not None:
+            beside = solution_document(solution_of(instance, [*committed, best]))
+            requests.append(request("check", instance, solution=beside))
+        plan = plans[robot]
+        is_early = is_early and not _is_worse(plan, best, level)
+        if plan is not None:
+            certifier.commit([plan])
+            committed.append(plan)
+    for verdict in ask(requests):
+        if not verdict.accepted:
+            raise ContradictionError(f"{verdict.by} refuses carproof's own on {case.name}: {verdict.message}")
+    return is_early
+
+
+def _is_worse(plan: Plan | None, best: Plan | None, level: Level) -> bool:
+    """Whether a plan is missing where there is a best one, or late where that counts."""
+    if plan is None or best is None:
+        return plan is None and best is not None
+    return level >= Level.CONTEXT_OPTIMAL and plan.visits[-1].enter > best.visits[-1].enter
