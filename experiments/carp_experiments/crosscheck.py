@@ -1,7 +1,7 @@
 """A campaign of random small questions to both engines: the planner to read and the planner to run must agree on all.
 
-A case is a block of questions, so that a row stands for a second of work. Unlike `carproof crosscheck`, which draws by
-hypothesis and makes a difference small, this draws fast, can be stopped and taken up again, and runs on many machines.
+A case is a block of questions, so that a row stands for a second of work. `carproof crosscheck` asks the same kind of
+questions, until a difference, which it makes small; this can be stopped and taken up again, and runs on many machines.
 """
 
 from collections.abc import Iterable
@@ -11,9 +11,9 @@ from typing import Any
 import msgspec
 
 from carp_experiments.report import Report, Table
-from carp_experiments.small_questions import question
 from carp_experiments.store import Row
 from carp_spec import total_cost
+from carproof.questions import question
 
 BLOCK = 1000
 FULL_QUESTIONS = 1_000_000
@@ -57,9 +57,9 @@ def ask_both(block: Block, seed: int, number: int) -> None:
     from carproof.commands.crosscheck import document  # noqa: PLC0415 - each worker loads it
     from carproof.crosscheck import ask  # noqa: PLC0415
 
-    subject, planner = question(seed, number)
+    asked = question(seed, number)
     try:
-        answers = ask(subject, planner)
+        answers = ask(asked)
     except Exception as error:  # noqa: BLE001 - whatever it is, it is no answer
         block.differences.append({"number": number, "error": repr(error)})
         return

@@ -30,6 +30,7 @@ from carp_spec import (
     Solution,
 )
 from carproof.mutations import MUTATIONS, BrokenSolution
+from carproof.questions import FleetUnderWay
 from carproof.timing import path_between, timed_plan
 
 __all__ = [
@@ -72,16 +73,6 @@ class PlannedInstance:
 
     instance: Instance
     solution: Solution
-
-
-@dataclass(frozen=True, slots=True)
-class FleetUnderWay:
-    """A solution that is being followed at the tick `now`, and a robot to add that has no plan yet."""
-
-    instance: Instance
-    solution: Solution
-    robot: RobotId
-    now: int
 
 
 def _ids(count: int) -> st.SearchStrategy[list[str | int]]:

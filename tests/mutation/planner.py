@@ -30,8 +30,8 @@ from tests.optimized.arrivals import Arrivals, arrivals, convoy, scaled
 from tests.optimized.towns import TOWNS
 
 import carp_reference
-from carp_experiments.small_questions import question
 from carp_spec import Instance, Neighbourhood, Planner, Solution
+from carproof.questions import question
 
 FOLDER = ROOT / "optimized" / "carp_optimized"
 MODULES = ("replanning", "order_search", "answers", "neighbourhood", "orders", "distances", "passes", "windows")

@@ -8,7 +8,6 @@ and every choice of what is reused are mixed. A question takes the reference a f
 from dataclasses import dataclass, replace
 
 import carp_reference
-from carp_experiments.small_questions import Draw, draw_edges, draw_plan
 from carp_optimized import Queries, Reuse
 from carp_spec import (
     AfterGoal,
@@ -24,6 +23,7 @@ from carp_spec import (
     Visit,
 )
 from carp_spec.permutations import shuffle, splitmix64
+from carproof.questions import Draw, draw_edges, draw_plan
 
 POLICIES: tuple[AfterGoal, ...] = ("vanish", "vanish", "park")
 

@@ -6,11 +6,11 @@ import pytest
 
 import carp_optimized
 import carp_reference
-from carp_experiments.small_questions import Draw, draw_instance, draw_neighbourhood, draw_planner
 from carp_optimized import Reuse
 from carp_reference.time_expanded import find_plan_by_ticks
 from carp_spec import Carp, Instance, Solution, check, check_update, judge, plan_cost
 from carp_spec.permutations import splitmix64
+from carproof.questions import Draw, draw_instance, draw_neighbourhood, draw_planner
 
 QUESTIONS = range(150)
 REUSES = (Reuse(), Reuse(kept=False, unchanged=False, prefixes=False, shared=False, bounds=False))

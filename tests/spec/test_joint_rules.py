@@ -94,6 +94,11 @@ def test_exchanges_at_one_tick_come_in_the_order_of_the_resources() -> None:
     ]
 
 
+def test_robots_that_make_the_same_move_together_do_not_exchange() -> None:
+    together = [plan_of(robot, ("b", 0, 3), ("c", 3, 5)) for robot in ("r1", "r2")]
+    assert list(exchanges_are_avoided(VANISHING, together)) == []
+
+
 def test_robots_may_follow_each_other_and_turn_in_a_circle() -> None:
     ring = ResourceGraph(line("abc").resources, (("a", "b"), ("b", "c"), ("c", "a")))
     instance = instance_on(ring, *(Robot(name, "a", "b") for name in NAMES))

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING, TypeAlias, TypeVar
+from typing import TypeAlias, TypeVar
 
 from carp_spec import (
     AfterGoal,
@@ -19,22 +19,33 @@ from carp_spec import (
     ResourceGraph,
     ResourceId,
     Robot,
+    RobotId,
     Shuffled,
     Solution,
 )
 from carp_spec.permutations import shuffle, splitmix64
 from carp_spec.planners import LARGEST_SEED
-
-if TYPE_CHECKING:
-    from carproof.strategies import FleetUnderWay
+from carproof.timing import path_between, timed_plan
 
 T = TypeVar("T")
-Subject: TypeAlias = "Instance | FleetUnderWay"
 
 SIZES = (1, 2, 3, 4, 4, 5, 5, 6)
 MOST_ROBOTS = 5
 MOST_MEMBERS = 4
 SIMPLE_PLANNERS: tuple[Planner, ...] = (Carp(), LongestFirst(), Greedy())
+
+
+@dataclass(frozen=True, slots=True)
+class FleetUnderWay:
+    """A solution that is being followed at the tick `now`, and a robot to add that has no plan yet."""
+
+    instance: Instance
+    solution: Solution
+    robot: RobotId
+    now: int
+
+
+Question: TypeAlias = tuple[Instance, Planner] | tuple[FleetUnderWay, Neighbourhood]
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,13 +67,17 @@ class Draw:
         return next(self.stream) % one_in == 0
 
 
-def question(seed: int, number: int) -> tuple[Subject, Planner]:
-    """The question of that number: an instance and a planner, or a fleet under way and how to add a robot to it.
+def question(seed: int, number: int) -> Question:
+    """The question of that number."""
+    return draw_question(Draw(splitmix64(next(splitmix64(seed)) + number)))
+
+
+def draw_question(draw: Draw) -> Question:
+    """An instance and a planner, or a fleet under way and how to add a robot to it.
 
     Durations, capacities, releases, paces, both kinds of ids and graphs, both policies and all options are mixed;
     starts and goals may be shared, the same, or out of reach of each other.
     """
-    draw = Draw(splitmix64(next(splitmix64(seed)) + number))
     instance = draw_instance(draw)
     if draw.happens(4):
         return draw_fleet(draw, instance), draw_neighbourhood(draw)
@@ -136,10 +151,8 @@ def draw_neighbourhood(draw: Draw) -> Neighbourhood:
     )
 
 
-def draw_fleet(draw: Draw, instance: Instance) -> "FleetUnderWay":
+def draw_fleet(draw: Draw, instance: Instance) -> FleetUnderWay:
     """A fleet at a tick at which its plans, which make detours and wait as those of any planner might, are followed."""
-    from carproof.strategies import FleetUnderWay  # noqa: PLC0415 - slow to load
-
     new, *others = shuffle(instance.robots, draw.stream)
     plans: list[Plan] = []
     for robot in others:
@@ -154,8 +167,6 @@ def draw_fleet(draw: Draw, instance: Instance) -> "FleetUnderWay":
 
 def draw_plan(draw: Draw, instance: Instance, committed: Sequence[Plan], robot: Robot) -> Plan | None:
     """A plan over some resource, longer in each than it needs to be; `None` if there is no way, or none is free."""
-    from carproof.timing import path_between, timed_plan  # noqa: PLC0415
-
     over = draw.one_of(instance.graph.resources).id
     there, back = path_between(instance.graph, robot.start, over), path_between(instance.graph, over, robot.goal)
     path = (*there[:-1], *back) if there and back else path_between(instance.graph, robot.start, robot.goal)
