@@ -70,11 +70,11 @@ thorough: compiled
 
 # How fast the optimised planner is, beside C++ written by hand and the reference; needs g++.
 bench: install
-	$(BIN)/pytest -o addopts= -o filterwarnings= --import-mode=importlib -q -s tests/bench/bench_speed.py
+	$(BIN)/pytest -q -s tests/bench/bench_speed.py
 
-# Measure how far planners are from the optimum, and put the table into docs/results/gaps.md; takes a few minutes.
+# Measure how far planners are from the optimum, the figures of docs/results/gaps.md; takes a few minutes.
 gap: install
-	$(BIN)/python -m carproof.gap_table
+	$(BIN)/carproof gap --size 3..8 --map 0 --map 5 --map 10 --map 20 --limit 1
 
 # Measure how long the search for an optimum takes, and put the table into docs/results/gaps.md; takes up to five minutes.
 optimum-figures: install

@@ -11,9 +11,8 @@ from carp_optimum.gap import Gap, PlannerGap
 from carp_optimum.optimum import Optimum
 from carp_spec import Carp
 from carp_verify.encoding import Evidence
-from carproof import gap_table, optimum_table
-from carproof.gap_family import Cell, Family, measured
-from carproof.gap_report import PLANNERS
+from carproof import optimum_table
+from carproof.gap_family import Cell
 from carproof.generate import Range
 
 UNSOLVABLE = corridor([{"id": "r1", "start": "a", "goal": "e"}, HEAD_ON])
@@ -272,14 +271,6 @@ def test_means_of_a_family_leave_out_what_is_not_known() -> None:
     assert str(Cell(3, 0, 2, range(0), ()).delay) == "-"
 
 
-def test_a_row_of_the_gap_table_tells_means_intervals_and_failures() -> None:
-    family = Family(Range(3, 3), (0, 20), count=4)
-    rows = [gap_table.row(cell) for cell in measured(family, PLANNERS, 60)]
-    assert [row[:3] for row in rows] == [("3 x 3", "0", "3"), ("3 x 3", "20", "3")]
-    assert all(len(row) == len(gap_table.COLUMNS) for row in rows)
-    assert all("±" in cell or "failed" in cell for row in rows for cell in row[4:])
-
-
 def test_a_row_of_the_optimum_table_counts_what_is_undecided_as_over_the_limit() -> None:
     family = optimum_table.Family(3, 20, 2, "park", Range(1, 3))
     head = ("3 x 3, full grid, durations 1..3", "2", "park")
@@ -287,10 +278,8 @@ def test_a_row_of_the_optimum_table_counts_what_is_undecided_as_over_the_limit()
     assert optimum_table.row(family, [2, 0.25]) == (*head, "2/2", "1.12", "2.00")
 
 
-def test_the_tables_of_measurements_fit_the_page_that_holds_them() -> None:
-    page = (Path(__file__).parents[2] / "optimum" / "README.md").read_text()
-    gaps = gap_table.gap_table(Family(Range(3, 3), ()))
+def test_the_table_of_times_fits_the_page_that_holds_it() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "results" / "gaps.md").read_text()
     times = optimum_table.optimum_table([optimum_table.Family(3, 5, 2, "vanish", instances=2)])
-    assert f"<!-- gap table: begin -->\n{gaps}" in page
     assert times.partition("| 3 x 3")[0] in page
     assert times.splitlines()[-1].startswith("| 3 x 3, map 5 | 2 | vanish | 2/2 | 0.")
