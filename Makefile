@@ -141,7 +141,7 @@ mutation-%: install
 kernel:
 	@$(MAKE) --no-print-directory -C verify/kernel -j 2
 
-# Plant errors in the kernel's definitions, each of which must break a proof.
+# Plant errors in the kernel's definitions; each must break a proof.
 kernel-mutants: kernel
 	$(PYTHON) -m tests.verify.kernel_mutants
 

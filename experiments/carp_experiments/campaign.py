@@ -39,7 +39,7 @@ def run_campaign(cases: Sequence[Case], store: Store, workers: Workers, advance:
     """Run the cases that the store does not have yet; `advance` is called for each case, also those it has.
 
     Raises `Refusal` if a result cannot be written or a worker is lost; the results until then are in the store,
-    and the same call goes on where it stopped.
+    and the same call continues where it stopped.
     """
     done = store.keys()
     for case in cases:
@@ -54,7 +54,7 @@ def run_campaign(cases: Sequence[Case], store: Store, workers: Workers, advance:
                 advance()
     except (OSError, RuntimeError) as error:
         why = str(error).partition(".")[0]
-        message = f"a worker was lost ({why}); run the same command again, and it goes on where it stopped"
+        message = f"a worker was lost ({why}); run the same command again, and it continues where it stopped"
         raise Refusal("request", "$", "campaign/workers", message) from error
 
 

@@ -108,9 +108,9 @@ def judged(
 
 
 def up_to(saved: Savings, own: Means, map: int, names: Sequence[str], paper: int, claim: str) -> Claim:
-    """A claim of so many fewer actions than CARP on a map.
+    """A claim of a number of fewer actions than CARP on a map.
 
-    It is also told on which map we find the most, and what it is between the means of all that each does not fail on.
+    The claim also has the map with the largest number, and the number between each algorithm's own means.
     """
     based = [name + BASELINE for name in names]
     here = {name: saved[map, name, "CARP"].saving for name in (*names, *based) if (map, name, "CARP") in saved}
@@ -230,7 +230,7 @@ def counts(names: Iterable[str], verdicts: Sequence[Sequence[bool | None]]) -> s
 
 
 def verdict_of(parts: Sequence[bool | None]) -> Verdict:
-    """A claim of several parts, each of which holds, does not, or is open."""
+    """A claim of several parts; each holds, does not, or is open."""
     if all(parts):
         return "reproduced"
     if not any(parts):

@@ -40,10 +40,10 @@ F = TypeVar("F", bound=Callable[..., Any])
 def command() -> None:
     """Run an experiment, or continue the one in a store.
 
-    Results are written to the store as they come. A run that is stopped, also
-    killed, goes on where it was when it is called again with the same store, and
-    a larger one takes over what a smaller one has left there. Whoever computes,
-    the results are the same, and so is their digest.
+    Results are written to the store as they come. A run that was stopped or
+    killed continues when it is called again with the same store, and a larger
+    run takes over the results of a smaller one. The results and their digest
+    do not depend on who computes them.
     """
 
 
@@ -176,7 +176,7 @@ def go(  # noqa: PLR0913 - the campaign's options
     with open_store(store, identity) as results:
         with progress(name, len(cases)) as advance:
             run_campaign(cases, results, who, advance)
-        told = report_of(row for _, row in results.rows(keys))
+        reported = report_of(row for _, row in results.rows(keys))
         facts = {
             "command": command,
             "size": size,
@@ -186,18 +186,18 @@ def go(  # noqa: PLR0913 - the campaign's options
             "note": note,
         }
     if report is not None:
-        write_report(report, name, told, facts)
+        write_report(report, name, reported, facts)
     if as_json:
-        print_document(msgspec.json.encode({"experiment": name, **facts, "summary": told.summary}) + b"\n")
-        return Answer.of(told.holds)
-    for table in told.tables:
+        print_document(msgspec.json.encode({"experiment": name, **facts, "summary": reported.summary}) + b"\n")
+        return Answer.of(reported.holds)
+    for table in reported.tables:
         print_line(f"{table.title}:")
         print_table(table.columns, table.rows, numbers=table.numbers)
         print_line("")
-    for line in told.lines:
+    for line in reported.lines:
         print_line(line)
     print_line(f"{size}: digest of {len(cases)} cases {facts['digest']}")
-    return Answer.of(told.holds)
+    return Answer.of(reported.holds)
 
 
 for each in EXPERIMENTS:

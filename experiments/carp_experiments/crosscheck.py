@@ -71,7 +71,7 @@ def ask_both(block: Block, seed: int, number: int) -> None:
 
 
 def crosscheck_cases(questions: int, seed: int) -> tuple[CrosscheckCase, ...]:
-    """So many questions, in blocks."""
+    """The questions, in blocks."""
     return tuple(CrosscheckCase(first, min(BLOCK, questions - first), seed) for first in range(0, questions, BLOCK))
 
 
@@ -81,8 +81,8 @@ def crosscheck_report(rows: Iterable[Row]) -> Report:
     differences = [each for block in blocks for each in block.differences]
     columns = ("questions", "robots planned", "robots unplanned", "total cost", "differences")
     sums = [sum(getattr(block, name) for block in blocks) for name in ("questions", "planned", "unplanned", "cost")]
-    told = tuple(f"A DIFFERENCE: {msgspec.json.encode(each).decode()}" for each in differences[:SHOWN])
+    lines = tuple(f"A DIFFERENCE: {msgspec.json.encode(each).decode()}" for each in differences[:SHOWN])
     table = Table(
         "crosscheck", "Both engines, asked the same", columns, ((*map(str, sums), str(len(differences))),), columns
     )
-    return Report({"differences": differences}, (table,), (), told, holds=not differences)
+    return Report({"differences": differences}, (table,), (), lines, holds=not differences)

@@ -24,7 +24,7 @@ SPARSE_MAPS = tuple(range(8))
 
 @dataclass(frozen=True, slots=True)
 class Profile:
-    """How large an experiment is: assignments of start and goal to so many robots, each on every one of the maps."""
+    """How large an experiment is: assignments of start and goal to this many robots, each on every one of the maps."""
 
     assignments: int
     robots: int
@@ -61,7 +61,7 @@ class Experiment:
         return [MapCase(self.compute, map, assignment, profile.robots) for assignment, map in places]
 
     def refuse(self, profile: Profile) -> None:
-        """Raise `Refusal` where the maps have no place for so many robots."""
+        """Raise `Refusal` where the maps have no place for this many robots."""
         from carproof.generate.options import ends_suffice  # noqa: PLC0415 - imports what imports this
 
         if not ends_suffice(self.places, profile.robots):

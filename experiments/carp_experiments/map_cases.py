@@ -32,7 +32,7 @@ R = TypeVar("R", bound=OnMap)
 
 @dataclass(frozen=True, slots=True)
 class MapCase:
-    """One assignment of so many robots on one map, and the function that computes its row."""
+    """One assignment of this many robots on one map, and the function that computes its row."""
 
     compute: "Callable[[MapCase], Row]"
     map: int

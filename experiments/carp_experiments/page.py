@@ -41,7 +41,7 @@ Where our conventions may make the difference:
 - what Algorithm 1 does where CARP fails at its line 10, on which the failures of Proposed depend
   (`neighbourhood/replan`);
 - whether all plans as they are, and CARP for the new robot, are a candidate: not in Algorithm 1 as published, but maybe
-  in the program that was measured (`neighbourhood/baseline`; the second verdict is of that variant);
+  in the program that was measured (`neighbourhood/baseline`; the second verdict concerns that variant);
 - whether starts and goals are distinct (ours are), and which trees and edges the maps have;
 - over which assignments the paper's means are: an algorithm that fails on the hard ones looks better without them;
 - times depend on the program: ours never asks most queries of the neighbourhood planner, which the paper's asks.

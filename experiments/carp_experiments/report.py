@@ -1,4 +1,4 @@
-"""What an experiment tells: tables, figures, and its numbers for programs."""
+"""The results of an experiment: tables, figures, and its numbers for programs."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -25,13 +25,13 @@ COMPARED: Mapping[str, Planner] = {
 GIVEN = "Proposed_4"
 POLISHED = f"{GIVEN} + polish"
 BOUND = "lower bound"
-TOLD = (*COMPARED, POLISHED, BOUND)
+REPORTED = (*COMPARED, POLISHED, BOUND)
 ROUNDS = 2_000
 STEPS = 1_000
 
 
 def gap_row(case: MapCase) -> Row:
-    """The optimum, or nothing where it was not found in a minute or there is none; robots planned, and total cost.
+    """The optimum, or nothing where it was not found in a minute or none exists; robots planned, and total cost.
 
     Each assignment has a small map of its own. Only a search that comes near its minute can end otherwise on another
     machine.
@@ -98,8 +98,8 @@ class GapRow(msgspec.Struct, frozen=True):
 def gap_report(rows: Iterable[Row], robots: int) -> Report:
     """A table over some of the maps, and a figure over all."""
     by_map = rows_by_map(rows, GapRow)
-    summary = tuple(gap_of(map, name, each, robots) for map, each in by_map.items() for name in TOLD)
-    lines = {name: [(each.map, each.gap) for each in summary if each.algorithm == name] for name in TOLD}
+    summary = tuple(gap_of(map, name, each, robots) for map, each in by_map.items() for name in REPORTED)
+    lines = {name: [(each.map, each.gap) for each in summary if each.algorithm == name] for name in REPORTED}
     title = f"Above the optimum that the search found, {robots} robots on {SIDE} x {SIDE} maps"
     figure = Figure("gap", title, (MAP_AXIS, "per cent above the optimum"), lines)
     return Report(summary, (gap_table(summary, by_map, title),), (figure,))
@@ -123,7 +123,7 @@ def gap_table(summary: Sequence[GapOf], by_map: Mapping[int, Sequence[GapRow]], 
     by_place = {(each.algorithm, each.map): each for each in summary}
     columns = ("algorithm", *(f"map {map}" for map in maps))
     decided = ("optimum known", *(f"{by_place['CARP', map].solvable}/{len(by_map[map])}" for map in maps))
-    rows = [(name, *(_cell(by_place[name, map]) for map in maps)) for name in TOLD]
+    rows = [(name, *(_cell(by_place[name, map]) for map in maps)) for name in REPORTED]
     title = f"{title}: in per cent, means with 95 % intervals"
     return Table("gap", title, columns, (decided, *rows), columns[1:])
 

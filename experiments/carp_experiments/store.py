@@ -56,7 +56,7 @@ class Store:
                 self._connection.execute("INSERT INTO results VALUES (?, ?, ?, ?, ?)", record)
         except sqlite3.Error as error:
             message = f"the result of {key} cannot be written: {error}; what is there is whole, and the same command "
-            raise self._refusal(message + "goes on from there once that is put right") from error
+            raise self._refusal(message + "continues from there once that is put right") from error
 
     def rows(self, keys: Iterable[str] | None = None) -> Iterator[tuple[str, Row]]:
         """The rows of these cases, or all, in the order of their keys; raises `Refusal` if one is not as written."""

@@ -53,10 +53,10 @@ def unplanned_row(case: MapCase) -> Row:
 
 
 class Group(msgspec.Struct, frozen=True):
-    """Robots of which some stay unplanned even without the others, and none can be left out.
+    """Robots that block each other: some stay unplanned even without the others, and none can be left out.
 
     In `failing` of `orders` orders CARP leaves one of them unplanned; of more than `MOST_ORDERED` robots no order is
-    tried. `cost` is the least total, `None` if there is none or it was not found; `proved`: the search ended.
+    tried. `cost` is the least total, `None` if none exists or it was not found; `proved`: the search ended.
     """
 
     robots: tuple[RobotId, ...]
@@ -68,7 +68,7 @@ class Group(msgspec.Struct, frozen=True):
 
 
 def repaired(instance: Instance, solution: Solution, rounds: int, seed: int) -> tuple[Solution, int]:
-    """Polish until every robot has a plan, for so many rounds at most; the solution and the rounds played."""
+    """Polish until every robot has a plan, for this many rounds at most; the solution and the rounds played."""
     import carp_optimized as engine  # noqa: PLC0415
 
     played = 0
@@ -173,7 +173,7 @@ class UnplannedRow(msgspec.Struct, frozen=True):
     whole: int | None
 
     def fails_after(self, rounds: int) -> bool:
-        """Whether some robot is still unplanned after so many rounds."""
+        """Whether some robot is still unplanned after this many rounds."""
         return bool(self.left) or self.rounds > rounds
 
     @property
@@ -187,7 +187,7 @@ class Unplanned:
     """What came of the assignments on one map.
 
     `before` are those with an unplanned robot before polish, `unplanned` the mean number of these robots; `after` those
-    with one after so many rounds. Of the last, `unordered` are those in which a group of robots can be planned in no
+    with one after this many rounds. Of the last, `unordered` are those in which a group of robots can be planned in no
     order, `unsolvable` those in which the search found that they cannot be planned at all, and `planned` those for
     which plans of all robots were found around the optimum of the group.
     """
@@ -248,8 +248,8 @@ def maps_table(maps: Sequence[Unplanned]) -> Table:
         for each in maps
     ]
     title = (
-        f"Assignments with an unplanned robot, after {GIVEN} (and the mean number of such robots) and after so many "
-        "rounds of polish; of the last, in how many a few robots by themselves can be planned in no order one after "
+        f"Assignments with an unplanned robot, after {GIVEN} (and the mean number of such robots) and after rounds "
+        "of polish; of the last, in how many a few robots by themselves can be planned in no order one after "
         "the other, in how many the search found that they cannot be planned at all, and for how many plans of all "
         "robots were found around the optimum of these few"
     )
@@ -274,7 +274,7 @@ def groups_table(stuck: Sequence[UnplannedRow]) -> Table:
         for group in row.groups
     ]
     title = (
-        "Robots that stay unplanned after the last round; the robots that block each other, none of which can be left "
+        "Robots that stay unplanned after the last round; the robots that block each other, and none can be left "
         "out; in how many of their orders CARP plans not all of them; the sum of their shortest paths, the "
         "optimum, and the total of plans of all robots found around it"
     )
@@ -284,5 +284,5 @@ def groups_table(stuck: Sequence[UnplannedRow]) -> Table:
 def cost_of(group: Group) -> str:
     """The optimum of a group, in words."""
     if group.cost is None:
-        return "there is none" if group.proved else "not found"
+        return "none exists" if group.proved else "not found"
     return f"{group.cost}" if group.proved else f"at most {group.cost}"

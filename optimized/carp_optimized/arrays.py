@@ -107,7 +107,7 @@ class Guides(NamedTuple):
 
 
 class Search(NamedTuple):
-    """The scratch of a query, never cleared: what an earlier query wrote is of an earlier generation.
+    """The scratch of a query, never cleared: what an earlier query wrote has an earlier generation.
 
     `reached[slot]` is the generation times 2^32 minus the tick at which the window is entered, so that a larger
     label is an earlier entry or a newer query; `parent[slot]` is the window it is entered from, and `goal[0]` the one
@@ -277,7 +277,7 @@ class Polish(NamedTuple):
 
 
 class Answers(NamedTuple):
-    """The answers known in a round: of a member against the set `given`, the plan `plan` (`NONE`: there is none).
+    """The answers known in a round: of a member against the set `given`, the plan `plan` (`NONE`: none exists).
 
     `found` is the plan's record as the query for just this answer made it: what the query read depends on the set.
     Its cost is at least `least`, which is all that is known where the plan is `LATE`.

@@ -49,7 +49,7 @@ def compiled(function: F) -> F:
 
 
 def _widest(type: Any) -> Any:  # noqa: ANN401 - numba is untyped
-    """The type of 64 bits in place of that of a constant or of a shorter number, each of which numba compiles apart."""
+    """The type of 64 bits in place of a constant's or a shorter number's, which numba compiles apart."""
     plain = numba.types.unliteral(type)  # type: ignore[no-untyped-call]
     return numba.types.int64 if plain in numba.types.signed_domain else plain
 

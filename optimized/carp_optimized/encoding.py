@@ -34,7 +34,7 @@ from carp_spec import Fault, Instance, Refusal
 
 GUIDE_PLACES = 1 << 24  # how many entries all guides together have at most, if that is room for 64 of them
 ROOTS = 1024
-STRIPS = 7  # whose product with itself is the number of regions, of which a number of 64 bits has room for 63
+STRIPS = 7  # its square is the number of regions; a number of 64 bits has room for 63
 LARGEST_COORDINATE = 2**29
 NO_LIMIT_THERE = "the reference engine has no such limit"
 

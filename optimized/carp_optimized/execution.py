@@ -195,7 +195,7 @@ def timetable(instance: Instance, solution: Solution) -> Timetable:
 
 
 def _pairs(gap: int, resource: Longs, enter: Longs, leave: Longs, capacity: Longs) -> tuple[Longs, Longs]:
-    """The pairs of visits to one resource of which one is before the other, with none between the two."""
+    """The pairs of visits to one resource, the first before the second, with none between the two."""
     by_enter = np.lexsort((enter, resource))
     follows = (resource[by_enter[1:]] == resource[by_enter[:-1]]) & (capacity[resource[by_enter[1:]]] == 1)
     wide = np.flatnonzero(capacity[resource] > 1)

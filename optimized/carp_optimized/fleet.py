@@ -102,7 +102,7 @@ class Fleet:
         return self._index[robot]
 
     def ticks_to_goal(self, robot: int) -> int:
-        """The cost of a robot's shortest path on the empty graph; 0 if there is none."""
+        """The cost of a robot's shortest path on the empty graph; 0 if none exists."""
         return self._call(lambda: passes.shortest(self._native, robot))
 
     def commit(self, plans: Sequence[Plan]) -> None:

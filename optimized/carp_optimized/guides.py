@@ -10,7 +10,7 @@ from carp_optimized.heap import push, replace_root
 
 @compiled
 def guide_slot(state: State, destination: int) -> int:
-    """The slot that holds the guide of the destination; it is made if there is none."""
+    """The slot that holds the guide of the destination; it is made if none exists."""
     guides = state.guides
     slot = int(guides.slot[destination])
     if slot != NONE:

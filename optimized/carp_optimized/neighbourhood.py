@@ -205,7 +205,7 @@ def plan_members(
 def plan_alone(state: State, work: Work, count: int, now: int, skip_unchanged: bool) -> bool:
     """Bring the members' plans against the robots outside alone up to date; whether all have one.
 
-    The member taken in last comes with its plan among the robots outside. It saw those before it, none of which has
+    The member taken in last comes with its plan among the robots outside. It saw those before it, and none of them has
     changed in this round, so what was taken back does not touch it; those behind it were added since.
     A plan that still fits can be found again, so none that arrives later is.
     """

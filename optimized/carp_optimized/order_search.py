@@ -1,6 +1,6 @@
 """Planning a neighbourhood in all its orders, asking no query whose answer is known or cannot matter.
 
-Three kinds of reuse, each of which leaves the best order and its plans as they are:
+Three kinds of reuse; each leaves the best order and its plans as they are:
 
 - Prefixes. An order that begins like the one before keeps the plans of that beginning: they do not depend on the rest.
 - Shared answers. A query of a robot against `given` plans is answered by one asked against fewer of them, if the plan
@@ -12,7 +12,7 @@ Three kinds of reuse, each of which leaves the best order and its plans as they 
   prefix: more plans leave fewer ways. A prefix whose cost and those of the robots still to come are not below the
   limit has no order that is strictly better. All answers known are looked at only before a query would be asked. It
   is asked for a plan that leaves less than the limit to the others, for with another the prefix is cut at once; that
-  there is none tells what the robot costs at least.
+  none exists gives what the robot costs at least.
 """
 
 from carp_optimized.answers import known_answer, learn, least_of, number_plan, start_answers

@@ -38,7 +38,7 @@ def _fleet(instance: Instance, reuse: Reuse | None = None) -> "Fleet":
 
 
 def query(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0) -> Plan | None:
-    """The plan of one robot with the earliest arrival against the committed plans, or `None` if there is none.
+    """The plan of one robot with the earliest arrival against the committed plans, or `None` if none exists.
 
     A plan of the robot itself among those committed is what it has followed until the tick `now`.
     """
@@ -129,7 +129,7 @@ def polish(
     seed: int = 0,
     advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
 ) -> Solution:
-    """Improve a solution for that many rounds or seconds; `advance` is told rounds, unplanned robots and total.
+    """Improve a solution for that many rounds or seconds; `advance` gets rounds, unplanned robots and total.
 
     It ends earlier if no plan can be shorter. All robots are planned from their release on: none is under way. Equal
     iterations and seed give an equal solution. The time is that of the rounds,

@@ -43,7 +43,7 @@ def choice(stream: Numbers, among: int) -> int:
 
 @compiled
 def play_round(state: State, polish: Polish) -> bool:
-    """Take out a neighbourhood, plan it anew and keep what is not worse; `False` if there is nothing to do."""
+    """Take out a neighbourhood, replan it and keep what is not worse; `False` if there is nothing to do."""
     waiting = 0
     delay = 0
     planned = 0

@@ -173,7 +173,7 @@ def clash(records: Records, one: int, other: int, gap: int) -> bool:
 
 @entry
 def keep_records(native: Native[State], kept: Ints) -> None:
-    """Forget all records but those kept, which are reserved; they are numbered anew, in their order.
+    """Forget all records but those kept, which are reserved; they are numbered again, in their order.
 
     `kept` is in order, so each record moves to a place that is its own or that of one forgotten.
     """

@@ -85,7 +85,7 @@ def _arrays(kind: type) -> tuple[tuple[str, tuple[type[np.generic], int] | None]
 
 
 class View(types.Type):
-    """An array of which only the address and the sizes are known."""
+    """An array known by its address and its sizes alone."""
 
     def __init__(self, dtype: types.Type, dimensions: int) -> None:
         self.dtype = dtype

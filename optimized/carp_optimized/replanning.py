@@ -2,7 +2,7 @@
 
 A query need not be repeated if the windows it would see differ from those it saw as follows.
 
-- Stays were taken back that it could not use. What the search does not insert into its queue anew changes nothing,
+- Stays were taken back that it could not use. What the search does not insert into its queue again changes nothing,
   nor does what is inserted with a larger key than all that is popped afterwards, up to the goal: it is never popped.
   A stay of s taken back in [earliest, latest) lets a resource r that was expanded lead into s at a tick of
   (earliest - d(s), latest), and, if it is s that was expanded, lead out of it at a tick after earliest, or at
@@ -112,7 +112,7 @@ def could_use_freed(state: State, record: int, behind: int) -> bool:
 
 @compiled
 def leads_out(state: State, record: int, k: int, behind: int) -> bool:
-    """Whether the resource of the expansion, of which a stay was taken back, could be left anew so that it matters."""
+    """Whether the expansion's resource, which lost a stay, could be left again so that it matters."""
     graph = state.graph
     records = state.records
     resource = int(records.expanded[k])
@@ -132,7 +132,7 @@ def leads_out(state: State, record: int, k: int, behind: int) -> bool:
 
 @compiled
 def leads_in(state: State, record: int, k: int, behind: int) -> bool:
-    """Whether the resource of the expansion leads anew into one of which a stay was taken back, so that it matters."""
+    """Whether the expansion's resource leads again into one that lost a stay, so that it matters."""
     graph = state.graph
     freed = state.freed
     records = state.records
@@ -195,7 +195,7 @@ def replan(state: State, work: Work, size: int, first: int, now: int, options: O
     A query takes no account of its own robot and those behind, whose plans stay reserved until they change or are run
     into; only where resources have room for several, whose windows do not tell robots apart, are they lifted first.
     A plan that still fits can be found again, so none that arrives later is.
-    Robots before the position keep their plans; where `kept` is off they are planned anew too, to the same effect, if
+    Robots before the position keep their plans; where `kept` is off they are replanned too, to the same effect, if
     their plans came from queries.
     """
     several = state.stays.start.size > BLOCK

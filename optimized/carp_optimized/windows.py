@@ -2,7 +2,7 @@
 
 The windows of a resource of capacity 1 are the gaps between its stays, those of no length included, which are too
 short for any stay: a reservation splits the gap in which it falls, and its withdrawal joins the two. Where following is
-forbidden, a gap is a tick shorter at both ends. The windows of other resources are made anew from their stays.
+forbidden, a gap is a tick shorter at both ends. The windows of other resources are made again from their stays.
 """
 
 from carp_optimized.arrays import BLOCK, NEVER, NONE, Ints, Records, Rows, State
@@ -167,7 +167,7 @@ def append_window(windows: Rows, resource: int, start: int, end: int) -> None:
 
 @compiled
 def sweep_windows(windows: Rows, stays: Rows, resource: int, capacity: int, gap: int) -> None:
-    """Make the windows of the resource anew from its stays, which last `gap` ticks longer than the robots are there."""
+    """Remake the windows of the resource from its stays, which last `gap` ticks longer than the robots are there."""
     clear_row(windows, resource)
     into = int(stays.offset[resource])
     out = into
@@ -246,7 +246,7 @@ def is_exchange(state: State, slot: int, tick: int, target: int) -> bool:
     """Whether leaving the window at the tick for `target` meets a committed robot that comes from there.
 
     In a resource of capacity 1 that robot is the one that ends the window, so the tick is the window's end; where
-    following is forbidden, there is none.
+    following is forbidden, none exists.
     """
     resource = int(state.windows.resource[slot])
     if state.graph.capacity[resource] == 1:

@@ -43,7 +43,7 @@ def lower_bound(
     steps: int | None = None,
     on_step: Callable[[Progress], None] = lambda _: None,
 ) -> BoundDocument:
-    """Search for so many seconds or steps, whichever is over first, or until nothing is gained any more.
+    """Search for this many seconds or steps, whichever is over first, or until nothing is gained any more.
 
     With steps alone, the same instance gives the same certificate. `on_step` is called after each step, and now and
     then while cuts are searched for. Raises `Refusal` for numbers that are too large.
@@ -57,27 +57,27 @@ def lower_bound(
     search = PriceSearch(instance, SCALE)
     cuts = CutSearch(search)
 
-    def told(count: int, best: int) -> None:
+    def report(count: int, best: int) -> None:
         on_step(Progress(count, -(-best // SCALE)))
 
     def look() -> None:
-        told(search.count, search.best)
+        report(search.count, search.best)
         rough(search.count)
 
-    told(0, search.best)
+    report(0, search.best)
     with suppress(TimeOver):
         gain = search.best // FIRST_AIM
         while gain > 0 or not cuts.is_exhausted:
-            search.climb(gain, ROUGH_AIM, lambda: rough(search.count), told)
+            search.climb(gain, ROUGH_AIM, lambda: rough(search.count), report)
             gain = cuts.round(look)
     with suppress(TimeOver):
-        search.climb(ROUGH_AIM, FINE_AIM, lambda: end(search.count), told)
+        search.climb(ROUGH_AIM, FINE_AIM, lambda: end(search.count), report)
     search.finish()
     return _certificate(search, cuts)
 
 
 def _limit(seconds: float | None, steps: int | None, parts: int) -> Callable[[int], None]:
-    """What raises `TimeOver` once so many parts of the time, or of the steps, are over; it is told the steps taken."""
+    """What raises `TimeOver` once this many parts of the time, or of the steps, are over; it gets the steps taken."""
     deadline = None if seconds is None else Deadline(seconds * parts / PARTS)
 
     def check(count: int) -> None:

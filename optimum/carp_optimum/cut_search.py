@@ -52,7 +52,7 @@ class CutSearch:
     def round(self, check: Callable[[], None]) -> int:
         """Add the cuts that the average costs near the best prices break: by how many parts of a tick, together.
 
-        `is_exhausted` tells afterwards whether all groups that offered themselves have been tried.
+        `is_exhausted` is afterwards whether all groups that offered themselves have been tried.
         """
         self.is_exhausted = True
         meetings: Counter[Members] = Counter()

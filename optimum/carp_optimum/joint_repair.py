@@ -158,7 +158,7 @@ class _Finder:
         return self._fleet.find_beside(self._fleet.index(robot), records)
 
     def _filling(self, plan: Plan) -> list[int]:
-        """The records of the plan, and of so many more visits of each resource that nobody has room beside it."""
+        """The records of the plan, and of this many more visits of each resource that nobody has room beside it."""
         if plan not in self._records:
             visits = (visit for visit in plan.visits for _ in range(self._capacity[visit.resource] - 1))
             single = (Plan(plan.robot, (visit,)) for visit in visits)

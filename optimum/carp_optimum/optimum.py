@@ -1,10 +1,10 @@
 """The least total cost of plans for all robots, by a core-guided search over one encoding.
 
 Each robot is assumed to have no delay at first. As long as the assumptions cannot hold together, the solver names
-a core of them, one of which must be given up: the lower bound rises by one, the robots in the core get a longer
+a core of them, and one of these must be given up: the lower bound rises by one, the robots in the core get a longer
 horizon, and the next assumption is that no other one of the core is given up. Once the assumptions hold, the
-model's plans have a total of just the lower bound; the conflicts among them are forbidden and the search goes
-on, until there are none. Source: the OLL algorithm of Andres, Kaufmann, Matheis and Schaub 2012, over delays.
+model's plans have a total of just the lower bound; the conflicts among them are forbidden and the search
+continues, until none is left. Source: the OLL algorithm of Andres, Kaufmann, Matheis and Schaub 2012, over delays.
 
 Where no plan set exists, the search finds one of these obstacles (`carp_verify.unsolvable` says why each is one):
 
@@ -59,7 +59,7 @@ class Optimum:
 def optimum(instance: Instance, limit: float, clock: Callable[[], int] = monotonic_ns) -> Optimum:
     """Search for the optimum for at most `limit` seconds. Raises `Refusal` if the formula outgrows the memory.
 
-    What is found does not depend on the clock, which tells nanoseconds: the same instance gives the same solution.
+    What is found does not depend on the clock, which gives nanoseconds: the same instance gives the same solution.
     """
     require_following(instance)
     deadline = Deadline(limit, clock)

@@ -153,7 +153,7 @@ class PriceSearch:
     ) -> None:
         """Take steps that aim less and less above the best bound, from the first aim to the last, in parts of a tick.
 
-        `check` is called before each and may raise `TimeOver`; `on_step` is told the steps and the best bound.
+        `check` is called before each and may raise `TimeOver`; `on_step` gets the steps and the best bound.
         """
         bound = self._restore()
         self.best = max(self.best, bound)
@@ -180,7 +180,7 @@ class PriceSearch:
         self._restore()
 
     def wander(self, steps: int, aim: int, on_step: Callable[[], None]) -> Longs:
-        """Take so many steps near the best prices: the robots' costs, summed over the steps."""
+        """Take this many steps near the best prices: the robots' costs, summed over the steps."""
         bound = self._restore()
         total = np.zeros(len(self.instance.robots), np.int64)
         for _ in range(steps):
@@ -262,7 +262,7 @@ def _moves_back(instance: Instance) -> Mapping[int, int]:
 
 
 def _sized(market: Market, horizon: int, delays: int) -> Market:
-    """The market with tables for so many ticks and delays."""
+    """The market with tables for this many ticks and delays."""
     requests, graph = market.requests, market.graph
     robots, resources, edges = requests.start.size, graph.duration.size, graph.target.size
     ticks = int((requests.earliest - requests.release).max(initial=0)) + delays

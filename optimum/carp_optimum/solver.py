@@ -19,7 +19,7 @@ class Deadline:
     __slots__ = ("_clock", "_end", "_start")
 
     def __init__(self, seconds: float, clock: Callable[[], int] = monotonic_ns) -> None:
-        """Begin now; `clock` tells nanoseconds."""
+        """Begin now; `clock` gives nanoseconds."""
         self._clock = clock
         self._start = clock()
         self._end = self._start + int(seconds * NANOSECONDS)
@@ -30,11 +30,11 @@ class Deadline:
             raise TimeOver
 
     def is_past(self, parts: int, of: int) -> bool:
-        """Whether so many parts, of the time until it in equal parts, have gone by."""
+        """Whether this many parts, of the time until it in equal parts, have gone by."""
         return (self._clock() - self._start) * of >= (self._end - self._start) * parts
 
     def part(self, of: int) -> "Deadline":
-        """A deadline after one of so many equal parts of the same time, from now."""
+        """A deadline after one of a number of equal parts of the same time, from now."""
         return Deadline((self._end - self._start) / NANOSECONDS / of, self._clock)
 
 
@@ -53,7 +53,7 @@ class Solver:
         self._sent = 0
 
     def satisfiable(self, assumptions: Sequence[Literal], conflicts: int | None = None) -> bool | None:
-        """Whether the formula has a model in which the assumptions hold; `None` if so many conflicts do not tell."""
+        """Whether the formula has a model in which the assumptions hold; `None` if this many conflicts do not tell."""
         for clause in self.formula.clauses[self._sent :]:
             self._solver.add_clause(list(clause))
         self._sent = len(self.formula.clauses)

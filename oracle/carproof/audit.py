@@ -62,7 +62,7 @@ class Auditor:
         self._committed.append(plan)
 
     def earlier_plan(self, plan: Plan) -> Plan | None:
-        """A plan that arrives earlier; if there is none, the plan is certified."""
+        """A plan that arrives earlier; if none exists, the plan is certified."""
         best, certificate = self._certifier.certify(plan.robot)
         if best is not None and best.visits[-1].enter < plan.visits[-1].enter:
             if not self.has_room(best) or not plans_are_lawful(self._instance, [best]):

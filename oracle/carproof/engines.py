@@ -49,7 +49,7 @@ class Engine(Protocol):
         seed: int = 0,
         advance: Callable[[int, int, int], None] = ...,
     ) -> Solution:
-        """Better plans; `advance` is told rounds, unplanned robots and total."""
+        """Better plans; `advance` gets rounds, unplanned robots and total."""
 
 
 class FastestEngine:

@@ -35,7 +35,7 @@ TOGETHER = ("joint/capacity", "joint/exchange")
 
 @rule(
     "request/delays",
-    "A delay is of a visit of a planned robot, for a whole number of ticks above 0, and no visit is named twice.",
+    "A delay concerns a visit of a planned robot, for a whole number of ticks above 0, and no visit is named twice.",
     DESIGN,
 )
 def delays_are_right(solution: Solution, delays: Sequence[Delay]) -> bool:  # noqa: D103
@@ -148,7 +148,7 @@ def execute(instance: Instance, solution: Solution, driver: Driver, delays: tupl
 
 
 class EdgeDocument(msgspec.Struct, frozen=True):
-    """An edge of the dependency graph: after is entered at least so many ticks after before; visits are positions."""
+    """An edge of the dependency graph: after is entered at least this many ticks after before; visits are positions."""
 
     kind: str
     before: tuple[RobotId, int]

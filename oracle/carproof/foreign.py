@@ -12,12 +12,12 @@ from carproof.files import InputFile, read_bytes, shown
 from carproof.movingai import movingai_instance, read_map, read_scenario
 
 F = TypeVar("F", bound=Callable[..., Any])
-AGENTS_HELP = "The first so many of the scenario's agents.  [default: all]"
+AGENTS_HELP = "The first N of the scenario's agents.  [default: all]"
 
 
 def formats() -> str:
     """The formats, each with what it is."""
-    return "; ".join(f"{each.name}: {each.tells}" for each in ADAPTERS.values())
+    return "; ".join(f"{each.name}: {each.description}" for each in ADAPTERS.values())
 
 
 def from_option(function: F) -> F:
@@ -70,5 +70,5 @@ def read_movingai(benchmark: MovingAI) -> Instance:
 
 
 def read_solution_of(instance: Instance, name: str, format: str | None) -> Solution:
-    """Read a solution in whoever's format from a file or standard input."""
+    """Read a solution in any planner's format from a file or standard input."""
     return read_foreign_solution(read_bytes(name), instance, shown(name), format)

@@ -14,7 +14,7 @@ def gap_document(gap: Gap) -> dict[str, Any]:
     """The optimum, or null and the lower bound; the least total over all orders, if known; and the planners.
 
     `proved` means that the search for the optimum ended with an answer, which rests on its solver. The total of a
-    planner is of the robots that it planned.
+    planner covers the robots that it planned.
     """
     best = gap.optimum
     planners = [

@@ -18,7 +18,7 @@ class GivenWay:
     """What came of it.
 
     `solution` has the new plans, or is `None` where the robot itself or those that are `stuck` have none; then nothing
-    is to be committed. `extra` has the robots that were planned anew, each with the ticks by which it arrives later.
+    is to be committed. `extra` has the robots that were replanned, each with the ticks by which it arrives later.
     No lawful update arrives before `least`; `arrival` is proved to be first if it is that tick.
     """
 
@@ -101,8 +101,8 @@ def plan_around(
 ) -> dict[RobotId, Plan] | RobotId:
     """The plans of the others around the first plan, as few of them new as is seen, or a robot that finds none.
 
-    Those that collide are planned anew in their order. If one finds no plan, the robots that its plan beside histories
-    alone would run into are planned anew after it.
+    Those that collide are replanned in their order. If one finds no plan, the robots that its plan beside histories
+    alone would run into are replanned after it.
     """
     before = {plan.robot: plan for plan in others}
     moving = colliding(instance, [first], others)

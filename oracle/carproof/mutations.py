@@ -116,7 +116,7 @@ def robot_overstays(instance: Instance, solution: Solution) -> Iterator[BrokenSo
 
 
 def robot_goes_against_another(instance: Instance, solution: Solution) -> Iterator[BrokenSolution]:
-    """A robot waits where another moves to, makes the opposite move at the same tick, comes back and goes on."""
+    """A robot waits where another moves to, makes the opposite move at the same tick, comes back and continues."""
     moves = [
         (mover, following.enter, visit.resource, following.resource)
         for mover in solution.plans
@@ -149,7 +149,7 @@ MUTATIONS: tuple[Mutation, ...] = (
 
 
 def later(visits: tuple[Visit, ...], ticks: int) -> tuple[Visit, ...]:
-    """The visits so many ticks later."""
+    """The visits this many ticks later."""
     return tuple(
         Visit(visit.resource, visit.enter + ticks, None if visit.leave is None else visit.leave + ticks)
         for visit in visits

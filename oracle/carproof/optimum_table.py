@@ -1,4 +1,4 @@
-"""The table of times of the search for an optimum, in docs/results/gaps.md; `make optimum-figures` makes it anew.
+"""The table of times of the search for an optimum, in docs/results/gaps.md; `make optimum-figures` makes it again.
 
 Everything but the clock is decided by seeds.
 """
@@ -24,7 +24,7 @@ COLUMNS = ("map", "robots", "after the goal", "decided", "median s", "worst s")
 
 @dataclass(frozen=True, slots=True)
 class Family:
-    """So many instances of one kind, each with a map, starts and goals of its own."""
+    """Instances of one kind, each with a map, starts and goals of its own."""
 
     size: int
     map: int

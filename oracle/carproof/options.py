@@ -84,7 +84,7 @@ def _option(flags: str, help: str, default: object, **settings: Any) -> Callable
 
 
 _PLANNER_OPTIONS: dict[str, Callable[[Any], Any]] = {
-    "m": _option("--m", "neighbourhood: how many robots are planned anew together.", Neighbourhood().m, type=int),
+    "m": _option("--m", "neighbourhood: how many robots are replanned together.", Neighbourhood().m, type=int),
     "sample": _option("--sample", "neighbourhood: how many of their orders are tried.", "all", type=int),
     "seed": _option("--seed", "neighbourhood, shuffled: the seed of random orders.", Neighbourhood().seed, type=int),
     "baseline": _option(

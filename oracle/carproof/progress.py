@@ -26,7 +26,7 @@ def progress(label: str, steps: int) -> Iterator[Callable[[], None]]:
 
 @contextmanager
 def search_progress(label: str, most: int | None, seconds: float | None) -> Iterator[Callable[[int, str], None]]:
-    """Show a bar up to so many steps, or seconds if they are given; what it yields is told steps and what was found."""
+    """Show a bar of steps, or of seconds if given; yields a function that takes steps and what was found."""
     if not sys.stderr.isatty():
         yield lambda _, __: None
         return

@@ -63,7 +63,7 @@ class Draw:
         return choices[next(self.stream) % len(choices)]
 
     def happens(self, one_in: int) -> bool:
-        """True once in so many times."""
+        """True once in this many times."""
         return next(self.stream) % one_in == 0
 
 

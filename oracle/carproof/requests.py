@@ -104,10 +104,10 @@ def require_tick(now: object, path: str) -> None:
 
 
 def robot_called(instance: Instance, name: str) -> RobotId:
-    """The robot whose id prints like the name; raises `Refusal` if there is none, or if `1` and `"1"` both do."""
+    """The robot whose id prints like the name; raises `Refusal` if none exists, or if `1` and `"1"` both do."""
     called = [robot.id for robot in instance.robots if str(robot.id) == name]
     if len(called) > 1:
-        message = f"a robot's id must be told from the others when printed, and {len(called)} print as {name}"
+        message = f"a robot's id must differ from the others when printed, and {len(called)} print as {name}"
         raise Refusal("request", "ROBOT", robot_is_known.id, message)
     id = called[0] if called else name
     require_robot(instance, id, "ROBOT")

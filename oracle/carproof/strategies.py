@@ -8,7 +8,7 @@ For tests of planners and of checkers, ours and other people's:
     @given(fleets_under_way())
     def test_my_planner_adds_robots(fleet): ...
 
-What they draw obeys every rule of an instance and, where nothing else is said, of plans. Nothing is filtered
+Their draws obey every rule of an instance and, where nothing else is stated, of plans. Nothing is filtered
 out, so they are fast, and they shrink to few resources, few robots, short plans and small numbers.
 """
 
@@ -161,7 +161,7 @@ def committed_plans(
 
 @st.composite
 def _paths(draw: st.DrawFn, graph: ResourceGraph, robot: Robot) -> tuple[ResourceId, ...]:
-    """A path to the robot's goal over a drawn resource, a direct one if there is none, or no resource."""
+    """A path to the robot's goal over a drawn resource, a direct one if none exists, or no resource."""
     over = draw(st.sampled_from([robot.start, *graph.index]))
     there, back = path_between(graph, robot.start, over), path_between(graph, over, robot.goal)
     return (*there[:-1], *back) if there and back else path_between(graph, robot.start, robot.goal)

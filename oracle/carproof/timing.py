@@ -19,7 +19,7 @@ class Entry:
 
 
 def path_between(graph: ResourceGraph, source: ResourceId, target: ResourceId) -> tuple[ResourceId, ...]:
-    """A path of the fewest moves, or no resource at all if there is none."""
+    """A path of the fewest moves, or no resource at all if none exists."""
     paths: dict[ResourceId, tuple[ResourceId, ...]] = {source: (source,)}
     for reached in (queue := [source]):
         for following in graph.successors[reached]:

@@ -1,4 +1,4 @@
-"""Solutions that an executor can follow in order: rotations are removed, each by one robot that is planned anew.
+"""Solutions that an executor can follow in order: rotations are removed, each by one robot that is replanned.
 
 In a rotation, robots enter each other's places at one tick. One of them is kept from its place at that tick, and asks
 for the earliest plan beside the others; of the robots in the rotation the one is taken whose plan costs least more.
@@ -18,7 +18,7 @@ MOST_ROUNDS = 10_000
 class Untangled:
     """The solution without rotations, how many rounds it took, and the ticks that it costs more.
 
-    `rotation` has the robots of a rotation out of which no robot finds another plan; it then is in the solution still.
+    `rotation` has the robots of a rotation in which no robot finds another plan; it then stays in the solution.
     """
 
     solution: Solution

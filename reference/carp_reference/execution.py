@@ -194,7 +194,7 @@ def on_the_clock(order: Order, delays: Iterable[Delay]) -> dict[Node, int]:
 
 
 def in_order(order: Order, delays: Iterable[Delay]) -> dict[Node, int]:
-    """When each visit is entered if every robot goes on as soon as its dependencies allow.
+    """When each visit is entered if every robot continues as soon as its dependencies allow.
 
     Robots that wait for each other in a circle, and those that wait for them, never enter: they are left out.
     """

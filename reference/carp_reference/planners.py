@@ -25,7 +25,7 @@ from carp_spec import (
 
 
 def query(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0) -> Plan | None:
-    """The plan of one robot with the earliest arrival against the committed plans, or `None` if there is none.
+    """The plan of one robot with the earliest arrival against the committed plans, or `None` if none exists.
 
     A plan of the robot itself among those committed is what it has followed until the tick `now`.
     """

@@ -1,4 +1,4 @@
-"""Polishing: a solution is improved by planning neighbourhoods anew, with the decisions of `polish/...`.
+"""Polishing: a solution is improved by replanning neighbourhoods, with the decisions of `polish/...`.
 
 A round takes out a pivot and robots that have to do with it, plans them again one after the other, and keeps what
 is not worse. Robots without a plan are tried first, so that polishing also repairs.
@@ -51,7 +51,7 @@ def polish(
     seed: int = 0,
     advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
 ) -> Solution:
-    """Improve a solution for that many rounds or seconds; `advance` is told rounds, unplanned robots and total.
+    """Improve a solution for that many rounds or seconds; `advance` gets rounds, unplanned robots and total.
 
     It ends earlier if no plan can be shorter. All robots are planned from their release on: none is under way. Equal
     iterations and seed give an equal solution.
@@ -122,7 +122,7 @@ def _candidates(polishing: Polish, plans: Plans, kind: Kind, pivot: RobotId) -> 
 
 
 def _replan(problem: Problem, plans: Plans, members: Sequence[RobotId]) -> Plans:
-    """The plans with those of the members made anew, in this order."""
+    """The plans with those of the members made again, in this order."""
     changed = {robot: plan for robot, plan in plans.items() if robot not in members}
     for robot in members:
         plan = find_plan(problem, tuple(changed.values()), robot)

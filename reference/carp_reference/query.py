@@ -34,7 +34,7 @@ def find_plan(
     successors: Mapping[ResourceId, Sequence[ResourceId]] | None = None,
     expanded: list[Node] | None = None,
 ) -> Plan | None:
-    """The plan with the earliest arrival against the committed plans, or `None` if there is none.
+    """The plan with the earliest arrival against the committed plans, or `None` if none exists.
 
     `successors` are the moves allowed, where not all moves of the graph are. The nodes that the search expands are
     added to `expanded`, if it is given.

@@ -95,7 +95,7 @@ def _is_waiting(order: Order, enters: Mapping[Node, int], first: Node, second: N
 
 
 def _neighbours(order: Order) -> Iterator[tuple[Node, Node]]:
-    """The visits to places for one robot of which one comes right after the other."""
+    """The pairs of visits to places for one robot, the second right after the first."""
     for visits in _sequences(order).values():
         yield from pairwise(visits)
 

@@ -1,7 +1,7 @@
 """The naive twin of the CARP query: A* tick by tick on a table of occupied ticks (the paper's [spatioTempA*]).
 
 It shares no code with the query over windows, which is tested against it: it finds a plan that arrives at the
-same tick, or none where there is none. Its plans may differ where several arrive as early.
+same tick, or none where none exists. Its plans may differ where several arrive as early.
 """
 
 from collections import Counter, defaultdict

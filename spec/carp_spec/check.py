@@ -56,9 +56,9 @@ def judge(instance: Instance, solution: Solution, most: int | None = MOST_LISTED
 
 
 def check_update(before: Sequence[Plan], after: Sequence[Plan], now: int) -> tuple[Violation, ...]:
-    """All violations of `fleet/history` by plans made anew at the tick now.
+    """All violations of `fleet/history` by plans made again at the tick now.
 
-    A robot that has a plan before and none after has not been planned anew, and is passed over.
+    A robot that has a plan before and none after has not been replanned, and is passed over.
     """
     again = {plan.robot: plan for plan in after}
     return tuple(

@@ -80,7 +80,7 @@ def dependencies(instance: Instance, plans: Sequence[Plan]) -> Iterator[Dependen
 
 
 def _direct(instance: Instance, stays: Sequence[Stay]) -> Iterator[tuple[Stay, Stay]]:
-    """The pairs of stays of which one is before the other, with none between the two."""
+    """The pairs of stays, the first before the second, with none between the two."""
     left = sorted(
         ((stay.visit.leave + instance.gap, place) for place, stay in enumerate(stays) if stay.visit.leave is not None),
     )

@@ -196,8 +196,8 @@ def _shape_error(data: bytes, kind: type[D]) -> tuple[str, str] | None:
         msgspec.json.decode(data, type=kind)
     except UNREADABLE as error:
         message, found, path = str(error).rpartition(" - at `")
-        told = message if found else path
-        return (path.rstrip("`") if found else "$", (told[:1].lower() + told[1:]).replace("`", ""))
+        reason = message if found else path
+        return (path.rstrip("`") if found else "$", (reason[:1].lower() + reason[1:]).replace("`", ""))
     return None
 
 

@@ -54,7 +54,7 @@ def _crowded(
 
 
 def _crowds(capacity: int, changes: Changes) -> Iterator[tuple[int, int | None, set[RobotId]]]:
-    """The maximal intervals with too many robots at each tick, and all robots that are there at one of the ticks."""
+    """The maximal intervals with too many robots at each tick, and all robots that are present at one of the ticks."""
     present: Counter[RobotId] = Counter()
     crowd: set[RobotId] = set()
     start: int | None = None

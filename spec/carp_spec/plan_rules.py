@@ -126,7 +126,7 @@ def is_total_cost(instance: Instance, plans: Sequence[Plan], cost: int) -> bool:
 
 @violation_rule(
     "fleet/history",
-    "A plan made anew at the tick now keeps every visit that it had entered by now: the last of them is entered at "
+    "A plan made again at the tick now keeps every visit that it had entered by now: the last of them is entered at "
     "the same tick and left no earlier than now, those before it are unchanged. A plan that has ended by now is "
     "unchanged.",
     DESIGN,

@@ -1,6 +1,6 @@
 """The rules of polishing: a solution is improved round by round, `polish/...`.
 
-Each round takes out a few robots, the neighbourhood, plans them anew in a drawn order, and keeps what is not worse.
+Each round takes out a few robots, the neighbourhood, replans them in a drawn order, and keeps what is not worse.
 Each predicate makes one decision of the round; planners call it, or are tested against it. A round draws its
 kind, its pivot, what its candidates need, its members and their order, one after the other.
 
@@ -123,7 +123,7 @@ def _meets(span: Span, visit: Visit) -> bool:
 
 @rule(
     "polish/contested",
-    "A choice among the visits of the pivot's plan tells a resource and the tick at which it is entered. The "
+    "A choice among the visits of the pivot's plan gives a resource and the tick at which it is entered. The "
     "candidates are the other robots that visit the resource, by how many ticks earlier or later they enter it, at "
     "the visit for which these are fewest; a tie goes to the earlier in the instance.",
     f"{LARGE_NEIGHBOURHOOD}; {DESIGN}",
@@ -190,7 +190,7 @@ def _is_time(seconds: object) -> bool:
 
 
 def last_round(iterations: int | None, seconds: float | None) -> int | None:
-    """After how many rounds a polish ends at the latest; `None`: the time tells."""
+    """After how many rounds a polish ends at the latest; `None`: the time decides."""
     return ITERATIONS if iterations is None and seconds is None else iterations
 
 

@@ -29,7 +29,8 @@ def plan_is_optimal(instance: Instance, committed: Sequence[Plan], plan: Plan, r
 
 @rule(
     "query/complete",
-    "That there is no plan is said only where every plan breaks a rule, alone or together with the committed plans.",
+    "The answer that no plan exists is given only where every plan breaks a rule, alone or together with the committed "
+    "plans.",
     MORS,
 )
 def absence_is_true(instance: Instance, committed: Sequence[Plan], rivals: Iterable[Plan]) -> bool:

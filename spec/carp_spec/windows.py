@@ -67,9 +67,9 @@ def windows_are_free(windows: Sequence[Window], occupations: Sequence[Occupation
     bounds = [bound for window in windows for bound in (window.start, window.end) if bound is not None]
     starts = [tick for enter, _ in occupations for tick in (max(enter - gap, 0), enter)]
     ticks = {0, *starts, *ends, *bounds}
-    told = [(tick, any(window.start <= tick and window.lasts_until(tick + 1) for window in windows)) for tick in ticks]
+    shown = [(tick, any(window.start <= tick and window.lasts_until(tick + 1) for window in windows)) for tick in ticks]
     all_told_rightly = all(
-        free == all(occupancy(longer, each) < capacity for each in (tick, tick + gap)) for tick, free in told
+        free == all(occupancy(longer, each) < capacity for each in (tick, tick + gap)) for tick, free in shown
     )
     each_lasts = all(window.start >= 0 and (window.end is None or window.start < window.end) for window in windows)
     gaps_between = all(one.end is not None and one.end < two.start for one, two in pairwise(windows))

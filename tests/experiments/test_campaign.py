@@ -1,4 +1,4 @@
-"""The campaign engine: the same results whoever computes, and nothing lost or doubled by what goes wrong."""
+"""The campaign engine: the same results whatever computes, and nothing lost or doubled by what goes wrong."""
 
 import resource
 import signal
@@ -105,7 +105,7 @@ def test_a_full_disk_is_told_and_the_run_goes_on_once_there_is_room(tmp_path: Pa
     )
     assert run.returncode == 1
     assert "cannot be written" in run.stderr
-    assert "goes on from there" in run.stderr
+    assert "continues from there" in run.stderr
     assert run.stderr.count("\n") == 1
     assert 0 < _rows(path) < 120
     with open_store(path, "squares") as store:
@@ -137,7 +137,7 @@ def _rows(path: Path) -> int:
 
 def test_a_lost_worker_is_told_and_the_run_can_go_on(tmp_path: Path) -> None:
     with open_store(tmp_path / "store", "squares") as store:
-        with pytest.raises(Refusal, match=r"a worker was lost.*goes on where it stopped"):
+        with pytest.raises(Refusal, match=r"a worker was lost.*continues where it stopped"):
             run_campaign([*CASES, Lost()], store, Workers(2), nothing)
         run_campaign(CASES, store, Workers(), nothing)
         assert len(store.keys()) == len(CASES)

@@ -89,7 +89,7 @@ def test_the_report_counts_what_came_of_the_failures() -> None:
     assert maps.rows == (("4", "4/5 (1.60)", "4/5", "3/5", "3/5", "2/3", "1/3", "2/3"),)
     assert [line[4:] for line in groups.rows] == [
         ("2/2", "3", "9", "70"),
-        ("2/2", "3", "there is none", "-"),
+        ("2/2", "3", "none exists", "-"),
         ("of 5,040 none tried", "3", "9", "70"),
     ]
     (only,) = unplanned_report(rows[3:]).tables

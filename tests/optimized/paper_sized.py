@@ -1,4 +1,4 @@
-"""Questions of the paper's size, and digests of the reference's answers; `make paper-sized` makes them anew.
+"""Questions of the paper's size, and digests of the reference's answers; `make paper-sized` makes them again.
 
 The reference takes from a second to minutes for an answer, so the gate compares the optimised planner with the
 digests, in paper_sized.txt beside this file.

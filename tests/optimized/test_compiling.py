@@ -1,4 +1,4 @@
-"""What is compiled is compiled once, says so, and is compiled anew when any source has changed."""
+"""What is compiled is compiled once, says so, and is compiled again when any source has changed."""
 
 import ast
 import os

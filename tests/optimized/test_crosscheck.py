@@ -1,4 +1,4 @@
-"""`first_difference` finds a planted difference, makes it small, and finds none where there is none."""
+"""`first_difference` finds a planted difference, makes it small, and finds none where none exists."""
 
 import pytest
 

@@ -48,7 +48,7 @@ def kinds_of_reuse() -> st.SearchStrategy[Reuse]:
 
 @st.composite
 def crowds(draw: st.DrawFn) -> Instance:
-    """So many robots for so few resources, some with room for several, that those behind one stand in its way."""
+    """This many robots for so few resources, some with room for several, that those behind one stand in its way."""
     size = draw(st.integers(3, 6))
     indices = st.integers(0, size - 1)
     resources = tuple(Resource(k, draw(st.sampled_from((1, 2, 2, 3))), draw(st.integers(1, 2))) for k in range(size))

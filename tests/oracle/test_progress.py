@@ -21,7 +21,7 @@ CODES = re.compile(r"\x1b\[[0-9;?]*[a-zA-Z]")
 
 
 def on_a_terminal(*arguments: object, columns: int = 80) -> list[str]:
-    """What carproof shows on a terminal, each line as often as it is written anew."""
+    """What carproof shows on a terminal, each line as often as it is written again."""
     ours, theirs = pty.openpty()
     fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
     environment = {name: value for name, value in os.environ.items() if name not in ("CI", "COLUMNS", "NO_COLOR")}

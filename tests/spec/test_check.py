@@ -89,7 +89,7 @@ PLANTED: dict[str, tuple[tuple[Plan, ...], list[str]]] = {
     "stays in two visits": (first_plan(("a", 0, 1), ("a", 1, 2), ("b", 2, 3), ("c", 3, 5), ("d", 5, 6)), ["plan/move"]),
     "is nowhere for a tick": (first_plan(("a", 0, 1), ("b", 2, 3), ("c", 3, 5), ("d", 5, 6)), ["plan/contiguous"]),
     "is twice for a tick": (first_plan(("a", 0, 3), ("b", 2, 3), ("c", 3, 5), ("d", 5, 6)), ["plan/contiguous"]),
-    "never leaves, and goes on": (
+    "never leaves, and continues": (
         first_plan(("a", 0, 2), ("b", 2, None), ("c", 3, 5), ("d", 5, 6)),
         ["plan/contiguous"],
     ),

@@ -1,4 +1,4 @@
-"""Costs, and what a plan made anew must keep; the other rules of a plan are tested with the checker."""
+"""Costs, and what a plan made again must keep; the other rules of a plan are tested with the checker."""
 
 import pytest
 from hypothesis import given

@@ -40,7 +40,7 @@ def accepted(name: str, document: dict[str, Any]) -> tuple[bool, bool]:
 
 @pytest.mark.parametrize("name", DOCUMENTS)
 def test_the_published_schema_is_the_generated_one(name: str) -> None:
-    assert schema_file(name).read_text() == document_schema(name), "`make generated` writes it anew"
+    assert schema_file(name).read_text() == document_schema(name), "`make generated` writes it again"
 
 
 def test_write_schemas_writes_them_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

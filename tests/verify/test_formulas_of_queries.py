@@ -139,7 +139,7 @@ def test_a_node_may_be_taken_where_the_key_of_the_specification_lets_it() -> Non
 def test_the_first_entry_taken_is_final_and_every_other_way_has_a_node_in_the_queue(
     trace: Trace, pattern: Pattern, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The search goes on behind the goal, so that every way is seen."""
+    """The search continues behind the goal, so that every way is seen."""
     monkeypatch.setattr(SEARCH, "_can_end", lambda *_: False)
     ways = 0
     for case in cases(pattern):

@@ -87,7 +87,7 @@ def test_an_unsolvable_instance_is_found_with_its_obstacle(instance: Instance, r
 
 
 def clock_of(seconds_a_look: float) -> Iterator[int]:
-    """The nanoseconds that a clock tells which only goes on when it is looked at."""
+    """The nanoseconds that a clock tells which only continues when it is looked at."""
     return (round(look * seconds_a_look * 1_000_000_000) for look in count())
 
 

@@ -21,7 +21,7 @@ def group_of(instance: Instance, robots: Sequence[RobotId]) -> Instance:
 
 
 def formula_of(instance: Instance, cut: CutDocument, most: int) -> Formula:
-    """The formula that a cut's refutation is of; its robots must be known.
+    """The formula that a cut refutes; its robots must be known.
 
     Raises `NotRefutedError` if the cut has no such formula, and `Refusal` if that has more than `most` clauses.
     """

@@ -17,7 +17,7 @@ def is_about(named: str, digest: str) -> bool:
     return named == digest
 
 
-@rule("bound/scale", "The scale is a power of two: so many parts of a tick are counted as 1.", DESIGN)
+@rule("bound/scale", "The scale is a power of two: this many parts of a tick are counted as 1.", DESIGN)
 def is_scale(scale: object) -> bool:
     """Whether it is a power of two."""
     return is_whole(scale) and scale > 0 and scale & (scale - 1) == 0

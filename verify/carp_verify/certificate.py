@@ -56,13 +56,13 @@ class Certificate:
 
 
 class Terms:
-    """What z3 is told of the tick that it is asked for; equal terms are made once, as making them takes so long.
+    """The terms about the tick that z3 is asked for; equal terms are made once, as making them takes so long.
 
     Over many resources there are far fewer different stays than visits.
     """
 
     def __init__(self) -> None:
-        """Begin with a tick of which nothing is known."""
+        """Begin with a tick about which nothing is known."""
         self.tick: Int = integer("tick")
         self._stays: dict[tuple[int, int | None], Bool] = {}
         self._ticks: dict[int, Bool] = {}

@@ -1,6 +1,6 @@
 """Clauses and the numbers written in them: literals as DIMACS has them, and sums of unary numbers.
 
-A unary number is a list of literals, the k-th of which (from 1) says that the number is at least k.
+A unary number is a list of literals, and the k-th (from 1) means that the number is at least k.
 """
 
 from collections.abc import Sequence
@@ -36,7 +36,7 @@ class Formula:
             self.require(len(self.clauses))
 
     def require(self, size: int) -> None:
-        """Raise `Refusal` if so many clauses are too many."""
+        """Raise `Refusal` if this many clauses are too many."""
         refuse_size("the clauses of the formula", size, self.most)
 
     def at_least(self, addends: Sequence[Unary], most: int) -> Unary:

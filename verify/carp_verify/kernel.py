@@ -78,7 +78,7 @@ class KernelVerdict(msgspec.Struct, frozen=True):
 
 
 def program() -> str:
-    """The kernel's program; raises `Refusal` if there is none."""
+    """The kernel's program; raises `Refusal` if none exists."""
     built = str(BUILT) if BUILT.is_file() else None
     found = which(os.environ[VARIABLE]) if VARIABLE in os.environ else built or which(PROGRAM)
     if found is None:

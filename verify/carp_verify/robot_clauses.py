@@ -6,7 +6,7 @@ thus no dearer than one of one tick, and in (t - d(r), t] the robot is in r.
 
 The robot's delay is its cost minus its shortest-path cost, written as a unary number. Each node has a least delay,
 that of the best way through it, and is there only if this delay is at most the robot's `horizon`. A robot that
-is later than its horizon is not described at all: where a way leaves the nodes that are there, the clause ends in
+is later than its horizon is not described at all: where a way leaves the nodes that exist, the clause ends in
 `delay > horizon`. So every plan of the robot is a model of the clauses, whatever the horizon (the clauses are a
 relaxation), and every model with a delay within the horizon holds a plan of at most that delay.
 """

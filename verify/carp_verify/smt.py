@@ -41,14 +41,14 @@ class Int(Protocol):
 
 
 class IntFunction(Protocol):
-    """A function of whole numbers of which nothing is known but that equal arguments give equal values."""
+    """A function of whole numbers about which nothing is known but that equal arguments give equal values."""
 
     def __call__(self, *arguments: Int | int) -> Int:
         """Its value as a term."""
 
 
 class Predicate(Protocol):
-    """A predicate of whole numbers of which nothing is known but that equal arguments give equal answers."""
+    """A predicate of whole numbers about which nothing is known but that equal arguments give equal answers."""
 
     def __call__(self, *arguments: Int | int) -> Bool:
         """Its answer as a term."""
@@ -59,7 +59,7 @@ class Undecided(Exception):  # noqa: N818 - z3's answer is `unknown`; that is no
 
 
 def integer(name: str) -> Int:
-    """A whole number of which nothing is known."""
+    """A whole number about which nothing is known."""
     term: Int = z3.Int(name)
     return term
 
@@ -70,18 +70,18 @@ def integers(names: str) -> Sequence[Int]:
 
 
 def truth(name: str) -> Bool:
-    """A truth value of which nothing is known."""
+    """A truth value about which nothing is known."""
     return Bool(z3.Bool(name))
 
 
 def int_function(name: str, arity: int = 1) -> IntFunction:
-    """An unknown function of so many whole numbers."""
+    """An unknown function of this many whole numbers."""
     function: IntFunction = z3.Function(name, *[z3.IntSort()] * (arity + 1))
     return function
 
 
 def predicate(name: str, arity: int = 1) -> Predicate:
-    """An unknown predicate of so many whole numbers."""
+    """An unknown predicate of this many whole numbers."""
     function: Predicate = z3.Function(name, *[z3.IntSort()] * arity, z3.BoolSort())
     return function
 

@@ -35,7 +35,7 @@ from carp_verify.query_certificate_rules import (
 
 
 class Traffic:
-    """Where the committed plans are, and when: it takes plans one by one, and tells which windows are free."""
+    """Where the committed plans are, and when: it takes plans one by one, and gives the free windows."""
 
     def __init__(self, instance: Instance) -> None:
         self.instance = instance

@@ -15,7 +15,7 @@ class Interval:
 
 
 def interval(name: str) -> Interval:
-    """An interval of which nothing is known."""
+    """An interval about which nothing is known."""
     return Interval(integer(f"{name}.start"), integer(f"{name}.end"), truth(f"{name}.for_ever"))
 
 

@@ -1,6 +1,6 @@
 (** The least weighted cost of one robot with its prices: labels show that no way of it costs less than is claimed.
 
-    A label (resource, tick, amount) means: whoever is free to leave the resource at the tick has paid at least the
+    A label (resource, tick, amount) means: a robot that is free to leave the resource at the tick has paid at least the
     amount. Labels that are closed under waiting and moving, as far as the claim goes, prove the claim. Who made the
     labels does not matter. *)
 Require Import ZArith List Bool Lia.

@@ -44,7 +44,7 @@ Variables (bound : option Z) (label_map : Map.t (list Z)) (potential : Map.t (Z 
 (** The tick is not before the bound. *)
 Definition reaches (tick : Z) : bool := match bound with Some t => t <=? tick | None => false end.
 
-(** Whoever enters the resource at the tick enters the goal no earlier than the bound. *)
+(** A robot that enters the resource at the tick enters the goal no earlier than the bound. *)
 Definition is_late (id tick : Z) : bool :=
   match Map.find id potential with Some (_, ticks) => reaches (tick + ticks) | None => true end.
 

@@ -35,7 +35,7 @@ Local Notation labels := (Query.labels i known c a).
 
 (** * Dominance *)
 
-(** The label is of the window that the visit is in, entered no later, and left no later if the robot wants. *)
+(** The label concerns the window that the visit is in, entered no later, and left no later if the robot wants. *)
 Record Dominates (l : label) (v : visit) : Prop := {
   same_place : In (target l) (resources i) /\ resource_id (target l) = visit_resource v;
   same_room : holds_stay (room l) (enter v) (leave v) = true;

@@ -14,7 +14,7 @@ let deepest = 100
 
 let malformed what = refuse "$" "document/json" ("the document must be JSON in UTF-8: " ^ what)
 
-(* The number of bytes of the character in UTF-8 at a place of the text; 0 if there is none. *)
+(* The number of bytes of the character in UTF-8 at a place of the text; 0 if none exists. *)
 let character_length text at =
   let byte k = if at + k < String.length text then Char.code text.[at + k] else 0 in
   let continued k = byte k land 0xC0 = 0x80 in

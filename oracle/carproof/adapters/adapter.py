@@ -18,7 +18,7 @@ class Adapter:
     """
 
     name: str
-    tells: str
+    description: str
     looks_like: Callable[[str], bool]
     read: Read
     write: Write

@@ -1,6 +1,6 @@
 """Paths agent by agent: lines `Agent 0: (a,b)->(a,b)->`, one position a tick, agents numbered from 0.
 
-CBSH2, EECBS, PBS, MAPF-LNS and their kin write (row,column); others write (x,y). These are two adapters, told apart
+CBSH2, EECBS, PBS, MAPF-LNS and their kin write (row,column); others write (x,y). These are two adapters, distinguished
 by the robots' starts. Agent k is the instance's k-th robot, and an agent without a line is unplanned.
 Semantics: `walks`.
 """
@@ -24,7 +24,7 @@ _CELL = re.compile(r"\((-?\d+),(-?\d+)\)")
     "output of EECBS and its kin",
 )
 def paths_are_right(text: str, robots: int) -> bool:
-    """Whether the text is such a file for so many robots."""
+    """Whether the text is such a file for this many robots."""
     try:
         _pairs(text, robots, "file")
     except Refusal:

@@ -24,7 +24,7 @@ _CELL = re.compile(r"\((-?\d+),(-?\d+)\)")
     "output of LaCAM and input of mapf-visualizer",
 )
 def lines_are_right(text: str, robots: int) -> bool:
-    """Whether the text is such a file for so many robots."""
+    """Whether the text is such a file for this many robots."""
     try:
         _positions(text, robots, "file")
     except Refusal:

@@ -61,7 +61,7 @@ class _Schedule:
     def refuse(self, message: str) -> Refusal:
         return Refusal("document", f"{self.file}:{self.line}", schedule_is_right.id, message)
 
-    def next(self, *kinds: str, right: str) -> Any:  # noqa: ANN401 - the YAML library tells no types
+    def next(self, *kinds: str, right: str) -> Any:  # noqa: ANN401 - the YAML library has no types
         """The next event, which must be of one of the kinds."""
         event = next(self.events, None)
         kind = type(event).__name__.removesuffix("Event")
@@ -70,7 +70,7 @@ class _Schedule:
         return event, kind
 
     def fields(self, right: str) -> Iterator[str]:
-        """The names of a mapping's fields; whoever asks for the next has taken the field's value."""
+        """The names of a mapping's fields; the caller takes the field's value before it asks for the next."""
         self.next("MappingStart", right=right)
         while True:
             event, kind = self.next("Scalar", "MappingEnd", right="a name")

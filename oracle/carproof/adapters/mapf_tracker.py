@@ -30,7 +30,7 @@ _FIELD = re.compile(r'"([^"]*)"|([^",\n]+)')
     "files of the MAPF tracker",
 )
 def moves_are_right(text: str, robots: int) -> bool:
-    """Whether the text is such a file for so many robots."""
+    """Whether the text is such a file for this many robots."""
     try:
         _lines(text, robots, "file")
     except Refusal:

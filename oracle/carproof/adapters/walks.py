@@ -37,7 +37,7 @@ def instance_has_walks(instance: Instance) -> bool:
 
 @rule("adapter/size", f"Walks have at most {MOST_CELLS} cells together, waiting counted tick by tick.", DESIGN)
 def walks_are_bounded(cells: int) -> bool:
-    """Whether so many cells fit in memory."""
+    """Whether this many cells fit in memory."""
     return cells <= MOST_CELLS
 
 

@@ -1,4 +1,4 @@
-"""`carproof add`: add one robot to plans that are there, by the neighbourhood planner."""
+"""`carproof add`: add one robot to given plans, by the neighbourhood planner."""
 
 from pathlib import Path
 from typing import Any, cast

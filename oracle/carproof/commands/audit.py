@@ -61,7 +61,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
     The plans may be of any planner; they must break no rule. They are looked at in the planning order of SOLUTION, and
     all are at tick 0: no robot is under way. Other planners' formats have no such order. There, as with --find-order,
-    one is looked for in which no plan is late, and if there is none, the plans are listed that are late in every order.
+    one is looked for in which no plan is late, and if none exists, the plans are listed that are late in every order.
 
     An audit does not say whether a plan has the ties that carproof prefers, whether another order would be better, or
     whether robots without a plan could have one.

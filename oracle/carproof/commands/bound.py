@@ -40,11 +40,11 @@ def command(
 ) -> Answer:
     """Find a lower bound on the total cost of any plans for all robots of INSTANCE.
 
-    Robots pay prices for places that they contend for: what they cost then at least, less what can be paid at most,
-    no plans can beat. --output writes the prices as a certificate, which verify-bound checks. The gap is that of
+    Robots pay prices for places that they contend for. The bound is the cheapest priced paths minus the most that
+    the prices can collect. --output writes the prices as a certificate, which verify-bound checks. The gap is that of
     the plans given, or else of the best of ten orders in which the robots are planned one after the other.
 
-    Exit codes: 0 here is a bound, 1 a robot has no way to its goal (the bound is that of the others), 2 bad input.
+    Exit codes: 0 a bound is found, 1 a robot has no way to its goal (the bound is that of the others), 2 bad input.
     """
     require("pysat")
     from carp_optimum.bound import Progress, lower_bound  # noqa: PLC0415 - loads the planners

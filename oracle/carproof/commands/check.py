@@ -57,7 +57,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     is broken. Robots without a plan break no rule; they are counted, and with --require-all the answer is no.
     Either file may be - for standard input.
 
-    SOLUTION is carproof's document or another planner's output (--from). Such output is of classical multi-agent
+    SOLUTION is carproof's document or another planner's output (--from). Such output is read as classical multi-agent
     path finding: robots are there from tick 0, move or wait in each tick, and stay at their goals for ever;
     following is allowed, swapping is not; durations and capacities are one unless INSTANCE says otherwise.
 

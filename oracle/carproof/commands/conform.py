@@ -128,7 +128,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
     require("hypothesis", "pysat")
     if format is not None and not one_shot:
-        raise click.UsageError("--from is of the files that programs write with --one-shot.")
+        raise click.UsageError("--from concerns the files that programs write with --one-shot.")
     if shutil.which(program[0]) is None:
         raise click.UsageError(f"{program[0]}: there is no such program, or it may not be run.")
     warm()

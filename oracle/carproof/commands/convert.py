@@ -47,7 +47,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     With --after-goal park, the default, an instance is classical multi-agent path finding: 4-connected, capacities
     and durations of one, and the cost is the sum of costs. The scenario's lengths are of octile moves and not used.
 
-    With --to, the files are INSTANCE and SOLUTION. Other planners' formats hold plans of robots that are there from
+    With --to, the files are INSTANCE and SOLUTION. Other planners' formats hold plans of robots that are present from
     tick 0 and park, on resources with positions; a solution that breaks a rule, or needs what the format cannot
     say, is refused.
 
@@ -56,10 +56,10 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     refuse_two_standard_inputs(first, second)
     if to is None:
         if format is not None:
-            raise click.UsageError("--from is of a solution, and so is --to.")
+            raise click.UsageError("--from and --to concern a solution.")
         return show_instance(read_movingai(MovingAI(first, second, agents, after_goal or "park")), output, as_json)
     if agents is not None or after_goal is not None or as_json:
-        raise click.UsageError("--agents, --after-goal and --json are of instances, and --to is of a solution.")
+        raise click.UsageError("--agents, --after-goal and --json concern instances, and --to concerns a solution.")
     instance = read_instance_file(first)
     data = write_foreign_solution(instance, read_solution_of(instance, second, format), to)
     if output is None:

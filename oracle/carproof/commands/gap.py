@@ -37,7 +37,7 @@ MOST_INSTANCES = 10_000
 @click.argument("instance", type=InputFile(), required=False)
 @limit_option
 @json_option
-@click.option("--size", type=RangeType(), help="Generate square grids, so many cells wide, like 3..8.")
+@click.option("--size", type=RangeType(), help="Generate square grids, this many cells wide, like 3..8.")
 @click.option(
     "--map",
     "maps",

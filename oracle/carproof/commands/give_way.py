@@ -83,7 +83,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     if not as_json:
         proved = "no lawful update is earlier" if found.is_first else f"none is earlier than {found.least}"
         print_line(f"robot {id} arrives at tick {found.arrival}: {proved}")
-        print_table(["planned anew", "later by"], found.extra.items(), numbers=["later by"])
+        print_table(["replanned", "later by"], found.extra.items(), numbers=["later by"])
     return Answer.of(found.is_first)
 
 

@@ -87,6 +87,6 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
 
 def repairs_unasked(context: click.Context, options: dict[str, Any]) -> bool:
-    """Whether plans are repaired if nothing is said of it: not those of a planner that is named, nor the paper's."""
+    """Whether plans are repaired by default: not those of a planner that is named, nor the paper's."""
     is_named = context.get_parameter_source("planner") is not click.core.ParameterSource.DEFAULT
     return not is_named and options["baseline"] is not False

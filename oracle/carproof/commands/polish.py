@@ -1,4 +1,4 @@
-"""`carproof polish`: improve a solution by planning neighbourhoods anew."""
+"""`carproof polish`: improve a solution by replanning neighbourhoods."""
 
 from pathlib import Path
 from time import perf_counter
@@ -65,7 +65,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 ) -> Answer:
     """Improve SOLUTION, plans for INSTANCE, round by round; robots without a plan get one, if it can be found.
 
-    A round takes out a few robots, plans them anew, and keeps what is not worse. Equal --iterations and --seed
+    A round takes out a few robots, replans them, and keeps what is not worse. Equal --iterations and --seed
     give equal plans. All robots are planned from their release on: none is under way. The bound, which no plans
     of all robots are below, is the sum of the shortest paths, or that of --bound, which is verified first.
 

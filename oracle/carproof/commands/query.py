@@ -63,7 +63,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     Those plans stay as they are. A plan that SOLUTION has of ROBOT itself is what it has followed until --now.
     The file of --certificate is for carproof verify-query, also where there is no plan.
 
-    Exit codes: 0 here is the plan, 1 there is none, 2 bad input.
+    Exit codes: 0 a plan is found, 1 no plan exists, 2 bad input.
     """
     refuse_two_standard_inputs(instance, solution)
     require_tick(now, "$.now")

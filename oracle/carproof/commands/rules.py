@@ -27,7 +27,7 @@ def command(id: str | None) -> Answer:
 
 
 def rule_named(id: str) -> Rule[..., Any]:
-    """The rule of that id; the nearest ids are suggested where there is none."""
+    """The rule of that id; the nearest ids are suggested where none exists."""
     rules = {rule.id: rule for rule in ALL_RULES}
     if id not in rules:
         near = get_close_matches(id, rules, cutoff=0.5)

@@ -32,9 +32,9 @@ from carproof.untangling import untangle
 @output_option
 @json_option
 def command(*, instance: str, solution: str, engine: str | None, output: Path | None, as_json: bool) -> Answer:
-    """Plan robots of SOLUTION anew until no robots enter each other's places in a circle.
+    """Replan robots of SOLUTION until no robots enter each other's places in a circle.
 
-    In each such rotation the robot is planned anew whose plan then costs least more; the others keep their plans.
+    In each such rotation the robot is replanned whose plan then costs least more; the others keep their plans.
 
     Exit codes: 0 no rotation is left, 1 out of one no robot finds another plan, and nothing is written, 2 bad input.
     """

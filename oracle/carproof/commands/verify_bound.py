@@ -34,7 +34,7 @@ COLUMNS = ("lower bound", "robots", "prices", "cuts", "horizon", "decided by")
 def command(*, instance: str, certificate: str, kernel: bool, as_json: bool) -> Answer:
     """Check that CERTIFICATE proves its lower bound on the total cost of plans for all robots of INSTANCE.
 
-    The least cost with prices of each robot is found anew, in whole numbers, by code that shares nothing with the
+    The least cost with prices of each robot is found again, in whole numbers, by code that shares nothing with the
     search for the prices. The proved kernel (--kernel) assumes of each cut that its formula is right.
 
     Exit codes: 0 the bound is proved, 1 it is not, 2 bad input, 3 the kernel cannot decide.

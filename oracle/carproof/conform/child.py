@@ -31,7 +31,7 @@ class Limits:
 
 
 def environment() -> Mapping[str, str]:
-    """The environment of a process: nothing in it tells which case is asked."""
+    """The environment of a process: nothing in it shows which case is asked."""
     return {name: value for name, value in os.environ.items() if not name.startswith(_HIDDEN)}
 
 

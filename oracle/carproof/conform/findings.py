@@ -90,7 +90,7 @@ def is_accepted(error: object) -> bool:
     return error is None
 
 
-@rule("program/optimal", "What is told as the optimum is the least total cost of plans for all robots.", DESIGN)
+@rule("program/optimal", "The cost given as the optimum is the least total cost of plans for all robots.", DESIGN)
 def is_optimal(cost: int | None, least: int | None) -> bool:
     """Whether the cost is the least; `None` is that there are no plans for all robots."""
     return cost == least
@@ -102,7 +102,7 @@ def is_optimal(cost: int | None, least: int | None) -> bool:
     DESIGN,
 )
 def is_complete(unplanned: int, least: int | None) -> bool:
-    """Whether so many robots may be unplanned; `least` is the least total cost, `None` if not all can have plans."""
+    """Whether this many robots may be unplanned; `least` is the least total cost, `None` if not all can have plans."""
     return unplanned == 0 or least is None
 
 
@@ -124,7 +124,7 @@ def is_lower(bound: int, least: int | None) -> bool:
     DESIGN,
 )
 def answers_enough(answered: int, asked: int) -> bool:
-    """Whether so many answers are enough of so many random cases of one op."""
+    """Whether this many answers are enough of this many random cases of one op."""
     return 100 * answered >= LEAST_ANSWERED * asked
 
 
@@ -136,7 +136,7 @@ def answers_enough(answered: int, asked: int) -> bool:
     DESIGN,
 )
 def tries_enough(tried: int, gave_up: int) -> bool:
-    """Whether so many tries are enough of the random cases of one op that have an answer."""
+    """Whether this many tries are enough of the random cases of one op that have an answer."""
     return 100 * tried >= LEAST_TRIED * (tried + gave_up)
 
 

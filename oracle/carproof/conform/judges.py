@@ -1,4 +1,4 @@
-"""What each level asks of an answer. Whoever gives an answer is judged by it alone, not by how it was found."""
+"""The demands of each level on an answer. A program is judged by its answer alone, not by how it was found."""
 
 from collections.abc import Iterator, Sequence
 
@@ -185,13 +185,13 @@ def worth(case: Case, plans: Sequence[Plan]) -> tuple[int, int]:
 
 def _check_findings(case: Case, verdict: VerdictDocument, level: Level) -> Iterator[Finding]:
     right = verdict_document(judge(case.instance, case.solution))
-    told = list(dict.fromkeys(violation.rule for violation in verdict.violations))
+    broken = list(dict.fromkeys(violation.rule for violation in verdict.violations))
     broken = list(dict.fromkeys(violation.rule for violation in right.violations))
     for rule in broken:
-        if rule not in told:
+        if rule not in broken:
             message = next(violation.message for violation in right.violations if violation.rule == rule)
             yield wrong(rule, f"the verdict must tell that it is broken: {message}")
-    for rule in told:
+    for rule in broken:
         if rule not in broken:
             yield wrong(rule, "the verdict must not tell that it is broken")
     if verdict.valid != right.valid:

@@ -77,16 +77,18 @@ class OneShot:
         command = self._command(instance, folder, solution)
         with output.open("wb") as stdout, errors.open("wb") as stderr:
             code = self._wait(command, stdout.fileno(), stderr.fileno(), seconds)
-        told = self._beginning(errors)[-_KEPT_STDERR:].decode("utf-8", "backslashreplace")
+        ending_of_errors = self._beginning(errors)[-_KEPT_STDERR:].decode("utf-8", "backslashreplace")
         if code is None:
-            raise Fault(Finding(Category.TIMEOUT, is_in_time.id, f"no answer within {seconds:g} s", told))
+            raise Fault(Finding(Category.TIMEOUT, is_in_time.id, f"no answer within {seconds:g} s", ending_of_errors))
         answer = solution if names(self._template, SOLUTION) else output
         written = self._beginning(answer) if answer.is_file() else b""
         if code not in (0, 1) or (code == 1 and not written):
-            raise Fault(Finding(Category.CRASH, is_alive.id, ending(code), told))
+            raise Fault(Finding(Category.CRASH, is_alive.id, ending(code), ending_of_errors))
         if not (written or self.is_classical) or len(written) > self._limits.output:
             much = "nothing" if not written else f"more than {self._limits.output} bytes"
-            raise Fault(Finding(Category.PROTOCOL_ERROR, is_result.id, f"it wrote {much} as its answer", told))
+            raise Fault(
+                Finding(Category.PROTOCOL_ERROR, is_result.id, f"it wrote {much} as its answer", ending_of_errors)
+            )
         return written
 
     def _command(self, instance: Instance, folder: Path, solution: Path) -> list[str]:

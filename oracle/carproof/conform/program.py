@@ -13,7 +13,7 @@ from carproof.conform.findings import Fault, Finding, is_response
 from carproof.protocol import VERSION
 
 STARTING = 5
-"""A program that has just been started may take so many times as long for its first answer."""
+"""A program that has just been started may take this many times as long for its first answer."""
 _ID_BITS = 31
 
 
@@ -61,7 +61,7 @@ class Program:
         return reply
 
     def _request(self, op: str, fields: dict[str, Any], seconds: float) -> msgspec.Raw | Skipped:
-        """Send a request; whoever breaks the protocol is started anew before the next one."""
+        """Send a request; a program that breaks the protocol is started again before the next one."""
         assert self._child is not None  # noqa: S101 - a promise of ours
         id = next(self._ids)
         line = msgspec.json.encode({"id": id, "op": op, **fields}) + b"\n"

@@ -17,7 +17,7 @@ from carproof.conform.vector_cases import vector_cases
 
 _IN_CONTEXT = Level.COMPLETE_IN_CONTEXT
 MOST_FAULTS = 3
-"""After so many crashes, timeouts and protocol errors no further fixed case is asked: each costs a new process."""
+"""After this many crashes, timeouts and protocol errors no further fixed case is asked: each costs a new process."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +99,7 @@ class Report:
 
     @property
     def shortfalls(self) -> list[str]:
-        """Why answers of which none is wrong are too few for the level."""
+        """Why right answers are too few for the level."""
         if self.findings or self.interrupted:
             return []
         ops = self.options.ops

@@ -37,7 +37,7 @@ class FailureSearch:
         self.best: Outcome | None = None
 
     def run(self, cases: "SearchStrategy[Case]", examples: int, seed: int) -> None:
-        """Draw so many cases at most."""
+        """Draw at most `examples` cases."""
         from hypothesis import HealthCheck, Phase, find, settings  # noqa: PLC0415 - loaded only where used
         from hypothesis.errors import NoSuchExample  # noqa: PLC0415
 

@@ -29,7 +29,7 @@ def row(
     capacity: str = "",
     duration: str = "",
 ) -> Instance:
-    """An instance: cells in a row; the capacities and durations given as digits, 1 where there is none."""
+    """An instance: cells in a row; the capacities and durations given as digits, 1 where none exists."""
     resources = tuple(
         Resource(cell, int(capacity[x : x + 1] or 1), int(duration[x : x + 1] or 1), x, 0)
         for x, cell in enumerate(cells)

@@ -21,7 +21,7 @@ class Subject(Protocol):
         """Get ready; raises `Fault` if that goes wrong."""
 
     def ask(self, case: Case, seconds: float | None = None) -> Reply:
-        """Its reply, within so many seconds (`None`: the usual limit); raises `Fault` if there is none to judge."""
+        """Its reply, within this many seconds (`None`: the usual limit); raises `Fault` if none exists to judge."""
 
     def finish(self) -> None:
         """Bid farewell; raises `Fault` if that goes wrong."""

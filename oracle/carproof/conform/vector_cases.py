@@ -1,4 +1,4 @@
-"""The test vectors that a program can be asked. It sees their questions alone; the judges find the answers anew."""
+"""The test vectors that a program can be asked. It sees their questions alone; the judges find the answers again."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace

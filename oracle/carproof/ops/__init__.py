@@ -1,7 +1,7 @@
 """The ops of the protocol, in one table; the server, `conform`, the schema, the documentation and help are made of it.
 
 To add an op, write a dataclass of its request, a class of its result and a handler into a module of this package, and
-put the handler into `OPS`. `make generated` then writes the schema and the documentation anew.
+put the handler into `OPS`. `make generated` then writes the schema and the documentation again.
 """
 
 from collections.abc import Callable, Mapping

@@ -134,7 +134,7 @@ class UntangledDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True)
 
 
 def untangle(request: UntangleRequest, engine: Engine) -> UntangledDocument:
-    """Plan robots anew until no robots enter each other's places in a circle."""
+    """Replan robots until no robots enter each other's places in a circle."""
     with inside("$.solution"):
         sound = sound_solution(request.instance, request.solution)
     with inside("$.instance"):
@@ -156,7 +156,7 @@ class GiveWayRequest:
 class GivenWayDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The new plans, null if there are none; the arrival, and a tick before which no lawful update arrives.
 
-    `extra` are pairs of a robot planned anew and the ticks by which it arrives later; `stuck` are robots that find no
+    `extra` are pairs of a robot replanned and the ticks by which it arrives later; `stuck` are robots that find no
     plan around the earliest one.
     """
 

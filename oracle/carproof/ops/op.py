@@ -70,7 +70,7 @@ def _polish_options(request: Request) -> PolishOptions:
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """Options that stand in a request beside its other fields: of which classes they are, and how they are taken.
+    """Options that stand in a request beside its other fields: their classes, and how they are taken.
 
     Where there are several classes, the field `planner` names one.
     """

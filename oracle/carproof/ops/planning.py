@@ -22,7 +22,7 @@ class QueryRequest:
 
 
 class QueryDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The visits of the plan, or null if there is none."""
+    """The visits of the plan, or null if none exists."""
 
     plan: tuple[tuple[ResourceId, int, int | None], ...] | None
 

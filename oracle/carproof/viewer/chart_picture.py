@@ -35,7 +35,7 @@ class TimeScale:
         return LABELS + (tick - self.first) * self.width // (self.end - self.first)
 
     def span(self, start: int, end: int | None) -> tuple[int, int]:
-        """Where an interval begins and how wide it is; one for ever goes on to the chart's edge."""
+        """Where an interval begins and how wide it is; one for ever continues to the chart's edge."""
         left, right = self.at(start), self.at(self.end if end is None else min(end, self.end))
         return left, max(1, right - left)
 

@@ -90,7 +90,7 @@ def place_traits(place: Place) -> str:
 
 
 def robot_picture(robots: Element, track: Track) -> Element:
-    """A robot at the origin, of a radius of ten; whoever draws it moves and scales it."""
+    """A robot at the origin, of a radius of ten; the caller moves and scales it."""
     robot = group(robots, f"robot tint{track.tint}")
     SubElement(robot, "title").text = track.label
     SubElement(robot, "circle", {"r": str(ROBOT_RADIUS)})
@@ -99,7 +99,7 @@ def robot_picture(robots: Element, track: Track) -> Element:
 
 
 def standing(track: Track, scene: Scene, tick: int) -> Stand | None:
-    """Where the robot is at the tick; a broken plan may name several places, of which the last visit's counts."""
+    """Where the robot is at the tick; a broken plan may name several places; the last visit's counts."""
     for stand, enter, leave in reversed(track.stays):
         if enter <= tick and (leave is None or tick < leave):
             return scene.stands[stand]
@@ -107,7 +107,7 @@ def standing(track: Track, scene: Scene, tick: int) -> Stand | None:
 
 
 def violations_at(scene: Scene, tick: int) -> Iterator[Broken]:
-    """The violations that hold at the tick; one that takes no time is told for one tick."""
+    """The violations that hold at the tick; one that takes no time is shown for one tick."""
     for each in scene.violations:
         if each.start is not None and each.start <= tick and (each.end is None or tick < max(each.end, each.start + 1)):
             yield each

@@ -1,4 +1,4 @@
-"""The pictures in the project's own pages; `python -m carproof.viewer.samples` draws them anew."""
+"""The pictures in the project's own pages; `python -m carproof.viewer.samples` draws them again."""
 
 from collections.abc import Mapping
 from pathlib import Path

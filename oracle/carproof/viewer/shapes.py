@@ -45,7 +45,7 @@ def svg_text(element: Element) -> str:
 
 
 def hatch_definition(picture: Element) -> None:
-    """Define the hatching that marks violations, so that they are told apart without their colour."""
+    """Define the hatching that marks violations, so that they differ without their colour."""
     pattern = SubElement(
         SubElement(picture, "defs"),
         "pattern",

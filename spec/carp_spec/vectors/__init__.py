@@ -3,7 +3,7 @@
 Each file beside this module is about one subject, a rule's id or an op, and lists cases. A case is a question (`op`,
 `instance` and `input`, the fields of a request of the protocol) with the right `answer`, and says whether what is
 judged is `valid` or `invalid`, and all rules that are `violated`. Judged is the `claim`, an answer that somebody
-might give, or, where there is none, the question's own input. Where no op of the protocol reaches a rule, the op is
+might give, or, where none exists, the question's own input. Where no op of the protocol reaches a rule, the op is
 the rule's id and asks its predicate alone.
 
 An id means the same case for ever: `digests.txt` names every case with a digest of all but flags and comment, and
@@ -57,7 +57,7 @@ class Vector(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     @property
     def request(self) -> Fields:
-        """The fields of the request that asks the question; it tells nothing of the answer."""
+        """The fields of the request that asks the question; it shows nothing of the answer."""
         instance = {} if self.instance is None else {"instance": self.instance}
         return {"op": self.op, **instance, **self.input}
 

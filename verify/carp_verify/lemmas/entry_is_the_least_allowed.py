@@ -1,6 +1,6 @@
-"""The tick at which a query enters a window is the least at which it may, and if that is too late there is none.
+"""The tick at which a query enters a window is the least at which it may, and if that is too late none exists.
 
-The search begins at the later of the tick from which the robot may leave and the window's start, and goes on one tick
+The search begins at the later of the tick from which the robot may leave and the window's start, and continues one tick
 at a time while a committed robot makes the opposite move at the tick (`joint/exchange`). Its invariant: every tick
 before the one looked at is too early, or an exchange. z3 checks that it holds at the beginning, that a step keeps it,
 and what it gives at the end.

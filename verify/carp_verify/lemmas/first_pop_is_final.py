@@ -31,7 +31,7 @@ def is_final(g: Int, g_other: Int) -> Bool:
 
 
 def _premises() -> Sequence[Bool]:
-    """`g` is of the node taken, `g_other` of another way to its window, `f_queued` of that way's node in the queue."""
+    """`g` belongs to the node taken, `g_other` to another way to its window, `f_queued` to its queued node."""
     g, g_other, h, f_queued = integers("g g_other h f_queued")
     return [g >= 0, g_other >= 0, h >= 0, is_ahead(f_queued, g_other, h)]
 

@@ -1,6 +1,6 @@
 """Two maximal intervals of free ticks that share a tick are the same, so the occupancy determines the free windows.
 
-Maximal: every tick in it is free, the tick before it is not or there is none, and the tick after its end is not free
+Maximal: every tick in it is free, the tick before it is not or none exists, and the tick after its end is not free
 or it has no end. z3 is given "every tick" only at the ticks at which the intervals begin and end, which is enough.
 
 By hand: that every free tick lies in one maximal interval, so that the windows as a set are determined.

@@ -2,7 +2,7 @@
 
 The sweep goes from one tick of change to the next, with a window open or not. Its invariant, at such a tick: a window
 is open if and only if the tick is free; it has been free since the window opened; the tick before that is not free, or
-there is none; and the ticks so far are free if and only if a finished or the open window holds them. z3 checks that
+none exists; and the ticks so far are free if and only if a finished or the open window holds them. z3 checks that
 the invariant holds at tick 0, that a step keeps it, and what it gives after the last change.
 
 By hand: the induction over changes. That ticks between two changes are like the first is a premise here and another
@@ -105,7 +105,7 @@ def _after(sweep: Sweep, step: Step) -> dict[str, Bool]:
             between(0, sweep.other, sweep.tick + 1),
             same(free(sweep.other), sweep.covered(step.is_open, step.opened, holds_other)),
         ),
-        "the tick before an open window is not free, or there is none": implies(
+        "the tick before an open window is not free, or none exists": implies(
             step.is_open, any_of(equal(step.opened, 0), negation(free(step.opened - 1)))
         ),
         "a finished window has a tick, and the tick after it is not free": implies(
@@ -150,8 +150,8 @@ def mutants() -> Iterator[Formula]:
     forgets = Step(any_of(sweep.is_open, right.is_open), right.opened, right.finishes)
     yield Formula("a finished window stays open", _invariant(sweep), _after(sweep, forgets)[covers])
     reopens = Step(right.is_open, choose(right.is_open, sweep.tick, sweep.opened), right.finishes)
-    maximal = "the tick before an open window is not free, or there is none"
-    yield Formula("every free tick of change opens a window anew", _invariant(sweep), _after(sweep, reopens)[maximal])
+    maximal = "the tick before an open window is not free, or none exists"
+    yield Formula("every free tick of change opens a window again", _invariant(sweep), _after(sweep, reopens)[maximal])
 
 
 LEMMA = Lemma(

@@ -36,8 +36,8 @@ class RobotList {
       const name = (place) => (place === null ? "?" : scene.places[place].label);
       button.append(make("span", `swatch tint${track.tint}`), make("strong", "", track.label));
       button.append(make("small", "", ` ${name(track.start)} → ${name(track.goal)}`));
-      const told = [track.note, track.cost === null ? "" : `cost ${track.cost}`].filter((each) => each);
-      button.append(make("small", "", told.length ? ` · ${told.join(" · ")}` : ""));
+      const notes = [track.note, track.cost === null ? "" : `cost ${track.cost}`].filter((each) => each);
+      button.append(make("small", "", notes.length ? ` · ${notes.join(" · ")}` : ""));
       button.addEventListener("click", () => jump(number));
       return button;
     });
