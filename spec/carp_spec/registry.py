@@ -18,6 +18,7 @@ from carp_spec.neighbourhood_rules import (
 from carp_spec.plan_rules import PLAN_RULES, is_plan_cost, is_total_cost, plan_keeps_history
 from carp_spec.planners import options_are_right
 from carp_spec.polish_rules import POLISH_RULES
+from carp_spec.priority_rules import robot_is_first
 from carp_spec.query_rules import absence_is_true, expansion_key, plan_is_optimal, plan_is_sound
 from carp_spec.rule import Rule
 from carp_spec.windows import stay_fits, windows_are_free
@@ -50,5 +51,6 @@ RULES: tuple[Rule[..., Any], ...] = (
     *TRACE_RULES,
     *EXECUTION_RULES,
     is_acyclic,
+    robot_is_first,
     options_are_right,
 )

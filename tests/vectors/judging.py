@@ -24,6 +24,7 @@ from carp_spec import (
     judge,
     plan_cost,
     planner_named,
+    read_solution,
     total_cost,
 )
 from carp_spec.bounds import read_bound
@@ -54,6 +55,7 @@ from carp_spec.polish_rules import (
     spans,
     ticks_apart,
 )
+from carp_spec.priority_rules import robot_is_first
 from carp_spec.query_certificates import read_query_certificate
 from carp_spec.query_rules import expansion_key
 from carp_spec.traces import read_trace
@@ -206,6 +208,15 @@ def _dependencies(subject: str, vector: Vector) -> Found:
     return cycles, {"acyclic": subject not in cycles}
 
 
+def _priority(subject: str, vector: Vector) -> Found:
+    before, after, *rivals = (
+        read_solution(msgspec.json.encode(each)).plans
+        for each in (vector.input["solution"], vector.input["after"], *vector.input["rivals"])
+    )
+    kept = robot_is_first(vector.read_instance(), before, after, vector.input["robot"], vector.input["now"], rivals)
+    return set() if kept else {subject}, {}
+
+
 _PROTOCOL: Mapping[str, Callable[[str, Vector], Found]] = {
     "check": _check,
     "query": _query,
@@ -216,6 +227,7 @@ _PROTOCOL: Mapping[str, Callable[[str, Vector], Found]] = {
     "verify-query": _verify_query,
     "check-trace": _check_trace,
     "dependencies": _dependencies,
+    "priority/first": _priority,
 }
 
 

@@ -82,6 +82,8 @@ PROPERTIES: Mapping[str, str] = {
     "execution/order": f"{_EXECUTION}::test_a_trace_breaks_the_rules_spelt_out_pair_by_pair",
     "execution/exchange": f"{_EXECUTION}::test_a_trace_breaks_the_rules_spelt_out_pair_by_pair",
     "execution/acyclic": f"{_EXECUTION}::test_a_solution_has_a_cycle_if_its_edges_spelt_out_have_one",
+    "priority/first": "oracle/test_giving_way.py"
+    "::test_an_update_is_lawful_keeps_histories_and_is_first_where_it_says_so",
     "planner/options": f"{_RULES}::test_options_are_whole_numbers_within_their_bounds",
 }
 

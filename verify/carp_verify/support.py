@@ -38,6 +38,7 @@ WITHOUT_LEMMA: Mapping[str, str] = {
     "execution/duration": _DATA,
     "execution/order": _PAIRS,
     "execution/exchange": _PAIRS,
+    "priority/first": "it follows from query/optimal: no lawful plan beside histories alone is earlier",
     "execution/acyclic": "it is a search for a cycle; a second one, edge by edge, is tested to find the same",
     "cost/robot": "it is a definition: one difference of two numbers of the plan",
     "neighbourhood/baseline": "it is a choice: which candidate comes first, not what follows from it",
