@@ -12,7 +12,7 @@ from carproof.conform.cases import Case, Op, Stage
 from carproof.conform.deciding import Tally, random_shortfalls, smoke_shortfalls
 from carproof.conform.effort import Effort
 from carproof.conform.findings import Category, Fault, Finding, wrong
-from carproof.conform.levels import JUDGED_OPS, Level
+from carproof.conform.levels import CLASSICAL_LEVELS, JUDGED_OPS, LEVELS, WHOLE_LEVELS, Level
 from carproof.conform.outcome import Outcome
 from carproof.conform.run import MOST_FAULTS, Options, Report, conform, label
 from carproof.conform.smoke import row, smoke_cases
@@ -165,6 +165,15 @@ def test_a_level_is_shown_by_its_own_ops_and_by_plan_where_whole_instances_are_a
             assert made.conforms is (op in JUDGED_OPS[level])
     assert Options(Level.OPTIMAL, whole=True).ops == ("plan",)
     assert report(Level.OPTIMAL, tried("smoke", "optimum"), tried(op="check")).conforms is None
+
+
+def test_each_level_asks_more_than_the_one_before_and_has_a_name_and_a_statement() -> None:
+    labels = ["sound", "complete-in-context", "context-optimal", "complete", "optimal", "exact"]
+    assert [level.label for level in Level] == labels
+    assert list(Level) == sorted(Level)
+    assert dict(zip(labels, Level, strict=True)) == LEVELS
+    assert len({level.statement for level in Level}) == len(labels)
+    assert all(level in Level for level in (*CLASSICAL_LEVELS, *WHOLE_LEVELS))
 
 
 def test_of_failures_of_one_rule_the_smallest_is_shown_and_counted_once() -> None:
