@@ -67,6 +67,12 @@ QUESTIONS = {
     ),
     "out of reach": beside(town("vanish", replace(WEST, id="r"), directed=True), "r"),
     "room for two": beside(town("vanish", EAST, WEST, capacity=2), "r", WESTWARDS),
+    "room for two, and back into it": beside(
+        town("vanish", EAST, replace(WEST, pace=3), Robot("t", "e", "a"), capacity=2),
+        "r",
+        walk("s", ("d", 0, 3), ("c", 3, 9), ("b", 9, 12), ("a", 12, 15)),
+        walk("t", ("e", 0, 4), ("b", 4, 5), ("a", 5, 6)),
+    ),
     "slow": beside(town("vanish", replace(EAST, pace=2), WEST), "r", WESTWARDS),
     "under way": beside(
         VANISHING, "r", WESTWARDS, walk("r", ("a", 0, 1), ("b", 1, 2), ("c", 2, 4), ("d", 4, 5)), now=1

@@ -17,10 +17,11 @@ from tests.profiles import draws
 
 from carp_optimum.bound import Progress, lower_bound
 from carp_optimum.cut_search import prove
-from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, ResourceId, Robot, Visit
+from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, ResourceId, Robot, Rule, Visit
 from carp_spec.bounds import BOUND_FORMAT, BoundDocument, CutDocument, digest, read_bound
 from carp_spec.documents import write
 from carp_spec.plan_rules import plan_cost
+from carp_verify import bound_rules
 from carp_verify import verify_bound as page
 from carp_verify.bound_cuts import formula_of
 from carp_verify.joint_search import least_total_cost
@@ -427,6 +428,28 @@ def test_a_tampered_certificate_is_refused(tamper: Tamper, path: str | None, rul
         verify_bound(instance, tamper(certificate))
     assert refused.value.rule == rule
     assert path in {None, refused.value.path}
+
+
+def test_a_scale_is_a_power_of_two() -> None:
+    scales = (*range(-8, 18), True, 1.0, 1 << 99, (1 << 99) + 1)
+    assert [scale for scale in scales if bound_rules.is_scale(scale)] == [1, 2, 4, 8, 16, 1 << 99]
+
+
+def test_a_certificate_is_about_no_instance_whose_digest_is_less_or_greater() -> None:
+    certificate = lower_bound(crossing(), steps=2)
+    for other in ("", "0" * 64, "f" * 64, certificate.instance.upper()):
+        with pytest.raises(Refusal) as refused:
+            verify_bound(crossing(), msgspec.structs.replace(certificate, instance=other))
+        assert refused.value.rule == "bound/instance"
+
+
+def test_prices_are_whole_numbers_at_ticks_before_the_horizon() -> None:
+    assert [tick for tick in (-1, 0, 4, 5, 6, True, 1.0) if bound_rules.is_price(0, tick, 5)] == [0, 4]
+    assert [price for price in (-1, 0, 1, 10**99, True, 1.0) if bound_rules.is_price(price, 0, 5)] == [0, 1, 10**99]
+
+
+def test_every_rule_of_bounds_is_listed_in_order() -> None:
+    assert [each for each in vars(bound_rules).values() if isinstance(each, Rule)] == [*bound_rules.BOUND_RULES]
 
 
 @pytest.mark.parametrize("price", ["1.5", "true", "1e3", '"1"', "null", "-1.0"])

@@ -22,7 +22,7 @@ from carp_spec import (
     write_solution,
 )
 from carp_verify import certificate
-from carp_verify.certificate import certify, certify_together
+from carp_verify.certificate import Breach, certify, certify_together
 from carp_verify.smt import Solver, Undecided
 from carproof.strategies import BrokenSolution, PlannedInstance, broken_solutions, planned_instances
 
@@ -85,12 +85,23 @@ def test_teleports_second_plans_and_strangers_are_refused(plans: tuple[Plan, ...
     certified = certify(INSTANCE, Solution(plans, order, others))
     assert not certified.accepted
     assert [violation.rule for violation in certified.violations] == [rule]
+    assert (certified.resources, certified.pairs, certified.breaches) == (0, 0, ())
 
 
-def test_a_checker_and_z3_that_contradict_each_other_are_a_fault(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(certificate, "overfull", lambda *_: [])
-    with pytest.raises(RuntimeError, match="the checker and z3 differ"):
-        certify(INSTANCE, Solution((EASTWARD, WESTWARD, STANDING), ("r1", "r2", "r3")))
+@pytest.mark.parametrize(
+    ("plans", "breaches"),
+    [
+        ((EASTWARD, WESTWARD, STANDING), []),
+        ((EASTWARD, STANDING), [Breach("joint/capacity", ("r1", "r3"), "b", 1, "capacity 2")]),
+    ],
+)
+def test_a_checker_and_z3_that_contradict_each_other_are_a_fault(
+    plans: tuple[Plan, ...], breaches: list[Breach], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(certificate, "overfull", lambda *_: breaches)
+    robots = tuple(plan.robot for plan in plans)
+    with pytest.raises(RuntimeError, match=r"the checker and z3 differ: \[joint/capacity\] resource b "):
+        certify(INSTANCE, Solution(plans, robots, tuple(id for id in INSTANCE.robot if id not in robots)))
 
 
 @given(broken_solutions())
@@ -118,6 +129,9 @@ def test_an_exchange_is_refused_with_rule_robots_and_tick() -> None:
 
 
 def test_a_robot_in_a_resource_for_ever_is_met_at_any_later_tick() -> None:
+    entering = Plan("r2", (Visit("c", 2, None),))
+    (breach,) = certify_together(INSTANCE, (EASTWARD, entering)).breaches
+    assert breach.tick == 2
     parked = Plan("r2", (Visit("c", 0, None),))
     late = Plan("r1", (Visit("c", 10**12, 10**12 + 1),))
     (breach,) = certify_together(INSTANCE, (parked, late)).breaches
@@ -130,7 +144,9 @@ def test_a_robot_that_moves_both_ways_at_a_tick_exchanges_with_nobody() -> None:
 
 
 def test_visits_to_no_resource_of_the_graph_are_none_of_its_business() -> None:
-    assert certify_together(INSTANCE, (Plan("r1", (Visit("elsewhere", 0, 1), Visit("a", 1, 2))),)).resources == 1
+    visits = (Visit("elsewhere", 0, 1), Visit("a", 1, 2), Visit("elsewhere", 2, 3), Visit("beyond", 3, 4))
+    certified = certify_together(INSTANCE, (Plan("r1", visits), Plan("r2", visits[::-1])))
+    assert (certified.resources, certified.pairs) == (1, 0)
 
 
 def write(folder: Path, *plans: Plan) -> tuple[Path, Path]:

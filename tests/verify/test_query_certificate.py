@@ -13,10 +13,11 @@ from tests.verify.query_examples import QUESTIONS, VANISHING, WESTWARDS, Questio
 import carp_optimized.certifying
 import carp_reference
 import carp_verify.query_certificate_rules
-from carp_spec import Plan, Refusal, Robot
+from carp_spec import Plan, Refusal, Robot, Visit
 from carp_spec.query_certificates import QueryCertificateDocument
+from carp_spec.windows import Window
 from carp_verify.query_certificate_rules import QUERY_CERTIFICATE_RULES
-from carp_verify.verify_query import verify_query
+from carp_verify.verify_query import Traffic, verify_query
 from carproof.strategies import FleetUnderWay, Sizes, fleets_under_way
 
 SMALL_TICKS = st.integers(-1, 12)
@@ -58,6 +59,7 @@ def test_the_examples_are_of_every_kind() -> None:
         "a goal that is passed later": 4,
         "out of reach": None,
         "room for two": 6,
+        "room for two, and back into it": 12,
         "slow": None,
         "under way": 7,
         "ended": 0,
@@ -142,6 +144,31 @@ def test_each_rule_has_a_test() -> None:
     assert {rule.id for rule in QUERY_CERTIFICATE_RULES} == tested
 
 
+STAYS = st.lists(st.tuples(st.integers(0, 12), st.none() | st.integers(1, 8)), max_size=6)
+
+
+@given(STAYS, st.integers(1, 3))
+def test_the_free_windows_are_those_of_counting_robots_tick_by_tick(
+    stays: Sequence[tuple[int, int | None]], capacity: int
+) -> None:
+    traffic = Traffic(town("vanish", capacity=capacity))
+    for robot, (enter, ticks) in enumerate(stays):
+        traffic.commit(Plan(robot, (Visit("b", enter, None if ticks is None else enter + ticks),)))
+    last = 25
+    inside = [
+        sum(enter <= tick and (ticks is None or tick < enter + ticks) for enter, ticks in stays) for tick in range(last)
+    ]
+    free = [count < capacity for count in inside]
+    for tick in range(last):
+        ahead = [at for at in range(tick, last) if at == tick or free[at] != free[at - 1]]
+        starts = [at for at in ahead if free[at]]
+        ends = [next((end for end in range(at, last) if not free[end]), None) for at in starts]
+        began = max((at + 1 for at in range(tick) if not free[at]), default=0)
+        expected = [Window(began if at == tick else at, end) for at, end in zip(starts, ends, strict=True)]
+        assert list(traffic.windows("b", tick)) == expected
+        assert traffic.window_at("b", tick) == (expected[0] if free[tick] else None)
+
+
 def test_a_size_that_is_too_large_is_refused_before_anything_is_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
     question = QUESTIONS["head-on"]
     certificate = question.certified()[1]
@@ -163,8 +190,9 @@ def test_labels_and_potentials_of_resources_that_there_are_not_mean_nothing() ->
     assert rule_broken(question, more) is None
 
 
-def test_a_bound_that_is_lower_is_accepted_too() -> None:
-    question = QUESTIONS["head-on"]
+@pytest.mark.parametrize("name", ["head-on", "ended"])
+def test_a_bound_that_is_lower_is_accepted_too(name: str) -> None:
+    question = QUESTIONS[name]
     certificate = question.certified()[1]
     assert certificate.bound is not None
     for bound in (certificate.bound - 1, 0, -(10**99)):
