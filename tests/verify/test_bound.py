@@ -448,6 +448,12 @@ def test_prices_are_whole_numbers_at_ticks_before_the_horizon() -> None:
     assert [price for price in (-1, 0, 1, 10**99, True, 1.0) if bound_rules.is_price(price, 0, 5)] == [0, 1, 10**99]
 
 
+def test_a_robots_least_cost_is_claimed_as_no_more_than_it_is() -> None:
+    claims = (None, -1, 0, 4, 5, 6, True, 4.0)
+    assert [claimed for claimed in claims if bound_rules.is_least(claimed, 5)] == [-1, 0, 4, 5]
+    assert [claimed for claimed in claims if bound_rules.is_least(claimed, None)] == [None]
+
+
 def test_every_rule_of_bounds_is_listed_in_order() -> None:
     assert [each for each in vars(bound_rules).values() if isinstance(each, Rule)] == [*bound_rules.BOUND_RULES]
 

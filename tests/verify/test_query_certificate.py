@@ -122,6 +122,7 @@ BROKEN: Sequence[tuple[str, str, dict[str, Any]]] = (
     ("query-certificate/closed", "alone", {"bound": 5, "labels": (("b", 2),)}),
     ("query-certificate/closed", "may leave its goal now", {"bound": 1}),
     ("query-certificate/closed", "alone", {"bound": 5, "labels": tuple((cell, 0) for cell in "abcde")}),
+    ("query-certificate/closed", "alone", {"bound": 5, "labels": tuple((cell, -1) for cell in "abcde")}),
 )
 
 
@@ -185,7 +186,7 @@ def test_labels_and_potentials_of_resources_that_there_are_not_mean_nothing() ->
     more = msgspec.structs.replace(
         certificate,
         labels=(*certificate.labels, ("moon", 0), ("a", -5), ("a", 10**99)),
-        potential=(*certificate.potential, ("moon", 7)),
+        potential=(*certificate.potential, ("moon", 1)),
     )
     assert rule_broken(question, more) is None
 
