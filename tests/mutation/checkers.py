@@ -55,7 +55,7 @@ TESTS: Mapping[str, Sequence[str]] = {
     "carproof.conform.deciding": REPORT,
     "carproof.conform.run": REPORT,
 }
-TINY = 40
+TINY = 60
 """So many instances of test_tiny_optima.py are asked for, one by one, of the modules that make or check formulas."""
 PLANTED: Mapping[str, Sequence[tuple[str, str]]] = {
     "carp_verify.verify_bound": (

@@ -256,13 +256,13 @@ def test_an_answer_is_refused_by_its_rule_from_a_level_on(
         assert (level, None if finding is None else finding.rule) == (level, expected)
 
 
-def test_a_late_plan_is_told_with_the_best_one() -> None:
+def test_a_late_plan_is_shown_with_the_best_one() -> None:
     finding = first_finding(QUERY, query_document(later(plan("new", *FIRST_GOES))), Level.CONTEXT_OPTIMAL)
     assert finding is not None
     assert finding.message == "robot new arrives at 4, and can at 3: a[0,1) b[1,2) c[2,3) d[3,4)"
 
 
-def test_a_rule_that_a_verdict_leaves_out_is_told_with_its_own_message() -> None:
+def test_a_rule_that_a_verdict_leaves_out_is_shown_with_its_own_message() -> None:
     asked = case("check", HEAD_ON, first=HURRIES, new=[("d", 0, 1), ("c", 1, 1), ("b", 1, 2), ("a", 2, 3)])
     verdict: VerdictDocument = right(asked)
     rules = dict.fromkeys(violation.rule for violation in verdict.violations)

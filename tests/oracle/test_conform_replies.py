@@ -83,7 +83,7 @@ def test_any_other_response_is_refused(line: bytes, category: Category, rule: st
 
 
 def test_a_refusal_shows_what_the_program_wrote() -> None:
-    for line, told in (
+    for line, message in (
         (b'{"id": 2, "result": 1}', "the id must be 1, not '2'"),
         (b'{"id": 1, "error": {"a": 1}}', "the program refuses a right request: '{\"a\": 1}'"),
         (b'{"id": 1}', "must have one of result, skipped and error: '{\"id\": 1}'"),
@@ -91,7 +91,7 @@ def test_a_refusal_shows_what_the_program_wrote() -> None:
     ):
         with pytest.raises(Fault) as refused:
             result_of(line, 1)
-        assert told in refused.value.finding.message
+        assert message in refused.value.finding.message
 
 
 def test_of_a_long_line_the_beginning_is_shown() -> None:

@@ -154,7 +154,7 @@ def test_an_interruption_leaves_undecided_what_is_not_wrong() -> None:
         assert (made.conforms, made.shortfalls) == (conforms, [])
 
 
-def test_where_something_is_wrong_nothing_is_said_to_be_missing() -> None:
+def test_where_something_is_wrong_nothing_is_called_missing() -> None:
     assert report(Level.SOUND, failed("smoke"), skipped("smoke")).shortfalls == []
 
 
@@ -193,7 +193,7 @@ def test_smoke_cases_are_tallied_alone() -> None:
 
 
 class Scripted(Tampered):
-    """A subject that ends as it is told, and remembers what became of it."""
+    """A subject that fails where it is asked to, and remembers each call."""
 
     def __init__(self, **fails: BaseException) -> None:
         super().__init__(as_it_is)
