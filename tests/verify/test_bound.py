@@ -27,7 +27,7 @@ from carp_verify.bound_cuts import formula_of
 from carp_verify.joint_search import least_total_cost
 from carp_verify.lemmas.prices_bound_the_total import at_most_paid, in_exchange, paid
 from carp_verify.smt import integers, truth, value_of
-from carp_verify.verify_bound import Budget, Search, Tariff, predecessors, verify_bound
+from carp_verify.verify_bound import Budget, RobotSearch, Tariff, predecessors, verify_bound
 from carproof.strategies import PlannedInstance, Sizes, instances, planned_instances
 
 TINY = Sizes(resources=4, robots=3, capacity=2, duration=2, release=2, pace=2)
@@ -52,7 +52,8 @@ def completed(instance: Instance, certificate: BoundDocument) -> BoundDocument:
     tariff = Tariff(instance, certificate)
     before = predecessors(instance)
     robots = tuple(
-        (robot.id, Search(tariff, robot, certificate.scale, before, Budget()).least_cost()) for robot in instance.robots
+        (robot.id, RobotSearch(tariff, robot, certificate.scale, before, Budget()).least_cost())
+        for robot in instance.robots
     )
     parts = sum(least or 0 for _, least in robots) - tariff.worth
     return msgspec.structs.replace(certificate, robots=robots, bound=-(-parts // certificate.scale))

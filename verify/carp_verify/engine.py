@@ -35,7 +35,7 @@ class Lemma:
 
 
 @dataclass(frozen=True, slots=True)
-class Report:
+class LemmaReport:
     """z3's answers for a lemma: it is checked if there are formulas and mutants and no failure."""
 
     lemma: Lemma
@@ -76,7 +76,7 @@ def refute(premises: Sequence[Bool], claim: Bool) -> Model:
     return model
 
 
-def examine(lemma: Lemma) -> Report:
+def examine(lemma: Lemma) -> LemmaReport:
     """Have z3 prove every formula of the lemma and refute every mutant."""
     proved: list[str] = []
     refuted: list[tuple[str, str]] = []
@@ -92,4 +92,4 @@ def examine(lemma: Lemma) -> Report:
             refuted.append((mutant.name, str(refute(mutant.premises, mutant.claim))))
         except Unproved as reason:
             failures.append(f"mutant {mutant.name!r} is not refuted: {reason}")
-    return Report(lemma, tuple(proved), tuple(refuted), tuple(failures))
+    return LemmaReport(lemma, tuple(proved), tuple(refuted), tuple(failures))

@@ -62,7 +62,7 @@ def verify_bound(instance: Instance, certificate: BoundDocument) -> int:
     parts = proved - tariff.worth
     budget = Budget()
     for position, (robot, (_, claimed)) in enumerate(zip(instance.robots, certificate.robots, strict=True)):
-        least = Search(tariff, robot, weights[position], before, budget).least_cost()
+        least = RobotSearch(tariff, robot, weights[position], before, budget).least_cost()
         message = f"robot {robot.id} can have no more than {least}, the least of its cost and prices, not {claimed!r}"
         _require(is_least, is_least(claimed, least), f"$.robots[{position}]", message)
         parts += claimed or 0
@@ -200,7 +200,7 @@ class Budget:
         _require(size_fits, self.left >= 0, "$.robots", message)
 
 
-class Search:
+class RobotSearch:
     """A* for one robot, over the resources and the ticks at which it is free to leave them.
 
     What remains is at least a shortest way's weighted ticks, and from the horizon on no more. Who leaves the system

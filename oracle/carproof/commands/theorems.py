@@ -15,7 +15,7 @@ from carproof.progress import progress
 from carproof.tables import print_line, print_table
 
 if TYPE_CHECKING:
-    from carp_verify.engine import Report
+    from carp_verify.engine import LemmaReport
 
 COLUMNS = ("lemma", "rules", "formulas", "mutants refuted", "result")
 
@@ -45,7 +45,7 @@ def command(name: str | None, as_json: bool) -> Answer:
 
     modules = MODULES if name is None else (known(name, MODULES),)
     started = perf_counter()
-    reports: dict[str, Report] = {}
+    reports: dict[str, LemmaReport] = {}
     with progress("checking", len(modules)) as advance:
         for module in modules:
             reports[module] = examine(lemma_named(module))
@@ -74,13 +74,13 @@ def known(name: str, modules: Sequence[str]) -> str:
     return asked
 
 
-def row(module: str, report: "Report") -> Sequence[object]:
+def row(module: str, report: "LemmaReport") -> Sequence[object]:
     """A row of the columns."""
     result = "checked" if report.checked else "FAILED"
     return (module, ", ".join(report.lemma.rules), len(report.formulas), len(report.refuted), result)
 
 
-def print_report(report: "Report") -> None:
+def print_report(report: "LemmaReport") -> None:
     """Print a lemma in full: its statement, what z3 proved, and what refutes its mutants."""
     click.echo(f"{report.lemma.name}\n\n{report.lemma.statement.strip()}\n")
     print_line(f"Supports: {', '.join(report.lemma.rules)}")
@@ -90,13 +90,13 @@ def print_report(report: "Report") -> None:
     print_line("checked by z3, but for what is left by hand" if report.checked else "FAILED")
 
 
-def print_failures(report: "Report") -> None:
+def print_failures(report: "LemmaReport") -> None:
     """Print why a lemma fails, if it does."""
     for failure in report.failures:
         print_line(f"{report.lemma.name}: {failure}")
 
 
-def document(reports: "dict[str, Report]", checked: bool) -> bytes:
+def document(reports: "dict[str, LemmaReport]", checked: bool) -> bytes:
     """All reports as one JSON document."""
     lemmas = [
         {
