@@ -46,6 +46,8 @@ def command(folder: Path) -> Answer:
     except OSError as error:
         raise click.ClickException(f"{folder}: it cannot be made: {error.strerror}") from error
     instances = {"paper": grid_instance(Grid(), Fleet()), "depot": depot(folder)}
+    for planner in PLANNERS.values():  # what is not compiled yet is compiled before any time is taken
+        plan_showing("", None, instances["depot"], planner)
     results: list[Result] = []
     for name, instance in instances.items():
         write_whole(_file(folder / f"{name}.json"), write_instance(instance))
