@@ -88,6 +88,7 @@ QUESTIONS = {
     "in the way": beside(
         VANISHING, "r", WESTWARDS, walk("r", ("a", 0, 4), ("b", 4, 5), ("c", 5, 7), ("d", 7, 8)), now=4
     ),
+    "at its goal": beside(HOME, "r"),
     "may leave its goal now": beside(HOME, "r", now=1),
     "stayed too long at its goal": beside(
         HOME, "r", walk("s", ("d", 0, 6), ("c", 6, 8), ("b", 8, 9), ("a", 9, 10)), now=3

@@ -65,6 +65,7 @@ def test_the_examples_are_of_every_kind() -> None:
         "ended": 0,
         "ended, and in the way": None,
         "in the way": None,
+        "at its goal": 0,
         "may leave its goal now": 0,
         "stayed too long at its goal": 4,
     }
@@ -121,6 +122,7 @@ BROKEN: Sequence[tuple[str, str, dict[str, Any]]] = (
     ("query-certificate/closed", "alone", {"bound": 5, "labels": (("b", 1),)}),
     ("query-certificate/closed", "alone", {"bound": 5, "labels": (("b", 2),)}),
     ("query-certificate/closed", "may leave its goal now", {"bound": 1}),
+    ("query-certificate/closed", "at its goal", {"bound": 1}),
     ("query-certificate/closed", "alone", {"bound": 5, "labels": tuple((cell, 0) for cell in "abcde")}),
     ("query-certificate/closed", "alone", {"bound": 5, "labels": tuple((cell, -1) for cell in "abcde")}),
 )
