@@ -6,7 +6,7 @@ export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 .DELETE_ON_ERROR:
-.PHONY: bench install compiled demo quick quick-tests test checked ci thorough paper-sized nightly coverage mutation conform lint format docs gap optimum-figures generated kernel kernel-mutants clean
+.PHONY: bench install compiled demo quick quick-tests test checked ci thorough paper-sized nightly coverage mutation conform lint format docs gap optimum-figures executions generated kernel kernel-mutants clean
 
 install: .venv/installed
 
@@ -79,6 +79,10 @@ gap: install
 # Measure how long the search for an optimum takes, and put the table into docs/results/gaps.md; takes up to five minutes.
 optimum-figures: install
 	$(BIN)/python -m carproof.optimum_table
+
+# A million delayed executions in order, none of which may break a rule or stop; goes on where the file ends.
+executions: install
+	nice $(BIN)/python -m carp_experiments.executions executions.jsonl --to 1000000
 
 generated: install
 	$(BIN)/python -m carp_spec.schema
