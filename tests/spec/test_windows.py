@@ -96,3 +96,9 @@ def test_a_stay_fits_if_all_its_ticks_are_in_the_window_and_enough(
 )
 def test_a_window_lasts_until_its_end(end: int | None, tick: int | None, expected: bool) -> None:
     assert Window(2, end).lasts_until(tick) == expected
+
+
+def test_a_window_of_no_ticks_is_no_free_window() -> None:
+    occupations: list[Occupation] = [(2, 4), (3, 6), (8, None)]
+    assert windows_are_free([Window(0, 2), Window(6, 8)], occupations, 1)
+    assert not windows_are_free([Window(0, 2), Window(4, 4), Window(6, 8)], occupations, 1)
