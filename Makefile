@@ -18,6 +18,7 @@ install: .venv/installed
 .venv/installed: .venv/base
 	$(BIN)/python -m pip install --quiet --editable '.[dev]'
 	touch $@
+	$(BIN)/python -m carp_optimum
 
 # Compile what bounds and the planner run, if a source has changed: a minute, in place of some test's or the demo's.
 compiled: install
