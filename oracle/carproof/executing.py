@@ -147,7 +147,7 @@ def execute(instance: Instance, solution: Solution, driver: Driver, delays: tupl
     )
 
 
-class EdgeDocument(msgspec.Struct, frozen=True):
+class DependencyDocument(msgspec.Struct, frozen=True):
     """An edge of the dependency graph: after is entered at least this many ticks after before; visits are positions."""
 
     kind: str
@@ -186,7 +186,7 @@ class DependenciesDocument(msgspec.Struct, frozen=True):
     acyclic: bool
     cycle: CycleDocument | None
     visits: tuple[VisitDocument, ...]
-    edges: tuple[EdgeDocument, ...]
+    edges: tuple[DependencyDocument, ...]
     late: tuple[tuple[RobotId, int], ...] | None
     collision: tuple[tuple[RobotId, int, int], ...] | None
 
@@ -215,7 +215,7 @@ def dependencies_document(order: Order, late: Mapping[RobotId, int] | None) -> D
         cycle=cycle,
         visits=tuple(visits),
         edges=tuple(
-            EdgeDocument(each.kind, each.before, each.after, each.ticks, each.resource) for each in order.edges
+            DependencyDocument(each.kind, each.before, each.after, each.ticks, each.resource) for each in order.edges
         ),
         late=None if late is None else tuple(late.items()),
         collision=None if smallest is None else tuple((each.robot, each.visit, each.ticks) for each in smallest),
