@@ -1,6 +1,6 @@
 """Delayed executions of small random solutions: in order none breaks a rule or stops, on the clock some collide.
 
-`python -m carp_experiments.executions FILE --to NUMBER` takes the questions up to that number, and goes on where FILE
+`python -m carp_experiments.executions FILE --to NUMBER` takes the questions up to that number, and continues where FILE
 ends. Each line of FILE is about `PART` questions.
 """
 
