@@ -4,10 +4,14 @@ import json
 import sys
 from pathlib import Path
 
+import msgspec
 import pytest
 from tests.oracle.running import BROKEN, TWO, TWO_PLANNED, Document, Run, line
+from tests.verify.kernel_program import program
+from tests.verify.test_bound import crossing, cut_certificate
 
 import carp_verify.kernel
+from carp_spec.documents import write, write_instance
 from carp_verify.kernel import PROGRAM, VARIABLE
 
 STAND_IN = """#!{python}
@@ -182,3 +186,23 @@ def test_the_op_verify_query_is_served(carproof: Run, files: dict[str, Path]) ->
     assert (answers[1]["result"]["proved"], answers[1]["result"]["rule"]) == (False, "query-certificate/closed")
     assert (answers[2]["error"]["path"], answers[2]["error"]["rule"]) == ("$.certificate.bound", "document/shape")
     assert answers[3]["error"]["path"] == "$.certificate"
+
+
+def test_a_bound_with_cuts_is_verified_by_the_kernel_and_the_assumptions_are_named(
+    carproof: Run, tmp_path: Path
+) -> None:
+    program()
+    town, bound = tmp_path / "town.json", tmp_path / "bound.json"
+    certificate = cut_certificate()
+    town.write_bytes(write_instance(crossing()))
+    bound.write_bytes(write(certificate))
+    outcome = carproof("verify-bound", town, bound, "--kernel")
+    assert (outcome.code, outcome.stderr) == (0, "")
+    assert outcome.stdout.count("assumed: the formula given says") == len(certificate.cuts) > 0
+    document = json.loads(carproof("verify-bound", town, bound, "--kernel", "--json").stdout)
+    assert (document["bound"], len(document["assumed"])) == (certificate.bound, len(certificate.cuts))
+    cuts = (msgspec.structs.replace(certificate.cuts[0], refutation=""), *certificate.cuts[1:])
+    bound.write_bytes(write(msgspec.structs.replace(certificate, cuts=cuts)))
+    outcome = carproof("verify-bound", town, bound, "--kernel")
+    assert (outcome.code, outcome.stdout) == (3, "")
+    assert "the refutation of cut 0 does not hold" in outcome.stderr
