@@ -5,11 +5,12 @@ import os
 import sys
 import traceback
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from importlib import import_module
 from typing import TYPE_CHECKING
 
 import click
+from click.shell_completion import shell_complete
 
 from carp_spec import Refusal
 from carp_verify.bound_rules import ContradictionError
@@ -17,12 +18,14 @@ from carp_verify.kernel import UndecidedError
 from carproof.answer import INTERNAL_ERROR, INTERRUPTED, PIPE_CLOSED, Answer
 from carproof.commands import COMMANDS, GROUPS
 from carproof.extras import advice
+from carproof.supervising import supervised
 from carproof.tables import printable
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoints
 
 WIDEST_SUMMARY = 200
+COMPLETION = "_CARPROOF_COMPLETE"
 SETTINGS = {"help_option_names": ["-h", "--help"], "show_default": True}
 EPILOG = """\b
 Examples:
@@ -85,31 +88,38 @@ def carproof() -> None:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command line and return its exit code."""
+    """Run one command line, by default that of this process, and return its exit code."""
     _open_closed_streams()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
+    return supervised(lambda: _run(sys.argv[1:])) if arguments is None else _run(arguments)
+
+
+def _run(arguments: Sequence[str]) -> int:
     try:
-        answer = _answer(sys.argv[1:] if arguments is None else arguments)
+        answer = _answer(arguments) if COMPLETION not in os.environ else _complete()
         sys.stdout.flush()
     except BrokenPipeError:
         _forget_output()
         return PIPE_CLOSED
     except KeyboardInterrupt:
-        click.echo("Interrupted.", err=True)
-        return INTERRUPTED
+        return _tell("Interrupted.", INTERRUPTED)
     except OSError as error:
         _forget_output()
         return _complain(f"the output cannot be written: {error.strerror}")
     except ContradictionError as error:
-        click.echo(f"Internal contradiction: {error}. A checker of carproof is wrong; please report both.", err=True)
-        return INTERNAL_ERROR
+        report = "A checker of carproof is wrong; please report both."
+        return _tell(f"Internal contradiction: {error}. {report}", INTERNAL_ERROR)
     except Exception:  # noqa: BLE001 - a fault of ours must not look like the answer no
-        traceback.print_exc()
-        click.echo("carproof failed by a fault of its own; the lines above say where.", err=True)
-        return INTERNAL_ERROR
+        text = f"{traceback.format_exc()}carproof failed by a fault of its own; the lines above say where."
+        return _tell(text, INTERNAL_ERROR)
     return answer
+
+
+def _complete() -> int:
+    """Print what a shell can complete a command line to."""
+    return shell_complete(carproof, {}, "carproof", COMPLETION, os.environ[COMPLETION])
 
 
 def _answer(arguments: Sequence[str]) -> int:
@@ -118,14 +128,13 @@ def _answer(arguments: Sequence[str]) -> int:
             answer = carproof.invoke(context)
     except click.exceptions.Exit as done:
         return done.exit_code
-    except click.UsageError as error:
-        asked = error.ctx.command_path if error.ctx else "carproof"
-        return _complain(f"{error.format_message()} (See {asked} --help.)")
+    except click.exceptions.NoArgsIsHelpError as error:
+        click.echo(error.format_message())
+        return Answer.YES
     except click.ClickException as error:
-        return _complain(error.format_message())
-    except UndecidedError as error:
-        click.echo(f"Undecided: {printable(str(error))}", err=True)
-        return Answer.UNDECIDED
+        return _complain(_sentence(error))
+    except (UndecidedError, MemoryError) as error:
+        return _tell(f"Undecided: {printable(error) or 'the memory does not suffice.'}", Answer.UNDECIDED)
     except Refusal as refusal:
         return _complain(f"{_option(refusal.path)}: {refusal.message} [{refusal.rule}]")
     return Answer(answer)
@@ -148,9 +157,22 @@ def _option(path: str) -> str:
     return "--" + path[2:].replace("_", "-") if path.startswith("$.") else path
 
 
-def _complain(sentence: str) -> Answer:
-    click.echo(f"Error: {printable(sentence)}", err=True)
-    return Answer.BAD_INPUT
+def _sentence(error: click.ClickException) -> str:
+    if not isinstance(error, click.UsageError):
+        return error.format_message()
+    asked = error.ctx.command_path if error.ctx else "carproof"
+    return f"{error.format_message()} (See {asked} --help.)"
+
+
+def _complain(sentence: str) -> int:
+    return _tell(f"Error: {printable(sentence)}", Answer.BAD_INPUT)
+
+
+def _tell(text: str, code: int) -> int:
+    """Say why a command ends, if standard error takes it, and return its exit code."""
+    with suppress(OSError):
+        click.echo(text, err=True)
+    return code
 
 
 def _open_closed_streams() -> None:

@@ -1,0 +1,101 @@
+"""Ends a command within a second of SIGINT or SIGTERM, with all that it started, whatever it is doing.
+
+A solver or compiled code does not look at signals for many seconds. So the command runs in a child process, which may
+clean up when it is interrupted, and is killed if it takes too long; the exit code is that of its parent.
+"""
+
+import os
+import signal
+import sys
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from types import FrameType
+
+from carproof.answer import INTERNAL_ERROR
+
+GRACE = 0.6
+"""Seconds in which an interrupted command may clean up."""
+INTERRUPTIONS = (signal.SIGINT, signal.SIGTERM)
+_DEATH_SIGNAL, _SUBREAPER = 1, 36  # of Linux's prctl
+_SHOW_CURSOR = "\x1b[?25h"
+
+
+def supervised(command: Callable[[], int]) -> int:
+    """Run a command in a child process, and return its exit code, or 130 or 143 if it was interrupted.
+
+    It returns in both processes; the child's exit code is what the parent's returns.
+    """
+    seen: list[int] = []
+    child = 0
+
+    def interrupt(number: int, _: FrameType | None) -> None:
+        if not seen and child:
+            _send(child, number)
+            signal.setitimer(signal.ITIMER_REAL, GRACE)
+        seen.append(number)
+
+    heeded = [number for number in INTERRUPTIONS if signal.getsignal(number) != signal.SIG_IGN]
+    for number in heeded:
+        signal.signal(number, interrupt)
+    signal.signal(signal.SIGALRM, lambda *_: _send(child, signal.SIGKILL))
+    _control(_SUBREAPER, 1)
+    child = os.fork()
+    if child == 0:
+        _control(_DEATH_SIGNAL, signal.SIGKILL)
+        signal.signal(signal.SIGALRM, signal.SIG_DFL)
+        for number in heeded:
+            signal.signal(number, stop_once)
+        return INTERNAL_ERROR if seen else command()
+    if seen:
+        _send(child, signal.SIGKILL)
+    _, status = os.waitpid(child, 0)
+    signal.setitimer(signal.ITIMER_REAL, 0)
+    _kill_orphans()
+    return _exit_code(status, seen)
+
+
+def stop_once(_: int, __: FrameType | None) -> None:
+    """Raise `KeyboardInterrupt`; nothing may interrupt the cleaning up, nor add to the word of the parent."""
+    for number in INTERRUPTIONS:
+        signal.signal(number, signal.SIG_IGN)
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+    raise KeyboardInterrupt
+
+
+def _exit_code(status: int, seen: list[int]) -> int:
+    if seen:
+        _tell((_SHOW_CURSOR if sys.stderr.isatty() else "") + "Interrupted.\n")
+        return 128 + seen[0]
+    code = os.waitstatus_to_exitcode(status)
+    if code >= 0:
+        return code
+    _tell(f"carproof was ended by {signal.Signals(-code).name}; if nobody sent it, memory has run out.\n")
+    return INTERNAL_ERROR
+
+
+def _tell(text: str) -> None:
+    with suppress(OSError):
+        os.write(2, text.encode())
+
+
+def _send(child: int, number: int) -> None:
+    with suppress(ProcessLookupError):
+        os.kill(child, number)
+
+
+def _kill_orphans() -> None:
+    """End what the command left behind: it has become ours, as we asked for it."""
+    with suppress(OSError):
+        while children := Path(f"/proc/self/task/{os.getpid()}/children").read_text().split():
+            for child in children:
+                _send(int(child), signal.SIGKILL)
+            os.waitpid(-1, 0)
+
+
+def _control(option: int, value: int) -> None:
+    """Linux's prctl; elsewhere nothing."""
+    if sys.platform == "linux":
+        from ctypes import CDLL  # noqa: PLC0415 - loaded only where it is used
+
+        CDLL(None).prctl(option, value)

@@ -1,0 +1,165 @@
+"""SIGINT and SIGTERM end every command at once with 130 or 143, and nothing is left of it."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from carp_optimized import plan
+from carp_spec import Carp, write_instance, write_solution
+from carproof.generate import Fleet, Grid, grid_instance
+from carproof.supervising import GRACE
+
+CARPROOF = [sys.executable, "-m", "carproof"]
+PATIENCE = 5.0
+"""Seconds beyond the grace after which a test calls it a hang: the machine may be busy."""
+FEW = ["bound town.json --seconds 600 -o out.json", "check - plans.json"]
+MORE = [
+    "optimum town.json --limit 600 -o out.json",
+    "polish town.json plans.json --seconds 600 -o out.json",
+    "plan town.json --planner shuffled --attempts 1000000 -o out.json",
+    "gap town.json --limit 600",
+    "certify large.json large-plans.json",
+    "theorems",
+    "bench",
+    "crosscheck",
+    "audit large.json large-plans.json --engine reference",
+    "serve",
+    "conform --examples 100000 -- {carproof} serve",
+    "experiment campaign --output campaign",
+]
+
+
+@pytest.fixture(scope="module")
+def town(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("town")
+    for name, robots in (("town", 100), ("large", 300)):
+        instance = grid_instance(Grid(), Fleet(robots=robots))
+        (folder / f"{name}.json").write_bytes(write_instance(instance))
+        (folder / f"{'' if name == 'town' else 'large-'}plans.json").write_bytes(write_solution(plan(instance, Carp())))
+    return folder
+
+
+def processes_of(marker: str) -> list[str]:
+    """The processes, but this one, whose environment has the marker."""
+    found = []
+    for folder in Path("/proc").iterdir():
+        try:
+            if folder.name.isdigit() and marker.encode() in (folder / "environ").read_bytes():
+                found.append(folder.name)
+        except OSError:
+            continue
+    return found
+
+
+def interrupted(command: str, number: signal.Signals, folder: Path, seconds: float) -> None:
+    """Run a command, interrupt it, and look at what is left."""
+    before = {each.name for each in folder.iterdir()}
+    marker = f"CARPROOF_TEST={number}-{os.getpid()}-{time.monotonic_ns()}"
+    name, _, value = marker.partition("=")
+    arguments = command.format(carproof=" ".join(CARPROOF)).split()
+    with subprocess.Popen(
+        [*CARPROOF, *arguments],
+        cwd=folder,
+        env={**os.environ, name: value},
+        stdin=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
+        deadline = time.monotonic() + PATIENCE
+        while len(processes_of(marker)) < 2 and time.monotonic() < deadline:
+            time.sleep(0.02)
+        time.sleep(seconds)
+        assert process.poll() is None, f"{command} ended by itself"
+        started = time.monotonic()
+        process.send_signal(number)
+        stderr = process.stderr.read() if process.stderr else ""
+        process.wait()
+        taken = time.monotonic() - started
+    assert process.returncode == 128 + number
+    assert taken < GRACE + PATIENCE
+    assert stderr.endswith("Interrupted.\n")
+    assert "Traceback" not in stderr
+    assert processes_of(marker) == []
+    assert {each.name for each in folder.iterdir()} <= before | {"campaign"}
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("command", FEW)
+def test_a_signal_ends_a_command_with_all_that_it_started(command: str, number: signal.Signals, town: Path) -> None:
+    interrupted(command, number, town, 1.0)
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("seconds", [0.5, 4.0])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("command", MORE)
+def test_a_signal_ends_every_long_command(command: str, number: signal.Signals, seconds: float, town: Path) -> None:
+    interrupted(command, number, town, seconds)
+
+
+STUCK = """
+import os, signal, sys
+from carproof.supervising import supervised
+
+def stuck():
+    worker = os.fork()
+    signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT, signal.SIGTERM])
+    print("ready", flush=True)
+    while True:
+        signal.pause()
+
+sys.exit(supervised(stuck))
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_a_command_that_looks_at_no_signal_is_killed_with_its_workers(number: signal.Signals) -> None:
+    marker = f"CARPROOF_STUCK={os.getpid()}-{number}"
+    name, _, value = marker.partition("=")
+    with subprocess.Popen(
+        [sys.executable, "-c", STUCK], env={**os.environ, name: value}, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == b"ready\n"
+        process.send_signal(number)
+        code = process.wait(GRACE + PATIENCE)
+    assert code == (-9 if number == signal.SIGKILL else 128 + number)
+    deadline = time.monotonic() + PATIENCE
+    while number != signal.SIGKILL and processes_of(marker) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    left = processes_of(marker)
+    for each in left:
+        os.kill(int(each), signal.SIGKILL)
+    assert number == signal.SIGKILL or not left
+
+
+def test_the_exit_code_is_that_of_the_command(tmp_path: Path) -> None:
+    def ends(how: str) -> tuple[int, bytes]:
+        program = f"import os, sys; from carproof.supervising import supervised; sys.exit(supervised(lambda: {how}))"
+        done = subprocess.run([sys.executable, "-c", program], capture_output=True, cwd=tmp_path)  # noqa: PLW1510 - looked at
+        return done.returncode, done.stderr
+
+    assert [ends(str(code)) for code in (0, 1, 3)] == [(0, b""), (1, b""), (3, b"")]
+    code, stderr = ends("os.kill(os.getpid(), 9)")
+    assert (code, stderr) == (70, b"carproof was ended by SIGKILL; if nobody sent it, memory has run out.\n")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code"), [("rules joint/capacty", 2), ("rules joint/capacity", 0), ("check a b", 2)]
+)
+def test_a_full_standard_error_keeps_the_exit_code(arguments: str, code: int) -> None:
+    shell = f"{' '.join(CARPROOF)} {arguments} 2>/dev/full >/dev/null"
+    assert subprocess.run(["/bin/sh", "-c", shell], check=False).returncode == code
+
+
+def test_exhausted_memory_is_no_answer(tmp_path: Path) -> None:
+    (tmp_path / "large.json").write_bytes(b" " * 2**28)
+    shell = f"ulimit -v 400000; exec {' '.join(CARPROOF)} check large.json large.json"
+    done = subprocess.run(["/bin/sh", "-c", shell], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (3, "Undecided: the memory does not suffice.\n")
