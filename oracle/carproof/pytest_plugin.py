@@ -7,7 +7,7 @@ pytest loads this module whenever it starts; what it needs to judge planners is 
 """
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
@@ -35,6 +35,9 @@ class Conformance:
         examples: int = ...,
         seed: int = ...,
         documents: Literal[False] = ...,
+        *,
+        without: Collection[str] = ...,
+        solvable: bool = ...,
     ) -> None: ...
 
     @overload
@@ -46,20 +49,26 @@ class Conformance:
         seed: int = ...,
         *,
         documents: Literal[True],
+        without: Collection[str] = ...,
+        solvable: bool = ...,
     ) -> None: ...
 
-    def conforms(
+    def conforms(  # noqa: PLR0913 - the options of the command
         self,
         planner: Callable[..., Any],
         level: LevelName = "sound",
         examples: int = 100,
         seed: int = 0,
         documents: bool = False,
+        *,
+        without: Collection[str] = (),
+        solvable: bool = False,
     ) -> None:
         """Fail the test if the planner does not conform to the level.
 
         The planner takes a `carp_spec.Instance` and returns a `carp_spec.Solution`; with `documents=True` it takes
-        and returns the documents, as dictionaries.
+        and returns the documents, as dictionaries. `without` names features that it is not asked, as
+        `carproof conform --without` does, and with `solvable=True` all robots can have plans.
         """
         __tracebackhide__ = True
         from carproof.extras import advice, require  # noqa: PLC0415 - only a test that judges loads them
@@ -68,15 +77,17 @@ class Conformance:
             require("hypothesis", "pysat")
         except ModuleNotFoundError as error:
             pytest.fail(f"carproof.conforms {advice(error)}", pytrace=False)
+        from carproof.conform.claims import Claims  # noqa: PLC0415
         from carproof.conform.function import Function, by_documents  # noqa: PLC0415
         from carproof.conform.levels import LEVELS, WHOLE_LEVELS  # noqa: PLC0415
         from carproof.conform.run import Options, conform  # noqa: PLC0415
 
         if level not in [each.label for each in WHOLE_LEVELS]:
             pytest.fail(f"level must be one of {', '.join(each.label for each in WHOLE_LEVELS)}", pytrace=False)
+        claims = Claims(frozenset(without), solvable)
         name = getattr(planner, "__name__", type(planner).__name__)
         called = by_documents(planner) if documents else cast("Callable[[Instance], Solution]", planner)
-        report = conform(Function(called, name), Options(LEVELS[level], examples, seed, whole=True))
+        report = conform(Function(called, name), Options(LEVELS[level], examples, seed, whole=True, claims=claims))
         if report.interrupted:
             raise KeyboardInterrupt
         if not report.conforms:

@@ -1,7 +1,6 @@
 """`carproof conform`: whether somebody's planner conforms to the specification."""
 
 import shutil
-import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -16,6 +15,7 @@ from carp_verify.kernel import version
 from carproof.adapters import ADAPTERS
 from carproof.answer import Answer
 from carproof.conform.cases import ASKED_OPS
+from carproof.conform.claims import FEATURES, Claims
 from carproof.conform.levels import CLASSICAL_LEVELS, LEVELS, WHOLE_LEVELS, Level
 from carproof.engines import warm
 from carproof.extras import require
@@ -46,6 +46,7 @@ _LEVELS = "\n".join(
         "carproof conform -- carproof serve",
         "carproof conform --level complete-in-context --examples 2000 -- ./planner",
         "carproof conform --one-shot -- ./planner {instance} {solution}",
+        "carproof conform --solvable --without releases -- ./planner",
         "carproof conform --one-shot -- ./planner {map} {scen} {agents} {solution}",
         "carproof conform --level context-optimal --kernel -- ./planner",
         "carproof conform --junit conform.xml --save found -- ./planner",
@@ -69,6 +70,14 @@ _LEVELS = "\n".join(
 )
 @click.option("--shrinking", type=click.FloatRange(0), default=15.0, help="Seconds for making a failure smaller.")
 @click.option("--memory", type=click.IntRange(0), default=4096, help="MiB of address space for PROGRAM; 0: any.")
+@click.option("--solvable", is_flag=True, help="Ask only for robots that can have plans, together.")
+@click.option(
+    "--without",
+    type=click.Choice([*FEATURES]),
+    multiple=True,
+    metavar="FEATURE",
+    help=f"Ask nothing that has it; may be repeated. One of {', '.join(FEATURES)}.",
+)
 @click.option("--one-shot", is_flag=True, help="PROGRAM plans one {instance}, or {map} and {scen}.")
 @click.option(
     "--from",
@@ -90,6 +99,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     timeout: float,
     shrinking: float,
     memory: int,
+    solvable: bool,
+    without: tuple[str, ...],
     one_shot: bool,
     format: str | None,
     kernel: bool,
@@ -108,6 +119,9 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     carproof rules program/answers and program/tries have the details. Random cases are new ones each time, so that
     they cannot be known before; the verdict names the seed, with which they are asked again.
 
+    A planner that does not claim all of this is asked less: --without capacities --without directed, or --solvable.
+    The verdict lists what was left out.
+
     With --one-shot it is started for each instance, and plans the file {instance}. It writes the file {solution},
     if its arguments name that, or else to its standard output. If they name {map} and {scen}, these are MovingAI
     files with {agents} agents, and what it writes may be in any format that carproof check reads; all else than
@@ -117,8 +131,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     at the levels sound, complete-in-context and context-optimal. carp_spec decides the rest: what robots under way have
     done, and instances that forbid following.
 
-    Exit codes: 0 it conforms, 1 it does not, 2 bad usage, 3 undecided: it was interrupted, or no random case decided
-    it.
+    Exit codes: 0 it conforms, 1 it does not, 2 bad usage, 3 undecided: no random case decided it. If it is
+    interrupted, it prints what it has found.
     """
     from carproof.conform.child import Limits  # noqa: PLC0415 - what runs processes is loaded when it is needed
     from carproof.conform.documents import junit_document, report_document  # noqa: PLC0415
@@ -142,10 +156,10 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
         raise click.UsageError(f"Of a planner for {what} --level must be one of {right}.")
     if kernel and LEVELS[level] > Level.CONTEXT_OPTIMAL:
         raise click.UsageError(f"With --kernel --level must be at most {Level.CONTEXT_OPTIMAL.label}.")
-    options = Options(LEVELS[level], number, seed, timeout, shrinking, whole=one_shot, classical=classical)
+    claims = Claims(frozenset(without), solvable)
+    options = Options(LEVELS[level], number, seed, timeout, shrinking, one_shot, classical, claims)
     if kernel:
         options = replace(options, kernel=version())
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
     with progress("asking", number) as advance, _nothing_kept():
         report = conform(subject, options, advance)
     saved = _save(report, save)
@@ -235,4 +249,6 @@ def _answered(report: "Report") -> str:
 
     random = ", ".join(f"{op} {tally}" for op, tally in report.tallies.items()) or "none"
     needed = f"{LEAST_ANSWERED} in 100 needed, seed {report.options.seed}"
-    return f"rightly answered: smoke {report.smoke}; random {random} ({needed})"
+    left_out = "".join(f", {name}" for name in report.options.claims.left_out)
+    answered = f"rightly answered: smoke {report.smoke}; random {random} ({needed})"
+    return f"{answered}; not asked:{left_out[1:]}" if left_out else answered

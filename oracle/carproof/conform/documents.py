@@ -40,6 +40,7 @@ def report_document(report: Report, saved: Path | None) -> bytes:
         "conforms": report.conforms,
         "by": report.options.by,
         "reaches_level": report.reaches_level,
+        "left_out": report.options.claims.left_out,
         "interrupted": report.interrupted,
         "seed": report.options.seed,
         "cases": counts(report),

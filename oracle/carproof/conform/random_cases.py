@@ -1,6 +1,7 @@
 """Random cases by hypothesis' strategies, which shrink to few robots, few resources and small numbers."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from hypothesis import strategies as st
 
@@ -22,6 +23,7 @@ from carp_spec import (
     TimeExpanded,
 )
 from carproof.conform.cases import Case, Op
+from carproof.conform.claims import EVERYTHING, Claims
 from carproof.conform.levels import Level
 from carproof.strategies import Sizes, broken_solutions, committed_plans, fleets_under_way, instances, solutions
 
@@ -54,94 +56,108 @@ SHAPES: tuple[tuple[tuple[int, int], ...], ...] = (
 
 
 @st.composite
-def _shaped_graphs(draw: st.DrawFn) -> ResourceGraph:
+def _shaped_graphs(draw: st.DrawFn, sizes: Sizes) -> ResourceGraph:
     edges = draw(st.sampled_from(SHAPES))
     count = 1 + max(max(edge) for edge in edges)
-    numbers = st.tuples(st.sampled_from([1, 1, 1, 2]), st.integers(1, SIZES.duration))
+    numbers = st.tuples(st.sampled_from([1, 1, 1, sizes.capacity]), st.integers(1, sizes.duration))
     attributes = draw(st.lists(numbers, min_size=count, max_size=count))
     resources = tuple(Resource(id, capacity, duration) for id, (capacity, duration) in enumerate(attributes))
     return ResourceGraph(resources, edges)
 
 
 @st.composite
-def _busy_instances(draw: st.DrawFn) -> Instance:
+def _busy_instances(draw: st.DrawFn, sizes: Sizes) -> Instance:
     """Two or more robots on a small map, from different starts: most are in each other's way."""
-    graph = draw(_shaped_graphs())
+    graph = draw(_shaped_graphs(sizes))
     starts = draw(st.permutations(list(graph.index)))
-    count = draw(st.integers(2, min(SIZES.robots, len(starts))))
+    count = draw(st.integers(2, min(sizes.robots, len(starts))))
     goals = draw(st.lists(st.sampled_from(list(graph.index)), min_size=count, max_size=count))
-    requests = st.tuples(st.integers(0, SIZES.release), st.integers(1, SIZES.pace))
+    requests = st.tuples(st.integers(0, sizes.release), st.integers(1, sizes.pace))
     robots = tuple(Robot(id, starts[id], goals[id], *draw(requests)) for id in range(count))
     policies: list[AfterGoal] = ["vanish", "park"]
     return Instance(graph, robots, draw(st.sampled_from(policies)))
 
 
-def _instances(least_robots: int = 0) -> st.SearchStrategy[Instance]:
+def _instances(sizes: Sizes, least_robots: int = 0) -> st.SearchStrategy[Instance]:
     """Instances of every kind; hypothesis' own leaning to the simplest leaves robots alone, hence the busy ones."""
-    any_instance = instances(SIZES, least_robots=least_robots)
-    return st.one_of(any_instance, _busy_instances(), _busy_instances())
+    any_instance = instances(sizes, least_robots=least_robots)
+    return st.one_of(any_instance, _busy_instances(sizes), _busy_instances(sizes))
 
 
 @st.composite
-def _queries(draw: st.DrawFn) -> Case:
+def _queries(draw: st.DrawFn, sizes: Sizes) -> Case:
     """One robot against plans of some of the others; it may be under way itself, and the tick be later than 0."""
-    instance = draw(_instances(least_robots=1))
+    instance = draw(_instances(sizes, least_robots=1))
     robot: RobotId = draw(st.sampled_from(instance.robots)).id
     is_new = draw(st.sampled_from([True, True, True, False]))
-    plans = draw(committed_plans(instance, SIZES, without=robot if is_new else None))
+    plans = draw(committed_plans(instance, sizes, without=robot if is_new else None))
     ends = [visit.leave or visit.enter for plan in plans for visit in plan.visits]
-    now = draw(st.just(0) | st.integers(0, max(ends, default=SIZES.release)))
+    now = draw(st.just(0) | st.integers(0, max(ends, default=sizes.release)))
     order = tuple(plan.robot for plan in plans)
     solution = Solution(plans, order, tuple(each for each in instance.robot if each not in order))
     return Case("random", "query", "query", instance, solution, robot, now)
 
 
-def _plans(planners: Sequence[Planner | None]) -> st.SearchStrategy[Case]:
+def _plans(planners: Sequence[Planner | None], sizes: Sizes) -> st.SearchStrategy[Case]:
     return st.builds(
         lambda instance, planner: Case("random", "plan", "plan", instance, planner=planner),
-        _instances(),
+        _instances(sizes),
         st.sampled_from(planners),
     )
 
 
 @st.composite
-def _additions(draw: st.DrawFn) -> Case:
-    fleet = draw(fleets_under_way(SIZES, _instances(least_robots=1)))
+def _additions(draw: st.DrawFn, sizes: Sizes) -> Case:
+    fleet = draw(fleets_under_way(sizes, _instances(sizes, least_robots=1)))
     options = draw(st.sampled_from(ADDING))
     return Case("random", "add", "add", fleet.instance, fleet.solution, fleet.robot, fleet.now, options)
 
 
 @st.composite
-def _polishes(draw: st.DrawFn) -> Case:
+def _polishes(draw: st.DrawFn, sizes: Sizes) -> Case:
     """Plans of some or all robots, most of them slower than they must be."""
-    instance = draw(_instances())
-    plans = draw(committed_plans(instance, SIZES))
+    instance = draw(_instances(sizes))
+    plans = draw(committed_plans(instance, sizes))
     order = tuple(plan.robot for plan in plans)
     solution = Solution(plans, order, tuple(each for each in instance.robot if each not in order))
     return Case("random", "polish", "polish", instance, solution)
 
 
 @st.composite
-def _checks(draw: st.DrawFn) -> Case:
+def _checks(draw: st.DrawFn, sizes: Sizes) -> Case:
     if draw(st.booleans()):
-        broken = draw(broken_solutions(SIZES))
+        broken = draw(broken_solutions(sizes))
         return Case("random", "check", "check", broken.instance, broken.solution)
-    instance = draw(_instances())
-    return Case("random", "check", "check", instance, draw(solutions(instance, SIZES)))
+    instance = draw(_instances(sizes))
+    return Case("random", "check", "check", instance, draw(solutions(instance, sizes)))
 
 
-def random_cases(ops: Sequence[str], level: Level, whole: bool) -> Mapping[Op, st.SearchStrategy[Case]]:
+def _claimed(sizes: Sizes, claims: Claims) -> Sizes:
+    """The sizes with which few cases have what is not claimed."""
+    return replace(
+        sizes,
+        capacity=1 if "capacities" in claims.without else sizes.capacity,
+        duration=1 if "durations" in claims.without else sizes.duration,
+        pace=1 if "paces" in claims.without else sizes.pace,
+        release=0 if "releases" in claims.without else sizes.release,
+    )
+
+
+def random_cases(
+    ops: Sequence[str], level: Level, whole: bool, claims: Claims = EVERYTHING
+) -> Mapping[Op, st.SearchStrategy[Case]]:
     """Cases of each op that is offered."""
+    sizes = _claimed(SIZES, claims)
     if whole:
-        return {"plan": _plans([None])}
+        return {"plan": _plans([None], sizes)}
     planners = EXACT_PLANNERS if level >= Level.EXACT else (Carp(),)
-    small = st.one_of(instances(OPTIMUM_SIZES), _busy_instances(), _busy_instances())
+    small = st.one_of(instances(_claimed(OPTIMUM_SIZES, claims)), _busy_instances(sizes), _busy_instances(sizes))
     by_op: dict[Op, st.SearchStrategy[Case]] = {
-        "query": _queries(),
-        "plan": _plans(planners),
-        "add": _additions(),
-        "check": _checks(),
-        "polish": _polishes(),
+        "query": _queries(sizes),
+        "plan": _plans(planners, sizes),
+        "add": _additions(sizes),
+        "check": _checks(sizes),
+        "polish": _polishes(sizes),
         "bound": small.map(lambda instance: Case("random", "bound", "bound", instance)),
     }
     if level >= Level.COMPLETE:

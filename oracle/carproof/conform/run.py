@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 
 from carproof.conform.cases import Case, Op
+from carproof.conform.claims import EVERYTHING, Claims
 from carproof.conform.deciding import Tally, random_shortfalls, smoke_shortfalls
 from carproof.conform.effort import Effort
 from carproof.conform.findings import Category, Fault, Finding
@@ -24,8 +25,8 @@ MOST_FAULTS = 3
 class Options:
     """How a program is asked; `whole`: whole instances, each by a planner of the program's own.
 
-    `classical`: besides, random ones are classical multi-agent path finding. `kernel`: the name and version of the
-    proved kernel, if it decides.
+    `classical`: besides, random ones are classical multi-agent path finding. `claims`: what it can be asked. `kernel`:
+    the name and version of the proved kernel, if it decides.
     """
 
     level: Level = Level.SOUND
@@ -35,6 +36,7 @@ class Options:
     shrink_seconds: float = SHRINK_SECONDS
     whole: bool = False
     classical: bool = False
+    claims: Claims = EVERYTHING
     kernel: str | None = None
 
     @property
@@ -189,7 +191,10 @@ def _ask_fixed(subject: Subject, report: Report, cases: Iterable[Case], advance:
         if report.processes_lost >= MOST_FAULTS:
             return
         asked = replace(case, classical=report.options.classical)
-        report.add(ask(subject, asked, report.options.level, by_kernel=report.options.kernel is not None))
+        why_not = report.options.claims.why_not(asked)
+        unasked = None if why_not is None else Outcome(asked, skipped=why_not, asked=False)
+        by_kernel = report.options.kernel is not None
+        report.add(unasked or ask(subject, asked, report.options.level, by_kernel=by_kernel))
         advance()
 
 
@@ -199,7 +204,7 @@ def _ask_random(subject: Subject, report: Report, advance: Callable[[], None]) -
     from carproof.conform.random_cases import random_cases  # noqa: PLC0415 - loads hypothesis
 
     options = report.options
-    ours = random_cases(subject.ops, options.level, options.whole)
+    ours = random_cases(subject.ops, options.level, options.whole, options.claims)
     by_op = {"plan": classical_cases()} if options.classical else ours
 
     def ask_one(case: Case, seconds: float | None) -> Outcome:
@@ -209,11 +214,14 @@ def _ask_random(subject: Subject, report: Report, advance: Callable[[], None]) -
             advance()
         return outcome
 
+    def is_claimed(case: Case) -> bool:
+        return options.claims.why_not(case) is None
+
     search = FailureSearch(ask_one, options.limit, options.shrink_seconds)
     try:
         for number, cases in enumerate(by_op.values()):
             examples = (options.examples + number) // len(by_op)
             if examples and search.best is None:
-                search.run(cases, examples, options.seed)
+                search.run(cases.filter(is_claimed), examples, options.seed)
     finally:
         report.smallest = search.best

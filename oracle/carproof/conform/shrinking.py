@@ -39,7 +39,7 @@ class FailureSearch:
     def run(self, cases: "SearchStrategy[Case]", examples: int, seed: int) -> None:
         """Draw at most `examples` cases."""
         from hypothesis import HealthCheck, Phase, find, settings  # noqa: PLC0415 - loaded only where used
-        from hypothesis.errors import NoSuchExample  # noqa: PLC0415
+        from hypothesis.errors import NoSuchExample, Unsatisfiable  # noqa: PLC0415
 
         limits = settings(
             max_examples=examples,
@@ -52,7 +52,7 @@ class FailureSearch:
         )
         try:
             find(cases, self._is_failure, settings=limits, random=Random(seed))  # noqa: S311 - cases, no secrets
-        except NoSuchExample:
+        except (NoSuchExample, Unsatisfiable):
             return
         self._confirm()
 

@@ -1,0 +1,84 @@
+"""A planner is asked only what it claims to plan, and the verdict lists what was left out."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from tests.oracle.running import Run
+from tests.oracle.test_conform_judges import Tampered, as_it_is
+
+import carp_reference
+from carp_spec import Carp, Instance, Solution
+from carproof.conform.cases import ASKED_OPS, Case
+from carproof.conform.claims import FEATURES, Claims, is_solvable
+from carproof.conform.function import Function
+from carproof.conform.levels import Level
+from carproof.conform.run import Options, conform
+
+
+def of(claims: Claims, examples: int = 24) -> Options:
+    return Options(Level.SOUND, examples, shrink_seconds=1, claims=claims)
+
+
+def whole(claims: Claims) -> Options:
+    return Options(Level.SOUND, 20, shrink_seconds=1, whole=True, claims=claims)
+
+
+def fails_where(is_hard: Callable[[Instance], bool]) -> Function:
+    def plan(instance: Instance) -> Solution:
+        if is_hard(instance):
+            raise NotImplementedError
+        return carp_reference.plan(instance, Carp())
+
+    return Function(plan, "simple")
+
+
+@pytest.mark.parametrize("feature", ["capacities", "directed", "vanish"])
+def test_a_planner_without_a_feature_conforms_where_it_is_not_claimed(feature: str) -> None:
+    planner = fails_where(FEATURES[feature])
+    assert conform(planner, whole(Claims())).conforms is False
+    assert conform(planner, whole(Claims(frozenset([feature])))).conforms
+
+
+def test_a_planner_that_fails_where_a_goal_cannot_be_reached_is_asked_only_for_plans_that_exist() -> None:
+    planner = fails_where(lambda instance: bool(carp_reference.plan(instance, Carp()).unplanned))
+    assert conform(planner, whole(Claims())).conforms is False
+    asked: list[Case] = []
+    subject = Tampered(lambda case, reply: (asked.append(case), reply)[1])  # type: ignore[func-returns-value]
+    assert conform(subject, of(Claims(solvable=True))).conforms
+    assert {case.op for case in asked} == {*ASKED_OPS} - {"optimum"}
+    assert all(is_solvable(case) for case in asked)
+
+
+def test_a_robot_that_needs_another_order_can_have_a_plan() -> None:
+    asked: list[Case] = []
+    planner = fails_where(lambda _: False)
+    report = conform(planner, whole(Claims(solvable=True)))
+    asked = [outcome.case for outcome in report.outcomes if outcome.asked]
+    assert "plan: one must make room for the other, park" in [case.name for case in asked]
+    assert "plan: no way" not in [case.name for case in asked]
+
+
+def test_only_a_claimed_feature_is_in_a_random_case() -> None:
+    asked: list[Case] = []
+    subject = Tampered(lambda case, reply: (asked.append(case), reply)[1])  # type: ignore[func-returns-value]
+    assert conform(subject, of(Claims(frozenset({*FEATURES} - {"park"})))).conforms
+    assert sum(case.stage == "random" for case in asked) == 24
+    assert not [case for case in asked for name in {*FEATURES} - {"park"} if FEATURES[name](case.instance)]
+
+
+def test_nothing_is_decided_where_nothing_can_be_asked() -> None:
+    report = conform(Tampered(as_it_is), of(Claims(frozenset({"park", "vanish"})), examples=1))
+    assert report.conforms is None
+
+
+def test_the_verdict_lists_what_was_left_out(carproof: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    options = ["--examples", "0", "--without", "directed", "--without", "capacities", "--solvable", "--one-shot"]
+    program = ["--", "false", "{instance}"]
+    last = carproof("conform", *options, *program).stdout.splitlines()[-1]
+    assert last.endswith("; not asked: capacities, directed, robots without a plan")
+    report = json.loads(carproof("conform", "--json", *options, *program).stdout)
+    assert report["left_out"] == ["capacities", "directed", "robots without a plan"]
+    assert report["cases"]["vectors"]["not asked"] > 0
