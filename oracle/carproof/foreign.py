@@ -1,14 +1,16 @@
 """What commands share that read and write other planners' files: their options, and how the files are read."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from functools import wraps
+from pathlib import Path
+from typing import Any, TypeVar, cast
 
 import click
 
 from carp_spec import AfterGoal, Instance, Solution
-from carproof.adapters import ADAPTERS, read_foreign_solution
-from carproof.files import InputFile, read_bytes, shown
+from carproof.adapters import ADAPTERS, format_of, named_as, read_foreign_solution
+from carproof.files import InputFile, read_bytes, read_instance_file, refuse_two_standard_inputs, shown
 from carproof.movingai import movingai_instance, read_map, read_scenario
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -72,3 +74,64 @@ def read_movingai(benchmark: MovingAI) -> Instance:
 def read_solution_of(instance: Instance, name: str, format: str | None) -> Solution:
     """Read a solution in any planner's format from a file or standard input."""
     return read_foreign_solution(read_bytes(name), instance, shown(name), format)
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """An instance, or a benchmark in its place, and perhaps a solution in any format."""
+
+    instance: str | None
+    benchmark: MovingAI | None
+    solution: str | None = None
+    format: str | None = None
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the files."""
+        instances = (self.instance or "",) if self.benchmark is None else self.benchmark.names
+        return (*instances, *([] if self.solution is None else [self.solution]))
+
+    @property
+    def title(self) -> str:
+        """The names of instance and solution as people know them."""
+        first = self.instance or (self.benchmark.scen if self.benchmark else "")
+        return f"{Path(shown(first)).name} · {Path(shown(self.solution or '')).name}"
+
+    def read_instance(self) -> Instance:
+        """Read the instance or the benchmark."""
+        return read_movingai(self.benchmark) if self.benchmark else read_instance_file(self.instance or "")
+
+    def read(self, *, as_named: bool = False) -> tuple[Instance, Solution]:
+        """Read both; `as_named`: robots of a benchmark, which has no names for them, are called as in the solution."""
+        refuse_two_standard_inputs(*self.names)
+        instance = self.read_instance()
+        assert self.solution is not None  # noqa: S101 - it is asked only where there is one
+        data, file = read_bytes(self.solution), shown(self.solution)
+        format = self.format or format_of(data, instance, file)
+        if as_named and self.benchmark:
+            instance = named_as(instance, format)
+        return instance, read_foreign_solution(data, instance, file, format)
+
+
+def solution_files(function: F) -> F:
+    """[INSTANCE] SOLUTION, and the options of benchmarks and formats; the command gets them as a `Problem`."""
+
+    @wraps(function)
+    def command(
+        *,
+        files: Sequence[str],
+        map: str | None,
+        scen: str | None,
+        agents: int | None,
+        format: str | None,
+        **others: Any,  # noqa: ANN401 - the command's own
+    ) -> object:
+        *instances, solution = files
+        benchmark = MovingAI.of(map, scen, agents)
+        if len(instances) != (benchmark is None):
+            raise click.UsageError("Give INSTANCE and SOLUTION, or --map, --scen and SOLUTION.")
+        problem = Problem(instances[0] if instances else None, benchmark, solution, format)
+        return function(problem=problem, **others)
+
+    files = click.argument("files", metavar="[INSTANCE] SOLUTION", nargs=-1, required=True, type=InputFile())
+    return cast("F", files(movingai_options(from_option(command))))

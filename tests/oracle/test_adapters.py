@@ -348,6 +348,52 @@ def test_check_judges_a_file_against_an_instance_or_a_benchmark(carproof: Run, b
     assert carproof("check", *maps, "--agents", "2", "-", stdin=CORRECT[format].encode()).stdout == told
 
 
+@pytest.mark.parametrize("command", ["check", "view", "certify", "polish --iterations 5"])
+@pytest.mark.parametrize("format", ["lacam", "paths-row-column"])
+def test_any_solution_file_is_accepted_with_a_benchmark(
+    carproof: Run, benchmark: Path, command: str, format: str
+) -> None:
+    maps = ("--map", benchmark / "m.map", "--scen", benchmark / "m.scen")
+    outcome = carproof(*command.split(), *maps, benchmark / format)
+    assert outcome.code == 0, outcome
+    again = carproof(*command.split(), benchmark / "m.json", "-", "--from", format, stdin=CORRECT[format].encode())
+    assert again.code == 0, again
+
+
+def test_a_bound_is_set_against_any_solution_file(carproof: Run, benchmark: Path) -> None:
+    maps = ("--map", benchmark / "m.map", "--scen", benchmark / "m.scen")
+    outcome = carproof("bound", *maps, "--steps", "5", "--plans", benchmark / "lacam")
+    assert (outcome.code, outcome.stdout.splitlines()[-1].split()[:4]) == (0, ["2", "4", "4", "5"])
+    assert "Give INSTANCE, or --map and --scen." in carproof("bound", "--plans", benchmark / "lacam").stderr
+
+
+@pytest.mark.parametrize(
+    ("format", "name"),
+    [("libmultirobotplanning", "agent1"), ("paths-x-y", "Agent 1"), ("lacam", "r2"), ("carproof", "r2")],
+)
+def test_agents_of_a_benchmark_are_called_as_the_solution_calls_them(
+    carproof: Run, benchmark: Path, format: str, name: str
+) -> None:
+    solution = read_foreign_solution(CORRECT["lacam"].encode(), INSTANCE)
+    broken = replace(
+        solution, plans=(solution.plans[0], replace(solution.plans[1], visits=solution.plans[1].visits[:1]))
+    )
+    text = {
+        "lacam": "solution=\n0:(0,0),(3,2),\n1:(1,0),(3,2),\n2:(2,0),(3,2),\n",
+        "libmultirobotplanning": SCHEDULE[: SCHEDULE.index("    - {x: 3, y: 1")],
+        "paths-x-y": "Agent 0: (0,0)->(1,0)->(2,0)->\nAgent 1: (3,2)->(3,2)->\n",
+        "carproof": write_solution(broken).decode(),
+    }
+    (benchmark / "broken").write_text(text[format])
+    maps = ("--map", benchmark / "m.map", "--scen", benchmark / "m.scen")
+    outcome = carproof("check", *maps, benchmark / "broken")
+    assert outcome.code == 1
+    assert f": robot {name} (" in outcome.stdout.splitlines()[0]
+    assert ": robot r2 (" in carproof("check", benchmark / "m.json", benchmark / "broken").stdout.splitlines()[0]
+    page = carproof("view", *maps, benchmark / "broken").stdout
+    assert f'"{name}"' in page
+
+
 def test_check_tells_the_rule_that_a_file_breaks(carproof: Run, benchmark: Path) -> None:
     (benchmark / "broken").write_text(LACAM.replace("1:(1,0)", "1:(0,0)"))
     outcome = carproof("check", benchmark / "m.json", benchmark / "broken")

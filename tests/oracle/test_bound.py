@@ -128,3 +128,13 @@ def test_plans_that_cost_less_than_the_bound_are_a_contradiction(
     assert outcome.code == 70
     assert outcome.stderr.startswith("Internal contradiction: plans that break no rule cost 5, less than the lower")
     assert "Traceback" not in outcome.stderr
+
+
+def test_numbers_that_are_too_large_are_refused_by_the_name_of_the_file(carproof: Run, tmp_path: Path) -> None:
+    town = tmp_path / "town.json"
+    late = {**TWO, "robots": [{**TWO["robots"][0], "release": 2**70}]}
+    town.write_text(json.dumps(late))
+    outcome = carproof("bound", town, "--steps", "1")
+    assert (outcome.code, outcome.stdout) == (2, "")
+    assert outcome.stderr.startswith(f"Error: {town}: $.robots[0].release: ")
+    assert "the reference engine has no such limit, but finds no bounds" in outcome.stderr

@@ -5,6 +5,7 @@ writes them. What the formats mean, `walks` says. To add one, write its module a
 """
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from carp_spec import Instance, Refusal, Rule, Solution
@@ -20,6 +21,7 @@ __all__ = [
     "format_of",
     "instance_from_networkx",
     "looks_like_none",
+    "named_as",
     "read_foreign_solution",
     "write_foreign_solution",
 ]
@@ -81,6 +83,15 @@ def format_of(data: bytes, instance: Instance, file: str = "file") -> str:
     looks = ", ".join(name for name, each in ADAPTERS.items() if each.looks_like(text))
     what = f"it could be {looks}" if looks else f"it looks like none of {', '.join(ADAPTERS)}"
     raise Refusal("document", file, format_is_clear.id, f"the format must be named by --from: {what}")
+
+
+def named_as(instance: Instance, format: str) -> Instance:
+    """The instance with its robots called as files of the format call them, if they do."""
+    agent = ADAPTERS[format].agent
+    if agent is None:
+        return instance
+    robots = tuple(replace(robot, id=f"{agent}{number}") for number, robot in enumerate(instance.robots))
+    return replace(instance, robots=robots)
 
 
 def looks_like_none(data: bytes) -> bool:

@@ -14,7 +14,8 @@ Write: TypeAlias = Callable[[Instance, Solution], str]
 class Adapter:
     """A format: what it looks like, and how it is read and written.
 
-    `read` takes the text, the instance and the name of the file, and raises `Refusal` with file and line.
+    `read` takes the text, the instance and the name of the file, and raises `Refusal` with file and line. `agent` is
+    what a file calls its agents, before their number; `None` where it has no names for them.
     """
 
     name: str
@@ -22,3 +23,4 @@ class Adapter:
     looks_like: Callable[[str], bool]
     read: Read
     write: Write
+    agent: str | None = None

@@ -83,6 +83,7 @@ ROW_COLUMN = Adapter(
     _looks_like,
     lambda text, instance, file: _read(text, instance, file, row_first=True),
     lambda instance, solution: _write(instance, solution, row_first=True),
+    "Agent ",
 )
 X_Y = Adapter(
     "paths-x-y",
@@ -90,4 +91,5 @@ X_Y = Adapter(
     _looks_like,
     lambda text, instance, file: _read(text, instance, file, row_first=False),
     lambda instance, solution: _write(instance, solution, row_first=False),
+    "Agent ",
 )

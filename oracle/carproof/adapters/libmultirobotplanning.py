@@ -177,4 +177,5 @@ ADAPTER = Adapter(
     lambda text: _LOOKS.search(text) is not None,
     read,
     write,
+    "agent",
 )

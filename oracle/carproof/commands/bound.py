@@ -10,8 +10,9 @@ from carp_spec.documents import write
 from carproof.answer import Answer
 from carproof.engines import warm
 from carproof.extras import require
-from carproof.files import InputFile, print_document, read_instance_file, read_solution_file, write_whole
-from carproof.options import DEFAULT_SECONDS, examples, instance_argument, json_option, output_option
+from carproof.files import InputFile, naming, print_document, refuse_two_standard_inputs, write_whole
+from carproof.foreign import MovingAI, Problem, from_option, movingai_options, read_solution_of
+from carproof.options import DEFAULT_SECONDS, examples, json_option, output_option
 from carproof.progress import found_so_far, gap, search_progress
 from carproof.tables import print_line, print_table
 
@@ -25,18 +26,31 @@ COLUMNS = ("robots", "shortest paths", "lower bound", "best known", "gap", "step
         "carproof verify-bound town.json certificate.json",
         "carproof bound town.json --seconds 60 --plans plans.json",
         "carproof bound town.json --steps 500 --json",
+        "carproof bound --map town.map --scen town.scen --plans result.txt",
     ),
 )
-@instance_argument
+@click.argument("instance", type=InputFile(), required=False)
+@movingai_options
 @click.option(
     "--seconds", type=click.IntRange(min=1), help=f"For how long to search at most.  [default: {DEFAULT_SECONDS}]"
 )
 @click.option("--steps", type=click.IntRange(min=0), help="After how many steps to end; the result is always the same.")
-@click.option("--plans", type=InputFile(), help="A solution whose total is set against the bound.")
+@click.option("--plans", type=InputFile(), help="A solution in any format, whose total is set against the bound.")
+@from_option
 @output_option
 @json_option
-def command(
-    instance: str, seconds: int | None, steps: int | None, plans: str | None, output: Path | None, as_json: bool
+def command(  # noqa: PLR0913 - one parameter for each argument and option
+    *,
+    instance: str | None,
+    map: str | None,
+    scen: str | None,
+    agents: int | None,
+    seconds: int | None,
+    steps: int | None,
+    plans: str | None,
+    format: str | None,
+    output: Path | None,
+    as_json: bool,
 ) -> Answer:
     """Find a lower bound on the total cost of any plans for all robots of INSTANCE.
 
@@ -49,8 +63,14 @@ def command(
     require("pysat")
     from carp_optimum.bound import Progress, lower_bound  # noqa: PLC0415 - loads the planners
 
-    problem = read_instance_file(instance)
-    known = best_known(problem, plans)
+    benchmark = MovingAI.of(map, scen, agents)
+    if (instance is None) == (benchmark is None):
+        raise click.UsageError("Give INSTANCE, or --map and --scen.")
+    given = Problem(instance, benchmark, plans, format)
+    refuse_two_standard_inputs(*given.names)
+    problem = given.read_instance()
+    with naming(given.names[0]):
+        known = best_known(problem, plans, format)
     limit = DEFAULT_SECONDS if seconds is None and steps is None else seconds
     seen: list[Progress] = []
 
@@ -60,7 +80,7 @@ def command(
 
     warm()
     started = perf_counter()
-    with search_progress("bounding", steps, limit) as show:
+    with naming(given.names[0]), search_progress("bounding", steps, limit) as show:
         certificate = lower_bound(problem, limit, steps, keep)
     took = perf_counter() - started
     document = write(certificate)
@@ -78,10 +98,10 @@ def command(
     return Answer.of(not lost)
 
 
-def best_known(instance: Instance, plans: str | None) -> int | None:
+def best_known(instance: Instance, plans: str | None, format: str | None) -> int | None:
     """The total of the plans given, or of plans made quickly; `None` if they leave a robot without a plan."""
     if plans is not None:
-        solution = read_solution_file(plans)
+        solution = read_solution_of(instance, plans, format)
         verdict = judge(instance, solution)
         if not verdict.valid:
             raise click.ClickException(f"{plans}: plans to compare with must break no rule: {verdict.violations[0]}")

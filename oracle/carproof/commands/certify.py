@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import click
 
 from carproof.answer import Answer
-from carproof.files import print_document, read_instance_file, read_solution_file, refuse_two_standard_inputs
-from carproof.options import examples, instance_argument, json_option, solution_argument
+from carproof.files import print_document
+from carproof.foreign import Problem, solution_files
+from carproof.options import examples, json_option
 from carproof.progress import progress
 from carproof.tables import print_line
 
@@ -22,13 +23,13 @@ if TYPE_CHECKING:
     epilog=examples(
         "carproof certify town.json plans.json",
         "carproof plan town.json --json | carproof certify town.json -",
+        "carproof certify --map town.map --scen town.scen result.txt",
     ),
 )
-@instance_argument
-@solution_argument
+@solution_files
 @json_option
-def command(instance: str, solution: str, as_json: bool) -> Answer:
-    """Check SOLUTION, and have z3 confirm that its plans keep capacities and avoid exchanges.
+def command(problem: Problem, as_json: bool) -> Answer:
+    """Check SOLUTION, in any format, and have z3 confirm that its plans keep capacities and avoid exchanges.
 
     A solution that breaks a rule of single plans or of the list of plans is refused, as check refuses it. Then
     z3 shows for each resource that there is no tick at all at which it is too full, and for each pair that no
@@ -37,17 +38,15 @@ def command(instance: str, solution: str, as_json: bool) -> Answer:
 
     Exit codes: 0 certified, 1 refused, 2 bad input, 3 z3 could not tell.
     """
-    refuse_two_standard_inputs(instance, solution)
-    problem = read_instance_file(instance)
-    answer = read_solution_file(solution)
+    instance, solution = problem.read(as_named=True)
     from carp_verify.certificate import certify  # noqa: PLC0415 - loads z3
     from carp_verify.smt import Undecided  # noqa: PLC0415
 
-    visited = {visit.resource for plan in answer.plans for visit in plan.visits} & problem.graph.resource.keys()
+    visited = {visit.resource for plan in solution.plans for visit in plan.visits} & instance.graph.resource.keys()
     started = perf_counter()
     try:
         with progress("certifying", len(visited)) as advance:
-            certificate = certify(problem, answer, advance)
+            certificate = certify(instance, solution, advance)
     except Undecided as undecided:
         click.echo(f"Undecided: {undecided}.", err=True)
         return Answer.UNDECIDED

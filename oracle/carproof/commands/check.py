@@ -1,7 +1,6 @@
 """`carproof check`: whether a solution is right, in carproof's format or another planner's."""
 
 from collections import Counter
-from collections.abc import Sequence
 from pathlib import Path
 
 import click
@@ -12,10 +11,10 @@ from carp_spec.documents import solution_document, write
 from carp_verify.bound_rules import ContradictionError
 from carp_verify.kernel import KernelVerdict, ask, request
 from carproof.answer import Answer
-from carproof.files import InputFile, print_document, read_instance_file, refuse_two_standard_inputs, write_whole
-from carproof.foreign import MovingAI, from_option, movingai_options, read_movingai, read_solution_of
+from carproof.files import print_document, write_whole
+from carproof.foreign import Problem, solution_files
 from carproof.options import examples, json_option, kernel_option, output_option
-from carproof.tables import print_line, print_table
+from carproof.tables import print_line, print_table, say
 
 
 @click.command(
@@ -30,21 +29,15 @@ from carproof.tables import print_line, print_table
         "carproof check --map town.map --scen town.scen --agents 40 result.txt",
     ),
 )
-@click.argument("files", metavar="[INSTANCE] SOLUTION", nargs=-1, required=True, type=InputFile())
-@movingai_options
-@from_option
+@solution_files
 @kernel_option
 @click.option("--require-all", is_flag=True, help="Answer no also if a robot has no plan.")
 @click.option("--all", "everything", is_flag=True, help="List every violation, however many there are.")
 @output_option
 @json_option
-def command(  # noqa: PLR0913 - one parameter for each argument and option
+def command(
     *,
-    files: Sequence[str],
-    map: str | None,
-    scen: str | None,
-    agents: int | None,
-    format: str | None,
+    problem: Problem,
     kernel: bool,
     require_all: bool,
     everything: bool,
@@ -65,14 +58,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
     Exit codes: 0 no rule is broken, 1 a rule is broken (--require-all: or a robot has no plan), 2 bad input.
     """
-    *instances, solution = files
-    benchmark = MovingAI.of(map, scen, agents)
-    if len(instances) != (benchmark is None):
-        raise click.UsageError("Give INSTANCE and SOLUTION, or --map, --scen and SOLUTION.")
-    refuse_two_standard_inputs(*files, *(benchmark.names if benchmark else ()))
-    instance = read_movingai(benchmark) if benchmark else read_instance_file(instances[0])
+    instance, given = problem.read(as_named=True)
     most = None if everything else MOST_LISTED
-    given = read_solution_of(instance, solution, format)
     verdict = judge(instance, given, most)
     decided = kernel_verdict(instance, given, verdict) if kernel else None
     document = write_verdict(verdict) if decided is None else write(decided)
@@ -102,11 +89,11 @@ def print_verdict(verdict: Verdict, most: int | None, require_all: bool = False)
         print_line(str(violation))
     count = Counter(violation.rule for violation in verdict.violations)
     if count:
-        click.echo()
+        say()
         numbers = {rule: f"{number} or more" if number == most else number for rule, number in count.items()}
         broken = [(rule.id, numbers[rule.id]) for rule in RULES if rule.id in numbers]
         print_table(["rule", "violations"], broken, numbers=["violations"])
-        click.echo()
+        say()
     broken_or_not = "no rule is broken" if verdict.valid else "INVALID"
     result = "INCOMPLETE" if verdict.valid and verdict.unplanned and require_all else broken_or_not
     print_line(f"{result}: total cost {verdict.cost}, unplanned robots {verdict.unplanned}")

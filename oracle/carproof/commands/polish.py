@@ -13,17 +13,14 @@ from carproof.files import (
     InputFile,
     naming,
     read_bytes,
-    read_instance_file,
-    read_solution_file,
     refuse_two_standard_inputs,
 )
+from carproof.foreign import Problem, solution_files
 from carproof.options import (
     engine_option,
     examples,
-    instance_argument,
     json_option,
     output_option,
-    solution_argument,
 )
 from carproof.progress import found_so_far, gap, search_progress
 from carproof.requests import sound_solution
@@ -40,10 +37,10 @@ COLUMNS = ("plans", "unplanned", "total cost", "bound", "gap", "rounds", "time")
         "carproof polish town.json plans.json --seconds 5 -o better.json",
         "carproof polish town.json plans.json --iterations 2000 --seed 7",
         "carproof polish town.json plans.json --bound certificate.json",
+        "carproof polish --map town.map --scen town.scen result.txt -o better.json",
     ),
 )
-@instance_argument
-@solution_argument
+@solution_files
 @click.option("--iterations", type=int, help=f"How many rounds.  [default: {ITERATIONS}]", show_default=False)
 @click.option("--seconds", type=float, help="For how long, in place of a number of rounds.")
 @click.option("--seed", type=int, default=0, help="The seed of all choices.")
@@ -53,8 +50,7 @@ COLUMNS = ("plans", "unplanned", "total cost", "bound", "gap", "rounds", "time")
 @json_option
 def command(  # noqa: PLR0913 - one parameter for each argument and option
     *,
-    instance: str,
-    solution: str,
+    problem: Problem,
     iterations: int | None,
     seconds: float | None,
     seed: int,
@@ -65,24 +61,24 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 ) -> Answer:
     """Improve SOLUTION, plans for INSTANCE, round by round; robots without a plan get one, if it can be found.
 
+    SOLUTION is in any format that check reads (--from), and what is written is carproof's document.
     A round takes out a few robots, replans them, and keeps what is not worse. Equal --iterations and --seed
     give equal plans. All robots are planned from their release on: none is under way. The bound, which no plans
     of all robots are below, is the sum of the shortest paths, or that of --bound, which is verified first.
 
     Exit codes: 0 every robot has a plan, 1 some robot has none, 2 bad input.
     """
-    refuse_two_standard_inputs(instance, solution, bound or "")
+    refuse_two_standard_inputs(*problem.names, bound or "")
     require_polish_options(iterations, seconds, seed)
-    problem = read_instance_file(instance)
-    given = read_solution_file(solution)
-    with naming(solution):
-        before = sound_solution(problem, given)
-    least = bound_of(problem, bound)
+    instance, given = problem.read()
+    with naming(problem.solution or ""):
+        before = sound_solution(instance, given)
+    least = bound_of(instance, bound)
     played = 0
     if seconds is not None:
         warm()
     started = perf_counter()
-    with naming(instance), search_progress("polishing", last_round(iterations, seconds), seconds) as show:
+    with naming(problem.names[0]), search_progress("polishing", last_round(iterations, seconds), seconds) as show:
 
         def advance(rounds: int, unplanned: int, total: int) -> None:
             nonlocal played
@@ -90,20 +86,20 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
             show(rounds, found_so_far(total, least, unplanned))
 
         after = engine_named(engine).polish(
-            problem, before, iterations=iterations, seconds=seconds, seed=seed, advance=advance
+            instance, before, iterations=iterations, seconds=seconds, seed=seed, advance=advance
         )
         if after.unplanned:
             from carp_optimum.joint_repair import repair_jointly  # noqa: PLC0415 - numba is slow to load
 
             after = repair_jointly(problem, after)
     time = perf_counter() - started
-    for violation in check(problem, after.plans):
+    for violation in check(instance, after.plans):
         raise AssertionError(violation)
     write_result(write_solution(after), output, as_json)
     if not as_json:
-        rows = [_row("given", problem, before, least), _row("polished", problem, after, least)]
+        rows = [_row("given", instance, before, least), _row("polished", instance, after, least)]
         print_table(COLUMNS, [[*rows[0], "", ""], [*rows[1], played, f"{time:.2f} s"]], numbers=COLUMNS[1:])
-        show_unplanned(problem, after, after.unplanned)
+        show_unplanned(instance, after, after.unplanned)
     return Answer.of(not after.unplanned)
 
 
