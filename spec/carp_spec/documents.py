@@ -90,13 +90,14 @@ class RobotDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class InstanceDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """An instance."""
+    """An instance; `$schema` is for editors and is not kept."""
 
     format: Literal["carproof-instance/1"]
     graph: GraphDocument
     after_goal: AfterGoal
     robots: tuple[RobotDocument, ...]
     following: Following | msgspec.UnsetType = msgspec.UNSET
+    schema: str | msgspec.UnsetType = msgspec.field(default=msgspec.UNSET, name="$schema")
 
 
 class PlanDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -107,12 +108,13 @@ class PlanDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class SolutionDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A solution: plans, the order in which they were made, and the robots that have none."""
+    """A solution: plans, the order in which they were made, and the robots without a plan; `$schema` is not kept."""
 
     format: Literal["carproof-solution/1"]
     plans: tuple[PlanDocument, ...]
     order: tuple[RobotId, ...]
     unplanned: tuple[RobotId, ...]
+    schema: str | msgspec.UnsetType = msgspec.field(default=msgspec.UNSET, name="$schema")
 
 
 class ViolationDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename={"start": "from", "end": "to"}):
@@ -190,6 +192,11 @@ def has_format(data: bytes, format: str) -> bool:
         return False
 
 
+def uncapitalized(sentence: str) -> str:
+    """The sentence as part of another: its first letter is small, unless its first word is an abbreviation."""
+    return sentence if sentence[1:2].isupper() else sentence[:1].lower() + sentence[1:]
+
+
 def _shape_error(data: bytes, kind: type[D]) -> tuple[str, str] | None:
     """Where the document departs from its kind, as a path and what is expected there."""
     try:
@@ -197,7 +204,7 @@ def _shape_error(data: bytes, kind: type[D]) -> tuple[str, str] | None:
     except UNREADABLE as error:
         message, found, path = str(error).rpartition(" - at `")
         reason = message if found else path
-        return (path.rstrip("`") if found else "$", (reason[:1].lower() + reason[1:]).replace("`", ""))
+        return (path.rstrip("`") if found else "$", uncapitalized(reason).replace("`", ""))
     return None
 
 
@@ -225,11 +232,20 @@ def decode(data: bytes, kind: type[D], format: str) -> D:
     return _decode_step_by_step(data, kind, format)
 
 
+def _instead(data: bytes) -> str:
+    """The format that a document has in place of the right one, as the end of a sentence; nothing if it has none."""
+    try:
+        found = msgspec.json.decode(data, type=_Headed).format
+    except UNREADABLE:
+        return ""
+    return f", and is {found}" if found.isprintable() and len(found) <= MOST_DIGITS else ""
+
+
 def _decode_step_by_step(data: bytes, kind: type[D], format: str) -> D:
     """Decode by one rule after the other, to name the one that is broken."""
     require_json(data)
     if not has_format(data, format):
-        raise Refusal("document", "$.format", "document/format", f"the format must be {format}")
+        raise Refusal("document", "$.format", "document/format", f"the format must be {format}{_instead(data)}")
     wrong = _shape_error(data, kind)
     if wrong is not None:
         path, expected = wrong

@@ -43,6 +43,17 @@ def test_the_published_schema_is_the_generated_one(name: str) -> None:
     assert schema_file(name).read_text() == document_schema(name), "`make generated` writes it again"
 
 
+@pytest.mark.parametrize("name", DOCUMENTS)
+def test_a_schema_has_an_id(name: str) -> None:
+    assert json.loads(document_schema(name))["$id"] == f"urn:carproof:{name}:1"
+
+
+def test_a_document_may_name_its_schema() -> None:
+    named = {**INSTANCE, "$schema": "instance.schema.json"}
+    assert accepted("instance", named) == (True, True)
+    assert read_instance(json.dumps(named).encode()) == read_instance(json.dumps(INSTANCE).encode())
+
+
 def test_write_schemas_writes_them_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("carp_spec.schema.FOLDER", tmp_path / "schemas")
     write_schemas()
