@@ -53,7 +53,7 @@ def run_campaign(cases: Sequence[Case], store: Store, workers: Workers, advance:
                 store.add(key, row, milliseconds)
                 advance()
     except (OSError, RuntimeError) as error:
-        why = str(error).partition(".")[0]
+        why = str(error).partition(". ")[0].rstrip(".")
         message = f"a worker was lost ({why}); run the same command again, and it continues where it stopped"
         raise Refusal("request", "$", "campaign/workers", message) from error
 

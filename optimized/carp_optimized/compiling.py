@@ -138,4 +138,5 @@ def say_that_it_compiles(is_kept: bool) -> None:
     """Say to the person who waits why it takes so long, once, and whether it will again."""
     how_often = "once" if is_kept else "in each process, as it finds no folder in which to keep that"
     message = f"carproof compiles its planner, {how_often}: it takes about a minute ..."
-    print(message, file=sys.stderr, flush=True)  # noqa: T201 - no command does this, so none can say it
+    with suppress(OSError):
+        print(message, file=sys.stderr, flush=True)  # noqa: T201 - no command does this, so none can say it

@@ -36,7 +36,7 @@ GUIDE_PLACES = 1 << 24  # how many entries all guides together have at most, if 
 ROOTS = 1024
 STRIPS = 7  # its square is the number of regions; a number of 64 bits has room for 63
 LARGEST_COORDINATE = 2**29
-NO_LIMIT_THERE = "the reference engine has no such limit"
+NO_LIMIT_THERE = "the reference engine has no such limit, but finds no bounds"
 
 
 def refuse_what_is_too_large(instance: Instance) -> None:

@@ -9,12 +9,16 @@ from pathlib import Path
 from typing import TypeVar
 
 import click
+from click.shell_completion import CompletionItem
 
 from carp_spec import Instance, Refusal, Solution, read_instance, read_solution
 from carp_spec.traces import Trace, read_trace
 
 T = TypeVar("T")
 STANDARD_INPUT = "-"
+STANDARD_OUTPUT = Path("/dev/stdout")
+TAKEN = "carproof.standard-output-is-taken"
+BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
 
 class InputFile(click.ParamType[str]):
@@ -25,11 +29,23 @@ class InputFile(click.ParamType[str]):
     def convert(self, value: str, param: click.Parameter | None, ctx: click.Context | None) -> str:
         """Refuse what can be no input, before any work is done."""
         path = Path(value)
+        if not value:
+            self.fail("the name of a file must not be empty.", param, ctx)
         if value != STANDARD_INPUT and path.is_dir():
             self.fail(f"{value}: it is a folder.", param, ctx)
         if value != STANDARD_INPUT and not path.exists():
             self.fail(f"{value}: there is no such file.", param, ctx)
         return value
+
+    def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+        """Let the shell complete it."""
+        del ctx, param
+        return complete_files(incomplete)
+
+
+def complete_files(incomplete: str) -> list[CompletionItem]:
+    """Have the shell complete the name of a file."""
+    return [CompletionItem(incomplete, type="file")]
 
 
 class OutputFile(click.ParamType[Path]):
@@ -39,6 +55,10 @@ class OutputFile(click.ParamType[Path]):
 
     def convert(self, value: str, param: click.Parameter | None, ctx: click.Context | None) -> Path:
         """Refuse what cannot be written, before any work is done."""
+        if not value:
+            self.fail("the name of a file must not be empty.", param, ctx)
+        if value == "-":
+            return take_standard_output(ctx)
         path = target(Path(value))
         if path.is_dir():
             self.fail(f"{value}: it is a folder.", param, ctx)
@@ -48,6 +68,18 @@ class OutputFile(click.ParamType[Path]):
             self.fail(f"{value}: it may not be written.", param, ctx)
         return Path(value)
 
+    def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+        """Let the shell complete it."""
+        del ctx, param
+        return complete_files(incomplete)
+
+
+def take_standard_output(ctx: click.Context | None) -> Path:
+    """Give standard output to the document of a command; what people read goes to standard error."""
+    if ctx is not None:
+        ctx.meta[TAKEN] = True
+    return STANDARD_OUTPUT
+
 
 def target(path: Path) -> Path:
     """The file that is written in the end: links are followed, also to what is not there yet."""
@@ -55,11 +87,12 @@ def target(path: Path) -> Path:
 
 
 def read_bytes(name: str) -> bytes:
-    """Read a file, or standard input for `-`."""
+    """Read a file, or standard input for `-`, without the byte order mark that some systems put before UTF-8."""
     try:
-        return sys.stdin.buffer.read() if name == STANDARD_INPUT else Path(name).read_bytes()
+        data = sys.stdin.buffer.read() if name == STANDARD_INPUT else Path(name).read_bytes()
     except OSError as error:
         raise click.ClickException(f"{name}: it cannot be read: {error.strerror}") from error
+    return data.removeprefix(BYTE_ORDER_MARK)
 
 
 def read_instance_file(name: str) -> Instance:
@@ -107,6 +140,9 @@ def refuse_two_standard_inputs(*names: str) -> None:
 
 def write_whole(path: Path, data: bytes) -> None:
     """Write a file whole or not at all: beside it, then in its place. A device or pipe is written as it is."""
+    if path == STANDARD_OUTPUT:
+        print_document(data)
+        return
     try:
         if path.exists() and not path.is_file():
             path.write_bytes(data)

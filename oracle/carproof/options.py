@@ -41,7 +41,10 @@ instance_argument = click.argument("instance", type=InputFile())
 solution_argument = click.argument("solution", type=InputFile())
 trace_argument = click.argument("trace", type=InputFile())
 output_option = click.option(
-    "--output", "-o", type=OutputFile(), help="Write the document to this file, whole or not at all."
+    "--output",
+    "-o",
+    type=OutputFile(),
+    help="Write the document to this file, whole or not at all; - is standard output.",
 )
 json_option = click.option(
     "--json", "as_json", is_flag=True, help="Print the document on standard output, and nothing else."

@@ -17,7 +17,7 @@ from typing import Any, Literal, TypeVar
 import msgspec
 
 from carp_spec import Refusal, Rule
-from carp_spec.documents import require_json
+from carp_spec.documents import require_json, uncapitalized
 from carp_spec.rule import DESIGN, rule
 from carproof.requests import inside
 
@@ -117,7 +117,7 @@ def value_of(kind: Any) -> Callable[[bytes], Any]:  # noqa: ANN401 - msgspec's o
             return msgspec.json.decode(data, type=kind)
         except msgspec.ValidationError as error:
             message, _, path = str(error).replace("`", "").partition(" - at ")
-            raise Refusal("request", path or "$", fields_are_right.id, message[:1].lower() + message[1:]) from error
+            raise Refusal("request", path or "$", fields_are_right.id, uncapitalized(message)) from error
 
     return decode
 

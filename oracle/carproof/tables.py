@@ -4,6 +4,8 @@ from collections.abc import Iterable, Sequence
 
 import click
 
+from carproof.files import TAKEN
+
 WIDEST = 10_000
 
 
@@ -12,9 +14,15 @@ def printable(value: object) -> str:
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in str(value))
 
 
+def say(text: str = "") -> None:
+    """Print text for people: on standard error where a document has standard output, as with `-o -`."""
+    context = click.get_current_context(silent=True)
+    click.echo(text, err=context is not None and TAKEN in context.meta)
+
+
 def print_line(text: str) -> None:
     """Print one line."""
-    click.echo(printable(text))
+    say(printable(text))
 
 
 def print_table(columns: Sequence[str], rows: Iterable[Sequence[object]], numbers: Sequence[str] = ()) -> None:
@@ -39,4 +47,4 @@ def print_table(columns: Sequence[str], rows: Iterable[Sequence[object]], number
     with console.capture() as shown:
         console.print(table)
     for line in shown.get().splitlines():
-        click.echo(line.rstrip())
+        say(line.rstrip())

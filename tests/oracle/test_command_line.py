@@ -1,5 +1,6 @@
 """The command line as a whole: help, lazy loading, exit codes and closed pipes."""
 
+import json
 import os
 import pty
 import subprocess
@@ -35,6 +36,47 @@ def test_each_command_explains_itself_with_an_example(carproof: Run, name: str) 
     assert outcome.code == 0
     assert f"\n    carproof {name}" in outcome.stdout
     assert max(map(len, outcome.stdout.splitlines())) <= 80
+
+
+def test_without_arguments_the_help_is_shown(carproof: Run) -> None:
+    assert carproof() == carproof("--help")
+
+
+def test_a_shell_completes_commands_options_and_files(carproof: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("_CARPROOF_COMPLETE", "bash_source")
+    assert "_carproof_completion() {" in carproof().stdout
+    monkeypatch.setenv("_CARPROOF_COMPLETE", "bash_complete")
+    for words, index, completion in (
+        ("carproof che", "1", "plain,check"),
+        ("carproof check --requ", "2", "plain,--require-all"),
+        ("carproof check to", "2", "file,to"),
+        ("carproof plan town.json -o pl", "4", "file,pl"),
+    ):
+        monkeypatch.setenv("COMP_WORDS", words)
+        monkeypatch.setenv("COMP_CWORD", index)
+        assert carproof().stdout == f"{completion}\n"
+
+
+def test_a_document_on_standard_output_leaves_standard_error_to_people(carproof: Run, tmp_path: Path) -> None:
+    (tmp_path / "town.json").write_bytes(line(**TWO))
+    (tmp_path / "plans.json").write_bytes(line(**TWO_PLANNED))
+    for command in ("plan town.json", "check town.json plans.json", "bound town.json --steps 1", "generate grid"):
+        name, *arguments = command.split()
+        files = [tmp_path / each if each.endswith(".json") else each for each in arguments]
+        outcome = carproof(name, *files, "-o", "-")
+        assert outcome.code == 0, outcome
+        assert json.loads(outcome.stdout)["format"].startswith("carproof-")
+        assert outcome.stderr
+
+
+@pytest.mark.parametrize("width", [40, None])
+def test_narrow_and_piped_output_is_legible(carproof: Run, monkeypatch: pytest.MonkeyPatch, width: int | None) -> None:
+    if width is not None:
+        monkeypatch.setenv("COLUMNS", str(width))
+        monkeypatch.setenv("FORCE_COLOR", "1")
+    lines = carproof("rules").stdout.splitlines()
+    assert not width or max(map(len, lines)) <= width + 20  # escape sequences
+    assert any("joint/capacity" in each for each in lines)
 
 
 def test_version(carproof: Run) -> None:

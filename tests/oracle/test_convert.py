@@ -99,3 +99,11 @@ def test_standard_input_is_named_as_such(carproof: Run) -> None:
 def test_agents_beyond_the_last_asked_for_are_not_read() -> None:
     grid = read_map(MAP.encode())
     assert len(read_scenario((SCENARIO + "nonsense\n").encode(), grid, 2)) == 2
+
+
+def test_a_solution_to_convert_needs_a_format(carproof: Run, tmp_path: Path) -> None:
+    for name in ("town.json", "plans.json"):
+        (tmp_path / name).write_text("{}")
+    outcome = carproof("convert", tmp_path / "town.json", tmp_path / "plans.json")
+    assert (outcome.code, outcome.stdout) == (2, "")
+    assert "town.json is no map; to convert a solution of an instance, name a format by --to." in outcome.stderr

@@ -26,8 +26,19 @@ def town(tmp_path: Path) -> Path:
     ("text", "error"),
     [
         ("", "$: the document must be JSON in UTF-8: Input data was truncated [document/json]"),
+        (
+            json.dumps({"format": "carproof-verdict/1", "valid": True, "cost": 0, "unplanned": 0, "violations": []}),
+            "$.format: the format must be carproof-instance/1, and is carproof-verdict/1 [document/format]",
+        ),
+        (
+            "nonsense",
+            "$: the document must be JSON in UTF-8: JSON is malformed: invalid character (byte 1) [document/json]",
+        ),
         ("{}", "$.format: the format must be carproof-instance/1 [document/format]"),
-        (json.dumps(TWO_PLANNED), "$.format: the format must be carproof-instance/1 [document/format]"),
+        (
+            json.dumps(TWO_PLANNED),
+            "$.format: the format must be carproof-instance/1, and is carproof-solution/1 [document/format]",
+        ),
         (json.dumps({**TWO, "extra": 1}), "$: object contains unknown field extra [document/shape]"),
         (
             json.dumps({**TWO, "robots": [{"id": "r1", "start": "a", "goal": "q"}]}),
@@ -51,6 +62,20 @@ def test_a_malformed_document_is_named_with_path_and_rule(carproof: Run, tmp_pat
 def test_a_missing_file_and_a_folder_are_refused(carproof: Run, tmp_path: Path) -> None:
     assert f"{tmp_path / 'none'}: there is no such file." in carproof("plan", tmp_path / "none").stderr
     assert f"{tmp_path}: it is a folder." in carproof("plan", tmp_path).stderr
+
+
+def test_a_name_that_is_empty_is_no_folder(carproof: Run) -> None:
+    for arguments in (["plan", ""], ["generate", "grid", "-o", ""]):
+        outcome = carproof(*arguments)
+        assert (outcome.code, outcome.stdout) == (2, "")
+        assert "the name of a file must not be empty." in outcome.stderr
+
+
+def test_a_byte_order_mark_is_passed_over(carproof: Run, town: Path) -> None:
+    marked = town.with_name("marked.json")
+    marked.write_bytes(b"\xef\xbb\xbf" + town.read_bytes())
+    assert carproof("plan", marked, "--json").stdout == carproof("plan", town, "--json").stdout
+    assert carproof("plan", "-", "--json", stdin=marked.read_bytes()).code == 0
 
 
 def test_an_unreadable_file_is_refused(carproof: Run) -> None:

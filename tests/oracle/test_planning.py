@@ -1,6 +1,9 @@
 """`plan`, `add`, `query` and `check`: what people see, what programs get, and the exit codes."""
 
 import json
+import os
+import subprocess
+import sys
 from collections.abc import Callable, Sequence
 from importlib import import_module
 from pathlib import Path
@@ -318,3 +321,17 @@ def test_polish_plans_small_groups_jointly(carproof: Run, file: Write, tmp_path:
     instance = file(swapping_at_a_pocket(), "instance.json")
     carproof("plan", instance, "--planner", "carp", "-o", tmp_path / "plans.json")
     assert carproof("polish", instance, tmp_path / "plans.json", "--iterations", "20").code == 0
+
+
+def test_the_examples_of_add_work(process: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert process("generate", "grid", "--width", "5", "--height", "5", "--robots", "3", "-o", "town.json").code == 0
+    lines = process("add", "--help").stdout.partition("Examples:\n")[2]
+    done = subprocess.run(
+        ["/bin/sh", "-ec", lines],
+        env={**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"},
+        check=False,
+        capture_output=True,
+        text=True,
+    )
+    assert (done.returncode, done.stderr) == (0, "")

@@ -28,8 +28,10 @@ from carproof.results import show_addition, write_result
 @click.command(
     short_help="Add one robot to given plans.",
     epilog=examples(
-        "carproof add town.json plans.json r101 -o plans.json",
-        "carproof add town.json plans.json r101 --now 12 --m 5",
+        """echo '{"format": "carproof-solution/1", "plans": [], "order": [],""",
+        """  "unplanned": []}' > nobody.json""",
+        "carproof add town.json nobody.json r1 -o plans.json",
+        "carproof add town.json plans.json r2 --now 2 --m 5",
     ),
 )
 @instance_argument

@@ -8,7 +8,15 @@ import click
 from carp_spec import AfterGoal
 from carproof.adapters import ADAPTERS, write_foreign_solution
 from carproof.answer import Answer
-from carproof.files import InputFile, print_document, read_instance_file, refuse_two_standard_inputs, write_whole
+from carproof.files import (
+    STANDARD_INPUT,
+    InputFile,
+    print_document,
+    read_bytes,
+    read_instance_file,
+    refuse_two_standard_inputs,
+    write_whole,
+)
 from carproof.foreign import AGENTS_HELP, MovingAI, from_option, read_movingai, read_solution_of
 from carproof.options import examples, json_option, output_option
 from carproof.results import show_instance
@@ -57,6 +65,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     if to is None:
         if format is not None:
             raise click.UsageError("--from and --to concern a solution.")
+        if first != STANDARD_INPUT and read_bytes(first).lstrip().startswith(b"{"):
+            raise click.UsageError(f"{first} is no map; to convert a solution of an instance, name a format by --to.")
         return show_instance(read_movingai(MovingAI(first, second, agents, after_goal or "park")), output, as_json)
     if agents is not None or after_goal is not None or as_json:
         raise click.UsageError("--agents, --after-goal and --json concern instances, and --to concerns a solution.")

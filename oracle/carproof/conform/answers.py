@@ -7,7 +7,7 @@ import msgspec
 
 from carp_spec import Refusal, Solution
 from carp_spec.bounds import BoundDocument
-from carp_spec.documents import UNREADABLE, VerdictDocument, is_json
+from carp_spec.documents import UNREADABLE, VerdictDocument, is_json, uncapitalized
 from carproof.conform.findings import Category, Fault, Finding, is_accepted, is_response, is_result
 from carproof.ops import OPS
 from carproof.ops.op import reader_of
@@ -61,7 +61,7 @@ def result_of(line: bytes, id: object) -> msgspec.Raw | Skipped:
         response = msgspec.json.decode(line, type=_Response)
     except (*UNREADABLE, ValueError) as error:
         reason = str(error).replace("`", "")
-        message = f"the response is not as it must be: {reason[:1].lower()}{reason[1:]}, in {shown(line)}"
+        message = f"the response is not as it must be: {uncapitalized(reason)}, in {shown(line)}"
         raise protocol_error(is_response.id, message) from error
     fields = {name for name in ("id", "result", "skipped", "error") if getattr(response, name) is not msgspec.UNSET}
     if not is_response(fields):

@@ -102,7 +102,7 @@ def _plan_findings(case: Case, solution: Solution, level: Level) -> Iterator[Fin
         yield from _in_order_findings(case, solution, list(case.instance.robot), level)
     elif case.planner is None and level >= Level.COMPLETE:
         yield from complete_findings(case.instance, solution)
-    elif case.planner is None:
+    elif case.planner is None and not case.classical:
         yield from _in_order_findings(case, solution, [*solution.order, *solution.unplanned], level)
     if case.planner is None and level >= Level.OPTIMAL:
         yield from plan_cost_findings(case.instance, solution)

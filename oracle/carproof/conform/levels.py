@@ -40,7 +40,7 @@ _STATEMENTS = {
     Level.COMPLETE_IN_CONTEXT: "no plan is missed that the plans before it allow",
     Level.CONTEXT_OPTIMAL: "each plan arrives as early as the plans before it allow",
     Level.COMPLETE: "no robot is left out where all can have plans",
-    Level.OPTIMAL: "the total cost is the optimum that carproof's search finds",
+    Level.OPTIMAL: "the total cost is the least that carproof's search finds",
     Level.EXACT: "the plans are carproof's, visit for visit",
 }
 LEVELS = {level.label: level for level in Level}

@@ -5,6 +5,7 @@
 
 from collections.abc import Iterable
 from dataclasses import MISSING
+from textwrap import fill
 from typing import Any, Literal, get_args
 
 import msgspec
@@ -88,8 +89,10 @@ def _first_sentence(op: Op) -> str:
 
 def op_list(names: Iterable[str] = OPS) -> str:
     """The ops with what they do, for the end of a command's help."""
-    width = max(map(len, OPS)) + 2
-    return "\n".join(["\b", "Ops:", *(f"  {name:{width}}{_first_sentence(OPS[name])}" for name in names), "", ""])
+    width = max(map(len, OPS)) + 4
+    later = " " * width
+    ops = (fill(f"  {name:{width - 2}}{_first_sentence(OPS[name])}", 76, subsequent_indent=later) for name in names)
+    return "\n".join(["\b", "Ops:", *ops, "", ""])
 
 
 if __name__ == "__main__":
