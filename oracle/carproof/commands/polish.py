@@ -91,7 +91,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
         if after.unplanned:
             from carp_optimum.joint_repair import repair_jointly  # noqa: PLC0415 - numba is slow to load
 
-            after = repair_jointly(problem, after)
+            after = repair_jointly(instance, after)
     time = perf_counter() - started
     for violation in check(instance, after.plans):
         raise AssertionError(violation)
