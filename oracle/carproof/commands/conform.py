@@ -1,7 +1,8 @@
 """`carproof conform`: whether somebody's planner conforms to the specification."""
 
+import shlex
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -162,7 +163,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
         options = replace(options, kernel=version())
     with progress("asking", number) as advance, _nothing_kept():
         report = conform(subject, options, advance)
-    saved = _save(report, save)
+    saved = _save(report, save, program)
     if junit is not None:
         write_whole(junit, junit_document(report))
     if as_json:
@@ -192,14 +193,17 @@ def _one_shot(program: tuple[str, ...], limits: "Limits", format: str | None) ->
     return OneShot(program, limits, format)
 
 
-def _save(report: "Report", folder: Path) -> Path | None:
-    """Save the smallest failure, and return its folder."""
-    from carproof.conform.saving import save  # noqa: PLC0415
+def _save(report: "Report", folder: Path, program: Sequence[str]) -> Path | None:
+    """Save all failures in place of those of an earlier run, and return their folder if there are any."""
+    from carproof.conform.saving import save_all  # noqa: PLC0415
 
-    if not report.failures:
-        return None
-    save(report.failures[0], folder)
-    return folder
+    options = report.options
+    asked = ["--level", options.level.label, "--examples", str(options.examples), "--seed", str(options.seed)]
+    features = [each for name in sorted(options.claims.without) for each in ("--without", name)]
+    flags = ["--solvable"] * options.claims.solvable + ["--one-shot"] * options.whole
+    again = shlex.join(["carproof", "conform", *asked, *features, *flags, "--", *program])
+    save_all(report.failures, folder, again)
+    return folder if report.failures else None
 
 
 def _show(report: "Report", saved: Path | None) -> None:
@@ -225,7 +229,8 @@ def _show(report: "Report", saved: Path | None) -> None:
         for line in stderr.splitlines()[-10:]:
             print_line(f"  {line}")
     if saved is not None:
-        print_line(f"the smallest failing case is in {saved}")
+        others = len(report.failures) - 1
+        print_line(f"the smallest failing case is in {saved}" + (f", and {others} others in it" if others else ""))
     print_line(_verdict(report))
     if report.options.kernel is not None:
         print_line(f"decided by {report.options.by}")

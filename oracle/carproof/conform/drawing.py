@@ -1,10 +1,45 @@
-"""A small picture in text: which robot is in which resource at which tick."""
+"""Small pictures in text: the map with starts and goals, and which robot is in which resource at which tick."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from string import ascii_uppercase
 
-from carp_spec import Instance, Plan
+from carp_spec import Instance, Plan, ResourceId
 
 MOST_TICKS = 60
+MOST_CELLS = 60
+
+
+def map_drawing(instance: Instance) -> str:
+    """The cells at their positions, with robots' starts as numbers and their goals as letters; else the moves."""
+    starts: dict[ResourceId, str] = {}
+    goals: dict[ResourceId, str] = {}
+    for number, robot in enumerate(instance.robots[: len(ascii_uppercase)]):
+        starts[robot.start] = starts.get(robot.start, "") + str(number % 10)
+        goals[robot.goal] = goals.get(robot.goal, "") + ascii_uppercase[number]
+    cells = {
+        (each.x, each.y): starts.get(each.id, "") + goals.get(each.id, "") or "."
+        for each in instance.graph.resources
+        if each.x is not None and each.y is not None
+    }
+    legend = [
+        f"{number % 10}: robot {robot.id} goes from {robot.start} to {robot.goal}"
+        + (f" ({ascii_uppercase[number]})" if number < len(ascii_uppercase) else "")
+        for number, robot in enumerate(instance.robots)
+    ]
+    if cells and len(cells) == len(instance.graph.resources):
+        return "\n".join([*legend, "", *_rows(cells)]) + "\n"
+    moves = [f"{source} -> {', '.join(map(str, instance.graph.successors[source]))}" for source in instance.graph.index]
+    return "\n".join([*legend, "", *moves]) + "\n"
+
+
+def _rows(cells: Mapping[tuple[int, int], str]) -> list[str]:
+    """A line for each row; a map wider or higher than `MOST_CELLS` is not drawn."""
+    xs, ys = sorted({x for x, _ in cells}), sorted({y for _, y in cells})
+    if xs[-1] - xs[0] >= MOST_CELLS or ys[-1] - ys[0] >= MOST_CELLS:
+        return []
+    width = max(map(len, cells.values())) + 1
+    columns, rows = range(xs[0], xs[-1] + 1), range(ys[0], ys[-1] + 1)
+    return ["".join(f"{cells.get((x, y), ''):{width}}" for x in columns).rstrip() for y in rows]
 
 
 def drawing(instance: Instance, plans: Sequence[Plan]) -> str:

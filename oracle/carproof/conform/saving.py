@@ -1,5 +1,7 @@
 """Writes a failure as files that need no program of ours to read, and a vector that can be asked again."""
 
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, cast
 from xml.sax.saxutils import escape
@@ -9,9 +11,11 @@ import msgspec
 
 from carp_spec import Refusal, Solution, write_instance, write_solution
 from carp_spec.documents import instance_document, solution_of
+from carp_spec.vectors import vectors
+from carproof.conform.advice import advice_for
 from carproof.conform.answers import Answer
 from carproof.conform.cases import POLISH_ROUNDS, Case, case_input, request_fields
-from carproof.conform.drawing import drawing
+from carproof.conform.drawing import drawing, map_drawing
 from carproof.conform.outcome import Outcome
 from carproof.files import write_whole
 from carproof.movingai_writer import MAP_NAME, write_movingai
@@ -20,10 +24,43 @@ from carproof.ops.planning import QueryDocument
 from carproof.optima import OptimumDocument
 from carproof.rules import ALL_RULES
 
+FILES = (
+    "finding.txt",
+    "instance.json",
+    "request.json",
+    "vector.json",
+    "map.txt",
+    "picture.txt",
+    "picture.svg",
+    "solution.json",
+    MAP_NAME,
+    "instance.scen",
+)
+"""What a folder of a failure can hold."""
 NO_PICTURE = '<svg xmlns="http://www.w3.org/2000/svg" width="900" height="40"><text x="8" y="24">{}</text></svg>\n'
 
 
-def save(outcome: Outcome, folder: Path) -> None:
+def save_all(failures: Sequence[Outcome], folder: Path, again: str) -> None:
+    """Write the smallest failure into a folder, and each other one into a folder in it, in place of earlier findings.
+
+    `again` is the command line that repeats the run.
+    """
+    clear(folder)
+    for number, outcome in enumerate(failures, start=1):
+        assert outcome.finding is not None  # noqa: S101 - a failure has a finding
+        save(outcome, folder if number == 1 else folder / f"{number}-{outcome.finding.rule.replace('/', '-')}", again)
+
+
+def clear(folder: Path) -> None:
+    """Remove the files of an earlier run, and no others."""
+    for finding in [*folder.glob("*/finding.txt"), *folder.glob("finding.txt")]:
+        for name in FILES:
+            (finding.parent / name).unlink(missing_ok=True)
+        with suppress(OSError):  # it holds something else
+            finding.parent.rmdir()
+
+
+def save(outcome: Outcome, folder: Path, again: str = "") -> None:
     """Write a failure into a folder, which is made if it is not there."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -31,7 +68,8 @@ def save(outcome: Outcome, folder: Path) -> None:
         raise click.ClickException(f"{folder}: it cannot be made: {error.strerror}") from error
     judged = judged_solution(outcome)
     files = {
-        "finding.txt": _finding_text(outcome).encode(),
+        "finding.txt": _finding_text(outcome, again).encode(),
+        "map.txt": map_drawing(outcome.case.instance).encode(),
         "instance.json": write_instance(outcome.case.instance),
         "request.json": msgspec.json.encode({"id": 1, "op": outcome.case.op, **request_fields(outcome.case)}) + b"\n",
         "vector.json": msgspec.json.format(msgspec.json.encode(vectors_document(outcome))) + b"\n",
@@ -78,7 +116,7 @@ def judged_solution(outcome: Outcome) -> Solution:
     return given
 
 
-def _finding_text(outcome: Outcome) -> str:
+def _finding_text(outcome: Outcome, again: str) -> str:
     finding, case = outcome.finding, outcome.case
     assert finding is not None  # noqa: S101 - only failures are saved
     statement = next((rule.statement for rule in ALL_RULES if rule.id == finding.rule), "")
@@ -86,11 +124,22 @@ def _finding_text(outcome: Outcome) -> str:
     lines = [
         f"{finding.category}: {finding.message} [{finding.rule}]",
         f"The rule: {statement}",
+        f"Advice: {advice_for(finding.rule)}",
         f"Asked: {case.op}{asked} (request.json). The plans, the program's with those it was given: solution.json.",
     ]
+    comment = _comments().get(case.name) if case.stage == "vectors" else case.name if case.stage == "smoke" else None
+    if comment:
+        lines.append(f"About the case: {comment}")
+    if again:
+        lines.append(f"Again: {again}")
     if finding.stderr:
         lines += ["The end of the program's standard error:", finding.stderr]
     return "\n".join(lines) + "\n"
+
+
+def _comments() -> Mapping[str, str]:
+    """What each published vector is about."""
+    return {vector.id: vector.comment for vector in vectors()}
 
 
 def vectors_document(outcome: Outcome) -> dict[str, Any]:
