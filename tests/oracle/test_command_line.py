@@ -24,7 +24,7 @@ def test_help_names_every_command_and_fits_eighty_columns(carproof: Run) -> None
 
 
 def test_help_groups_the_commands_and_cuts_no_summary(carproof: Run) -> None:
-    listed = carproof("--help").stdout.partition("Check:\n")[2].partition("Examples:")[0]
+    listed = carproof("--help").stdout.partition("Check:\n")[2].partition("  Examples:")[0]
     assert [group for group in GROUPS if group != "Check" and f"\n{group}:\n" not in listed] == []
     assert "..." not in listed
     assert all(len(line.split()) > 1 and line.endswith(".") for line in listed.splitlines() if line.startswith("  "))
@@ -47,7 +47,7 @@ def test_a_shell_completes_commands_options_and_files(carproof: Run, monkeypatch
     assert "_carproof_completion() {" in carproof().stdout
     monkeypatch.setenv("_CARPROOF_COMPLETE", "bash_complete")
     for words, index, completion in (
-        ("carproof che", "1", "plain,check"),
+        ("carproof confo", "1", "plain,conform"),
         ("carproof check --requ", "2", "plain,--require-all"),
         ("carproof check to", "2", "file,to"),
         ("carproof plan town.json -o pl", "4", "file,pl"),

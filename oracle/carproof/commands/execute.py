@@ -30,7 +30,7 @@ MOST_SHOWN = 3
     short_help="Simulate robots that are delayed.",
     epilog=examples(
         "carproof execute town.json plans.json --delays 0.05:3",
-        "carproof execute town.json plans.json --driver order --delays 0.1 --seed 7 --trace trace.json",
+        "carproof execute town.json plans.json --delays 0.1 --seed 7 --trace t.json",
         "carproof execute town.json plans.json --driver clock --delays delays.json",
     ),
 )
