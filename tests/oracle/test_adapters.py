@@ -435,9 +435,9 @@ def test_convert_turns_solutions_there_and_back(carproof: Run, benchmark: Path, 
 @pytest.mark.parametrize(
     ("options", "error"),
     [
-        (["--from", "lacam"], "--from is of a solution, and so is --to."),
-        (["--to", "lacam", "--agents", "1"], "--to is of a solution."),
-        (["--to", "lacam", "--json"], "--to is of a solution."),
+        (["--from", "lacam"], "--from and --to concern a solution."),
+        (["--to", "lacam", "--agents", "1"], "--to concerns a solution."),
+        (["--to", "lacam", "--json"], "--to concerns a solution."),
     ],
 )
 def test_convert_refuses_options_of_another_use(carproof: Run, benchmark: Path, options: list[str], error: str) -> None:

@@ -31,8 +31,8 @@ def town(tmp_path: Path) -> Path:
             "$.format: the format must be carproof-instance/1, and is carproof-verdict/1 [document/format]",
         ),
         (
-            "nonsense",
-            "$: the document must be JSON in UTF-8: JSON is malformed: invalid character (byte 1) [document/json]",
+            "?",
+            "$: the document must be JSON in UTF-8: JSON is malformed: invalid character (byte 0) [document/json]",
         ),
         ("{}", "$.format: the format must be carproof-instance/1 [document/format]"),
         (
