@@ -207,3 +207,25 @@ def test_ticks_of_any_size_are_checked() -> None:
     slow = town("vanish", Robot("r", "a", "d", release=far, pace=far))
     question = beside(slow, "r")
     assert verify_query(slow, question.solution, question.certified()[1]) == 5 * far
+
+
+def test_a_window_late_in_time_needs_a_label_if_the_robot_fits_into_it() -> None:
+    instance = town("vanish", Robot("r", "a", "c"), Robot("s", "c", "d"), Robot("t", "e", "c"))
+    before, behind = walk("s", ("c", 0, 10), ("d", 10, 11)), walk("t", ("e", 0, 12), ("b", 12, 14), ("c", 14, 16))
+    question = beside(instance, "r", before, behind)
+    plan, certificate = question.certified()
+    assert arrival(plan) == 10
+    later = msgspec.structs.replace(certificate, bound=16, labels=(*certificate.labels, ("b", 14)))
+    assert rule_broken(question, later) == "query-certificate/closed"
+
+
+def test_a_plan_that_has_ended_is_as_early_as_its_last_visit() -> None:
+    question = beside(VANISHING, "s", WESTWARDS, now=20)
+    assert verify_query(VANISHING, question.solution, question.certified()[1]) == 4
+
+
+def test_an_instance_that_forbids_following_is_refused() -> None:
+    question = QUESTIONS["alone"]
+    certificate = question.certified()[1]
+    forbidding = replace(question, instance=replace(question.instance, following="forbidden"))
+    assert rule_broken(forbidding, certificate) == "limit/following"
