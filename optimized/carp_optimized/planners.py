@@ -21,6 +21,7 @@ from carp_spec import (
     Shuffled,
     Solution,
 )
+from carp_spec.planners import BY_DEFAULT
 from carp_spec.polish_rules import last_round, polishable, require_polish_options
 
 if TYPE_CHECKING:
@@ -57,11 +58,13 @@ def certifier(instance: Instance) -> "Certifier":
 
 def plan(
     instance: Instance,
-    planner: Planner,
+    planner: Planner = BY_DEFAULT,
     advance: Callable[[], None] = lambda: None,
     reuse: Reuse | None = None,
 ) -> Solution:
-    """Plan all robots of the instance at tick 0; `advance` is called as each attempt or robot is done.
+    """Plan all robots of the instance at tick 0, by the neighbourhood planner if none is named.
+
+    `advance` is called as each attempt or robot is done.
 
     Raises `Refusal` for a planner that only the reference has, and for numbers that are too large.
     """

@@ -22,6 +22,7 @@ from carp_spec import (
     Shuffled,
     Solution,
 )
+from carp_spec.planners import BY_DEFAULT
 
 
 def query(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0) -> Plan | None:
@@ -40,8 +41,8 @@ def certifier(instance: Instance) -> Certifier:
     return Certifier(instance)
 
 
-def plan(instance: Instance, planner: Planner) -> Solution:
-    """Plan all robots of the instance at tick 0."""
+def plan(instance: Instance, planner: Planner = BY_DEFAULT) -> Solution:
+    """Plan all robots of the instance at tick 0, by the neighbourhood planner if none is named."""
     return _solution(instance, _plans(prepare(instance, 0), planner))
 
 

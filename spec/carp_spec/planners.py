@@ -67,6 +67,10 @@ class Neighbourhood:
     fallback: int | None = None
 
 
+BY_DEFAULT = Neighbourhood()
+"""The planner where none is named."""
+
+
 @dataclass(frozen=True, slots=True)
 class FixedPaths:
     """Each robot takes, of its k shortest or at most k disjoint paths, the first on which it arrives earliest.

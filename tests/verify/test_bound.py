@@ -480,6 +480,7 @@ def test_the_verifier_shares_nothing_with_the_finder_and_loads_nothing_compiled(
     assert ours == {
         "carp_spec",
         "carp_spec.bounds",
+        "carp_spec.limits",
         "carp_spec.rule",
         "carp_verify.bound_rules",
         "carp_verify.bound_cuts",
