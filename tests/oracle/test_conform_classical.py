@@ -194,7 +194,7 @@ def test_all_robots_planned_or_a_proof_that_this_cannot_be() -> None:
     [
         (["--one-shot", "--", "cat", "{map}"], "must hold {instance}, or {map} and {scen}"),
         (["--one-shot", "--", "cat", "{solution}"], "must hold {instance}, or {map} and {scen}"),
-        (["--from", "lacam", "--", "cat"], "--from is of the files that programs write with --one-shot"),
+        (["--from", "lacam", "--", "cat"], "--from concerns the files that programs write with --one-shot"),
         (
             ["--one-shot", "--level", "exact", "--", "cat", "{map}", "{scen}"],
             "--level must be one of sound, complete, optimal",
