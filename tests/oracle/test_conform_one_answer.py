@@ -152,7 +152,7 @@ PLANS: Sequence[Row] = (
     (
         replace(case("plan", ALONE), classical=True),
         committed(ALONE, new=WAITS),
-        {Level.CONTEXT_OPTIMAL: "query/optimal", Level.COMPLETE: None, Level.OPTIMAL: "program/optimal"},
+        {Level.OPTIMAL: "program/optimal"},
     ),
     (replace(case("plan", BLOCKED), classical=True), committed(BLOCKED, first=FIRST_GOES), {}),
 )

@@ -224,7 +224,7 @@ def test_a_wrong_value_in_a_solution_is_refused_at_its_path(path: str, value: Js
         ("$.robots[1].pace", 1.0, "expected int, got float"),
         ("$.robots[1].id", None, "expected int | str, got null"),
         ("$.robots[1].colour", "red", "object contains unknown field colour"),
-        ("$.format", "x", "the format must be carproof-instance/1"),
+        ("$.format", "x", "the format must be carproof-instance/1, and is x"),
         ("$.graph.multigraph", True, "expected multigraph to be false"),
     ],
 )

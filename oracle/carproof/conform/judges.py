@@ -185,13 +185,13 @@ def worth(case: Case, plans: Sequence[Plan]) -> tuple[int, int]:
 
 def _check_findings(case: Case, verdict: VerdictDocument, level: Level) -> Iterator[Finding]:
     right = verdict_document(judge(case.instance, case.solution))
-    broken = list(dict.fromkeys(violation.rule for violation in verdict.violations))
+    named = list(dict.fromkeys(violation.rule for violation in verdict.violations))
     broken = list(dict.fromkeys(violation.rule for violation in right.violations))
     for rule in broken:
-        if rule not in broken:
+        if rule not in named:
             message = next(violation.message for violation in right.violations if violation.rule == rule)
             yield wrong(rule, f"the verdict must tell that it is broken: {message}")
-    for rule in broken:
+    for rule in named:
         if rule not in broken:
             yield wrong(rule, "the verdict must not tell that it is broken")
     if verdict.valid != right.valid:
