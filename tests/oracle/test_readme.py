@@ -16,7 +16,7 @@ import pytest
 from tests.profiles import rest_in
 
 ROOT = Path(__file__).parent.parent.parent
-READMES = [str(path.relative_to(ROOT)) for path in [*ROOT.glob("*.md"), *ROOT.glob("*/README.md")]]
+READMES = [str(path.relative_to(ROOT)) for path in [*ROOT.glob("*.md"), *ROOT.glob("[a-z]*/README.md")]]
 BLOCK = re.compile(r'^```(\w+)(?: title="(\S+)")?\n(.*?)^```', re.DOTALL | re.MULTILINE)
 PAGES = [
     str(path.relative_to(ROOT))
