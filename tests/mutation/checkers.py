@@ -24,6 +24,7 @@ from tests.mutation.forking import ROOT, Case, chosen, outcome, run_mutants
 from tests.mutation.mutants import Mutant, mutants
 
 PIN = "verify/test_kept_formulas"
+SEARCH = ("verify/test_joint_search", "verify/test_unsolvable")
 FORMULAS = ("verify/test_encoding", PIN)
 QUERIES = ("verify/test_query_certificate", "verify/test_forgery", "verify/test_vectors", "oracle/test_audit")
 ANSWERS = ("oracle/test_conform_one_answer",)
@@ -44,6 +45,8 @@ TESTS: Mapping[str, Sequence[str]] = {
     "carp_verify.certificate": ("verify/test_certificate",),
     "carp_verify.verify_query": QUERIES,
     "carp_verify.query_certificate_rules": QUERIES,
+    "carp_verify.joint_search": SEARCH,
+    "carp_verify.optimum_rules": ("verify/test_proof", "verify/test_unsolvable", "verify/test_joint_search"),
     "carp_verify.clauses": FORMULAS,
     "carp_verify.encoding": FORMULAS,
     "carp_verify.robot_clauses": FORMULAS,
@@ -113,7 +116,7 @@ class Tests:
         cases = {item: measured(item) for item in session.items}
         for name, lines in self.lines.items():
             own = [item for item in session.items if in_tests(item, TESTS[name])]
-            found = [cases[item] for item in own] + (tiny_cases() if TESTS[name] == FORMULAS else [])
+            found = [cases[item] for item in own] + (tiny_cases() if TESTS[name] in (FORMULAS, SEARCH) else [])
             ordered = sorted(found, key=lambda case: (case.is_pin, case.seconds))
             kept = [Case(case.run, 3 * case.seconds + 1, case.is_pin) for case in ordered if case.seconds <= LONGEST]
             module = sys.modules[name]

@@ -51,3 +51,14 @@ def test_robots_released_into_one_place_have_no_plans() -> None:
 def test_a_search_too_large_is_refused_with_the_limit_named() -> None:
     with pytest.raises(Refusal, match="at most 2, the limit"):
         least_total_cost(Instance(line(1, 1, 1), (Robot("a", 0, 2), Robot("b", 2, 0))), most=2)
+
+
+def test_a_robot_stays_at_its_goal_for_as_long_as_that_takes() -> None:
+    robots = (Robot("a", 1, 1), Robot("b", 0, 1))
+    for duration in (1, 2, 3, 4):
+        assert least_total_cost(Instance(line(1, duration), robots)) == duration
+
+
+def test_an_instance_that_forbids_following_is_refused() -> None:
+    with pytest.raises(Refusal, match="following"):
+        least_total_cost(Instance(line(1), (), "vanish", "forbidden"))
