@@ -335,3 +335,12 @@ def test_the_examples_of_add_work(process: Run, tmp_path: Path, monkeypatch: pyt
         text=True,
     )
     assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_polish_leaves_numbers_too_large_for_groups_as_they_are(carproof: Run, file: Write, tmp_path: Path) -> None:
+    document = swapping_at_a_pocket()
+    document["graph"]["nodes"][3]["duration"] = 2**40
+    instance, plans = file(document, "instance.json"), tmp_path / "plans.json"
+    reference = ("--engine", "reference")
+    carproof("plan", instance, "--planner", "carp", *reference, "-o", plans)
+    assert carproof("polish", instance, plans, "--iterations", "3", *reference).code == 1

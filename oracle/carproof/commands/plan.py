@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from carp_spec import Refusal, write_solution
+from carp_spec import Refusal, check, write_solution
 from carproof.answer import Answer
 from carproof.engines import plan_showing
 from carproof.files import naming, read_instance_file
@@ -79,6 +79,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
             with suppress(Refusal):  # numbers that only the reference holds
                 solution = repaired(problem, solution)
                 name += ", repaired"
+            for violation in check(problem, solution.plans):
+                raise AssertionError(violation)
     seconds = perf_counter() - started
     write_result(write_solution(solution), output, as_json)
     if not as_json:

@@ -1,11 +1,12 @@
 """`carproof polish`: improve a solution by replanning neighbourhoods."""
 
+from contextlib import suppress
 from pathlib import Path
 from time import perf_counter
 
 import click
 
-from carp_spec import Instance, Solution, check, total_cost, write_solution
+from carp_spec import Instance, Refusal, Solution, check, total_cost, write_solution
 from carp_spec.polish_rules import ITERATIONS, last_round, require_polish_options
 from carproof.answer import Answer
 from carproof.engines import engine_named, sum_of_shortest_paths, warm
@@ -63,8 +64,9 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
     SOLUTION is in any format that check reads (--from), and what is written is carproof's document.
     A round takes out a few robots, replans them, and keeps what is not worse. Equal --iterations and --seed
-    give equal plans. All robots are planned from their release on: none is under way. The bound, which no plans
-    of all robots are below, is the sum of the shortest paths, or that of --bound, which is verified first.
+    give equal plans. Without --seconds, small groups are planned jointly at the end if a robot is still left out.
+    All robots are planned from their release on: none is under way. The bound, which no plans of all robots are
+    below, is the sum of the shortest paths, or that of --bound, which is verified first.
 
     Exit codes: 0 every robot has a plan, 1 some robot has none, 2 bad input.
     """
@@ -88,10 +90,11 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
         after = engine_named(engine).polish(
             instance, before, iterations=iterations, seconds=seconds, seed=seed, advance=advance
         )
-        if after.unplanned:
+        if after.unplanned and seconds is None:
             from carp_optimum.joint_repair import repair_jointly  # noqa: PLC0415 - numba is slow to load
 
-            after = repair_jointly(instance, after)
+            with suppress(Refusal):  # numbers that only the reference holds
+                after = repair_jointly(instance, after)
     time = perf_counter() - started
     for violation in check(instance, after.plans):
         raise AssertionError(violation)

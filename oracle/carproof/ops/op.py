@@ -150,7 +150,7 @@ def _hints(kind: type[Any]) -> Iterator[tuple[dataclasses.Field[Any], Any]]:
 
 
 def _required(hint: Any) -> Any:  # noqa: ANN401 - a type hint
-    """The type of a field that is there: what may be left out is not null instead."""
+    """The type of a field that is present; a field that may be left out must not be null."""
     kinds = tuple(kind for kind in get_args(hint) if kind is not NoneType)
     return Union[kinds] if NoneType in get_args(hint) else hint  # noqa: UP007 - made of a tuple
 
