@@ -5,7 +5,6 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import pytest
 from click.testing import CliRunner
 
 from carproof.cli import main
@@ -43,24 +42,3 @@ def test_a_report_holds_tables_figures_and_numbers(tmp_path: Path) -> None:
         "quality.json",
         "quality.md",
     ]
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["quality", "--robots", "500"], "500 robots need as many distinct starts, and the map has 400"),
-        (["quality", "--map", "21"], "21 is not in the range 0<=x<=20"),
-        (["quality", "--assignments", "0"], "0 is not in the range x>=1"),
-        (["quality", "--backend", "dask"], "needs the address of its --scheduler"),
-        (["crosscheck", "--questions", "many"], "'many' is not a valid integer"),
-    ],
-)
-def test_a_bad_profile_is_refused_and_leaves_nothing(tmp_path: Path, arguments: list[str], message: str) -> None:
-    store = tmp_path / "store"
-    with CliRunner().isolation() as (_, stderr, _):
-        code = main(["experiment", *arguments, "--store", str(store)])
-        told = stderr.getvalue().decode()
-    assert code == 2
-    assert message in told
-    assert told.count("\n") == 1
-    assert not store.exists()

@@ -3,6 +3,7 @@
 import json
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 
@@ -40,6 +41,12 @@ def solution(plans: dict[str, list[list[Any]]], unplanned: list[str] | None = No
         "order": list(plans),
         "unplanned": unplanned or [],
     }
+
+
+def save(**documents: object) -> None:
+    """Write documents into the folder that a test is in, each by its name."""
+    for name, document in documents.items():
+        Path(f"{name}.json").write_text(json.dumps(document))
 
 
 EAST: Document = {"id": "r1", "start": "a", "goal": "c"}

@@ -401,46 +401,9 @@ def test_check_tells_the_rule_that_a_file_breaks(carproof: Run, benchmark: Path)
     assert outcome.stdout.startswith("[plan/move] resource 2,0 in [2,for ever): robot r1 (the graph has no move to it")
 
 
-@pytest.mark.parametrize(
-    ("arguments", "error"),
-    [
-        (["m.json"], "Give INSTANCE and SOLUTION, or --map, --scen and SOLUTION."),
-        (["m.json", "lacam", "lacam"], "Give INSTANCE and SOLUTION"),
-        (["m.json", "lacam", "--map", "m.map", "--scen", "m.scen"], "Give INSTANCE and SOLUTION"),
-        (["lacam", "--map", "m.map"], "--map and --scen go together, and --agents with them."),
-        (["lacam", "--agents", "1"], "--map and --scen go together"),
-        (["-", "--map", "-", "--scen", "m.scen"], "Only one of the files can be standard input."),
-        (["m.json", "lacam", "--from", "yaml"], "Invalid value for '--from'"),
-        (["m.json", "lacam", "--from", "mapf-tracker"], "lacam:1: the line must be of the letters"),
-    ],
-)
-def test_wrong_usage_of_check_is_one_sentence(
-    carproof: Run, benchmark: Path, monkeypatch: pytest.MonkeyPatch, arguments: list[str], error: str
-) -> None:
-    monkeypatch.chdir(benchmark)
-    outcome = carproof("check", *arguments)
-    assert (outcome.code, outcome.stdout) == (2, "")
-    assert outcome.stderr.startswith("Error: ")
-    assert error in outcome.stderr
-
-
 @pytest.mark.parametrize("format", CORRECT)
 def test_convert_turns_solutions_there_and_back(carproof: Run, benchmark: Path, format: str) -> None:
     there = carproof("convert", benchmark / "m.json", benchmark / "lacam", "--to", format, "-o", benchmark / "there")
     assert (there.code, there.stdout) == (0, "")
     back = carproof("convert", benchmark / "m.json", benchmark / "there", "--to", "carproof", "--from", format)
     assert json.loads(back.stdout) == json.loads(write_solution(SOLUTION))
-
-
-@pytest.mark.parametrize(
-    ("options", "error"),
-    [
-        (["--from", "lacam"], "--from and --to concern a solution."),
-        (["--to", "lacam", "--agents", "1"], "--to concerns a solution."),
-        (["--to", "lacam", "--json"], "--to concerns a solution."),
-    ],
-)
-def test_convert_refuses_options_of_another_use(carproof: Run, benchmark: Path, options: list[str], error: str) -> None:
-    outcome = carproof("convert", benchmark / "m.json", benchmark / "lacam", *options)
-    assert outcome.code == 2
-    assert error in outcome.stderr

@@ -63,13 +63,6 @@ def test_robots_without_a_plan_are_counted(carproof: Run, town: Path, tmp_path: 
     assert last_row(outcome.stdout)[:4] == ["2", "1", "0", "1"]
 
 
-def test_plans_that_break_a_rule_are_bad_input(carproof: Run, town: Path, tmp_path: Path) -> None:
-    broken = {**TWO_PLANNED, "order": ["r1"]}
-    outcome = carproof("audit", town, written(tmp_path / "plans.json", broken))
-    assert (outcome.code, outcome.stdout) == (2, "")
-    assert "[solution/order]" in outcome.stderr
-
-
 def test_an_order_is_found_for_plans_in_another_planners_format(carproof: Run, tmp_path: Path) -> None:
     (tmp_path / "row.map").write_text("type octile\nheight 2\nwidth 3\nmap\n...\n@.@\n")
     (tmp_path / "row.scen").write_text("version 1\n0\trow.map\t3\t2\t0\t0\t2\t0\t2\n0\trow.map\t3\t2\t1\t0\t1\t1\t1\n")

@@ -85,23 +85,6 @@ def test_version(carproof: Run) -> None:
     assert outcome.stdout.startswith("carproof ")
 
 
-@pytest.mark.parametrize(
-    ("arguments", "error"),
-    [
-        (["chek"], "No such command 'chek'"),
-        (["check"], "Missing argument"),
-        (["check", "--jsn"], "No such option"),
-        (["rules", "joint/capacty"], "the nearest are joint/capacity"),
-    ],
-)
-def test_wrong_usage_is_one_sentence_and_exit_code_2(carproof: Run, arguments: list[str], error: str) -> None:
-    outcome = carproof(*arguments)
-    assert (outcome.code, outcome.stdout) == (2, "")
-    assert outcome.stderr.startswith("Error: ")
-    assert error in outcome.stderr
-    assert outcome.stderr.count("\n") == 1
-
-
 def test_check_loads_nothing_slow(tmp_path: Path) -> None:
     (tmp_path / "town.json").write_bytes(line(**TWO))
     (tmp_path / "plans.json").write_bytes(line(**TWO_PLANNED))

@@ -23,18 +23,6 @@ def test_carproof_conforms_to_its_strictest_level(process: Run, engine: list[str
     assert re.search(r"level exact \(the plans are carproof's, visit for visit\), tested on \d\d+ answers; ", last)
 
 
-def test_a_program_that_is_not_there_is_bad_usage(carproof: Run) -> None:
-    outcome = carproof("conform", "--", "./no-such-planner")
-    assert (outcome.code, outcome.stdout) == (2, "")
-    assert "there is no such program" in outcome.stderr
-
-
-@pytest.fixture
-def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
 def test_json_and_junit_tell_the_same(process: Run, elsewhere: Path) -> None:
     outcome = process("conform", "--examples", "20", "--json", "--junit", "conform.xml", "--", *SERVE)
     assert outcome.code == 0, outcome

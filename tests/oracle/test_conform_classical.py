@@ -75,12 +75,6 @@ def test_an_instance_that_the_files_cannot_say_is_not_classical(instance: Instan
     assert not is_classical(instance)
 
 
-@pytest.fixture
-def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
 def report_of(process: Run, *arguments: str) -> dict[str, Any]:
     outcome = process("conform", "--one-shot", "--json", "--seed", "0", *arguments)
     assert outcome.code in (0, 1), outcome

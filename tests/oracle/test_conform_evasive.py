@@ -129,12 +129,6 @@ def test_a_response_that_says_two_things_is_none(line: str) -> None:
         result_of(line.encode(), 1)
 
 
-@pytest.fixture
-def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
 def right(instance: Instance) -> Solution:
     return carp_reference.plan(instance, Carp())
 

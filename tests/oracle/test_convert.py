@@ -85,25 +85,6 @@ def test_the_rules_hold_for_right_files() -> None:
     assert read_map(MAP.replace("\n", "\r\n").encode()) == read_map(MAP.encode())
 
 
-def test_more_agents_than_there_are_is_refused(carproof: Run) -> None:
-    outcome = carproof("convert", EXAMPLES / "depot.map", EXAMPLES / "depot.scen", "--agents", "31")
-    assert outcome.code == 2
-    assert "depot.scen:31: 31 agents are asked for, and the scenario has 30" in outcome.stderr
-
-
-def test_standard_input_is_named_as_such(carproof: Run) -> None:
-    assert carproof("convert", "-", EXAMPLES / "depot.scen", stdin=b"?").stderr.startswith("Error: standard input:1: ")
-    assert "Only one" in carproof("convert", "-", "-").stderr
-
-
 def test_agents_beyond_the_last_asked_for_are_not_read() -> None:
     grid = read_map(MAP.encode())
     assert len(read_scenario((SCENARIO + "nonsense\n").encode(), grid, 2)) == 2
-
-
-def test_a_solution_to_convert_needs_a_format(carproof: Run, tmp_path: Path) -> None:
-    for name in ("town.json", "plans.json"):
-        (tmp_path / name).write_text("{}")
-    outcome = carproof("convert", tmp_path / "town.json", tmp_path / "plans.json")
-    assert (outcome.code, outcome.stdout) == (2, "")
-    assert "town.json is no map; to convert a solution of an instance, name a format by --to." in outcome.stderr

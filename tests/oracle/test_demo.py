@@ -1,6 +1,5 @@
 """`carproof demo`, on small instances in place of its own, and the files that it leaves."""
 
-import json
 from pathlib import Path
 
 import pytest
@@ -47,11 +46,3 @@ def test_the_shipped_scenario_is_made_for_the_shipped_map() -> None:
     agents = [line.split("\t") for line in (folder / "depot.scen").read_text().splitlines()[1:]]
     assert {agent[1] for agent in agents} == {"depot.map"}
     assert len(agents) == 30
-
-
-def test_a_folder_that_cannot_be_made_is_bad_input(carproof: Run, tmp_path: Path) -> None:
-    (tmp_path / "file").write_text(json.dumps({}))
-    for folder in (tmp_path / "file", tmp_path / "file" / "demo"):
-        outcome = carproof("demo", folder)
-        assert (outcome.code, outcome.stdout) == (2, "")
-        assert outcome.stderr.count("\n") == 1

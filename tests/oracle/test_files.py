@@ -10,7 +10,7 @@ from pathlib import Path
 
 import click
 import pytest
-from tests.oracle.running import TWO, TWO_PLANNED, Run
+from tests.oracle.running import TWO, Run
 
 from carproof.files import write_whole
 
@@ -22,86 +22,11 @@ def town(tmp_path: Path) -> Path:
     return path
 
 
-@pytest.mark.parametrize(
-    ("text", "error"),
-    [
-        ("", "$: the document must be JSON in UTF-8: Input data was truncated [document/json]"),
-        (
-            json.dumps({"format": "carproof-verdict/1", "valid": True, "cost": 0, "unplanned": 0, "violations": []}),
-            "$.format: the format must be carproof-instance/1, and is carproof-verdict/1 [document/format]",
-        ),
-        (
-            "?",
-            "$: the document must be JSON in UTF-8: JSON is malformed: invalid character (byte 0) [document/json]",
-        ),
-        ("{}", "$.format: the format must be carproof-instance/1 [document/format]"),
-        (
-            json.dumps(TWO_PLANNED),
-            "$.format: the format must be carproof-instance/1, and is carproof-solution/1 [document/format]",
-        ),
-        (json.dumps({**TWO, "extra": 1}), "$: object contains unknown field extra [document/shape]"),
-        (
-            json.dumps({**TWO, "robots": [{"id": "r1", "start": "a", "goal": "q"}]}),
-            "$.robots[0].goal: the goal must be the id of a resource, and 'q' is not [instance/endpoint]",
-        ),
-        (
-            json.dumps({**TWO, "robots": [{"id": "r1", "start": "a", "goal": "b", "release": 1.0}]}),
-            "$.robots[0].release: expected int, got float [document/shape]",
-        ),
-    ],
-)
-def test_a_malformed_document_is_named_with_path_and_rule(carproof: Run, tmp_path: Path, text: str, error: str) -> None:
-    broken = tmp_path / "broken.json"
-    broken.write_text(text)
-    outcome = carproof("plan", broken, "-o", tmp_path / "out.json")
-    assert (outcome.code, outcome.stdout, outcome.stderr) == (2, "", f"Error: {broken}: {error}\n")
-    assert not (tmp_path / "out.json").exists()
-    assert carproof("plan", "-", stdin=text.encode()).stderr == f"Error: standard input: {error}\n"
-
-
-def test_a_missing_file_and_a_folder_are_refused(carproof: Run, tmp_path: Path) -> None:
-    assert f"{tmp_path / 'none'}: there is no such file." in carproof("plan", tmp_path / "none").stderr
-    assert f"{tmp_path}: it is a folder." in carproof("plan", tmp_path).stderr
-
-
-def test_a_name_that_is_empty_is_no_folder(carproof: Run) -> None:
-    for arguments in (["plan", ""], ["generate", "grid", "-o", ""]):
-        outcome = carproof(*arguments)
-        assert (outcome.code, outcome.stdout) == (2, "")
-        assert "the name of a file must not be empty." in outcome.stderr
-
-
 def test_a_byte_order_mark_is_passed_over(carproof: Run, town: Path) -> None:
     marked = town.with_name("marked.json")
     marked.write_bytes(b"\xef\xbb\xbf" + town.read_bytes())
     assert carproof("plan", marked, "--json").stdout == carproof("plan", town, "--json").stdout
     assert carproof("plan", "-", "--json", stdin=marked.read_bytes()).code == 0
-
-
-def test_an_unreadable_file_is_refused(carproof: Run) -> None:
-    outcome = carproof("plan", "/proc/self/mem")
-    assert (outcome.code, outcome.stdout) == (2, "")
-    assert outcome.stderr == "Error: /proc/self/mem: it cannot be read: Input/output error\n"
-
-
-@pytest.mark.parametrize(
-    ("output", "error"),
-    [
-        ("{0}", "{0}: it is a folder."),
-        ("{0}/none/out.json", "there is no folder {0}/none."),
-        ("/proc/x", "/proc/x: it "),
-    ],
-)
-def test_an_unwritable_output_is_refused(carproof: Run, town: Path, output: str, error: str) -> None:
-    outcome = carproof("plan", town, "-o", output.format(town.parent))
-    assert (outcome.code, outcome.stdout) == (2, "")
-    assert error.format(town.parent) in outcome.stderr
-
-
-def test_only_one_input_can_be_standard_input(carproof: Run) -> None:
-    outcome = carproof("check", "-", "-")
-    assert outcome.code == 2
-    assert "Only one of the files can be standard input." in outcome.stderr
 
 
 def test_a_file_is_replaced_whole_and_keeps_its_mode(tmp_path: Path) -> None:

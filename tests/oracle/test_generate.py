@@ -122,30 +122,6 @@ PINNED = (
 )
 
 
-@pytest.mark.parametrize(
-    ("arguments", "error"),
-    [
-        ("grid --width 0", "--width: it must be between 1 and 1073741824, not 0 [generate/options]"),
-        ("grid --width 501 --height 500", "--width: the map must have at most 250000 resources"),
-        ("grid --map 21", "--map: it must be between 0 and 20, not 21 [generate/options]"),
-        ("grid --robots 401", "--robots: 401 robots need as many distinct starts, and the map has 400"),
-        ("grid --robots 100001 --distinct none", "--robots: it must be between 0 and 100000"),
-        ("grid --release 9..3", "--release: its range must not fall, and is 9..3 [generate/options]"),
-        ("grid --pace 0..3", "--pace: it must be between 1"),
-        ("grid --duration 1..x", "must be a whole number or LOW..HIGH"),
-        ("grid --seed -1", "--seed: it must be between 0"),
-        ("grid --after-goal stay", "'stay' is not one of 'vanish', 'park'"),
-        ("warehouse --aisle 0", "--aisle: it must be between 1"),
-        ("warehouse --rows 100000", "--width: the map must have at most 250000 resources"),
-    ],
-)
-def test_wrong_options_are_refused_with_their_limits(carproof: Run, arguments: str, error: str) -> None:
-    outcome = carproof("generate", *arguments.split())
-    assert (outcome.code, outcome.stdout) == (2, "")
-    assert error in outcome.stderr
-    assert outcome.stderr.count("\n") == 1
-
-
 def test_the_command_makes_what_the_function_makes(carproof: Run) -> None:
     instance = warehouse_instance(Warehouse(columns=1, rows=2), Fleet(robots=3, seed=4, distinct="starts"))
     outcome = carproof(*["generate", "warehouse", "--columns", "1", "--rows", "2", "--robots", "3", "--seed", "4"])

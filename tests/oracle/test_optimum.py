@@ -130,22 +130,6 @@ def test_a_proof_that_does_not_hold_is_refused_with_its_reason(carproof: Run, to
     assert (document["proved"], document["reason"]) == (False, outcome.stdout[len("not proved: ") : -1])
 
 
-@pytest.mark.parametrize("limit", ["0", "-1", "x"])
-def test_a_limit_that_is_no_time_is_refused(carproof: Run, town: Path, limit: str) -> None:
-    for command in ("optimum", "gap"):
-        outcome = carproof(command, town, "--limit", limit)
-        assert outcome.code == 2
-        assert "--limit" in outcome.stderr
-
-
-def test_a_proof_that_cannot_be_written_or_found_is_refused(carproof: Run, town: Path, tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("")
-    assert carproof("optimum", town, "--proof", tmp_path / "file").code == 2
-    outcome = carproof("optimum", town, "--proof", tmp_path / "file" / "proof")
-    assert (outcome.code, outcome.stderr.count("\n")) == (2, 1)
-    assert carproof("verify-proof", tmp_path / "nowhere").code == 2
-
-
 def test_the_gap_of_every_planner_is_shown(carproof: Run, town: Path) -> None:
     outcome = carproof("gap", town)
     assert (outcome.code, outcome.stderr) == (0, "")
@@ -231,27 +215,6 @@ def test_the_gaps_of_a_family_as_a_document_are_those_of_its_instances(carproof:
     optima = [each["gap"]["optimum"] for each in of_instances]
     assert cell["decided"] == len(optima) - optima.count(None)
     assert family.code == (1 if None in optima else 0)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "reason"),
-    [
-        ([], "Give an INSTANCE or a --size, one of them."),
-        (["TOWN", "--size", 3], "Give an INSTANCE or a --size, one of them."),
-        (["--size", "4..3"], "4..3 must be a range within 1..100."),
-        (["--size", "0..3"], "0..3 must be a range within 1..100."),
-        (["--size", 1000], "1000 must be a range within 1..100."),
-        (["--size", 2, "--robots", 5], "5 robots need as many distinct starts, and the map has 4"),
-        (["--size", 2, "--map", 21], "--map"),
-        (["--size", 2, "--count", 0], "--count"),
-    ],
-)
-def test_a_family_that_cannot_be_made_is_refused(
-    carproof: Run, town: Path, arguments: list[object], reason: str
-) -> None:
-    outcome = carproof("gap", *(town if each == "TOWN" else each for each in arguments))
-    assert (outcome.code, outcome.stdout, outcome.stderr.count("\n")) == (2, "", 1)
-    assert reason in outcome.stderr
 
 
 def small_gap(optimum: int | None, best_order: int | None, *totals: int | None) -> Gap:

@@ -79,29 +79,6 @@ def test_a_robot_that_another_planner_could_plan_is_told_so(carproof: Run, file:
 
 
 @pytest.mark.parametrize(
-    ("options", "error"),
-    [
-        (["--planner", "best"], "--planner: there is no planner 'best'; the planners are carp, shuffled"),
-        (["--planner", "carp", "--m", "3"], "--m: the planner carp has no option m; it has none"),
-        (["--planner", "greedy", "--seed", "3"], "--seed: the planner greedy has no option seed"),
-        (["--m", "0"], "--m: "),
-        (["--m", "two"], "'two' is not a valid integer"),
-        (["--sample", "0"], "--sample: "),
-        (["--planner", "fixed-paths", "--paths", "all"], "--paths: "),
-        (["--engine", "fastest"], "'fastest' is not"),
-    ],
-)
-def test_a_wrong_option_is_refused_before_any_work(
-    carproof: Run, file: Write, tmp_path: Path, options: list[str], error: str
-) -> None:
-    outcome = carproof("plan", file(TWO), "-o", tmp_path / "out.json", *options)
-    assert (outcome.code, outcome.stdout) == (2, "")
-    assert error in outcome.stderr
-    assert outcome.stderr.count("\n") == 1
-    assert not (tmp_path / "out.json").exists()
-
-
-@pytest.mark.parametrize(
     "options",
     [
         "--planner neighbourhood --m 2 --sample 3 --seed 1 --no-baseline --fallback 2",
@@ -119,18 +96,6 @@ def test_every_planner_runs_and_its_plans_are_right(carproof: Run, file: Write, 
     assert planned.code == 0
     checked = carproof("check", instance, "-", stdin=planned.stdout.encode())
     assert (checked.code, checked.stdout) == (0, "no rule is broken: total cost 5, unplanned robots 0\n")
-
-
-def test_a_refusal_of_the_engine_names_the_file_or_the_option(carproof: Run, file: Write) -> None:
-    large = corridor(TWO["robots"])
-    large["graph"]["nodes"][1]["duration"] = 2**40
-    instance = file(large)
-    outcome = carproof("plan", instance, "--engine", "optimized")
-    assert outcome.code == 2
-    assert outcome.stderr.startswith(f"Error: {instance}: $.graph.nodes[1].duration: ")
-    outcome = carproof("plan", instance, "--engine", "optimized", "--planner", "time-expanded")
-    assert outcome.code == 2
-    assert outcome.stderr.startswith("Error: --planner: ")
 
 
 def test_without_an_engine_asked_for_the_fastest_plans_that_has_the_planner(
@@ -248,28 +213,6 @@ def test_query_says_no_where_there_is_no_plan(carproof: Run, file: Write) -> Non
 def test_a_parked_robot_stays_for_ever(carproof: Run, file: Write) -> None:
     outcome = carproof("query", file(corridor([TWO["robots"][0]], "park")), file(solution({}), "plans.json"), "r1")
     assert outcome.stdout.splitlines()[-2].split() == ["c", "2", "for", "ever"]
-
-
-@pytest.mark.parametrize(
-    ("arguments", "error"),
-    [
-        (["query", "r9"], "ROBOT: the instance must have the robot, and has no 'r9' [request/robot]"),
-        (["query", "r1", "--now", "-1"], "--now: it must be a whole number of at least 0, not -1 [request/now]"),
-        (["add", "r1"], "ROBOT: the robot to add must have no plan, and 'r1' has one [request/robot]"),
-    ],
-)
-def test_a_request_that_makes_no_sense_is_refused(carproof: Run, file: Write, arguments: list[str], error: str) -> None:
-    name, *rest = arguments
-    outcome = carproof(name, file(TWO), file(TWO_PLANNED, "plans.json"), *rest)
-    assert (outcome.code, outcome.stdout, outcome.stderr) == (2, "", f"Error: {error}\n")
-
-
-@pytest.mark.parametrize("name", ["query", "add"])
-def test_broken_plans_are_refused_with_their_place(carproof: Run, file: Write, name: str) -> None:
-    plans = file(BROKEN, "plans.json")
-    outcome = carproof(name, file(corridor([*TWO["robots"], HEAD_ON])), plans, "r3")
-    message = "$.plans[0].visits[1]: resource b in [1,2): robots r1, r2 (capacity 1) [joint/capacity]"
-    assert (outcome.code, outcome.stderr) == (2, f"Error: {plans}: {message}\n")
 
 
 def test_a_plan_that_is_in_the_way_of_others_can_be_replaced(carproof: Run, file: Write) -> None:

@@ -44,33 +44,6 @@ def test_a_robot_that_cannot_be_planned_is_told_and_the_answer_is_no(carproof: R
     assert outcome.stdout.splitlines()[-1] == "unplanned: robot r3: the committed plans leave no way to its goal"
 
 
-@pytest.mark.parametrize(
-    ("options", "error"),
-    [
-        (["--iterations", "-1"], "--iterations: the iterations must be a whole number of at least 0, not -1"),
-        (["--seconds", "0"], "--seconds: the seconds must be a number above 0, not 0.0 [polish/options]"),
-        (["--seconds", "nan"], "--seconds: the seconds must be a number above 0"),
-        (["--seconds", "1", "--iterations", "1"], "there must be either iterations or seconds, not both"),
-        (["--seed", "-1"], "--seed: the seed must be a whole number between 0 and"),
-    ],
-)
-def test_a_wrong_option_is_refused_before_any_work(
-    carproof: Run, tmp_path: Path, options: list[str], error: str
-) -> None:
-    outcome = carproof("polish", *write(tmp_path, instance=TWO, two=TWO_PLANNED), *options, "-o", tmp_path / "out")
-    assert (outcome.code, outcome.stdout) == (2, "")
-    assert error in outcome.stderr
-    assert outcome.stderr.count("\n") == 1
-    assert not (tmp_path / "out").exists()
-
-
-def test_plans_that_break_a_rule_are_refused_by_it(carproof: Run, tmp_path: Path) -> None:
-    outcome = carproof("polish", *write(tmp_path, instance=TWO, broken=BROKEN))
-    assert outcome.code == 2
-    assert "$.plans[0].visits[1]" in outcome.stderr
-    assert "[joint/capacity]" in outcome.stderr
-
-
 def test_the_gap_is_that_of_a_certificate_which_is_verified(carproof: Run, tmp_path: Path) -> None:
     files = write(tmp_path, instance=TWO, late=LATE)
     certificate = tmp_path / "certificate"

@@ -19,13 +19,6 @@ def test_every_rule_is_listed_once_and_told_in_full(carproof: Run) -> None:
         assert f"Source:    {rule.source}\nPredicate: {rule.predicate.__module__}.{rule.predicate.__name__}\n" in told
 
 
-def test_an_unknown_rule_is_refused_with_the_nearest(carproof: Run) -> None:
-    near, far = carproof("rules", "capacity/joint"), carproof("rules", "?")
-    assert (near.code, far.code) == (2, 2)
-    assert "the nearest are " in near.stderr
-    assert "carproof rules lists them all" in far.stderr
-
-
 def test_requests_obey_their_rules() -> None:
     instance = read_instance(line(**TWO))
     assert robot_is_known(instance, "r1")

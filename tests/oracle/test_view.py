@@ -227,23 +227,6 @@ def test_what_is_too_large_is_refused_with_the_limit(
     assert not (tmp_path / "out.html").exists()
 
 
-def test_ticks_that_no_picture_shows_are_refused(carproof: Run, tmp_path: Path) -> None:
-    (tmp_path / "town.json").write_text(json.dumps(CORRIDOR))
-    (tmp_path / "plans.json").write_text(json.dumps(solution({"r1": [["a", 0, 10**9]]}, ["r2"])))
-    outcome = carproof("view", tmp_path / "town.json", tmp_path / "plans.json")
-    assert (outcome.code, outcome.stdout) == (2, "")
-    assert "and there is 1000000000 [view/ticks]" in outcome.stderr
-    outcome = carproof("view", tmp_path / "town.json", tmp_path / "plans.json", "--at", "-10000001")
-    assert "[view/ticks]" in outcome.stderr
-
-
-def test_two_pictures_at_once_are_refused(carproof: Run, tmp_path: Path) -> None:
-    (tmp_path / "town.json").write_text(json.dumps(CORRIDOR))
-    outcome = carproof("view", tmp_path / "town.json", tmp_path / "town.json", "--at", "1", "--chart")
-    assert outcome.code == 2
-    assert "Only one of --at and --chart can be drawn." in outcome.stderr
-
-
 def test_only_the_first_of_very_many_violations_are_listed(
     carproof: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

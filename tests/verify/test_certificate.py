@@ -5,7 +5,6 @@ from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
-from tests.oracle.conftest import carproof
 from tests.oracle.running import Run
 from tests.profiles import draws
 
@@ -25,8 +24,6 @@ from carp_verify import certificate
 from carp_verify.certificate import Breach, certify, certify_together
 from carp_verify.smt import Solver, Undecided
 from carproof.strategies import BrokenSolution, PlannedInstance, broken_solutions, planned_instances
-
-__all__ = ["carproof"]
 
 LINE = ResourceGraph((Resource("a"), Resource("b", capacity=2), Resource("c")), (("a", "b"), ("b", "c")))
 INSTANCE = Instance(LINE, (Robot("r1", "a", "c"), Robot("r2", "c", "a"), Robot("r3", "b", "b", 1)), "vanish")
@@ -180,14 +177,6 @@ def test_the_command_prints_one_document(carproof: Run, tmp_path: Path) -> None:
     assert outcome.code == 1
     assert document["accepted"] is False
     assert document["breaches"][0]["robots"] == ["r1", "r2", "r3"]
-
-
-def test_a_broken_document_is_bad_input(carproof: Run, tmp_path: Path) -> None:
-    instance, solution = write(tmp_path)
-    solution.write_bytes(b"{}")
-    outcome = carproof("certify", instance, solution)
-    assert (outcome.code, outcome.stdout) == (2, "")
-    assert "document/format" in outcome.stderr
 
 
 def test_what_z3_cannot_tell_is_undecided(carproof: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

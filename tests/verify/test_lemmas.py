@@ -3,7 +3,6 @@
 import json
 
 import pytest
-from tests.oracle.conftest import carproof
 from tests.oracle.running import Run
 
 from carp_spec import RULES
@@ -11,8 +10,6 @@ from carp_verify.engine import Formula, Lemma, Unproved, examine, prove, refute
 from carp_verify.lemmas import MODULES, lemma_named
 from carp_verify.smt import Undecided, equal, find_model, integers, negation
 from carp_verify.support import WITHOUT_LEMMA, lemmas_of_rules
-
-__all__ = ["carproof"]
 
 
 @pytest.mark.parametrize("module", MODULES)
@@ -95,9 +92,3 @@ def test_the_command_prints_one_document(carproof: Run) -> None:
     assert outcome.code == 0
     assert document["checked"] is True
     assert [lemma["lemma"] for lemma in document["lemmas"]] == ["first_pop_is_final"]
-
-
-def test_an_unknown_lemma_is_bad_input_with_a_suggestion(carproof: Run) -> None:
-    outcome = carproof("theorems", "earliest_entry_wins")
-    assert (outcome.code, outcome.stdout) == (2, "")
-    assert "earliest_entry_dominates" in outcome.stderr
