@@ -11,7 +11,7 @@ from carp_spec.windows import Occupation, Window, free_windows
 
 @dataclass(frozen=True, slots=True)
 class Context:
-    """What committed plans leave to the next robot.
+    """The free windows and moves that committed plans leave to the next robot.
 
     `occupations` holds their stays by resource, `moves` each move (source, target) with its tick.
     """

@@ -1,8 +1,8 @@
-"""Executing a solution in the order of its plans: when each visit is entered, what delays do, and plans for the rest.
+"""Execution of a solution in its planned order: when visits begin, what delays do, and plans for the rest.
 
-All follows from the dependency graph (`carp_spec.dependencies`). Each of its edges leads from a visit to one that the
-plans enter no earlier, and, where it takes no time, perhaps at the same tick: so visits are looked at tick by tick of
-the plans, and within a tick until nothing changes.
+All of it follows from the action dependency graph (`carp_spec.dependencies`). Each edge leads to a visit that is
+planned no earlier than the one it comes from; an edge of no ticks may join two visits of one tick. So times are
+propagated in the order of the planned ticks, and within a tick until nothing changes.
 """
 
 from collections import defaultdict, deque
@@ -65,7 +65,7 @@ def order_with(
     nodes: Iterable[Node],
     edges: tuple[Dependency, ...],
 ) -> Order:
-    """Put an order together."""
+    """The order that has these nodes and edges."""
     out_of: dict[Node, list[Dependency]] = defaultdict(list)
     for edge in edges:
         out_of[edge.before].append(edge)
@@ -74,7 +74,7 @@ def order_with(
 
 
 def earliest(order: Order, least: Mapping[Node, int], delays: Iterable[Delay] = ()) -> dict[Node, int]:
-    """When each visit is entered at the earliest, none before the tick `least` that is given for it."""
+    """The earliest entry of each visit, none before its tick in `least`."""
     longer = {(delay.robot, delay.visit): delay.ticks for delay in delays}
     enters = {node: least.get(node, 0) for node in order.nodes}
     for _, group in groupby(order.nodes, key=lambda node: order.visit(node).enter):
@@ -97,14 +97,14 @@ def waits_for_leaving(order: Order, edge: Dependency) -> bool:
 
 
 def planned(order: Order) -> dict[Node, int]:
-    """When each visit is entered by the plans."""
+    """The tick at which each visit is planned to begin."""
     return {node: order.visit(node).enter for node in order.nodes}
 
 
 def slack(order: Order) -> dict[Node, int | None]:
-    """The longest delay at each visit by which no robot arrives later than planned; `None`: any.
+    """The slack of each visit: the longest delay there by which no robot arrives later than planned; `None`: any.
 
-    Robots wait for others, and otherwise keep to the ticks of their plans.
+    Robots wait for others in the planned order, and otherwise keep to the ticks of their plans.
     """
     ticks = planned(order)
     horizon = max(ticks.values(), default=0)
@@ -131,7 +131,7 @@ def _slack_at(order: Order, latest: Mapping[Node, int], node: Node) -> int | Non
 
 
 def late_robots(order: Order, delays: Sequence[Delay]) -> dict[RobotId, int]:
-    """By how many ticks robots arrive later than planned; those that do not are left out."""
+    """The ticks by which robots arrive later than planned; robots that are not late are left out."""
     enters = earliest(order, planned(order), delays)
     last = [(plan.robot, len(plan.visits) - 1) for plan in order.solution.plans]
     return {node[0]: late for node in last if (late := enters[node] - order.visit(node).enter) > 0}
@@ -141,8 +141,8 @@ def smallest_collision(instance: Instance, solution: Solution) -> tuple[Delay, .
     """Delays of the least sum by which robots that keep to the clock collide; `None` if no delays do that.
 
     A robot on the clock enters each visit at its planned tick, or as soon after it as its own durations and delays
-    allow. So it is later nowhere, and a delay is spent best at the visit that it makes too long: too many robots are in
-    a resource as one enters, or two exchange their places. Of equal sums the fewest delays are taken.
+    allow. A collision is either too many robots in a resource when one enters, or two robots that exchange their
+    places. A delay is spent best at the visit that it makes too long. Of equal sums the fewest delays are taken.
     """
     best: tuple[Delay, ...] | None = None
     for delays in _collisions(instance, solution):
@@ -156,7 +156,7 @@ def _worth(delays: Sequence[Delay]) -> tuple[int, int]:
 
 
 def _collisions(instance: Instance, solution: Solution) -> Iterator[tuple[Delay, ...]]:
-    """For each visit and all that may be there when it is entered, the shortest delays that make a collision."""
+    """The shortest delays that make a collision, for each visit and all robots that may be there when it begins."""
     for resource, stays in stays_by_resource(solution.plans).items():
         capacity = instance.graph.resource[resource].capacity
         for stay in stays:
@@ -182,7 +182,7 @@ def _collisions(instance: Instance, solution: Solution) -> Iterator[tuple[Delay,
 
 
 def on_the_clock(order: Order, delays: Iterable[Delay]) -> dict[Node, int]:
-    """When each visit is entered if every robot keeps to the ticks of its own plan as well as it can."""
+    """The entry of each visit if every robot keeps to the ticks of its own plan as well as it can."""
     longer = {(delay.robot, delay.visit): delay.ticks for delay in delays}
     enters: dict[Node, int] = {}
     for plan in order.solution.plans:
@@ -194,9 +194,9 @@ def on_the_clock(order: Order, delays: Iterable[Delay]) -> dict[Node, int]:
 
 
 def in_order(order: Order, delays: Iterable[Delay]) -> dict[Node, int]:
-    """When each visit is entered if every robot continues as soon as its dependencies allow.
+    """The entry of each visit if every robot continues as soon as its dependencies allow.
 
-    Robots that wait for each other in a circle, and those that wait for them, never enter: they are left out.
+    Robots that wait for each other in a cycle, and those that wait for them, never enter; they are left out.
     """
     releases = {(robot.id, 0): robot.release for robot in order.instance.robots}
     never = stuck(order)
@@ -204,7 +204,7 @@ def in_order(order: Order, delays: Iterable[Delay]) -> dict[Node, int]:
 
 
 def stuck(order: Order) -> frozenset[Node]:
-    """The visits in a circle of dependencies, and those that wait for one."""
+    """The visits in a cycle of dependencies, and those that wait for one."""
     missing = dict.fromkeys(order.nodes, 0)
     for edge in order.edges:
         missing[edge.after] += 1
@@ -239,10 +239,11 @@ def executed(order: Order, enters: Mapping[Node, int], delays: Iterable[Delay] =
 
 
 def retime(instance: Instance, solution: Solution, trace: Trace) -> Solution:
-    """The plans for the rest of the way, in the same order and as early as possible; what has happened is kept.
+    """The plans for the rest of the way, in the same order and as early as possible.
 
-    What has not happened by the tick `trace.now` happens after it. Raises `Refusal` if the trace does not follow the
-    solution, and where no lawful plan has the history: a robot appears late, or stays too long at its goal.
+    The visits of the trace are kept; every other entry is later than the tick `trace.now`. Raises `Refusal` if the
+    trace does not follow the solution, and where no lawful plan has the history: a robot appears late, or stays too
+    long at its goal.
     """
     for violation in trace_violations(instance, solution, trace, most=1):
         raise Refusal("document", path_in_trace(trace, violation.robots[0]), violation.rule, violation.message)
@@ -274,7 +275,7 @@ def refuse_odd_ends(instance: Instance, after: Solution, trace: Trace) -> None:
 
 
 def path_in_trace(trace: Trace, robot: RobotId) -> str:
-    """Where the trace speaks of the robot."""
+    """The path of the robot in the trace's document."""
     places = [place for place, plan in enumerate(trace.plans) if plan.robot == robot]
     return f"$.plans[{places[0]}]" if places else "$.plans"
 

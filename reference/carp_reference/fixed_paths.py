@@ -49,7 +49,7 @@ def shortest_paths(problem: Problem, robot: Robot, k: int) -> list[Path]:
 def disjoint_paths(problem: Problem, robot: Robot, k: int) -> list[Path]:
     """At most k paths that share no resource but start and goal, of the least total length (as Suurballe 1974).
 
-    They are a flow of least cost in the graph in which every resource is split into a way in and a way out.
+    They are a flow of least cost in the graph in which every resource is split into an entrance and an exit.
     """
     import networkx as nx  # noqa: PLC0415 - loaded only where used
 

@@ -1,7 +1,7 @@
-"""The neighbourhood planner: the paper's Algorithm 1, line by line, with the decisions of `neighbourhood/...`.
+"""The neighbourhood planner: the paper's Algorithm 1, line by line, as the rules `neighbourhood/...` decide.
 
-A new robot is planned together with its nearest neighbours, in every order. In the paper's
-words `outside` is the sequence A, `members` the set N, and `new` the robot a_k.
+A new robot is planned together with its nearest neighbours, in every order. In the paper's notation, `outside` is the
+sequence A, `members` the set N, and `new` the robot a_k.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -68,7 +68,7 @@ def _best_candidate(problem: Problem, committed: Plans, new: RobotId, options: N
 
 
 def _better(problem: Problem, best: Plans | None, candidate: Plans | None) -> Plans | None:
-    """The candidate, if there is one and it replaces the best so far."""
+    """The candidate if it exists and replaces the best so far."""
     if candidate is None:
         return best
     best_cost = None if best is None else total_cost(problem.instance, best)
@@ -103,7 +103,7 @@ def _plans_of_orders(
 ) -> Iterator[Plans]:
     """Plan the members in each order against the committed plans; skip the orders in which one finds no plan.
 
-    Orders come in lexicographic order, and those that begin alike share the queries of their beginning.
+    The orders are sorted lexicographically, and those that begin alike share the queries of their beginning.
     """
     for first, alike in groupby(orders, key=lambda order: order[0]):
         rest = [order[1:] for order in alike]

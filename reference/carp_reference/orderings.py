@@ -1,4 +1,4 @@
-"""Planners that plan the robots one after the other, each against the plans before it; they differ in the order."""
+"""Prioritized planners: they plan the robots one after the other, each against the plans before it."""
 
 from collections.abc import Sequence
 
@@ -38,7 +38,7 @@ def _worth(problem: Problem, plans: Plans) -> tuple[int, int]:
 
 
 def longest_first(problem: Problem) -> Plans:
-    """CARP in the order of falling shortest-path costs; a robot without a path finds no plan wherever it stands."""
+    """CARP with the longest shortest path first; a robot without a path finds no plan wherever it comes."""
     shortest = {robot.id: problem.ticks_to_goal[robot.id].get(robot.start, 0) for robot in problem.instance.robots}
     return carp(problem, sorted(shortest, key=lambda robot: -shortest[robot]))
 

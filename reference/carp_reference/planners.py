@@ -37,7 +37,7 @@ def query(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: in
 
 
 def certifier(instance: Instance) -> Certifier:
-    """What gives plans with certificates, beside no plans as yet."""
+    """A certifying planner with no committed plans yet."""
     return Certifier(instance)
 
 

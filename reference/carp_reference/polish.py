@@ -1,7 +1,7 @@
-"""Polishing: a solution is improved by replanning neighbourhoods, with the decisions of `polish/...`.
+"""Polishing, large neighbourhood search (LNS): a solution is improved as the rules `polish/...` decide.
 
-A round takes out a pivot and robots that have to do with it, plans them again one after the other, and keeps what
-is not worse. Robots without a plan are tried first, so that polishing also repairs.
+A round removes a pivot and robots related to it, plans them again one after the other, and keeps the new plans if they
+are not worse. Robots without a plan come first, so polishing also repairs a solution.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -35,7 +35,7 @@ Plans = Mapping[RobotId, Plan]
 
 @dataclass(frozen=True, slots=True)
 class Polish:
-    """What stays the same in all rounds: `alone` has the plan that each robot has alone, if it has a path."""
+    """The data of all rounds; `alone` has the plan of each robot on the empty graph, if it has a path."""
 
     problem: Problem
     alone: Plans
@@ -53,9 +53,9 @@ def polish(
 ) -> Solution:
     """Improve a solution for that many rounds or seconds; `advance` gets rounds, unplanned robots and total.
 
-    It ends earlier if no plan can be shorter. All robots are planned from their release on: none is under way. Equal
-    iterations and seed give an equal solution.
-    Raises `Refusal` for wrong options, and for a solution that breaks a rule.
+    The polish ends earlier if no plan can be shorter. All robots are planned from their release on: none is under way.
+    Equal iterations and seed give an equal solution. Raises `Refusal` for wrong options, and for a solution that breaks
+    a rule.
     """
     require_polish_options(iterations, seconds, seed)
     whole = polishable(instance, solution)
@@ -96,7 +96,7 @@ def _round(polishing: Polish, plans: Plans, turn: int) -> Plans | None:
 
 
 def _delay(polishing: Polish, plans: Plans, robot: RobotId) -> int:
-    """How much longer the robot takes than alone."""
+    """The ticks by which the robot arrives later than it would alone."""
     instance = polishing.problem.instance
     if robot not in plans:
         return 0
@@ -104,7 +104,7 @@ def _delay(polishing: Polish, plans: Plans, robot: RobotId) -> int:
 
 
 def _candidates(polishing: Polish, plans: Plans, kind: Kind, pivot: RobotId) -> list[RobotId]:
-    """The robots that have to do with the pivot, the first to be taken out first."""
+    """The robots related to the pivot, in the order in which they are removed."""
     instance = polishing.problem.instance
     others = [plans[robot.id] for robot in instance.robots if robot.id in plans and robot.id != pivot]
     if kind == "near":

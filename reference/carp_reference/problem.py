@@ -1,4 +1,4 @@
-"""What a planner knows before it looks at any committed plan."""
+"""The data that a planner has before it looks at any committed plan."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -11,9 +11,9 @@ from carp_spec import Instance, Plan, ResourceId, Robot, RobotId
 class Problem:
     """An instance, the h of each robot's A*, the tick at which it is planned, and the plans followed until then.
 
-    `ticks_to_goal[robot][resource]` is the least number of ticks from entering the resource to entering the
-    robot's goal on the empty graph; a resource from which the goal cannot be reached is not in it.
-    `before` holds the plans of the robots that have one: what they did by the tick `now` is kept (`fleet/history`).
+    `ticks_to_goal[robot][resource]` is the least number of ticks from entering the resource to entering the robot's
+    goal on the empty graph; a resource from which the goal cannot be reached is not in it. `before` holds the plans
+    that robots have followed: their visits up to the tick `now` are kept (`fleet/history`).
     """
 
     instance: Instance
@@ -28,7 +28,7 @@ def prepare(instance: Instance, now: int) -> Problem:
 
 
 def ticks_to_goal(instance: Instance, robot: Robot) -> Mapping[ResourceId, int]:
-    """Dijkstra from the goal along the moves backwards; a move costs the time in the resource that it leaves."""
+    """Dijkstra backwards from the goal; the cost of a move is the time in the resource that it leaves."""
     import networkx as nx  # noqa: PLC0415 - loaded only where used
 
     backward: nx.DiGraph[ResourceId] = nx.DiGraph()

@@ -1,7 +1,7 @@
-"""The CARP query: A* over free time windows (ter Mors 2010).
+"""The CARP query: A* over free time windows (ter Mors 2010), a close relative of SIPP (Phillips and Likhachev 2011).
 
-A node is a window of a resource, entered at the earliest tick at which it can be entered. Waiting in a window
-is free, so an earlier entry is never worse, and each window needs only one.
+A node is a free window of a resource (a safe interval in SIPP), entered at the earliest possible tick. A robot can wait
+in a window at no cost, so an earlier entry is never worse, and each window needs only one entry.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -36,8 +36,8 @@ def find_plan(
 ) -> Plan | None:
     """The plan with the earliest arrival against the committed plans, or `None` if none exists.
 
-    `successors` are the moves allowed, where not all moves of the graph are. The nodes that the search expands are
-    added to `expanded`, if it is given.
+    `successors` restricts the moves, if it is given. The nodes that the search expands are added to `expanded`, if it
+    is given.
     """
     context = context_of(problem.instance, committed)
     before = problem.before.get(robot)
@@ -53,7 +53,7 @@ def find_plan(
 
 
 def _history(problem: Problem, robot: RobotId) -> tuple[Visit, ...]:
-    """What the robot has done by now; the last visit is the current one, left as early as it may be.
+    """The visits that the robot has entered by now; the last is the current one, left as early as possible.
 
     A robot that has no plan yet stands at its start from its release on.
     """
@@ -66,7 +66,7 @@ def _history(problem: Problem, robot: RobotId) -> tuple[Visit, ...]:
 
 
 def _start(context: Context, history: Sequence[Visit]) -> Node | None:
-    """The node of the current visit; `None` if a committed plan stands in the way of what the robot has done."""
+    """The node of the current visit; `None` if a committed plan conflicts with the robot's history."""
     current = history[-1]
     window = context.window_around(current)
     if window is None or current.leave is None or not context.allows(history):
@@ -124,7 +124,7 @@ def _can_end(problem: Problem, robot: RobotId, node: Node) -> bool:
 def _expand(
     problem: Problem, context: Context, robot: RobotId, node: Node, targets: Sequence[ResourceId]
 ) -> Iterator[Node]:
-    """Every window that one move leads to, entered as early as it can be."""
+    """Every window that one move leads to, entered as early as possible."""
     for target in targets:
         duration = problem.instance.duration(robot, target)
         for window in context.windows(target):

@@ -1,8 +1,8 @@
 """An executor that switches the order of robots where this is safe and makes them arrive earlier (SADG).
 
-It knows of a delay when the visit is entered that takes longer. Then it looks at robots that wait for a late one: may
-the one that waits go first, there and in all places that the two share before and after? It may if the dependency graph
-still has no cycle, and it does if the sum of all arrivals gets less. Source: Berndt et al. 2020.
+The executor learns of a delay when a robot enters the visit that takes longer. Then it looks at each robot that waits
+for a late one, and lets it go first, in that resource and in all resources that the two share next to it, if the
+dependency graph still has no cycle and the sum of all arrivals becomes smaller. Source: Berndt et al. 2020.
 """
 
 from collections import defaultdict
@@ -19,7 +19,7 @@ MOST_TRIED = 20
 
 @dataclass(frozen=True, slots=True)
 class Switched:
-    """The solution in whose order the robots went in the end, when each visit was entered, and the switches made."""
+    """The solution whose order the robots kept in the end, the entry of each visit, and the number of switches."""
 
     solution: Solution
     enters: Mapping[Node, int]
@@ -50,7 +50,7 @@ def switching(instance: Instance, solution: Solution, delays: Sequence[Delay]) -
 def _better(
     order: Order, enters: Mapping[Node, int], least: Mapping[Node, int], known: Sequence[Delay], now: int
 ) -> Order | None:
-    """The order after the first switch that makes the sum of arrivals less, of those that are tried."""
+    """The order after the first switch tried that makes the sum of arrivals smaller."""
     lasts = [(plan.robot, len(plan.visits) - 1) for plan in order.solution.plans]
     total = sum(enters[node] for node in lasts)
     for pairs in _switches(order, enters, now):
@@ -135,7 +135,7 @@ def _switched(order: Order, pairs: Collection[tuple[Node, Node]]) -> list[Depend
 def _longest(
     nodes: Sequence[Node], edges: Sequence[Dependency], least: Mapping[Node, int], known: Sequence[Delay], order: Order
 ) -> dict[Node, int] | None:
-    """When each visit is entered at the earliest; `None` if the edges have a cycle."""
+    """The earliest entry of each visit; `None` if the edges have a cycle."""
     longer = {(delay.robot, delay.visit): delay.ticks for delay in known}
     out_of: dict[Node, list[Dependency]] = defaultdict(list)
     missing = dict.fromkeys(nodes, 0)

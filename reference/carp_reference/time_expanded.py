@@ -1,7 +1,7 @@
 """The naive twin of the CARP query: A* tick by tick on a table of occupied ticks (the paper's [spatioTempA*]).
 
-It shares no code with the query over windows, which is tested against it: it finds a plan that arrives at the
-same tick, or none where none exists. Its plans may differ where several arrive as early.
+It shares no code with the query over windows, which is tested against it: both find a plan that arrives at the same
+tick, or both find none. Where several plans arrive as early, the two may differ.
 """
 
 from collections import Counter, defaultdict
@@ -16,7 +16,7 @@ from carp_spec.limits import LARGEST_TABLE, ticks_are_held
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """The committed plans tick by tick; from the tick `still` on, nothing changes any more."""
+    """The committed plans tick by tick; nothing changes from the tick `still` on."""
 
     instance: Instance
     occupied: Counter[tuple[ResourceId, int]]

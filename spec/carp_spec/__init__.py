@@ -1,6 +1,6 @@
 """The specification of context-aware route planning: model, rules, checker, documents.
 
-This page names what planners and their users need most; the rest is in the modules.
+This page exports the names that planners and their users need most. The modules have the rest.
 """
 
 from carp_spec.check import Verdict, check, check_update, judge

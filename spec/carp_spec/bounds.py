@@ -1,6 +1,6 @@
-"""The document of a lower bound on the total cost, with all that is needed to check it: `carproof-bound/1`.
+"""The document of a lower bound on the total cost, with everything needed to check it: `carproof-bound/1`.
 
-`carp_verify` makes and checks it; its rules are `bound/...`.
+`carp_optimum` makes it and `carp_verify` checks it. Its rules are `bound/...`.
 """
 
 from hashlib import sha256
@@ -18,10 +18,10 @@ Price: TypeAlias = Annotated[int, msgspec.Meta(extra_json_schema={"minimum": 0})
 
 
 class CutDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A group of robots whose costs add up to no less than `least`, and how much it counts, in parts of a tick.
+    """A group of robots whose costs add up to at least `least`, and its weight in the bound, in parts of a tick.
 
-    The rest is the proof, of the group as an instance of its own: each robot's horizon and an order of the robots,
-    from which the formula of a smaller total is made, and a refutation of that formula: LRAT without RAT steps.
+    The other fields prove this for the group as an instance of its own. The horizon of each robot and an order of the
+    robots define the formula of a smaller total. The refutation of that formula is LRAT without RAT steps.
     """
 
     robots: tuple[RobotId, ...]
@@ -58,7 +58,7 @@ def digest(instance: Instance) -> str:
 
 
 def read_bound(data: bytes) -> BoundDocument:
-    """Read the document of a bound; raises `Refusal` if it is malformed. Whether it is right, `carp_verify` says."""
+    """Read the document of a bound; raises `Refusal` if it is malformed. `carp_verify` checks whether it is right."""
     document = decode(data, BoundDocument, BOUND_FORMAT)
     if document.horizon < 0:
         raise Refusal("document", "$.horizon", "document/shape", "the horizon must be at least 0")

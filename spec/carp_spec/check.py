@@ -14,7 +14,7 @@ MOST_LISTED = 100
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """The checker's answer for a solution; `cost` is the total of the plans there are."""
+    """The checker's answer for a solution; `cost` is the total cost of its plans."""
 
     cost: int
     unplanned: int
@@ -56,9 +56,9 @@ def judge(instance: Instance, solution: Solution, most: int | None = MOST_LISTED
 
 
 def check_update(before: Sequence[Plan], after: Sequence[Plan], now: int) -> tuple[Violation, ...]:
-    """All violations of `fleet/history` by plans made again at the tick now.
+    """All violations of `fleet/history` by plans that were made again at the tick now.
 
-    A robot that has a plan before and none after has not been replanned, and is passed over.
+    A robot that has a plan before and none after counts as not replanned, and breaks nothing.
     """
     again = {plan.robot: plan for plan in after}
     return tuple(

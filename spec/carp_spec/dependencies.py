@@ -1,8 +1,9 @@
-"""The dependency graph of a solution: which visits must wait for which others if the robots keep the plan's order.
+"""The action dependency graph of a solution: which visits wait for which others if robots keep the planned order.
 
-One visit to a resource is *before* another if its robot has left, by the plans, when the other is entered (a tick
-earlier where following is forbidden). The nodes are the visits; an edge leads from the visit whose *entering* is waited
-for to the visit that waits, with the least ticks between their enterings.
+In each resource, one visit comes *before* another if its robot is planned to have left when the other visit begins (a
+tick earlier where following is forbidden). The nodes of the graph are the visits. An edge leads to a visit that waits
+from the visit whose *entry* it waits for, and has the least number of ticks between the two entries. Source: Hönig et
+al. 2019.
 """
 
 from bisect import bisect_right
@@ -19,7 +20,7 @@ Node: TypeAlias = tuple[RobotId, int]
 
 @dataclass(frozen=True, slots=True)
 class Stay:
-    """A visit of a lawful plan with its place there, and the resources before and after it (`None`: none)."""
+    """A visit of a lawful plan with its position in the plan, and the resources before and after it (`None`: none)."""
 
     node: Node
     visit: Visit
@@ -31,8 +32,8 @@ class Stay:
 class Dependency:
     """The visit `after` is entered no earlier than `ticks` after the visit `before` has been.
 
-    By `travel` a robot stays in a resource for its duration. By `order` it enters a resource when another has left it:
-    entered its next visit, or stayed in its last one for its duration. Then `resource` is what they share.
+    An edge of `travel` keeps a robot in a resource for the duration. An edge of `order` lets a robot enter `resource`
+    only after another has left it, by entering its next visit or by staying for the duration of its last one.
     """
 
     kind: Literal["travel", "order"]
@@ -53,17 +54,17 @@ def stays_by_resource(plans: Sequence[Plan]) -> dict[ResourceId, list[Stay]]:
 
 
 def is_before(instance: Instance, one: Visit, other: Visit) -> bool:
-    """Whether by the plans the one robot has left the resource when the other enters it."""
+    """Whether the first robot is planned to have left the resource when the second enters it."""
     return one.leave is not None and one.leave + instance.gap <= other.enter
 
 
 def is_opposite(one: Stay, other: Stay) -> bool:
-    """Whether the one leaves the resource to where the other comes from."""
+    """Whether the first robot leaves the resource to where the second comes from."""
     return one.target is not None and one.target == other.source
 
 
 def dependencies(instance: Instance, plans: Sequence[Plan]) -> Iterator[Dependency]:
-    """The edges of the dependency graph of lawful plans, but for those that follow from others."""
+    """The edges of the dependency graph of lawful plans, without those that follow from others."""
     for plan in plans:
         for place, visit in enumerate(plan.visits[:-1]):
             ticks = instance.duration(plan.robot, visit.resource)
@@ -98,8 +99,8 @@ def _direct(instance: Instance, stays: Sequence[Stay]) -> Iterator[tuple[Stay, S
 def shortest_cycle(edges: Sequence[Dependency]) -> tuple[Dependency, ...]:
     """The edges of a shortest cycle, the first by the order of the edges; none if the graph has no cycle.
 
-    A lawful solution has only cycles of robots that enter each other's places at one tick, so edges that take time are
-    in no cycle.
+    The only cycles of a lawful solution are robots that enter each other's places at one tick. So an edge of at least
+    one tick is in no cycle.
     """
     following: dict[Node, list[Dependency]] = defaultdict(list)
     for edge in edges:

@@ -1,7 +1,7 @@
 """The documents: instances, solutions and verdicts as JSON.
 
-Reading is strict: an unknown field, a boolean or 1.0 for a whole number, and a broken `instance/...` rule are
-refused with the path and the rule. Writing and reading again gives an equal value.
+Reading is strict. It refuses an unknown field, a boolean or 1.0 in place of a whole number, and a broken `instance/...`
+rule, and names the path and the rule. A value that is written and read again stays equal.
 """
 
 import json
@@ -34,7 +34,7 @@ SOLUTION_FORMAT: Final = "carproof-solution/1"
 VERDICT_FORMAT: Final = "carproof-verdict/1"
 
 MOST_DIGITS: Final = 100
-ESCAPE: Final = b"\\u"  # that of half a surrogate pair is no text, though Python's parser takes it
+ESCAPE: Final = b"\\u"  # the escape of half a surrogate pair is not text, though Python's parser accepts it
 UNREADABLE: Final = (msgspec.DecodeError, UnicodeDecodeError, RecursionError)
 
 Tick: TypeAlias = Annotated[int, msgspec.Meta(extra_json_schema={"minimum": 0})]
@@ -101,7 +101,7 @@ class InstanceDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class PlanDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A plan: each visit is [resource, enter, leave], and a leave of null is for ever."""
+    """A plan: each visit is [resource, enter, leave], and a leave of null means for ever."""
 
     robot: RobotId
     visits: tuple[tuple[ResourceId, int, int | None], ...]
@@ -118,7 +118,7 @@ class SolutionDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class ViolationDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename={"start": "from", "end": "to"}):
-    """A broken rule, in the ticks [from, to); a to of null is for ever, a from of null is no tick at all."""
+    """A broken rule, in the ticks [from, to); a to of null means for ever, a from of null means no tick."""
 
     rule: str
     robots: tuple[RobotId, ...]
@@ -193,12 +193,12 @@ def has_format(data: bytes, format: str) -> bool:
 
 
 def uncapitalized(sentence: str) -> str:
-    """The sentence as part of another: its first letter is small, unless its first word is an abbreviation."""
+    """The sentence as part of another: with a small first letter, unless its first word is an abbreviation."""
     return sentence if sentence[1:2].isupper() else sentence[:1].lower() + sentence[1:]
 
 
 def _shape_error(data: bytes, kind: type[D]) -> tuple[str, str] | None:
-    """Where the document departs from its kind, as a path and what is expected there."""
+    """Where the document departs from its kind: the path, and what would be right there."""
     try:
         msgspec.json.decode(data, type=kind)
     except UNREADABLE as error:
@@ -233,7 +233,7 @@ def decode(data: bytes, kind: type[D], format: str) -> D:
 
 
 def _instead(data: bytes) -> str:
-    """The format that a document has in place of the right one, as the end of a sentence; nothing if it has none."""
+    """The end of a sentence that names the format of a document that has the wrong one; empty if it has none."""
     try:
         found = msgspec.json.decode(data, type=_Headed).format
     except UNREADABLE:
@@ -242,7 +242,7 @@ def _instead(data: bytes) -> str:
 
 
 def _decode_step_by_step(data: bytes, kind: type[D], format: str) -> D:
-    """Decode by one rule after the other, to name the one that is broken."""
+    """Apply one rule after the other, to name the first that is broken."""
     require_json(data)
     if not has_format(data, format):
         raise Refusal("document", "$.format", "document/format", f"the format must be {format}{_instead(data)}")
@@ -304,7 +304,7 @@ def instance_document(instance: Instance) -> InstanceDocument:
 
 
 def read_solution(data: bytes) -> Solution:
-    """Read a solution document; raises `Refusal` if it is malformed. Whether it is right, the checker says."""
+    """Read a solution document; raises `Refusal` if it is malformed. The checker decides whether it is right."""
     return solution_of(decode(data, SolutionDocument, SOLUTION_FORMAT))
 
 

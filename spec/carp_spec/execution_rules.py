@@ -1,7 +1,7 @@
 """The rules of an execution: `trace/...`, `execution/...`. A trace that keeps them follows a solution.
 
-Each predicate takes the instance, the solution, which must be lawful, and the trace; those of `execution/...` take a
-trace that keeps `trace/...`.
+Each predicate takes the instance, a lawful solution and the trace. Those of `execution/...` require a trace that keeps
+`trace/...`.
 """
 
 from collections import Counter, defaultdict
@@ -26,7 +26,9 @@ def trace_names_robots(instance: Instance, solution: Solution, trace: Trace) -> 
     named = Counter(plan.robot for plan in trace.plans)
     for robot in dict.fromkeys([*(plan.robot for plan in solution.plans), *named]):
         if named[robot] != (robot in planned):
-            reason = f"the trace must name it {'once' if robot in planned else 'never'}, and does {named[robot]} times"
+            reason = (
+                f"the trace must name it {'once' if robot in planned else 'never'}, and names it {named[robot]} times"
+            )
             yield of_robots([robot], reason)
 
 
@@ -46,9 +48,9 @@ def trace_is_prefix(instance: Instance, solution: Solution, trace: Trace) -> Ite
 
 @violation_rule(
     "trace/ticks",
-    "A robot enters its first visit at its release or later, and each other one at the tick at which it leaves the one "
-    "before. No visit is left before it is entered, and nothing happens after the tick now. Only the last visit of a "
-    "plan is left for good, and with `park` none is.",
+    "A robot enters its first visit at its release or later, and each other visit at the tick at which it leaves the "
+    "visit before. No visit is left before it is entered, and nothing happens after the tick now. Only the last "
+    "visit of a plan is left for good; with `park` no visit is.",
     DESIGN,
 )
 def trace_keeps_time(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Breach]:
@@ -87,8 +89,8 @@ def durations_are_kept(instance: Instance, solution: Solution, trace: Trace) -> 
 
 @violation_rule(
     "execution/order",
-    "A robot enters a resource only when each robot has left it that, by the plans, has left it when the robot enters; "
-    "where following is forbidden, a tick after that.",
+    "A robot enters a resource only after every robot has left it that is planned to have left it by then; where "
+    "following is forbidden, at least a tick after.",
     ADG,
 )
 def order_is_kept(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Breach]:
@@ -99,7 +101,7 @@ def order_is_kept(instance: Instance, solution: Solution, trace: Trace) -> Itera
 
 @violation_rule(
     "execution/exchange",
-    "Of two robots that, by the plans, make the moves (r, s) and (s, r) at different ticks, the first moves at an "
+    "Of two robots that are planned to make the moves (r, s) and (s, r) at different ticks, the first moves at an "
     "earlier tick than the second.",
     ADG,
 )
@@ -119,9 +121,10 @@ def exchange_order_is_kept(instance: Instance, solution: Solution, trace: Trace)
 def _too_early(
     leaving: Sequence[Stay], entering: Sequence[Stay], happened: Happened, planned: int, least: int
 ) -> Iterator[Breach]:
-    """The robots that entered too early: another, by the plans `planned` ticks ahead, was not `least` ahead.
+    """The robots that entered too early: another, planned to be `planned` ticks ahead, was less than `least` ahead.
 
-    Both are swept in the order of the plans; of those that should have left, the one that left last is blamed.
+    Both are swept in the planned order. Of the robots that should have left, the violation names the one that left
+    last.
     """
     left = sorted((stay for stay in leaving if stay.visit.leave is not None), key=lambda stay: stay.visit.leave or 0)
     last: Stay | None = None
@@ -145,7 +148,8 @@ def _too_early(
 
 @violation_rule(
     "execution/acyclic",
-    "The dependency graph of a solution has no cycle: at no tick do robots enter each other's places in a circle.",
+    "The dependency graph of a solution has no cycle: at no tick do robots enter each other's places in a circle (a "
+    "rotation).",
     ADG,
 )
 def is_acyclic(instance: Instance, solution: Solution) -> Iterator[Breach]:
@@ -181,7 +185,7 @@ def trace_violations(
 ) -> tuple[Violation, ...]:
     """Where the trace does not follow the lawful solution, rule by rule; at most the first `most` of each rule.
 
-    The rules of execution are asked only of a trace that keeps those of traces.
+    The rules `execution/...` are checked only if the trace keeps the rules `trace/...`.
     """
     for rules in (TRACE_RULES, EXECUTION_RULES):
         violations = [violation for each in rules for violation in islice(each(instance, solution, trace), most)]

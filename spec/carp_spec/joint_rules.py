@@ -9,7 +9,7 @@ from carp_spec.model import Instance, Move, Plan, Resource, ResourceId, RobotId,
 from carp_spec.rule import DESIGN, MORS, Breach, Rule, Violation, of_robots, violation_rule
 
 Changes: TypeAlias = dict[int, Counter[RobotId]]
-"""By tick and robot, how many of its stays begin at the tick, less those that end."""
+"""By tick and robot: how many of the robot's stays begin at the tick, minus how many end."""
 
 
 @violation_rule(
@@ -26,7 +26,7 @@ def capacity_is_kept(instance: Instance, plans: Sequence[Plan]) -> Iterator[Brea
 @violation_rule(
     "joint/following",
     "Where following is forbidden, at no tick are more robots in a resource than its capacity if those count that "
-    "leave it at the tick: where there is room for one, a robot enters only after a free tick.",
+    "leave it at the tick. Where there is room for one, a robot enters only after a free tick.",
     DESIGN,
 )
 def following_is_avoided(instance: Instance, plans: Sequence[Plan]) -> Iterator[Breach]:
@@ -39,7 +39,7 @@ def following_is_avoided(instance: Instance, plans: Sequence[Plan]) -> Iterator[
 def _crowded(
     instance: Instance, plans: Sequence[Plan], gap: int
 ) -> Iterator[tuple[Resource, tuple[RobotId, ...], int, int | None]]:
-    """The resources that are too full, by which robots and when, if each stay lasts `gap` ticks longer."""
+    """The resources that are too full if each stay lasts `gap` ticks longer, with the robots and the ticks."""
     changes: dict[ResourceId, Changes] = defaultdict(lambda: defaultdict(Counter))
     for plan in plans:
         for visit in plan.visits:
@@ -130,7 +130,9 @@ def solution_orders_plans(instance: Instance, solution: Solution) -> Iterator[Br
     named = Counter(solution.order)
     for robot in dict.fromkeys([*(plan.robot for plan in solution.plans), *solution.order]):
         if named[robot] != (robot in planned):
-            reason = f"the order must name it {'once' if robot in planned else 'never'}, and does {named[robot]} times"
+            reason = (
+                f"the order must name it {'once' if robot in planned else 'never'}, and names it {named[robot]} times"
+            )
             yield of_robots([robot], reason)
 
 

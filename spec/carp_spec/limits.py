@@ -1,4 +1,4 @@
-"""What planners may refuse because it would not fit: `limit/...`. The law itself knows no largest number."""
+"""Limits beyond which a planner may refuse an instance: `limit/...`. The law itself has no largest number."""
 
 from typing import Any
 
@@ -12,8 +12,9 @@ LARGEST_COMPILED = 2**30
 
 @rule(
     "limit/ticks",
-    f"A planner that keeps ticks in tables refuses what its tables do not hold: the compiled engine ticks, durations "
-    f"and positions beyond {LARGEST_COMPILED}, the time-expanded planner more than {LARGEST_TABLE} ticks.",
+    "A planner that keeps ticks in tables may refuse an instance that its tables cannot hold: the compiled engine "
+    f"ticks, durations and positions beyond {LARGEST_COMPILED}, the time-expanded planner more than {LARGEST_TABLE} "
+    "ticks.",
     DESIGN,
 )
 def ticks_are_held(ticks: int, most: int) -> bool:  # noqa: D103 - its statement stands in its decorator

@@ -1,11 +1,10 @@
 """The model: resources, robots, visits, plans, instances and solutions.
 
-Time is `int` ticks from 0. Every interval is half-open, `[enter, leave)`, and `None` as its end means
-for ever: the robot that leaves at t and the robot that enters at t never share the resource.
+Time is counted in `int` ticks from 0. Every interval is half-open, `[enter, leave)`: a robot that leaves at t and a
+robot that enters at t never share the resource. An end of `None` means for ever.
 
-The classes are plain data and may hold nonsense; `carp_spec.instance_rules` and `carp_spec.check` say
-what is right. Nothing in them can be changed, the look-ups included.
-Source: the paper, section II; ter Mors 2010 for capacities and durations.
+The classes are plain, frozen data and may hold nonsense; `carp_spec.instance_rules` and `carp_spec.check` decide
+whether they are right. Source: the paper, section II; ter Mors 2010 for capacities and durations.
 """
 
 from collections.abc import Mapping
@@ -24,9 +23,9 @@ Following: TypeAlias = Literal["allowed", "forbidden"]
 class Resource:
     """A place that robots occupy: a cell, a lane, a crossing.
 
-    `capacity` robots fit in at a time, and each needs `duration` ticks, times its own pace, to traverse it.
-    `x` and `y` are its position on the plane, for distances and pictures; a resource without one counts as
-    standing at (0, 0).
+    `capacity` robots fit in at a time, and each needs `duration` ticks, times its own pace, to traverse it. `x` and `y`
+    are its position on the plane, for distances and pictures. A resource without a position counts as standing at (0,
+    0).
     """
 
     id: ResourceId
@@ -40,9 +39,9 @@ class Resource:
 class ResourceGraph:
     """The resources and the edges between them.
 
-    An edge (r, s) of a directed graph is the move from r to s; of an undirected one, that and the move back.
-    The order of `resources` breaks ties. The last four fields are look-ups, made from the others: a resource
-    by its id, its index in the order, the resources that one move leads to, in that order, and all moves.
+    An edge (r, s) of a directed graph is the move from r to s; of an undirected one, that and the move back. The order
+    of `resources` breaks ties. The last four fields are look-ups made from the others: each resource by its id, its
+    index in the order, the resources that one move leads to (in that order), and all moves.
     """
 
     resources: tuple[Resource, ...]
@@ -71,7 +70,7 @@ class ResourceGraph:
         object.__setattr__(self, "moves", moves)
 
     def __reduce__(self) -> tuple[type["ResourceGraph"], tuple[object, ...]]:
-        """Copy and pickle the fields; the look-ups, which do not pickle, are made again."""
+        """Copy and pickle the fields alone; the look-ups cannot be pickled and are made again."""
         return type(self), (self.resources, self.edges, self.directed)
 
     def has_move(self, source: ResourceId, target: ResourceId) -> bool:
@@ -113,16 +112,16 @@ class Instance:
         object.__setattr__(self, "robot", MappingProxyType({each.id: each for each in self.robots}))
 
     def __reduce__(self) -> tuple[type["Instance"], tuple[object, ...]]:
-        """Copy and pickle the fields; the look-up, which does not pickle, is made again."""
+        """Copy and pickle the fields alone; the look-up cannot be pickled and is made again."""
         return type(self), (self.graph, self.robots, self.after_goal, self.following)
 
     def duration(self, robot: RobotId, resource: ResourceId) -> int:
-        """Ticks that the robot needs at least in the resource: the resource's duration times its pace."""
+        """The least ticks that the robot needs in the resource: the resource's duration times the robot's pace."""
         return self.robot[robot].pace * self.graph.resource[resource].duration
 
     @property
     def gap(self) -> int:
-        """Ticks for which a place that a robot has left stays free: 1 where following is forbidden, 0 elsewhere."""
+        """The ticks for which a resource stays free after a robot: 1 where following is forbidden, else 0."""
         return int(self.following == "forbidden")
 
 

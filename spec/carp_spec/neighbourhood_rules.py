@@ -17,8 +17,8 @@ ALGORITHM = "paper, Algorithm 1"
 
 @rule(
     "neighbourhood/baseline",
-    "The first candidate is the committed plans unchanged with a CARP query for the new robot. In paper mode it is "
-    "left out, unless the neighbourhood can take in no robot, so that there is no other candidate.",
+    "The first candidate keeps the committed plans and adds the result of a CARP query for the new robot. In paper "
+    "mode it is left out, unless the neighbourhood can take in no robot, so that there is no other candidate.",
     DESIGN,
 )
 def baseline_is_tried(baseline: bool, rounds: int) -> bool:
@@ -26,7 +26,7 @@ def baseline_is_tried(baseline: bool, rounds: int) -> bool:
 
 
 def _position(instance: Instance, plan: Plan, tick: int) -> tuple[int, int]:
-    """Where the robot is: at its start before its release, at its goal after its arrival."""
+    """The robot's resource at a tick: its start before its release, its goal after its arrival."""
     robot = instance.robot[plan.robot]
     entered = [visit.resource for visit in plan.visits if visit.enter <= tick]
     resource = instance.graph.resource[entered[-1] if entered else robot.start]
@@ -73,16 +73,16 @@ def nearest(distances_to_members: Sequence[Sequence[Fraction]]) -> int:
     f"{ALGORITHM}, line 10; {DESIGN}",
 )
 def replanned_from(taken: int, planned: int) -> int:
-    """The position from which robots are replanned: `planned` of them, from the front, had a plan before."""
+    """The position from which robots are replanned; the first `planned` robots had a plan before."""
     return min(taken, planned)
 
 
 @rule(
     "neighbourhood/orders",
     "Every permutation of the neighbourhood, in lexicographic order of the positions in it, is planned by CARP "
-    "against the other robots. With a sample size: that many distinct permutations, drawn by Fisher-Yates from one "
-    "SplitMix64 stream per added robot, seeded with the seed plus the robot's index in the instance, evaluated in "
-    "lexicographic order too; all of them where there are no more than the sample.",
+    "against the other robots. With a sample size, that many distinct permutations are drawn by Fisher-Yates from "
+    "one SplitMix64 stream per added robot, seeded with the seed plus the robot's index in the instance. They are "
+    "planned in lexicographic order too. If there are no more permutations than the sample size, all are planned.",
     f"{ALGORITHM}, line 11; {DESIGN}",
 )
 def neighbourhood_orders(size: int, sample: int | None, stream: Iterator[int]) -> Iterator[Order]:
@@ -101,8 +101,8 @@ def replaces_best(cost: int, best: int | None) -> bool:
 @rule(
     "neighbourhood/update",
     "The trajectories for the next distances are the new plans of the robots outside the neighbourhood (in a round "
-    "without candidate, of those that got one) and, for its members, those of the round's best permutation, if it "
-    "has one. A robot without a new plan keeps the trajectory that it had.",
+    "without candidate, of those that got one). For its members they are those of the round's best permutation, if "
+    "it has one. A robot without a new plan keeps the trajectory that it had.",
     f"paper, section III; {DESIGN}",
 )
 def next_trajectory(before: Plan, planned: Plan | None) -> Plan:

@@ -1,4 +1,4 @@
-"""Chance that every program can repeat: SplitMix64, shuffles, and the orders of a neighbourhood."""
+"""Random numbers that every program can repeat: SplitMix64, shuffles, and the orders of a neighbourhood."""
 
 from collections.abc import Iterator, Sequence
 from itertools import permutations
@@ -41,7 +41,7 @@ def all_orders(size: int) -> Iterator[Order]:
 
 
 def sampled_orders(size: int, sample: int, stream: Iterator[int]) -> list[Order]:
-    """That many distinct permutations, each a shuffle of 0 .. size - 1, in lexicographic order."""
+    """A sample of distinct permutations, each a shuffle of 0 .. size - 1, in lexicographic order."""
     drawn: set[Order] = set()
     while len(drawn) < sample:
         drawn.add(shuffle(range(size), stream))
@@ -49,7 +49,7 @@ def sampled_orders(size: int, sample: int, stream: Iterator[int]) -> list[Order]
 
 
 def orders(size: int, sample: int | None, stream: Iterator[int]) -> Iterator[Order]:
-    """All permutations if there are no more than the sample, or no sample is asked; else a sample of them."""
+    """All permutations if no sample is asked or they are no more than the sample; else a sample of them."""
     if sample is None or factorial(size) <= sample:
         return all_orders(size)
     return iter(sampled_orders(size, sample, stream))

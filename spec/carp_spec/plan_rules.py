@@ -97,7 +97,7 @@ PLAN_RULES: tuple[Rule[[Instance, Plan], Iterator[Violation]], ...] = (
 
 
 def plan_cost(instance: Instance, plan: Plan) -> int:
-    """Ticks from the robot's release to entering the last visit of a plan that has one."""
+    """The ticks from the robot's release to the entry of the last visit; the plan must have a visit."""
     return plan.visits[-1].enter - instance.robot[plan.robot].release
 
 

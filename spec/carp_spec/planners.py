@@ -1,6 +1,6 @@
 """The planners by name, and their options: the same for documents, the command line and Python.
 
-A planner's decisions stand beside its options here; `carp_reference` and `carp_optimized` carry them out.
+Each planner's decisions are described beside its options; `carp_reference` and `carp_optimized` implement them.
 """
 
 from collections.abc import Iterator, Mapping
@@ -17,7 +17,7 @@ PathKind: TypeAlias = Literal["shortest", "disjoint"]
 
 @dataclass(frozen=True, slots=True)
 class Carp:
-    """Each robot in the order given, against the plans before it. Source: ter Mors 2010."""
+    """Prioritized planning: each robot in the order given, against the plans before it. Source: ter Mors 2010."""
 
     name: ClassVar = "carp"
 
@@ -38,14 +38,14 @@ class Shuffled:
 
 @dataclass(frozen=True, slots=True)
 class LongestFirst:
-    """CARP in the order of falling shortest-path costs; a tie goes to the earlier (the paper's LF)."""
+    """CARP with the longest shortest path first; a tie goes to the earlier robot (the paper's LF)."""
 
     name: ClassVar = "longest-first"
 
 
 @dataclass(frozen=True, slots=True)
 class Greedy:
-    """In each round the robot whose plan costs least is planned; a tie goes to the earlier."""
+    """In each round, the robot whose plan costs least is planned; a tie goes to the earlier robot."""
 
     name: ClassVar = "greedy"
 
@@ -68,15 +68,15 @@ class Neighbourhood:
 
 
 BY_DEFAULT = Neighbourhood()
-"""The planner where none is named."""
+"""The planner that is used where none is named."""
 
 
 @dataclass(frozen=True, slots=True)
 class FixedPaths:
     """Each robot takes, of its k shortest or at most k disjoint paths, the first on which it arrives earliest.
 
-    The paths are those of the empty graph. Disjoint paths share no resource but start and goal, and are as many
-    as there are up to k, of the least total length. Source: ter Mors' comparison, as the paper cites it.
+    The paths are those of the empty graph. Disjoint paths share no resource but start and goal; there are as many as
+    possible up to k, of the least total length. Source: ter Mors' comparison, as the paper cites it.
     """
 
     name: ClassVar = "fixed-paths"

@@ -1,8 +1,8 @@
-"""The rules of polishing: a solution is improved round by round, `polish/...`.
+"""The rules of polishing, which is large neighbourhood search (LNS): `polish/...`.
 
-Each round takes out a few robots, the neighbourhood, replans them in a drawn order, and keeps what is not worse.
-Each predicate makes one decision of the round; planners call it, or are tested against it. A round draws its
-kind, its pivot, what its candidates need, its members and their order, one after the other.
+Each round removes a few robots, the neighbourhood, from a solution and replans them in a drawn order. It keeps the new
+plans if they are not worse. Each predicate makes one decision of a round; planners call it, or are tested against it. A
+round draws, one after the other: its kind, its pivot, what its candidates need, its members, and their order.
 
 Polishing plans whole instances: robots are planned from their release on, and none is under way.
 """
@@ -37,7 +37,7 @@ LARGE_NEIGHBOURHOOD = "Li et al. 2021, MAPF-LNS"
     "polish/draws",
     "All choices of a polish come from the SplitMix64 stream of its seed, in the order in which they are made. A "
     "choice among n is the next number mod n. To draw some of n things, the thing in place k = 0, 1, ... is swapped "
-    "with that in place k plus a choice among n - k; those in the first places are drawn, in that order.",
+    "with the thing in place k plus a choice among n - k; the things in the first places are drawn, in that order.",
     DESIGN,
 )
 def drawn(things: Sequence[T], count: int, stream: Iterator[int]) -> list[T]:
@@ -50,9 +50,9 @@ def drawn(things: Sequence[T], count: int, stream: Iterator[int]) -> list[T]:
 
 @rule(
     "polish/kind",
-    "While a robot that has a path is unplanned, every other round, the first included, repairs, and so does each "
-    "round if no robot is delayed; if there are neither, the polish ends. Of the others a choice among 10 makes eight "
-    "(0 to 7) rounds for a delayed robot, one (8) for a contested resource, one (9) for near robots.",
+    "While a robot that has a path is unplanned, every other round repairs, the first included, and so does every "
+    "round if no robot is delayed. If no robot is unplanned or delayed, the polish ends. In the other rounds a "
+    "choice among 10 decides: 0 to 7 is a round for a delayed robot, 8 for a contested resource, 9 for near robots.",
     f"{LARGE_NEIGHBOURHOOD}; {DESIGN}",
 )
 def kind_of(turn: int, waiting: int, delay: int, stream: Iterator[int]) -> Kind | None:
@@ -80,9 +80,9 @@ def pivot_of(weights: Sequence[int], stream: Iterator[int]) -> int:
 
 @rule(
     "polish/members",
-    f"The neighbourhood has {LEAST_MEMBERS} robots and a choice among {SIZES} more, but at most all that have a path: "
-    "the pivot, then the first of the candidates, then, if these are too few, some drawn of the others that have a "
-    "path, in the order of the instance.",
+    f"The neighbourhood has {LEAST_MEMBERS} robots and a choice among {SIZES} more, but at most all that have a path. "
+    "Its members are the pivot, then the first of the candidates, then, if these are too few, robots drawn from the "
+    "others that have a path, in the order of the instance.",
     DESIGN,
 )
 def members_of(pivot: T, candidates: Sequence[T], everyone: Sequence[T], stream: Iterator[int]) -> list[T]:
@@ -94,7 +94,7 @@ def members_of(pivot: T, candidates: Sequence[T], everyone: Sequence[T], stream:
 
 
 def spans(successors: Mapping[ResourceId, Sequence[ResourceId]], plan: Plan) -> Mapping[ResourceId, Span]:
-    """The span of each resource that the plan visits or that a move leads to from there (`polish/way`)."""
+    """The span of each resource that the plan visits, and of each that one move leads to from there (`polish/way`)."""
     found: dict[ResourceId, Span] = {}
     for visit in plan.visits:
         for resource in (visit.resource, *successors[visit.resource]):
@@ -106,10 +106,10 @@ def spans(successors: Mapping[ResourceId, Sequence[ResourceId]], plan: Plan) -> 
 
 @rule(
     "polish/way",
-    "In the way of a plan is a robot with a stay, [enter, leave), in a resource whose span, [first, last], it meets: "
-    "first <= leave and enter <= last. The span of a resource is from the first enter to the last leave of the plan's "
-    "visits there and in resources with a move to it. The plan is the pivot's alone (repair; delayed, by a choice of "
-    "0 among 2) or its own (1). The candidates are the robots in its way, drawn.",
+    "A robot is in the way of a plan if one of its stays, [enter, leave), meets the span, [first, last], of a "
+    "resource: first <= leave and enter <= last. The span of a resource is from the first enter to the last leave of "
+    "the plan's visits there and in resources with a move to it. The plan is the one that the pivot has alone "
+    "(repair; delayed, by a choice of 0 among 2) or its own (1). The candidates are the robots in its way, drawn.",
     f"{LARGE_NEIGHBOURHOOD}; {DESIGN}",
 )
 def is_in_way(spans: Mapping[ResourceId, Span], other: Plan) -> bool:
@@ -124,8 +124,8 @@ def _meets(span: Span, visit: Visit) -> bool:
 @rule(
     "polish/contested",
     "A choice among the visits of the pivot's plan gives a resource and the tick at which it is entered. The "
-    "candidates are the other robots that visit the resource, by how many ticks earlier or later they enter it, at "
-    "the visit for which these are fewest; a tie goes to the earlier in the instance.",
+    "candidates are the other robots that visit the resource, ordered by how many ticks earlier or later they enter "
+    "it, at the visit for which these are fewest; a tie goes to the earlier in the instance.",
     f"{LARGE_NEIGHBOURHOOD}; {DESIGN}",
 )
 def ticks_apart(visit: Visit, other: Plan) -> int | None:
@@ -136,7 +136,7 @@ def ticks_apart(visit: Visit, other: Plan) -> int | None:
 
 @rule(
     "polish/near",
-    "The candidates are all other robots that have a plan, by their distance from the pivot, "
+    "The candidates are all other robots that have a plan, ordered by their distance from the pivot, "
     "`neighbourhood/distance`; a tie goes to the earlier in the instance.",
     "paper, Algorithm 1, line 7",
 )
@@ -147,8 +147,8 @@ def by_distance(distances: Sequence[Fraction]) -> list[int]:
 
 @rule(
     "polish/order",
-    "The members are planned in the order in which they were chosen, with all but the pivot shuffled, in a repair and "
-    "by a choice of 0 among 2; by 1, all are shuffled. The shuffle is Fisher-Yates, as in `neighbourhood/orders`.",
+    "The members are planned in the order in which they were chosen. In a repair, and by a choice of 0 among 2, all "
+    "but the pivot are shuffled; by 1, all are shuffled. The shuffle is Fisher-Yates, as in `neighbourhood/orders`.",
     DESIGN,
 )
 def order_of(members: Sequence[T], is_repair: bool, stream: Iterator[int]) -> tuple[T, ...]:
@@ -158,20 +158,20 @@ def order_of(members: Sequence[T], is_repair: bool, stream: Iterator[int]) -> tu
 
 @rule(
     "polish/kept",
-    "Each member is planned by CARP at tick 0 against the robots outside and the members before it; one that finds no "
-    "plan is unplanned. The new plans are kept if fewer robots are unplanned than before, or as many and the total is "
-    "not larger. The planning order is then that of the robots outside, followed by that of the members.",
+    "Each member is planned by CARP at tick 0 against the robots outside and the members before it; one that finds "
+    "no plan is unplanned. The new plans are kept if fewer robots are unplanned than before, or equally many and the "
+    "total is not larger. The planning order is then that of the robots outside, followed by that of the members.",
     DESIGN,
 )
 def is_kept(before: tuple[int, int], after: tuple[int, int]) -> bool:
-    """Each the number of unplanned robots and the total."""
+    """Each argument is the number of unplanned robots and the total."""
     return after <= before
 
 
 @fault_rule(
     "polish/options",
-    f"A polish has a number of rounds, iterations, a whole number of at least 0, or a time, seconds, a number above 0, "
-    f"or neither, which is {ITERATIONS} iterations; and a seed between 0 and 2^64 - 1.",
+    "The options of a polish are a number of rounds, iterations, a whole number of at least 0, or a time, seconds, a "
+    f"number above 0, or neither, which means {ITERATIONS} iterations; and a seed between 0 and 2^64 - 1.",
     DESIGN,
 )
 def options_are_right(iterations: object, seconds: object, seed: object) -> Iterator[tuple[str, str]]:
@@ -190,7 +190,7 @@ def _is_time(seconds: object) -> bool:
 
 
 def last_round(iterations: int | None, seconds: float | None) -> int | None:
-    """After how many rounds a polish ends at the latest; `None`: the time decides."""
+    """The number of rounds after which a polish ends at the latest; `None`: the time decides."""
     return ITERATIONS if iterations is None and seconds is None else iterations
 
 

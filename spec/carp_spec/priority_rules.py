@@ -1,4 +1,4 @@
-"""The rule of people first: `priority/first`. It speaks of all updates; its predicate takes those to look at."""
+"""The rule of people first: `priority/first`. It is about all updates; its predicate takes those to compare with."""
 
 from collections.abc import Iterable, Sequence
 
@@ -9,9 +9,9 @@ from carp_spec.rule import DESIGN, rule
 
 @rule(
     "priority/first",
-    "Where robots give way at the tick now, the plans afterwards are a lawful update: they are of the same robots and "
-    "the one with priority, break no rule, and keep fleet/history. No lawful update has an earlier arrival of that "
-    "robot.",
+    "Where the others give way to a robot at the tick now, the result is a lawful update of the plans: it has one "
+    "plan for that robot and for each robot that had one, breaks no rule, and keeps fleet/history. In no lawful "
+    "update does that robot arrive earlier.",
     DESIGN,
 )
 def robot_is_first(

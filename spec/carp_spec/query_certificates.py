@@ -1,4 +1,4 @@
-"""The document that shows how early one robot can arrive beside the plans of the others: `carproof-query/1`.
+"""The document that proves how early one robot can arrive beside the plans of the others: `carproof-query/1`.
 
 Planners make it and `carp_verify` checks it; its rules are `query-certificate/...`.
 """
@@ -15,12 +15,12 @@ QUERY_FORMAT: Final = "carproof-query/1"
 
 
 class QueryCertificateDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A tick before which no plan of the robot arrives, or null where it has no plan, and what shows it.
+    """A tick before which no plan of the robot arrives, or null where it has no plan, and the evidence.
 
-    It is about an instance and a solution, which are not in it: the robot is planned at the tick `now` beside the
-    plans of the others. `labels` are pairs of a resource and a tick: the robot enters the free
-    window that holds the tick no earlier than then. `potential` gives for a resource ticks that the robot needs at
-    least from entering it to entering its goal; from a resource that is not listed it cannot reach its goal.
+    The certificate is about an instance and a solution, which are not in it: the robot is planned at the tick `now`
+    beside the plans of the others. A label is a pair of a resource and a tick: the robot enters the free window that
+    holds the tick no earlier than then. `potential` gives for a resource the least ticks that the robot needs from
+    entering it to entering its goal. From a resource that is not listed, the robot cannot reach its goal.
     """
 
     format: Literal["carproof-query/1"]
@@ -32,7 +32,7 @@ class QueryCertificateDocument(msgspec.Struct, frozen=True, forbid_unknown_field
 
 
 def read_query_certificate(data: bytes) -> QueryCertificateDocument:
-    """Read a query certificate; raises `Refusal` if it is malformed. Whether it is right, `carp_verify` says."""
+    """Read a query certificate; raises `Refusal` if it is malformed. `carp_verify` checks whether it is right."""
     document = decode(data, QueryCertificateDocument, QUERY_FORMAT)
     if document.now < 0:
         raise Refusal("document", "$.now", "document/shape", "now must be at least 0")

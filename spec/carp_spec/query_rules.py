@@ -1,7 +1,7 @@
 """The rules of a query, the search for one robot's plan against committed plans: `query/...`.
 
-`query/optimal` and `query/complete` speak of all plans. Their predicates take the rivals to look at: who
-enumerates them all has the whole rule, who draws some at random has evidence for it.
+`query/optimal` and `query/complete` are about all plans. Their predicates take the rival plans to compare with: to
+enumerate all rivals decides the rule, and to draw some at random gives evidence for it.
 """
 
 from collections.abc import Iterable, Sequence

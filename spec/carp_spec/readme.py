@@ -1,4 +1,4 @@
-"""Sections of pages that programs write: `rules` is between `<!-- rules: begin -->` and `<!-- rules: end -->`."""
+"""Sections of pages that programs write: `rules` stands between `<!-- rules: begin -->` and `<!-- rules: end -->`."""
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path

@@ -1,7 +1,7 @@
-"""What a rule is, and how a broken one is reported.
+"""Rules, and the reports of broken ones.
 
-A rule has a stable id, one statement, a source and one predicate, the function that decides it. Everything
-that speaks of a rule quotes its id. `carp_spec.registry` lists them all.
+A rule has a stable id, one statement, a source and one predicate, the function that decides it. Whatever mentions a
+rule quotes its id. `carp_spec.registry` lists all rules.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -49,9 +49,9 @@ def rule(id: str, statement: str, source: str) -> Callable[[Callable[P, R]], Rul
 class Violation:
     """A broken rule of a plan or of a set of plans.
 
-    It happened at `resource` in the ticks [start, end); an end of `None` is for ever, and a start of `None`
-    says that no resource or tick is to blame. A resource that is too full is one violation as long as it stays so;
-    `robots` are all that are in it at one of the ticks. `reason` says what is wrong and what would be right.
+    It happened at `resource` in the ticks [start, end). An end of `None` means for ever; a start of `None` means that
+    no resource or tick is to blame. A resource that is too full is one violation for as long as it stays too full, and
+    `robots` are all robots in it at any of these ticks. `reason` states what is wrong and what would be right.
     """
 
     rule: str
@@ -84,17 +84,17 @@ class Fault:
 
 
 def is_whole(value: object) -> TypeGuard[int]:
-    """Whether the value is a whole number; `True` and `1.0` are none."""
+    """Whether the value is a whole number; `True` and `1.0` are not."""
     return isinstance(value, int) and not isinstance(value, bool)
 
 
 def interval(start: int, end: int | None) -> str:
-    """Print a half-open interval of ticks; `None` is for ever."""
+    """Print a half-open interval of ticks; an end of `None` means for ever."""
     return f"[{start},{'for ever' if end is None else end})"
 
 
 def named(robots: Sequence[RobotId]) -> str:
-    """Print like `robot r1` or `robots r1, r2`: the first robots by name, and how many there are besides."""
+    """Print like `robot r1` or `robots r1, r2`: the first robots by name, and the number of the others."""
     names = ", ".join(map(str, robots[:MOST_NAMED]))
     others = f" and {len(robots) - MOST_NAMED} more" if len(robots) > MOST_NAMED else ""
     return f"{'robot' if len(robots) == 1 else 'robots'} {names}{others}"

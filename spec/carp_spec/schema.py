@@ -1,7 +1,7 @@
 """The documents' JSON Schemas, made from the same classes that decode them; `python -m carp_spec.schema` writes them.
 
-They are published beside this module in `schemas/`. A schema says less than the decoder: JSON Schema counts 1.0 as
-a whole number, which `document/shape` does not, and it cannot tell the `instance/...` rules that speak of ids.
+They are published beside this module in `schemas/`. A schema accepts more than the decoder: JSON Schema counts 1.0 as a
+whole number, which `document/shape` does not, and it cannot express the `instance/...` rules about ids.
 """
 
 from collections.abc import Mapping
@@ -45,7 +45,7 @@ def document_schema(name: str) -> str:
 
 
 def schema_file(name: str) -> Path:
-    """Where the schema of that name is published."""
+    """The file in which the schema of that name is published."""
     return FOLDER / f"{name}.schema.json"
 
 

@@ -1,4 +1,4 @@
-"""The document of what has happened: `carproof-trace/1`. Which rules it must keep, `carp_spec.execution_rules` says."""
+"""The document of what has happened: `carproof-trace/1`. Its rules are in `carp_spec.execution_rules`."""
 
 from dataclasses import dataclass
 from typing import Final, Literal
@@ -32,7 +32,7 @@ class TraceDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def read_trace(data: bytes) -> Trace:
-    """Read a trace; raises `Refusal` if it is malformed. Whether it follows a solution, `trace_violations` says."""
+    """Read a trace; raises `Refusal` if it is malformed. `trace_violations` decides whether it follows a solution."""
     document = decode(data, TraceDocument, TRACE_FORMAT)
     if document.now < 0:
         raise Refusal("document", "$.now", "document/shape", "now must be at least 0")

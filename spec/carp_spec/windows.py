@@ -21,17 +21,17 @@ class Window:
     end: int | None
 
     def lasts_until(self, tick: int | None) -> bool:
-        """Whether a stay in the window may end at the tick (`None`: never end)."""
+        """Whether a stay in the window may end at the tick (`None`: the stay never ends)."""
         return self.end is None or (tick is not None and tick <= self.end)
 
 
 def occupancy(occupations: Sequence[Occupation], tick: int) -> int:
-    """How many of the occupations hold the tick."""
+    """The number of occupations that hold the tick."""
     return sum(enter <= tick and (leave is None or tick < leave) for enter, leave in occupations)
 
 
 def free_windows(occupations: Sequence[Occupation], capacity: int, gap: int = 0) -> tuple[Window, ...]:
-    """Make the windows that `window/free` describes, in order of time; `gap` is that of the instance."""
+    """The windows that `window/free` describes, in order of time; `gap` is that of the instance."""
     if gap > 0:
         longer = free_windows(_longer(occupations, gap), capacity)
         shorter = (Window(each.start, None if each.end is None else each.end - gap) for each in longer)
@@ -77,7 +77,7 @@ def windows_are_free(windows: Sequence[Window], occupations: Sequence[Occupation
 
 
 def _longer(occupations: Sequence[Occupation], gap: int) -> list[Occupation]:
-    """The occupations, each by `gap` ticks longer."""
+    """The occupations, each longer by `gap` ticks."""
     return [(enter, None if leave is None else leave + gap) for enter, leave in occupations]
 
 

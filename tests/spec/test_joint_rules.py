@@ -133,7 +133,7 @@ def test_a_solution_is_told_what_it_names_too_often_and_too_rarely() -> None:
         "[solution/covers] robot r8 (the instance has no such robot)",
     ]
     assert [str(violation) for violation in solution_orders_plans(ROW, solution)] == [
-        "[solution/order] robot r2 (the order must name it once, and does 2 times)",
-        "[solution/order] robot r9 (the order must name it once, and does 0 times)",
-        "[solution/order] robot r3 (the order must name it never, and does 1 times)",
+        "[solution/order] robot r2 (the order must name it once, and names it 2 times)",
+        "[solution/order] robot r9 (the order must name it once, and names it 0 times)",
+        "[solution/order] robot r3 (the order must name it never, and names it 1 times)",
     ]

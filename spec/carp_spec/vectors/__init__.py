@@ -1,13 +1,13 @@
 """Test vectors: for every rule, cases that keep it and cases that break it, as JSON for programs in any language.
 
-Each file beside this module is about one subject, a rule's id or an op, and lists cases. A case is a question (`op`,
-`instance` and `input`, the fields of a request of the protocol) with the right `answer`, and says whether what is
-judged is `valid` or `invalid`, and all rules that are `violated`. Judged is the `claim`, an answer that somebody
-might give, or, where none exists, the question's own input. Where no op of the protocol reaches a rule, the op is
-the rule's id and asks its predicate alone.
+Each file beside this module lists the cases of one subject, which is a rule's id or an op. A case is a question (`op`,
+`instance` and `input`, the fields of a request of the protocol) with the right `answer`. It also has a verdict: whether
+the judged document is `valid` or `invalid`, and all rules that are `violated`. The judged document is the `claim`, an
+answer that a program might give, or, without a claim, the question's own input. Where no op of the protocol reaches a
+rule, the op is the rule's id and asks its predicate alone.
 
-An id means the same case for ever: `digests.txt` names every case with a digest of all but flags and comment, and
-only grows. The files are the cases' only source: a new case is written into them; nothing is read before somebody asks.
+An id means the same case for ever: `digests.txt` has the digest of every case without its flags and comment, and only
+grows. The files are the only source of the cases. A file is read when its first case is asked for.
 """
 
 from collections.abc import Iterator, Mapping
@@ -29,14 +29,14 @@ Expected: TypeAlias = Literal["valid", "invalid"]
 Fields: TypeAlias = dict[str, Any]
 
 FLAGS: Final[Mapping[Flag, str]] = {
-    "edge-case": "The least, the first, the last or none of something: where an off-by-one shows.",
+    "edge-case": "The least, the first, the last or none of something: where an off-by-one error shows.",
     "known-bug-elsewhere": "Published planners have been wrong here; the comment says how.",
     "free-choice": "Another answer is as good; only a program that claims carproof's ties must give this one.",
 }
 
 
 class Vector(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A case: a question with its right answer, and whether what is judged keeps the rules.
+    """A case: a question with its right answer, and whether the judged document keeps the rules.
 
     `instance` is an instance document, which may be malformed, or null. `answer` has, for `check`, `plan` and `add`,
     the `cost` and the number of robots `unplanned`, or `refused`, the path to blame; for `query`, the `cost`, null
@@ -85,12 +85,12 @@ def vector_file(subject: str) -> Path:
 
 
 def subjects() -> tuple[str, ...]:
-    """What there are cases about: the ids of all rules, then ops."""
+    """The subjects of the cases: the ids of all rules, then ops."""
     return (*(rule.id for rule in RULES), "optimum", "verify-bound", "verify-query")
 
 
 def vectors_document(subject: str) -> VectorsDocument:
-    """The file about a subject; raises `msgspec.ValidationError` if it has not the shape of one."""
+    """The file about a subject; raises `msgspec.ValidationError` if the file does not have that shape."""
     return msgspec.json.decode(vector_file(subject).read_bytes(), type=VectorsDocument)
 
 
