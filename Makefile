@@ -20,6 +20,10 @@ install: .venv/installed
 	touch $@
 	$(BIN)/python -m carp_optimum
 
+.venv/mutation: .venv/installed
+	$(BIN)/python -m pip install --quiet --editable '.[mutation]'
+	touch $@
+
 # Compile what bounds and the planner run, if a source has changed: a minute, in place of some test's or the demo's.
 compiled: install
 	$(BIN)/python -m carp_optimum
@@ -123,13 +127,13 @@ mutation: mutation-trusted mutation-carp_spec mutation-carp_reference mutation-c
 
 # The compiled planner's reuse, run uncompiled, by a driver that forks for each mutant; then, by the same driver, the
 # checkers that call something proved, verified or conforming.
-mutation-carp_optimized: install
+mutation-carp_optimized: .venv/mutation
 	nice $(BIN)/python -m tests.mutation.planner
 
-mutation-trusted: install
+mutation-trusted: .venv/mutation
 	nice $(BIN)/python -m tests.mutation.checkers
 
-mutation-%: install
+mutation-%: .venv/mutation
 	rm -rf build/mutation/$* build/mutation/$*-original
 	mkdir -p build/mutation/$*
 	git ls-files -z | xargs -0 cp --parents --target-directory=build/mutation/$*
