@@ -15,13 +15,13 @@ import msgspec
 
 from carp_experiments.map_cases import MapCase, fleet_of
 from carp_experiments.quality import ALGORITHMS, outcome, seeded
-from carp_experiments.report import Figure, Report, Table
+from carp_experiments.report import ExperimentReport, Figure, Table
 from carp_experiments.store import MEASURED, Row
 from carp_spec import Neighbourhood, Planner, Shuffled
 from carproof.statistics import Interval, mean_interval
 
 if TYPE_CHECKING:
-    from carp_optimized.fleet import Fleet
+    from carp_optimized.fleet import PlannedFleet
 
 PAPERS_MAP = 15
 STEP = 5
@@ -51,7 +51,7 @@ def time_row(case: MapCase) -> Row:
     return {"planned": planned, MEASURED: measured}
 
 
-def warm_up(fleet: "Fleet", planner: Planner) -> None:
+def warm_up(fleet: "PlannedFleet", planner: Planner) -> None:
     """Load machine code and find the distances to all goals."""
     robots = len(fleet.instance.robots)
     fleet.carp(range(robots))
@@ -63,7 +63,7 @@ def warm_up(fleet: "Fleet", planner: Planner) -> None:
         plan_first(fleet, planner, 2)
 
 
-def times_of(fleet: "Fleet", planner: Planner) -> dict[str, int]:
+def times_of(fleet: "PlannedFleet", planner: Planner) -> dict[str, int]:
     """The nanoseconds of the k-th robot, by k."""
     robots = len(fleet.instance.robots)
     wanted = [k for k in range(1, robots + 1) if k in (1, robots) or k % STEP == 0]
@@ -83,7 +83,7 @@ def times_of(fleet: "Fleet", planner: Planner) -> dict[str, int]:
     return times
 
 
-def plan_first(fleet: "Fleet", planner: Planner, k: int) -> None:
+def plan_first(fleet: "PlannedFleet", planner: Planner, k: int) -> None:
     """Plan the first k robots from scratch."""
     match planner:
         case Shuffled():
@@ -110,7 +110,7 @@ class TimeRow(msgspec.Struct, frozen=True):
     measured: dict[str, dict[int, int]]
 
 
-def time_report(rows: Iterable[Row]) -> Report:
+def time_report(rows: Iterable[Row]) -> ExperimentReport:
     """A table for the 50th and 100th robot (or half of them and all) beside the paper's, and a figure over k."""
     times: dict[tuple[str, int], list[float]] = defaultdict(list)
     for row in rows:
@@ -125,7 +125,7 @@ def time_report(rows: Iterable[Row]) -> Report:
     lines = {name: [(each.k, each.milliseconds) for each in summary if each.algorithm == name] for name in PAPER}
     axes = ("robot", "milliseconds")
     figure = Figure("time", "Time to plan when the k-th robot comes", axes, lines, logarithmic=True)
-    return Report(summary, (time_table(summary),), (figure,))
+    return ExperimentReport(summary, (time_table(summary),), (figure,))
 
 
 def time_table(summary: Sequence[Time]) -> Table:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from carp_experiments.campaign import Case, Workers
-    from carp_experiments.report import Report
+    from carp_experiments.report import ExperimentReport
     from carp_experiments.store import Row
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -153,7 +153,7 @@ def go(  # noqa: PLR0913 - the campaign's options
     command: str,
     size: str,
     cases: "Sequence[Case]",
-    report_of: "Callable[[Iterable[Row]], Report]",
+    report_of: "Callable[[Iterable[Row]], ExperimentReport]",
     *,
     store: Path | None,
     report: Path | None,

@@ -10,7 +10,7 @@ from typing import Any
 
 import msgspec
 
-from carp_experiments.report import Report, Table
+from carp_experiments.report import ExperimentReport, Table
 from carp_experiments.store import Row
 from carp_spec import total_cost
 from carproof.questions import question
@@ -75,7 +75,7 @@ def crosscheck_cases(questions: int, seed: int) -> tuple[CrosscheckCase, ...]:
     return tuple(CrosscheckCase(first, min(BLOCK, questions - first), seed) for first in range(0, questions, BLOCK))
 
 
-def crosscheck_report(rows: Iterable[Row]) -> Report:
+def crosscheck_report(rows: Iterable[Row]) -> ExperimentReport:
     """How many questions were asked, and what differs."""
     blocks = [msgspec.convert(row, Block) for row in rows]
     differences = [each for block in blocks for each in block.differences]
@@ -85,4 +85,4 @@ def crosscheck_report(rows: Iterable[Row]) -> Report:
     table = Table(
         "crosscheck", "Both engines, asked the same", columns, ((*map(str, sums), str(len(differences))),), columns
     )
-    return Report({"differences": differences}, (table,), (), lines, holds=not differences)
+    return ExperimentReport({"differences": differences}, (table,), (), lines, holds=not differences)

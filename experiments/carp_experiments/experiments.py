@@ -10,7 +10,7 @@ from carp_experiments.polishing import polish_report, polish_row
 from carp_experiments.quality import quality_row
 from carp_experiments.quality_report import quality_report
 from carp_experiments.related_work import related_report, related_row
-from carp_experiments.report import Report
+from carp_experiments.report import ExperimentReport
 from carp_experiments.reuse_counts import reuse_report, reuse_row
 from carp_experiments.small_gaps import SIDE, gap_report, gap_row
 from carp_experiments.store import Row
@@ -52,7 +52,7 @@ class Experiment:
     full: Profile
     quick: Profile
     compute: Callable[[MapCase], Row]
-    report: Callable[[Iterable[Row], int], Report]
+    report: Callable[[Iterable[Row], int], ExperimentReport]
     places: int = 400
 
     def cases(self, profile: Profile) -> Sequence[MapCase]:

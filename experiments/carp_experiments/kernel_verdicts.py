@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 import msgspec
 
-from carp_experiments.report import Report, Table
+from carp_experiments.report import ExperimentReport, Table
 from carp_experiments.store import Row
 from carp_spec import Instance, RobotId, Solution, judge
 from carp_spec.documents import solution_document
@@ -169,7 +169,7 @@ def kernel_cases(verdicts: int, seed: int) -> tuple[KernelCase, ...]:
     return tuple(KernelCase(first, min(BLOCK, verdicts - first), seed) for first in range(0, verdicts, BLOCK))
 
 
-def kernel_report(rows: Iterable[Row]) -> Report:
+def kernel_report(rows: Iterable[Row]) -> ExperimentReport:
     """How many verdicts of each kind there were, and which differ."""
     blocks = [msgspec.convert(row, Verdicts) for row in rows]
     differences = [each for block in blocks for each in block.differences]
@@ -187,4 +187,4 @@ def kernel_report(rows: Iterable[Row]) -> Report:
     table = Table(
         "kernel", "The kernel and the checkers in Python", columns, ((*sums, str(len(differences))),), columns
     )
-    return Report({"differences": differences}, (table,), (), shown, holds=not differences)
+    return ExperimentReport({"differences": differences}, (table,), (), shown, holds=not differences)

@@ -11,7 +11,7 @@ from carp_experiments.store import Row
 from carp_spec import Instance
 
 if TYPE_CHECKING:
-    from carp_optimized.fleet import Fleet
+    from carp_optimized.fleet import PlannedFleet
 
 ROBOTS = 100
 FULL_MAP = 20
@@ -56,11 +56,11 @@ def instance_of(case: MapCase) -> Instance:
     return grid_instance(Grid(map=case.map), Fleet(robots=case.robots, seed=case.assignment))
 
 
-def fleet_of(case: MapCase) -> "Fleet":
+def fleet_of(case: MapCase) -> "PlannedFleet":
     """A fleet of these robots without plans."""
-    from carp_optimized.fleet import Fleet  # noqa: PLC0415 - each worker loads it
+    from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415 - each worker loads it
 
-    return Fleet(instance_of(case))
+    return PlannedFleet(instance_of(case))
 
 
 def rows_by_map(rows: Iterable[Row], shape: type[R]) -> dict[int, list[R]]:

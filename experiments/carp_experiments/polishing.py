@@ -14,7 +14,7 @@ import msgspec
 
 from carp_experiments.map_cases import MAP_AXIS, MapCase, instance_of, rows_by_map
 from carp_experiments.quality import ALGORITHMS, seeded
-from carp_experiments.report import Figure, Report, Table
+from carp_experiments.report import ExperimentReport, Figure, Table
 from carp_experiments.store import MEASURED, Row
 from carp_spec import Instance, RobotId, Solution, total_cost
 from carp_verify.bound_rules import require_kept
@@ -148,13 +148,15 @@ class PolishSummary:
     methods: tuple[Polished, ...]
 
 
-def polish_report(rows: Iterable[Row], robots: int) -> Report:
+def polish_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
     """Tables of gaps, of bounds and of failures; figures of the gaps and of the totals."""
     maps = rows_by_map(rows, PolishRow).items()
     floors = tuple(floor(map, each) for map, each in maps)
     methods = tuple(polished(map, name, each, robots) for map, each in maps for name in METHODS)
     tables = (gaps_table(methods), bounds_table(floors, methods), failures_table(methods))
-    return Report(PolishSummary(floors, methods), tables, (gaps_figure(methods), totals_figure(floors, methods)))
+    return ExperimentReport(
+        PolishSummary(floors, methods), tables, (gaps_figure(methods), totals_figure(floors, methods))
+    )
 
 
 def floor(map: int, rows: Sequence[PolishRow]) -> Floor:

@@ -17,7 +17,7 @@ from carp_spec import Carp, LongestFirst, Neighbourhood, Planner, Shuffled, tota
 from carproof.statistics import Interval, mean_interval, proportion_interval
 
 if TYPE_CHECKING:
-    from carp_optimized.fleet import Fleet
+    from carp_optimized.fleet import PlannedFleet
 
 ALGORITHMS: Mapping[str, Planner] = {
     "CARP": Carp(),
@@ -56,7 +56,7 @@ def quality_row(case: MapCase) -> Row:
     return {"shortest": sum(fleet.ticks_to_goal(robot) for robot in range(case.robots)), "results": results}
 
 
-def plan_all(fleet: "Fleet", planner: Planner) -> None:
+def plan_all(fleet: "PlannedFleet", planner: Planner) -> None:
     """Plan the fleet as `carp_optimized.plan` does, up to the first robot that cannot be added."""
     everyone = range(len(fleet.instance.robots))
     match planner:
@@ -71,7 +71,7 @@ def plan_all(fleet: "Fleet", planner: Planner) -> None:
             fleet.carp(everyone)
 
 
-def add_until_failure(fleet: "Fleet", planner: Planner, first: int) -> None:
+def add_until_failure(fleet: "PlannedFleet", planner: Planner, first: int) -> None:
     """Add the robots from the first on, until one stays unplanned."""
     assert isinstance(planner, Neighbourhood)  # noqa: S101 - a promise of ours
     for robot in range(first, len(fleet.instance.robots)):
@@ -79,7 +79,7 @@ def add_until_failure(fleet: "Fleet", planner: Planner, first: int) -> None:
             return
 
 
-def outcome(fleet: "Fleet") -> tuple[int, int]:
+def outcome(fleet: "PlannedFleet") -> tuple[int, int]:
     """How many robots have a plan, and the total cost of these plans."""
     return len(fleet.order), total_cost(fleet.instance, fleet.plans)
 

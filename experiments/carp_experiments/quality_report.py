@@ -4,19 +4,19 @@ from collections.abc import Iterable
 
 from carp_experiments.map_cases import MAP_AXIS, shown_maps
 from carp_experiments.quality import ALGORITHMS, QualitySummary, Summary, summarise
-from carp_experiments.report import Figure, Report, Table
+from carp_experiments.report import ExperimentReport, Figure, Table
 from carp_experiments.store import Row
 from carproof.statistics import Interval
 
 FEWEST_SHOWN = 4  # a mean over less than a quarter of the assignments is no point in a figure
 
 
-def quality_report(rows: Iterable[Row], robots: int) -> Report:
+def quality_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
     """Failure rates in per cent, and mean totals over the assignments that did not fail."""
     return report_of(summarise(rows, robots))
 
 
-def report_of(summary: QualitySummary) -> Report:
+def report_of(summary: QualitySummary) -> ExperimentReport:
     """Two tables over some of the maps, and two figures over all."""
     by_place = {(each.algorithm, each.map): each for each in summary.algorithms}
     maps = shown_maps(each.map for each in summary.algorithms)
@@ -57,7 +57,7 @@ def report_of(summary: QualitySummary) -> Report:
         Figure("quality-totals", "Actions of all robots", (MAP_AXIS, "mean total cost"), total),
         Figure("quality-savings", "Fewer actions than CARP, where neither fails", (MAP_AXIS, "actions"), on_maps),
     )
-    return Report(summary, tables, figures)
+    return ExperimentReport(summary, tables, figures)
 
 
 def of(summary: QualitySummary, name: str) -> list[Summary]:

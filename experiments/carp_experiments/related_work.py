@@ -13,7 +13,7 @@ import msgspec
 
 from carp_experiments.map_cases import MAP_AXIS, MapCase, fleet_of, rows_by_map, shown_maps
 from carp_experiments.quality import plan_all
-from carp_experiments.report import Figure, Report, Table
+from carp_experiments.report import ExperimentReport, Figure, Table
 from carp_experiments.store import Row
 from carp_spec import Instance, LongestFirst, Plan, ResourceId, Robot, plan_cost
 from carproof.statistics import Interval, mean_interval, proportion_interval
@@ -112,7 +112,7 @@ class RelatedRow(msgspec.Struct, frozen=True):
     costs: dict[str, list[int | None]]
 
 
-def related_report(rows: Iterable[Row], robots: int) -> Report:
+def related_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
     """Tables over some of the maps, a figure over all."""
     by_map = rows_by_map(rows, RelatedRow)
     summary = tuple(related_of(map, name, each) for map, each in by_map.items() for name in METHODS)
@@ -140,7 +140,7 @@ def related_report(rows: Iterable[Row], robots: int) -> Report:
     )
     lines = {name: [(each.map, each.unplanned) for each in summary if each.method == name] for name in METHODS}
     figure = Figure("related", "Robots without a plan", (MAP_AXIS, f"robots of {robots}"), lines)
-    return Report(summary, tables, (figure,))
+    return ExperimentReport(summary, tables, (figure,))
 
 
 def related_of(map: int, name: str, rows: Sequence[RelatedRow]) -> Related:

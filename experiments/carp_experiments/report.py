@@ -40,7 +40,7 @@ class Figure:
 
 
 @dataclass(frozen=True, slots=True)
-class Report:
+class ExperimentReport:
     """The summary of an experiment's rows: numbers for programs, tables and figures for people, lines to print.
 
     `holds` is false if the rows show what must not be.
@@ -53,7 +53,7 @@ class Report:
     holds: bool = True
 
 
-def write_report(folder: Path, name: str, report: Report, run: Mapping[str, object]) -> None:
+def write_report(folder: Path, name: str, report: ExperimentReport, run: Mapping[str, object]) -> None:
     """Write `NAME.json`, with the facts of the run and all numbers, `NAME.md`, and a figure of each kind."""
     folder.mkdir(parents=True, exist_ok=True)
     summary = rounded(msgspec.to_builtins(report.summary))

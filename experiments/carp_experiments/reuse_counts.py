@@ -8,7 +8,7 @@ from math import factorial
 import msgspec
 
 from carp_experiments.map_cases import MapCase, fleet_of
-from carp_experiments.report import Report, Table
+from carp_experiments.report import ExperimentReport, Table
 from carp_experiments.store import Row
 from carp_optimized.reuse import Reuse
 from carp_spec import Neighbourhood
@@ -77,7 +77,7 @@ class ReuseRow(msgspec.Struct, frozen=True):
     avoided: dict[int, dict[str, int]]
 
 
-def reuse_report(rows: Iterable[Row], robots: int) -> Report:
+def reuse_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
     """One table of queries asked, one of those avoided."""
     measured = [msgspec.convert(row, ReuseRow, strict=False) for row in rows]
     summary = tuple(reuse_of(m, measured, robots) for m in (*SIZES[1:], SAMPLED))
@@ -107,7 +107,7 @@ def reuse_report(rows: Iterable[Row], robots: int) -> Report:
             avoided_columns[1:],
         ),
     )
-    return Report(summary, tables)
+    return ExperimentReport(summary, tables)
 
 
 def reuse_of(m: int, rows: Sequence[ReuseRow], robots: int) -> ReuseOf:

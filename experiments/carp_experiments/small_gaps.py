@@ -10,7 +10,7 @@ import msgspec
 
 from carp_experiments.map_cases import MAP_AXIS, MapCase, rows_by_map, shown_maps
 from carp_experiments.quality import ALGORITHMS, outcome, plan_all, seeded
-from carp_experiments.report import Figure, Report, Table
+from carp_experiments.report import ExperimentReport, Figure, Table
 from carp_experiments.store import Row
 from carp_spec import Greedy, Planner, total_cost
 from carp_verify.bound_rules import require_kept
@@ -37,15 +37,14 @@ def gap_row(case: MapCase) -> Row:
     machine.
     """
     import carp_optimized as engine  # noqa: PLC0415 - each worker loads it
-    from carp_optimized.fleet import Fleet  # noqa: PLC0415
+    from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415
     from carp_optimum.bound import lower_bound  # noqa: PLC0415
     from carp_optimum.optimum import optimum  # noqa: PLC0415
-    from carproof.generate import Fleet as RandomFleet  # noqa: PLC0415
-    from carproof.generate import Grid, grid_instance  # noqa: PLC0415
+    from carproof.generate import Fleet, Grid, grid_instance  # noqa: PLC0415
 
     grid = Grid(SIDE, SIDE, case.map, map_seed=case.assignment)
-    instance = grid_instance(grid, RandomFleet(robots=case.robots, seed=case.assignment))
-    fleet = Fleet(instance)
+    instance = grid_instance(grid, Fleet(robots=case.robots, seed=case.assignment))
+    fleet = PlannedFleet(instance)
     results = {}
     for name, planner in COMPARED.items():
         if isinstance(planner, Greedy):
@@ -95,14 +94,14 @@ class GapRow(msgspec.Struct, frozen=True):
     results: dict[str, tuple[int, int]]
 
 
-def gap_report(rows: Iterable[Row], robots: int) -> Report:
+def gap_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
     """A table over some of the maps, and a figure over all."""
     by_map = rows_by_map(rows, GapRow)
     summary = tuple(gap_of(map, name, each, robots) for map, each in by_map.items() for name in REPORTED)
     lines = {name: [(each.map, each.gap) for each in summary if each.algorithm == name] for name in REPORTED}
     title = f"Above the optimum that the search found, {robots} robots on {SIDE} x {SIDE} maps"
     figure = Figure("gap", title, (MAP_AXIS, "per cent above the optimum"), lines)
-    return Report(summary, (gap_table(summary, by_map, title),), (figure,))
+    return ExperimentReport(summary, (gap_table(summary, by_map, title),), (figure,))
 
 
 def gap_of(map: int, name: str, rows: Sequence[GapRow], robots: int) -> GapOf:

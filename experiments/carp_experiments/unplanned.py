@@ -15,7 +15,7 @@ import msgspec
 
 from carp_experiments.map_cases import MapCase, instance_of, rows_by_map
 from carp_experiments.quality import ALGORITHMS, seeded
-from carp_experiments.report import Report, Table
+from carp_experiments.report import ExperimentReport, Table
 from carp_experiments.store import Row
 from carp_spec import Carp, Instance, Plan, RobotId, Solution, judge, total_cost
 from carp_spec.permutations import shuffle, splitmix64
@@ -148,9 +148,9 @@ def planned_around(instance: Instance, robots: Sequence[RobotId], seed: int) -> 
 
 def one_by_one(instance: Instance, plans: Sequence[Plan], robots: Sequence[RobotId]) -> Solution:
     """The plans, and the robots planned around them in this order."""
-    from carp_optimized.fleet import Fleet  # noqa: PLC0415
+    from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415
 
-    fleet = Fleet(instance)
+    fleet = PlannedFleet(instance)
     fleet.commit(plans)
     for robot in robots:
         plan = fleet.find(fleet.index(robot), None, 0)
@@ -210,13 +210,13 @@ class UnplannedSummary:
     stuck: tuple[UnplannedRow, ...]
 
 
-def unplanned_report(rows: Iterable[Row]) -> Report:
+def unplanned_report(rows: Iterable[Row]) -> ExperimentReport:
     """A table of the maps, and one of the groups."""
     by_map = rows_by_map(rows, UnplannedRow)
     maps = tuple(unplanned_on(map, each) for map, each in by_map.items())
     stuck = tuple(row for each in by_map.values() for row in each if row.left)
     tables = (maps_table(maps), groups_table(stuck)) if stuck else (maps_table(maps),)
-    return Report(UnplannedSummary(maps, stuck), tables)
+    return ExperimentReport(UnplannedSummary(maps, stuck), tables)
 
 
 def unplanned_on(map: int, rows: Sequence[UnplannedRow]) -> Unplanned:

@@ -1,6 +1,6 @@
 """`python -m carp_optimized` compiles the planner, so that no later call has to; once done, it does nothing."""
 
-from carp_optimized.fleet import Fleet
+from carp_optimized.fleet import PlannedFleet
 from carp_spec import Instance, Neighbourhood, Resource, ResourceGraph, Robot, Shuffled
 
 
@@ -8,7 +8,7 @@ def compile_all() -> None:
     """Call each entry once."""
     graph = ResourceGraph((Resource("a"), Resource("b"), Resource("c")), (("a", "b"), ("b", "c")))
     instance = Instance(graph, (Robot("r", "a", "b"), Robot("s", "b", "c"), Robot("t", "c", "c", 9)), "vanish")
-    fleet = Fleet(instance)
+    fleet = PlannedFleet(instance)
     fleet.greedy(lambda: None)
     fleet.shuffled(Shuffled(2), range(2), lambda: None)
     fleet.carp(range(2))

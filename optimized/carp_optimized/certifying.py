@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from carp_optimized.fleet import Fleet
+from carp_optimized.fleet import PlannedFleet
 from carp_spec import Instance, Plan, RobotId
 from carp_spec.query_certificates import QUERY_FORMAT, QueryCertificateDocument
 
@@ -12,7 +12,7 @@ class Certifier:
 
     def __init__(self, instance: Instance) -> None:
         """Begin without plans. Raises `Refusal` if the instance has numbers that are too large."""
-        self._fleet = Fleet(instance)
+        self._fleet = PlannedFleet(instance)
         self._ids = [resource.id for resource in instance.graph.resources]
 
     def commit(self, plans: Sequence[Plan]) -> None:

@@ -52,7 +52,7 @@ class Scratch(NamedTuple):
     answers: Native[Answers]
 
 
-class Fleet:
+class PlannedFleet:
     """An instance with the plans that some of its robots have, in planning order.
 
     Robots are named by their index in the instance. The windows hold the plans of `order` whenever no compiled

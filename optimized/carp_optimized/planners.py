@@ -26,16 +26,16 @@ from carp_spec.polish_rules import last_round, polishable, require_polish_option
 
 if TYPE_CHECKING:
     from carp_optimized.certifying import Certifier
-    from carp_optimized.fleet import Fleet
+    from carp_optimized.fleet import PlannedFleet
 
 ROUNDS = 50  # of a polish in one compiled call
 PLANNERS = (Carp, Shuffled, LongestFirst, Greedy, Neighbourhood)
 
 
-def _fleet(instance: Instance, reuse: Reuse | None = None) -> "Fleet":
-    from carp_optimized.fleet import Fleet  # noqa: PLC0415 - numba is slow to load
+def _fleet(instance: Instance, reuse: Reuse | None = None) -> "PlannedFleet":
+    from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415 - numba is slow to load
 
-    return Fleet(instance, reuse)
+    return PlannedFleet(instance, reuse)
 
 
 def query(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0) -> Plan | None:

@@ -66,13 +66,13 @@ def plans_of_all(
 def _run(instance: Instance, check: Callable[[], None]) -> Attempt | None:
     """The plans of the neighbourhood planner in an order, without the robots that find none; `None`: not at hand."""
     from carp_optimized.compiling import is_cached  # noqa: PLC0415 - slow to load
-    from carp_optimized.fleet import Fleet  # noqa: PLC0415
+    from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415
     from carp_optimized.neighbourhood import add_robot  # noqa: PLC0415
 
     if not is_cached(add_robot):
         return None
     try:
-        fleet = Fleet(instance)
+        fleet = PlannedFleet(instance)
     except Refusal:
         return None
 

@@ -13,7 +13,7 @@ from itertools import count, islice
 from typing import TypeAlias
 
 from carp_optimized import polish, query
-from carp_optimized.fleet import Fleet
+from carp_optimized.fleet import PlannedFleet
 from carp_spec import Instance, Plan, RobotId, Solution, Visit, total_cost
 from carp_spec.joint_rules import JOINT_RULES
 from carp_spec.rule import Violation
@@ -144,7 +144,7 @@ class _Finder:
         twins = tuple(replace(each, id=_twin(each.id)) for each in instance.robots)
         self._instance = instance
         self._capacity = {each.id: each.capacity for each in doubled}
-        self._fleet = Fleet(
+        self._fleet = PlannedFleet(
             replace(instance, graph=replace(graph, resources=doubled), robots=(*instance.robots, *twins))
         )
         self._fleet.commit([*others, *(replace(plan, robot=_twin(plan.robot)) for plan in others)])

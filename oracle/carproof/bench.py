@@ -13,11 +13,10 @@ from time import thread_time_ns
 from typing import TYPE_CHECKING
 
 from carp_spec import Instance, Neighbourhood
-from carproof.generate import Fleet as RandomFleet
-from carproof.generate import Grid, grid_instance
+from carproof.generate import Fleet, Grid, grid_instance
 
 if TYPE_CHECKING:
-    from carp_optimized.fleet import Fleet
+    from carp_optimized.fleet import PlannedFleet
 
 ROBOTS = 100
 REPETITIONS = 7
@@ -82,7 +81,7 @@ def microseconds(work: Callable[[], object], prepare: Callable[[], object] = lam
     return median(times[1:])
 
 
-def query_time(fleet: "Fleet", robot: int, times: int = 200) -> float:
+def query_time(fleet: "PlannedFleet", robot: int, times: int = 200) -> float:
     """The time of one query of a robot against the fleet, asked again and again."""
     return microseconds(lambda: fleet.repeat_query(robot, times)) / times
 
@@ -92,7 +91,7 @@ def on_map(map: int, assignments: int, advance: Callable[[], None]) -> OnMap:
     queries, passes = [], []
     added: dict[tuple[int, str], list[Added]] = {(k, name): [] for k in (ROBOTS // 2, ROBOTS) for name in PROPOSED}
     for seed in range(assignments):
-        fleet = fleet_of(grid_instance(Grid(map=map, map_seed=seed), RandomFleet(robots=ROBOTS, seed=seed)))
+        fleet = fleet_of(grid_instance(Grid(map=map, map_seed=seed), Fleet(robots=ROBOTS, seed=seed)))
         pass_us = microseconds(partial(fleet.carp, range(ROBOTS)), fleet.clear)
         fleet.carp(range(ROBOTS - 1))
         queries.append(query_time(fleet, ROBOTS - 1))
@@ -103,7 +102,7 @@ def on_map(map: int, assignments: int, advance: Callable[[], None]) -> OnMap:
     return OnMap(map, median(queries), median(passes), [medians(each) for each in added.values()])
 
 
-def add_robot(fleet: "Fleet", k: int, name: str, pass_us: float) -> Added:
+def add_robot(fleet: "PlannedFleet", k: int, name: str, pass_us: float) -> Added:
     """Add the k-th robot to those before it, planned by CARP."""
     fleet.carp(range(k - 1))
     before = fleet.queries
@@ -131,7 +130,7 @@ def on_grid(side: int, advance: Callable[[], None]) -> OnGrid:
     """Measure how times grow with the grid."""
     robots = side * side // 4
     last = robots - 1
-    fleet = fleet_of(grid_instance(Grid(width=side, height=side), RandomFleet(robots=robots)))
+    fleet = fleet_of(grid_instance(Grid(width=side, height=side), Fleet(robots=robots)))
 
     def timed(work: Callable[[], object]) -> float:
         started = thread_time_ns()
@@ -160,8 +159,8 @@ def weight(side: int) -> int:
     return max(1, (side // 40) ** 3)
 
 
-def fleet_of(instance: Instance) -> "Fleet":
+def fleet_of(instance: Instance) -> "PlannedFleet":
     """An optimised fleet without plans."""
-    from carp_optimized.fleet import Fleet  # noqa: PLC0415 - numba is slow to load
+    from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415 - numba is slow to load
 
-    return Fleet(instance)
+    return PlannedFleet(instance)

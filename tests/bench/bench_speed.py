@@ -11,24 +11,23 @@ from tests.programs import require_programs
 import carp_reference
 from carp_optimized import passes
 from carp_optimized.arrays import NEVER
-from carp_optimized.fleet import Fleet
+from carp_optimized.fleet import PlannedFleet
 from carproof.bench import ROBOTS
-from carproof.generate import Fleet as RandomFleet
-from carproof.generate import Grid, grid_instance
+from carproof.generate import Fleet, Grid, grid_instance
 
 HERE = Path(__file__).parent
 ASSIGNMENTS = range(20)
 TIMES = 5_000
 
 
-def fleet_of(seed: int, robots: int = ROBOTS) -> Fleet:
+def fleet_of(seed: int, robots: int = ROBOTS) -> PlannedFleet:
     """A fleet on map 20 of which all robots but the last are planned."""
-    fleet = Fleet(grid_instance(Grid(map=20), RandomFleet(robots=robots, seed=seed)))
+    fleet = PlannedFleet(grid_instance(Grid(map=20), Fleet(robots=robots, seed=seed)))
     fleet.carp(range(robots - 1))
     return fleet
 
 
-def dump(fleet: Fleet, robots: list[int]) -> str:
+def dump(fleet: PlannedFleet, robots: list[int]) -> str:
     """The windows and the guides as numbers, for `query.cpp`."""
     state = fleet._state
     windows, graph = state.windows, state.graph
@@ -49,14 +48,14 @@ def dump(fleet: Fleet, robots: list[int]) -> str:
     return " ".join(map(str, numbers))
 
 
-def by_hand(program: Path, fleet: Fleet, robot: int) -> tuple[int, float]:
+def by_hand(program: Path, fleet: PlannedFleet, robot: int) -> tuple[int, float]:
     """The arrival by `query.cpp`, and the nanoseconds that it takes."""
     done = subprocess.run([program], input=dump(fleet, [robot]), capture_output=True, text=True, check=True)
     arrival, nanoseconds = done.stdout.split()
     return int(arrival), float(nanoseconds)
 
 
-def ours(fleet: Fleet, robot: int) -> tuple[int, float]:
+def ours(fleet: PlannedFleet, robot: int) -> tuple[int, float]:
     """The same by the optimised planner."""
     plan = fleet.find(robot, None, 0)
     fleet.repeat_query(robot, 10)

@@ -47,9 +47,9 @@ class Arrivals:
 
     def by_fleet(self) -> tuple[Solution, Queries]:
         """The same from one compiled fleet, and the queries asked and avoided."""
-        from carp_optimized.fleet import Fleet  # a run of mutants loads it after the questions
+        from carp_optimized.fleet import PlannedFleet  # a run of mutants loads it after the questions
 
-        fleet = Fleet(self.instance, self.reuse)
+        fleet = PlannedFleet(self.instance, self.reuse)
         fleet.commit(self.before)
         for robot, now in self.robots:
             fleet.add(fleet.index(robot), now, self.options)

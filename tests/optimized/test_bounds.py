@@ -11,11 +11,11 @@ CACHE = Path(__file__).parents[2] / "build" / "bounds-checked"
 
 CROSSCHECK = """
 from carp_optimized import passes
-from carp_optimized.fleet import Fleet
+from carp_optimized.fleet import PlannedFleet
 from carp_spec import Instance, Resource, ResourceGraph, Robot
 from carproof.crosscheck import first_difference
 
-fleet = Fleet(Instance(ResourceGraph((Resource("a"),), ()), (Robot("r", "a", "a"),)))
+fleet = PlannedFleet(Instance(ResourceGraph((Resource("a"),), ()), (Robot("r", "a", "a"),)))
 try:
     passes.shortest(fleet._native, 1)
 except IndexError:

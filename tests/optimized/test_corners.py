@@ -16,7 +16,7 @@ from carp_optimized import Queries, Reuse, answers, encoding
 from carp_optimized.__main__ import compile_all
 from carp_optimized.arrays import Search
 from carp_optimized.distances import term
-from carp_optimized.fleet import Fleet
+from carp_optimized.fleet import PlannedFleet
 from carp_spec import (
     Carp,
     Greedy,
@@ -34,8 +34,7 @@ from carp_spec import (
     Visit,
 )
 from carp_spec.permutations import splitmix64
-from carproof.generate import Fleet as Robots
-from carproof.generate import Grid, grid_instance
+from carproof.generate import Fleet, Grid, grid_instance
 
 LARGEST = 2**30 - 1
 ROUNDED_UP = ((400500, 89496552), (615752, 494798881), (973787, 88743213))  # where a float root is one too large
@@ -55,7 +54,7 @@ def test_nothing_to_plan(planner: Planner) -> None:
 
 @pytest.mark.parametrize("planner", PLANNERS, ids=str)
 def test_progress_is_never_more_than_all_steps(planner: Planner) -> None:
-    instance = grid_instance(Grid(3, 3), Robots(4))
+    instance = grid_instance(Grid(3, 3), Fleet(4))
     advanced: list[None] = []
     carp_optimized.plan(instance, planner, lambda: advanced.append(None))
     assert len(advanced) <= carp_optimized.steps(instance, planner)
@@ -80,10 +79,10 @@ def test_rows_of_windows_grow() -> None:
 def test_records_grow(monkeypatch: pytest.MonkeyPatch) -> None:
     no_records = encoding.no_records
     monkeypatch.setattr(encoding, "no_records", lambda *_: no_records(4, 16, 16))
-    instance = grid_instance(Grid(4, 4), Robots(9))
+    instance = grid_instance(Grid(4, 4), Fleet(9))
     assert_alike(instance, Neighbourhood(m=3))
     plans = carp_reference.plan(instance, Carp()).plans
-    fleet = Fleet(instance)
+    fleet = PlannedFleet(instance)
     fleet.commit(plans)
     assert fleet.plans == plans
 
@@ -91,9 +90,9 @@ def test_records_grow(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_visits_of_plans_made_elsewhere_grow(monkeypatch: pytest.MonkeyPatch) -> None:
     no_records = encoding.no_records
     monkeypatch.setattr(encoding, "no_records", lambda *_: no_records(64, 4, 4))
-    instance = grid_instance(Grid(4, 4), Robots(9))
+    instance = grid_instance(Grid(4, 4), Fleet(9))
     plans = carp_reference.plan(instance, Carp()).plans
-    fleet = Fleet(instance)
+    fleet = PlannedFleet(instance)
     fleet.commit(plans)
     assert fleet.plans == plans
 
@@ -116,7 +115,7 @@ def test_the_scratch_of_a_query_grows(monkeypatch: pytest.MonkeyPatch, cut: tupl
         return whole._replace(**{name: getattr(whole, name)[:2].copy() for name in cut})
 
     monkeypatch.setattr(encoding, "no_search", search)
-    assert_alike(grid_instance(Grid(4, 4), Robots(9)), Neighbourhood(m=3))
+    assert_alike(grid_instance(Grid(4, 4), Fleet(9)), Neighbourhood(m=3))
 
 
 def test_the_queue_of_a_guide_grows(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -134,7 +133,7 @@ def test_the_queue_of_a_guide_grows(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_guides_that_do_not_all_fit_are_made_again(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(encoding, "GUIDE_PLACES", 1)
-    instance = grid_instance(Grid(9, 9), Robots(70, distinct="goals"))
+    instance = grid_instance(Grid(9, 9), Fleet(70, distinct="goals"))
     for planner in (Carp(), Greedy()):
         assert_alike(instance, planner)
 
@@ -149,7 +148,7 @@ def test_a_goal_that_is_too_far_is_refused(last: int) -> None:
 
 
 def test_options_that_differ_only_in_what_follows_share_their_arrays() -> None:
-    fleet = Fleet(grid_instance(Grid(4, 4), Robots(3)))
+    fleet = PlannedFleet(grid_instance(Grid(4, 4), Fleet(3)))
     for robot, options in enumerate((Neighbourhood(m=3), Neighbourhood(m=3, seed=1), Neighbourhood(m=2))):
         assert fleet.add(robot, 0, options)
     assert fleet.order == (0, 1, 2)

@@ -8,7 +8,7 @@ import pytest
 from tests.enumeration import ASKED, PATTERNS, Pattern, SmallCase, small_cases
 from tests.profiles import rest_in
 
-from carp_optimized.fleet import Fleet
+from carp_optimized.fleet import PlannedFleet
 from carp_reference.problem import Problem, ticks_to_goal
 from carp_reference.query import find_plan
 from carp_spec import Instance, Plan, ResourceGraph, ResourceId, Robot, RobotId
@@ -17,7 +17,7 @@ SMALL_CASES_OF_A_PATTERN = 52_198
 RICHEST = 3
 
 
-def fleet_of_all(instance: Instance) -> Fleet:
+def fleet_of_all(instance: Instance) -> PlannedFleet:
     """A fleet with, for each robot of the instance, one on every way; ids are (id, start, goal)."""
     nodes = [resource.id for resource in instance.graph.resources]
     everyone = (
@@ -25,7 +25,7 @@ def fleet_of_all(instance: Instance) -> Fleet:
         for robot in instance.robots
         for start, goal in product(nodes, repeat=2)
     )
-    return Fleet(Instance(instance.graph, tuple(everyone), instance.after_goal))
+    return PlannedFleet(Instance(instance.graph, tuple(everyone), instance.after_goal))
 
 
 def name(robot: Robot) -> RobotId:
@@ -35,7 +35,7 @@ def name(robot: Robot) -> RobotId:
 def answers(pattern: Pattern) -> Iterator[tuple[SmallCase, Plan | None]]:
     """Every small query, and the optimised planner's answer."""
     for _, alike in groupby(small_cases(pattern), key=lambda case: (id(case.instance.graph), case.instance.after_goal)):
-        fleet: Fleet | None = None
+        fleet: PlannedFleet | None = None
         committed: tuple[Plan, ...] | None = None
         for case in alike:
             fleet = fleet or fleet_of_all(case.instance)

@@ -80,7 +80,7 @@ def test_both_engines_rank_the_same_robots(grid: Grid, fleet: Fleet, rounds: int
 def test_plans_that_are_not_kept_take_no_room() -> None:
     instance = grid_instance(Grid(6, 6, map=3), Fleet(robots=8, seed=2))
     best = carp_optimized.polish(instance, carp_optimized.plan(instance, Carp()), iterations=3000)
-    fleet = carp_optimized.fleet.Fleet(instance)
+    fleet = carp_optimized.fleet.PlannedFleet(instance)
     fleet.commit(best.plans)
     before = int(fleet._state.records.used[0])
     rounds = fleet.polish(fleet.polishing(1), 200)
@@ -89,7 +89,7 @@ def test_plans_that_are_not_kept_take_no_room() -> None:
 
 def test_plans_alone_for_which_there_is_too_little_room_get_more(monkeypatch: pytest.MonkeyPatch) -> None:
     instance = grid_instance(Grid(), Fleet(robots=12, seed=1))
-    fleet = carp_optimized.fleet.Fleet(instance)
+    fleet = carp_optimized.fleet.PlannedFleet(instance)
     fleet.carp(range(12))
     made = fleet.polish(fleet.polishing(1), 50), fleet.plans
 
@@ -101,7 +101,7 @@ def test_plans_alone_for_which_there_is_too_little_room_get_more(monkeypatch: py
         return enlarged(records)
 
     monkeypatch.setattr("carp_optimized.fleet.enlarged", enlarged_seldom)
-    narrow = carp_optimized.fleet.Fleet(instance)
+    narrow = carp_optimized.fleet.PlannedFleet(instance)
     narrow._take(encoding.with_room(narrow._state, narrow._state.windows.start.size, encoding.no_records(2, 30, 30)))
     narrow.carp(range(12))
     assert enlargements

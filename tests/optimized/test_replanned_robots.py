@@ -5,10 +5,9 @@ from tests.optimized.towns import TOWNS
 
 import carp_optimized
 import carp_reference
-from carp_optimized.fleet import Fleet
+from carp_optimized.fleet import PlannedFleet
 from carp_spec import Neighbourhood, Solution
-from carproof.generate import Fleet as Robots
-from carproof.generate import Grid, grid_instance
+from carproof.generate import Fleet, Grid, grid_instance
 
 ALONE = Neighbourhood(m=1)
 
@@ -18,7 +17,7 @@ def test_the_robots_behind_get_the_plans_of_the_reference(name: str) -> None:
     town = TOWNS[name]
     instance = town.instance
     solution = Solution((), (), ())
-    fleet = Fleet(instance)
+    fleet = PlannedFleet(instance)
     last = len(instance.robots) - 1
     for robot in range(last + 1):
         now, options = (0, ALONE) if robot < last else (town.now, Neighbourhood(m=town.m, baseline=False))
@@ -29,13 +28,13 @@ def test_the_robots_behind_get_the_plans_of_the_reference(name: str) -> None:
 
 def test_a_plan_alone_is_not_taken_over_from_before_a_round_that_left_a_robot_outside_without_a_plan() -> None:
     """What was freed in that round is forgotten; 1 of 3,000 fleets like this one has another plan if that is not."""
-    instance = grid_instance(Grid(5, 4, map=1, map_seed=244), Robots(9, seed=244))
+    instance = grid_instance(Grid(5, 4, map=1, map_seed=244), Fleet(9, seed=244))
     planner = Neighbourhood(m=5)
     assert carp_optimized.plan(instance, planner) == carp_reference.plan(instance, planner)
 
 
 def test_orders_are_drawn_in_a_round_too_in_which_a_member_has_no_plan() -> None:
     """The next round draws the numbers that follow."""
-    instance = grid_instance(Grid(5, 4, map=2, map_seed=11), Robots(8, seed=11))
+    instance = grid_instance(Grid(5, 4, map=2, map_seed=11), Fleet(8, seed=11))
     planner = Neighbourhood(m=5, sample=9, baseline=False, seed=11)
     assert carp_optimized.plan(instance, planner) == carp_reference.plan(instance, planner)

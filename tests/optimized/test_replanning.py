@@ -14,7 +14,7 @@ from tests.profiles import draws
 
 from carp_optimized import passes
 from carp_optimized.arrays import NEVER, NONE, UNKNOWN
-from carp_optimized.fleet import Fleet
+from carp_optimized.fleet import PlannedFleet
 from carp_optimized.replanning import could_use_freed, forget_freed, note_freed
 from carp_reference.problem import ticks_to_goal
 from carp_spec import Instance, Plan, ResourceId, RobotId
@@ -45,7 +45,7 @@ def hulls(plan: Plan) -> Hulls:
     return freed
 
 
-def may_differ(fleet: Fleet, robot: RobotId, record: int, freed: Hulls) -> bool:
+def may_differ(fleet: PlannedFleet, robot: RobotId, record: int, freed: Hulls) -> bool:
     """What the lemma says of a query, by what it has expanded."""
     instance, records = fleet.instance, fleet._state.records
     first, count = int(records.expansions_at[record]), int(records.expansions[record])
@@ -68,8 +68,8 @@ def may_differ(fleet: Fleet, robot: RobotId, record: int, freed: Hulls) -> bool:
     )
 
 
-def fleet_of(instance: Instance, plans: tuple[Plan, ...]) -> Fleet:
-    fleet = Fleet(instance)
+def fleet_of(instance: Instance, plans: tuple[Plan, ...]) -> PlannedFleet:
+    fleet = PlannedFleet(instance)
     fleet.commit(plans)
     return fleet
 

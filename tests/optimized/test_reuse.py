@@ -13,10 +13,9 @@ from tests.profiles import draws
 import carp_optimized
 from carp_optimized import Reuse
 from carp_optimized.arrays import ANSWERS, PLANS
-from carp_optimized.fleet import Fleet
+from carp_optimized.fleet import PlannedFleet
 from carp_spec import Instance, Neighbourhood, Solution
-from carproof.generate import Fleet as Robots
-from carproof.generate import Grid, grid_instance
+from carproof.generate import Fleet, Grid, grid_instance
 
 KINDS = ("kept", "unchanged", "prefixes", "shared", "bounds")
 ALL_OFF = Reuse(**dict.fromkeys(KINDS, False))
@@ -49,7 +48,7 @@ def test_paper_sized_plans_are_the_same_whatever_is_reused(reuse: Reuse) -> None
 
 def counted(m: int, reuse: Reuse, sample: int | None = None, *, baseline: bool = True) -> carp_optimized.Queries:
     """The queries of adding a robot to nine on a grid with so much room that every query finds a plan."""
-    fleet = Fleet(grid_instance(Grid(8, 8), Robots(COMMITTED + 1, seed=4 if baseline else 7)), reuse)
+    fleet = PlannedFleet(grid_instance(Grid(8, 8), Fleet(COMMITTED + 1, seed=4 if baseline else 7)), reuse)
     fleet.carp(range(COMMITTED))
     before = fleet.queries.asked
     assert before == COMMITTED
@@ -115,9 +114,9 @@ def test_bounds_count_the_queries_that_would_have_been_asked(sample: int | None,
 
 
 def test_more_plans_and_answers_than_there_is_room_for_change_no_plan() -> None:
-    instance = grid_instance(Grid(6, 6, map=0, map_seed=34), Robots(14, seed=34))
+    instance = grid_instance(Grid(6, 6, map=0, map_seed=34), Fleet(14, seed=34))
     planner = Neighbourhood(m=7)
-    fleet = Fleet(instance)
+    fleet = PlannedFleet(instance)
     most = [0, 0]
     for robot in range(14):
         fleet.add(robot, 0, planner)
@@ -129,7 +128,7 @@ def test_more_plans_and_answers_than_there_is_room_for_change_no_plan() -> None:
 
 def test_a_fleet_that_stays_up_minds_which_reuse_is_on() -> None:
     """With the same options, asked again."""
-    fleet = Fleet(grid_instance(Grid(8, 8), Robots(COMMITTED + 1, seed=4)))
+    fleet = PlannedFleet(grid_instance(Grid(8, 8), Fleet(COMMITTED + 1, seed=4)))
     planner = Neighbourhood(m=4)
     asked = []
     for reuse in (Reuse(), ALL_OFF):
@@ -146,7 +145,7 @@ def test_a_fleet_that_stays_up_minds_which_reuse_is_on() -> None:
 def test_fleets_added_one_by_one_have_the_same_plans_without_reuse(
     map: int, robots: int, seed: int, options: Neighbourhood
 ) -> None:
-    instance = grid_instance(Grid(map=map), Robots(robots, seed=seed))
+    instance = grid_instance(Grid(map=map), Fleet(robots, seed=seed))
     drawn = replace(options, seed=seed)
     assert carp_optimized.plan(instance, drawn) == carp_optimized.plan(instance, drawn, reuse=ALL_OFF)
 
@@ -154,6 +153,6 @@ def test_fleets_added_one_by_one_have_the_same_plans_without_reuse(
 @pytest.mark.parametrize(("robots", "baseline"), [(33, False), (49, True)])
 def test_a_plan_found_against_other_plans_is_judged_by_what_its_own_query_read(robots: int, baseline: bool) -> None:
     """Found by experiment 1: the answer to a query came with what another had read, which had found the same plan."""
-    instance = grid_instance(Grid(map=6), Robots(robots, seed=16))
+    instance = grid_instance(Grid(map=6), Fleet(robots, seed=16))
     options = Neighbourhood(m=10, sample=150, seed=16, baseline=baseline)
     assert carp_optimized.plan(instance, options) == carp_optimized.plan(instance, options, reuse=ALL_OFF)

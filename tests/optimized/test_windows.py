@@ -10,7 +10,7 @@ from tests.profiles import draws
 
 from carp_optimized import passes
 from carp_optimized.arrays import NEVER, Rows
-from carp_optimized.fleet import Fleet
+from carp_optimized.fleet import PlannedFleet
 from carp_spec import Instance, Plan
 from carp_spec.windows import Occupation, Window, free_windows
 from carproof.strategies import PlannedInstance, Sizes, planned_instances
@@ -25,7 +25,7 @@ def rows(table: Rows, resource: int) -> list[tuple[int, int, int, int]]:
     return [tuple(int(column[slot]) for column in columns) for slot in slots]  # type: ignore[misc]
 
 
-def held(fleet: Fleet) -> list[object]:
+def held(fleet: PlannedFleet) -> list[object]:
     """All that is reserved; stays that begin, or end, at a tick are in no order."""
     windows, stays = fleet._state.windows, fleet._state.stays
     told: list[object] = []
@@ -41,7 +41,7 @@ def occupations(plans: Sequence[Plan], resource: object) -> list[Occupation]:
     return [(visit.enter, visit.leave) for plan in plans for visit in plan.visits if visit.resource == resource]
 
 
-def assert_windows_are(fleet: Fleet, instance: Instance, plans: Sequence[Plan]) -> None:
+def assert_windows_are(fleet: PlannedFleet, instance: Instance, plans: Sequence[Plan]) -> None:
     for position, resource in enumerate(instance.graph.resources):
         windows = tuple(
             Window(start, None if end == NEVER else end)
@@ -55,7 +55,7 @@ def assert_windows_are(fleet: Fleet, instance: Instance, plans: Sequence[Plan]) 
 @given(planned_instances(SIZES), st.randoms(use_true_random=False))
 def test_withdrawing_undoes_reserving_in_any_order(planned: PlannedInstance, random: Random) -> None:
     plans = list(planned.solution.plans)
-    fleet = Fleet(planned.instance)
+    fleet = PlannedFleet(planned.instance)
     records = [fleet.record(plan) for plan in plans]
     there: list[int] = []
     empty = held(fleet)
