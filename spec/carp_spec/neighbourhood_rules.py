@@ -80,9 +80,9 @@ def replanned_from(taken: int, planned: int) -> int:
 @rule(
     "neighbourhood/orders",
     "Every permutation of the neighbourhood, in lexicographic order of the positions in it, is planned by CARP "
-    "against the other robots. With a sample size, that many distinct permutations are drawn by Fisher-Yates from "
-    "one SplitMix64 stream per added robot, seeded with the seed plus the robot's index in the instance. They are "
-    "planned in lexicographic order too. If there are no more permutations than the sample size, all are planned.",
+    "against the other robots. With a sample size: that many distinct permutations (all, where there are no more), "
+    "drawn by Fisher-Yates from one SplitMix64 stream per added robot, seeded with the seed plus the robot's index "
+    "in the instance, and planned in lexicographic order too.",
     f"{ALGORITHM}, line 11; {DESIGN}",
 )
 def neighbourhood_orders(size: int, sample: int | None, stream: Iterator[int]) -> Iterator[Order]:

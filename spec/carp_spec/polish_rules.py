@@ -106,10 +106,10 @@ def spans(successors: Mapping[ResourceId, Sequence[ResourceId]], plan: Plan) -> 
 
 @rule(
     "polish/way",
-    "A robot is in the way of a plan if one of its stays, [enter, leave), meets the span, [first, last], of a "
-    "resource: first <= leave and enter <= last. The span of a resource is from the first enter to the last leave of "
-    "the plan's visits there and in resources with a move to it. The plan is the one that the pivot has alone "
-    "(repair; delayed, by a choice of 0 among 2) or its own (1). The candidates are the robots in its way, drawn.",
+    "A robot is in the way of a plan if one of its stays, [enter, leave), meets the span, [first, last], of the "
+    "resource: first <= leave and enter <= last. A span is from the first enter to the last leave of the plan's "
+    "visits there and in resources with a move to it. The plan is the one that the pivot has alone (repair; delayed, "
+    "by a choice of 0 among 2) or its own (1). The candidates are the robots in its way, drawn.",
     f"{LARGE_NEIGHBOURHOOD}; {DESIGN}",
 )
 def is_in_way(spans: Mapping[ResourceId, Span], other: Plan) -> bool:
