@@ -7,6 +7,7 @@ pytest loads this module whenever it starts; what it needs to judge planners is 
 """
 
 import re
+import shlex
 from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, cast, overload
@@ -22,10 +23,11 @@ FOLDER = "conform-failure"
 
 
 class Conformance:
-    """Judges planners, and saves failing cases into its folder."""
+    """Judges planners for a test, and saves failing cases into its folder."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, test: str) -> None:
         self._folder = folder
+        self._test = test
 
     @overload
     def conforms(
@@ -81,36 +83,43 @@ class Conformance:
         from carproof.conform.function import Function, by_documents  # noqa: PLC0415
         from carproof.conform.levels import LEVELS, WHOLE_LEVELS  # noqa: PLC0415
         from carproof.conform.run import Options, conform  # noqa: PLC0415
+        from carproof.conform.saved import read_saved, save_all  # noqa: PLC0415
+        from carproof.conform.saving import Origin  # noqa: PLC0415
 
         if level not in [each.label for each in WHOLE_LEVELS]:
             pytest.fail(f"level must be one of {', '.join(each.label for each in WHOLE_LEVELS)}", pytrace=False)
         claims = Claims(frozenset(without), solvable)
         name = getattr(planner, "__name__", type(planner).__name__)
         called = by_documents(planner) if documents else cast("Callable[[Instance], Solution]", planner)
-        report = conform(Function(called, name), Options(LEVELS[level], examples, seed, whole=True, claims=claims))
+        origin = Origin(f"{name} at level {level}", shlex.join(["pytest", self._test]))
+        before = read_saved(self._folder, origin.judged, whole=True)
+        if before.stale is not None:
+            print(before.stale)  # noqa: T201 - pytest shows it
+        options = Options(LEVELS[level], examples, seed, whole=True, claims=claims)
+        report = conform(Function(called, name), options, saved=before.cases)
         if report.interrupted:
             raise KeyboardInterrupt
+        save_all(report.failures, self._folder, origin)
         if not report.conforms:
             pytest.fail(self._told(report), pytrace=False)
 
     def _told(self, report: "Report") -> str:
         """What is wrong, on which instance, and where it was saved."""
-        from carproof.conform.saving import picture_of, save  # noqa: PLC0415
+        from carproof.conform.saving import picture_of  # noqa: PLC0415
 
         level = report.options.level
         head = f"{report.program} does not conform to level {level.label}: {level.statement}"
         if not report.failures:
             reasons = [*(fault.message for fault in report.faults), *report.shortfalls]
             return "\n".join([head, *(reasons or ["no random case decided it"])])
-        smallest = report.failures[0]
-        save(smallest, self._folder)
+        smallest, *others = report.failures
         finding, instance = smallest.finding, smallest.case.instance
         assert finding is not None  # noqa: S101 - a failure has a finding
         size = f"{len(instance.robots)} robots and {len(instance.graph.resources)} resources"
         lines = [
             head,
             f"{finding.category}: {finding.message} [{finding.rule}]",
-            f"on an instance of {size}, saved in {self._folder}",
+            f"on an instance of {size}, saved in {self._folder}" + (f", with {len(others)} more" if others else ""),
             *(f"  {robot}" for robot in instance.robots),
             picture_of(smallest),
             finding.stderr,
@@ -122,4 +131,4 @@ class Conformance:
 def carproof(request: pytest.FixtureRequest) -> Conformance:
     """Judge planners: `carproof.conforms(planner, level="sound", examples=100, seed=0)`."""
     test = re.sub(r"[^\w.-]+", "-", request.node.name).strip("-")
-    return Conformance(request.config.rootpath / FOLDER / test)
+    return Conformance(request.config.rootpath / FOLDER / test, request.node.nodeid)

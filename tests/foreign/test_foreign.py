@@ -87,7 +87,7 @@ def test_a_bug_is_refused_by_its_rule_with_a_small_instance(language: str, bug: 
 
 def assert_saved(folder: Path, rule: str) -> None:
     names = {"finding.txt", "instance.json", "request.json", "solution.json", "vector.json"}
-    names |= {"picture.txt", "picture.svg", "map.txt"}
+    names |= {"picture.txt", "picture.svg", "map.txt", "map.svg", "run.json"}
     assert {path.name for path in folder.iterdir() if path.is_file()} == names
     assert f"[{rule}]" in (folder / "finding.txt").read_text()
     instance = read_instance((folder / "instance.json").read_bytes())

@@ -1,19 +1,29 @@
 """What a run saves: each distinct finding, in place of those of an earlier run, with all that repeats it."""
 
+import subprocess
 from pathlib import Path
 
+import pytest
+from tests.oracle.test_conform_judges import Tampered, no_plan
+
 from carp_spec import Solution
-from carproof.conform.advice import _ADVICE
-from carproof.conform.cases import Case
-from carproof.conform.findings import wrong
+from carp_spec.registry import RULES
+from carproof.conform.advice import _ADVICE, advice_for
+from carproof.conform.cases import ASKED_OPS, Case, Op
+from carproof.conform.findings import PROGRAM_RULES, wrong
+from carproof.conform.levels import Level
 from carproof.conform.outcome import Outcome
-from carproof.conform.saving import save_all
-from carproof.conform.smoke import FIRST, WEST, passing_place
+from carproof.conform.run import Options, Report, conform
+from carproof.conform.saved import Saved, read_saved, save_all
+from carproof.conform.saving import Origin
+from carproof.conform.smoke import EAST, FIRST, WEST, passing_place, row, smoke_cases
+from carproof.conform.vector_cases import vector_cases
 from carproof.rules import ALL_RULES
 
 CASE = Case("smoke", "plan: head-on", "plan", passing_place([FIRST, WEST]), Solution((), (), ("first", "new")))
 NOBODY = Solution((), (), ("first", "new"))
 FAILURES = [Outcome(CASE, wrong(rule, "it is wrong"), NOBODY) for rule in ("joint/exchange", "plan/duration")]
+ORIGIN = Origin("./planner at level sound", "carproof conform --seed 3 -- ./planner", "./planner '{instance}' {agents}")
 
 
 def files(folder: Path) -> set[str]:
@@ -21,17 +31,28 @@ def files(folder: Path) -> set[str]:
 
 
 def test_each_finding_is_saved_with_advice_and_the_way_to_repeat_it(tmp_path: Path) -> None:
-    save_all(FAILURES, tmp_path, "carproof conform --seed 3 -- ./planner")
-    assert {"finding.txt", "map.txt", "request.json", "2-plan-duration/finding.txt"} <= files(tmp_path)
+    assert save_all(FAILURES, tmp_path, ORIGIN) == [tmp_path, tmp_path / "2-plan-duration"]
+    assert {"finding.txt", "map.txt", "map.svg", "request.json", "2-plan-duration/finding.txt"} <= files(tmp_path)
     lines = (tmp_path / "finding.txt").read_text().splitlines()
     assert lines[0] == "wrong answer: it is wrong [joint/exchange]"
     assert "Advice: Look at the moves of the robots before, not only at their places." in lines
     assert "About the case: plan: head-on" in lines
     assert "Again: carproof conform --seed 3 -- ./planner" in lines
+    assert f"This case alone: ./planner '{tmp_path}/instance.json' 2" in lines
+
+
+def test_a_finding_of_a_vector_has_its_comment_and_its_features(tmp_path: Path) -> None:
+    case = next(
+        each for each in vector_cases(("query",), Level.SOUND, whole=False) if each.instance.after_goal == "park"
+    )
+    save_all([Outcome(case, wrong("plan/move", "it is wrong"), NOBODY)], tmp_path, ORIGIN)
+    (about,) = (each for each in (tmp_path / "finding.txt").read_text().splitlines() if each.startswith("About"))
+    assert about.endswith("park")
+    assert len(about) > len("About the case: ; park")
 
 
 def test_the_map_shows_starts_and_goals_where_no_plan_was_made(tmp_path: Path) -> None:
-    save_all(FAILURES, tmp_path, "")
+    save_all(FAILURES, tmp_path, ORIGIN)
     assert (tmp_path / "map.txt").read_text() == (
         "0: robot first goes from a to d (A)\n1: robot new goes from d to a (B)\n\n0B .  .  1A\n   .\n"
     )
@@ -39,12 +60,88 @@ def test_the_map_shows_starts_and_goals_where_no_plan_was_made(tmp_path: Path) -
 
 def test_findings_of_an_earlier_run_are_cleared_and_no_other_file(tmp_path: Path) -> None:
     (tmp_path / "mine.txt").touch()
-    save_all(FAILURES, tmp_path, "")
-    save_all(FAILURES[:1], tmp_path, "")
+    save_all(FAILURES, tmp_path, ORIGIN)
+    save_all(FAILURES[:1], tmp_path, ORIGIN)
     assert "2-plan-duration/finding.txt" not in files(tmp_path)
-    save_all([], tmp_path, "")
+    save_all([], tmp_path, ORIGIN)
     assert files(tmp_path) == {"mine.txt"}
 
 
-def test_advice_is_of_rules_that_there_are() -> None:
-    assert _ADVICE.keys() <= {rule.id for rule in ALL_RULES}
+@pytest.mark.parametrize("whole", [False, True])
+def test_saved_cases_are_read_as_they_were_asked(tmp_path: Path, whole: bool) -> None:
+    ops: tuple[Op, ...] = ("plan",) if whole else ASKED_OPS
+    cases = [*smoke_cases(ops, Level.COMPLETE, whole), *vector_cases(ops, Level.COMPLETE, whole)]
+    one_of_each = list({case.op: case for case in cases}.values())
+    save_all([Outcome(case, wrong("plan/move", "it is wrong"), NOBODY) for case in one_of_each], tmp_path, ORIGIN)
+    read = read_saved(tmp_path, ORIGIN.judged, whole)
+    assert [case.stage for case in read.cases] == ["saved"] * len(one_of_each)
+    asked = [
+        (case.name, case.op, case.instance, case.solution, case.robot, case.now, case.planner) for case in read.cases
+    ]
+    assert asked == [
+        (case.name, case.op, case.instance, case.solution, case.robot, case.now, case.planner) for case in one_of_each
+    ]
+
+
+def test_findings_of_another_program_or_level_and_damaged_ones_are_cleared(tmp_path: Path) -> None:
+    save_all(FAILURES, tmp_path, ORIGIN)
+    stale = f"{tmp_path} holds findings of ./planner at level sound: they are cleared."
+    assert read_saved(tmp_path, "./planner at level complete", whole=True) == Saved(stale=stale)
+    assert files(tmp_path) == set()
+    assert read_saved(tmp_path, ORIGIN.judged, whole=True) == Saved()
+    save_all(FAILURES, tmp_path, ORIGIN)
+    (tmp_path / "vector.json").write_text("{}")
+    stale = f"{tmp_path} holds findings that cannot be read: they are cleared."
+    assert read_saved(tmp_path, ORIGIN.judged, whole=True) == Saved(stale=stale)
+    assert files(tmp_path) == set()
+
+
+def test_saved_cases_are_asked_first(tmp_path: Path) -> None:
+    subject = Tampered(no_plan)
+    subject.ops = ("query",)
+    options = Options(Level.COMPLETE_IN_CONTEXT, examples=0)
+    save_all(conform(subject, options).failures, tmp_path, ORIGIN)
+    again = conform(subject, options, saved=read_saved(tmp_path, ORIGIN.judged, whole=False).cases)
+    first = again.outcomes[0]
+    assert (first.case.stage, first.finding and first.finding.rule) == ("saved", "query/complete")
+    assert again.failures[0].case.stage == "saved"
+
+
+def test_a_failure_with_more_features_shows_nothing_more() -> None:
+    report = Report(Options())
+    simple, two, slow, both = (
+        Outcome(Case("smoke", "", "plan", instance), wrong("plan/move", "it is wrong"), NOBODY)
+        for instance in (
+            row([EAST], cells="abc"),
+            row([EAST], cells="ab", capacity="2"),
+            row([EAST], cells="ab", duration="2"),
+            row([EAST], capacity="2", duration="2"),
+        )
+    )
+    report.outcomes = [both]
+    assert report.failures == [both]
+    report.outcomes = [both, slow, two]
+    assert report.failures == [slow, two]
+    report.outcomes = [both, simple, slow]
+    assert report.failures == [slow, simple]
+
+
+def test_every_rule_has_advice_and_what_a_planner_can_break_its_own() -> None:
+    ids = {rule.id for rule in ALL_RULES}
+    assert _ADVICE.keys() <= ids | {id.partition("/")[0] for id in ids}
+    families = ("plan/", "joint/", "solution/", "fleet/", "cost/")
+    own = {rule.id for rule in (*RULES, *PROGRAM_RULES) if rule.id.startswith((*families, "program/"))}
+    assert own | {"query/complete", "query/optimal", "query/ties"} <= _ADVICE.keys()
+    for rule in (*ids, "no/rule"):
+        advice = advice_for(rule)
+        assert advice.endswith(".")
+        assert ". " not in advice
+        assert advice[0].isupper()
+
+
+def test_the_request_of_a_finding_can_be_asked_again(tmp_path: Path) -> None:
+    save_all(FAILURES[:1], tmp_path, Origin(one="cat '{request}'"))
+    (line,) = (each for each in (tmp_path / "finding.txt").read_text().splitlines() if each.startswith("This case"))
+    command = line.partition(": ")[2]
+    done = subprocess.run(["/bin/sh", "-c", command], check=True, capture_output=True)
+    assert done.stdout == (tmp_path / "request.json").read_bytes()

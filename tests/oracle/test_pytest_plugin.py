@@ -27,6 +27,9 @@ def hurries(instance: Instance) -> Solution:
 def gives_up(instance: Instance) -> Solution:
     return Solution((), (), tuple(instance.robot))
 
+def hurries_or_gives_up(instance: Instance) -> Solution:
+    return (hurries if len(instance.robots) == 1 else gives_up)(instance)
+
 def fails(instance: Instance) -> Solution:
     raise ZeroDivisionError("out of robots")
 
@@ -81,6 +84,21 @@ def test_a_planner_that_is_wrong_fails_the_test_by_its_rule(
     assert f"saved in {saved}" in done.stdout
     assert len(json.loads((saved / "instance.json").read_bytes())["robots"]) <= 1
     assert "Function" not in done.stdout, "no traceback through the runner"
+
+
+def test_all_findings_are_saved_and_asked_first_by_the_next_run(tmp_path: Path) -> None:
+    test = 'carproof.conforms(hurries_or_gives_up, level="complete-in-context", examples=0)'
+    done = pytest_of_another_project(tmp_path, test)
+    saved = tmp_path / "conform-failure" / "test_0"
+    cases = json.loads((saved / "run.json").read_bytes())["cases"]
+    assert f"saved in {saved}, with {len(cases) - 1} more" in done.stdout
+    assert len(cases) > 1
+    assert all((saved / each / "finding.txt").is_file() for each in cases)
+    assert "Again: pytest test_mine.py::test_0" in (saved / "finding.txt").read_text()
+    done = pytest_of_another_project(tmp_path, test.replace("hurries_or_gives_up", "gives_up"))
+    assert (
+        f"{saved} holds findings of hurries_or_gives_up at level complete-in-context: they are cleared." in done.stdout
+    )
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 import click
+from click.core import ParameterSource
 
 from carp_verify.kernel import version
 from carproof.adapters import ADAPTERS
@@ -24,16 +25,19 @@ from carproof.files import OutputFile, print_document, write_whole
 from carproof.ops.published import op_list
 from carproof.options import examples, json_option, kernel_option
 from carproof.progress import progress
-from carproof.tables import print_line, print_table
+from carproof.tables import print_line, print_table, printable
 
 if TYPE_CHECKING:
     from carproof.conform.child import Limits
     from carproof.conform.one_shot import OneShot
     from carproof.conform.run import Report
+    from carproof.conform.saving import Origin
     from carproof.conform.subjects import Subject
 
 _STAGES = "passed", "gave up", "skipped", "not asked", "wrong answer", "crash", "timeout", "protocol error"
 _SEED_BITS = 32
+_OUTPUTS = ("seed", "junit", "as_json")
+"""Options that a command line that asks again leaves out, or has anyway."""
 _LEVELS = "\n".join(
     ["\b", "Levels, each with all before it:", *(f"  {level.label:20}{level.statement}" for level in Level), "", ""]
 )
@@ -113,7 +117,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
     PROGRAM stays up and answers requests, one a line, as carproof serve does: start, stop, and as many of the ops
     below as it likes; what it does not offer is not asked. A failing case is shrunk, and written to the folder of
-    --save: the request, the documents, a test vector and a picture.
+    --save: the request, the documents, a test vector and pictures. The next run asks these cases first.
 
     It must answer all smoke cases, and 90 in 100 random cases of each op that it offers; to skip a case, or to leave
     an optimum undecided, is no answer. It may give up at most half of the random cases of an op that have an answer.
@@ -140,6 +144,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     from carproof.conform.one_shot import OneShot  # noqa: PLC0415
     from carproof.conform.program import Program  # noqa: PLC0415
     from carproof.conform.run import Options, conform  # noqa: PLC0415
+    from carproof.conform.saved import read_saved, save_all  # noqa: PLC0415
 
     require("hypothesis", "pysat")
     if format is not None and not one_shot:
@@ -161,11 +166,15 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     options = Options(LEVELS[level], number, seed, timeout, shrinking, one_shot, classical, claims)
     if kernel:
         options = replace(options, kernel=version())
+    origin = _origin(program, level, one_shot, seed)
+    before = read_saved(save, origin.judged, one_shot)
+    if before.stale is not None:
+        click.echo(printable(before.stale), err=True)
     with progress("asking", number) as advance, _nothing_kept():
-        report = conform(subject, options, advance)
-    saved = _save(report, save, program)
+        report = conform(subject, options, advance, before.cases)
+    saved = [] if report.interrupted and not report.failures else save_all(report.failures, save, origin)
     if junit is not None:
-        write_whole(junit, junit_document(report))
+        write_whole(junit, junit_document(report, saved))
     if as_json:
         print_document(report_document(report, saved))
     else:
@@ -193,20 +202,25 @@ def _one_shot(program: tuple[str, ...], limits: "Limits", format: str | None) ->
     return OneShot(program, limits, format)
 
 
-def _save(report: "Report", folder: Path, program: Sequence[str]) -> Path | None:
-    """Save all failures in place of those of an earlier run, and return their folder if there are any."""
-    from carproof.conform.saving import save_all  # noqa: PLC0415
+def _origin(program: Sequence[str], level: str, one_shot: bool, seed: int) -> "Origin":
+    """Who is judged, and the command lines that ask again."""
+    from carproof.conform.saving import Origin  # noqa: PLC0415 - what draws pictures is loaded when it is needed
 
-    options = report.options
-    asked = ["--level", options.level.label, "--examples", str(options.examples), "--seed", str(options.seed)]
-    features = [each for name in sorted(options.claims.without) for each in ("--without", name)]
-    flags = ["--solvable"] * options.claims.solvable + ["--one-shot"] * options.whole
-    again = shlex.join(["carproof", "conform", *asked, *features, *flags, "--", *program])
-    save_all(report.failures, folder, again)
-    return folder if report.failures else None
+    context = click.get_current_context()
+    words = ["--seed", str(seed)]
+    for option in context.command.params:
+        is_given = context.get_parameter_source(option.name or "") == ParameterSource.COMMANDLINE
+        if is_given and isinstance(option, click.Option) and option.name not in _OUTPUTS:
+            value = context.params[option.name or ""]
+            values = value if option.multiple else [value]
+            words += [option.opts[0]] if option.is_flag else [w for each in values for w in (option.opts[0], str(each))]
+    judged = shlex.join(["--level", level, *(["--one-shot"] if one_shot else []), "--", *program])
+    starts = """(echo '{"id":0,"op":"start","version":1}'; cat '{request}') | """
+    one = shlex.join(program) if one_shot else f"{starts}{shlex.join(program)}"
+    return Origin(f"carproof conform {judged}", shlex.join(["carproof", "conform", *words, "--", *program]), one)
 
 
-def _show(report: "Report", saved: Path | None) -> None:
+def _show(report: "Report", saved: Sequence[Path]) -> None:
     """Print what came of it: counts, what is wrong, and the verdict."""
     from carproof.conform.documents import counts  # noqa: PLC0415
 
@@ -228,9 +242,9 @@ def _show(report: "Report", saved: Path | None) -> None:
         click.echo("the end of the program's standard error:")
         for line in stderr.splitlines()[-10:]:
             print_line(f"  {line}")
-    if saved is not None:
-        others = len(report.failures) - 1
-        print_line(f"the smallest failing case is in {saved}" + (f", and {others} others in it" if others else ""))
+    if saved:
+        others = f", with {len(saved) - 1} more in it" if saved[1:] else ""
+        print_line(f"the smallest failing case is in {saved[0]}{others}")
     print_line(_verdict(report))
     if report.options.kernel is not None:
         print_line(f"decided by {report.options.by}")

@@ -3,6 +3,7 @@
 _ADVICE = {
     "joint/capacity": "Keep each resource for a robot up to the tick at which it leaves, also at its goal.",
     "joint/exchange": "Look at the moves of the robots before, not only at their places.",
+    "joint/following": "Enter a resource only after a free tick, where the instance forbids following.",
     "plan/duration": "Let a robot stay as long as the resource's duration times its pace asks, also at its goal.",
     "plan/start": "Begin the first visit at the robot's start, at its release.",
     "plan/goal": "End at the goal: for ever where robots park, and after the goal's duration where they vanish.",
@@ -10,20 +11,51 @@ _ADVICE = {
     "plan/resource": "Name only resources of the instance; an id that is a number is another than its digits as text.",
     "plan/contiguous": "Enter each resource at the tick at which the one before is left.",
     "solution/covers": "List each robot once: with a plan, or as unplanned.",
+    "solution/order": "List in the planning order each robot that has a plan, and no other.",
+    "cost/robot": "Count a robot's cost from its release to the tick at which it enters its last visit.",
+    "cost/total": "Add the costs of the planned robots alone, each from its release to the enter of its last visit.",
     "query/complete": "Search all free windows of a resource, and waiting in each, before you give up.",
     "query/optimal": "Expand the earliest entry first, and let no later entry into a window replace an earlier one.",
     "query/ties": "Break ties as the rule says.",
     "fleet/history": "Keep what a robot has done by the tick of the request.",
+    "neighbourhood/baseline": "Keep all plans and add the new robot's if no order costs less.",
+    "polish/kept": "Keep the given plans unless the new ones leave fewer robots out, or as many at no larger total.",
     "program/complete": "Try other orders, or plan the robots in conflict together, before you leave one out.",
     "program/optimal": "Look for a cheaper order, or for plans in which robots make room for each other.",
+    "program/lower": "Relax a constraint instead of dropping plans: the bound must hold for every lawful set of plans.",
+    "program/answers": "Answer each case of an op that you offer; leave an op out of start that you cannot answer.",
+    "program/tries": "Search for a plan before you leave a robot out: most of these cases have one.",
     "program/alive": "Run the request again, and read the end of standard error.",
     "program/in-time": "Bound the search by a horizon: where no plan exists, it must end as well.",
     "program/response": "Write one line of JSON for each request, flush it, and write all else to standard error.",
     "program/result": "Compare the fields and their types with the schema of the op's result.",
     "program/accepts": "Answer what you do not offer by skipped, or leave the op out of start.",
+    "document": "Validate the document by the JSON Schema of its format.",
+    "instance": "Mend the instance at the field that the message names.",
+    "window": "Compute each window again from the plans that occupy the resource, as half-open intervals of ticks.",
+    "query": "Check the plan together with the committed plans before you return it.",
+    "neighbourhood": "Compare the round with the reference planner's, step by step.",
+    "polish": "Compare the round with the reference planner's, draw by draw.",
+    "trace": "Write down what has happened by the tick now, and nothing after it.",
+    "execution": "Let each robot wait for those that enter the resource before it by the plans.",
+    "priority": "Plan the robot with priority first, as if the others had only their histories.",
+    "planner": "Keep the option within the range that the rule names.",
+    "limit": "Ask something smaller, or use another engine.",
+    "request": "Mend the field of the request that the message names.",
+    "generate": "Keep the option within the range that the rule names.",
+    "movingai": "Compare the line that the message names with the MovingAI format.",
+    "adapter": "Name the format by --from, and compare the line that the message names with it.",
+    "protocol": "Send one JSON object a line, with an id, an op and the op's fields.",
+    "view": "Show fewer robots or ticks.",
+    "optimum": "Ask for an instance with fewer robots or resources.",
+    "bound": "Check the certificate by carproof verify-bound, which names the first entry that is wrong.",
+    "query-certificate": "Check the certificate by carproof verify-query, which names the first entry that is wrong.",
+    "kernel": "Build the kernel by make kernel, or name its program in CARPROOF_KERNEL.",
 }
+"""By rule, or by the part of its id before the stroke."""
 
 
 def advice_for(rule: str) -> str:
-    """What to look at first."""
-    return _ADVICE.get(rule, f"carproof rules {rule} has the statement, its source and the function that decides.")
+    """What to look at first; a program that judges may name a rule that does not exist."""
+    family = rule.partition("/")[0]
+    return _ADVICE.get(rule) or _ADVICE.get(family, "Name only rules that carproof rules lists.")

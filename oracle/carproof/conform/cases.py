@@ -10,7 +10,7 @@ from carproof.ops.op import PolishOptions
 
 Op: TypeAlias = Literal["check", "query", "plan", "add", "polish", "optimum", "bound"]
 ASKED_OPS: tuple[Op, ...] = get_args(Op)
-Stage: TypeAlias = Literal["smoke", "vectors", "random"]
+Stage: TypeAlias = Literal["saved", "smoke", "vectors", "random"]
 OPTIMUM_SECONDS = 3
 BOUND_STEPS = 100
 POLISH_ROUNDS = 30

@@ -21,6 +21,11 @@ FEATURES: Mapping[str, Callable[[Instance], bool]] = {
 UNSOLVABLE = "robots without a plan"
 
 
+def features(instance: Instance) -> frozenset[str]:
+    """The features by which an instance is more than the simplest, in which robots vanish."""
+    return frozenset(name for name, has in FEATURES.items() if name != "vanish" and has(instance))
+
+
 @dataclass(frozen=True, slots=True)
 class Claims:
     """The features that a program does not claim; `solvable`: nor instances in which robots cannot have plans."""

@@ -1,12 +1,15 @@
 """The report as documents: JSON for programs, JUnit's XML for continuous integration."""
 
 from collections import Counter
+from collections.abc import Sequence
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 import msgspec
 
+from carproof.conform.advice import advice_for
 from carproof.conform.deciding import Tally
 from carproof.conform.findings import Finding
 from carproof.conform.run import Report, label
@@ -22,14 +25,15 @@ def counts(report: Report) -> dict[str, Counter[str]]:
     return {**by_stage, "random": report.random}
 
 
-def report_document(report: Report, saved: Path | None) -> bytes:
-    """The report as one JSON document."""
+def report_document(report: Report, saved: Sequence[Path]) -> bytes:
+    """The report as one JSON document; `saved` are the folders of the failures."""
     failures = [_finding_fields(finding) for finding in report.faults]
-    for outcome in report.failures:
+    for outcome, folder in zip_longest(report.failures, saved):
         assert outcome.finding is not None  # noqa: S101 - a failure has a finding
         case = outcome.case
         sizes = {"robots": len(case.instance.robots), "resources": len(case.instance.graph.resources)}
         asked = {"stage": case.stage, "case": case.name, "op": case.op, **sizes}
+        asked |= {} if folder is None else {"folder": str(folder)}
         failures.append({**_finding_fields(outcome.finding), **asked})
     document = {
         "format": FORMAT,
@@ -48,7 +52,7 @@ def report_document(report: Report, saved: Path | None) -> bytes:
         "answered": {"smoke": _tally_fields(report.smoke), "random": _tallies_fields(report)},
         "shortfalls": report.shortfalls,
         "failures": failures,
-        "saved": None if saved is None else str(saved),
+        "saved": str(saved[0]) if saved else None,
     }
     return msgspec.json.encode(document) + b"\n"
 
@@ -70,17 +74,19 @@ def _finding_fields(finding: Finding) -> dict[str, Any]:
     }
 
 
-def junit_document(report: Report) -> bytes:
-    """The report as JUnit's XML: one test for each fixed case, and one for all random ones."""
+def junit_document(report: Report, saved: Sequence[Path]) -> bytes:
+    """The report as JUnit's XML: a test for each fixed case, one for all random ones; failures name their folders."""
     suite = Element("testsuite", name=f"carproof conform --level {report.options.level.label}")
+    folders = {id(outcome): folder for outcome, folder in zip(report.failures, saved, strict=False)}
     for outcome in report.outcomes:
-        test = _test(suite, outcome.case.stage, outcome.case.name, outcome.finding)
+        test = _test(suite, outcome.case.stage, outcome.case.name, outcome.finding, folders.get(id(outcome)))
         test.set("time", f"{outcome.seconds:.3f}")
         if not outcome.is_judged:
             SubElement(test, "skipped", message=_printable(outcome.skipped or ""))
     if report.random:
         name = f"{report.random.total()} cases, seed {report.options.seed}"
-        _test(suite, "random", name, None if report.smallest is None else report.smallest.finding)
+        smallest = report.smallest
+        _test(suite, "random", name, None if smallest is None else smallest.finding, folders.get(id(smallest)))
     for finding in report.faults:
         _test(suite, "process", "start and stop", finding)
     if not report.reaches_level:
@@ -97,12 +103,15 @@ def junit_document(report: Report) -> bytes:
     return xml + b"\n"
 
 
-def _test(suite: Element, stage: str, name: str, finding: Finding | None) -> Element:
+def _test(suite: Element, stage: str, name: str, finding: Finding | None, folder: Path | None = None) -> Element:
     test = SubElement(suite, "testcase", classname=f"carproof.{stage}", name=_printable(name))
     if finding is not None:
         message = f"{finding.category}: {finding.message} [{finding.rule}]"
         failure = SubElement(test, "failure", type=finding.rule, message=_printable(message))
-        failure.text = "".join(c if c in "\n\t" else _printable(c) for c in finding.stderr)
+        lines = [f"Advice: {advice_for(finding.rule)}", *([] if folder is None else [f"Saved in {folder}"])]
+        failure.text = "".join(
+            c if c in "\n\t" else _printable(c) for c in "\n".join([*lines, finding.stderr]).rstrip()
+        )
     return test
 
 

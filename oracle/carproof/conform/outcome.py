@@ -6,6 +6,7 @@ from time import monotonic
 from carproof.conform.answers import Answer, NotAsked, Skipped
 from carproof.conform.by_kernel import require_agreement
 from carproof.conform.cases import Case
+from carproof.conform.claims import features
 from carproof.conform.effort import Effort, effort, why_undecided
 from carproof.conform.findings import Fault, Finding
 from carproof.conform.judges import first_finding
@@ -32,6 +33,13 @@ class Outcome:
     def is_judged(self) -> bool:
         """Whether the case was answered, rightly or wrongly."""
         return self.skipped is None
+
+    def shows_what(self, other: "Outcome") -> bool:
+        """Whether another failure shows nothing more: of the same rule and category, with all features of this one."""
+        assert self.finding is not None  # noqa: S101 - both are failures
+        assert other.finding is not None  # noqa: S101
+        is_alike = self.finding.key == other.finding.key
+        return is_alike and features(self.case.instance) <= features(other.case.instance)
 
 
 def ask(subject: Subject, case: Case, level: Level, seconds: float | None = None, by_kernel: bool = False) -> Outcome:

@@ -1,7 +1,7 @@
 """A run: smoke cases, test vectors, then random cases; it ends with a report, also when it is interrupted."""
 
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 from carproof.conform.cases import Case, Op
@@ -71,13 +71,16 @@ class Report:
 
     @property
     def failures(self) -> list[Outcome]:
-        """The failures, the smallest first, of each rule and category one."""
+        """The distinct failures, the smallest first.
+
+        Of a rule and a category that is the smallest, and each larger one that lacks a feature of all the smaller.
+        """
         found = ([] if self.smallest is None else [self.smallest]) + self.outcomes
-        by_key: dict[tuple[Category, str], Outcome] = {}
+        distinct: list[Outcome] = []
         for outcome in sorted(found, key=lambda outcome: outcome.case.size):
-            if outcome.finding is not None:
-                by_key.setdefault(outcome.finding.key, outcome)
-        return list(by_key.values())
+            if outcome.finding is not None and not any(each.shows_what(outcome) for each in distinct):
+                distinct.append(outcome)
+        return distinct
 
     @property
     def findings(self) -> list[Finding]:
@@ -162,11 +165,16 @@ def label(outcome: Outcome) -> str:
     return "passed" if outcome.is_judged else "skipped" if outcome.asked else "not asked"
 
 
-def conform(subject: Subject, options: Options, advance: Callable[[], None] = lambda: None) -> Report:
-    """Ask the subject everything, and report; `advance` is called for each case but those of shrinking."""
+def conform(
+    subject: Subject, options: Options, advance: Callable[[], None] = lambda: None, saved: Sequence[Case] = ()
+) -> Report:
+    """Ask the subject everything, the cases that an earlier run saved first, and report.
+
+    `advance` is called for each case but those of shrinking.
+    """
     report = Report(options, subject.name)
     try:
-        _ask_everything(subject, report, advance)
+        _ask_everything(subject, report, advance, saved)
         subject.finish()
     except Fault as fault:
         report.faults.append(fault.finding)
@@ -178,9 +186,10 @@ def conform(subject: Subject, options: Options, advance: Callable[[], None] = la
     return report
 
 
-def _ask_everything(subject: Subject, report: Report, advance: Callable[[], None]) -> None:
+def _ask_everything(subject: Subject, report: Report, advance: Callable[[], None], saved: Sequence[Case]) -> None:
     options = report.options
     subject.start()
+    _ask_fixed(subject, report, (case for case in saved if case.op in subject.ops), advance)
     for cases in (smoke_cases, vector_cases):
         _ask_fixed(subject, report, cases(subject.ops, options.level, options.whole), advance)
     _ask_random(subject, report, advance)

@@ -1,7 +1,7 @@
 """Writes a failure as files that need no program of ours to read, and a vector that can be asked again."""
 
-from collections.abc import Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, cast
 from xml.sax.saxutils import escape
@@ -9,12 +9,13 @@ from xml.sax.saxutils import escape
 import click
 import msgspec
 
-from carp_spec import Refusal, Solution, write_instance, write_solution
+from carp_spec import Refusal, Solution, check, write_instance, write_solution
 from carp_spec.documents import instance_document, solution_of
 from carp_spec.vectors import vectors
 from carproof.conform.advice import advice_for
 from carproof.conform.answers import Answer
 from carproof.conform.cases import POLISH_ROUNDS, Case, case_input, request_fields
+from carproof.conform.claims import features
 from carproof.conform.drawing import drawing, map_drawing
 from carproof.conform.outcome import Outcome
 from carproof.files import write_whole
@@ -23,63 +24,60 @@ from carproof.ops.op import made
 from carproof.ops.planning import QueryDocument
 from carproof.optima import OptimumDocument
 from carproof.rules import ALL_RULES
+from carproof.viewer.stills import chart_still, map_still
 
+SCEN_NAME = "instance.scen"
 FILES = (
     "finding.txt",
     "instance.json",
     "request.json",
     "vector.json",
     "map.txt",
+    "map.svg",
     "picture.txt",
     "picture.svg",
     "solution.json",
     MAP_NAME,
-    "instance.scen",
+    SCEN_NAME,
 )
 """What a folder of a failure can hold."""
 NO_PICTURE = '<svg xmlns="http://www.w3.org/2000/svg" width="900" height="40"><text x="8" y="24">{}</text></svg>\n'
 
 
-def save_all(failures: Sequence[Outcome], folder: Path, again: str) -> None:
-    """Write the smallest failure into a folder, and each other one into a folder in it, in place of earlier findings.
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where findings come from: who was judged by which level, and the command lines that repeat all or one case.
 
-    `again` is the command line that repeats the run.
+    The command line of one case names the files of its folder as `{request}`, `{instance}`, `{map}` and `{scen}`, and
+    the number of agents as `{agents}`.
     """
-    clear(folder)
-    for number, outcome in enumerate(failures, start=1):
-        assert outcome.finding is not None  # noqa: S101 - a failure has a finding
-        save(outcome, folder if number == 1 else folder / f"{number}-{outcome.finding.rule.replace('/', '-')}", again)
+
+    judged: str = ""
+    again: str = ""
+    one: str = ""
 
 
-def clear(folder: Path) -> None:
-    """Remove the files of an earlier run, and no others."""
-    for finding in [*folder.glob("*/finding.txt"), *folder.glob("finding.txt")]:
-        for name in FILES:
-            (finding.parent / name).unlink(missing_ok=True)
-        with suppress(OSError):  # it holds something else
-            finding.parent.rmdir()
-
-
-def save(outcome: Outcome, folder: Path, again: str = "") -> None:
+def save(outcome: Outcome, folder: Path, origin: Origin = Origin()) -> None:
     """Write a failure into a folder, which is made if it is not there."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise click.ClickException(f"{folder}: it cannot be made: {error.strerror}") from error
-    judged = judged_solution(outcome)
+    case, judged = outcome.case, judged_solution(outcome)
     files = {
-        "finding.txt": _finding_text(outcome, again).encode(),
-        "map.txt": map_drawing(outcome.case.instance).encode(),
-        "instance.json": write_instance(outcome.case.instance),
-        "request.json": msgspec.json.encode({"id": 1, "op": outcome.case.op, **request_fields(outcome.case)}) + b"\n",
+        "finding.txt": _finding_text(outcome, folder, origin).encode(),
+        "map.txt": map_drawing(case.instance).encode(),
+        "map.svg": _drawn(lambda: map_still(case.instance, judged, _first_tick(outcome), _title(outcome))),
+        "instance.json": write_instance(case.instance),
+        "request.json": msgspec.json.encode({"id": 1, "op": case.op, **request_fields(case)}) + b"\n",
         "vector.json": msgspec.json.format(msgspec.json.encode(vectors_document(outcome))) + b"\n",
         "picture.txt": picture_of(outcome).encode(),
-        "picture.svg": chart_of(outcome),
+        "picture.svg": _drawn(lambda: chart_still(case.instance, judged, _title(outcome))),
         "solution.json": write_solution(judged),
     }
-    if outcome.case.classical:
-        benchmark = write_movingai(outcome.case.instance)
-        files |= {MAP_NAME: benchmark.map, "instance.scen": benchmark.scen}
+    if case.classical:
+        benchmark = write_movingai(case.instance)
+        files |= {MAP_NAME: benchmark.map, SCEN_NAME: benchmark.scen}
     for name, data in files.items():
         write_whole(folder / name, data)
 
@@ -89,15 +87,24 @@ def picture_of(outcome: Outcome) -> str:
     return drawing(outcome.case.instance, judged_solution(outcome).plans)
 
 
-def chart_of(outcome: Outcome) -> bytes:
-    """The viewer's chart of resources by time; where it is too large, a picture that says so."""
-    from carproof.viewer.stills import chart_still  # noqa: PLC0415 - only failures are drawn
-
-    assert outcome.finding is not None  # noqa: S101 - only failures are saved
+def _drawn(draw: Callable[[], bytes]) -> bytes:
+    """A picture; where it is too large, one that says so."""
     try:
-        return chart_still(outcome.case.instance, judged_solution(outcome), outcome.finding.rule)
+        return draw()
     except Refusal as refusal:
         return NO_PICTURE.format(escape(refusal.message)).encode()
+
+
+def _title(outcome: Outcome) -> str:
+    assert outcome.finding is not None  # noqa: S101 - only failures are saved
+    return outcome.finding.rule
+
+
+def _first_tick(outcome: Outcome) -> int:
+    """The tick at which a rule is first broken; where no plan breaks one, that of the first release."""
+    instance, plans = outcome.case.instance, judged_solution(outcome).plans
+    starts = [violation.start for violation in check(instance, plans) if violation.start is not None]
+    return min(starts) if starts else min((robot.release for robot in instance.robots), default=0)
 
 
 def judged_solution(outcome: Outcome) -> Solution:
@@ -116,7 +123,7 @@ def judged_solution(outcome: Outcome) -> Solution:
     return given
 
 
-def _finding_text(outcome: Outcome, again: str) -> str:
+def _finding_text(outcome: Outcome, folder: Path, origin: Origin) -> str:
     finding, case = outcome.finding, outcome.case
     assert finding is not None  # noqa: S101 - only failures are saved
     statement = next((rule.statement for rule in ALL_RULES if rule.id == finding.rule), "")
@@ -127,19 +134,29 @@ def _finding_text(outcome: Outcome, again: str) -> str:
         f"Advice: {advice_for(finding.rule)}",
         f"Asked: {case.op}{asked} (request.json). The plans, the program's with those it was given: solution.json.",
     ]
-    comment = _comments().get(case.name) if case.stage == "vectors" else case.name if case.stage == "smoke" else None
-    if comment:
-        lines.append(f"About the case: {comment}")
-    if again:
-        lines.append(f"Again: {again}")
+    about = about_case(case)
+    lines += [f"About the case: {about}"] if about else []
+    lines += [f"This case alone: {filled(origin.one, case, folder)}"] if origin.one else []
+    lines += [f"Again: {origin.again}"] if origin.again else []
     if finding.stderr:
         lines += ["The end of the program's standard error:", finding.stderr]
     return "\n".join(lines) + "\n"
 
 
-def _comments() -> Mapping[str, str]:
-    """What each published vector is about."""
-    return {vector.id: vector.comment for vector in vectors()}
+def filled(one: str, case: Case, folder: Path) -> str:
+    """The command line of one case, with the files of its folder."""
+    names = {"request": "request.json", "instance": "instance.json", "map": MAP_NAME, "scen": SCEN_NAME}
+    values = {name: str(folder / file) for name, file in names.items()} | {"agents": str(len(case.instance.robots))}
+    for name, value in {**values, "solution": "/dev/stdout"}.items():
+        one = one.replace(f"{{{name}}}", value)
+    return one
+
+
+def about_case(case: Case) -> str:
+    """What the vector says about itself, or the name of the smoke case, and the features; of a random one these."""
+    comments = {vector.id: vector.comment for vector in vectors()}
+    named = comments.get(case.name, "" if case.name == case.op else case.name)
+    return "; ".join(each for each in (named, ", ".join(sorted(features(case.instance)))) if each)
 
 
 def vectors_document(outcome: Outcome) -> dict[str, Any]:

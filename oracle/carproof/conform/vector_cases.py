@@ -21,7 +21,7 @@ def vector_cases(ops: Sequence[str], level: Level, whole: bool) -> Iterator[Case
         op = next((op for op in ASKED_OPS if op == vector.op), None)
         is_known = "refused" not in vector.answer and "following" not in (vector.instance or {})
         if op is not None and op in ops and is_known:
-            case = _case(vector, op)
+            case = case_of(vector, op)
             if _is_asked(case, level, whole):
                 yield replace(case, planner=None) if whole else case
 
@@ -33,7 +33,8 @@ def _is_asked(case: Case, level: Level, whole: bool) -> bool:
     return case.op != "optimum" or level >= Level.COMPLETE
 
 
-def _case(vector: Vector, op: Op) -> Case:
+def case_of(vector: Vector, op: Op) -> Case:
+    """The question of a vector; raises `Refusal` if it is none."""
     request = Request(write({"id": vector.id, **vector.request}))
     asked = OPS[request.op()].read(request)
     fields = {name: getattr(asked, name) for name in ("solution", "robot", "now", "planner") if hasattr(asked, name)}

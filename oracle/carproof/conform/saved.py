@@ -1,0 +1,93 @@
+"""The folder of a run's findings: written in place of those of an earlier run, and read again by the next one."""
+
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Literal
+
+import msgspec
+
+from carp_spec import Refusal
+from carp_spec.vectors import VectorsDocument
+from carproof.conform.cases import ASKED_OPS, Case
+from carproof.conform.outcome import Outcome
+from carproof.conform.saving import FILES, Origin, save
+from carproof.conform.vector_cases import case_of
+from carproof.files import write_whole
+
+RUN = "run.json"
+
+
+class SavedRun(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Who was judged, by which level, and the names of the saved cases by their folders."""
+
+    format: Literal["carproof-findings/1"]
+    judged: str
+    cases: dict[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class Saved:
+    """The cases to ask again, and, where a folder belongs to another program or level, one sentence about that."""
+
+    cases: tuple[Case, ...] = ()
+    stale: str | None = None
+
+
+def read_saved(folder: Path, judged: str, whole: bool) -> Saved:
+    """The saved cases of the one who is judged; findings of another one are cleared.
+
+    `whole`: planners of whole instances are asked, who choose the planner themselves.
+    """
+    if not (folder / RUN).exists():
+        clear(folder)
+        return Saved()
+    try:
+        run = msgspec.json.decode((folder / RUN).read_bytes(), type=SavedRun)
+        cases = tuple(_read_case(folder / name, case) for name, case in run.cases.items())
+    except (OSError, ValueError, Refusal):
+        clear(folder)
+        return Saved(stale=f"{folder} holds findings that cannot be read: they are cleared.")
+    if run.judged != judged:
+        clear(folder)
+        return Saved(stale=f"{folder} holds findings of {run.judged}: they are cleared.")
+    return Saved(tuple(replace(case, planner=None) for case in cases) if whole else cases)
+
+
+def _read_case(folder: Path, name: str) -> Case:
+    """A saved case; raises `OSError`, `ValueError` or `Refusal` if it cannot be read."""
+    (vector,) = msgspec.json.decode((folder / "vector.json").read_bytes(), type=VectorsDocument).cases
+    (op,) = (each for each in ASKED_OPS if each == vector.op)
+    return replace(case_of(vector, op), stage="saved", name=name)
+
+
+def save_all(failures: Sequence[Outcome], folder: Path, origin: Origin) -> list[Path]:
+    """Write the smallest failure into a folder, and each other one into a folder in it; return their folders.
+
+    They take the place of earlier findings.
+    """
+    clear(folder)
+    names = [_name(number, outcome) for number, outcome in enumerate(failures, start=1)]
+    for name, outcome in zip(names, failures, strict=True):
+        save(outcome, folder / name, origin)
+    if failures:
+        cases = {name: outcome.case.name for name, outcome in zip(names, failures, strict=True)}
+        run = SavedRun("carproof-findings/1", origin.judged, cases)
+        write_whole(folder / RUN, msgspec.json.format(msgspec.json.encode(run)) + b"\n")
+    return [folder / name for name in names]
+
+
+def _name(number: int, outcome: Outcome) -> str:
+    assert outcome.finding is not None  # noqa: S101 - a failure has a finding
+    return "." if number == 1 else f"{number}-{outcome.finding.rule.replace('/', '-')}"
+
+
+def clear(folder: Path) -> None:
+    """Remove the files of an earlier run, and no others."""
+    (folder / RUN).unlink(missing_ok=True)
+    for finding in [*folder.glob("*/finding.txt"), *folder.glob("finding.txt")]:
+        for name in FILES:
+            (finding.parent / name).unlink(missing_ok=True)
+        with suppress(OSError):  # it holds something else
+            finding.parent.rmdir()
