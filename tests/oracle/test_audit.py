@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from hypothesis import given
-from tests.oracle.running import EAST, ONE_PLANNED, TWO, TWO_PLANNED, Run, corridor, line, solution
+from tests.oracle.running import EAST, EAST_PLAN, TWO_PLANNED, Run, corridor, line, save, solution, town
 
 import carp_reference
 from carp_spec import Carp, Plan, RobotId, Solution, check, plan_cost, read_instance, read_solution
@@ -23,73 +23,62 @@ ALONE = corridor([EAST])
 REFERENCE = engine_named("reference")
 
 
-def written(path: Path, document: object) -> Path:
-    path.write_text(json.dumps(document))
-    return path
-
-
-@pytest.fixture
-def town(tmp_path: Path) -> Path:
-    return written(tmp_path / "town.json", TWO)
+@pytest.fixture(autouse=True)
+def _alone(folder: Path) -> None:
+    """One robot, and a plan of it that is late."""
+    del folder
+    save(alone=ALONE, late=LATE)
 
 
 def last_row(stdout: str) -> list[str]:
     return stdout.splitlines()[2].split()[:5]
 
 
-def test_plans_that_are_optimal_in_their_order_are_certified(carproof: Run, tmp_path: Path) -> None:
-    town = written(tmp_path / "town.json", TWO)
-    plans = written(tmp_path / "plans.json", {**TWO_PLANNED, "order": ["r2", "r1"]})
-    outcome = carproof("audit", town, plans)
+def test_plans_that_are_optimal_in_their_order_are_certified(carproof: Run) -> None:
+    save(plans={**TWO_PLANNED, "order": ["r2", "r1"]})
+    outcome = carproof("audit town.json plans.json")
     assert (outcome.code, outcome.stderr) == (0, "")
     assert last_row(outcome.stdout) == ["2", "2", "0", "0", "carp_verify"]
-    document = json.loads(carproof("audit", town, plans, "--json").stdout)
+    document = json.loads(carproof("audit town.json plans.json --json").stdout)
     assert document == {"certified": ["r2", "r1"], "late": [], "unplanned": 0, "by": "carp_verify"}
 
 
-def test_a_late_plan_is_shown_with_an_earlier_one(carproof: Run, tmp_path: Path) -> None:
-    town, plans = written(tmp_path / "town.json", ALONE), written(tmp_path / "plans.json", LATE)
+def test_a_late_plan_is_shown_with_an_earlier_one(carproof: Run) -> None:
     for engine in ("optimized", "reference"):
-        outcome = carproof("audit", town, plans, "--engine", engine)
+        outcome = carproof(f"audit alone.json late.json --engine {engine}")
         assert outcome.code == 1
         assert last_row(outcome.stdout)[:4] == ["1", "0", "1", "0"]
         assert outcome.stdout.splitlines()[-1] == "robot r1 arrives at 3, and can at 2: a[0,1) b[1,2) c[2,3)"
-    late = json.loads(carproof("audit", town, plans, "--json").stdout)["late"]
-    assert late == [{"robot": "r1", "arrival": 3, "earliest": 2, "plan": [["a", 0, 1], ["b", 1, 2], ["c", 2, 3]]}]
+    late = json.loads(carproof("audit alone.json late.json --json").stdout)["late"]
+    assert late == [{"robot": "r1", "arrival": 3, "earliest": 2, "plan": EAST_PLAN}]
 
 
-def test_robots_without_a_plan_are_counted(carproof: Run, town: Path, tmp_path: Path) -> None:
-    outcome = carproof("audit", town, written(tmp_path / "plans.json", ONE_PLANNED))
-    assert last_row(outcome.stdout)[:4] == ["2", "1", "0", "1"]
+def test_robots_without_a_plan_are_counted(carproof: Run) -> None:
+    assert last_row(carproof("audit town.json one.json").stdout)[:4] == ["2", "1", "0", "1"]
 
 
-def test_an_order_is_found_for_plans_in_another_planners_format(carproof: Run, tmp_path: Path) -> None:
-    (tmp_path / "row.map").write_text("type octile\nheight 2\nwidth 3\nmap\n...\n@.@\n")
-    (tmp_path / "row.scen").write_text("version 1\n0\trow.map\t3\t2\t0\t0\t2\t0\t2\n0\trow.map\t3\t2\t1\t0\t1\t1\t1\n")
-    benchmark = ("--map", tmp_path / "row.map", "--scen", tmp_path / "row.scen")
-    result = tmp_path / "result.txt"
+def test_an_order_is_found_for_plans_in_another_planners_format(carproof: Run, folder: Path) -> None:
+    (folder / "row.map").write_text("type octile\nheight 2\nwidth 3\nmap\n...\n@.@\n")
+    (folder / "row.scen").write_text("version 1\n0\trow.map\t3\t2\t0\t0\t2\t0\t2\n0\trow.map\t3\t2\t1\t0\t1\t1\t1\n")
+    audit, result = "audit --map row.map --scen row.scen result.txt", folder / "result.txt"
     result.write_text("solution=\n0:(0,0),(1,0),\n1:(1,0),(1,1),\n2:(2,0),(1,1),\n")
-    outcome = carproof("audit", *benchmark, result)
+    outcome = carproof(audit)
     assert (outcome.code, outcome.stderr) == (0, "")
     assert last_row(outcome.stdout)[:4] == ["2", "2", "0", "0"]
     result.write_text("solution=\n0:(0,0),(1,0),\n1:(0,0),(1,1),\n2:(1,0),(1,1),\n3:(2,0),(1,1),\n")
-    late = carproof("audit", *benchmark, result)
+    late = carproof(audit)
     assert late.code == 1
     assert late.stdout.splitlines()[-1].startswith("in no order are all plans optimal")
     assert "robot r1 arrives at 3, and can at 2" in late.stdout
 
 
-def test_another_order_is_looked_for_where_it_is_asked_for(carproof: Run, tmp_path: Path) -> None:
+def test_another_order_is_looked_for_where_it_is_asked_for(carproof: Run) -> None:
     """The second robot of the document crosses first."""
-    cells = [{"id": cell} for cell in ("north", "south", "west", "east", "middle")]
-    edges = [{"source": cell["id"], "target": "middle"} for cell in cells[:-1]]
-    robots = [{"id": "r1", "start": "north", "goal": "south"}, {"id": "r2", "start": "west", "goal": "east"}]
-    town = {**ALONE, "graph": {"nodes": cells, "edges": edges}, "robots": robots}
-    waits = [["north", 0, 2], ["middle", 2, 3], ["south", 3, 4]]
-    plans = solution({"r1": waits, "r2": [["west", 0, 1], ["middle", 1, 2], ["east", 2, 3]]})
-    files = written(tmp_path / "town.json", town), written(tmp_path / "plans.json", plans)
-    assert carproof("audit", *files).code == 1
-    outcome = carproof("audit", *files, "--find-order", "--json")
+    robots = [{"id": "r1", "start": "n", "goal": "s"}, {"id": "r2", "start": "w", "goal": "e"}]
+    waits, crosses = [["n", 0, 2], ["m", 2, 3], ["s", 3, 4]], [["w", 0, 1], ["m", 1, 2], ["e", 2, 3]]
+    save(cross=town("nm sm wm em", robots), plans=solution({"r1": waits, "r2": crosses}))
+    assert carproof("audit cross.json plans.json").code == 1
+    outcome = carproof("audit cross.json plans.json --find-order --json")
     assert (outcome.code, json.loads(outcome.stdout)["certified"]) == (0, ["r2", "r1"])
 
 
@@ -161,17 +150,3 @@ def test_a_planner_that_is_wrong_is_a_contradiction(
     monkeypatch.setattr(carp_reference, "certifier", lambda _: Wrong(plan, certificate))
     with pytest.raises(ContradictionError, match=message):
         audit_in_order(read_instance(line(**ALONE)), read_solution(line(**LATE)), REFERENCE)
-
-
-def test_the_op_audit_is_served(carproof: Run) -> None:
-    requests = [
-        line(id=1, op="audit", instance=TWO, solution=TWO_PLANNED),
-        line(id=2, op="audit", instance=ALONE, solution=LATE),
-        line(id=3, op="audit", instance=TWO, solution={**TWO_PLANNED, "order": []}),
-        line(id=4, op="audit", instance=TWO, solution=TWO_PLANNED, kernel=1),
-    ]
-    answers = [json.loads(each) for each in carproof("serve", stdin=b"".join(requests)).stdout.splitlines()]
-    assert (answers[0]["result"]["certified"], answers[0]["result"]["late"]) == (["r1", "r2"], [])
-    assert answers[1]["result"]["late"][0]["earliest"] == 2
-    assert (answers[2]["error"]["path"], answers[2]["error"]["rule"]) == ("$.solution.plans[0]", "solution/order")
-    assert (answers[3]["error"]["path"], answers[3]["error"]["rule"]) == ("$.kernel", "protocol/request")

@@ -103,13 +103,13 @@ def test_the_verdict_names_who_decided(carproof: Run, tmp_path: Path) -> None:
 
 
 def test_without_a_kernel_or_above_its_levels_nothing_is_asked(
-    carproof: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    carproof: Run, elsewhere: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    stand_in(tmp_path, monkeypatch, verdict="accepted")
+    stand_in(monkeypatch, verdict="accepted")
     outcome = carproof("conform", "--kernel", "--level", "exact", "--", "true")
     assert outcome.code == 2
     assert "--level must be at most context-optimal" in outcome.stderr
-    monkeypatch.setenv("CARPROOF_KERNEL", str(tmp_path / "none"))
+    monkeypatch.setenv("CARPROOF_KERNEL", str(elsewhere / "none"))
     outcome = carproof("conform", "--kernel", "--", "true")
     assert outcome.code == 2
     assert "there is no program carproof-kernel" in outcome.stderr

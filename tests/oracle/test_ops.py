@@ -10,7 +10,7 @@ import msgspec
 import pytest
 from click.testing import CliRunner
 from jsonschema import Draft202012Validator
-from tests.oracle.running import ONE_PLANNED, TWO, TWO_PLANNED, line
+from tests.oracle.running import REQUESTS, TWO, line
 
 from carp_spec import Instance
 from carp_spec.schema import schema_file
@@ -24,19 +24,6 @@ from carproof.ops.op import Op, op_of, request_fields
 from carproof.ops.published import NAME, schema, table
 from carproof.protocol import Request
 from carproof.server import respond
-
-REQUESTS: dict[str, dict[str, Any]] = {
-    "start": {"version": 1},
-    "check": {"instance": TWO, "solution": TWO_PLANNED},
-    "query": {"instance": TWO, "solution": ONE_PLANNED, "robot": "r2"},
-    "plan": {"instance": TWO, "planner": "shuffled", "attempts": 2},
-    "add": {"instance": TWO, "solution": ONE_PLANNED, "robot": "r2", "now": 0, "m": 1},
-    "polish": {"instance": TWO, "solution": TWO_PLANNED, "iterations": 3},
-    "optimum": {"instance": TWO, "limit": 10},
-    "bound": {"instance": TWO, "steps": 3},
-    "audit": {"instance": TWO, "solution": TWO_PLANNED},
-    "stop": {},
-}
 
 
 @cache

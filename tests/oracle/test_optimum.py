@@ -5,7 +5,7 @@ from math import inf
 from pathlib import Path
 
 import pytest
-from tests.oracle.running import HEAD_ON, TWO, TWO_PLANNED, Document, Run, corridor, line
+from tests.oracle.running import HEAD_ON, TWO, TWO_PLANNED, Document, Run, corridor
 
 from carp_optimum.gap import Gap, PlannerGap
 from carp_optimum.optimum import Optimum
@@ -162,21 +162,6 @@ def test_a_gap_without_optimum_says_why(carproof: Run, tmp_path: Path) -> None:
     outcome = carproof("gap", written(tmp_path / "lane.json", UNSOLVABLE))
     assert outcome.code == 1
     assert outcome.stdout.splitlines()[-1].startswith("the robots cannot all be planned: ")
-
-
-def test_the_op_optimum_is_served(carproof: Run) -> None:
-    requests = [
-        line(id=1, op="optimum", instance=TWO, limit=30),
-        line(id=2, op="optimum", instance=UNSOLVABLE),
-        line(id=3, op="optimum", instance=TWO, limit=0),
-        line(id=4, op="optimum", instance=TWO, limit="long"),
-        line(id=5, op="stop"),
-    ]
-    answers = [json.loads(each) for each in carproof("serve", stdin=b"".join(requests)).stdout.splitlines()]
-    assert answers[0]["result"] == {"cost": 5, "lower": 5, "proved": True, "solution": TWO_PLANNED}
-    assert answers[1]["result"]["cost"] is None
-    assert (answers[2]["error"]["path"], answers[2]["error"]["rule"]) == ("$.limit", "request/limit")
-    assert answers[3]["error"]["path"] == "$.limit"
 
 
 def test_the_gaps_of_a_family_are_shown_with_intervals(carproof: Run) -> None:

@@ -4,74 +4,62 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Sequence
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
-from typing import Any
 
 import pytest
 from tests.oracle.running import (
     BEHIND_PLAN,
-    BROKEN,
+    EAST,
     EAST_PLAN,
     HEAD_ON,
-    ONE_PLANNED,
     TWO,
     TWO_PLANNED,
+    Document,
+    Outcome,
     Run,
     corridor,
+    save,
     solution,
+    town,
 )
 
-Write = Callable[..., Path]
-THREE = corridor([*TWO["robots"], HEAD_ON])
+HAS_NO_WAY = "the committed plans leave no way to its goal"
 
 
-@pytest.fixture
-def file(tmp_path: Path) -> Write:
-    def write(document: object, name: str = "document.json") -> Path:
-        path = tmp_path / name
-        path.write_text(json.dumps(document))
-        return path
-
-    return write
+@pytest.fixture(autouse=True)
+def _three(folder: Path) -> None:
+    """One more robot, which meets both others head-on."""
+    del folder
+    save(three=corridor([*TWO["robots"], HEAD_ON]), none=solution({}))
 
 
-def test_plan_prints_a_table_and_writes_the_document(carproof: Run, file: Write, tmp_path: Path) -> None:
-    output = tmp_path / "plans.json"
-    outcome = carproof("plan", file(TWO), "--planner", "carp", "-o", output)
+def test_plan_prints_a_table_and_writes_the_document(carproof: Run) -> None:
+    outcome = carproof("plan town.json --planner carp -o out.json")
     assert (outcome.code, outcome.stderr) == (0, "")
     heading, _, row = outcome.stdout.splitlines()
     assert heading.split() == ["planner", "robots", "unplanned", "total", "cost", "shortest", "paths", "ratio", "time"]
     assert row.split()[:6] == ["carp", "2", "0", "5", "5", "1.0000"]
-    assert json.loads(output.read_text()) == TWO_PLANNED
+    assert json.loads(Path("out.json").read_text()) == TWO_PLANNED
 
 
-def test_plan_prints_nothing_but_the_document_for_json(carproof: Run, file: Write) -> None:
-    outcome = carproof("plan", file(TWO), "--planner", "carp", "--json")
+def test_plan_prints_nothing_but_the_document_for_json(carproof: Run) -> None:
+    outcome = carproof("plan town.json --planner carp --json")
     assert outcome.stdout.count("\n") == 1
     assert json.loads(outcome.stdout) == TWO_PLANNED
 
 
-def test_an_unplanned_robot_is_told_with_its_reason_and_the_answer_is_no(carproof: Run, file: Write) -> None:
-    outcome = carproof("plan", file(THREE), "--planner", "carp")
+def test_an_unplanned_robot_is_told_with_its_reason_and_the_answer_is_no(carproof: Run) -> None:
+    outcome = carproof("plan three.json --planner carp")
     assert outcome.code == 1
-    assert outcome.stdout.splitlines()[-1] == "unplanned: robot r3: the committed plans leave no way to its goal"
+    assert outcome.stdout.splitlines()[-1] == f"unplanned: robot r3: {HAS_NO_WAY}"
 
 
-def test_a_robot_that_another_planner_could_plan_is_told_so(carproof: Run, file: Write) -> None:
-    edges = [("s", "m"), ("m", "t"), ("s", "x"), ("x", "y"), ("y", "t")]
-    ring = {
-        "format": "carproof-instance/1",
-        "graph": {
-            "nodes": [{"id": id} for id in "smtxy"],
-            "edges": [{"source": source, "target": target} for source, target in edges],
-        },
-        "after_goal": "park",
-        "robots": [{"id": "r1", "start": "m", "goal": "m"}, {"id": "r2", "start": "s", "goal": "t"}],
-    }
-    outcome = carproof("plan", file(ring), "--planner", "fixed-paths", "--k", "1")
+def test_a_robot_that_another_planner_could_plan_is_told_so(carproof: Run) -> None:
+    robots = [{"id": "r1", "start": "m", "goal": "m"}, {"id": "r2", "start": "s", "goal": "t"}]
+    save(ring=town("sm mt sx xy yt", robots, "park"))
+    outcome = carproof("plan ring.json --planner fixed-paths --k 1")
     assert outcome.code == 1
     assert outcome.stdout.splitlines()[-1] == (
         "unplanned: robot r2: the planner found no plan for it, though there is one beside the plans of the others"
@@ -90,16 +78,15 @@ def test_a_robot_that_another_planner_could_plan_is_told_so(carproof: Run, file:
         "--planner time-expanded",
     ],
 )
-def test_every_planner_runs_and_its_plans_are_right(carproof: Run, file: Write, options: str) -> None:
-    instance = file(TWO)
-    planned = carproof("plan", instance, "--json", *options.split())
+def test_every_planner_runs_and_its_plans_are_right(carproof: Run, options: str) -> None:
+    planned = carproof(f"plan town.json --json {options}")
     assert planned.code == 0
-    checked = carproof("check", instance, "-", stdin=planned.stdout.encode())
+    checked = carproof("check town.json -", stdin=planned.stdout.encode())
     assert (checked.code, checked.stdout) == (0, "no rule is broken: total cost 5, unplanned robots 0\n")
 
 
 def test_without_an_engine_asked_for_the_fastest_plans_that_has_the_planner(
-    carproof: Run, file: Write, monkeypatch: pytest.MonkeyPatch
+    carproof: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     asked = []
 
@@ -108,20 +95,19 @@ def test_without_an_engine_asked_for_the_fastest_plans_that_has_the_planner(
         return import_module(name)
 
     monkeypatch.setattr("carproof.engines.import_module", watched)
-    for planner, readable in (("neighbourhood", set()), ("fixed-paths", {"carp_reference"})):
+    for command, engines in (
+        ("plan town.json --planner neighbourhood", []),
+        ("plan town.json --planner fixed-paths", ["carp_reference"]),
+        ("add town.json one.json r2", ["carp_optimized"]),
+        ("add town.json one.json r2 --engine reference", ["carp_reference"]),
+    ):
         asked.clear()
-        outcome = carproof("plan", file(TWO), "--planner", planner, "--json")
-        assert (outcome.code, outcome.stderr, set(asked)) == (0, "", readable)
-    asked.clear()
-    assert carproof("add", file(TWO), file(ONE_PLANNED, "one.json"), "r2", "--json").code == 0
-    assert asked == ["carp_optimized"]
-    asked.clear()
-    assert carproof("add", file(TWO), file(ONE_PLANNED, "one.json"), "r2", "--engine", "reference", "--json").code == 0
-    assert asked == ["carp_reference"]
+        outcome = carproof(f"{command} --json")
+        assert (outcome.code, outcome.stderr, [*dict.fromkeys(asked)]) == (0, "", engines)
 
 
-def test_check_prints_each_violation_and_counts_them(carproof: Run, file: Write) -> None:
-    outcome = carproof("check", file(TWO), file(BROKEN, "plans.json"))
+def test_check_prints_each_violation_and_counts_them(carproof: Run) -> None:
+    outcome = carproof("check town.json broken.json")
     assert outcome.code == 1
     assert outcome.stdout.splitlines() == [
         "[joint/capacity] resource b in [1,2): robots r1, r2 (capacity 1)",
@@ -135,155 +121,132 @@ def test_check_prints_each_violation_and_counts_them(carproof: Run, file: Write)
     ]
 
 
-def test_check_prints_the_first_hundred_violations_of_a_rule_and_all_of_them_if_asked(
-    carproof: Run, file: Write
-) -> None:
-    instance = file(corridor([{"id": "r1", "start": "a", "goal": "c"}]))
-    plans = file(solution({"r1": [["b", 3 * tick, 3 * tick - 1] for tick in range(150)]}), "plans.json")
-    first, everything = carproof("check", instance, plans), carproof("check", instance, plans, "--all")
-    for outcome, shown, count in ((first, 100, "100 or more"), (everything, 150, "150")):
-        lines = outcome.stdout.splitlines()
+def test_check_prints_the_first_hundred_violations_of_a_rule_and_all_of_them_if_asked(carproof: Run) -> None:
+    save(one=corridor([EAST]), plans=solution({"r1": [["b", 3 * tick, 3 * tick - 1] for tick in range(150)]}))
+    for option, shown, count in (("", 100, "100 or more"), ("--all", 150, "150")):
+        lines = carproof(f"check one.json plans.json {option}").stdout.splitlines()
         assert sum(line.startswith("[plan/duration]") for line in lines) == shown
         assert [line.split(maxsplit=1)[1] for line in lines if line.startswith("plan/duration")] == [count]
-    verdict = json.loads(carproof("check", instance, plans, "--json").stdout)
+    verdict = json.loads(carproof("check one.json plans.json --json").stdout)
     assert sum(violation["rule"] == "plan/duration" for violation in verdict["violations"]) == 100
 
 
-def test_check_writes_a_verdict(carproof: Run, file: Write, tmp_path: Path) -> None:
-    outcome = carproof("check", file(TWO), file(BROKEN, "plans.json"), "--json", "-o", tmp_path / "verdict.json")
+def test_check_writes_a_verdict(carproof: Run) -> None:
+    outcome = carproof("check town.json broken.json --json -o verdict.json")
     assert outcome.code == 1
     verdict = json.loads(outcome.stdout)
     assert (verdict["valid"], len(verdict["violations"])) == (False, 2)
-    assert json.loads((tmp_path / "verdict.json").read_text()) == verdict
+    assert json.loads(Path("verdict.json").read_text()) == verdict
 
 
-def test_check_asks_for_plans_of_all_robots_only_where_it_is_asked_to(carproof: Run, file: Write) -> None:
-    files = file(TWO), file(solution({}, ["r1", "r2"]), "empty.json")
-    outcome = carproof("check", *files)
-    assert (outcome.code, outcome.stdout) == (0, "no rule is broken: total cost 0, unplanned robots 2\n")
-    outcome = carproof("check", *files, "--require-all")
-    assert (outcome.code, outcome.stdout) == (1, "INCOMPLETE: total cost 0, unplanned robots 2\n")
-    assert carproof("check", file(TWO), file(TWO_PLANNED, "plans.json"), "--require-all").code == 0
-    assert carproof("check", file(TWO), file(BROKEN, "broken.json"), "--require-all").stdout.endswith("robots 0\n")
+def test_check_asks_for_plans_of_all_robots_only_where_it_is_asked_to(carproof: Run) -> None:
+    save(nobody=solution({}, ["r1", "r2"]))
+    for plans, code, last in (
+        ("nobody.json", 0, "no rule is broken: total cost 0, unplanned robots 2"),
+        ("nobody.json --require-all", 1, "INCOMPLETE: total cost 0, unplanned robots 2"),
+        ("plans.json --require-all", 0, "no rule is broken: total cost 5, unplanned robots 0"),
+        ("broken.json --require-all", 1, "INVALID: total cost 6, unplanned robots 0"),
+    ):
+        outcome = carproof(f"check town.json {plans}")
+        assert (outcome.code, outcome.stdout.splitlines()[-1]) == (code, last)
 
 
-def test_ids_with_control_characters_are_shown_and_not_obeyed(carproof: Run, file: Write) -> None:
-    evil = corridor([{"id": "r\n\x1b[2J", "start": "a", "goal": "c"}])
-    outcome = carproof("check", file(evil), file(solution({"r\n\x1b[2J": [["a", 0, 1]]}), "plans.json"))
+def test_ids_with_control_characters_are_shown_and_not_obeyed(carproof: Run) -> None:
+    save(evil=corridor([{**EAST, "id": "r\n\x1b[2J"}]), plans=solution({"r\n\x1b[2J": [["a", 0, 1]]}))
+    outcome = carproof("check evil.json plans.json")
     assert outcome.stdout.startswith("[plan/goal] resource a in [0,1): robot r\\n\\x1b[2J (")
 
 
-def test_add_plans_the_robot_and_tells_what_changed(carproof: Run, file: Write, tmp_path: Path) -> None:
-    arguments = (file(TWO), file(ONE_PLANNED, "plans.json"), "r2", "--m", "1")
-    outcome = carproof("add", *arguments, "-o", tmp_path / "more.json")
+def test_add_plans_the_robot_and_tells_what_changed(carproof: Run) -> None:
+    outcome = carproof("add town.json one.json r2 --m 1 -o more.json")
     assert outcome.code == 0
     assert outcome.stdout.splitlines() == [
         "robot r2 arrives at tick 3",
         "plans of other robots that changed: none",
         "total cost 2 before, 5 now",
     ]
-    assert json.loads((tmp_path / "more.json").read_text()) == TWO_PLANNED
-    assert json.loads(carproof("add", *arguments, "--json").stdout) == TWO_PLANNED
+    assert json.loads(Path("more.json").read_text()) == TWO_PLANNED
+    assert json.loads(carproof("add town.json one.json r2 --m 1 --json").stdout) == TWO_PLANNED
 
 
-def test_add_says_no_where_there_is_no_plan(carproof: Run, file: Write) -> None:
-    outcome = carproof("add", file(THREE), file(TWO_PLANNED, "plans.json"), "r3")
-    assert (outcome.code, outcome.stderr) == (1, "")
-    assert outcome.stdout == "unplanned: robot r3: the committed plans leave no way to its goal\n"
+def test_add_says_no_where_there_is_no_plan(carproof: Run) -> None:
+    outcome = carproof("add three.json plans.json r3")
+    assert outcome == Outcome(1, f"unplanned: robot r3: {HAS_NO_WAY}\n", "")
 
 
-def test_query_prints_the_plan(carproof: Run, file: Write) -> None:
-    arguments = (file(TWO), file(ONE_PLANNED, "plans.json"), "r2")
-    outcome = carproof("query", *arguments)
+def test_query_prints_the_plan(carproof: Run) -> None:
+    outcome = carproof("query town.json one.json r2")
     assert outcome.code == 0
     assert [row.split() for row in outcome.stdout.splitlines()[2:-1]] == [
         [resource, str(enter), str(leave)] for resource, enter, leave in BEHIND_PLAN
     ]
     assert outcome.stdout.endswith("cost 3\n")
-    assert json.loads(carproof("query", *arguments, "--json").stdout) == {"plan": BEHIND_PLAN}
+    assert json.loads(carproof("query town.json one.json r2 --json").stdout) == {"plan": BEHIND_PLAN}
 
 
-def test_query_says_no_where_there_is_no_plan(carproof: Run, file: Write) -> None:
-    arguments = (file(THREE), file(TWO_PLANNED, "plans.json"), "r3")
-    outcome = carproof("query", *arguments)
-    assert (outcome.code, outcome.stdout) == (1, "no plan: the committed plans leave no way to its goal\n")
-    assert carproof("query", *arguments, "--json").stdout == '{"plan":null}\n'
+def test_query_says_no_where_there_is_no_plan(carproof: Run) -> None:
+    outcome = carproof("query three.json plans.json r3")
+    assert (outcome.code, outcome.stdout) == (1, f"no plan: {HAS_NO_WAY}\n")
+    assert carproof("query three.json plans.json r3 --json").stdout == '{"plan":null}\n'
 
 
-def test_a_parked_robot_stays_for_ever(carproof: Run, file: Write) -> None:
-    outcome = carproof("query", file(corridor([TWO["robots"][0]], "park")), file(solution({}), "plans.json"), "r1")
-    assert outcome.stdout.splitlines()[-2].split() == ["c", "2", "for", "ever"]
+def test_a_parked_robot_stays_for_ever(carproof: Run) -> None:
+    save(park=corridor([EAST], "park"))
+    assert carproof("query park.json none.json r1").stdout.splitlines()[-2].split() == ["c", "2", "for", "ever"]
 
 
-def test_a_plan_that_is_in_the_way_of_others_can_be_replaced(carproof: Run, file: Write) -> None:
-    outcome = carproof("query", file(TWO), file(BROKEN, "plans.json"), "r2", "--json")
-    assert json.loads(outcome.stdout) == {"plan": BEHIND_PLAN}
+def test_a_plan_that_is_in_the_way_of_others_can_be_replaced(carproof: Run) -> None:
+    assert json.loads(carproof("query town.json broken.json r2 --json").stdout) == {"plan": BEHIND_PLAN}
 
 
-def test_a_robot_whose_id_is_a_number_is_found_by_it(carproof: Run, file: Write) -> None:
-    numbered = {**TWO, "robots": [{"id": 7, "start": "a", "goal": "c"}, {"id": "8", "start": "b", "goal": "c"}]}
-    empty = file(solution({}), "plans.json")
-    assert json.loads(carproof("query", file(numbered), empty, "7", "--json").stdout) == {"plan": EAST_PLAN}
-    twice = {**TWO, "robots": [{"id": 7, "start": "a", "goal": "c"}, {"id": "7", "start": "b", "goal": "c"}]}
-    assert "2 print as 7" in carproof("query", file(twice), empty, "7").stderr
+def test_a_robot_whose_id_is_a_number_is_found_by_it(carproof: Run) -> None:
+    save(numbered=corridor([{**EAST, "id": 7}, {**EAST, "id": "8", "start": "b"}]))
+    assert json.loads(carproof("query numbered.json none.json 7 --json").stdout) == {"plan": EAST_PLAN}
 
 
-def swapping_at_a_pocket() -> dict[str, Any]:
+@pytest.fixture(name="pocket")
+def swapping_at_a_pocket() -> Document:
     """Two robots that park at each other's start, and no planning order leaves room for both."""
-    return {
-        "format": "carproof-instance/1",
-        "graph": {
-            "nodes": [{"id": id} for id in "amep"],
-            "edges": [{"source": other, "target": "m"} for other in "aep"],
-        },
-        "after_goal": "park",
-        "robots": [{"id": "r1", "start": "a", "goal": "e"}, {"id": "r2", "start": "e", "goal": "a"}],
-    }
+    robots = [{"id": "r1", "start": "a", "goal": "e"}, {"id": "r2", "start": "e", "goal": "a"}]
+    document = town("am em pm", robots, "park")
+    save(pocket=document)
+    return document
 
 
+@pytest.mark.usefixtures("pocket")
 @pytest.mark.parametrize(
-    ("options", "name"),
-    [([], "neighbourhood, repaired"), (["--planner", "carp", "--repair"], "carp, repaired")],
+    ("options", "name"), [("", "neighbourhood, repaired"), ("--planner carp --repair", "carp, repaired")]
 )
-def test_plan_leaves_nobody_out_as_it_is_first_called(
-    carproof: Run, file: Write, options: Sequence[str], name: str
-) -> None:
-    outcome = carproof("plan", file(swapping_at_a_pocket()), *options)
+def test_plan_leaves_nobody_out_as_it_is_first_called(carproof: Run, options: str, name: str) -> None:
+    outcome = carproof(f"plan pocket.json {options}")
     assert (outcome.code, outcome.stderr) == (0, "")
     assert outcome.stdout.splitlines()[2].split("  ")[0] == name
 
 
-@pytest.mark.parametrize("options", [["--planner", "carp"], ["--no-baseline"], ["--no-repair"]])
-def test_the_pure_result_of_a_planner_is_not_repaired(carproof: Run, file: Write, options: Sequence[str]) -> None:
-    outcome = carproof("plan", file(swapping_at_a_pocket()), *options)
+@pytest.mark.usefixtures("pocket")
+@pytest.mark.parametrize("options", ["--planner carp", "--no-baseline", "--no-repair"])
+def test_the_pure_result_of_a_planner_is_not_repaired(carproof: Run, options: str) -> None:
+    outcome = carproof(f"plan pocket.json {options}")
     assert outcome.code == 1
     assert "repaired" not in outcome.stdout
 
 
-def test_polish_plans_small_groups_jointly(carproof: Run, file: Write, tmp_path: Path) -> None:
-    instance = file(swapping_at_a_pocket(), "instance.json")
-    carproof("plan", instance, "--planner", "carp", "-o", tmp_path / "plans.json")
-    assert carproof("polish", instance, tmp_path / "plans.json", "--iterations", "20").code == 0
+@pytest.mark.usefixtures("pocket")
+def test_polish_plans_small_groups_jointly(carproof: Run) -> None:
+    carproof("plan pocket.json --planner carp -o plans.json")
+    assert carproof("polish pocket.json plans.json --iterations 20").code == 0
 
 
-def test_the_examples_of_add_work(process: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert process("generate", "grid", "--width", "5", "--height", "5", "--robots", "3", "-o", "town.json").code == 0
-    lines = process("add", "--help").stdout.partition("Examples:\n")[2]
-    done = subprocess.run(
-        ["/bin/sh", "-ec", lines],
-        env={**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"},
-        check=False,
-        capture_output=True,
-        text=True,
-    )
+def test_polish_leaves_numbers_too_large_for_groups_as_they_are(carproof: Run, pocket: Document) -> None:
+    pocket["graph"]["nodes"][3]["duration"] = 2**40
+    save(slow=pocket)
+    carproof("plan slow.json --planner carp --engine reference -o plans.json")
+    assert carproof("polish slow.json plans.json --iterations 3 --engine reference").code == 1
+
+
+def test_the_examples_of_add_work(process: Run) -> None:
+    assert process("generate grid --width 5 --height 5 --robots 3 -o town.json").code == 0
+    lines = process("add --help").stdout.partition("Examples:\n")[2]
+    environment = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
+    done = subprocess.run(["/bin/sh", "-ec", lines], env=environment, check=False, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
-
-
-def test_polish_leaves_numbers_too_large_for_groups_as_they_are(carproof: Run, file: Write, tmp_path: Path) -> None:
-    document = swapping_at_a_pocket()
-    document["graph"]["nodes"][3]["duration"] = 2**40
-    instance, plans = file(document, "instance.json"), tmp_path / "plans.json"
-    reference = ("--engine", "reference")
-    carproof("plan", instance, "--planner", "carp", *reference, "-o", plans)
-    assert carproof("polish", instance, plans, "--iterations", "3", *reference).code == 1

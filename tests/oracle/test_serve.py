@@ -13,9 +13,11 @@ from hypothesis import strategies as st
 from tests.oracle.running import (
     BEHIND_PLAN,
     BROKEN,
+    EAST,
     EAST_PLAN,
     HEAD_ON,
     ONE_PLANNED,
+    REQUESTS,
     TWO,
     TWO_PLANNED,
     corridor,
@@ -23,6 +25,7 @@ from tests.oracle.running import (
     solution,
 )
 
+from carp_spec.bounds import read_bound
 from carproof.engines import engine_named
 from carproof.ops import OPS
 from carproof.protocol import LONGEST_LINE
@@ -30,6 +33,7 @@ from carproof.rules import ALL_RULES
 from carproof.server import respond, serve
 
 STOP = line(id="last", op="stop")
+THREE = corridor([*TWO["robots"], HEAD_ON])
 GOODBYE = {"id": "last", "result": {}}
 
 
@@ -69,8 +73,7 @@ def test_check_gives_a_verdict() -> None:
 
 def test_query_gives_a_plan_or_null() -> None:
     assert result(op="query", instance=TWO, solution=ONE_PLANNED, robot="r2") == {"plan": BEHIND_PLAN}
-    three = corridor([*TWO["robots"], HEAD_ON])
-    assert result(op="query", instance=three, solution=TWO_PLANNED, robot="r3") == {"plan": None}
+    assert result(op="query", instance=THREE, solution=TWO_PLANNED, robot="r3") == {"plan": None}
 
 
 def test_query_keeps_what_the_robot_has_done_by_now() -> None:
@@ -85,8 +88,32 @@ def test_plan_takes_a_planner_and_its_options() -> None:
 
 def test_add_gives_a_solution_with_the_robot() -> None:
     assert result(op="add", instance=TWO, solution=ONE_PLANNED, robot="r2", m=1) == TWO_PLANNED
-    three = corridor([*TWO["robots"], HEAD_ON])
-    assert result(op="add", instance=three, solution=TWO_PLANNED, robot="r3")["unplanned"] == ["r3"]
+    assert result(op="add", instance=THREE, solution=TWO_PLANNED, robot="r3")["unplanned"] == ["r3"]
+
+
+def test_audit_gives_who_is_certified_and_who_is_late() -> None:
+    audit = result(op="audit", instance=TWO, solution=TWO_PLANNED)
+    assert (audit["certified"], audit["late"]) == (["r1", "r2"], [])
+    waiting = solution({"r1": [["a", 0, 1], ["b", 1, 3], ["c", 3, 4]]})
+    assert result(op="audit", instance=corridor([EAST]), solution=waiting)["late"][0]["earliest"] == 2
+
+
+def test_bound_gives_a_certificate() -> None:
+    for limit in ({"steps": 3}, {"seconds": 0.5}):
+        assert read_bound(json.dumps(result(op="bound", instance=TWO, **limit)).encode()).bound == 5
+
+
+def test_optimum_gives_the_least_cost_and_plans_of_it() -> None:
+    best = {"cost": 5, "lower": 5, "proved": True, "solution": TWO_PLANNED}
+    assert result(op="optimum", instance=TWO, limit=30) == best
+    head_on = corridor([{**EAST, "goal": "e"}, HEAD_ON])
+    assert result(op="optimum", instance=head_on)["cost"] is None
+
+
+def test_polish_gives_plans_of_all_robots() -> None:
+    polished = result(op="polish", instance=TWO, solution=ONE_PLANNED, iterations=9)
+    assert [plan["robot"] for plan in polished["plans"]] == polished["order"]
+    assert polished["unplanned"] == []
 
 
 @pytest.mark.parametrize("id", [None, 0, "x", [1, {"a": [None]}], 1.5, 10**30])
@@ -95,106 +122,61 @@ def test_the_id_comes_back_as_it_was(id: object) -> None:
     assert response == {"id": id, "result": {}}
 
 
+MISSING = object()
 BAD_GOAL = {**TWO, "robots": [TWO["robots"][0], {**TWO["robots"][1], "goal": "z"}]}
 NO_SHAPE = {**TWO_PLANNED, "plans": [TWO_PLANNED["plans"][0], {"robot": "r2", "visits": [["b", 0, 1.0]]}]}
 FOREIGN = {**TWO_PLANNED, "plans": [*TWO_PLANNED["plans"], {"robot": "r9", "visits": []}]}
+BESIDE_BROKEN = {"instance": THREE, "solution": BROKEN, "robot": "r3"}
 
 
 @pytest.mark.parametrize(
-    ("fields", "kind", "path", "rule"),
+    ("op", "changes", "kind", "path", "rule"),
     [
-        ({"op": "start"}, "request", "$.version", "protocol/request"),
-        ({"op": "start", "version": 2}, "request", "$.version", "protocol/version"),
-        ({"op": "start", "version": True}, "request", "$.version", "protocol/request"),
-        ({"op": "start", "version": 1, "more": 1}, "request", "$.more", "protocol/request"),
-        ({"op": "fly"}, "request", "$.op", "protocol/request"),
-        ({"op": 3}, "request", "$.op", "protocol/request"),
-        ({}, "request", "$.op", "protocol/request"),
-        ({"op": "check", "instance": TWO}, "request", "$.solution", "protocol/request"),
-        ({"op": "check", "instance": 3, "solution": TWO_PLANNED}, "document", "$.instance.format", "document/format"),
-        (
-            {"op": "check", "instance": BAD_GOAL, "solution": TWO_PLANNED},
-            "document",
-            "$.instance.robots[1].goal",
-            "instance/endpoint",
-        ),
-        (
-            {"op": "check", "instance": TWO, "solution": NO_SHAPE},
-            "document",
-            "$.solution.plans[1].visits[0][2]",
-            "document/shape",
-        ),
-        (
-            {"op": "query", "instance": corridor([*TWO["robots"], HEAD_ON]), "solution": BROKEN, "robot": "r3"},
-            "request",
-            "$.solution.plans[0].visits[1]",
-            "joint/capacity",
-        ),
-        (
-            {"op": "query", "instance": TWO, "solution": FOREIGN, "robot": "r2"},
-            "request",
-            "$.solution.plans[2]",
-            "solution/covers",
-        ),
-        (
-            {"op": "query", "instance": TWO, "solution": TWO_PLANNED, "robot": "r9"},
-            "request",
-            "$.robot",
-            "request/robot",
-        ),
-        (
-            {"op": "query", "instance": TWO, "solution": TWO_PLANNED, "robot": "r1", "now": -1},
-            "request",
-            "$.now",
-            "request/now",
-        ),
-        (
-            {"op": "query", "instance": TWO, "solution": TWO_PLANNED, "robot": "r1", "now": 1.0},
-            "request",
-            "$.now",
-            "protocol/request",
-        ),
-        (
-            {"op": "query", "instance": TWO, "solution": TWO_PLANNED, "robot": True},
-            "request",
-            "$.robot",
-            "protocol/request",
-        ),
-        (
-            {"op": "query", "instance": TWO, "solution": TWO_PLANNED, "robot": "r1", "more": 1},
-            "request",
-            "$.more",
-            "protocol/request",
-        ),
-        (
-            {"op": "check", "instance": TWO, "solution": TWO_PLANNED, "robot": "r1"},
-            "request",
-            "$.robot",
-            "protocol/request",
-        ),
-        ({"op": "stop", "now": 1}, "request", "$.now", "protocol/request"),
-        ({"op": "plan", "instance": TWO, "planner": "x"}, "option", "$.planner", "planner/options"),
-        ({"op": "plan", "instance": TWO, "planner": "carp", "m": 2}, "option", "$.m", "planner/options"),
-        ({"op": "plan", "instance": TWO, "m": True}, "option", "$.m", "planner/options"),
-        ({"op": "plan", "instance": TWO, "colour": "red"}, "option", "$.colour", "planner/options"),
-        (
-            {"op": "add", "instance": TWO, "solution": TWO_PLANNED, "robot": "r2"},
-            "request",
-            "$.robot",
-            "request/robot",
-        ),
-        (
-            {"op": "add", "instance": TWO, "solution": ONE_PLANNED, "robot": "r2", "attempts": 3},
-            "option",
-            "$.attempts",
-            "planner/options",
-        ),
+        ("start", {"version": MISSING}, "request", "$.version", "protocol/request"),
+        ("start", {"version": 2}, "request", "$.version", "protocol/version"),
+        ("start", {"version": True}, "request", "$.version", "protocol/request"),
+        ("start", {"more": 1}, "request", "$.more", "protocol/request"),
+        ("fly", {}, "request", "$.op", "protocol/request"),
+        (3, {}, "request", "$.op", "protocol/request"),
+        (MISSING, {}, "request", "$.op", "protocol/request"),
+        ("check", {"solution": MISSING}, "request", "$.solution", "protocol/request"),
+        ("check", {"instance": 3}, "document", "$.instance.format", "document/format"),
+        ("check", {"instance": BAD_GOAL}, "document", "$.instance.robots[1].goal", "instance/endpoint"),
+        ("check", {"solution": NO_SHAPE}, "document", "$.solution.plans[1].visits[0][2]", "document/shape"),
+        ("check", {"robot": "r1"}, "request", "$.robot", "protocol/request"),
+        ("query", BESIDE_BROKEN, "request", "$.solution.plans[0].visits[1]", "joint/capacity"),
+        ("query", {"solution": FOREIGN}, "request", "$.solution.plans[2]", "solution/covers"),
+        ("query", {"robot": "r9"}, "request", "$.robot", "request/robot"),
+        ("query", {"robot": True}, "request", "$.robot", "protocol/request"),
+        ("query", {"now": -1}, "request", "$.now", "request/now"),
+        ("query", {"now": 1.0}, "request", "$.now", "protocol/request"),
+        ("query", {"more": 1}, "request", "$.more", "protocol/request"),
+        ("stop", {"now": 1}, "request", "$.now", "protocol/request"),
+        ("plan", {"planner": "x"}, "option", "$.planner", "planner/options"),
+        ("plan", {"planner": "carp", "attempts": MISSING, "m": 2}, "option", "$.m", "planner/options"),
+        ("plan", {"planner": MISSING, "attempts": MISSING, "m": True}, "option", "$.m", "planner/options"),
+        ("plan", {"colour": "red"}, "option", "$.colour", "planner/options"),
+        ("add", {"solution": TWO_PLANNED}, "request", "$.robot", "request/robot"),
+        ("add", {"attempts": 3}, "option", "$.attempts", "planner/options"),
+        ("polish", {"iterations": True}, "option", "$.iterations", "polish/options"),
+        ("polish", {"iterations": MISSING, "seconds": "1"}, "option", "$.seconds", "polish/options"),
+        ("polish", {"rounds": 1}, "request", "$.rounds", "protocol/request"),
+        ("polish", {"solution": BROKEN}, "request", "$.solution.plans[0].visits[1]", "joint/capacity"),
+        ("optimum", {"limit": 0}, "request", "$.limit", "request/limit"),
+        ("optimum", {"limit": "long"}, "request", "$.limit", "protocol/request"),
+        ("bound", {"steps": MISSING, "seconds": 0}, "request", "$.seconds", "request/limit"),
+        ("bound", {"steps": 0}, "request", "$.steps", "request/limit"),
+        ("bound", {"steps": True}, "request", "$.steps", "protocol/request"),
+        ("audit", {"solution": {**TWO_PLANNED, "order": []}}, "request", "$.solution.plans[0]", "solution/order"),
+        ("audit", {"kernel": 1}, "request", "$.kernel", "protocol/request"),
     ],
 )
 def test_a_bad_request_is_refused_with_path_and_rule(
-    fields: dict[str, object], kind: str, path: str, rule: str
+    op: object, changes: dict[str, object], kind: str, path: str, rule: str
 ) -> None:
-    assert error(**fields)[:3] == (kind, path, rule)
+    fields = {"op": op, **REQUESTS.get(str(op), {}), **changes}
+    asked = {name: value for name, value in fields.items() if value is not MISSING}
+    assert error(**asked)[:3] == (kind, path, rule)
 
 
 @pytest.mark.parametrize(
@@ -250,9 +232,7 @@ VALUES = JSON | st.just(TWO) | st.just(ONE_PLANNED)
 FIELDS = ["instance", "solution", "robot", "now", "planner", "m", "version", "x"]
 
 
-@given(
-    st.sampled_from([*OPS, "x"]), st.dictionaries(st.sampled_from(FIELDS), JSON | st.just(TWO) | st.just(ONE_PLANNED))
-)
+@given(st.sampled_from([*OPS, "x"]), st.dictionaries(st.sampled_from(FIELDS), VALUES))
 def test_random_fields_never_fail_by_a_fault_of_ours(op: str, fields: dict[str, object]) -> None:
     (response,) = ask(line(id=7, op=op, **fields))
     assert response["id"] == 7
