@@ -1,1 +1,1 @@
-"""Searches for optima and lower bounds. Nothing in here is trusted: `carp_verify` checks what they find."""
+"""Searches for optima and lower bounds. Nothing here is trusted: `carp_verify` checks the results."""

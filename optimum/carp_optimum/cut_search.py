@@ -1,8 +1,8 @@
 """The search for cuts: groups of robots that cost more together than they do, on average, near the best prices.
 
-Robots that are in each other's way near the best prices are tried in pairs first, those most often in the way before
-the others; then groups that are already cuts together with one robot more. The optimum of each group is searched for
-(`carp_optimum.optimum`), and a lower bound on it is a cut if the robots' average costs are below it.
+First it tries pairs of robots that are in each other's way near the best prices, those most often in the way before the
+others; then groups that are already cuts, with one robot more. It searches for the optimum of each group
+(`carp_optimum.optimum`). A lower bound on that optimum is a cut if the robots' average costs are below it.
 """
 
 from collections import Counter, defaultdict
@@ -40,7 +40,7 @@ class Cut:
 
 
 class CutSearch:
-    """Finds cuts for a search for prices; `known` are the groups that were tried, with what came of them."""
+    """Finds cuts for a search for prices; `known` has the groups that were tried, with their results."""
 
     def __init__(self, search: PriceSearch) -> None:
         self.search = search
@@ -50,9 +50,9 @@ class CutSearch:
         self.is_exhausted = False
 
     def round(self, check: Callable[[], None]) -> int:
-        """Add the cuts that the average costs near the best prices break: by how many parts of a tick, together.
+        """Add the cuts that the average costs near the best prices break, and return by how much, in parts of a tick.
 
-        `is_exhausted` is afterwards whether all groups that offered themselves have been tried.
+        Afterwards `is_exhausted` is whether all candidate groups have been tried.
         """
         self.is_exhausted = True
         meetings: Counter[Members] = Counter()

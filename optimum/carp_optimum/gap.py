@@ -1,9 +1,8 @@
-"""How far planners are from the optimum, and why: the price of planning in some order, and of the search for one.
+"""The distance of planners from the optimum, in two parts: the price of planning in an order, and of searching one.
 
-A planner that plans one robot after the other, each against the plans before it, can at best find the least total
-over all orders. Its distance from the optimum is the price of such planning, whatever the search;
-a planner's own distance from it is the price of its search for an order (below zero if it does better than
-any order, as a planner that plans robots again may).
+A prioritized planner can at best find the least total over all orders. The distance of that total from the optimum is
+the price of prioritized planning. The distance of a planner's total from it is the price of its search for an order. It
+is below zero if the planner does better than any order, as one that replans robots may.
 """
 
 from collections.abc import Mapping, Sequence
@@ -21,7 +20,7 @@ from carp_verify.optimum_rules import MOST_ORDERED, refuse_size
 
 @dataclass(frozen=True, slots=True)
 class PlannerGap:
-    """A planner's total cost, and how many robots it left unplanned; a total without them means nothing."""
+    """A planner's total cost and the number of its unplanned robots; the total alone means nothing."""
 
     planner: Planner
     total: int
@@ -59,9 +58,9 @@ def gap(instance: Instance, planners: Sequence[Planner], limit: float) -> Gap:
 def best_order(instance: Instance, limit: float, floor: int = 0) -> int | None:
     """The least total cost over all orders in which CARP plans all robots, or `None` if it fails in every order.
 
-    Orders that begin alike share their plans, and one is left as soon as it cannot get better than the best. No total
-    is less than `floor`; where an order reaches it, the others are not tried.
-    Raises `TimeOver` after `limit` seconds, and `Refusal` for more than `MOST_ORDERED` robots.
+    Orders that begin alike share their plans, and an order is abandoned once it cannot beat the best. No total is less
+    than `floor`; if an order reaches it, the others are not tried. Raises `TimeOver` after `limit` seconds, and
+    `Refusal` for more than `MOST_ORDERED` robots.
     """
     require_following(instance)
     refuse_size("the robots whose orders are all tried", len(instance.robots), MOST_ORDERED)

@@ -1,4 +1,4 @@
-"""Finds the hints of a refutation: a solver's DRUP proof becomes LRAT. Not trusted: `carp_verify.refutation` checks.
+"""Finds the hints that turn a solver's DRUP proof into LRAT. Not trusted: `carp_verify.refutation` checks it.
 
 Each clause of the proof is derived by unit propagation, with two watched literals; its hints are the clauses that the
 conflict rests on, in the order of propagation. A literal that holds without assumptions gets a clause of its own, so
@@ -72,7 +72,7 @@ class _Derivation:
             self._learn(number, tuple(dict.fromkeys(clause)))
 
     def derive(self, clause: Clause) -> None:
-        """Derive a clause by propagation; raises `NoHintsError` if that fails. One that holds anyway is left out."""
+        """Derive a clause by propagation, unless it holds anyway; raises `NoHintsError` if that fails."""
         if any(literal in self._reason for literal in clause):
             return
         mark = len(self._trail)
@@ -85,7 +85,7 @@ class _Derivation:
         self._learn(self._step(clause, self._hints(conflict, mark)), clause)
 
     def forget(self, clause: Clause) -> None:
-        """Forget a clause; what it has implied without assumptions has clauses of its own."""
+        """Forget a clause; the literals that it implied without assumptions have clauses of their own."""
         numbers = self._numbers.get(frozenset(clause))
         if len(clause) > 1 and numbers:
             del self._clauses[numbers.pop()]
@@ -126,7 +126,7 @@ class _Derivation:
             self._reason[literal] = settled
 
     def _unit_hints(self, number: int, implied: Literal) -> list[int]:
-        """Why a clause implies a literal (0: nothing), where all its other literals are false without assumptions."""
+        """The hints with which a clause implies a literal (0: none), all its other literals being known to be false."""
         return [*(self._reason[-each] for each in self._clauses[number] if each != implied), number]
 
     def _hints(self, conflict: int, mark: int) -> list[int]:

@@ -1,9 +1,9 @@
 """Plans for robots that no planning order leaves room for: small groups are planned jointly, among the other plans.
 
-Where robots have to let each other pass in a narrow place, the first of them to be planned may leave no plan to the
-others, whatever the order. So a robot without a plan is planned together with those in its way, by a conflict-based
-search (Sharon et al. 2015) that also gives one robot the way before another (Ma et al. 2019). The group grows by the
-robot outside that its members would meet first if they were alone. Nothing here is trusted: the law judges the plans.
+Where robots must let each other pass in a narrow place, the first one planned may leave no plan to the others, whatever
+the order. So a robot without a plan is planned together with those in its way, by conflict-based search (Sharon et al.
+2015) with priorities between robots (Ma et al. 2019). The group grows by the outside robot that its members would meet
+first if they were alone. Nothing here is trusted: the law judges the plans.
 """
 
 from collections.abc import Iterator, Sequence
@@ -26,13 +26,13 @@ ALL_STATES = 1000
 ATTEMPTS = 3
 ROUNDS = 200
 Avoided: TypeAlias = tuple[RobotId, Plan]
-"""A robot, and a plan of another that it has to avoid, or one visit where it must not be."""
+"""A robot, and the plan of another that it has to avoid, or one visit that it must not make."""
 
 
 def repair(instance: Instance, solution: Solution) -> Solution:
-    """Plan the robots of a solution that have a path and no plan, as far as plans are found; others' plans may change.
+    """Plan the robots of a solution that have a path but no plan, as far as possible; plans of others may change.
 
-    Rounds of `polish/...` come first, and groups planned jointly where those leave a robot out. Raises `Refusal` for a
+    Rounds of `polish/...` come first; groups are planned jointly if these leave a robot out. Raises `Refusal` for a
     solution that breaks a rule, and for numbers that are too large.
     """
     for seed in range(ATTEMPTS):
@@ -77,7 +77,7 @@ def joint_plans(
 ) -> tuple[Plan, ...] | None:
     """Plans of a group that break no rule together with the plans of others; `None` if the search finds none.
 
-    The search takes one of `states` for each state that it expands, and ends when there are no more.
+    The search takes one of `states` for each state that it expands, and ends when none is left.
     """
     finder = _Finder(instance, others)
     serial = count()
@@ -106,7 +106,7 @@ def joint_plans(
 
 
 def _ways_out(meeting: Violation, plans: dict[RobotId, Plan]) -> Iterator[Avoided]:
-    """For each robot of the group in a meeting: to stay away from that place, or from the whole plan of another."""
+    """The constraints from a meeting: each robot avoids that place, or the whole plan of another robot."""
     robots = [robot for robot in meeting.robots if robot in plans]
     for robot in robots:
         if meeting.rule != "joint/exchange" and meeting.resource is not None and meeting.start is not None:
@@ -134,8 +134,8 @@ def _first_met(instance: Instance, others: Sequence[Plan], plans: Sequence[Plan]
 class _Finder:
     """Plans single robots among the plans of others, and away from further plans, which may overlap.
 
-    A fleet takes plans that overlap where capacities are larger than 1. So all capacities are doubled, each plan of the
-    others counts twice, and a visit that is to be avoided fills its resource.
+    A fleet accepts overlapping plans only where capacities are larger than 1. So all capacities are doubled, each plan
+    of the others counts twice, and a visit to be avoided fills its resource.
     """
 
     def __init__(self, instance: Instance, others: Sequence[Plan]) -> None:
@@ -153,7 +153,7 @@ class _Finder:
         self._crowd = tuple(plan for plan in others if any(visit.resource in wide for visit in plan.visits))
 
     def find(self, robot: RobotId, avoided: Sequence[Plan]) -> Plan | None:
-        """The plan of a robot that arrives earliest and is nowhere where one of these plans is."""
+        """The earliest plan of a robot that meets none of these plans."""
         records = [record for plan in avoided for record in self._filling(plan)]
         return self._fleet.find_beside(self._fleet.index(robot), records)
 

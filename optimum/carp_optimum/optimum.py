@@ -10,10 +10,10 @@ Where no plan set exists, the search finds one of these obstacles (`carp_verify.
 
 - `no-way`: a robot has no way to its goal;
 - `full-goal`: with `park`, a resource is the goal of more robots than its capacity;
-- `clauses`: a core is empty, so not even robots as late as you like can keep the rules;
-- `states`: the states of all robots together are few, and a search over them all finds no end.
+- `clauses`: a core is empty, so robots break a rule however late they may be;
+- `states`: the joint states of all robots are few, and a search over all of them finds no end.
 
-What the search finds is not proved: it rests on this module and on the solver. `carp_verify.proof` makes it a proof.
+The answer is not proved: it rests on this module and on the solver. `carp_optimum.proving` writes a proof of it.
 """
 
 from collections import Counter
@@ -59,7 +59,7 @@ class Optimum:
 def optimum(instance: Instance, limit: float, clock: Callable[[], int] = monotonic_ns) -> Optimum:
     """Search for the optimum for at most `limit` seconds. Raises `Refusal` if the formula outgrows the memory.
 
-    What is found does not depend on the clock, which gives nanoseconds: the same instance gives the same solution.
+    The result does not depend on the clock, which gives nanoseconds: the same instance gives the same solution.
     """
     require_following(instance)
     deadline = Deadline(limit, clock)
@@ -102,7 +102,7 @@ class _Search:
             return self.undecided()
 
     def obstacle(self) -> Obstacle | None:
-        """Why no plan set exists, if that shows without a search."""
+        """The obstacle, if it shows without a search."""
         for robot in self.encoding.wayless:
             return NoWay(robot.id)
         if self.instance.after_goal == "park":
@@ -139,7 +139,7 @@ class _Search:
             return False
 
     def grow(self, position: int) -> None:
-        """Give a robot a longer horizon, and assume that it comes within it."""
+        """Give a robot a longer horizon, and assume that it arrives within it."""
         self.look()
         robot = self.encoding.robots[position]
         robot.grow()
@@ -158,7 +158,7 @@ class _Search:
         return core
 
     def relax(self, core: Sequence[Literal]) -> None:
-        """One of the core's delays is there: raise the bound, and assume instead that no second one is."""
+        """One delay of the core must happen: raise the bound, and assume instead that no second one does."""
         self.delay += 1
         self.encoding.formula.add(*core)
         for literal in core:
@@ -176,7 +176,7 @@ class _Search:
             self.sum_of[number[reached]] = (number, reached + 1)
 
     def look(self) -> None:
-        """Look at the clock. A long search stops to plan with heuristics, and again if they find nothing."""
+        """Look at the clock. A long search stops to plan with heuristics, and stops again if they find nothing."""
         tries = self.tries_of_heuristics
         parts = PARTS_BEFORE_HEURISTICS[tries:]
         if self.best is None and parts and self.deadline.is_past(parts[0], PARTS):

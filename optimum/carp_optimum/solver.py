@@ -39,7 +39,7 @@ class Deadline:
 
 
 class Solver:
-    """A solver for a formula that grows. Nothing in its answers depends on the clock.
+    """A solver for a growing formula. Its answers do not depend on the clock.
 
     `look` is called every few conflicts and may end the search by raising `TimeOver`.
     """

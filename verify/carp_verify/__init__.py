@@ -1,1 +1,1 @@
-"""Evidence that others can check: lemmas, certificates, optima and their proofs."""
+"""Checkers of evidence: lemmas, certificates, optima and their proofs."""

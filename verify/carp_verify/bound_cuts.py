@@ -1,8 +1,8 @@
-"""Cuts: groups of robots whose costs add up to more than prices can show, with proofs that others can check.
+"""Cuts: groups of robots that provably cost more together than prices alone can show.
 
-The proof of a cut is that of an optimum's lower half, of the group as an instance of its own (`carp_verify.proof`):
-the formula of a total below `least` is made again from the instance, and a refutation of it is checked. No plans of the
-group cost less in the whole instance either, where more robots are in the way.
+A cut is proved like the lower half of an optimum (`carp_verify.proof`), with the group as an instance of its own: the
+formula of a total below `least` is made again from the instance, and its refutation is checked. In the whole instance,
+where more robots are in the way, no plans of the group cost less either.
 """
 
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""What a certificate of a lower bound must keep: `bound/...`."""
+"""The rules of a certificate of a lower bound: `bound/...`."""
 
 from typing import Any
 
@@ -96,7 +96,7 @@ def stay_is_searched(ticks: int) -> bool:
 
 
 class ContradictionError(RuntimeError):
-    """Plans that break no rule cost less than a bound: one of the two checkers is wrong."""
+    """Plans that break no rule cost less than an accepted bound: one of the two checkers is wrong."""
 
 
 def require_kept(bound: int, cost: int) -> None:

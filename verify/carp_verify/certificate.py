@@ -1,10 +1,10 @@
 """The certificate of a solution: `carp_spec` finds no rule broken, and z3 confirms the rules of robots together.
 
-For each resource z3 is asked for a tick, any whole number, at which more robots occupy it than its capacity; for each
-pair of resources between which robots move both ways, for a tick at which two robots make opposite moves. Each
-robot's stays are one tracked term, so that an answer names the robots. The question is the negation of the rule, so
-where z3 finds no answer there is no such tick. That part shares nothing with `carp_spec.check`, which sweeps over
-events instead. The rules of single plans and of the list of plans have no second opinion here.
+For each resource, z3 searches for a tick, any whole number, at which more robots occupy it than its capacity. For each
+pair of resources between which robots move both ways, it searches for a tick at which two robots make opposite moves.
+Each robot's stays are one tracked term, so that an answer names the robots. The question is the negation of the rule:
+if z3 finds no answer, no such tick exists. This part shares no code with `carp_spec.check`, which sweeps over events
+instead. The rules of single plans and of the list of plans get no second opinion here.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -39,9 +39,9 @@ class Breach:
 
 @dataclass(frozen=True, slots=True)
 class Certificate:
-    """What z3 was asked about, visited resources and pairs between which robots move both ways; a bad tick of each.
+    """The numbers of visited resources and of pairs with moves both ways that z3 was asked about, and the bad ticks.
 
-    Where `carp_spec` finds another rule broken, there are violations, and z3 is not asked.
+    If `carp_spec` finds another rule broken, there are violations, and z3 is not asked.
     """
 
     resources: int
@@ -56,7 +56,7 @@ class Certificate:
 
 
 class Terms:
-    """The terms about the tick that z3 is asked for; equal terms are made once, as making them takes so long.
+    """The terms about the unknown tick; equal terms are made once, because making them is slow.
 
     Over many resources there are far fewer different stays than visits.
     """
@@ -153,7 +153,9 @@ def exchanged(solver: Solver, terms: Terms, pair: Pair, there: Ticks, back: Tick
     goes, comes = ({robot: any_of(*map(terms.is_at, ticks)) for robot, ticks in ways.items()} for ways in (there, back))
     both = {robot: any_of(goes[robot], comes[robot]) for robot in goes if robot in comes}
     movers = {**goes, **comes, **both}
-    different = [at_least(2, list(movers.values()))] if both else []  # else who goes is not who comes
+    different = (
+        [at_least(2, list(movers.values()))] if both else []
+    )  # else the robot that goes is not the one that comes
     model = solver.find_model([any_of(*goes.values()), any_of(*comes.values()), *different])
     if model is not None:
         reason = f"they exchange {pair[0]} and {pair[1]}"

@@ -42,7 +42,7 @@ class Formula:
     def at_least(self, addends: Sequence[Unary], most: int) -> Unary:
         """A unary number of up to `most` that is at least the sum of the addends, or at least `most`.
 
-        The addends are summed in pairs, neighbours first, so that those which belong together should stand together.
+        The addends are summed in pairs, neighbours first, so addends that belong together should be neighbours.
         """
         numbers = [addend[:most] for addend in addends if addend]
         while len(numbers) > 1:

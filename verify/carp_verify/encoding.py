@@ -1,7 +1,7 @@
 """The one encoding of an instance into clauses, and of a bound on the total cost.
 
-Each robot has the clauses of `carp_verify.robot_clauses` up to its own horizon, a relaxation; `joint/capacity` and
-`joint/exchange` are added for the places and ticks asked for, or for all. So with any horizons:
+Each robot has the clauses of `carp_verify.robot_clauses` up to its own horizon, which are a relaxation. The rules
+`joint/capacity` and `joint/exchange` are added for chosen places and ticks, or for all. So with any horizons:
 
 - if the clauses with `delays < k` have no model, no plan set costs less than the sum of shortest paths + k;
 - a model of the clauses in which no robot is later than its horizon and in which all conflicts are forbidden
@@ -31,7 +31,7 @@ class Conflict:
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """What the encoding needs to prove the bound: each robot's horizon, and an order in which to add the delays."""
+    """The horizons and the order of adding delays with which the encoding proves the bound."""
 
     horizons: tuple[int, ...]
     order: tuple[int, ...]
@@ -153,7 +153,7 @@ class Encoding:
             self.formula.add(-robot.late[robot.horizon])
 
     def plans(self, model: Sequence[bool]) -> list[Plan | None]:
-        """The plans in a model, given by the truth of each variable; `None` for a robot later than its horizon."""
+        """The plans in a model, which is the truth of each variable; `None` for a robot later than its horizon."""
         return [robot.plan(model) for robot in self.robots]
 
 

@@ -1,11 +1,11 @@
 """The engine of the lemmas: z3 checks that a claim follows from premises, and that its mutants do not.
 
-To check a formula is to show that the premises can hold and that the claim cannot fail under them. A mutant is a
-formula with one planted error; to refute it is to show a model in which its premises hold and its claim does not. So
-premises that contradict each other, and a claim that says nothing, are caught. z3's `unknown` is a failure.
+A formula is checked if z3 shows that the premises can hold and that the claim cannot fail under them. A mutant is a
+formula with one planted error; it is refuted by a model in which its premises hold and its claim does not. This catches
+premises that contradict each other and claims that are always true. z3's `unknown` is a failure.
 
-z3 and the Python that writes the formulas are trusted. The induction from a step to the whole, and that the formula
-is about the program, are not checked here: each lemma's docstring says what is left.
+z3 and the Python that writes the formulas are trusted. The induction from a step to the whole, and the link from the
+formula to the program, are not checked here: each lemma's docstring names what is left.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -16,7 +16,7 @@ from carp_verify.smt import Bool, Model, Undecided, find_model, negation
 
 @dataclass(frozen=True, slots=True)
 class Formula:
-    """A claim that follows from premises; of a mutant, one that does not, and its name says which error is planted."""
+    """A claim that follows from premises. The claim of a mutant does not, and its name is the planted error."""
 
     name: str
     premises: Sequence[Bool]
@@ -25,7 +25,7 @@ class Formula:
 
 @dataclass(frozen=True, slots=True)
 class Lemma:
-    """A statement with what is left to argue by hand, the rules that it supports, its formulas and their mutants."""
+    """A statement with the part left to argue by hand, the rules that it supports, its formulas and their mutants."""
 
     name: str
     statement: str

@@ -1,7 +1,7 @@
 """Ground truth for tiny instances: the least total cost, by Dijkstra over the states of all robots together.
 
-It moves all robots tick by tick, straight from the rules, and shares nothing with the encoding. Its states are
-finite in number, because the tick counts only up to the last release: where no plan set exists, it says so.
+It moves all robots tick by tick, straight from the rules, and shares nothing with the encoding. Its states are finite
+in number, because the tick counts only up to the last release. So the search also ends where no plan set exists.
 """
 
 from collections import Counter
@@ -20,10 +20,10 @@ Phase: TypeAlias = Literal["waits", "moves", "arrived"]
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """What one robot does at a tick.
+    """The state of one robot at a tick.
 
-    It waits for its release (nowhere), moves (in a resource that it must not leave for `ticks` ticks, this one
-    counted), or has arrived (there for `ticks` more ticks, or for ever with `None`; nowhere once they are over).
+    It waits for its release (in no resource), moves (in a resource that it must not leave for `ticks` ticks, this one
+    counted), or has arrived (it stays for `ticks` more ticks, or for ever with `None`; then it is in no resource).
     """
 
     phase: Phase
@@ -49,7 +49,7 @@ class _Search:
             yield State("arrived", resource, None if self.instance.after_goal == "park" else duration)
 
     def at(self, robot: Robot, tick: int, before: State) -> Iterator[State]:
-        """The states that a robot can be in at the tick, after its state at the tick before."""
+        """The states in which a robot can be at the tick, after its state at the tick before."""
         if before.phase == "waits":
             if robot.release == tick:
                 yield from self.entering(robot, robot.start)
@@ -89,7 +89,7 @@ class _Search:
 
 
 def joint_states(instance: Instance) -> int:
-    """No fewer than the states of all robots together, apart from the tick.
+    """An upper bound on the number of joint states of all robots, apart from the tick.
 
     A robot is in a resource, with a number of ticks to stay, or waits for its release, or is gone or parked.
     """

@@ -1,4 +1,4 @@
-"""Asks `carproof-kernel`, the native program whose verdicts are proved in Coq (`kernel/`)."""
+"""Runs `carproof-kernel`, the native program whose verdicts are proved in Coq (`kernel/`)."""
 
 import os
 import subprocess
@@ -50,7 +50,7 @@ class UndecidedError(RuntimeError):
 
 
 class KernelVerdict(msgspec.Struct, frozen=True):
-    """A verdict of the kernel's version `kernel`, with what it says besides."""
+    """A verdict of the kernel's version `kernel`, and the other fields of its answer."""
 
     kernel: str
     verdict: Literal["accepted", "refused", "undecided", "bad input"]
@@ -69,7 +69,7 @@ class KernelVerdict(msgspec.Struct, frozen=True):
 
     @property
     def accepted(self) -> bool:
-        """Whether the kernel accepts; raises `Refusal` for documents that it does not read, and `UndecidedError`."""
+        """Whether the kernel accepts; raises `Refusal` for documents that it cannot read, and `UndecidedError`."""
         if self.verdict == "bad input":
             raise Refusal("document", self.path, self.rule or is_answer.id, f"{self.by}: {self.message}")
         if self.verdict == "undecided":
@@ -97,7 +97,7 @@ def request(op: str, instance: Instance, **documents: object) -> bytes:
 
 
 def ask(requests: Sequence[bytes]) -> list[KernelVerdict]:
-    """Put requests to one run of the kernel; raises `Refusal` if there is no program, or no answer to one."""
+    """Send requests to one run of the kernel; raises `Refusal` if there is no program, or no answer to a request."""
     command = [program(), "serve"]
     done = subprocess.run(command, input=b"".join(requests), stdout=subprocess.PIPE, check=False)  # noqa: S603 - ours
     lines = done.stdout.decode(errors="replace").split("\n")
@@ -110,7 +110,7 @@ def version() -> str:
 
 
 def verify_bound(instance: Instance, certificate: BoundDocument, formulas: Mapping[int, str]) -> KernelVerdict:
-    """What the kernel says of a lower bound, with the formulas of its cuts in DIMACS by their numbers."""
+    """The kernel's answer about a lower bound; `formulas` are those of its cuts, in DIMACS, by number."""
     require_following(instance)
     with TemporaryDirectory() as name:
         folder = Path(name)

@@ -1,4 +1,4 @@
-"""What can be asked of the search for an optimum: `optimum/...`."""
+"""The rules of requests to the search for an optimum: `optimum/...`."""
 
 from typing import Any
 

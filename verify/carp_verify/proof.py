@@ -2,20 +2,20 @@
 
 Of an optimum:
 
-- `manifest.json`: the cost K, each robot's horizon and the order of adding delays (all that the encoder needs
-  beside the instance; any values are sound), and the SHA-256 digest of every other file
+- `manifest.json`: the cost K, each robot's horizon and the order of adding delays (with the instance, these are all
+  that the encoder needs; any values are sound), and the SHA-256 digest of every other file
 - `instance.json`: the instance
 - `reach.cnf`: the encoding's clauses for a total of at most K, no robot later than its horizon
 - `reach.model`: a model of them, as the literals that hold, closed by 0
-- `variables.json`: which variable is which node and which delay of each robot: enough to read the plans in the model
+- `variables.json`: the node or the delay of a robot that each variable stands for, to read the plans in the model
 - `beat.cnf`: the encoding's clauses for a total of at most K - 1, robots later than their horizons left free
 - `beat.lrat`: a refutation of them with hints, LRAT without RAT steps
 
-Where no plan set exists, the manifest names the obstacle (`carp_verify.unsolvable`), and beside it is the instance. If
-the obstacle is the clauses, there are also `beat.cnf`, of any total, and `beat.lrat`.
+Where no plan set exists, the manifest names the obstacle (`carp_verify.unsolvable`), and the directory has the
+instance. If the obstacle is the clauses, it also has `beat.cnf`, for any total, and `beat.lrat`.
 
-`verify_proof` believes none of them: it makes both formulas again from the instance and compares, evaluates the model,
-has the plans judged by carp_spec, checks the refutation (`carp_verify.refutation`), and asks z3 for both formulas too.
+`verify_proof` trusts none of them. It makes both formulas again from the instance and compares, evaluates the model,
+lets carp_spec judge the plans, checks the refutation (`carp_verify.refutation`), and asks z3 about both formulas too.
 It accepts formulas of at most `LARGEST_PROOF` clauses each, none larger than its file, and files of at most
 `LARGEST_FILE` bytes.
 """
@@ -49,7 +49,7 @@ _LITERAL = re.compile(b"-?[1-9][0-9]{0,17}")
 
 
 class ProofError(Exception):
-    """A proof directory that does not prove what it claims: in which file, and why."""
+    """A proof directory that does not prove its claim: the file, and the reason."""
 
     def __init__(self, file: str, reason: str) -> None:
         super().__init__(file, reason)
@@ -62,7 +62,7 @@ class ProofError(Exception):
 
 
 class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What a proof directory of an optimum claims, and what its formulas were made from."""
+    """The claim of a proof directory of an optimum, and the data from which its formulas were made."""
 
     format: Literal["carproof-proof/2"]
     claim: Literal["optimum"]
@@ -73,7 +73,7 @@ class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class UnsolvableManifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Why no plan set exists, as a proof directory claims."""
+    """The claim of a proof directory that no plan set exists, with the obstacle."""
 
     format: Literal["carproof-proof/2"]
     claim: Literal["unsolvable"]
@@ -95,10 +95,10 @@ class RobotVariables(msgspec.Struct, frozen=True):
 
 @dataclass(frozen=True, slots=True)
 class Verified:
-    """What a proof directory proves: the least cost and a solution that has it, or why no plan set exists.
+    """The proved claim: the least cost and a solution that has it, or why no plan set exists.
 
-    The others are `None`, and so are z3's answers about formulas that are not there. z3 answers `unknown` about those
-    that take it too long.
+    The other fields are `None`, and so is z3's answer about a formula that is missing. z3 answers `unknown` about a
+    formula that takes it too long.
     """
 
     cost: int | None
@@ -230,7 +230,7 @@ def _checked(make: Callable[[int], Encoding], name: str, files: Mapping[str, byt
 
 
 def _compare(name: str, right: str, files: Mapping[str, bytes]) -> None:
-    """Hold a file against what the encoder makes of the instance."""
+    """Compare a file with the formula that the encoder makes of the instance."""
     lines, found = right.splitlines(), files[name].decode(errors="replace").splitlines()
     for number, (line, other) in enumerate(zip(lines, found, strict=False), start=1):
         if line != other:
@@ -277,7 +277,7 @@ def _require_beaten(instance: Instance, cost: int | None, evidence: Evidence, fi
 
 
 def _ask_z3(name: str, files: Mapping[str, bytes], wrong: str) -> str:
-    """What z3 answers about a formula; raises `ProofError` if that is the wrong answer."""
+    """z3's answer about a formula; raises `ProofError` if it is the wrong one."""
     import z3  # noqa: PLC0415 - slow to load
 
     solver = z3.Solver()

@@ -1,4 +1,4 @@
-"""What a certificate of a query must keep: `query-certificate/...`."""
+"""The rules of a certificate of a query: `query-certificate/...`."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
@@ -49,7 +49,7 @@ def is_no_later(bound: int | None, arrival: int) -> bool:
 def is_potential(
     potential: Mapping[ResourceId, int], goal: ResourceId, moves: Iterable[tuple[ResourceId, ResourceId, int]]
 ) -> Iterator[str]:
-    """What is wrong with a potential; each move comes with the ticks that the robot needs before it."""
+    """The first fault of a potential; each move comes with the ticks that the robot needs before it."""
     if potential.get(goal) != 0:
         yield f"{goal}, the goal, must have the potential 0"
     for source, target, ticks in moves:

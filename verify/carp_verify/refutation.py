@@ -4,13 +4,13 @@ The text is LRAT without RAT steps. The clauses of the formula have the numbers 
 
     NUMBER LITERAL ... 0 HINT ... 0
 
-adds a clause under a new number. It follows from the clauses before it, as its hints show: assume that all its
-literals are false; the clause of each hint then has at most one literal that is not false, which must be true, and the
-clause of the last hint has none. A line `NUMBER d HINT ... 0` forgets clauses. The refutation ends with the empty
+adds a clause under a new number. Its hints show that it follows from the clauses before it: assume that all its
+literals are false; then the clause of each hint has at most one literal that is not false, which must be true, and the
+clause of the last hint has none. A line `NUMBER d HINT ... 0` deletes clauses. The refutation ends with the empty
 clause. Source of the format: Cruz-Filipe, Heule, Hunt, Kaufmann and Schneider-Kamp 2017.
 
-A step may come from anywhere. The literals that the hints look at are counted before the first step is checked, and
-the time is proportional to them.
+The author of the steps is not trusted. The literals that the hints look at are counted before the first step is
+checked, and the time is proportional to their number.
 """
 
 import re
@@ -30,7 +30,7 @@ _DRAT = re.compile(rf"(?:d )?(?:-?{_NUMBER} )*0")
 
 
 class NotRefutedError(ValueError):
-    """Why a text does not show that a formula has no model."""
+    """The reason why a text does not show that a formula has no model."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,8 +1,8 @@
 """The clauses of one robot: its ways from start to goal, written as a graph of (resource, tick) pairs.
 
 A node (r, t) is a variable: the robot is in r and free to leave it at t, so it has been there for at least its
-duration. From there it waits, to (r, t + 1), or moves to a neighbour s, to (s, t + d(s)). A stay of many ticks is
-thus no dearer than one of one tick, and in (t - d(r), t] the robot is in r.
+duration. From there it waits, to (r, t + 1), or moves to a neighbour s, to (s, t + d(s)). So a long stay needs no more
+nodes than a short one, and in (t - d(r), t] the robot is in r.
 
 The robot's delay is its cost minus its shortest-path cost, written as a unary number. Each node has a least delay,
 that of the best way through it, and is there only if this delay is at most the robot's `horizon`. A robot that
@@ -177,13 +177,13 @@ class RobotClauses:
             added.append(node)
 
     def _arrive_late(self, node: Node) -> None:
-        """Who passes the node has its least delay; so who has arrived passes it no more."""
+        """A robot that passes the node has at least its delay; a robot that has arrived does not pass it."""
         delay = self.least_delay(node)
         if delay > 0:
             self._formula.add(-self.node[node], self.late[delay - 1])
 
     def _go_on(self, node: Node) -> bool:
-        """From the node the robot waits, moves, arrives, or is later than its horizon: whether all ways are there."""
+        """From the node the robot waits, moves, arrives, or is too late; returns whether all nodes exist."""
         resource, tick = node
         following = self.leads_to(node)
         ways = [self.node[each] for each in following if each in self.node]
@@ -204,7 +204,7 @@ class RobotClauses:
             self._formula.add(-self.node[node], *(self.node[each] for each in sources if each in self.node))
 
     def _arrive_at_horizon(self) -> None:
-        """Who arrives with a delay of just the horizon comes from a node before the goal."""
+        """A robot that arrives with a delay of exactly the horizon comes from a node before the goal."""
         tick = self.earliest + self.horizon
         if self.robot.start == self.robot.goal and self.horizon == 0:
             return
@@ -219,7 +219,7 @@ class RobotClauses:
         return resource == self.robot.goal or resource in self._ticks
 
     def stays(self, resource: ResourceId, tick: int) -> list[Clause]:
-        """What puts the robot into the resource at the tick: each is literals that hold together."""
+        """The alternatives that put the robot into the resource at the tick: each is literals that hold together."""
         duration = self._duration[resource]
         ticks = self._ticks.get(resource, [])
         until = ticks[bisect_right(ticks, tick) : bisect_right(ticks, tick + duration)]

@@ -1,7 +1,7 @@
 """z3 with types: the few terms that lemmas and certificates need, and one question, `find_model`.
 
-Importing this module loads z3. Comparisons of terms give terms, so Python's `==` and chained comparisons have
-no meaning here: say `equal` and `between`.
+Importing this module loads z3. Comparisons of terms give terms, so Python's `==` and chained comparisons have no
+meaning here: use `equal` and `between`.
 """
 
 from collections.abc import Iterable, Sequence
@@ -41,14 +41,14 @@ class Int(Protocol):
 
 
 class IntFunction(Protocol):
-    """A function of whole numbers about which nothing is known but that equal arguments give equal values."""
+    """An uninterpreted function of whole numbers: equal arguments give equal values, and nothing else is known."""
 
     def __call__(self, *arguments: Int | int) -> Int:
         """Its value as a term."""
 
 
 class Predicate(Protocol):
-    """A predicate of whole numbers about which nothing is known but that equal arguments give equal answers."""
+    """An uninterpreted predicate of whole numbers: equal arguments give equal answers, and nothing else is known."""
 
     def __call__(self, *arguments: Int | int) -> Bool:
         """Its answer as a term."""
@@ -151,7 +151,7 @@ def greater(one: Int | int, other: Int | int) -> Int:
 def at_least(count: int, terms: Sequence[Bool]) -> Bool:
     """Whether at least `count` of the terms hold.
 
-    More than there are never do. z3 need not be asked about that, and its C interface takes no count from 2^31 on.
+    If `count` exceeds their number, they never do. z3 is not asked then; its C interface takes no count from 2^31 on.
     """
     if count > len(terms):
         return never()
@@ -184,7 +184,7 @@ class Model:
 
 
 class Solver:
-    """Answers questions one after another, each of its own: for many small ones far faster than a solver for each."""
+    """Answers independent questions one after another; for many small ones this is faster than a solver for each."""
 
     def __init__(self, limit: int = LIMIT_MILLISECONDS) -> None:
         self._solver = z3.SimpleSolver()

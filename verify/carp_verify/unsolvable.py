@@ -1,7 +1,7 @@
-"""Why no plan set exists: the obstacles, and the check of each.
+"""The reasons why no plan set exists: the obstacles, and the check of each.
 
 - `no-way`: no moves lead from the robot's start to its goal.
-- `full-goal`: robots park, and more of them have this goal than its capacity. Once the last has come, all are there.
+- `full-goal`: robots park, and more of them have this goal than its capacity. When the last arrives, all are there.
 - `clauses`: the encoding of the instance with these horizons and without any bound on the delays has no model. All
   conflicts are forbidden, and robots later than their horizons are left free, so any plan set would be a model.
 - `states`: a search over the states of all robots together finds no end (`carp_verify.joint_search`). After the last
@@ -49,7 +49,7 @@ Obstacle: TypeAlias = NoWay | FullGoal | Clauses | States
 
 
 def describe(instance: Instance, obstacle: Obstacle) -> str:
-    """What the obstacle is, in a sentence; the robot or goal must be one of the instance."""
+    """The obstacle in a sentence; its robot or goal must be one of the instance."""
     match obstacle:
         case NoWay(id):
             robot = instance.robot[id]
@@ -64,7 +64,7 @@ def describe(instance: Instance, obstacle: Obstacle) -> str:
 
 
 def why_no_obstacle(instance: Instance, obstacle: Obstacle) -> str | None:
-    """Why the instance does not have the obstacle, or `None` if it has; clauses are still to be refuted."""
+    """The reason why the instance does not have the obstacle, `None` if it has it; clauses are still to be refuted."""
     require_following(instance)
     match obstacle:
         case NoWay(id):
@@ -78,7 +78,7 @@ def why_no_obstacle(instance: Instance, obstacle: Obstacle) -> str | None:
 
 
 def is_searched(instance: Instance) -> bool:
-    """Whether the states of all robots together are few, at all ticks up to the last release and one more."""
+    """Whether the joint states, at all ticks up to the last release and one more, are few enough to be searched."""
     last_release = max((robot.release for robot in instance.robots), default=0)
     return joint_states(instance) * (last_release + 2) <= FEW_STATES
 

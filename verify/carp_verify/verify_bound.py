@@ -1,9 +1,10 @@
 """Checks the certificate of a lower bound: whole numbers, the standard library, and nothing of what found it.
 
-Why the bound holds: take any plans of all robots that break no rule together. What they pay in prices is at most the
-prices times the capacities (a row of prices and its capacity are below), and what each costs, weighted, together with
-what it pays, is at least the least that `least_cost` finds for it. With a cut, a part of its robots' costs is counted
-in the cut instead, where their sum is at least what the cut proves. The lemma is `prices_bound_the_total`.
+The bound holds by weak duality of Lagrangian relaxation. Take any plans of all robots that break no rule together. They
+pay at most the prices times the capacities (the rows of prices and their capacities are below). The weighted cost of
+each robot, together with its payments, is at least the least that `least_cost` finds for it. With a cut, a part of its
+robots' costs is counted in the cut instead, and their sum is at least the total that the cut proves. The lemma is
+`prices_bound_the_total`.
 
 - A price of a resource r at a tick t is paid by all who are in r at t: at most the capacity of r, by `joint/capacity`.
 - An exchange price of (r, s) at t is paid by all who move from r to s or from s to r at t, and by all who are in r both
@@ -81,7 +82,7 @@ def _require(rule: Rule[..., bool], kept: bool, path: str, message: str) -> None
 
 
 def _weights(instance: Instance, certificate: BoundDocument) -> tuple[Sequence[int], int]:
-    """What a tick costs each robot apart from its cuts, and what the cuts prove together, each by its multiplier."""
+    """The weight of a tick for each robot, and the sum of the cuts' least totals, each by its multiplier."""
     left = dict.fromkeys(instance.robot, certificate.scale)
     resources = len(instance.graph.resources)
     members = sum(len(cut.robots) for cut in certificate.cuts)
@@ -106,7 +107,7 @@ def _weights(instance: Instance, certificate: BoundDocument) -> tuple[Sequence[i
 
 
 def _clauses_of(instance: Instance, cut: CutDocument, most: int, path: str) -> int:
-    """How many clauses the formula of a cut has, which its refutation refutes; raises `Refusal` otherwise."""
+    """The number of clauses in the formula of a cut; raises `Refusal` if its refutation does not refute it."""
     from carp_verify.bound_cuts import require_cut  # noqa: PLC0415 - only a certificate with cuts needs the encoder
     from carp_verify.refutation import NotRefutedError  # noqa: PLC0415
 
@@ -120,10 +121,10 @@ def _clauses_of(instance: Instance, cut: CutDocument, most: int, path: str) -> i
 
 
 class Tariff:
-    """The prices of a certificate; `worth` is what all robots together pay at most."""
+    """The prices of a certificate; `worth` is the most that all robots together can pay."""
 
     def __init__(self, instance: Instance, certificate: BoundDocument) -> None:
-        """Raises `Refusal` for a price that is none."""
+        """Raises `Refusal` for a price that is not valid."""
         self.instance = instance
         self.worth = 0
         self.horizon = 0
@@ -165,11 +166,11 @@ class Tariff:
             yield place, tick, price
 
     def _sums(self, prices: Mapping[int, int]) -> Sequence[int]:
-        """What the prices before each tick add up to, up to the horizon."""
+        """The sum of the prices before each tick, up to the horizon."""
         return [0, *accumulate(prices.get(tick, 0) for tick in range(self.horizon))]
 
     def stay(self, resource: ResourceId, enter: int, leave: int) -> int:
-        """What a stay in [enter, leave) pays."""
+        """The payment of a stay in [enter, leave)."""
         paid = 0
         for sums, first in ((self.present.get(resource), enter), (self.across.get(resource), enter + 1)):
             if sums is not None and first < leave:
@@ -177,7 +178,7 @@ class Tariff:
         return paid
 
     def move(self, source: ResourceId, target: ResourceId, tick: int) -> int:
-        """What a move at the tick pays."""
+        """The payment of a move at the tick."""
         there, back = self.moves.get((source, target), {}), self.moves.get((target, source), {})
         return there.get(tick, 0) + back.get(tick, 0)
 
@@ -203,8 +204,8 @@ class Budget:
 class RobotSearch:
     """A* for one robot, over the resources and the ticks at which it is free to leave them.
 
-    What remains is at least a shortest way's weighted ticks, and from the horizon on no more. Who leaves the system
-    with its goal (`vanish`) never gains by going on, as neither ticks nor prices are ever negative.
+    The remaining cost is at least the weighted ticks of a shortest way, and from the horizon on exactly that. A robot
+    that vanishes at its goal never gains by driving on, because neither ticks nor prices are negative.
     """
 
     def __init__(self, tariff: Tariff, robot: Robot, weight: int, before: Before, budget: Budget) -> None:

@@ -35,7 +35,7 @@ from carp_verify.query_certificate_rules import (
 
 
 class Traffic:
-    """Where the committed plans are, and when: it takes plans one by one, and gives the free windows."""
+    """The committed plans by resource and tick: it takes plans one by one, and gives the free windows."""
 
     def __init__(self, instance: Instance) -> None:
         self.instance = instance
@@ -55,7 +55,7 @@ class Traffic:
             self._moves.add((following.enter, visit.resource, following.resource))
 
     def _cut(self, resource: ResourceId, tick: int) -> int:
-        """The position of the tick among those at which something changes; it is put there if it is not."""
+        """The position of the tick among those at which something changes; the tick is inserted if it is missing."""
         changes, inside = self._changes[resource], self._inside[resource]
         position = bisect_left(changes, tick)
         if position == len(changes) or changes[position] != tick:
@@ -64,7 +64,7 @@ class Traffic:
         return position
 
     def size(self, resource: ResourceId) -> int:
-        """How often the number of robots in the resource may change."""
+        """The number of ticks at which the number of robots in the resource may change."""
         return len(self._changes[resource])
 
     def windows(self, resource: ResourceId, tick: int) -> Iterator[Window]:
@@ -137,7 +137,7 @@ def require_certificate(traffic: Traffic, certificate: QueryCertificateDocument,
 
 
 def history(instance: Instance, certificate: QueryCertificateDocument, followed: Plan | None) -> tuple[Visit, ...]:
-    """What the robot has done by now; the last visit is the current one, left as early as it may be."""
+    """The visits that the robot has entered by now; the last is the current one, left as early as possible."""
     robot = instance.robot[certificate.robot]
     visits = () if followed is None else followed.visits
     entered = [visit for visit in visits if visit.enter <= certificate.now]
@@ -148,7 +148,7 @@ def history(instance: Instance, certificate: QueryCertificateDocument, followed:
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """A window in which the robot is, and the tick from which on it may leave."""
+    """A window that the robot is in, and the tick from which it may leave."""
 
     resource: ResourceId
     window: Window
@@ -225,7 +225,7 @@ class Check:
                 self._require_labels(place, target)
 
     def _require_labels(self, place: Place, target: ResourceId) -> None:
-        """Require a label of every window of the target that can be entered early enough."""
+        """Require a label for every window of the target that can be entered early enough."""
         ticks = self._ticks(target)
         for window in self.traffic.windows(target, place.ready):
             if not place.window.lasts_until(window.start):

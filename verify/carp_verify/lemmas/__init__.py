@@ -1,7 +1,7 @@
 """The lemmas, one a module: formulas about whole numbers of any size, checked by z3, and what is left to argue by hand.
 
-A module has its name, a sentence; its docstring: the statement, and after "By hand:" what z3 does not check; the rules
-that it supports; its formulas and their mutants. To add a lemma, write the module and its name here.
+A module has a name, which is a sentence, the rules that it supports, its formulas and their mutants. Its docstring is
+the statement and, after "By hand:", the part that z3 does not check. To add a lemma, write the module and list it here.
 """
 
 from collections.abc import Iterator

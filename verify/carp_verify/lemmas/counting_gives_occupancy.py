@@ -1,7 +1,7 @@
 """The sum of the changes up to a tick is the occupancy at that tick.
 
-A stay [enter, leave) changes the occupancy by +1 at enter and by -1 at leave; one for ever has no second change. z3
-checks that one stay more adds the same to the sum of the changes and to the occupancy.
+A stay [enter, leave) changes the occupancy by +1 at enter and by -1 at leave; a stay for ever has no second change. z3
+checks that one more stay adds the same to the sum of the changes and to the occupancy.
 
 By hand: the induction over stays, from none, where both are 0. That `free_windows` adds up these changes is read in
 its source, and tested on small stays.
@@ -15,7 +15,7 @@ from carp_verify.vocabulary import Interval, holds, interval, is_interval
 
 
 def changes_up_to(stay: Interval, tick: Int) -> Int:
-    """What the stay adds to the sum of the changes up to the tick."""
+    """The stay's part of the sum of the changes up to the tick."""
     left = choose(stay.for_ever, 0, counted(stay.end <= tick))
     return counted(stay.start <= tick) - left
 

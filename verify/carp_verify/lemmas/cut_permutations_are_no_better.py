@@ -5,9 +5,9 @@ total. The plan of a robot costs no less than its shortest path on the empty gra
 are no less than the bounds would not replace the best; `neighbourhood/best` is the specification's own function,
 called with z3's terms.
 
-By hand: that the costs of all robots to come add up to no less than their bounds, each being so; that a prefix in
-which a robot finds no plan has no candidate behind it at all; and that the optimised planner cuts by this test, which
-is tested by comparing planners.
+By hand: the costs of all robots to come add up to at least their bounds, because each cost does; a prefix in which a
+robot finds no plan has no candidate behind it; and the optimised planner cuts by this test, which is tested by
+comparing planners.
 """
 
 from collections.abc import Iterator

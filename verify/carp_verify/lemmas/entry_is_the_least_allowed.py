@@ -1,4 +1,4 @@
-"""The tick at which a query enters a window is the least at which it may, and if that is too late none exists.
+"""The tick at which a query enters a window is the least allowed one, and if it is too late none exists.
 
 The search begins at the later of the tick from which the robot may leave and the window's start, and continues one tick
 at a time while a committed robot makes the opposite move at the tick (`joint/exchange`). Its invariant: every tick

@@ -15,7 +15,7 @@ from carp_verify.smt import Bool, integers
 
 
 def _shortest() -> Bool:
-    """What every move gives h, as h is the least over all paths."""
+    """The inequality that every move gives h, as h is the least over all paths."""
     h, h_after, duration = integers("h h_after duration")
     return h <= duration + h_after
 

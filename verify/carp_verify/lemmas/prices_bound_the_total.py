@@ -1,15 +1,16 @@
 """Weak duality: with prices on resources, cheapest priced plans bound the total cost of all plan sets from below.
 
-Let each pair of a resource and a tick have a price of at least 0, and so each exchange of a resource r with another
-one at a tick: that is paid by the robots that make one of the two opposite moves then, and by those that are in r
-before and at the tick, no more of them together than the capacity of r. Let m(i) be the least of cost plus prices over
-all plans of robot i alone. Then every set of plans that keeps the rules costs at least the sum of all m(i), minus the
-sum of price times capacity over all pairs. With a cut, a group of robots whose costs are known to add up to a least
-total, a part of their costs is counted in m(i) and the other part by the cut.
+This is Lagrangian relaxation. Each pair of a resource and a tick has a price of at least 0, and so has each exchange of
+a resource r with another one at a tick. The price of an exchange is paid by the robots that make one of the two
+opposite moves then, and by those that are in r before and at the tick; together they are no more than the capacity of
+r. Let m(i) be the least of cost plus prices over all plans of robot i alone. Then every set of plans that keeps the
+rules costs at least the sum of all m(i), minus the sum of price times capacity over all pairs. A cut is a group of
+robots whose costs are known to add up to a least total; a part of their costs is counted in m(i) and the other part by
+the cut.
 
-By hand: the inductions over robots, pairs and cuts, which add inequalities of these kinds, and that m(i) is at most
-what robot i costs and pays in any plan set, being the least. That the verifier lets robots pay by these formulas is
-tested; that its search finds the least is tested against all plans of small instances.
+By hand: the inductions over robots, pairs and cuts, which add inequalities of these kinds; and that m(i), being the
+least, is at most what robot i costs and pays in any plan set. Tests check that the verifier lets robots pay by these
+formulas, and compare the least costs that it finds with all plans of small instances.
 """
 
 from collections.abc import Iterator, Sequence
@@ -21,17 +22,17 @@ FEW = 5
 
 
 def paid(occupies: Bool, price: Int) -> Int:
-    """What one robot pays for one pair of resource and tick."""
+    """The payment of one robot for one pair of resource and tick."""
     return choose(occupies, price, 0)
 
 
 def at_most_paid(price: Int, capacity: Int) -> Int:
-    """What all robots together pay at most for one pair."""
+    """The most that all robots together pay for one pair."""
     return price * capacity
 
 
 def in_exchange(leaving: Int, coming: Int, staying: Int) -> Int:
-    """How many robots pay for an exchange of r with s: who moves from r to s, who back, and who stays in r."""
+    """The number of robots that pay for an exchange of r with s: those that make a move, and those that stay in r."""
     return leaving + coming + staying
 
 
@@ -43,13 +44,13 @@ def _exchange() -> Sequence[Bool]:
 
 
 def _pair() -> Sequence[Bool]:
-    """What is paid for one pair that keeps its capacity: price times occupants."""
+    """The payment for one pair that keeps its capacity: price times occupants."""
     price, occupants, capacity, payments = integers("price occupants capacity payments")
     return [occupants >= 0, occupants <= capacity, equal(payments, price * occupants)]
 
 
 def _sums() -> Sequence[Bool]:
-    """The costs and payments of all robots, the sum of their least priced costs, and what can be paid at most."""
+    """The costs and payments of all robots, the sum of their least priced costs, and the most that can be paid."""
     costs, payments, least, most = integers("costs payments least most")
     return [costs + payments >= least, payments <= most]
 

@@ -18,7 +18,7 @@ from carp_verify.vocabulary import Interval, holds, interval, is_interval, stay_
 
 
 def parts(window: Interval, stay: Interval) -> tuple[Interval, Interval]:
-    """What the stay leaves of the window before and after it; a part may be without ticks."""
+    """The parts of the window before and after the stay; a part may be without ticks."""
     return (
         Interval(window.start, stay.start, never()),
         Interval(stay.end, window.end, window.for_ever),

@@ -33,7 +33,7 @@ from carp_verify.smt import (
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """What one step of the sweep does: whether a window is open after it, since when, and whether one is finished."""
+    """The result of one step of the sweep: is a window open after it, since when, and is one finished."""
 
     is_open: Bool
     opened: Int
