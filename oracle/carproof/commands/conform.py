@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 _STAGES = "passed", "gave up", "skipped", "not asked", "wrong answer", "crash", "timeout", "protocol error"
 _SEED_BITS = 32
-_OUTPUTS = ("seed", "junit", "as_json")
+_OUTPUTS = ("seed", "junit", "html", "as_json")
 """Options that a command line that asks again leaves out, or has anyway."""
 _LEVELS = "\n".join(
     ["\b", "Levels, each with all before it:", *(f"  {level.label:20}{level.statement}" for level in Level), "", ""]
@@ -54,7 +54,7 @@ _LEVELS = "\n".join(
         "carproof conform --solvable --without releases -- ./planner",
         "carproof conform --one-shot -- ./planner {map} {scen} {agents} {solution}",
         "carproof conform --level context-optimal --kernel -- ./planner",
-        "carproof conform --junit conform.xml --save found -- ./planner",
+        "carproof conform --junit conform.xml --html conform.html --save found -- ./planner",
     ),
 )
 @click.argument("program", nargs=-1, required=True, metavar="-- PROGRAM ...")
@@ -94,6 +94,7 @@ _LEVELS = "\n".join(
 @kernel_option
 @click.option("--save", type=click.Path(path_type=Path, file_okay=False), default="conform-failure", help="Folder.")
 @click.option("--junit", type=OutputFile(), help="Write the results to this file, as XML for continuous integration.")
+@click.option("--html", type=OutputFile(), help="Write a report to this file, with each failure in the viewer.")
 @json_option
 def command(  # noqa: PLR0913 - one parameter for each argument and option
     *,
@@ -111,6 +112,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     kernel: bool,
     save: Path,
     junit: Path | None,
+    html: Path | None,
     as_json: bool,
 ) -> Answer:
     """Ask PROGRAM questions, and judge its answers.
@@ -175,6 +177,10 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     saved = [] if report.interrupted and not report.failures else save_all(report.failures, save, origin)
     if junit is not None:
         write_whole(junit, junit_document(report, saved))
+    if html is not None:
+        from carproof.conform.html_report import html_document  # noqa: PLC0415 - it draws
+
+        write_whole(html, html_document(report, saved, origin))
     if as_json:
         print_document(report_document(report, saved))
     else:
@@ -223,6 +229,7 @@ def _origin(program: Sequence[str], level: str, one_shot: bool, seed: int) -> "O
 def _show(report: "Report", saved: Sequence[Path]) -> None:
     """Print what came of it: counts, what is wrong, and the verdict."""
     from carproof.conform.documents import counts  # noqa: PLC0415
+    from carproof.conform.wording import verdict  # noqa: PLC0415
 
     rows = [(stage, *(count[name] for name in _STAGES)) for stage, count in counts(report).items()]
     print_table(["cases", *_STAGES], rows, numbers=_STAGES)
@@ -245,29 +252,6 @@ def _show(report: "Report", saved: Sequence[Path]) -> None:
     if saved:
         others = f", with {len(saved) - 1} more in it" if saved[1:] else ""
         print_line(f"the smallest failing case is in {saved[0]}{others}")
-    print_line(_verdict(report))
+    print_line(verdict(report))
     if report.options.kernel is not None:
         print_line(f"decided by {report.options.by}")
-
-
-def _verdict(report: "Report") -> str:
-    """The last line, with the answers that decided it."""
-    level = report.options.level
-    tested = f"{report.program}, level {level.label} ({level.statement}), tested on {report.tested} answers"
-    if report.conforms:
-        return f"CONFORMS: {tested}; {_answered(report)}"
-    if report.conforms is None:
-        why = "interrupted before anything wrong was found" if report.interrupted else "no random case decided it"
-        return f"UNDECIDED: {tested}: {why}; {_answered(report)}"
-    return f"DOES NOT CONFORM: {tested}; {_answered(report)}"
-
-
-def _answered(report: "Report") -> str:
-    """How many cases were answered."""
-    from carproof.conform.findings import LEAST_ANSWERED  # noqa: PLC0415 - loaded by the run already
-
-    random = ", ".join(f"{op} {tally}" for op, tally in report.tallies.items()) or "none"
-    needed = f"{LEAST_ANSWERED} in 100 needed, seed {report.options.seed}"
-    left_out = "".join(f", {name}" for name in report.options.claims.left_out)
-    answered = f"rightly answered: smoke {report.smoke}; random {random} ({needed})"
-    return f"{answered}; not asked:{left_out[1:]}" if left_out else answered

@@ -1,0 +1,90 @@
+"""The report of conform as a page: whole in one file, with each failure in the viewer, and safe against any text."""
+
+import json
+from collections import Counter
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+from selenium.webdriver.common.by import By
+from selenium.webdriver.support.wait import WebDriverWait
+from tests.oracle.browser import Page, chromium, logged
+from tests.oracle.test_conform_saving import FAILURES, ORIGIN
+
+from carproof.conform.claims import Claims
+from carproof.conform.documents import junit_document, report_document
+from carproof.conform.findings import Category, Finding
+from carproof.conform.html_report import html_document
+from carproof.conform.run import Options, Report
+from carproof.conform.saved import save_all
+
+HOSTILE = "</title><script>document.title = 'taken'</script> & \"<b>"
+GONE = Finding(Category.CRASH, "program/alive", f"it is gone {HOSTILE}", f"its last words {HOSTILE}")
+PATIENCE = 30
+
+
+def failing() -> Report:
+    options = Options(claims=Claims(frozenset({"paces"})))
+    return Report(options, HOSTILE, list(FAILURES), Counter(passed=7), faults=[GONE])
+
+
+def test_the_page_has_the_verdict_what_was_asked_and_all_findings(tmp_path: Path) -> None:
+    report = failing()
+    text = html_document(report, save_all(report.failures, tmp_path, ORIGIN), ORIGIN).decode()
+    for expected in (
+        '<p class="verdict no">DOES NOT CONFORM: ',
+        "<dt>left out</dt><dd>paces</dd>",
+        "<tr><th>random</th><td>7</td>",
+        "<b>joint/exchange</b> wrong answer: it is wrong",
+        "<dt>advice</dt><dd>Look at the moves of the robots before, not only at their places.</dd>",
+        f"<dt>saved in</dt><dd>{tmp_path}/2-plan-duration</dd>",
+        "0B .  .  1A\n   .",
+        "<b>program/alive</b> crash: it is gone",
+    ):
+        assert expected in text
+    assert text.count("<iframe") == 2
+    assert "<script>document" not in text
+
+
+def test_a_planner_that_conforms_has_a_page_too() -> None:
+    text = html_document(Report(Options(), "planner"), [], ORIGIN).decode()
+    assert '<p class="verdict no">' in text  # it answered nothing
+    assert "<iframe" not in text
+
+
+def test_json_and_junit_name_the_folder_of_each_failure(tmp_path: Path) -> None:
+    report = failing()
+    saved = save_all(report.failures, tmp_path, ORIGIN)
+    failures = json.loads(report_document(report, saved))["failures"]
+    assert [each.get("folder") for each in failures] == [None, str(tmp_path), f"{tmp_path}/2-plan-duration"]
+    suite = ET.fromstring(junit_document(report, saved))  # noqa: S314 - written by the test
+    texts = [each.text for each in suite.findall("testcase/failure")]
+    assert texts[0] == (
+        f"Advice: Look at the moves of the robots before, not only at their places.\nSaved in {tmp_path}"
+    )
+    assert suite.get("failures") == "4"  # the level is not reached either
+
+
+def test_a_browser_shows_every_failure_in_the_viewer_and_fetches_nothing(tmp_path: Path) -> None:
+    report = failing()
+    file = tmp_path / "report.html"
+    file.write_bytes(html_document(report, save_all(report.failures, tmp_path, ORIGIN), ORIGIN))
+    with chromium(tmp_path / "profile") as driver:
+        shown = Page(driver, file)
+        frames = driver.find_elements(By.TAG_NAME, "iframe")
+        for frame, rule in zip(frames, ("joint/exchange", "plan/duration"), strict=True):
+            shown.script("arguments[0].scrollIntoView()", frame)
+            driver.switch_to.frame(frame)
+            WebDriverWait(driver, PATIENCE).until(lambda each: each.find_element(By.ID, "tick").text.startswith("tick"))
+            assert shown.script("return document.querySelector('h1').textContent") == rule
+            assert shown.text("verdict") == "✓ no rule is broken"
+            assert shown.count("#robots button") == 2
+            driver.switch_to.default_content()
+        assert "document.title = 'taken'" in driver.title
+        assert logged(driver, "browser") == []
+        events = [json.loads(message)["message"] for message in logged(driver, "performance")]
+        asked = {
+            e["params"]["request"]["url"].partition(":")[0]
+            for e in events
+            if e["method"] == "Network.requestWillBeSent"
+        }
+        assert asked <= {"file", "data", "about"}
