@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -9,12 +10,13 @@ from tests.oracle.running import Run
 from tests.oracle.test_conform_judges import Tampered, as_it_is
 
 import carp_reference
-from carp_spec import Carp, Instance, Solution
+from carp_spec import Carp, Greedy, Instance, Resource, ResourceGraph, Robot, Solution
 from carproof.conform.cases import ASKED_OPS, Case
 from carproof.conform.claims import FEATURES, Claims, is_solvable
 from carproof.conform.function import Function
 from carproof.conform.levels import Level
 from carproof.conform.run import Options, conform
+from carproof.conform.smoke import EAST, FIRST, FIRST_GOES, WEST, committed, passing_place, row
 
 
 def of(claims: Claims, examples: int = 24) -> Options:
@@ -81,3 +83,58 @@ def test_the_verdict_lists_what_was_left_out(carproof: Run, tmp_path: Path, monk
     assert last.endswith("; not asked: capacities, directed, robots without a plan")
     report = json.loads(carproof("conform", "--json", *options, *program).stdout)
     assert report["left_out"] == ["capacities", "directed", "robots without a plan"]
+
+
+PLAIN = Instance(ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),)), (Robot("new", "a", "b"),))
+MANY = replace(PLAIN, robots=(Robot("first", "b", "b", 2, 2), *PLAIN.robots))
+ISLANDS = replace(PLAIN, graph=ResourceGraph(PLAIN.graph.resources, ()))
+BLOCKED, ASIDE = row([FIRST, WEST]), passing_place([FIRST, Robot("new", "b", "p")])
+ONE_BY_ONE = passing_place([Robot("first", "a", "c"), Robot("new", "c", "a")], "park")
+
+
+@pytest.mark.parametrize(
+    ("feature", "without", "having"),
+    [
+        ("capacities", PLAIN, replace(PLAIN, graph=ResourceGraph((Resource("a"), Resource("b", 2)), (("a", "b"),)))),
+        ("durations", PLAIN, replace(PLAIN, graph=ResourceGraph((Resource("a"), Resource("b", 1, 2)), (("a", "b"),)))),
+        ("paces", PLAIN, MANY),
+        ("releases", PLAIN, MANY),
+        ("directed", PLAIN, replace(PLAIN, graph=replace(PLAIN.graph, directed=True))),
+        ("park", PLAIN, replace(PLAIN, after_goal="park")),
+        ("vanish", replace(PLAIN, after_goal="park"), PLAIN),
+    ],
+)
+def test_a_case_is_left_out_where_it_has_a_feature_that_is_not_claimed(
+    feature: str, without: Instance, having: Instance
+) -> None:
+    for solvable in (False, True):
+        claims = Claims(frozenset([feature]), solvable)
+        assert claims.why_not(Case("smoke", "one", "plan", without)) is None
+        assert claims.why_not(Case("smoke", "one", "plan", having)) == f"it does not claim {feature}"
+        assert claims.left_out == [feature, *["robots without a plan"] * solvable]
+
+
+@pytest.mark.parametrize(
+    ("case", "can_be"),
+    [
+        (Case("smoke", "one", "check", ISLANDS), True),
+        (Case("smoke", "one", "plan", PLAIN), True),
+        (Case("smoke", "one", "plan", ISLANDS), False),
+        (Case("smoke", "one", "plan", ONE_BY_ONE), True),
+        (Case("smoke", "one", "plan", ONE_BY_ONE, planner=Carp()), False),
+        (Case("smoke", "one", "plan", ASIDE, planner=Greedy()), True),
+        (Case("smoke", "one", "optimum", ONE_BY_ONE), True),
+        (Case("smoke", "one", "optimum", BLOCKED), False),
+        (Case("smoke", "one", "query", row([EAST]), robot="new"), True),
+        (Case("smoke", "one", "query", ISLANDS, robot="new"), False),
+        (Case("smoke", "one", "query", BLOCKED, committed(BLOCKED, first=FIRST_GOES), "new"), False),
+        (Case("smoke", "one", "query", ASIDE, committed(ASIDE, first=FIRST_GOES), "new"), True),
+        (Case("smoke", "one", "query", ASIDE, committed(ASIDE, first=FIRST_GOES), "new", 3), False),
+        (Case("smoke", "one", "add", BLOCKED, committed(BLOCKED, first=FIRST_GOES), "new"), False),
+        (Case("smoke", "one", "add", ASIDE, committed(ASIDE, first=FIRST_GOES), "new"), True),
+    ],
+)
+def test_a_case_is_solvable_where_the_robots_that_it_asks_for_can_have_plans(case: Case, can_be: bool) -> None:
+    assert is_solvable(case) is can_be
+    assert Claims().why_not(case) is None
+    assert Claims(solvable=True).why_not(case) == (None if can_be else "it does not claim robots without a plan")

@@ -1,8 +1,11 @@
 """`conform --kernel`: the proved kernel decides on plans and on how early they are, and nobody overrules it."""
 
 import json
-from collections.abc import Sequence
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import pytest
@@ -16,14 +19,45 @@ from tests.oracle.test_conform_judges import (
     polishes_into_each_other,
     verdict_is_always_valid,
 )
+from tests.oracle.test_conform_one_answer import (
+    ADDED,
+    ADDITIONS,
+    ALONE,
+    ASIDE_SECOND,
+    BEST,
+    BOUND,
+    CHECKS,
+    FREE,
+    OPTIMUM,
+    PLAN,
+    PLANS,
+    POLISHES,
+    QUERIES,
+    QUERY,
+    QUERY_UNDER_WAY,
+    Row,
+    case,
+    goes,
+    right,
+)
 from tests.oracle.test_kernel_option import stand_in
 from tests.verify.kernel_program import program
 
+from carp_spec import Carp, judge, read_instance, read_solution
+from carp_spec.documents import VerdictDocument
+from carp_spec.query_certificates import read_query_certificate
 from carp_verify.bound_rules import ContradictionError
 from carp_verify.kernel import KernelVerdict, ask, version
+from carp_verify.verify_query import verify_query
 from carproof.conform import by_kernel
+from carproof.conform.answers import Answer
+from carproof.conform.by_kernel import EARLY, LAWFUL, require_agreement
+from carproof.conform.cases import Case
+from carproof.conform.findings import Finding, wrong
+from carproof.conform.judges import first_finding
 from carproof.conform.levels import Level
 from carproof.conform.run import Options, Report, conform
+from carproof.conform.smoke import FIRST_GOES
 
 CONTEXT_OPTIMAL = Level.CONTEXT_OPTIMAL
 OPS = ("check", "query", "plan", "add", "polish")
@@ -113,3 +147,106 @@ def test_without_a_kernel_or_above_its_levels_nothing_is_asked(
     outcome = carproof("conform", "--kernel", "--", "true")
     assert outcome.code == 2
     assert "there is no program carproof-kernel" in outcome.stderr
+
+
+KERNELS_LEVELS = (Level.SOUND, Level.COMPLETE_IN_CONTEXT, Level.CONTEXT_OPTIMAL)
+KERNELS_PLANS = [row for row in (*QUERIES, *PLANS) if row[0].planner in (None, Carp()) and not row[0].classical]
+LAWLESS = wrong("plan/start", "it starts elsewhere")
+MISSING = wrong("query/complete", "it has a plan")
+LATE = wrong("query/optimal", "it is late")
+
+
+def decided(document: Any) -> KernelVerdict:  # noqa: ANN401 - a request
+    """The answer of a kernel that decides as carp_spec and carp_verify do."""
+    instance, solution, certificate = (
+        msgspec.json.encode(document.get(name)) for name in ("instance", "solution", "certificate")
+    )
+    if document["op"] == "check":
+        is_right = judge(read_instance(instance), read_solution(solution)).valid
+        return KernelVerdict("7", "accepted" if is_right else "refused")
+    verify_query(read_instance(instance), read_solution(solution), read_query_certificate(certificate))
+    return KernelVerdict("7", "accepted")
+
+
+def let_kernel_decide(monkeypatch: pytest.MonkeyPatch, wrong: Mapping[int, bool] | None = None) -> list[Any]:
+    """Let a kernel decide that is right but for the requests of these numbers; returns what it is asked."""
+    asked: list[Any] = []
+
+    def answer(data: bytes) -> KernelVerdict:
+        verdict = decided(json.loads(data))
+        if wrong is not None and len(asked) in wrong:
+            verdict = msgspec.structs.replace(verdict, verdict="accepted" if wrong[len(asked)] else "refused")
+        asked.append(json.loads(data))
+        return verdict
+
+    monkeypatch.setattr(by_kernel, "ask", lambda requests: [answer(each) for each in requests])
+    return asked
+
+
+def require_contradiction(asked: Case, answer: Answer, level: Level, finding: Finding | None, words: str) -> None:
+    with pytest.raises(ContradictionError, match=re.escape(words)):
+        require_agreement(asked, answer, level, finding)
+
+
+@pytest.mark.parametrize("level", KERNELS_LEVELS)
+@pytest.mark.parametrize("row", [*KERNELS_PLANS, *ADDITIONS, *POLISHES, *CHECKS])
+def test_a_kernel_agrees_unless_it_decides_otherwise_on_the_plans(
+    row: Row, level: Level, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked, answer, _ = row
+    finding = first_finding(asked, answer, level)
+    requests = let_kernel_decide(monkeypatch)
+    require_agreement(asked, answer, level, finding)
+    is_verdict = isinstance(answer, VerdictDocument)
+    if is_verdict and finding is not None:
+        assert requests == []
+    elif finding is None or finding.rule.startswith(LAWFUL):
+        let_kernel_decide(monkeypatch, {0: not decided(requests[0]).accepted})
+        shown = "nothing wrong" if finding is None else f"{finding.message} [{finding.rule}]"
+        require_contradiction(asked, answer, level, finding, f"differ on one: carp_spec finds {shown}")
+
+
+@pytest.mark.parametrize("level", KERNELS_LEVELS)
+@pytest.mark.parametrize("row", KERNELS_PLANS)
+def test_a_kernel_contradicts_what_is_found_otherwise(row: Row, level: Level, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked, answer, _ = row
+    let_kernel_decide(monkeypatch)
+    finding = first_finding(asked, answer, level)
+    if finding is None:
+        for other in (LAWLESS, *(each for each in (MISSING, LATE) if level >= Level.COMPLETE_IN_CONTEXT)):
+            require_contradiction(asked, answer, level, other, f"{other.message} [{other.rule}]")
+    elif finding.rule.startswith(LAWFUL) or finding.rule in EARLY:
+        require_contradiction(asked, answer, level, None, "carp_spec finds nothing wrong")
+
+
+@pytest.mark.parametrize(
+    ("asked", "answer", "robots"),
+    [
+        (QUERY, goes(*FIRST_GOES), ["new"]),
+        (QUERY_UNDER_WAY, goes(*FIRST_GOES), ["new"]),
+        (PLAN, ADDED, ["first", "new"]),
+        (FREE, ASIDE_SECOND, ["new", "first"]),
+    ],
+)
+def test_a_kernel_is_asked_about_each_robot_for_the_best_plan_and_why_none_is_better(
+    asked: Case, answer: Answer, robots: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for level in KERNELS_LEVELS:
+        requests = let_kernel_decide(monkeypatch)
+        require_agreement(asked, answer, level, None)
+        certificates = [each["certificate"] for each in requests if each["op"] == "verify-query"]
+        assert [each["robot"] for each in certificates] == (robots if level > Level.SOUND else [])
+        assert [each["now"] for each in certificates] == [asked.now] * len(certificates)
+        assert [each["op"] for each in requests] == ["check", *["verify-query", "check"] * len(certificates)]
+        for number in range(1, len(requests)):
+            let_kernel_decide(monkeypatch, {number: False})
+            require_contradiction(asked, answer, level, None, "carproof-kernel 7 refuses carproof's own on one")
+
+
+def test_a_kernel_is_asked_about_plans_alone_and_where_it_knows_the_law(monkeypatch: pytest.MonkeyPatch) -> None:
+    requests = let_kernel_decide(monkeypatch)
+    require_agreement(OPTIMUM, BEST, Level.SOUND, LAWLESS)
+    require_agreement(case("bound", ALONE), BOUND, Level.SOUND, LAWLESS)
+    forbidding = replace(QUERY, instance=replace(ALONE, following="forbidden"))
+    require_agreement(forbidding, right(forbidding), Level.SOUND, LAWLESS)
+    assert requests == []

@@ -327,6 +327,10 @@ def test_where_carproof_is_undecided_nothing_is_called_wrong_nor_counted(monkeyp
     assert [why_undecided(*each, Level.OPTIMAL) for each in asked] == [undecided] * 3 + [None]
     assert why_undecided(FREE, ASIDE_SECOND, Level.CONTEXT_OPTIMAL) is None
     assert why_undecided(FREE, ASIDE_SECOND, Level.EXACT) == undecided
+    assert why_undecided(FREE, ASIDE_SECOND, Level.COMPLETE) is None
+    assert why_undecided(FREE, committed(MEETING, first=FIRST_GOES), Level.COMPLETE) == undecided
+    assert why_undecided(OPTIMUM, BEST, Level.COMPLETE) is None
+    assert why_undecided(OPTIMUM, NONE, Level.COMPLETE) == undecided
     assert why_undecided(PLAN, ADDED, Level.OPTIMAL) is None
     assert why_undecided(POLISH, POLISH.solution, Level.OPTIMAL) is None
 
@@ -335,6 +339,9 @@ def test_an_optimum_that_is_not_proved_counts_as_no_answer() -> None:
     assert why_undecided(OPTIMUM, UNDECIDED, Level.OPTIMAL) == "it leaves the optimum undecided"
     assert why_undecided(OPTIMUM, claimed(9, 7, proved=False, solution=CARP), Level.OPTIMAL) is not None
     assert why_undecided(OPTIMUM, BEST, Level.OPTIMAL) is None
+    assert why_undecided(OPTIMUM, UNDECIDED, Level.COMPLETE) == "it leaves the optimum undecided"
+    assert why_undecided(OPTIMUM, claimed(9, 7, proved=False, solution=CARP), Level.COMPLETE) is None
+    assert why_undecided(case("optimum", BEHIND), claimed(3, 3, proved=False, solution=ONE_OF_TWO), Level.COMPLETE)
     assert why_undecided(case("optimum", BLOCKED), NONE, Level.OPTIMAL) is None
     assert why_undecided(FREE, ASIDE_SECOND, Level.OPTIMAL) is None
 

@@ -12,6 +12,7 @@ from carp_spec.documents import VerdictDocument, solution_document
 from carproof.conform.answers import (
     MOST_SHOWN,
     Skipped,
+    decode_solution,
     read_result,
     result_of,
     shown,
@@ -146,11 +147,18 @@ def test_a_result_of_another_shape_is_refused(op: str, document: Any) -> None:  
     assert (finding.category, finding.rule) == (Category.PROTOCOL_ERROR, "program/result")
 
 
-@pytest.mark.parametrize("data", [b"[" * 100_000, b'{"format": "carproof-solution/1", "order": [1e999]}', b"\xff"])
-def test_a_solution_that_cannot_be_read_is_refused(data: bytes) -> None:
+@pytest.mark.parametrize("op", ["plan", "query"])
+@pytest.mark.parametrize("data", [b"[" * 100_000, b'{"format": "carproof-solution/1", "order": [1e999]}', b"\xff", b""])
+def test_a_result_that_cannot_be_read_is_refused(op: str, data: bytes) -> None:
     with pytest.raises(Fault) as refused:
-        read_result("plan", data)
+        read_result(op, data)
     assert refused.value.finding.rule == "program/result"
+
+
+def test_a_solution_is_read_as_the_result_of_plan_is() -> None:
+    assert decode_solution(json.dumps(WHOLE).encode()) == decoded("plan", WHOLE)
+    with pytest.raises(Fault, match="the result of plan is not as it must be"):
+        decode_solution(b"{}")
 
 
 def test_a_start_names_the_program_and_its_ops() -> None:

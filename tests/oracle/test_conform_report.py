@@ -11,7 +11,22 @@ from carproof.conform.answers import Reply, Skipped
 from carproof.conform.cases import Case, Op, Stage
 from carproof.conform.deciding import Tally, random_shortfalls, smoke_shortfalls
 from carproof.conform.effort import Effort
-from carproof.conform.findings import Category, Fault, Finding, wrong
+from carproof.conform.findings import (
+    Category,
+    Fault,
+    Finding,
+    answers_enough,
+    is_accepted,
+    is_alive,
+    is_complete,
+    is_in_time,
+    is_lower,
+    is_optimal,
+    is_response,
+    is_result,
+    tries_enough,
+    wrong,
+)
 from carproof.conform.levels import CLASSICAL_LEVELS, JUDGED_OPS, LEVELS, WHOLE_LEVELS, Level
 from carproof.conform.outcome import Outcome
 from carproof.conform.run import MOST_FAULTS, Options, Report, conform, label
@@ -172,8 +187,9 @@ def test_each_level_asks_more_than_the_one_before_and_has_a_name_and_a_statement
     assert [level.label for level in Level] == labels
     assert list(Level) == sorted(Level)
     assert dict(zip(labels, Level, strict=True)) == LEVELS
-    assert len({level.statement for level in Level}) == len(labels)
-    assert all(level in Level for level in (*CLASSICAL_LEVELS, *WHOLE_LEVELS))
+    assert len({str(level.statement) for level in Level}) == len(labels)
+    assert [*WHOLE_LEVELS] == list(Level)[:-1]
+    assert set(CLASSICAL_LEVELS) < {*WHOLE_LEVELS}
 
 
 def test_of_failures_of_one_rule_the_smallest_is_shown_and_counted_once() -> None:
@@ -185,6 +201,25 @@ def test_of_failures_of_one_rule_the_smallest_is_shown_and_counted_once() -> Non
     made.faults.append(CRASH)
     assert made.findings == [CRASH, WRONG, CRASH]
     assert made.processes_lost == 1
+
+
+def test_each_rule_of_programs_is_kept_and_broken_where_it_says() -> None:
+    assert [is_alive(code) for code in (None, 0, 1, -9)] == [True, True, False, False]
+    assert [is_in_time(seconds, 2.0) for seconds in (1.9, 2.0, 2.1)] == [True, True, False]
+    assert [is_response({"id", name}) for name in ("result", "skipped", "error", "more")] == [True, True, True, False]
+    assert not is_response({"id", "result", "error"})
+    assert [rule(given) for rule in (is_result, is_accepted) for given in (None, "", "why")] == [True, False, False] * 2
+    assert [is_optimal(*costs) for costs in ((3, 3), (None, None), (4, 3), (2, 3), (None, 3), (3, None))] == (
+        [True, True, False, False, False, False]
+    )
+    assert [is_complete(*given) for given in ((0, 3), (0, None), (1, None), (1, 3), (1, 0))] == (
+        [True, True, True, False, False]
+    )
+    assert [is_lower(*bounds) for bounds in ((3, 3), (2, 3), (4, 3), (4, None), (1, 0))] == (
+        [True, True, False, True, False]
+    )
+    assert [answers_enough(answered, 100) for answered in (89, 90, 91)] == [False, True, True]
+    assert [tries_enough(*counts) for counts in ((0, 0), (50, 50), (49, 51), (51, 49))] == [True, True, False, True]
 
 
 def test_smoke_cases_are_tallied_alone() -> None:

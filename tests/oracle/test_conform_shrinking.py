@@ -1,0 +1,126 @@
+"""The search for a random case that fails, and for a smaller one that fails in the same way."""
+
+from collections.abc import Callable
+
+import pytest
+from hypothesis import strategies as st
+
+from carp_spec import Robot
+from carproof.conform.cases import Case
+from carproof.conform.findings import Category, Finding, wrong
+from carproof.conform.outcome import Outcome
+from carproof.conform.shrinking import FailureSearch
+from carproof.conform.smoke import row
+
+MOST = 12
+JUMPS, LATE = wrong("plan/move", "it jumps"), wrong("query/optimal", "it is late")
+NO_ANSWER = Finding(Category.TIMEOUT, "program/in-time", "no answer")
+Judge = Callable[[int], Finding | None]
+
+
+def case(robots: int) -> Case:
+    return Case("random", "query", "query", row([Robot(number, "a", "b") for number in range(robots)]))
+
+
+CASES = st.integers(0, MOST).map(case)
+
+
+class Asked:
+    """Asks by a judge of the number of robots, and remembers the numbers and the limits of time."""
+
+    def __init__(self, judge: Judge, taken: float = 0.0) -> None:
+        self.judge = judge
+        self.taken = taken
+        self.robots: list[int] = []
+        self.limits: list[float | None] = []
+
+    def __call__(self, asked: Case, seconds: float | None) -> Outcome:
+        self.robots.append(len(asked.instance.robots))
+        self.limits.append(seconds)
+        return Outcome(asked, self.judge(self.robots[-1]), seconds=self.taken)
+
+
+def search(asked: Asked, examples: int = 100, shrink_seconds: float = 60.0, limit: float = 5.0) -> FailureSearch:
+    made = FailureSearch(asked, limit, shrink_seconds)
+    made.run(CASES, examples, seed=1)
+    return made
+
+
+def best(made: FailureSearch) -> tuple[int, Finding | None]:
+    assert made.best is not None
+    return len(made.best.case.instance.robots), made.best.finding
+
+
+def test_where_nothing_fails_each_case_is_asked_with_all_the_time_and_none_is_found() -> None:
+    asked = Asked(lambda _: None)
+    assert search(asked, examples=10).best is None
+    assert 5 <= len(asked.robots) <= 10
+    assert set(asked.limits) == {None}
+
+
+@pytest.mark.parametrize("least", [0, 1, 3])
+def test_the_smallest_case_that_fails_is_found(least: int) -> None:
+    asked = Asked(lambda robots: JUMPS if robots >= least else None)
+    assert best(search(asked)) == (least, JUMPS)
+
+
+@pytest.mark.parametrize(
+    "other", [LATE, wrong("plan/goal", "it jumps"), Finding(Category.CRASH, "plan/move", "it jumps")]
+)
+def test_a_case_that_fails_otherwise_is_no_smaller_one(other: Finding) -> None:
+    asked = Asked(lambda robots: JUMPS if robots >= 6 else other if max(asked.robots) >= 6 else None)
+    assert best(search(asked)) == (6, JUMPS)
+    assert min(asked.robots[asked.robots.index(max(asked.robots)) :]) < 6, "smaller ones were asked"
+
+
+def test_without_time_to_shrink_the_first_failure_stays() -> None:
+    asked = Asked(lambda robots: JUMPS if robots >= 1 else None)
+    made = search(asked, shrink_seconds=0.0)
+    assert best(made) == (asked.robots[-1], JUMPS)
+
+
+def test_a_program_that_fails_once_only_is_found_out_and_nothing_is_asked_twice() -> None:
+    asked = Asked(lambda robots: JUMPS if asked.robots.count(robots) == 1 and len(asked.robots) == 4 else None)
+    made = search(asked)
+    assert best(made) == (asked.robots[3], JUMPS)
+    assert len(asked.robots[4:]) == len({*asked.robots[3:]} - {asked.robots[3]})
+
+
+@pytest.mark.parametrize(
+    ("taken", "limit", "given"), [(0.0, 5.0, 0.25), (0.1, 5.0, 2.0), (0.1, 1.0, 1.0), (3.0, 5.0, 5.0)]
+)
+def test_smaller_cases_get_as_much_time_as_right_answers_took_and_some_more(
+    taken: float, limit: float, given: float
+) -> None:
+    asked = Asked(lambda robots: JUMPS if robots >= 5 else None, taken)
+    search(asked, limit=limit)
+    assert any(robots < 5 for robots in asked.robots[: asked.limits.index(given)]), "a right answer came first"
+    assert {seconds for seconds in asked.limits if seconds is not None} == {given}
+
+
+def test_the_smallest_that_takes_too_long_is_asked_once_more_with_all_the_time() -> None:
+    asked = Asked(lambda robots: NO_ANSWER if robots >= 2 else None)
+    assert best(search(asked)) == (2, NO_ANSWER)
+    assert (asked.robots[-1], asked.limits[-1]) == (2, None)
+
+
+def test_one_that_takes_too_long_with_less_time_alone_is_given_up_for_the_first() -> None:
+    asked = Asked(lambda robots: NO_ANSWER if robots >= 9 or (robots >= 2 and asked.limits[-1] is not None) else None)
+    made = search(asked)
+    assert best(made) == (next(robots for robots in asked.robots if robots >= 9), NO_ANSWER)
+    assert (asked.robots[-1] < 9, asked.limits[-1]) == (True, None)
+
+
+def test_one_that_fails_otherwise_with_all_the_time_is_given_up_for_the_first() -> None:
+    asked = Asked(
+        lambda robots: (
+            NO_ANSWER
+            if robots >= 9 or asked.limits[-1] is not None
+            else LATE
+            if robots < 9 < max(asked.robots)
+            else None
+        )
+    )
+    made = search(asked)
+    assert best(made)[1] == NO_ANSWER
+    assert best(made)[0] >= 9

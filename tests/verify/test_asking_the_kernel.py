@@ -1,0 +1,153 @@
+"""What the kernel's program is asked, and what its answers come to. Shell scripts stand in for it."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import msgspec
+import pytest
+
+import carp_verify.kernel
+from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
+from carp_spec.bounds import BOUND_FORMAT, BoundDocument, digest
+from carp_spec.documents import instance_document, write, write_instance
+from carp_verify.kernel import (
+    PROGRAM,
+    VARIABLE,
+    KernelVerdict,
+    UndecidedError,
+    ask,
+    is_answer,
+    program,
+    request,
+    verify_bound,
+    version,
+)
+
+INSTANCE = Instance(ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),)), (Robot("r1", "a", "b"),))
+CERTIFICATE = BoundDocument(BOUND_FORMAT, digest(INSTANCE), 0, 1, 0, (), (), (), ())
+ACCEPTED = '{"kernel": "7", "verdict": "accepted"}'
+REFUSED = '{"kernel": "7", "verdict": "refused", "path": "$.bound", "rule": "bound/total", "message": "too much"}'
+
+
+@pytest.fixture(name="folder")
+def folder_of_kernel(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with the only kernel; it notes its arguments, the files that they name, and its input."""
+    answers(tmp_path)
+    monkeypatch.setenv(VARIABLE, str(tmp_path / PROGRAM))
+    return tmp_path
+
+
+def answers(folder: Path, *lines: str) -> None:
+    """Let the kernel of the folder answer these lines, whatever it is asked."""
+    note = f'for each in "$@"; do echo "$each" >> "{folder}/arguments"; cat "$each" >> "{folder}/files"; done'
+    prints = "".join(f"printf '%s\\n' '{line}'\n" for line in lines)
+    (folder / PROGRAM).write_text(f'#!/bin/sh\n({note}) 2> /dev/null\ncat > "{folder}/input"\n{prints}echo no >&2\n')
+    (folder / PROGRAM).chmod(0o755)
+
+
+def test_each_request_has_the_answer_in_its_line(folder: Path) -> None:
+    answers(folder, ACCEPTED, REFUSED, ACCEPTED)
+    asked = [request("check", INSTANCE, solution=number) for number in range(2)]
+    assert [answer.accepted for answer in ask(asked)] == [True, False]
+    assert (folder / "arguments").read_text() == "serve\n"
+    lines = (folder / "input").read_bytes().splitlines(keepends=True)
+    assert lines == asked
+    document = msgspec.json.decode(write(instance_document(INSTANCE)))
+    expected = [{"op": "check", "instance": document, "solution": number} for number in range(2)]
+    assert [msgspec.json.decode(line) for line in lines] == expected
+
+
+@pytest.mark.parametrize(
+    "lines", [(), (ACCEPTED,), ("", ACCEPTED), (ACCEPTED, "nonsense"), (ACCEPTED, '{"kernel": 7}')]
+)
+def test_a_request_without_an_answer_is_refused(folder: Path, lines: tuple[str, ...]) -> None:
+    answers(folder, *lines)
+    with pytest.raises(Refusal) as refused:
+        ask([b"{}\n"] * 2)
+    assert (refused.value.path, refused.value.rule) == ("$.kernel", "kernel/answer")
+
+
+def test_the_version_is_asked_of_the_program_itself(folder: Path) -> None:
+    answers(folder, '{"kernel": "7", "verdict": "bad input"}')
+    assert version() == "carproof-kernel 7"
+
+
+def test_a_bound_is_verified_with_the_formulas_of_its_cuts(folder: Path) -> None:
+    answers(folder, REFUSED)
+    verdict = verify_bound(INSTANCE, CERTIFICATE, {0: "p cnf 1 0\n", 3: "p cnf 2 0\n"})
+    assert (verdict.accepted, verdict.path, verdict.rule, verdict.message) == (
+        False,
+        "$.bound",
+        "bound/total",
+        "too much",
+    )
+    arguments = [Path(each).name for each in (folder / "arguments").read_text().splitlines()]
+    cuts = ["--cut-formula", "0", "0.cnf", "--cut-formula", "3", "3.cnf"]
+    assert arguments == ["verify-bound", "instance.json", "certificate.json", *cuts]
+    files = write_instance(INSTANCE) + write(CERTIFICATE) + b"p cnf 1 0\np cnf 2 0\n"
+    assert (folder / "files").read_bytes() == files
+
+
+def test_where_following_is_forbidden_nothing_is_asked(folder: Path) -> None:
+    answers(folder, ACCEPTED)
+    forbidding = replace(INSTANCE, following="forbidden")
+    for asks in (lambda: request("check", forbidding), lambda: verify_bound(forbidding, CERTIFICATE, {})):
+        with pytest.raises(Refusal, match="limit/following"):
+            asks()
+    assert not (folder / "arguments").exists()
+
+
+@pytest.mark.parametrize(
+    ("line", "is_one"),
+    [
+        (ACCEPTED, True),
+        (REFUSED, True),
+        ('{"kernel": "7", "verdict": "yes"}', False),
+        ('{"verdict": "accepted"}', False),
+        ('{"kernel": "7", "verdict": "accepted", "cost": "1"}', False),
+        ("", False),
+        ("[]", False),
+        ("\udcff", False),
+    ],
+)
+def test_an_answer_has_a_version_and_a_verdict(line: str, is_one: bool) -> None:
+    assert is_answer(line) is is_one
+
+
+def test_what_is_no_acceptance_is_a_refusal_undecided_or_not_read() -> None:
+    assert KernelVerdict("7", "accepted").accepted
+    assert not KernelVerdict("7", "refused").accepted
+    with pytest.raises(UndecidedError, match="carproof-kernel 7: too large"):
+        KernelVerdict("7", "undecided", message="too large").accepted  # noqa: B018 - it raises
+    for rule, shown in (("document/shape", "document/shape"), (None, "kernel/answer")):
+        with pytest.raises(Refusal, match="carproof-kernel 7: no instance") as refused:
+            KernelVerdict("7", "bad input", "$.x", rule, "no instance").accepted  # noqa: B018
+        assert (refused.value.kind, refused.value.path, refused.value.rule) == ("document", "$.x", shown)
+
+
+def test_the_program_named_goes_before_the_one_built_and_this_before_the_one_on_the_path(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    built, on_path = tmp_path / "built", tmp_path / "path" / PROGRAM
+    on_path.parent.mkdir()
+    for each in (built, on_path):
+        each.write_text("#!/bin/sh\n")
+        each.chmod(0o755)
+    monkeypatch.setattr(carp_verify.kernel, "BUILT", built)
+    monkeypatch.setenv("PATH", str(on_path.parent))
+    assert program() == str(folder / PROGRAM)
+    monkeypatch.delenv(VARIABLE)
+    assert program() == str(built)
+    built.unlink()
+    assert program() == str(on_path)
+    on_path.unlink()
+    with pytest.raises(Refusal, match="there is no program carproof-kernel; `make kernel` builds it") as refused:
+        program()
+    assert (refused.value.path, refused.value.rule) == ("$.kernel", "kernel/program")
+    monkeypatch.setenv(VARIABLE, str(tmp_path / "elsewhere"))
+    with pytest.raises(Refusal, match="kernel/program"):
+        program()
+
+
+def test_the_program_built_is_looked_for_where_make_builds_it() -> None:
+    assert Path(__file__).parents[2] / "build" / "kernel" / PROGRAM == carp_verify.kernel.BUILT
