@@ -122,6 +122,7 @@ def test_an_agent_without_a_line_is_unplanned() -> None:
     assert read(COLUMNS.splitlines()[1]) == only_second
     assert read("schedule:\n" + SCHEDULE[SCHEDULE.index("  agent1") :]) == only_second
     assert read("schedule:\n  r2:" + SCHEDULE.partition("agent1:")[2]) == only_second
+    assert read("schedule:\n  agent0:\n    []\n" + SCHEDULE[SCHEDULE.index("  agent1") :]) == only_second
     assert read(write_foreign_solution(INSTANCE, only_second, "libmultirobotplanning").decode()) == only_second
     assert read(write_foreign_solution(INSTANCE, only_second, "paths-x-y").decode()) == only_second
 
@@ -150,7 +151,7 @@ def test_an_agent_without_a_line_is_unplanned() -> None:
         ("libmultirobotplanning", "schedule: {}\nschedule: {}", "file:2: there must be one field schedule"),
         ("libmultirobotplanning", "schedule: 1", "file:1: there must be a mapping of agents to lists"),
         ("libmultirobotplanning", "schedule:\n  agent0: 1", "file:2: there must be a list of entries"),
-        ("libmultirobotplanning", "schedule:\n  agent0: []", "file:2: the list must have an entry"),
+        ("libmultirobotplanning", "schedule:\n  agent0: []\n  agent0: []", "file:3: agent agent0 must have one list"),
         ("libmultirobotplanning", "schedule:\n  agent0:\n  - 1", "file:3: there must be an entry with x, y and t"),
         ("libmultirobotplanning", "schedule:\n  agent0: [{x: 1}]", "file:2: an entry must have x, y and t"),
         ("libmultirobotplanning", "schedule:\n  agent0: [{x: 1.5}]", "file:2: an entry must have x, y and t once"),

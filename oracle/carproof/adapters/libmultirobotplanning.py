@@ -1,8 +1,8 @@
 """libMultiRobotPlanning's schedules in YAML: `schedule:`, and below it for each agent a list of x, y and t.
 
 x is the column and y the row. An agent is the robot of that id or, for `agent0`, `agent1` and so on, the instance's
-robot of that number, counted from 0; an agent that is not listed is unplanned. Ticks rise; between two of them the
-robot waits in the first's cell. What stands beside `schedule` is not read.
+robot of that number, counted from 0; an agent that is not listed, or whose list is empty, is unplanned. Ticks rise;
+between two of them the robot waits in the first's cell. Fields beside `schedule` are not read.
 Semantics: `walks`.
 """
 
@@ -24,7 +24,7 @@ _FIELDS = ("x", "y", "t")
 @rule(
     "adapter/libmultirobotplanning",
     "The file is a YAML mapping whose field schedule maps each agent to a list; each entry has x, y and t, whole "
-    "numbers, and the t rise. An agent is a robot of the instance, and has one list.",
+    "numbers, and the t rise. An agent is a robot of the instance, and has one list; an empty one is no plan.",
     "output of libMultiRobotPlanning",
 )
 def schedule_is_right(text: str, instance: Instance) -> bool:
@@ -110,7 +110,7 @@ class _Schedule:
             if robot in walks:
                 raise self.refuse(f"agent {name} must have one list, and has a second")
             walks[robot] = self.entries()
-        return walks
+        return {robot: walk for robot, walk in walks.items() if walk}
 
     def robot(self, name: str) -> RobotId:
         """The robot that the agent is."""
@@ -133,8 +133,6 @@ class _Schedule:
             if walk and values["t"] <= walk[-1][1]:
                 raise self.refuse(f"the t must be larger than {walk[-1][1]}, the one before, and is {values['t']}")
             walk.append(((values["x"], values["y"]), values["t"]))
-        if not walk:
-            raise self.refuse("the list must have an entry")
         return walk
 
     def entry(self) -> dict[str, int]:
