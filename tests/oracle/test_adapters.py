@@ -256,23 +256,14 @@ def test_the_rules_of_formats_hold_for_right_files() -> None:
     assert solution_has_walks(INSTANCE, SOLUTION, partial=False)
 
 
-def grids() -> st.SearchStrategy[ResourceGraph]:
+@st.composite
+def grids(draw: st.DrawFn) -> ResourceGraph:
     """Grids of up to 3 x 3 cells with some of the edges; cells and edges are in random order."""
-
-    @st.composite
-    def draw_grid(draw: st.DrawFn) -> ResourceGraph:
-        width, height = draw(st.integers(1, 3)), draw(st.integers(1, 3))
-        cells = draw(st.permutations([(x, y) for x in range(width) for y in range(height)]))
-        numbers = draw(st.lists(st.tuples(st.integers(1, 2), st.integers(1, 2)), min_size=9, max_size=9))
-        edges = list(cell_edges(cells))
-        kept = draw(st.lists(st.booleans(), min_size=len(edges), max_size=len(edges)))
-        resources = tuple(
-            Resource(cell_id(x, y), capacity, duration, x, y)
-            for (x, y), (capacity, duration) in zip(cells, numbers, strict=False)
-        )
-        return ResourceGraph(resources, tuple(edge for edge, keep in zip(edges, kept, strict=True) if keep))
-
-    return draw_grid()
+    width, height = draw(st.integers(1, 3)), draw(st.integers(1, 3))
+    cells = draw(st.permutations([(x, y) for x in range(width) for y in range(height)]))
+    numbers = st.integers(1, 2)
+    resources = tuple(Resource(cell_id(x, y), draw(numbers), draw(numbers), x, y) for x, y in cells)
+    return ResourceGraph(resources, tuple(edge for edge in cell_edges(cells) if draw(st.booleans())))
 
 
 def planned_grids() -> st.SearchStrategy[PlannedInstance]:
@@ -331,41 +322,48 @@ def test_any_text_is_read_or_refused(pieces: list[str], format: str | None) -> N
 
 
 @pytest.fixture
-def benchmark(tmp_path: Path) -> Path:
-    (tmp_path / "m.map").write_text(MAP)
-    (tmp_path / "m.scen").write_text(SCENARIO)
-    (tmp_path / "m.json").write_bytes(write_instance(INSTANCE))
-    for format, text in CORRECT.items():
-        (tmp_path / format).write_text(text)
-    return tmp_path
+def benchmark(elsewhere: Path) -> Path:
+    """A folder to be in, with a map, a scenario, the instance that they are, and plans in every format."""
+    files = {"m.map": MAP, "m.scen": SCENARIO, "m.json": write_instance(INSTANCE).decode(), **CORRECT}
+    for name, text in files.items():
+        (elsewhere / name).write_text(text)
+    return elsewhere
 
 
+MAPS = "--map m.map --scen m.scen"
+
+
+@pytest.mark.usefixtures("benchmark")
 @pytest.mark.parametrize("format", CORRECT)
-def test_check_judges_a_file_against_an_instance_or_a_benchmark(carproof: Run, benchmark: Path, format: str) -> None:
-    told = "no rule is broken: total cost 5, unplanned robots 0\n"
-    maps = ("--map", benchmark / "m.map", "--scen", benchmark / "m.scen")
-    assert carproof("check", benchmark / "m.json", benchmark / format).stdout == told
-    assert carproof("check", *maps, benchmark / format, "--from", format).stdout == told
-    assert carproof("check", *maps, "--agents", "2", "-", stdin=CORRECT[format].encode()).stdout == told
+def test_check_judges_a_file_against_an_instance_or_a_benchmark(carproof: Run, format: str) -> None:
+    for arguments in (f"m.json {format}", f"{MAPS} {format} --from {format}", f"{MAPS} --agents 2 -"):
+        outcome = carproof(f"check {arguments}", stdin=CORRECT[format].encode())
+        assert outcome.stdout == "no rule is broken: total cost 5, unplanned robots 0\n"
 
 
+@pytest.mark.usefixtures("benchmark")
 @pytest.mark.parametrize("command", ["check", "view", "certify", "polish --iterations 5"])
 @pytest.mark.parametrize("format", ["lacam", "paths-row-column"])
-def test_any_solution_file_is_accepted_with_a_benchmark(
-    carproof: Run, benchmark: Path, command: str, format: str
-) -> None:
-    maps = ("--map", benchmark / "m.map", "--scen", benchmark / "m.scen")
-    outcome = carproof(*command.split(), *maps, benchmark / format)
-    assert outcome.code == 0, outcome
-    again = carproof(*command.split(), benchmark / "m.json", "-", "--from", format, stdin=CORRECT[format].encode())
-    assert again.code == 0, again
+def test_any_solution_file_is_accepted_with_a_benchmark(carproof: Run, command: str, format: str) -> None:
+    for arguments in (f"{MAPS} {format}", f"m.json - --from {format}"):
+        outcome = carproof(f"{command} {arguments}", stdin=CORRECT[format].encode())
+        assert outcome.code == 0, outcome
 
 
-def test_a_bound_is_set_against_any_solution_file(carproof: Run, benchmark: Path) -> None:
-    maps = ("--map", benchmark / "m.map", "--scen", benchmark / "m.scen")
-    outcome = carproof("bound", *maps, "--steps", "5", "--plans", benchmark / "lacam")
+@pytest.mark.usefixtures("benchmark")
+def test_a_bound_is_set_against_any_solution_file(carproof: Run) -> None:
+    outcome = carproof(f"bound {MAPS} --steps 5 --plans lacam")
     assert (outcome.code, outcome.stdout.splitlines()[-1].split()[:4]) == (0, ["2", "4", "4", "5"])
-    assert "Give INSTANCE, or --map and --scen." in carproof("bound", "--plans", benchmark / "lacam").stderr
+
+
+HALFWAY = {
+    "lacam": "solution=\n0:(0,0),(3,2),\n1:(1,0),(3,2),\n2:(2,0),(3,2),\n",
+    "libmultirobotplanning": SCHEDULE[: SCHEDULE.index("    - {x: 3, y: 1")],
+    "paths-x-y": "Agent 0: (0,0)->(1,0)->(2,0)->\nAgent 1: (3,2)->(3,2)->\n",
+    "carproof": write_solution(
+        replace(SOLUTION, plans=(SOLUTION.plans[0], Plan("r2", SOLUTION.plans[1].visits[:1])))
+    ).decode(),
+}
 
 
 @pytest.mark.parametrize(
@@ -375,36 +373,25 @@ def test_a_bound_is_set_against_any_solution_file(carproof: Run, benchmark: Path
 def test_agents_of_a_benchmark_are_called_as_the_solution_calls_them(
     carproof: Run, benchmark: Path, format: str, name: str
 ) -> None:
-    solution = read_foreign_solution(CORRECT["lacam"].encode(), INSTANCE)
-    broken = replace(
-        solution, plans=(solution.plans[0], replace(solution.plans[1], visits=solution.plans[1].visits[:1]))
-    )
-    text = {
-        "lacam": "solution=\n0:(0,0),(3,2),\n1:(1,0),(3,2),\n2:(2,0),(3,2),\n",
-        "libmultirobotplanning": SCHEDULE[: SCHEDULE.index("    - {x: 3, y: 1")],
-        "paths-x-y": "Agent 0: (0,0)->(1,0)->(2,0)->\nAgent 1: (3,2)->(3,2)->\n",
-        "carproof": write_solution(broken).decode(),
-    }
-    (benchmark / "broken").write_text(text[format])
-    maps = ("--map", benchmark / "m.map", "--scen", benchmark / "m.scen")
-    outcome = carproof("check", *maps, benchmark / "broken")
+    (benchmark / "broken").write_text(HALFWAY[format])
+    outcome = carproof(f"check {MAPS} broken")
     assert outcome.code == 1
     assert f": robot {name} (" in outcome.stdout.splitlines()[0]
-    assert ": robot r2 (" in carproof("check", benchmark / "m.json", benchmark / "broken").stdout.splitlines()[0]
-    page = carproof("view", *maps, benchmark / "broken").stdout
-    assert f'"{name}"' in page
+    assert ": robot r2 (" in carproof("check m.json broken").stdout.splitlines()[0]
+    assert f'"{name}"' in carproof(f"view {MAPS} broken").stdout
 
 
 def test_check_tells_the_rule_that_a_file_breaks(carproof: Run, benchmark: Path) -> None:
     (benchmark / "broken").write_text(LACAM.replace("1:(1,0)", "1:(0,0)"))
-    outcome = carproof("check", benchmark / "m.json", benchmark / "broken")
+    outcome = carproof("check m.json broken")
     assert outcome.code == 1
     assert outcome.stdout.startswith("[plan/move] resource 2,0 in [2,for ever): robot r1 (the graph has no move to it")
 
 
+@pytest.mark.usefixtures("benchmark")
 @pytest.mark.parametrize("format", CORRECT)
-def test_convert_turns_solutions_there_and_back(carproof: Run, benchmark: Path, format: str) -> None:
-    there = carproof("convert", benchmark / "m.json", benchmark / "lacam", "--to", format, "-o", benchmark / "there")
+def test_convert_turns_solutions_there_and_back(carproof: Run, format: str) -> None:
+    there = carproof(f"convert m.json lacam --to {format} -o there")
     assert (there.code, there.stdout) == (0, "")
-    back = carproof("convert", benchmark / "m.json", benchmark / "there", "--to", "carproof", "--from", format)
+    back = carproof(f"convert m.json there --to carproof --from {format}")
     assert json.loads(back.stdout) == json.loads(write_solution(SOLUTION))

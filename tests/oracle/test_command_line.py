@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from tests.oracle.running import TWO, TWO_PLANNED, Run, line
+from tests.oracle.running import Run
 
 from carproof.commands import COMMANDS, GROUPS
 
@@ -57,16 +57,15 @@ def test_a_shell_completes_commands_options_and_files(carproof: Run, monkeypatch
         assert carproof().stdout == f"{completion}\n"
 
 
-def test_a_document_on_standard_output_leaves_standard_error_to_people(carproof: Run, tmp_path: Path) -> None:
-    (tmp_path / "town.json").write_bytes(line(**TWO))
-    (tmp_path / "plans.json").write_bytes(line(**TWO_PLANNED))
-    for command in ("plan town.json", "check town.json plans.json", "bound town.json --steps 1", "generate grid"):
-        name, *arguments = command.split()
-        files = [tmp_path / each if each.endswith(".json") else each for each in arguments]
-        outcome = carproof(name, *files, "-o", "-")
-        assert outcome.code == 0, outcome
-        assert json.loads(outcome.stdout)["format"].startswith("carproof-")
-        assert outcome.stderr
+@pytest.mark.usefixtures("folder")
+@pytest.mark.parametrize(
+    "command", ["plan town.json", "check town.json plans.json", "bound town.json --steps 1", "generate grid"]
+)
+def test_a_document_on_standard_output_leaves_standard_error_to_people(carproof: Run, command: str) -> None:
+    outcome = carproof(f"{command} -o -")
+    assert outcome.code == 0, outcome
+    assert json.loads(outcome.stdout)["format"].startswith("carproof-")
+    assert outcome.stderr
 
 
 @pytest.mark.parametrize("width", [40, None])
@@ -85,14 +84,13 @@ def test_version(carproof: Run) -> None:
     assert outcome.stdout.startswith("carproof ")
 
 
-def test_check_loads_nothing_slow(tmp_path: Path) -> None:
-    (tmp_path / "town.json").write_bytes(line(**TWO))
-    (tmp_path / "plans.json").write_bytes(line(**TWO_PLANNED))
+@pytest.mark.usefixtures("folder")
+def test_check_loads_nothing_slow() -> None:
     program = (
         "import sys; from carproof.cli import main; code = main(['check', 'town.json', 'plans.json', '--json']);"
         f"assert code == 0; print([name for name in {SLOW_TO_LOAD} if name in sys.modules])"
     )
-    done = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True, cwd=tmp_path)
+    done = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True)
     assert done.stdout.endswith("}\n[]\n")
 
 

@@ -7,7 +7,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from tests.oracle.running import ONE_PLANNED, TWO, TWO_PLANNED, line
+from tests.oracle.running import TWO, line
 
 from carproof.extras import EXTRAS
 
@@ -42,14 +42,6 @@ BASE = [
     f"convert {DEPOT}.map {DEPOT}.scen -o depot.json",
     "rules",
 ]
-
-
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    documents = {"town.json": TWO, "plans.json": TWO_PLANNED, "one.json": ONE_PLANNED}
-    for name, document in documents.items():
-        (tmp_path / name).write_bytes(line(**document))
-    return tmp_path
 
 
 def run(program: str, folder: Path, *arguments: str, stdin: bytes = b"") -> subprocess.CompletedProcess[bytes]:

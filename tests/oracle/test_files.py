@@ -1,4 +1,4 @@
-"""Files: unreadable, malformed and unwritable ones, and outputs that are whole or not there."""
+"""Files that are read as they are meant, and outputs that are whole or not there."""
 
 import json
 import os
@@ -10,23 +10,17 @@ from pathlib import Path
 
 import click
 import pytest
-from tests.oracle.running import TWO, Run
+from tests.oracle.running import Run
 
 from carproof.files import write_whole
 
 
-@pytest.fixture
-def town(tmp_path: Path) -> Path:
-    path = tmp_path / "town.json"
-    path.write_text(json.dumps(TWO))
-    return path
-
-
-def test_a_byte_order_mark_is_passed_over(carproof: Run, town: Path) -> None:
-    marked = town.with_name("marked.json")
-    marked.write_bytes(b"\xef\xbb\xbf" + town.read_bytes())
-    assert carproof("plan", marked, "--json").stdout == carproof("plan", town, "--json").stdout
-    assert carproof("plan", "-", "--json", stdin=marked.read_bytes()).code == 0
+def test_a_byte_order_mark_is_passed_over(carproof: Run, folder: Path) -> None:
+    marked = b"\xef\xbb\xbf" + (folder / "town.json").read_bytes()
+    (folder / "marked.json").write_bytes(marked)
+    plans = carproof("plan town.json --json")
+    assert carproof("plan marked.json --json") == carproof("plan - --json", stdin=marked) == plans
+    assert plans.code == 0
 
 
 def test_a_file_is_replaced_whole_and_keeps_its_mode(tmp_path: Path) -> None:
@@ -40,16 +34,17 @@ def test_a_file_is_replaced_whole_and_keeps_its_mode(tmp_path: Path) -> None:
     assert sorted(each.name for each in tmp_path.iterdir()) == ["link", "out.json"]
 
 
-def test_a_link_is_followed_and_stays_a_link(carproof: Run, town: Path) -> None:
-    link = town.parent / "link.json"
-    link.symlink_to(town.parent / "target.json")
-    assert carproof("plan", town, "-o", link).code == 0
+def test_a_link_is_followed_and_stays_a_link(carproof: Run, folder: Path) -> None:
+    link = folder / "link.json"
+    link.symlink_to(folder / "target.json")
+    assert carproof("plan town.json -o link.json").code == 0
     assert link.is_symlink()
     assert json.loads(link.read_text())["format"] == "carproof-solution/1"
 
 
-def test_a_device_is_written_and_not_replaced(carproof: Run, town: Path) -> None:
-    assert carproof("plan", town, "-o", "/dev/null").code == 0
+@pytest.mark.usefixtures("folder")
+def test_a_device_is_written_and_not_replaced(carproof: Run) -> None:
+    assert carproof("plan town.json -o /dev/null").code == 0
     assert not Path("/dev/null").is_file()
 
 

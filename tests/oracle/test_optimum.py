@@ -5,7 +5,7 @@ from math import inf
 from pathlib import Path
 
 import pytest
-from tests.oracle.running import HEAD_ON, TWO, TWO_PLANNED, Document, Run, corridor
+from tests.oracle.running import HEAD_ON, TWO_PLANNED, Document, Outcome, Run, corridor, save
 
 from carp_optimum.gap import Gap, PlannerGap
 from carp_optimum.optimum import Optimum
@@ -18,154 +18,126 @@ from carproof.generate import Range
 UNSOLVABLE = corridor([{"id": "r1", "start": "a", "goal": "e"}, HEAD_ON])
 
 
-@pytest.fixture
-def town(tmp_path: Path) -> Path:
-    path = tmp_path / "town.json"
-    path.write_text(json.dumps(TWO))
-    return path
+PLANNERS = ["carp", "shuffled", "longest-first", "greedy", "fixed-paths", "neighbourhood"]
 
 
-def written(path: Path, document: Document) -> Path:
-    path.write_text(json.dumps(document))
-    return path
+@pytest.fixture(autouse=True)
+def _unsolvable(folder: Path) -> None:
+    del folder
+    save(lane=UNSOLVABLE)
 
 
-def hard(carproof: Run, path: Path) -> Path:
-    """An instance that nobody decides in a second."""
-    assert carproof("generate", "grid", "--map", 10, "--robots", 150, "-o", path).code == 0
-    return path
+def document_of(carproof: Run, command: str) -> Document:
+    document: Document = json.loads(carproof(f"{command} --json").stdout)
+    return document
 
 
-def test_the_optimum_is_shown_and_its_plans_are_written(carproof: Run, town: Path, tmp_path: Path) -> None:
-    output = tmp_path / "best.json"
-    outcome = carproof("optimum", town, "-o", output)
+def test_the_optimum_is_shown_and_its_plans_are_written(carproof: Run, folder: Path) -> None:
+    outcome = carproof("optimum town.json -o best.json")
     assert (outcome.code, outcome.stderr) == (0, "")
     assert outcome.stdout.splitlines()[-1].split()[:7] == ["2", "5", "5", "5", "found,", "not", "proved"]
-    assert json.loads(output.read_text()) == TWO_PLANNED
-    assert carproof("check", town, output).code == 0
+    assert json.loads((folder / "best.json").read_text()) == TWO_PLANNED
+    assert carproof("check town.json best.json").code == 0
 
 
-def test_the_optimum_as_a_document(carproof: Run, town: Path) -> None:
-    outcome = carproof("optimum", town, "--json")
-    assert json.loads(outcome.stdout) == {"cost": 5, "lower": 5, "proved": True, "solution": TWO_PLANNED}
+def test_the_optimum_as_a_document(carproof: Run) -> None:
+    best = {"cost": 5, "lower": 5, "proved": True, "solution": TWO_PLANNED}
+    assert document_of(carproof, "optimum town.json") == best
 
 
-def test_that_robots_cannot_all_be_planned_is_found_and_with_a_proof_proved(carproof: Run, tmp_path: Path) -> None:
-    path, folder = written(tmp_path / "lane.json", UNSOLVABLE), tmp_path / "proof"
+def test_that_robots_cannot_all_be_planned_is_found_and_with_a_proof_proved(carproof: Run) -> None:
     obstacle = "a search over all states of the robots together finds no plan set"
-    for options, answer in (((), ["found,", "not", "proved"]), (("--proof", folder), ["proved"])):
-        outcome = carproof("optimum", path, *options)
+    for option, answer in (("", ["found,", "not", "proved"]), ("--proof proof", ["proved"])):
+        outcome = carproof(f"optimum lane.json {option}")
         row, reason = outcome.stdout.splitlines()[-2:]
         assert (outcome.code, row.split()[4:-2]) == (1, answer)
         assert reason == f"the robots cannot all be planned: {obstacle}"
-    outcome = carproof("verify-proof", folder, "--instance", path)
+    outcome = carproof("verify-proof proof --instance lane.json")
     assert (outcome.code, outcome.stdout) == (0, f"proved: the robots cannot all be planned: {obstacle}\n")
-    document = json.loads(carproof("verify-proof", folder, "--json").stdout)
-    assert document == dict.fromkeys(("cost", "solution", "reason")) | {
-        "proved": True,
-        "claim": "unsolvable",
-        "obstacle": obstacle,
-    }
-    document = json.loads(carproof("optimum", path, "--json").stdout)
-    assert document == {"cost": None, "lower": 28, "proved": True, "solution": None}
+    proved = {"proved": True, "claim": "unsolvable", "obstacle": obstacle}
+    assert document_of(carproof, "verify-proof proof") == dict.fromkeys(("cost", "solution", "reason")) | proved
+    none = {"cost": None, "lower": 28, "proved": True, "solution": None}
+    assert document_of(carproof, "optimum lane.json") == none
 
 
-def test_an_undecided_search_says_so_and_gives_its_bound(carproof: Run, tmp_path: Path) -> None:
-    outcome = carproof("optimum", hard(carproof, tmp_path / "hard.json"), "--limit", 1, "--json")
+def test_an_undecided_search_says_so_and_gives_its_bound(carproof: Run) -> None:
+    assert carproof("generate grid --map 10 --robots 150 -o hard.json").code == 0
+    outcome = carproof("optimum hard.json --limit 1 --json")
     document = json.loads(outcome.stdout)
     assert (outcome.code, document["proved"]) == (3, False)
     assert document["lower"] > 1000
 
 
-def test_an_undecided_search_tells_its_bound_and_whether_it_has_plans(carproof: Run, tmp_path: Path) -> None:
-    path = tmp_path / "crowd.json"
-    for robots, size, map, known in (
-        (48, 8, 20, "no plans of all robots found yet"),
-        (18, 6, 0, "and the best found "),
-    ):
-        options = ["--width", size, "--height", size, "--robots", robots, "--map", map, "--seed", 2]
-        options += ["--after-goal", "park"] if size == 8 else []
-        assert carproof("generate", "grid", *options, "-o", path).code == 0
-        outcome = carproof("optimum", path, "--limit", 2)
-        assert outcome.code == 3
-        last = outcome.stdout.splitlines()[-1]
-        assert last.startswith("undecided after 2 s: plans of all robots cost at least ")
-        assert known in last
+@pytest.mark.parametrize(
+    ("options", "known"),
+    [
+        ("--width 8 --height 8 --robots 48 --map 20 --after-goal park", "no plans of all robots found yet"),
+        ("--width 6 --height 6 --robots 18 --map 0", "and the best found "),
+    ],
+)
+def test_an_undecided_search_tells_its_bound_and_whether_it_has_plans(carproof: Run, options: str, known: str) -> None:
+    assert carproof(f"generate grid {options} --seed 2 -o crowd.json").code == 0
+    outcome = carproof("optimum crowd.json --limit 2")
+    assert outcome.code == 3
+    last = outcome.stdout.splitlines()[-1]
+    assert last.startswith("undecided after 2 s: plans of all robots cost at least ")
+    assert known in last
 
 
-def test_a_proof_is_written_and_checked(carproof: Run, town: Path, tmp_path: Path) -> None:
-    folder = tmp_path / "proof"
-    outcome = carproof("optimum", town, "--proof", folder)
+def test_a_proof_is_written_and_checked(carproof: Run) -> None:
+    outcome = carproof("optimum town.json --proof proof")
     assert (outcome.code, outcome.stdout.splitlines()[-1].split()[3:5]) == (0, ["5", "proved"])
-    document = json.loads(carproof("optimum", town, "--proof", folder, "--json").stdout)
+    document = document_of(carproof, "optimum town.json --proof proof")
     assert (document["proved"], document["checked"]) == (True, True)
-    outcome = carproof("verify-proof", folder, "--instance", town)
+    outcome = carproof("verify-proof proof --instance town.json")
     assert (outcome.code, outcome.stderr) == (0, "")
     assert outcome.stdout.splitlines()[-1].split() == ["5", "2", "checked", "sat", "unsat"]
-    document = json.loads(carproof("verify-proof", folder, "--json").stdout)
     proved = {"proved": True, "claim": "optimum", "cost": 5, "solution": TWO_PLANNED}
-    assert document == proved | {"obstacle": None, "reason": None}
+    assert document_of(carproof, "verify-proof proof") == proved | {"obstacle": None, "reason": None}
 
 
-def test_a_proof_about_which_z3_does_not_answer_is_undecided(
-    carproof: Run, town: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    assert carproof("optimum", town, "--proof", tmp_path / "proof").code == 0
+def test_a_proof_about_which_z3_does_not_answer_is_undecided(carproof: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert carproof("optimum town.json --proof proof").code == 0
     monkeypatch.setattr("carp_verify.proof._ask_z3", lambda *_: "unknown")
-    outcome = carproof("verify-proof", tmp_path / "proof")
+    outcome = carproof("verify-proof proof")
     assert outcome.code == 3
     assert outcome.stdout.splitlines()[-1] == "undecided: z3 did not answer in time about one of the formulas"
-    document = json.loads(carproof("verify-proof", tmp_path / "proof", "--json").stdout)
+    document = document_of(carproof, "verify-proof proof")
     assert (document["proved"], document["cost"]) == (False, 5)
 
 
-def test_a_proof_that_does_not_hold_is_refused_with_its_reason(carproof: Run, town: Path, tmp_path: Path) -> None:
-    folder = tmp_path / "proof"
-    carproof("optimum", town, "--proof", folder)
-    (folder / "beat.cnf").unlink()
-    outcome = carproof("verify-proof", folder)
-    assert outcome.code == 1
-    assert outcome.stdout == "not proved: beat.cnf: it cannot be read: No such file or directory\n"
-    document = json.loads(carproof("verify-proof", folder, "--json").stdout)
-    assert (document["proved"], document["reason"]) == (False, outcome.stdout[len("not proved: ") : -1])
+def test_a_proof_that_does_not_hold_is_refused_with_its_reason(carproof: Run, folder: Path) -> None:
+    carproof("optimum town.json --proof proof")
+    (folder / "proof" / "beat.cnf").unlink()
+    reason = "beat.cnf: it cannot be read: No such file or directory"
+    assert carproof("verify-proof proof") == Outcome(1, f"not proved: {reason}\n", "")
+    document = document_of(carproof, "verify-proof proof")
+    assert (document["proved"], document["reason"]) == (False, reason)
 
 
-def test_the_gap_of_every_planner_is_shown(carproof: Run, town: Path) -> None:
-    outcome = carproof("gap", town)
+def test_the_gap_of_every_planner_is_shown(carproof: Run) -> None:
+    outcome = carproof("gap town.json")
     assert (outcome.code, outcome.stderr) == (0, "")
     rows = [row.split() for row in outcome.stdout.splitlines()[2:]]
     assert rows[0][:3] == ["optimum", "0", "5"]
-    assert [row[0] for row in rows[1:]] == [
-        "best",
-        "carp",
-        "shuffled",
-        "longest-first",
-        "greedy",
-        "fixed-paths",
-        "neighbourhood",
-    ]
+    assert [row[0] for row in rows[1:]] == ["best", *PLANNERS]
     assert rows[2] == ["carp", "0", "5", *["+0", "(0.0", "%)"] * 3]
 
 
-def test_the_gap_as_a_document(carproof: Run, town: Path) -> None:
-    document = json.loads(carproof("gap", town, "--json").stdout)
-    assert {name: document[name] for name in ("optimum", "lower", "proved", "best_order")} == {
-        "optimum": 5,
-        "lower": 5,
-        "proved": True,
-        "best_order": 5,
-    }
+def test_the_gap_as_a_document(carproof: Run) -> None:
+    document = document_of(carproof, "gap town.json")
+    assert [document[name] for name in ("optimum", "lower", "proved", "best_order")] == [5, 5, True, 5]
     assert document["planners"][0] == {"planner": "carp", "unplanned": 0, "total": 5}
 
 
-def test_a_gap_without_optimum_says_why(carproof: Run, tmp_path: Path) -> None:
-    outcome = carproof("gap", written(tmp_path / "lane.json", UNSOLVABLE))
+def test_a_gap_without_optimum_says_why(carproof: Run) -> None:
+    outcome = carproof("gap lane.json")
     assert outcome.code == 1
     assert outcome.stdout.splitlines()[-1].startswith("the robots cannot all be planned: ")
 
 
 def test_the_gaps_of_a_family_are_shown_with_intervals(carproof: Run) -> None:
-    outcome = carproof("gap", "--size", "3..4", "--map", 0, "--map", 20, "--count", 4)
+    outcome = carproof("gap --size 3..4 --map 0 --map 20 --count 4")
     assert outcome.stderr == ""
     lines = outcome.stdout.splitlines()
     assert max(map(len, lines)) <= 80
@@ -173,29 +145,19 @@ def test_the_gaps_of_a_family_are_shown_with_intervals(carproof: Run) -> None:
     assert [row[:5] for row in rows if row[1] == "x"] == [
         [size, "x", size, map, size] for size in ("3", "4") for map in ("0", "20")
     ]
-    assert [row[0] for row in rows[1:8]] == [
-        "best",
-        "carp",
-        "shuffled",
-        "longest-first",
-        "greedy",
-        "fixed-paths",
-        "neighbourhood",
-    ]
+    assert [row[0] for row in rows[1:8]] == ["best", *PLANNERS]
     assert "±" in lines[4]
 
 
-def test_the_gaps_of_a_family_as_a_document_are_those_of_its_instances(carproof: Run, tmp_path: Path) -> None:
-    options = ["--robots", 4, "--after-goal", "park"]
-    family = carproof("gap", "--size", 3, "--map", 10, *options, "--count", 2, "--seed", 5, "--json")
+def test_the_gaps_of_a_family_as_a_document_are_those_of_its_instances(carproof: Run) -> None:
+    options = "--map 10 --robots 4 --after-goal park"
+    family = carproof(f"gap --size 3 {options} --count 2 --seed 5 --json")
     (cell,) = json.loads(family.stdout)["cells"]
     assert (cell["size"], cell["map"], cell["robots"]) == (3, 10, 4)
-    of_instances = []
+    of_instances: list[Document] = []
     for seed in (5, 6):
-        path = tmp_path / f"{seed}.json"
-        grid = ["--width", 3, "--height", 3, "--map", 10, "--map-seed", seed, "--seed", seed]
-        carproof("generate", "grid", *grid, *options, "-o", path)
-        of_instances.append({"seed": seed, "gap": json.loads(carproof("gap", path, "--json").stdout)})
+        carproof(f"generate grid --width 3 --height 3 {options} --map-seed {seed} --seed {seed} -o one.json")
+        of_instances.append({"seed": seed, "gap": document_of(carproof, "gap one.json")})
     assert cell["instances"] == of_instances
     optima = [each["gap"]["optimum"] for each in of_instances]
     assert cell["decided"] == len(optima) - optima.count(None)

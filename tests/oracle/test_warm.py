@@ -1,11 +1,9 @@
 """Compilation is one step that is announced, and no limit of time counts it."""
 
-import json
 import sys
-from pathlib import Path
 
 import pytest
-from tests.oracle.running import TWO, TWO_PLANNED, Run
+from tests.oracle.running import Run
 
 
 def test_warm_says_that_the_planner_is_compiled(carproof: Run) -> None:
@@ -13,6 +11,7 @@ def test_warm_says_that_the_planner_is_compiled(carproof: Run) -> None:
     assert (outcome.code, outcome.stdout, outcome.stderr) == (0, "carproof's planner is compiled already\n", "")
 
 
+@pytest.mark.usefixtures("folder")
 @pytest.mark.parametrize(
     "command",
     [
@@ -22,13 +21,10 @@ def test_warm_says_that_the_planner_is_compiled(carproof: Run) -> None:
     ],
 )
 def test_a_limit_of_time_begins_when_the_planner_is_compiled(
-    carproof: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str
+    carproof: Run, monkeypatch: pytest.MonkeyPatch, command: str
 ) -> None:
-    (tmp_path / "town.json").write_text(json.dumps(TWO))
-    (tmp_path / "plans.json").write_text(json.dumps(TWO_PLANNED))
-    monkeypatch.chdir(tmp_path)
     compiled: list[str] = []
     monkeypatch.setattr("carp_optimum.__main__.compile_all", lambda: compiled.append(command))
     monkeypatch.setattr("carp_optimized.compiling.is_compiled", lambda: False)
-    assert carproof(*command.split()).code in (0, 1)
+    assert carproof(command).code in (0, 1)
     assert compiled == [command]
