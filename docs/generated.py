@@ -14,6 +14,7 @@ from typing import Any
 
 import click
 from docs.trusted_base import table as trusted_base
+from docs.trusted_base import theorems
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
@@ -160,6 +161,7 @@ PARTS: Mapping[str, Callable[[], str]] = {
     "paper": results,
     "ops": ops,
     "trusted base": trusted_base,
+    "theorems": theorems,
     **{
         f"fields of {name}": partial(_fields, name)
         for name in ("instance", "solution", "verdict", "trace", "bound", "query")

@@ -5,6 +5,7 @@ import tokenize
 from pathlib import Path
 
 from carp_spec.readme import markdown_table
+from carp_verify.theorems import THEOREMS
 
 ROOT = Path(__file__).parents[1]
 LAW = ("check", "joint_rules", "plan_rules", "instance_rules", "documents", "model", "rule", "refusal")
@@ -20,7 +21,10 @@ VERDICTS: dict[str, tuple[tuple[str, ...], str]] = {
     "`verify-proof`, unsolvable by clauses": (("proof", "unsolvable", *ENCODER, "refutation"), ""),
     "`verify-proof`, unsolvable otherwise": (("proof", "unsolvable", "joint_search", "optimum_rules"), ""),
     "`certify`: z3 agrees on capacity and exchange": (("certificate", "smt"), "z3"),
-    "`theorems`: a lemma holds": (("engine", "smt", "vocabulary"), "z3, the argument by hand in the docstring"),
+    "`theorems`: a lemma holds": (
+        ("engine", "smt", "vocabulary", "derivation"),
+        "z3, the argument by hand in the docstring",
+    ),
 }
 
 
@@ -48,3 +52,12 @@ def table() -> str:
         named = ", ".join(f"`{name}`" for name in modules) or f"nothing; the law is {law} lines of `carp_spec`"
         rows.append((verdict, named, lines, others))
     return markdown_table(columns, rows, numbers=("lines",))
+
+
+def theorems() -> str:
+    """The theorems of the kernel as a table in Markdown."""
+    rows = [
+        (each.statement, f"`{each.name}`", f"`{each.module}.v`", ", ".join(f"`{rule}`" for rule in each.rules))
+        for each in THEOREMS
+    ]
+    return markdown_table(("claim", "theorem", "file", "rules"), rows)

@@ -8,7 +8,7 @@ import pytest
 
 from carp_spec import RULES
 from carp_spec.vectors import vectors
-from carp_verify.support import WITHOUT_LEMMA, lemmas_of_rules
+from carp_verify.support import UNSUPPORTED, support_of_rules
 
 TESTS = Path(__file__).parent.parent
 _FAULTS = "verify/test_rules_as_properties.py::test_a_fault_planted_in_an_instance_is_found_and_no_other"
@@ -97,13 +97,13 @@ def properties(file: str) -> Iterator[str]:
 
 
 @pytest.mark.parametrize("rule", [rule.id for rule in RULES])
-def test_every_rule_has_vectors_a_property_and_a_lemma_or_a_reason(rule: str) -> None:
+def test_every_rule_has_vectors_a_property_and_support_or_a_reason(rule: str) -> None:
     cases = list(vectors(rule))
     assert any(not case.violated for case in cases)
     assert any(rule in case.violated for case in cases)
     file, _, name = PROPERTIES[rule].partition("::")
     assert name in properties(file)
-    assert (rule in lemmas_of_rules()) != bool(WITHOUT_LEMMA.get(rule))
+    assert (rule in support_of_rules()) != bool(UNSUPPORTED.get(rule))
 
 
 def test_no_evidence_is_of_a_rule_that_there_is_not() -> None:

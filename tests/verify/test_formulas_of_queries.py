@@ -1,11 +1,11 @@
-"""The formulas about whole queries, evaluated at every step of the reference on every query on small graphs."""
+"""The lemma about freed stays, evaluated at every step of the reference on every query on small graphs."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cache
-from heapq import heappop, heappush
+from heapq import heappop
 from importlib import import_module
-from itertools import combinations, product
+from itertools import combinations
 
 import pytest
 from tests.enumeration import ASKED, PATTERNS, Pattern, SmallCase, small_cases
@@ -15,9 +15,7 @@ from carp_reference.context import Context, context_of
 from carp_reference.problem import Problem, ticks_to_goal
 from carp_reference.query import Node, find_plan
 from carp_spec import Plan, ResourceId
-from carp_spec.query_rules import expansion_key
 from carp_spec.windows import Window
-from carp_verify.lemmas.first_pop_is_final import is_ahead, is_final, is_taken
 from carp_verify.lemmas.freed_stays_come_too_late import is_too_late, least_f
 from carp_verify.smt import Bool, Int, any_of, integer, value_of
 
@@ -38,10 +36,9 @@ def cases(pattern: Pattern) -> Iterator[SmallCase]:
 
 @dataclass(slots=True)
 class Trace:
-    """What a query did: the nodes taken, each with the queue that it was taken from, and the entries found after it."""
+    """What a query did: the nodes taken from its queue, and what its context was asked and answered."""
 
-    taken: list[tuple[Node, Queue]] = field(default_factory=list)
-    found: list[list[Node]] = field(default_factory=list)
+    taken: list[Node] = field(default_factory=list)
     answers: list[tuple[Question, object]] = field(default_factory=list)
 
 
@@ -73,94 +70,22 @@ def trace(monkeypatch: pytest.MonkeyPatch) -> Trace:
         return watching
 
     def pop(queue: Queue) -> object:
-        before = list(queue)
         item = heappop(queue)
-        seen.taken.append((item[1], before))
-        seen.found.append([])
+        seen.taken.append(item[1])
         return item
 
-    def push(queue: Queue, item: tuple[tuple[int, int, int, int], Node]) -> None:
-        heappush(queue, item)
-
-    expand = SEARCH._expand
-
-    def expanded(*arguments: object) -> Iterator[Node]:
-        for node in expand(*arguments):
-            seen.found[-1].append(node)
-            yield node
-
-    for name, replacement in (("context_of", watched), ("heappop", pop), ("heappush", push), ("_expand", expanded)):
-        monkeypatch.setattr(SEARCH, name, replacement)
+    monkeypatch.setattr(SEARCH, "context_of", watched)
+    monkeypatch.setattr(SEARCH, "heappop", pop)
     return seen
 
 
 def ask(case: SmallCase, committed: Sequence[Plan], trace: Trace) -> Plan | None:
-    trace.taken, trace.found, trace.answers = [], [], []
+    trace.taken, trace.answers = [], []
     return find_plan(problem_of(case), committed, ASKED)
 
 
 def problem_of(case: SmallCase) -> Problem:
     return Problem(case.instance, {ASKED: ticks_to_goal(case.instance, case.instance.robot[ASKED])}, 0)
-
-
-def evaluated(term: Int | Bool, **values: int) -> bool:
-    return bool(value_of(term, dict(values)))
-
-
-g, h, f_queued, g_other = (integer(name) for name in ("g", "h", "f_queued", "g_other"))
-
-
-@cache
-def may_be_taken(enter: int, to_goal: int, queued: int) -> bool:
-    return evaluated(is_taken(g, h, f_queued), g=enter, h=to_goal, f_queued=queued)
-
-
-@cache
-def invariant(queued: int, enter: int, to_goal: int) -> bool:
-    return evaluated(is_ahead(f_queued, g, h), f_queued=queued, g=enter, h=to_goal)
-
-
-@cache
-def no_earlier(enter: int, other: int) -> bool:
-    return evaluated(is_final(g, g_other), g=enter, g_other=other)
-
-
-def test_a_node_may_be_taken_where_the_key_of_the_specification_lets_it() -> None:
-    ties = list(product(range(2), repeat=2))
-    for enter, to_goal, queued in product(range(4), range(4), range(7)):
-        keys = product(
-            (expansion_key(enter + to_goal, enter, *tie) for tie in ties),
-            (expansion_key(queued, other, *tie) for other in range(queued + 1) for tie in ties),
-        )
-        assert may_be_taken(enter, to_goal, queued) == any(one <= another for one, another in keys)
-
-
-@pytest.mark.parametrize("pattern", rest_in("ci", PATTERNS[1::2], 0), ids=str)
-def test_the_first_entry_taken_is_final_and_every_other_way_has_a_node_in_the_queue(
-    trace: Trace, pattern: Pattern, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The search continues behind the goal, so that every way is seen."""
-    monkeypatch.setattr(SEARCH, "_can_end", lambda *_: False)
-    ways = 0
-    for case in cases(pattern):
-        ask(case, case.committed, trace)
-        to_goal = problem_of(case).ticks_to_goal[ASKED]
-        done: set[tuple[ResourceId, Window]] = set()
-        for step, (node, queue) in enumerate(trace.taken):
-            key = (node.resource, node.window)
-            if key in done:
-                continue
-            done.add(key)
-            ticks = to_goal[node.resource]
-            fs = [each[0] for each, _ in queue]
-            assert all(may_be_taken(node.enter, ticks, f) for f in fs)
-            others = [each for _, each in queue] + [each for found in trace.found[step:] for each in found]
-            for other in others:
-                if (other.resource, other.window) == key and other is not node:
-                    ways += 1
-                    assert invariant(min(fs), other.enter, ticks)
-                    assert no_earlier(node.enter, other.enter)
-    assert ways > 100, "there are windows with several ways to them"
 
 
 @pytest.mark.parametrize("pattern", rest_in("ci", PATTERNS[1::2], 0), ids=str)
@@ -202,7 +127,7 @@ def a_bound_too_large(ready: Int, earliest: Int, latest: Int, duration: Int, h: 
 def too_late(formula: Lateness, *values: int) -> bool:
     names = ("ready", "earliest", "latest", "duration", "h", "arrival")
     first, *others = map(integer, names)
-    return evaluated(formula(first, *others), **dict(zip(names, values, strict=True)))
+    return bool(value_of(formula(first, *others), dict(zip(names, values, strict=True))))
 
 
 def plans_with_and_without(trace: Trace, pattern: Pattern, formula: Lateness) -> Iterator[tuple[Plan, Plan | None]]:
@@ -220,11 +145,11 @@ def plans_with_and_without(trace: Trace, pattern: Pattern, formula: Lateness) ->
                 leave = FOR_EVER if visit.leave is None else visit.leave
                 hulls[visit.resource] = (earliest, max(latest, leave))
             arrival = plan.visits[-1].enter
-            start = trace.taken[0][0]
+            start = trace.taken[0]
             looked_at = [(start.enter, start.resource, FOR_EVER)] if start.resource in hulls else []
             looked_at += [
                 (node.ready, target, hulls[target][1])
-                for node, _ in trace.taken
+                for node in trace.taken
                 for target in successors[node.resource]
                 if target in hulls and target in to_goal
             ]

@@ -1,6 +1,8 @@
 """z3 proves the formulas of the lemmas and refutes their mutants, and the engine accepts nothing else."""
 
 import json
+import re
+from pathlib import Path
 
 import pytest
 from tests.oracle.running import Run
@@ -9,7 +11,10 @@ from carp_spec import RULES
 from carp_verify.engine import Formula, Lemma, Unproved, examine, prove, refute
 from carp_verify.lemmas import MODULES, lemma_named
 from carp_verify.smt import Undecided, equal, find_model, integers, negation
-from carp_verify.support import WITHOUT_LEMMA, lemmas_of_rules
+from carp_verify.support import UNSUPPORTED, support_of_rules
+from carp_verify.theorems import THEOREMS, Theorem
+
+KERNEL = Path(__file__).parents[2] / "verify/kernel"
 
 
 @pytest.mark.parametrize("module", MODULES)
@@ -65,10 +70,24 @@ def test_every_failure_is_reported() -> None:
     assert not report.checked
 
 
-def test_every_rule_has_a_lemma_or_a_reason_for_having_none() -> None:
-    supported = lemmas_of_rules()
-    assert {rule.id for rule in RULES} == supported.keys() | WITHOUT_LEMMA.keys()
-    assert not supported.keys() & WITHOUT_LEMMA.keys()
+def test_every_rule_has_a_lemma_or_a_theorem_or_a_reason_for_having_neither() -> None:
+    supported = support_of_rules()
+    assert {rule.id for rule in RULES} == supported.keys() | UNSUPPORTED.keys()
+    assert not supported.keys() & UNSUPPORTED.keys()
+
+
+def test_the_theorems_are_those_that_coq_is_asked_about() -> None:
+    listed = (KERNEL / "theorems.txt").read_text().split()
+    assert {f"{each.module}.{each.name}" for each in THEOREMS} == set(listed)
+    assert len(THEOREMS) == len(listed)
+    assert not {each.name for each in THEOREMS} & set(MODULES)
+
+
+@pytest.mark.parametrize("theorem", THEOREMS, ids=lambda theorem: theorem.name)
+def test_the_file_of_a_theorem_holds_it_with_its_proof(theorem: Theorem) -> None:
+    assert re.search(
+        rf"^(Theorem|Lemma) {theorem.name}\b", (KERNEL.parents[1] / theorem.file).read_text(), re.MULTILINE
+    )
 
 
 def test_the_command_checks_them_all(carproof: Run) -> None:
@@ -80,15 +99,27 @@ def test_the_command_checks_them_all(carproof: Run) -> None:
 
 
 def test_the_command_prints_one_in_full(carproof: Run) -> None:
+    outcome = carproof("theorems", "reserving-splits-a-window")
+    assert outcome.code == 0
+    assert "Taking the reservation back joins them" in outcome.stdout
+    assert "the second part begins a tick early" in outcome.stdout
+
+
+def test_the_command_names_the_theorem_of_a_claim_and_its_file(carproof: Run) -> None:
     outcome = carproof("theorems", "free-windows-are-unique")
     assert outcome.code == 0
-    assert "Maximal: every tick in it is free" in outcome.stdout
-    assert "one of the windows is not maximal" in outcome.stdout
+    assert "window/free" in outcome.stdout
+    assert "verify/kernel/QueryOptimal.v" in outcome.stdout
+    everything = carproof("theorems").stdout
+    assert all(each.name in everything and each.file in everything for each in THEOREMS)
 
 
 def test_the_command_prints_one_document(carproof: Run) -> None:
-    outcome = carproof("theorems", "first_pop_is_final", "--json")
+    outcome = carproof("theorems", "ended_plans_occupy_nothing", "--json")
     document = json.loads(outcome.stdout)
     assert outcome.code == 0
     assert document["checked"] is True
-    assert [lemma["lemma"] for lemma in document["lemmas"]] == ["first_pop_is_final"]
+    assert [lemma["lemma"] for lemma in document["lemmas"]] == ["ended_plans_occupy_nothing"]
+    assert document["theorems"] == []
+    theorems = json.loads(carproof("theorems", "--json").stdout)["theorems"]
+    assert [theorem["theorem"] for theorem in theorems] == [each.name for each in THEOREMS]

@@ -40,20 +40,6 @@ class Int(Protocol):
         """Greater than."""
 
 
-class IntFunction(Protocol):
-    """An uninterpreted function of whole numbers: equal arguments give equal values, and nothing else is known."""
-
-    def __call__(self, *arguments: Int | int) -> Int:
-        """Its value as a term."""
-
-
-class Predicate(Protocol):
-    """An uninterpreted predicate of whole numbers: equal arguments give equal answers, and nothing else is known."""
-
-    def __call__(self, *arguments: Int | int) -> Bool:
-        """Its answer as a term."""
-
-
 class Undecided(Exception):  # noqa: N818 - z3's answer is `unknown`; that is no fault of the program
     """z3 could not decide within the limit."""
 
@@ -72,18 +58,6 @@ def integers(names: str) -> Sequence[Int]:
 def truth(name: str) -> Bool:
     """A truth value about which nothing is known."""
     return Bool(z3.Bool(name))
-
-
-def int_function(name: str, arity: int = 1) -> IntFunction:
-    """An unknown function of this many whole numbers."""
-    function: IntFunction = z3.Function(name, *[z3.IntSort()] * (arity + 1))
-    return function
-
-
-def predicate(name: str, arity: int = 1) -> Predicate:
-    """An unknown predicate of this many whole numbers."""
-    function: Predicate = z3.Function(name, *[z3.IntSort()] * arity, z3.BoolSort())
-    return function
 
 
 def never() -> Bool:

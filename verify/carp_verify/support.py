@@ -1,36 +1,22 @@
-"""Which rules lemmas support, and why the others have none."""
+"""Which rules lemmas and theorems support, and why the others have neither."""
 
 from collections.abc import Mapping
 
 from carp_verify.lemmas import MODULES, lemma_named
+from carp_verify.theorems import THEOREMS
 
 _READING = "it says how a document is written; it claims nothing of whole numbers"
 _DATA = "it is decided by looking at each entry once; there is no argument in it to check, and examples test it"
 _PAIRS = "it compares ticks of two robots; that it keeps them apart is for the kernel to prove, and is tested"
 _CHANCE = "it is a choice by numbers of a stream: which one is made decides how soon plans get better, not whether"
 
-WITHOUT_LEMMA: Mapping[str, str] = {
+UNSUPPORTED: Mapping[str, str] = {
     "document/json": _READING,
     "document/format": _READING,
     "document/shape": _READING,
-    "instance/resource-id": _DATA,
-    "instance/capacity": _DATA,
-    "instance/duration": _DATA,
     "instance/position": _DATA,
-    "instance/edge": _DATA,
-    "instance/robot-id": _DATA,
-    "instance/endpoint": _DATA,
-    "instance/release": _DATA,
-    "instance/pace": _DATA,
     "instance/after-goal": _DATA,
     "instance/following": _DATA,
-    "solution/covers": _DATA,
-    "solution/order": _DATA,
-    "plan/start": _DATA,
-    "plan/goal": _DATA,
-    "plan/resource": _DATA,
-    "plan/move": _DATA,
-    "plan/contiguous": _DATA,
     "joint/following": "it is joint/capacity with longer stays, which a lemma supports",
     "trace/robots": _DATA,
     "trace/prefix": _DATA,
@@ -59,10 +45,14 @@ WITHOUT_LEMMA: Mapping[str, str] = {
 }
 
 
-def lemmas_of_rules() -> Mapping[str, tuple[str, ...]]:
-    """The modules of the lemmas that support each rule, for the rules that have any."""
-    modules: dict[str, tuple[str, ...]] = {}
-    for module in MODULES:
-        for rule in lemma_named(module).rules:
-            modules[rule] = (*modules.get(rule, ()), module)
-    return modules
+def support_of_rules() -> Mapping[str, tuple[str, ...]]:
+    """The lemmas, by their modules, and the theorems that support each rule, for the rules that have any."""
+    support: dict[str, tuple[str, ...]] = {}
+    supporters = [
+        *((module, lemma_named(module).rules) for module in MODULES),
+        *((each.name, each.rules) for each in THEOREMS),
+    ]
+    for name, rules in supporters:
+        for rule in rules:
+            support[rule] = (*support.get(rule, ()), name)
+    return support

@@ -3,8 +3,8 @@
 The bound holds by weak duality of Lagrangian relaxation. Take any plans of all robots that break no rule together. They
 pay at most the prices times the capacities (the rows of prices and their capacities are below). The weighted cost of
 each robot, together with its payments, is at least the least that `least_cost` finds for it. With a cut, a part of its
-robots' costs is counted in the cut instead, and their sum is at least the total that the cut proves. The lemma is
-`prices_bound_the_total`.
+robots' costs is counted in the cut instead, and their sum is at least the total that the cut proves. The
+kernel's theorem is `accepted_bound_is_below_every_solution`.
 
 - A price of a resource r at a tick t is paid by all who are in r at t: at most the capacity of r, by `joint/capacity`.
 - An exchange price of (r, s) at t is paid by all who move from r to s or from s to r at t, and by all who are in r both

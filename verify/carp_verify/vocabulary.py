@@ -1,8 +1,10 @@
-"""The words of the lemmas as terms: each stands for a function of carp_spec, and a test holds the two equal."""
+"""The words of the lemmas as terms, derived from the functions of carp_spec."""
 
 from dataclasses import dataclass
 
-from carp_verify.smt import Bool, Int, all_of, any_of, integer, negation, truth
+from carp_spec import Plan, Visit, neighbourhood_rules, plan_rules, windows
+from carp_verify.derivation import Way, derived
+from carp_verify.smt import Bool, Int, all_of, any_of, integer, truth
 
 
 @dataclass(frozen=True, slots=True)
@@ -13,20 +15,14 @@ class Interval:
     end: Int
     for_ever: Bool
 
+    def ticks(self, way: Way) -> tuple[int, int | None]:
+        """Its start and its end as arguments of a function."""
+        return way.number(self.start), way.number_unless(self.for_ever, self.end)
+
 
 def interval(name: str) -> Interval:
     """An interval about which nothing is known."""
     return Interval(integer(f"{name}.start"), integer(f"{name}.end"), truth(f"{name}.for_ever"))
-
-
-def holds(interval: Interval, tick: Int) -> Bool:
-    """Whether the tick is in the interval: `carp_spec.windows.occupancy` of one occupation."""
-    return all_of(interval.start <= tick, any_of(interval.for_ever, tick < interval.end))
-
-
-def lasts_until(window: Interval, tick: Int) -> Bool:
-    """Whether a stay may end at the tick: `carp_spec.windows.Window.lasts_until`."""
-    return any_of(window.for_ever, tick <= window.end)
 
 
 def is_interval(interval: Interval) -> Bool:
@@ -34,13 +30,29 @@ def is_interval(interval: Interval) -> Bool:
     return all_of(interval.start >= 0, any_of(interval.for_ever, interval.start < interval.end))
 
 
+def holds(interval: Interval, tick: Int) -> Bool:
+    """Whether the tick is in the interval: `carp_spec.windows.occupancy` of one occupation."""
+    return derived(lambda way: windows.occupancy([interval.ticks(way)], way.number(tick)))
+
+
 def stay_fits(window: Interval, stay: Interval, duration: Int) -> Bool:
     """Whether the stay keeps `window/fits`: `carp_spec.windows.stay_fits`."""
-    long_enough = any_of(stay.for_ever, stay.end - stay.start >= duration)
-    ends_inside = any_of(window.for_ever, all_of(negation(stay.for_ever), stay.end <= window.end))
-    return all_of(window.start <= stay.start, long_enough, ends_inside)
+
+    def fits(way: Way) -> bool:
+        return windows.stay_fits(windows.Window(*window.ticks(way)), *stay.ticks(way), way.number(duration))
+
+    return derived(fits)
 
 
 def has_ended(last: Interval, now: Int) -> Bool:
-    """Whether a plan with this last visit has ended: `carp_spec.has_ended`."""
-    return all_of(negation(last.for_ever), last.end <= now)
+    """Whether a plan with this last visit has ended: `carp_spec.plan_rules.has_ended`."""
+
+    def ended(way: Way) -> bool:
+        return plan_rules.has_ended(Plan("robot", (Visit("goal", *last.ticks(way)),)), way.number(now))
+
+    return derived(ended)
+
+
+def replaces_best(cost: Int, best: Int) -> Bool:
+    """Whether a candidate of that cost replaces the best: the predicate of `neighbourhood/best`."""
+    return derived(lambda way: neighbourhood_rules.replaces_best(way.number(cost), way.number(best)))

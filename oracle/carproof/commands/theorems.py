@@ -1,4 +1,4 @@
-"""`carproof theorems`: have z3 check the lemmas behind the rules."""
+"""`carproof theorems`: the theorems proved in Coq, and the lemmas that z3 checks, by the rules that they support."""
 
 import json
 from collections.abc import Sequence
@@ -16,22 +16,27 @@ from carproof.tables import print_line, print_table
 
 if TYPE_CHECKING:
     from carp_verify.engine import LemmaReport
+    from carp_verify.theorems import Theorem
 
 COLUMNS = ("lemma", "rules", "formulas", "mutants refuted", "result")
+PROVED = ("theorem, proved in Coq", "file", "rules")
 
 
 @click.command(
-    short_help="Have z3 check the lemmas behind the rules.",
+    short_help="List the theorems behind the rules, and have z3 check the lemmas.",
     epilog=examples(
         "carproof theorems",
         "carproof theorems earliest_entry_dominates",
+        "carproof theorems freed_stays_come_too_late",
         "carproof theorems --json > theorems.json",
     ),
 )
 @click.argument("name", required=False)
 @json_option
 def command(name: str | None, as_json: bool) -> Answer:
-    """Have z3 check all lemmas, or check the one called NAME and print it in full.
+    """List the theorems and have z3 check all lemmas, or print the one called NAME in full.
+
+    The theorems are those of the proved kernel: `make kernel` has Coq check their proofs, this command does not.
 
     A lemma has formulas about whole numbers of any size: z3 shows that their premises can hold and that their
     claims cannot fail. It has mutants too, with one planted error, which z3 must refute by an example. The lemmas
@@ -42,8 +47,11 @@ def command(name: str | None, as_json: bool) -> Answer:
     """
     from carp_verify.engine import examine  # noqa: PLC0415 - loads z3
     from carp_verify.lemmas import MODULES, lemma_named  # noqa: PLC0415
+    from carp_verify.theorems import THEOREMS  # noqa: PLC0415
 
-    modules = MODULES if name is None else (known(name, MODULES),)
+    asked = None if name is None else known(name, (*MODULES, *(theorem.name for theorem in THEOREMS)))
+    modules = [module for module in MODULES if asked in {None, module}]
+    theorems = [theorem for theorem in THEOREMS if asked in {None, theorem.name}]
     started = perf_counter()
     reports: dict[str, LemmaReport] = {}
     with progress("checking", len(modules)) as advance:
@@ -52,10 +60,15 @@ def command(name: str | None, as_json: bool) -> Answer:
             advance()
     checked = all(report.checked for report in reports.values())
     if as_json:
-        print_document(document(reports, checked))
+        print_document(document(reports, theorems, checked))
     elif name is not None:
-        print_report(reports[modules[0]])
+        for theorem in theorems:
+            print_theorem(theorem)
+        for report in reports.values():
+            print_report(report)
     else:
+        print_table(PROVED, [(each.name, each.file, ", ".join(each.rules)) for each in theorems])
+        print_line("")
         print_table(COLUMNS, [row(module, report) for module, report in reports.items()], numbers=COLUMNS[2:4])
         for report in reports.values():
             print_failures(report)
@@ -64,13 +77,13 @@ def command(name: str | None, as_json: bool) -> Answer:
     return Answer.of(checked)
 
 
-def known(name: str, modules: Sequence[str]) -> str:
-    """The lemma of that name; an unknown name is refused with the nearest ones."""
+def known(name: str, names: Sequence[str]) -> str:
+    """The lemma or theorem of that name; an unknown name is refused with the nearest ones."""
     asked = name.replace("-", "_")
-    if asked not in modules:
-        near = get_close_matches(asked, modules, cutoff=0.4)
+    if asked not in names:
+        near = get_close_matches(asked, names, cutoff=0.4)
         hint = f"the nearest are {', '.join(near)}" if near else "carproof theorems lists them all"
-        raise click.BadParameter(f"there is no lemma {name!r}; {hint}.", param_hint="NAME")
+        raise click.BadParameter(f"there is no lemma or theorem {name!r}; {hint}.", param_hint="NAME")
     return asked
 
 
@@ -78,6 +91,13 @@ def row(module: str, report: "LemmaReport") -> Sequence[object]:
     """A row of the columns."""
     result = "checked" if report.checked else "FAILED"
     return (module, ", ".join(report.lemma.rules), len(report.formulas), len(report.refuted), result)
+
+
+def print_theorem(theorem: "Theorem") -> None:
+    """Print a theorem: its statement, the rules that it supports, and where its proof is."""
+    click.echo(f"{theorem.name}\n\n{theorem.statement}\n")
+    print_line(f"Supports: {', '.join(theorem.rules) or 'no rule by itself'}")
+    print_line(f"proved in Coq: {theorem.file}, checked by `make kernel`")
 
 
 def print_report(report: "LemmaReport") -> None:
@@ -96,8 +116,8 @@ def print_failures(report: "LemmaReport") -> None:
         print_line(f"{report.lemma.name}: {failure}")
 
 
-def document(reports: "dict[str, LemmaReport]", checked: bool) -> bytes:
-    """All reports as one JSON document."""
+def document(reports: "dict[str, LemmaReport]", theorems: "Sequence[Theorem]", checked: bool) -> bytes:
+    """All reports and theorems as one JSON document."""
     lemmas = [
         {
             "lemma": module,
@@ -111,4 +131,7 @@ def document(reports: "dict[str, LemmaReport]", checked: bool) -> bytes:
         }
         for module, report in reports.items()
     ]
-    return json.dumps({"checked": checked, "lemmas": lemmas}).encode() + b"\n"
+    proved = [
+        {"theorem": each.name, "statement": each.statement, "rules": each.rules, "file": each.file} for each in theorems
+    ]
+    return json.dumps({"checked": checked, "lemmas": lemmas, "theorems": proved}).encode() + b"\n"

@@ -2,8 +2,7 @@
 
 A prefix is cut if the cost of the plans so far, with a lower bound on each plan to come, is no less than the best
 total. The plan of a robot costs no less than its shortest path on the empty graph. z3 checks that an order whose costs
-are no less than the bounds would not replace the best; `neighbourhood/best` is the specification's own function,
-called with z3's terms.
+are no less than the bounds would not replace the best.
 
 By hand: the costs of all robots to come add up to at least their bounds, because each cost does; a prefix in which a
 robot finds no plan has no candidate behind it; and the optimised planner cuts by this test, which is tested by
@@ -11,16 +10,10 @@ comparing planners.
 """
 
 from collections.abc import Iterator
-from typing import cast
 
-from carp_spec.neighbourhood_rules import replaces_best as spec_replaces_best
 from carp_verify.engine import Formula, Lemma
 from carp_verify.smt import Bool, Int, integers, negation
-
-
-def replaces_best(cost: Int, best: Int) -> Bool:
-    """Whether a candidate replaces a best one: the predicate of `neighbourhood/best`, asked about terms."""
-    return Bool(spec_replaces_best(cast("int", cost), cast("int", best)))
+from carp_verify.vocabulary import replaces_best
 
 
 def is_cut(prefix: Int, bounds: Int, best: Int) -> Bool:

@@ -8,7 +8,7 @@ the robot taken back left s for the resource expanded, and where it is not after
 the way of waiting there, so that the resource expanded counts as freed itself.
 
 By hand: that every difference between the two searches begins with such an entry, leave or exchange, and that the f of
-what follows from it is no less than its own ("The heuristic is consistent"), by induction over expansions. Tests
+what follows from it is no less than its own, by induction over expansions, as h(r) <= d(r) + h(s) for each move. Tests
 compare searches before and after stays are freed on small graphs, and notice a bound that is larger by one.
 """
 

@@ -1,0 +1,153 @@
+"""The theorems of the proved kernel, and the rules that they support.
+
+`make kernel` has Coq check their proofs, and fails unless each rests on no axiom.
+"""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Theorem:
+    """A theorem by its name in a Coq module of `verify/kernel`, its statement, and the rules that it supports."""
+
+    module: str
+    name: str
+    statement: str
+    rules: tuple[str, ...] = ()
+
+    @property
+    def file(self) -> str:
+        """The file with its proof."""
+        return f"verify/kernel/{self.module}.v"
+
+
+_OF_INSTANCES = ("resource-id", "capacity", "duration", "edge", "robot-id", "endpoint", "release", "pace")
+_OF_PLANS = ("start", "goal", "resource", "move", "contiguous", "duration")
+
+THEOREMS = (
+    Theorem(
+        "Checker",
+        "instance_is_well_formed_exactly_when_accepted",
+        "an instance is accepted if and only if it keeps the rules of instances",
+        tuple(f"instance/{name}" for name in _OF_INSTANCES),
+    ),
+    Theorem(
+        "Checker",
+        "checker_accepts_exactly_lawful_solutions",
+        "a solution is accepted if and only if it keeps every rule at every tick",
+        (
+            "solution/covers",
+            "solution/order",
+            *(f"plan/{name}" for name in _OF_PLANS),
+            "joint/capacity",
+            "joint/exchange",
+        ),
+    ),
+    Theorem(
+        "Windows",
+        "free_windows_are_maximal",
+        "the computed windows are exactly the maximal intervals with room for one more robot",
+        ("window/free",),
+    ),
+    Theorem(
+        "Windows",
+        "free_windows_are_in_order_of_time",
+        "each computed window has ended before the next one opens",
+        ("window/free",),
+    ),
+    Theorem(
+        "QueryOptimal",
+        "free_windows_are_unique",
+        "two maximal intervals of free ticks that share a tick are the same",
+        ("window/free",),
+    ),
+    Theorem(
+        "QuerySound",
+        "stays_that_fit_keep_capacity",
+        "a stay within a free window leaves no tick with more robots than the capacity",
+        ("window/fits", "joint/capacity", "query/sound"),
+    ),
+    Theorem(
+        "QuerySearch",
+        "entry_is_the_least_allowed",
+        "the tick at which the query enters a window is the least one that is no exchange",
+        ("query/optimal", "query/complete", "joint/exchange"),
+    ),
+    Theorem(
+        "QueryOptimal",
+        "earliest_entry_dominates",
+        "wherever a robot can go after a later entry into a window, it can go after an earlier one",
+        ("query/optimal", "query/complete", "window/fits"),
+    ),
+    Theorem(
+        "QuerySearch",
+        "settled_entry_is_final",
+        "no way leads into a window before the tick at which the query has settled it",
+        ("query/optimal",),
+    ),
+    Theorem(
+        "QueryHistory",
+        "history_is_kept",
+        "the plan found for a robot under way keeps what the robot has done",
+        ("fleet/history", "plan/duration"),
+    ),
+    Theorem(
+        "QueryOptimal",
+        "query_returns_a_sound_plan_of_least_arrival",
+        "the CARP query returns a plan that keeps the law, and no such plan arrives earlier",
+        ("query/sound", "query/optimal"),
+    ),
+    Theorem(
+        "QueryOptimal",
+        "query_returns_none_only_if_there_is_none",
+        "the CARP query returns no plan only where every plan breaks the law",
+        ("query/complete",),
+    ),
+    Theorem(
+        "QueryCertificate",
+        "accepted_query_is_optimal",
+        "labels closed up to a bound, under a consistent potential (heuristic), leave no plan that arrives before it",
+        ("query/optimal", "query/complete"),
+    ),
+    Theorem(
+        "Audit",
+        "accepted_query_of_a_solution_is_optimal",
+        "the same from the documents on: instance, solution, and `carproof-query/1`",
+        ("query/optimal", "query/complete"),
+    ),
+    Theorem(
+        "Audit",
+        "plans_of_an_accepted_audit_are_optimal",
+        "no robot of an audited solution can arrive earlier beside the plans before its own",
+        ("query/optimal",),
+    ),
+    Theorem(
+        "Prices",
+        "all_pay_no_more_than_prices_times_capacities",
+        "the robots of a lawful solution together pay at most the prices times the capacities",
+        ("joint/capacity", "joint/exchange"),
+    ),
+    Theorem(
+        "Labels",
+        "claim_is_below_every_plan",
+        "no plan of a robot has less weighted cost and prices than its labels show",
+        ("cost/total",),
+    ),
+    Theorem(
+        "Bound",
+        "robot_without_a_claim_has_no_way",
+        "a robot left out of a bound has no way to its goal",
+        ("cost/total",),
+    ),
+    Theorem(
+        "Bound",
+        "accepted_bound_is_below_every_solution",
+        "no lawful solution that plans every plannable robot costs less than an accepted bound, if its cuts hold",
+        ("cost/total",),
+    ),
+    Theorem(
+        "Refutation",
+        "accepted_refutation_means_unsatisfiable",
+        "a formula with an accepted refutation is false, whatever its variables are",
+    ),
+)
