@@ -5,11 +5,11 @@
     instance = read_instance(Path("town.json").read_bytes())
     verdict = check(instance, plan(instance))
 
-The model (`Instance`, `ResourceGraph`, `Resource`, `Robot`, `Solution`, `Plan`, `Visit`), its documents (`read_...`,
-`write_...`), the checker (`check`, with a `Verdict` of `Violation`s by the rules in `RULES`), the planners (`plan`,
-`query`, `add`, `polish`) with their options (`Carp`, `Neighbourhood`, ...), and what is known of the best plans
-(`bound`, `verify_bound`, `optimum`). `carproof.adapters` reads and writes other tools' formats, `carproof.generate`
-makes instances, and `carproof.strategies` draws them for hypothesis.
+It has the model (`Instance`, `ResourceGraph`, `Resource`, `Robot`, `Solution`, `Plan`, `Visit`) and its documents
+(`read_...`, `write_...`); the checker (`check`, with a `Verdict` of `Violation`s by the rules in `RULES`); the planners
+(`plan`, `query`, `add`, `polish`) with their options (`Carp`, `Neighbourhood`, ...); and bounds and optima (`bound`,
+`verify_bound`, `optimum`). `carproof.adapters` reads and writes other tools' formats, `carproof.generate` makes
+instances, and `carproof.strategies` draws them for hypothesis.
 
 A name is loaded when it is first used, so that importing this page costs nothing.
 """
@@ -74,7 +74,7 @@ _ELSEWHERE = {
     "optimum": "carp_optimum.optimum",
     "verify_bound": "carp_verify.verify_bound",
 }
-"""Where a name comes from, and what it is called there; all others are of `carp_spec`."""
+"""The module of each name and its name there; all other names come from `carp_spec`."""
 
 __all__ = [
     "RULES",

@@ -1,4 +1,4 @@
-"""What a command answers, as its exit code: the same four for every command."""
+"""The answer of a command as its exit code: the same four for every command."""
 
 from enum import IntEnum
 
@@ -13,7 +13,7 @@ class Answer(IntEnum):
 
     @classmethod
     def of(cls, holds: bool) -> "Answer":
-        """Yes if it holds, else no."""
+        """Yes if the claim holds, else no."""
         return cls.YES if holds else cls.NO
 
 

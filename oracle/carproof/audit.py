@@ -1,9 +1,9 @@
 """Audits a solution: whether each plan is optimal beside those before it in the planning order.
 
-The planner that is asked is not trusted. A plan counts as optimal if a certificate that none arrives earlier is
-accepted (`carp_verify.verify_query`), and as late if an earlier one is seen to break no rule; if neither, a program of
-ours is wrong. An audit does not look at choices between plans that arrive at one tick, at the order itself, or at
-robots without a plan.
+The audit's planner is not trusted. A plan counts as optimal if a certificate that none arrives earlier is accepted
+(`carp_verify.verify_query`). It counts as late if an earlier plan breaks no rule. If neither holds, carproof has a
+fault. An audit does not judge the choice between plans that arrive at the same tick, the order itself, or robots
+without a plan.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -23,7 +23,7 @@ CHECKER = "carp_verify"
 
 @dataclass(frozen=True, slots=True)
 class Late:
-    """A plan beside which the robot has one that arrives earlier, both beside the plans before it."""
+    """A plan, and one with which its robot arrives earlier, both beside the plans before it."""
 
     plan: Plan
     earlier: Plan
@@ -32,7 +32,7 @@ class Late:
 
 @dataclass(slots=True)
 class Audit:
-    """What an audit found, in the order in which the plans were looked at, and who decided."""
+    """The findings of an audit, in the order in which it looked at the plans, and the checker that decided."""
 
     certified: list[Plan] = field(default_factory=list)
     certificates: list[QueryCertificateDocument] = field(default_factory=list)
@@ -46,7 +46,7 @@ class Audit:
 
 
 class Auditor:
-    """Looks at plans beside those committed so far."""
+    """Compares plans with the best ones beside those committed so far."""
 
     def __init__(self, instance: Instance, engine: Engine) -> None:
         self._instance = instance
@@ -56,7 +56,7 @@ class Auditor:
         self.audit = Audit()
 
     def commit(self, plan: Plan) -> None:
-        """Commit a plan, beside which the next ones are looked at."""
+        """Commit a plan; the next ones are compared beside it."""
         self._certifier.commit([plan])
         self._traffic.commit(plan)
         self._committed.append(plan)
@@ -108,9 +108,9 @@ def audit_in_some_order(
 ) -> Audit:
     """Audit a solution that breaks no rule in an order in which each plan is optimal, if there is one.
 
-    A plan that is optimal beside some plans is so beside more of them, which leave less room. So it does no harm to
-    commit every plan that is optimal as soon as it is, and where none of the rest is, there is no such order: the first
-    of the rest in it would be late. A plan stays late as long as there is room for the earlier one that was found.
+    A plan that is optimal beside some plans stays optimal beside more of them, which leave less room. So every plan can
+    be committed as soon as it is optimal. If none of the rest is optimal, no such order exists: the first of the rest
+    would be late in it. A plan stays late as long as there is room for the earlier one that was found.
     """
     auditor = Auditor(instance, engine)
     waiting: list[tuple[Plan, Plan | None]] = [(plan, None) for plan in in_order(solution)]
@@ -138,7 +138,7 @@ def in_order(solution: Solution) -> Iterator[Plan]:
 
 
 def ask_kernel(instance: Instance, solution: Solution, audit: Audit) -> None:
-    """Have the kernel decide: the certificates of all plans, or that each earlier plan found breaks no rule.
+    """Let the kernel decide: the certificates of all plans, or that each earlier plan found breaks no rule.
 
     Raises `ContradictionError` if it decides otherwise.
     """

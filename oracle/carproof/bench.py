@@ -1,8 +1,7 @@
-"""How fast the optimised planner is: one query, one pass of CARP, one robot added, on the paper's maps and larger ones.
+"""The speed of the optimised planner: a query, a pass of CARP, a robot added, on the paper's maps and larger ones.
 
-All times are of the processor, medians over assignments, on a fleet that stays up and is warm: guides, arrays and
-machine code are there. A pass is CARP over all robots, on an empty fleet and in the same run, so the ratios hold on any
-machine.
+All times are processor times and medians over assignments, on a warm fleet that stays up: guides, arrays and machine
+code exist. A pass is CARP over all robots, on an empty fleet and in the same run, so the ratios hold on any machine.
 """
 
 from collections.abc import Callable, Sequence
@@ -56,10 +55,10 @@ class OnMap:
 
 @dataclass(frozen=True, slots=True)
 class OnGrid:
-    """The times on a full grid with a robot to every four nodes; of the queries the mean over the last robots.
+    """The times on a full grid with a robot to every four nodes; the time of a query is the mean over the last robots.
 
-    The more robots there are, the more queries run into them: most are as fast as on an empty grid, and a few take most
-    of the time. `asked` counts the queries of adding the last robot.
+    The more robots there are, the more queries meet them: most queries are as fast as on an empty grid, and a few take
+    most of the time. `asked` counts the queries of adding the last robot.
     """
 
     side: int
@@ -71,7 +70,7 @@ class OnGrid:
 
 
 def microseconds(work: Callable[[], object], prepare: Callable[[], object] = lambda: None) -> float:
-    """The median time of some work, after a first time that does not count."""
+    """The median time of some work, after a first run that does not count."""
     times = []
     for _ in range(REPETITIONS + 1):
         prepare()
@@ -127,7 +126,7 @@ def medians(all_added: Sequence[Added]) -> Added:
 
 
 def on_grid(side: int, advance: Callable[[], None]) -> OnGrid:
-    """Measure how times grow with the grid."""
+    """Measure how the times grow with the grid."""
     robots = side * side // 4
     last = robots - 1
     fleet = fleet_of(grid_instance(Grid(width=side, height=side), Fleet(robots=robots)))
@@ -155,7 +154,7 @@ def on_grid(side: int, advance: Callable[[], None]) -> OnGrid:
 
 
 def weight(side: int) -> int:
-    """How many assignments on a map take about as long as one of the `PARTS` of measuring a grid."""
+    """The number of assignments on a map that take about as long as one of the `PARTS` of measuring a grid."""
     return max(1, (side // 40) ** 3)
 
 

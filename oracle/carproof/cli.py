@@ -1,4 +1,4 @@
-"""The command `carproof`: loads the command that is asked for and turns what comes of it into an exit code."""
+"""The command `carproof`: loads the named command and turns its result into an exit code."""
 
 import io
 import os
@@ -84,7 +84,7 @@ def _added_commands() -> "EntryPoints":
 @click.group(cls=LazyCommands, epilog=EPILOG, context_settings=SETTINGS)
 @click.version_option(package_name="carproof", message="carproof %(version)s")
 def carproof() -> None:
-    """Plan robots in an automated warehouse, and judge anybody's plans by stable rules."""
+    """Plan robots in an automated warehouse, and judge any planner's plans by stable rules."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -142,7 +142,7 @@ def _answer(arguments: Sequence[str]) -> int:
 
 @contextmanager
 def _naming_extras(context: click.Context) -> Iterator[None]:
-    """Say of a library that is missing which extra has it."""
+    """Name the extra that has a missing library."""
     try:
         yield
     except ModuleNotFoundError as error:
@@ -169,7 +169,7 @@ def _complain(sentence: str) -> int:
 
 
 def _tell(text: str, code: int) -> int:
-    """Say why a command ends, if standard error takes it, and return its exit code."""
+    """Print why a command ends, if standard error is open, and return its exit code."""
     with suppress(OSError):
         click.echo(text, err=True)
     return code
@@ -183,6 +183,6 @@ def _open_closed_streams() -> None:
 
 
 def _forget_output() -> None:
-    """Send what is still buffered nowhere, so that the interpreter's last flush finds an open file."""
+    """Discard buffered output, so that the interpreter's last flush finds an open file."""
     with open(os.devnull, "w", encoding="utf-8") as nowhere:  # noqa: PTH123 - a device, not a path
         os.dup2(nowhere.fileno(), sys.__stdout__.fileno() if sys.__stdout__ else 1)

@@ -1,4 +1,4 @@
-"""The two planners against each other on random instances, until the first difference, which is made small."""
+"""The two planners against each other on random instances, until the first difference, which is shrunk."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ MOST_NUMBERS = 400  # a question is drawn with fewer
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """What was asked, and the two answers: `plan` where there is no robot, else `add` to `before` at `now`."""
+    """A question and the two answers: `plan` if there is no robot, else `add` to `before` at `now`."""
 
     instance: Instance
     planner: Planner
@@ -26,7 +26,7 @@ class Difference:
 
 
 def first_difference(examples: int, seed: int, advance: Callable[[], None] = lambda: None) -> Difference | None:
-    """Ask both engines that many random questions; the first on which they differ, made small by hypothesis."""
+    """Ask both engines random questions; returns the first on which they differ, shrunk by hypothesis."""
     import hypothesis  # noqa: PLC0415 - slow to load
     from hypothesis import strategies as st  # noqa: PLC0415
 

@@ -25,13 +25,13 @@ class Certifier(Protocol):
 
 
 class Engine(Protocol):
-    """What `carp_reference` and `carp_optimized` both have."""
+    """The functions that `carp_reference` and `carp_optimized` both have."""
 
     def query(self, instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0) -> Plan | None:
         """The plan of one robot against committed plans."""
 
     def certifier(self, instance: Instance) -> Certifier:
-        """What gives plans with certificates, beside no plans as yet."""
+        """A certifying planner with no committed plans yet."""
 
     def plan(self, instance: Instance, planner: Planner) -> Solution:
         """Plans of all robots."""
@@ -53,10 +53,10 @@ class Engine(Protocol):
 
 
 class FastestEngine:
-    """The engine to run, and for planners that it does not have the one to read."""
+    """The optimised engine, and the reference for planners that it does not have."""
 
     def __getattr__(self, name: str) -> Any:  # noqa: ANN401 - a function of an engine
-        """Load the engine to run when it is first used."""
+        """Load the optimised engine when it is first used."""
         return getattr(engine_named("optimized"), name)
 
     def plan(self, instance: Instance, planner: Planner) -> Solution:
@@ -65,14 +65,14 @@ class FastestEngine:
 
 
 def engine_named(name: str | None) -> Engine:
-    """Load an engine; without a name, the fastest that has what is asked."""
+    """Load an engine; without a name, the fastest that has the planner."""
     return cast("Engine", FastestEngine() if name is None else import_module(f"carp_{name}"))
 
 
 def warm() -> bool:
-    """Compile what plans and, where its libraries are installed, what finds bounds; whether that was still to do.
+    """Compile the planner and, if its libraries are installed, the search for bounds; returns whether that was needed.
 
-    It is one step, which says so on standard error. What has a limit of time does it before that begins.
+    This is one step, which is announced on standard error. Commands with a time limit do it before the limit starts.
     """
     package = "carp_optimized" if find_spec("pysat") is None else "carp_optimum"
     compile_all = import_module(f"{package}.__main__").compile_all
@@ -85,7 +85,7 @@ def warm() -> bool:
 
 
 def plan_showing(label: str, engine: str | None, instance: Instance, planner: Planner) -> Solution:
-    """Plans of all robots; where the planner to run makes them, a terminal shows how far it is."""
+    """Plans of all robots; if the optimised planner makes them, a terminal shows its progress."""
     if (engine or _fastest_with(planner)) == "reference":
         return engine_named("reference").plan(instance, planner)
     from carp_optimized import plan, steps  # noqa: PLC0415 - loaded when it is first used
@@ -101,7 +101,7 @@ def _fastest_with(planner: Planner) -> str:
 
 
 def sum_of_shortest_paths(instance: Instance, robots: Iterable[RobotId]) -> int:
-    """What the robots would cost if each were alone; one without a path adds nothing."""
+    """The sum of the robots' costs if each were alone; a robot without a path adds nothing."""
     from carp_optimized import sum_of_shortest_paths as fast  # noqa: PLC0415 - loaded when it is first used
 
     asked = tuple(robots)
@@ -121,7 +121,7 @@ def plan_beside(instance: Instance, committed: Sequence[Plan], robot: RobotId, n
 
 
 def why_unplanned(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0) -> str:
-    """Why a robot finds no plan against committed plans of others."""
+    """The reason why a robot finds no plan against committed plans of others."""
     from carp_reference import why_unplanned as why  # noqa: PLC0415 - a command that plans nothing need not load it
 
     return why(instance, committed, robot, now)

@@ -1,4 +1,4 @@
-"""Executions of solutions: delays, the drivers that robots have, and what came of it."""
+"""Executions of solutions: delays, drivers of robots, and results."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -45,7 +45,7 @@ def delays_are_right(solution: Solution, delays: Sequence[Delay]) -> bool:  # no
 
 
 def read_delays(data: bytes, solution: Solution) -> tuple[Delay, ...]:
-    """Read a list of delays; raises `Refusal` for one of no visit of the solution."""
+    """Read a list of delays; raises `Refusal` for a delay at no visit of the solution."""
     try:
         entries = msgspec.json.decode(data, type=tuple[tuple[RobotId, int, int], ...])
     except msgspec.DecodeError as error:
@@ -97,9 +97,9 @@ def delay_named(text: str, instance: Instance, solution: Solution) -> Delay:
 
 @dataclass(frozen=True, slots=True)
 class Execution:
-    """What a driver made of a solution; `followed` is the solution whose order it kept, switches included.
+    """The result of a driver with a solution; `followed` is the solution whose order it kept, switches included.
 
-    `late` has by robot the ticks by which it arrived later than planned, of those that arrived.
+    `late` has, for each robot that arrived late, the ticks by which it did.
     """
 
     driver: Driver
@@ -113,12 +113,12 @@ class Execution:
 
     @property
     def is_safe(self) -> bool:
-        """Whether nobody collided or stood for ever."""
+        """Whether no robot collided or stood for ever."""
         return not self.collisions and not self.standing
 
 
 def execute(instance: Instance, solution: Solution, driver: Driver, delays: tuple[Delay, ...]) -> Execution:
-    """Execute a lawful solution; where it has a circle of dependencies, nothing is switched."""
+    """Execute a lawful solution; if its dependencies have a cycle, nothing is switched."""
     order = order_of(instance, solution)
     followed, switches = solution, 0
     enters: Mapping[Node, int]
@@ -169,7 +169,7 @@ class VisitDocument(msgspec.Struct, frozen=True):
 
 
 class CycleDocument(msgspec.Struct, frozen=True):
-    """Robots that enter each other's places at one tick: each enters the resource as the next robot leaves it."""
+    """A rotation: each robot enters its resource at one tick, as the next robot leaves it."""
 
     tick: int
     robots: tuple[RobotId, ...]
@@ -177,10 +177,10 @@ class CycleDocument(msgspec.Struct, frozen=True):
 
 
 class DependenciesDocument(msgspec.Struct, frozen=True):
-    """The dependency graph of a solution, its shortest cycle (null: none), and what delays do.
+    """The dependency graph of a solution, its shortest cycle (null: none), and the effect of delays.
 
-    `late` has, for the delay asked about, the robots that arrive later, each with the ticks; null, if none was asked
-    about. `collision` is the least set of delays that makes robots on the clock collide, null, if none does.
+    `late` has the robots that the delay in the request makes late, each with the ticks; it is null without such a
+    delay. `collision` is the least set of delays that makes robots on the clock collide; it is null if none does.
     """
 
     acyclic: bool
@@ -243,7 +243,7 @@ def _quoted(text: str) -> str:
 
 
 class ExecutionDocument(msgspec.Struct, frozen=True):
-    """What a driver made of a solution: see `Execution`. `late` are pairs of a robot and ticks."""
+    """The result of a driver with a solution: see `Execution`. `late` are pairs of a robot and ticks."""
 
     driver: str
     delays: tuple[tuple[RobotId, int, int], ...]

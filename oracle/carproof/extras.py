@@ -14,7 +14,7 @@ EXTRAS = {
 
 
 def advice(error: ModuleNotFoundError) -> str | None:
-    """What to install for a module that is missing, as the end of a sentence; `None` if no extra has it."""
+    """Advice for a missing module, as the end of a sentence; `None` if no extra has it."""
     module = (error.name or "").partition(".")[0]
     if module not in EXTRAS:
         return None
@@ -23,7 +23,7 @@ def advice(error: ModuleNotFoundError) -> str | None:
 
 
 def require(*modules: str) -> None:
-    """Raise `ModuleNotFoundError` before long work that would end in it."""
+    """Raise `ModuleNotFoundError` before long work that would end with it."""
     for module in modules:
         if find_spec(module) is None:
             raise ModuleNotFoundError(name=module)

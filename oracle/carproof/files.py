@@ -22,12 +22,12 @@ BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
 
 class InputFile(click.ParamType[str]):
-    """A file that is there to be read, or `-`; its value is the name."""
+    """An existing file to read, or `-`; its value is the name."""
 
     name = "file"
 
     def convert(self, value: str, param: click.Parameter | None, ctx: click.Context | None) -> str:
-        """Refuse what can be no input, before any work is done."""
+        """Refuse a name that cannot be an input, before any work is done."""
         path = Path(value)
         if not value:
             self.fail("the name of a file must not be empty.", param, ctx)
@@ -44,7 +44,7 @@ class InputFile(click.ParamType[str]):
 
 
 def complete_files(incomplete: str) -> list[CompletionItem]:
-    """Have the shell complete the name of a file."""
+    """Let the shell complete the name of a file."""
     return [CompletionItem(incomplete, type="file")]
 
 
@@ -54,7 +54,7 @@ class OutputFile(click.ParamType[Path]):
     name = "file"
 
     def convert(self, value: str, param: click.Parameter | None, ctx: click.Context | None) -> Path:
-        """Refuse what cannot be written, before any work is done."""
+        """Refuse a name that cannot be written, before any work is done."""
         if not value:
             self.fail("the name of a file must not be empty.", param, ctx)
         if value == "-":
@@ -75,14 +75,14 @@ class OutputFile(click.ParamType[Path]):
 
 
 def take_standard_output(ctx: click.Context | None) -> Path:
-    """Give standard output to the document of a command; what people read goes to standard error."""
+    """Reserve standard output for the document of a command; text for people goes to standard error."""
     if ctx is not None:
         ctx.meta[TAKEN] = True
     return STANDARD_OUTPUT
 
 
 def target(path: Path) -> Path:
-    """The file that is written in the end: links are followed, also to what is not there yet."""
+    """The file that is written in the end: links are followed, also to files that do not exist yet."""
     return Path(os.path.realpath(path))
 
 
@@ -118,7 +118,7 @@ def _read(name: str, decode: Callable[[bytes], T]) -> T:
 
 @contextmanager
 def naming(name: str) -> Iterator[None]:
-    """Put the file's name before every refusal of what it holds; one of an option is no matter of the file."""
+    """Put the file's name before every refusal of its content, but not before that of an option."""
     try:
         yield
     except Refusal as refusal:
@@ -128,7 +128,7 @@ def naming(name: str) -> Iterator[None]:
 
 
 def shown(name: str) -> str:
-    """The name of an input as people know it."""
+    """The name of an input for people."""
     return "standard input" if name == STANDARD_INPUT else name
 
 

@@ -1,4 +1,4 @@
-"""What commands share that read and write other planners' files: their options, and how the files are read."""
+"""The options of commands that read and write other planners' files, and the reading of these files."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ AGENTS_HELP = "The first N of the scenario's agents.  [default: all]"
 
 
 def formats() -> str:
-    """The formats, each with what it is."""
+    """The formats with their descriptions."""
     return "; ".join(f"{each.name}: {each.description}" for each in ADAPTERS.values())
 
 
@@ -41,7 +41,7 @@ def movingai_options(function: F) -> F:
 
 @dataclass(frozen=True, slots=True)
 class MovingAI:
-    """A MovingAI benchmark: the files' names, how many agents, and what they do after their goals."""
+    """A MovingAI benchmark: the files' names, the number of agents, and the policy after their goals."""
 
     map: str
     scen: str
@@ -50,7 +50,7 @@ class MovingAI:
 
     @classmethod
     def of(cls, map: str | None, scen: str | None, agents: int | None) -> "MovingAI | None":
-        """The benchmark of the options, `None` if they are not given; some of them alone are refused."""
+        """The benchmark of the options, `None` without them; an incomplete set is refused."""
         if map is None and scen is None and agents is None:
             return None
         if map is None or scen is None:
@@ -102,7 +102,7 @@ class Problem:
         return read_movingai(self.benchmark) if self.benchmark else read_instance_file(self.instance or "")
 
     def read(self, *, as_named: bool = False) -> tuple[Instance, Solution]:
-        """Read both; `as_named`: robots of a benchmark, which has no names for them, are called as in the solution."""
+        """Read both; `as_named`: robots of a benchmark, which has no names for them, get the names in the solution."""
         refuse_two_standard_inputs(*self.names)
         instance = self.read_instance()
         assert self.solution is not None  # noqa: S101 - it is asked only where there is one

@@ -1,6 +1,6 @@
-"""How far planners are from the optimum on a family of generated grids: means, with 95 % intervals, of many gaps.
+"""The distance of planners from the optimum on a family of generated grids: mean gaps with 95 % intervals.
 
-Everything but the limit of a search is decided by seeds. Means are floats; they report, and decide nothing.
+Seeds decide everything but the time limit of a search. Means are floats; they report, and decide nothing.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -32,7 +32,7 @@ class Family:
         return [(size, map) for size in range(self.sizes.low, self.sizes.high + 1) for map in self.maps]
 
     def robots_on(self, size: int) -> int:
-        """How many robots there are on a grid of the size."""
+        """The number of robots on a grid of the size."""
         return size if self.robots is None else self.robots
 
     @property
@@ -41,13 +41,13 @@ class Family:
         return range(self.seed, self.seed + self.count)
 
     def instance(self, size: int, map: int, seed: int) -> Instance:
-        """An instance. Raises `Refusal` for options that make none."""
+        """The instance of a seed; raises `Refusal` for impossible options."""
         return grid_instance(Grid(size, size, map, seed), Fleet(self.robots_on(size), seed, self.after_goal))
 
 
 @dataclass(frozen=True, slots=True)
 class Excess:
-    """How many instances have a value, and their mean in per cent of the optimum; `None` without any instance."""
+    """The number of instances that have a value, and the mean in per cent of the optimum; `None` without any."""
 
     instances: int
     per_cent: Interval | None
@@ -69,7 +69,7 @@ class Cell:
 
     @property
     def decided(self) -> list[Gap]:
-        """The gaps of instances that have an optimum, and it is known."""
+        """The gaps of instances with a known optimum."""
         return [each for each in self.gaps if each.optimum.decided and each.optimum.cost is not None]
 
     @property

@@ -1,4 +1,4 @@
-"""What `carproof gap` shows of gaps: rows for people, documents for programs."""
+"""The output of `carproof gap`: rows for people, documents for programs."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -30,7 +30,7 @@ def gap_document(gap: Gap) -> dict[str, Any]:
 
 
 def gap_rows(gap: Gap) -> Iterator[Sequence[object]]:
-    """A row of each planner, after those of the optimum and of the best order."""
+    """A row for each planner, after those of the optimum and of the best order."""
     cost = gap.optimum.cost if gap.optimum.decided else None
     yield ("optimum", *(("-",) * 5 if cost is None else (0, cost, *("-",) * 3)))
     order_price = _difference(gap.best_order, cost)
@@ -52,7 +52,7 @@ def _planner_row(reached: PlannerGap, cost: int | None, best_order: int | None) 
 
 
 def _difference(total: int | None, least: int | None) -> str:
-    """How much a total exceeds another, in ticks and per cent of it, with one digit."""
+    """The excess of a total over another, in ticks and in per cent of it, with one digit."""
     if total is None or least is None:
         return "-"
     tenths = 1000 * (total - least) // least if least else 0
@@ -88,14 +88,14 @@ def _cell_document(cell: Cell) -> dict[str, Any]:
 
 
 def _mean(excess: Excess) -> dict[str, float | None]:
-    """A mean with the ends of its 95 % interval, and over how many instances."""
+    """A mean with the ends of its 95 % interval, and the number of instances."""
     found = excess.per_cent
     mean, low, high = (None,) * 3 if found is None else (found.estimate, found.low, found.high)
     return {"instances": excess.instances, "mean": mean, "low": low, "high": high}
 
 
 def cell_rows(cell: Cell) -> Iterator[Sequence[object]]:
-    """A row of the optimum, of the best order and of each planner, in per cent of the optimum."""
+    """Rows of the optimum, of the best order and of each planner, in per cent of the optimum."""
     decided, order = cell.decided, cell.price_of_an_order
     grid = (f"{cell.size} x {cell.size}", cell.map, cell.robots)
     yield (*grid, "optimum", f"{len(decided)}/{len(cell.gaps)}", "-", "-")

@@ -1,9 +1,9 @@
 """People first: a robot with priority gets the earliest plan that the others' histories allow, and they give way.
 
-By the tick now each other robot has a history that it cannot undo (`fleet/history`): the visits entered by then, and
-the current one for as long as it takes at least. A robot that appears later stands at its start from its release. No
-plan beside these arrives earlier than the one that is asked for first (`query/optimal`). So if all others can be
-planned around it, no lawful update has an earlier arrival (`priority/first`).
+At the tick now each other robot has a history that it cannot undo (`fleet/history`): the visits entered by then, the
+current one for at least its duration. A robot that appears later stands at its start from its release. The robot with
+priority is planned first, beside these histories alone, and no plan beside them arrives earlier (`query/optimal`). So
+if all others can be planned around it, no lawful update has an earlier arrival (`priority/first`).
 """
 
 from collections.abc import Mapping, Sequence
@@ -15,11 +15,11 @@ from carproof.engines import Engine
 
 @dataclass(frozen=True, slots=True)
 class GivenWay:
-    """What came of it.
+    """The result of giving way.
 
-    `solution` has the new plans, or is `None` where the robot itself or those that are `stuck` have none; then nothing
-    is to be committed. `extra` has the robots that were replanned, each with the ticks by which it arrives later.
-    No lawful update arrives before `least`; `arrival` is proved to be first if it is that tick.
+    `solution` has the new plans, or is `None` if the robot itself or those that are `stuck` have none; then nothing
+    changes. `extra` has the robots that were replanned, each with the ticks by which it arrives later. In no lawful
+    update does the robot arrive before `least`, so `arrival` is proved to be the first if it is that tick.
     """
 
     robot: RobotId
@@ -36,7 +36,7 @@ class GivenWay:
 
 
 def history(instance: Instance, plan: Plan, now: int) -> Plan:
-    """What the robot has done by now and cannot undo, the current visit left as early as may be."""
+    """The visits that the robot cannot undo, with the current one left as early as possible."""
     if has_ended(plan, now):
         return plan
     entered = [visit for visit in plan.visits if visit.enter <= now] or [plan.visits[0]]
@@ -55,7 +55,7 @@ def give_way(
 ) -> GivenWay:
     """Plan the robot first, or take its fixed route, and the others around it.
 
-    Where some find no plan around the earliest one, they keep theirs and the robot gets the earliest plan beside those.
+    If some find no plan around the earliest one, they keep theirs, and the robot gets the earliest plan beside those.
     Raises `Refusal` for a route that breaks a rule.
     """
     plans = {plan.robot: plan for plan in solution.plans}
@@ -99,10 +99,10 @@ def refuse_route(instance: Instance, fixed: Sequence[Plan], own: Sequence[Plan],
 def plan_around(
     instance: Instance, others: Sequence[Plan], first: Plan, now: int, engine: Engine, kept: set[RobotId]
 ) -> dict[RobotId, Plan] | RobotId:
-    """The plans of the others around the first plan, as few of them new as is seen, or a robot that finds none.
+    """The plans of the others around the first plan, few of them new, or a robot that finds none.
 
-    Those that collide are replanned in their order. If one finds no plan, the robots that its plan beside histories
-    alone would run into are replanned after it.
+    Robots that collide are replanned in their order. If one finds no plan, the robots in the way of its plan beside the
+    histories alone are replanned after it.
     """
     before = {plan.robot: plan for plan in others}
     moving = colliding(instance, [first], others)

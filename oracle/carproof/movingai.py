@@ -1,8 +1,8 @@
 """Instances from the MovingAI benchmarks: `.map` and `.scen` files.
 
-A cell `.`, `G` or `S` is passable, a cell `@`, `O`, `T` or `W` is blocked. Cells are resources of capacity and
-duration one, joined to those beside them; robots are the first agents of the scenario. With `park` this is the
-benchmarks' classical problem. The lengths in a scenario are of octile moves, so they are not read.
+A cell `.`, `G` or `S` is passable, a cell `@`, `O`, `T` or `W` is blocked. Cells are resources of capacity and duration
+one, joined to those beside them; robots are the first agents of the scenario. With `park` this is the benchmarks'
+classical problem. The lengths in a scenario are for octile moves, so they are not read.
 """
 
 from collections.abc import Iterator, Sequence
@@ -35,7 +35,7 @@ class GridMap:
     rows: tuple[str, ...]
 
     def is_passable(self, x: int, y: int) -> bool:
-        """Whether a robot can be there; outside the map it cannot."""
+        """Whether a robot can be in the cell; outside the map it cannot."""
         return 0 <= x < self.width and 0 <= y < self.height and self.rows[y][x] in PASSABLE
 
 

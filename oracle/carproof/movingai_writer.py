@@ -1,7 +1,7 @@
 """Writes classical instances as MovingAI `.map` and `.scen` files, which `movingai` reads.
 
-The ids of resources and robots are not in the files; cells say which is which, and the order of robots is kept.
-The lengths, which are of octile moves, are written as 0.
+The files do not have the ids of resources and robots; cells identify resources, and the order of robots is kept. The
+lengths, which are for octile moves, are written as 0.
 """
 
 from dataclasses import dataclass
@@ -22,10 +22,10 @@ class MovingAIFiles:
 
 
 def is_classical(instance: Instance) -> bool:
-    """Whether the files can say all of the instance, and its robots are those of classical multi-agent path finding.
+    """Whether the files can express the instance, and it is one of classical multi-agent path finding.
 
-    It has robots, which all start in different cells, end in different cells and park; they are there from tick 0,
-    and they, the cells and the moves take one tick each. Cells are joined exactly to those beside them.
+    It has robots, which all start in different cells, end in different cells and park. They are present from tick 0,
+    and paces, durations and capacities are one. Cells are joined exactly to those beside them.
     """
     resources, robots = instance.graph.resources, instance.robots
     starts, goals = {robot.start for robot in robots}, {robot.goal for robot in robots}

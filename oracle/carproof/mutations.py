@@ -1,7 +1,7 @@
 """Mutations of a sound solution: each changes it in one place and names the rules that it must break by that.
 
-A mutation is a function of an instance and a sound solution that yields its mutants, in a fixed order. A mutant
-may break further rules: a robot that starts late may well run into another.
+A mutation is a function of an instance and a sound solution that yields mutants in a fixed order. A mutant may break
+further rules: a robot that starts late may also run into another.
 """
 
 from collections.abc import Callable, Iterator
@@ -29,7 +29,7 @@ Mutation: TypeAlias = Callable[[Instance, Solution], Iterator[BrokenSolution]]
 
 
 def stranger_is_named(instance: Instance, solution: Solution) -> Iterator[BrokenSolution]:
-    """A robot is unplanned that the instance does not have."""
+    """A robot is listed as unplanned that the instance does not have."""
     unplanned = (*solution.unplanned, NO_ROBOT)
     yield BrokenSolution(instance, replace(solution, unplanned=unplanned), ("solution/covers",))
 
@@ -60,7 +60,7 @@ def robot_stops_short(instance: Instance, solution: Solution) -> Iterator[Broken
 
 
 def goal_is_left_wrongly(instance: Instance, solution: Solution) -> Iterator[BrokenSolution]:
-    """A robot that is to vanish stays a tick longer; one that is to park leaves."""
+    """A robot that must vanish stays a tick longer; a robot that must park leaves."""
     for plan in solution.plans:
         last = plan.visits[-1]
         leave = last.enter + instance.duration(plan.robot, last.resource) if last.leave is None else last.leave + 1
@@ -100,7 +100,7 @@ def robot_hurries(instance: Instance, solution: Solution) -> Iterator[BrokenSolu
 
 
 def robot_overstays(instance: Instance, solution: Solution) -> Iterator[BrokenSolution]:
-    """A robot stays until another is in the same resource too, and there are more than its capacity."""
+    """A robot stays until another is in the same resource too, and they exceed its capacity."""
     for plan, position in _visits(solution):
         visit = plan.visits[position]
         others = [other for other in solution.plans if other is not plan]
@@ -116,7 +116,7 @@ def robot_overstays(instance: Instance, solution: Solution) -> Iterator[BrokenSo
 
 
 def robot_goes_against_another(instance: Instance, solution: Solution) -> Iterator[BrokenSolution]:
-    """A robot waits where another moves to, makes the opposite move at the same tick, comes back and continues."""
+    """A robot waits where another robot will go, makes the opposite move at the same tick, comes back and continues."""
     moves = [
         (mover, following.enter, visit.resource, following.resource)
         for mover in solution.plans
@@ -179,6 +179,6 @@ def _detour(instance: Instance, plan: Plan, position: int, tick: int, over: Reso
 def _with_visits(
     instance: Instance, solution: Solution, plan: Plan, visits: tuple[Visit, ...], rule: str
 ) -> BrokenSolution:
-    """The solution in which the plan has other visits, and breaks the rule by that."""
+    """The solution in which the plan has other visits, and so breaks the rule."""
     plans = tuple(Plan(plan.robot, visits) if each is plan else each for each in solution.plans)
     return BrokenSolution(instance, replace(solution, plans=plans), (rule,))

@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 class OptimumDocument(msgspec.Struct, frozen=True, omit_defaults=True, forbid_unknown_fields=True):
     """The least total cost, a lower bound, and the solution that has it.
 
-    `proved` means that the search ended with an answer, which nothing checked: it rests on the solver. Proved, and a
-    cost of null: the robots cannot all be planned. Not proved: the solution is the best known, or null if none is.
-    `checked` is there, and true, where a proof was written and then checked as by `carproof verify-proof`.
+    `proved` means that the search ended with an answer, which nothing checked: it rests on the solver. If `proved` is
+    true and the cost is null, the robots cannot all be planned. If it is false, the solution is the best known, or
+    null. `checked` is present, and true, if a proof was written and checked as by `carproof verify-proof`.
     """
 
     cost: int | None
@@ -33,9 +33,9 @@ def optimum_document(best: "Optimum", is_checked: bool = False) -> OptimumDocume
 
 
 class ProofDocument(msgspec.Struct, frozen=True):
-    """The result of checking a proof: the cost that is proved least, or why there are no plans of all robots.
+    """The result of checking a proof: the least cost, or the reason why there are no plans of all robots.
 
-    Where nothing is proved, `reason` says why not.
+    If nothing is proved, `reason` is why not.
     """
 
     proved: bool
@@ -47,7 +47,7 @@ class ProofDocument(msgspec.Struct, frozen=True):
 
 
 def proof_document(verified: "Verified", reason: str | None) -> ProofDocument:
-    """The document of a proof that holds, or, with a reason, one that z3 did not decide."""
+    """The document of a proof that holds or, with a reason, of one that z3 did not decide."""
     solution = None if verified.solution is None else solution_document(verified.solution)
     claim: Literal["optimum", "unsolvable"] = "unsolvable" if solution is None else "optimum"
     return ProofDocument(verified.is_decided, claim, verified.cost, solution, verified.obstacle, reason)

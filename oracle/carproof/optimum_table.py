@@ -1,6 +1,6 @@
 """The table of times of the search for an optimum, in docs/results/gaps.md; `make optimum-figures` makes it again.
 
-Everything but the clock is decided by seeds.
+Seeds decide everything but the times.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -65,7 +65,7 @@ FAMILIES = (
 
 
 def seconds_of(family: Family, advance: Callable[[], None]) -> Iterator[float]:
-    """How long the search for the optimum of each instance of the family takes; infinite if it ends undecided."""
+    """The seconds of the search for the optimum of each instance of the family; infinite if it ends undecided."""
     for seed in range(family.instances):
         instance = family.instance(seed)
         started = perf_counter()

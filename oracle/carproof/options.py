@@ -49,7 +49,7 @@ output_option = click.option(
 json_option = click.option(
     "--json", "as_json", is_flag=True, help="Print the document on standard output, and nothing else."
 )
-kernel_option = click.option("--kernel", is_flag=True, help="Have the proved kernel decide; `make kernel` builds it.")
+kernel_option = click.option("--kernel", is_flag=True, help="Let the proved kernel decide; `make kernel` builds it.")
 engine_option = click.option(
     "--engine",
     type=click.Choice(ENGINES),
@@ -62,16 +62,14 @@ now_option = click.option(
     default=0,
     help="The tick at which the request is made; robots keep what they have done by then.",
 )
-limit_option = click.option(
-    "--limit", type=click.IntRange(min=1), default=DEFAULT_LIMIT, help="For how many seconds to search."
-)
+limit_option = click.option("--limit", type=click.IntRange(min=1), default=DEFAULT_LIMIT, help="The seconds to search.")
 planner_option = click.option(
     "--planner", metavar="NAME", default=Neighbourhood.name, help=f"One of {', '.join(PLANNERS)}."
 )
 
 
 def planner_options(*names: str) -> Callable[[F], F]:
-    """The options of planners that are named, as `carp_spec.planners` has them; those not given keep its defaults."""
+    """The options of named planners, as in `carp_spec.planners`; options not given keep their defaults."""
 
     def decorate(function: F) -> F:
         for name in reversed(names):

@@ -12,7 +12,7 @@ WIDTH = 16  # of a bar beside words, so that totals of seven digits fit into eig
 
 @contextmanager
 def progress(label: str, steps: int) -> Iterator[Callable[[], None]]:
-    """Show a bar; what it yields is to be called at each step."""
+    """Show a bar; the function that it yields is to be called at each step."""
     if not sys.stderr.isatty():
         yield lambda: None
         return
@@ -26,7 +26,7 @@ def progress(label: str, steps: int) -> Iterator[Callable[[], None]]:
 
 @contextmanager
 def search_progress(label: str, most: int | None, seconds: float | None) -> Iterator[Callable[[int, str], None]]:
-    """Show a bar of steps, or of seconds if given; yields a function that takes steps and what was found."""
+    """Show a bar of steps, or of seconds if given; yields a function that takes the steps and a text."""
     if not sys.stderr.isatty():
         yield lambda _, __: None
         return
@@ -46,7 +46,7 @@ def search_progress(label: str, most: int | None, seconds: float | None) -> Iter
 
 
 def found_so_far(total: int | None, bound: int, unplanned: int = 0) -> str:
-    """The best total that is known, if any is, the bound, and how far apart they are, in a few words."""
+    """The best total known, if any, the bound, and the gap between them, in a few words."""
     if total is None:
         return f"bound {bound}"
     near = f"{unplanned} unplanned" if unplanned else f"gap {gap(total, bound)}"

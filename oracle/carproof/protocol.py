@@ -1,4 +1,4 @@
-"""The protocol's lines: how a request is read, and how it is answered. Its rules are `protocol/...`.
+"""The lines of the protocol: reading requests and writing responses. The rules are `protocol/...`.
 
 A request is one line of JSON, `{"id": any, "op": name, ...}`, and so is the response: `{"id": same, "result": ...}`
 or `{"id": same, "error": {"kind", "path", "rule", "message"}}`. The kinds of errors:
@@ -7,8 +7,8 @@ or `{"id": same, "error": {"kind", "path", "rule", "message"}}`. The kinds of er
 - `request`: the request makes no sense (its fields, its robot, its tick, plans that break a rule);
 - `option`: a planner's option;
 - `limit`: the line is too long;
-- `internal`: carproof failed by a fault of its own, or its installation lacks a library that the op needs; `rule` is
-  null, and the next request is answered as ever.
+- `internal`: carproof has a fault, or its installation lacks a library that the op needs; `rule` is null, and the next
+  request is answered normally.
 """
 
 from collections.abc import Callable
@@ -29,7 +29,7 @@ T = TypeVar("T")
 
 
 class ErrorDocument(msgspec.Struct, frozen=True):
-    """Why a request was refused."""
+    """The reason why a request was refused."""
 
     kind: Literal["document", "request", "option", "limit", "internal"]
     path: str
@@ -82,7 +82,7 @@ class Request:
         self.id = self._fields.pop("id", MISSING)
 
     def __contains__(self, name: str) -> bool:
-        """Whether the field is there and not taken yet."""
+        """Whether the field is present and not taken yet."""
         return name in self._fields
 
     def take(self, name: str, decode: Callable[[bytes], T]) -> T:

@@ -3,7 +3,7 @@
     def test_my_planner_is_sound(carproof):
         carproof.conforms(my_planner, level="sound")
 
-pytest loads this module whenever it starts; what it needs to judge planners is loaded by the first test that does.
+pytest loads this module whenever it starts; the modules that judge planners are loaded by the first test that does.
 """
 
 import re
@@ -68,9 +68,9 @@ class Conformance:
     ) -> None:
         """Fail the test if the planner does not conform to the level.
 
-        The planner takes a `carp_spec.Instance` and returns a `carp_spec.Solution`; with `documents=True` it takes
-        and returns the documents, as dictionaries. `without` names features that it is not asked, as
-        `carproof conform --without` does, and with `solvable=True` all robots can have plans.
+        The planner takes a `carp_spec.Instance` and returns a `carp_spec.Solution`; with `documents=True` it takes and
+        returns the documents, as dictionaries. `without` names features that it is not asked, like `carproof conform
+        --without`. With `solvable=True` all robots can have plans.
         """
         __tracebackhide__ = True
         from carproof.extras import advice, require  # noqa: PLC0415 - only a test that judges loads them
@@ -104,7 +104,7 @@ class Conformance:
             pytest.fail(self._told(report), pytrace=False)
 
     def _told(self, report: "Report") -> str:
-        """What is wrong, on which instance, and where it was saved."""
+        """The finding, the size of the instance, and the folder in which it was saved."""
         from carproof.conform.saving import picture_of  # noqa: PLC0415
 
         level = report.options.level

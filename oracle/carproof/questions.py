@@ -73,10 +73,10 @@ def question(seed: int, number: int) -> Question:
 
 
 def draw_question(draw: Draw) -> Question:
-    """An instance and a planner, or a fleet under way and how to add a robot to it.
+    """An instance and a planner, or a fleet under way and a robot to add.
 
-    Durations, capacities, releases, paces, both kinds of ids and graphs, both policies and all options are mixed;
-    starts and goals may be shared, the same, or out of reach of each other.
+    Durations, capacities, releases, paces, both kinds of ids and graphs, both policies and all options are mixed.
+    Starts and goals may be shared, the same, or out of reach of each other.
     """
     instance = draw_instance(draw)
     if draw.happens(4):
@@ -122,7 +122,7 @@ def draw_ids(draw: Draw, count: int) -> Sequence[str | int]:
 
 
 def draw_edges(draw: Draw, ids: Sequence[ResourceId]) -> tuple[Move, ...]:
-    """A tree, from which seldom an edge is missing, and up to as many more edges as there are resources."""
+    """A tree, which seldom lacks an edge, and up to as many more edges as there are resources."""
     edges = [(draw.one_of(ids[:place]), ids[place]) for place in range(1, len(ids)) if not draw.happens(12)]
     pairs = list(combinations(ids, 2))
     more = [draw.one_of(pairs) for _ in range(draw.between(0, len(ids)))] if pairs else []
@@ -152,7 +152,7 @@ def draw_neighbourhood(draw: Draw) -> Neighbourhood:
 
 
 def draw_fleet(draw: Draw, instance: Instance) -> FleetUnderWay:
-    """A fleet at a tick at which its plans, which make detours and wait as those of any planner might, are followed."""
+    """A fleet under way; its plans make detours and wait, as those of any planner might."""
     new, *others = shuffle(instance.robots, draw.stream)
     plans: list[Plan] = []
     for robot in others:
@@ -166,7 +166,7 @@ def draw_fleet(draw: Draw, instance: Instance) -> FleetUnderWay:
 
 
 def draw_plan(draw: Draw, instance: Instance, committed: Sequence[Plan], robot: Robot) -> Plan | None:
-    """A plan over some resource, longer in each than it needs to be; `None` if there is no way, or none is free."""
+    """A plan over some resource that stays longer than needed in each; `None` if there is no way, or none is free."""
     over = draw.one_of(instance.graph.resources).id
     there, back = path_between(instance.graph, robot.start, over), path_between(instance.graph, over, robot.goal)
     path = (*there[:-1], *back) if there and back else path_between(instance.graph, robot.start, robot.goal)

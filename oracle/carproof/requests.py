@@ -1,6 +1,6 @@
-"""What the command line and the protocol ask of a request before a planner sees it: `request/...`.
+"""The rules of requests, which command line and protocol check before a planner sees them: `request/...`.
 
-Refusals name paths in the document that is wrong: `$.plans[2].visits[0]`.
+Refusals name paths in the wrong document: `$.plans[2].visits[0]`.
 """
 
 from collections.abc import Iterator
@@ -54,8 +54,8 @@ def completed(instance: Instance, solution: Solution) -> Solution:
 def sound_solution(instance: Instance, solution: Solution, asked: RobotId | None = None) -> Solution:
     """The completed solution; raises `Refusal` with the first rule that it breaks.
 
-    The plan of a robot that is asked for is what it has followed until now; what it was to do later may be in the
-    way of the others, which is why one asks for a new plan.
+    The plan of the robot that is asked for is its history until now. The rest of that plan may be in the way of others,
+    so it is not checked against them.
     """
     whole = completed(instance, solution)
     of_all = [
@@ -71,7 +71,7 @@ def sound_solution(instance: Instance, solution: Solution, asked: RobotId | None
 
 
 def path_to(violation: Violation, solution: Solution) -> str:
-    """Where the solution's document holds the violation: the first visit to blame, else the plan, else all of it."""
+    """The path of a violation in the solution's document: the first visit to blame, else the plan, else all of it."""
     for number, plan in enumerate(solution.plans):
         if plan.robot != violation.robots[0]:
             continue
@@ -118,7 +118,7 @@ def robot_called(instance: Instance, name: str) -> RobotId:
 def inside(prefix: str) -> Iterator[None]:
     """Put the paths of refusals below a prefix: `$.graph` inside `$.instance` is `$.instance.graph`.
 
-    A refusal of an option stays as it is, for options stand beside the documents.
+    A refusal of an option stays as it is, because options stand beside the documents.
     """
     try:
         yield

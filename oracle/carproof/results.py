@@ -1,4 +1,4 @@
-"""What commands show and write: documents for programs, tables for people."""
+"""The output of commands: documents for programs, tables for people."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -40,7 +40,7 @@ def write_result(document: bytes, output: Path | None, as_json: bool) -> None:
 
 
 def show_solution(instance: Instance, solution: Solution, planner: str, seconds: float) -> None:
-    """Print a table of the result, and why robots are unplanned."""
+    """Print a table of the result, and the reasons why robots are unplanned."""
     print_table(COLUMNS, [result_row(instance, solution, planner, seconds)], numbers=COLUMNS[1:])
     show_unplanned(instance, solution, solution.unplanned)
 
@@ -55,7 +55,7 @@ def result_row(instance: Instance, solution: Solution, planner: str, seconds: fl
 
 
 def show_unplanned(instance: Instance, solution: Solution, robots: Sequence[RobotId], now: int = 0) -> None:
-    """Print why robots have no plan, one a line."""
+    """Print the reasons why robots have no plan, one a line."""
     for robot in robots:
         print_line(f"unplanned: robot {robot}: {_why(instance, solution, robot, now)}")
 
@@ -67,7 +67,7 @@ def _why(instance: Instance, solution: Solution, robot: RobotId, now: int) -> st
 
 
 def show_addition(instance: Instance, before: Solution, after: Solution, robot: RobotId, now: int) -> None:
-    """Print what became of a robot that was to be added, and of the others."""
+    """Print the result for a robot that was to be added, and for the others."""
     plans = {plan.robot: plan for plan in after.plans}
     if robot not in plans:
         show_unplanned(instance, after, [robot], now)
@@ -84,9 +84,9 @@ def shown_plan(plan: Plan) -> str:
 
 
 class VerifiedBoundDocument(msgspec.Struct, frozen=True):
-    """The bound that a certificate proves, or null and where, by which rule and why it does not.
+    """The bound that a certificate proves, or null with the path, the rule and the reason why it proves none.
 
-    `by` decided, and has `assumed` what it could not check.
+    `by` is the checker that decided; `assumed` lists the facts that it did not check.
     """
 
     bound: int | None
@@ -98,7 +98,7 @@ class VerifiedBoundDocument(msgspec.Struct, frozen=True):
 
 
 class VerifiedQueryDocument(msgspec.Struct, frozen=True):
-    """Whether a certificate proves its bound, null where there is no plan; else where, by which rule and why not."""
+    """Whether a certificate proves its bound (null: no plan); if not, the path, the rule and the reason."""
 
     proved: bool
     bound: int | None
@@ -109,7 +109,7 @@ class VerifiedQueryDocument(msgspec.Struct, frozen=True):
 
 
 class LateDocument(msgspec.Struct, frozen=True):
-    """A robot whose plan arrives at a tick, and a plan with which it arrives earlier."""
+    """A robot with the arrival of its plan, and a plan with which it arrives earlier."""
 
     robot: RobotId
     arrival: int
@@ -118,7 +118,7 @@ class LateDocument(msgspec.Struct, frozen=True):
 
 
 class AuditDocument(msgspec.Struct, frozen=True):
-    """The robots whose plans are certified, in that order, those whose plans are late, and who decided."""
+    """The robots whose plans are certified, in order, those whose plans are late, and the checker that decided."""
 
     certified: tuple[RobotId, ...]
     late: tuple[LateDocument, ...]

@@ -1,4 +1,4 @@
-"""All rules that carproof quotes: the specification's, then those of requests, formats and searches."""
+"""All rules of carproof: the specification's, then those of requests, formats and searches."""
 
 from typing import Any
 

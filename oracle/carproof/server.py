@@ -38,7 +38,7 @@ def serve(requests: BinaryIO, responses: BinaryIO, engine: Engine) -> None:
 
 
 def respond(line: bytes, engine: Engine) -> tuple[Response, bool]:
-    """Answer one line, and say whether to go on."""
+    """Answer one line, and return whether to continue."""
     id, op = NULL, ""
     try:
         request = Request(line)

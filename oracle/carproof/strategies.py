@@ -1,6 +1,6 @@
 """Hypothesis strategies: resource graphs, instances, sound solutions, broken ones, and fleets under way.
 
-For tests of planners and of checkers, ours and other people's:
+For tests of planners and of checkers:
 
     from hypothesis import given
     from carproof.strategies import fleets_under_way
@@ -8,8 +8,8 @@ For tests of planners and of checkers, ours and other people's:
     @given(fleets_under_way())
     def test_my_planner_adds_robots(fleet): ...
 
-Their draws obey every rule of an instance and, where nothing else is stated, of plans. Nothing is filtered
-out, so they are fast, and they shrink to few resources, few robots, short plans and small numbers.
+Drawn instances obey every rule `instance/...`, and drawn plans break no rule unless stated otherwise. Nothing is
+filtered out, so drawing is fast. Examples shrink to few resources, few robots, short plans and small numbers.
 """
 
 from dataclasses import dataclass
@@ -50,9 +50,9 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """The largest of everything that is drawn.
+    """The largest values that are drawn.
 
-    `wait` is how many ticks a robot of a drawn plan stays longer in a resource than it needs to.
+    `wait` is the most ticks that a drawn plan stays in a resource beyond the need.
     """
 
     resources: int = 5

@@ -1,7 +1,7 @@
-"""Ends a command within a second of SIGINT or SIGTERM, with all that it started, whatever it is doing.
+"""Ends a command, with all processes that it started, within a second of SIGINT or SIGTERM.
 
-A solver or compiled code does not look at signals for many seconds. So the command runs in a child process, which may
-clean up when it is interrupted, and is killed if it takes too long; the exit code is that of its parent.
+A solver or compiled code may ignore signals for many seconds. So the command runs in a child process, which may clean
+up when it is interrupted and is killed if that takes too long. The exit code is that of the parent.
 """
 
 import os
@@ -56,7 +56,7 @@ def supervised(command: Callable[[], int]) -> int:
 
 
 def stop_once(_: int, __: FrameType | None) -> None:
-    """Raise `KeyboardInterrupt`; nothing may interrupt the cleaning up, nor add to the word of the parent."""
+    """Raise `KeyboardInterrupt`; nothing may interrupt the cleaning up, or print beside the parent's message."""
     for number in INTERRUPTIONS:
         signal.signal(number, signal.SIG_IGN)
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
@@ -85,7 +85,7 @@ def _send(child: int, number: int) -> None:
 
 
 def _kill_orphans() -> None:
-    """End what the command left behind: it has become ours, as we asked for it."""
+    """End the processes that the command left behind, which this process has adopted."""
     with suppress(OSError):
         while children := Path(f"/proc/self/task/{os.getpid()}/children").read_text().split():
             for child in children:

@@ -1,4 +1,4 @@
-"""What people read: tables and lines of text on standard output."""
+"""Output for people: tables and lines of text on standard output."""
 
 from collections.abc import Iterable, Sequence
 
@@ -10,7 +10,7 @@ WIDEST = 10_000
 
 
 def printable(value: object) -> str:
-    """The value as text on one line: a control character in somebody's id is shown, not obeyed."""
+    """The value as text on one line: a control character in an id is shown, not obeyed."""
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in str(value))
 
 

@@ -1,4 +1,4 @@
-"""Timing a path: when a robot that goes along given resources is in each of them, against committed plans."""
+"""Timing of a path: the ticks at which a robot that follows a path is in each resource, against committed plans."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,7 @@
 """Solutions that an executor can follow in order: rotations are removed, each by one robot that is replanned.
 
-In a rotation, robots enter each other's places at one tick. One of them is kept from its place at that tick, and asks
-for the earliest plan beside the others; of the robots in the rotation the one is taken whose plan costs least more.
+In a rotation, robots enter each other's places at one tick. A robot of the rotation is kept from its place at that tick
+and gets the earliest plan beside the others. This is done with the robot whose cost grows least.
 """
 
 from collections.abc import Callable, Sequence
@@ -16,9 +16,9 @@ MOST_ROUNDS = 10_000
 
 @dataclass(frozen=True, slots=True)
 class Untangled:
-    """The solution without rotations, how many rounds it took, and the ticks that it costs more.
+    """The solution without rotations, the number of rounds, and the ticks by which its cost grew.
 
-    `rotation` has the robots of a rotation in which no robot finds another plan; it then stays in the solution.
+    `rotation` has the robots of a rotation in which no robot finds another plan; it stays in the solution.
     """
 
     solution: Solution
@@ -59,9 +59,9 @@ def untangle(
 def query_kept_out(
     instance: Instance, others: Sequence[Plan], robot: RobotId, blocks: Sequence[Visit], engine: Engine
 ) -> Plan | None:
-    """The earliest plan of the robot beside the others that is in none of these visits.
+    """The earliest plan of the robot beside the others that makes none of these visits.
 
-    Each is made by as many robots as there is room for, which are in no instance but the one that is asked about.
+    Each visit is filled with as many extra robots as have room; they exist only in the instance of the query.
     """
     guards: list[Plan] = []
     taken = {each.id for each in instance.robots}

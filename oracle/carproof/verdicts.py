@@ -41,7 +41,7 @@ def verify_bound(instance: Instance, certificate: BoundDocument, kernel: bool) -
 
 
 def _bound_by_kernel(instance: Instance, certificate: BoundDocument) -> VerifiedBoundDocument:
-    """The verdict of the kernel; it assumes the formulas of cuts, which `carp_verify` makes."""
+    """The verdict of the kernel; it assumes that the formulas of cuts, which `carp_verify` makes, are right."""
     formulas = {}
     if certificate.cuts:
         from carp_verify.bound_cuts import formula_of  # noqa: PLC0415 - only cuts need the encoder

@@ -271,7 +271,7 @@ def test_a_rule_that_a_verdict_leaves_out_is_shown_with_its_own_message() -> Non
         others = tuple(violation for violation in verdict.violations if violation.rule != rule)
         (first, *_) = (violation.message for violation in verdict.violations if violation.rule == rule)
         finding = first_finding(asked, changed(verdict, violations=others), Level.SOUND)
-        assert finding == wrong(rule, f"the verdict must tell that it is broken: {first}")
+        assert finding == wrong(rule, f"the verdict must report that it is broken: {first}")
 
 
 def test_carproof_and_a_plan_that_contradict_each_other_are_a_fault(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,7 +1,7 @@
-"""Solutions in other planners' formats, one a module, and graphs of networkx.
+"""Solutions in other planners' formats, one per module, and graphs of networkx.
 
-`read_foreign_solution` reads any of them, and finds out which it is where nobody says; `write_foreign_solution`
-writes them. What the formats mean, `walks` says. To add one, write its module and put its adapter into `ADAPTERS`.
+`read_foreign_solution` reads any format, and recognises it if it is not named; `write_foreign_solution` writes them.
+`walks` defines the semantics of the formats. To add one, write its module and put its adapter into `ADAPTERS`.
 """
 
 from collections.abc import Mapping
@@ -46,7 +46,7 @@ ADAPTERS: Mapping[str, Adapter] = {
     DESIGN,
 )
 def format_is_clear(text: str, instance: Instance) -> bool:
-    """Whether the format can be found out."""
+    """Whether the format can be recognised."""
     return len(_possible(text, instance)) == 1
 
 
@@ -70,7 +70,7 @@ def read_foreign_solution(data: bytes, instance: Instance, file: str = "file", f
 
 
 def write_foreign_solution(instance: Instance, solution: Solution, format: str) -> bytes:
-    """Write a solution that breaks no rule in the format named."""
+    """Write a lawful solution in the format named."""
     return ADAPTERS[format].write(instance, solution).encode()
 
 
@@ -86,7 +86,7 @@ def format_of(data: bytes, instance: Instance, file: str = "file") -> str:
 
 
 def named_as(instance: Instance, format: str) -> Instance:
-    """The instance with its robots called as files of the format call them, if they do."""
+    """The instance with its robots named as in files of the format, if these have names."""
     agent = ADAPTERS[format].agent
     if agent is None:
         return instance
@@ -104,7 +104,7 @@ def _text(data: bytes) -> str:
 
 
 def _possible(text: str, instance: Instance) -> list[str]:
-    """The formats that it looks like; of several, those in which robots begin at their starts, or one if all agree."""
+    """The formats that the data fit; of several, those in which robots begin at their starts, or one if all agree."""
     names = [name for name, each in ADAPTERS.items() if each.looks_like(text)]
     if len(names) == 1:
         return names

@@ -1,4 +1,4 @@
-"""What an adapter is: a format of other planners' solutions, read and written."""
+"""Adapters: formats of other planners' solutions, read and written."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,10 +12,10 @@ Write: TypeAlias = Callable[[Instance, Solution], str]
 
 @dataclass(frozen=True, slots=True)
 class Adapter:
-    """A format: what it looks like, and how it is read and written.
+    """A format: how it is recognised, read and written.
 
     `read` takes the text, the instance and the name of the file, and raises `Refusal` with file and line. `agent` is
-    what a file calls its agents, before their number; `None` where it has no names for them.
+    the name of agents in a file, before their number; `None` if the format has no names for them.
     """
 
     name: str

@@ -1,7 +1,7 @@
 """Paths agent by agent: lines `Agent 0: (a,b)->(a,b)->`, one position a tick, agents numbered from 0.
 
-CBSH2, EECBS, PBS, MAPF-LNS and their kin write (row,column); others write (x,y). These are two adapters, distinguished
-by the robots' starts. Agent k is the instance's k-th robot, and an agent without a line is unplanned.
+CBSH2, EECBS, PBS, MAPF-LNS and related planners write (row,column); others write (x,y). There is an adapter for each,
+and the robots' starts distinguish them. Agent k is the instance's k-th robot, and an agent without a line is unplanned.
 Semantics: `walks`.
 """
 

@@ -5,7 +5,7 @@ from carproof.adapters.adapter import Adapter
 
 
 def read(text: str, instance: Instance, file: str) -> Solution:
-    """Read a document; where it is malformed, file and path say."""
+    """Read a document; a refusal names the file and the path."""
     del instance
     try:
         return read_solution(text.encode(errors="surrogateescape"))

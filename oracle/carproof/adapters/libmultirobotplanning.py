@@ -2,7 +2,7 @@
 
 x is the column and y the row. An agent is the robot of that id or, for `agent0`, `agent1` and so on, the instance's
 robot of that number, counted from 0; an agent that is not listed, or whose list is empty, is unplanned. Ticks rise;
-between two of them the robot waits in the first's cell. Fields beside `schedule` are not read.
+between two ticks the robot waits in the cell of the first. Other fields than `schedule` are not read.
 Semantics: `walks`.
 """
 
@@ -37,7 +37,7 @@ def schedule_is_right(text: str, instance: Instance) -> bool:
 
 
 class _Schedule:
-    """Reads the file event by event: nothing in it can be deeper, or larger, than it is long."""
+    """Reads the file event by event, so memory and depth are bounded by the length of the file."""
 
     def __init__(self, text: str, instance: Instance, file: str) -> None:
         self.instance = instance

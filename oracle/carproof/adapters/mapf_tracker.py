@@ -1,9 +1,8 @@
 """The MAPF tracker's moves: for each robot of the instance, in its order, a line like `5r2d3w`.
 
-`l` and `r` lower and raise x, `d` and `u` lower and raise y (so `u` is down where y grows downwards: so it is in
-the tracker's own files), `w` waits; a number repeats what follows it. The walk begins at the robot's start.
-A table (CSV) with one row and a column `path` or `solution_plan`, as the tracker hands out, is read too.
-Semantics: `walks`.
+`l` and `r` lower and raise x, `d` and `u` lower and raise y, and `w` waits; a number repeats the letter after it. In
+the tracker's own files y grows downwards, so there `u` moves down. The walk begins at the robot's start. The tracker's
+tables (CSV) with one row and a column `path` or `solution_plan` are read too. Semantics: `walks`.
 """
 
 import re
@@ -90,7 +89,7 @@ def read(text: str, instance: Instance, file: str) -> Solution:
 
 
 def _moves(line: str) -> int:
-    """How many cells the line names, waiting not counted."""
+    """The number of cells that the line names, without waiting."""
     return sum(int(count or 1) for count, letter in _RUN.findall(line) if letter != "w")
 
 

@@ -1,8 +1,8 @@
 """Instances on graphs of networkx.
 
-A node is a resource: its attributes `capacity` and `duration` (default 1), and `x` and `y` or `pos`, a pair of them,
-say the rest. An edge is a move, or two of an undirected graph. Other attributes are not read. The semantics are
-those of the `after_goal` given: with `park`, the default, and no attributes, classical multi-agent path finding.
+A node is a resource, with the attributes `capacity` and `duration` (default 1), and `x` and `y`, or `pos` as a pair of
+them. An edge is a move, or two moves in an undirected graph. Other attributes are not read. With `park`, the default of
+`after_goal`, and no attributes, an instance is classical multi-agent path finding (MAPF).
 """
 
 from collections.abc import Iterable, Mapping

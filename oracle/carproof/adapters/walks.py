@@ -1,10 +1,10 @@
-"""Walks over cells, tick by tick: what all the planners' text formats have in common, and what they mean.
+"""Walks over cells, tick by tick: the common semantics of all text formats of other planners.
 
-They are of classical multi-agent path finding: every robot is there from tick 0, moves or waits in each tick, and
-stays at its goal for ever. Following and rotating are allowed, swapping is not, and cells and moves take one tick;
-carproof's rules say the same of an instance with `park` and durations and capacities of one, and where an instance
-says otherwise, the instance is right. Waiting at the end of a walk is part of one visit for ever. A cell that the
-instance does not have, a jump, or a walk that ends elsewhere than at the goal is left to the checker.
+They are walks of classical multi-agent path finding (MAPF): every robot is present from tick 0, moves or waits in each
+tick, and stays at its goal for ever. Following and rotations are allowed, swaps are not, and a move takes one tick.
+carproof's rules mean the same for an instance with `park` and with durations and capacities of one; other values of an
+instance take precedence. Waiting at the end of a walk is part of one visit for ever. The checker reports a cell that
+the instance does not have, a jump, and a walk that does not end at the goal.
 """
 
 from collections.abc import Mapping, Sequence
@@ -17,7 +17,7 @@ from carproof.generate.grid import cell_id
 
 Cell: TypeAlias = tuple[int, int]
 Walk: TypeAlias = Sequence[tuple[Cell, int]]
-"""Cells, each with the tick at which the robot is known to be there; the ticks rise, and between them it stays."""
+"""Cells, each with a tick at which the robot is there; the ticks rise, and the robot stays between them."""
 
 MOST_CELLS = 20_000_000
 
@@ -29,7 +29,7 @@ MOST_CELLS = 20_000_000
     DESIGN,
 )
 def instance_has_walks(instance: Instance) -> bool:
-    """Whether walks over cells can be plans of the instance."""
+    """Whether plans of the instance can be walks over cells."""
     positions = {(each.x, each.y) for each in instance.graph.resources if each.x is not None and each.y is not None}
     all_there = all(robot.release == 0 for robot in instance.robots)
     return instance.after_goal == "park" and all_there and len(positions) == len(instance.graph.resources)
@@ -70,7 +70,7 @@ def require_bounded(cells: int, where: str) -> None:
 
 
 def solution_of_walks(instance: Instance, walks: Mapping[RobotId, Walk]) -> Solution:
-    """The solution in which robots walk so; those without a walk are unplanned."""
+    """The solution in which robots make these walks; a robot without a walk is unplanned."""
     require_walks(instance)
     resources = {(each.x, each.y): each.id for each in instance.graph.resources}
     plans = tuple(_plan(id, walks[id], resources) for id in instance.robot if id in walks)

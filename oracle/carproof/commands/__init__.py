@@ -1,4 +1,4 @@
-"""The commands, one a module; its `command` is loaded when somebody asks for it.
+"""The commands, one per module; a module is loaded when its command is used.
 
 To add one, write the module and put its name into a group here. A `-` in a command's name is a `_` in its module's.
 Another package adds a command by an entry point of the group `carproof.commands`, as `carp_experiments` does.
@@ -14,6 +14,6 @@ GROUPS: Mapping[str, tuple[str, ...]] = {
     "Compare": ("gap", "crosscheck", "bench"),
     "Run": ("demo", "serve", "warm"),
 }
-"""The commands by what they are for, in the order in which help lists them."""
+"""The commands by purpose, in the order in which help lists them."""
 
 COMMANDS = tuple(name for names in GROUPS.values() for name in names)

@@ -55,8 +55,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 ) -> Answer:
     """Add ROBOT, which INSTANCE has, to the plans of SOLUTION, by the neighbourhood planner.
 
-    Robots near it may get new plans; what each has done by --now stays. A robot that SOLUTION does not name
-    counts as unplanned.
+    Robots near it may get new plans, but keep the visits that they have made by --now. A robot that SOLUTION does not
+    name counts as unplanned.
 
     Exit codes: 0 the robot has a plan, 1 it has none and all plans stay as they were, 2 bad input.
     """

@@ -57,14 +57,15 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     engine: str | None,
     as_json: bool,
 ) -> Answer:
-    """Certify of each plan of SOLUTION that its robot cannot arrive earlier beside the plans before it.
+    """Certify for each plan of SOLUTION that its robot cannot arrive earlier beside the plans before it.
 
-    The plans may be of any planner; they must break no rule. They are looked at in the planning order of SOLUTION, and
-    all are at tick 0: no robot is under way. Other planners' formats have no such order. There, as with --find-order,
-    one is looked for in which no plan is late, and if none exists, the plans are listed that are late in every order.
+    Any planner may have made the plans; they must break no rule. They are judged in the planning order of SOLUTION, all
+    at tick 0: no robot is under way. Other planners' formats have no such order. For them, and with --find-order, the
+    audit searches for an order in which no plan is late; if none exists, it lists the plans that are late in every
+    order.
 
-    An audit does not say whether a plan has the ties that carproof prefers, whether another order would be better, or
-    whether robots without a plan could have one.
+    An audit does not judge ties, whether another order would be better, or whether robots without a plan could have
+    one.
 
     Exit codes: 0 each plan is certified, 1 a plan is late, 2 bad input.
     """
@@ -98,7 +99,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
 
 def print_late(audit: Audit) -> None:
-    """Print each late plan, one a line, with one that arrives earlier."""
+    """Print each late plan on a line, with one that arrives earlier."""
     for late in audit.late:
         earlier = f"{arrival_of(late.earlier)}: {shown_plan(late.earlier)}"
         print_line(f"robot {late.plan.robot} arrives at {arrival_of(late.plan)}, and can at {earlier}")

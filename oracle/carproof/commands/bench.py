@@ -1,4 +1,4 @@
-"""`carproof bench`: how fast the optimised planner is."""
+"""`carproof bench`: the speed of the optimised planner."""
 
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -21,17 +21,18 @@ MAPS = (10, 20)
     short_help="Measure queries, passes of CARP and additions.",
     epilog=examples("carproof bench", "carproof bench --assignments 5 --json > bench.json"),
 )
-@click.option("--assignments", type=click.IntRange(min=1), default=20, help="How many random assignments a map.")
+@click.option("--assignments", type=click.IntRange(min=1), default=20, help="The number of random assignments per map.")
 @click.option("--growth/--no-growth", default=True, help="Measure larger and larger grids too.")
 @json_option
 def command(assignments: int, growth: bool, as_json: bool) -> Answer:
     """Measure one query, one pass of CARP and the adding of a robot.
 
-    On the paper's maps 10 and 20 with 100 robots, and on full grids of 20 x 20 to 160 x 160 with a robot to every four
-    nodes. Times are of the processor, warm: medians, on the grids of one query the mean. Ratios are to a pass of CARP
-    over all robots in the same run. The last columns count the queries asked, and those that each kind of reuse
-    avoided: a robot before the one taken out keeps its plan; a query that cannot have changed; orders that begin alike;
-    answers shared between orders; orders that cannot be better. Of orders drawn, only those drawn count.
+    It uses the paper's maps 10 and 20 with 100 robots and, with --growth, full grids of 20 x 20 to 160 x 160 with a
+    robot to every four nodes. Times are processor times, warm, and medians; on the grids the time of one query is a
+    mean. Ratios are to a pass of CARP over all robots in the same run. The last columns count the queries asked, and
+    those that each kind of reuse avoided: kept plans of robots before the one taken out; queries that cannot have
+    changed; orders that begin alike; answers shared between orders; orders that cannot be better. If orders are drawn,
+    only those drawn count.
 
     Exit codes: 0 done, 2 bad usage.
     """
@@ -48,7 +49,7 @@ def command(assignments: int, growth: bool, as_json: bool) -> Answer:
 
 
 def document(maps: Sequence[OnMap], grids: Sequence[OnGrid]) -> dict[str, Any]:
-    """All figures; those of the full map first."""
+    """All figures; those of the full map come first."""
     full = maps[-1]
     last = max(each.k for each in full.added)
     return {

@@ -1,4 +1,4 @@
-"""`carproof certify`: check a solution, and have z3 confirm that plans keep capacities and avoid exchanges."""
+"""`carproof certify`: check a solution, and let z3 confirm that plans keep capacities and avoid exchanges."""
 
 import json
 from dataclasses import asdict
@@ -29,12 +29,12 @@ if TYPE_CHECKING:
 @solution_files
 @json_option
 def command(problem: Problem, as_json: bool) -> Answer:
-    """Check SOLUTION, in any format, and have z3 confirm that its plans keep capacities and avoid exchanges.
+    """Check SOLUTION, in any format, and let z3 confirm that its plans keep capacities and avoid exchanges.
 
-    A solution that breaks a rule of single plans or of the list of plans is refused, as check refuses it. Then
-    z3 shows for each resource that there is no tick at all at which it is too full, and for each pair that no
-    two robots exchange it: a second opinion on the rules joint/capacity and joint/exchange, by other means than
-    check. Where there is such a tick it is named, with the robots.
+    A solution that breaks a rule of single plans or of the list of plans is refused, as by check. Otherwise z3 shows
+    for each resource that it is too full at no tick at all, and for each pair of resources that no two robots exchange
+    it. This is a second opinion on the rules joint/capacity and joint/exchange, by other means than check. If there is
+    such a tick, it is named, with the robots.
 
     Exit codes: 0 certified, 1 refused, 2 bad input, 3 z3 could not tell.
     """

@@ -1,4 +1,4 @@
-"""`carproof check`: whether a solution is right, in carproof's format or another planner's."""
+"""`carproof check`: whether a solution, in carproof's format or another planner's, breaks a rule."""
 
 from collections import Counter
 from pathlib import Path
@@ -51,8 +51,8 @@ def command(
     Either file may be - for standard input.
 
     SOLUTION is carproof's document or another planner's output (--from). Such output is read as classical multi-agent
-    path finding: robots are there from tick 0, move or wait in each tick, and stay at their goals for ever;
-    following is allowed, swapping is not; durations and capacities are one unless INSTANCE says otherwise.
+    path finding: robots are present from tick 0, move or wait in each tick, and stay at their goals for ever; following
+    is allowed, swapping is not. Durations and capacities are one unless INSTANCE has other values.
 
     With --kernel the proved kernel decides, and --json prints its verdict.
 

@@ -27,9 +27,9 @@ from carproof.tables import print_line
 @trace_argument
 @json_option
 def command(*, instance: str, solution: str, trace: str, as_json: bool) -> Answer:
-    """Check that the TRACE of what has happened follows SOLUTION: ways, durations, and the order of the plans.
+    """Check that TRACE, what has happened so far, follows SOLUTION: paths, durations, and the planned order.
 
-    The ticks may be any. SOLUTION must break no rule.
+    Robots may be late: the trace need not have the ticks of the plans. SOLUTION must break no rule.
 
     Exit codes: 0 no rule is broken, 1 a rule is broken, 2 bad input.
     """

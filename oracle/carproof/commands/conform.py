@@ -1,4 +1,4 @@
-"""`carproof conform`: whether somebody's planner conforms to the specification."""
+"""`carproof conform`: whether a planner conforms to the specification."""
 
 import shlex
 import shutil
@@ -58,8 +58,8 @@ _LEVELS = "\n".join(
     ),
 )
 @click.argument("program", nargs=-1, required=True, metavar="-- PROGRAM ...")
-@click.option("--level", type=click.Choice(list(LEVELS)), default=Level.SOUND.label, help="What is asked of it.")
-@click.option("--examples", "number", type=click.IntRange(0), default=200, help="How many random cases are asked.")
+@click.option("--level", type=click.Choice(list(LEVELS)), default=Level.SOUND.label, help="The level to judge by.")
+@click.option("--examples", "number", type=click.IntRange(0), default=200, help="The number of random cases.")
 @click.option(
     "--seed",
     type=click.IntRange(0, 2**64 - 1),
@@ -73,7 +73,7 @@ _LEVELS = "\n".join(
     default=5.0,
     help="Seconds for an answer; 5 times that at a start.",
 )
-@click.option("--shrinking", type=click.FloatRange(0), default=15.0, help="Seconds for making a failure smaller.")
+@click.option("--shrinking", type=click.FloatRange(0), default=15.0, help="Seconds for shrinking a failure.")
 @click.option("--memory", type=click.IntRange(0), default=4096, help="MiB of address space for PROGRAM; 0: any.")
 @click.option("--solvable", is_flag=True, help="Ask only for robots that can have plans, together.")
 @click.option(
@@ -89,7 +89,7 @@ _LEVELS = "\n".join(
     "format",
     type=click.Choice([*ADAPTERS]),
     metavar="FORMAT",
-    help=f"What it writes then: {', '.join(ADAPTERS)}.  [default: found out]",
+    help=f"The format of its answer: {', '.join(ADAPTERS)}.  [default: found out]",
 )
 @kernel_option
 @click.option("--save", type=click.Path(path_type=Path, file_okay=False), default="conform-failure", help="Folder.")
@@ -117,29 +117,29 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 ) -> Answer:
     """Ask PROGRAM questions, and judge its answers.
 
-    PROGRAM stays up and answers requests, one a line, as carproof serve does: start, stop, and as many of the ops
-    below as it likes; what it does not offer is not asked. A failing case is shrunk, and written to the folder of
-    --save: the request, the documents, a test vector and pictures. The next run asks these cases first.
+    PROGRAM stays up and answers requests, one a line, as carproof serve does: start, stop, and any of the ops below. It
+    is not asked ops that it does not offer. A failing case is shrunk and written to the folder of --save: the request,
+    the documents, a test vector and pictures. The next run asks these cases first.
 
-    It must answer all smoke cases, and 90 in 100 random cases of each op that it offers; to skip a case, or to leave
-    an optimum undecided, is no answer. It may give up at most half of the random cases of an op that have an answer.
-    carproof rules program/answers and program/tries have the details. Random cases are new ones each time, so that
-    they cannot be known before; the verdict names the seed, with which they are asked again.
+    It must answer all smoke cases, and 90 in 100 random cases of each op that it offers. A skipped case or an undecided
+    optimum is not an answer. It may give up at most half of the random cases of an op that have an answer. carproof
+    rules program/answers and program/tries have the details. Random cases are new each time, so that they cannot be
+    known in advance; the verdict names the seed that repeats them.
 
-    A planner that does not claim all of this is asked less: --without capacities --without directed, or --solvable.
-    The verdict lists what was left out.
+    A planner that does not claim all of this is asked less: --without capacities --without directed, or --solvable. The
+    verdict lists the parts that were left out.
 
-    With --one-shot it is started for each instance, and plans the file {instance}. It writes the file {solution},
-    if its arguments name that, or else to its standard output. If they name {map} and {scen}, these are MovingAI
-    files with {agents} agents, and what it writes may be in any format that carproof check reads; all else than
-    classical grids is not asked, and the levels are sound, complete and optimal.
+    With --one-shot it is started for each instance, and plans the file {instance}. It writes the file {solution}, if
+    its arguments name that, or else to its standard output. If the arguments name {map} and {scen}, these are MovingAI
+    files with {agents} agents, and the output may be in any format that carproof check reads. Then only classical grids
+    are asked, and the levels are sound, complete and optimal.
 
-    With --kernel the proved kernel decides whether plans break a rule, and whether each arrives as early as it can,
-    at the levels sound, complete-in-context and context-optimal. carp_spec decides the rest: what robots under way have
-    done, and instances that forbid following.
+    With --kernel the proved kernel decides whether plans break a rule, and whether each arrives as early as possible,
+    at the levels sound, complete-in-context and context-optimal. carp_spec decides the rest: histories of robots under
+    way, and instances that forbid following.
 
-    Exit codes: 0 it conforms, 1 it does not, 2 bad usage, 3 undecided: no random case decided it. If it is
-    interrupted, it prints what it has found.
+    Exit codes: 0 it conforms, 1 it does not, 2 bad usage, 3 undecided: no random case decided it. If interrupted, the
+    command prints its findings so far.
     """
     from carproof.conform.child import Limits  # noqa: PLC0415 - what runs processes is loaded when it is needed
     from carproof.conform.documents import junit_document, report_document  # noqa: PLC0415
@@ -190,7 +190,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
 @contextmanager
 def _nothing_kept() -> Iterator[None]:
-    """Let hypothesis keep its files in a folder that goes away, not in the user's."""
+    """Let hypothesis keep its files in a temporary folder, not in the user's."""
     from hypothesis.configuration import set_hypothesis_home_dir  # noqa: PLC0415 - loaded only where used
 
     with TemporaryDirectory(prefix="carproof-") as folder:
@@ -227,7 +227,7 @@ def _origin(program: Sequence[str], level: str, one_shot: bool, seed: int) -> "O
 
 
 def _show(report: "Report", saved: Sequence[Path]) -> None:
-    """Print what came of it: counts, what is wrong, and the verdict."""
+    """Print the results: counts, findings, and the verdict."""
     from carproof.conform.documents import counts  # noqa: PLC0415
     from carproof.conform.wording import verdict  # noqa: PLC0415
 

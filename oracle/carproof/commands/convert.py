@@ -1,4 +1,4 @@
-"""`carproof convert`: instances and solutions from and to other people's formats."""
+"""`carproof convert`: instances and solutions from and to the formats of other tools."""
 
 from pathlib import Path
 from typing import get_args
@@ -34,7 +34,11 @@ from carproof.results import show_instance
 @click.argument("first", metavar="MAP|INSTANCE", type=InputFile())
 @click.argument("second", metavar="SCEN|SOLUTION", type=InputFile())
 @click.option("--agents", type=click.IntRange(min=0), help=AGENTS_HELP)
-@click.option("--after-goal", type=click.Choice(get_args(AfterGoal)), help="What robots do then.  [default: park]")
+@click.option(
+    "--after-goal",
+    type=click.Choice(get_args(AfterGoal)),
+    help="Robots vanish or park after their goals.  [default: park]",
+)
 @click.option("--to", type=click.Choice([*ADAPTERS]), metavar="FORMAT", help="Convert a solution to this format.")
 @from_option
 @output_option
@@ -50,14 +54,14 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     output: Path | None,
     as_json: bool,
 ) -> Answer:
-    """Make an instance of a MovingAI .map and .scen file, or with --to convert a solution of an instance.
+    """Make an instance from a MovingAI .map and .scen file or, with --to, convert a solution of an instance.
 
-    With --after-goal park, the default, an instance is classical multi-agent path finding: 4-connected, capacities
-    and durations of one, and the cost is the sum of costs. The scenario's lengths are of octile moves and not used.
+    With --after-goal park, the default, an instance is classical multi-agent path finding: 4-connected, capacities and
+    durations of one, and the cost is the sum of costs. The scenario's lengths are for octile moves and are not used.
 
     With --to, the files are INSTANCE and SOLUTION. Other planners' formats hold plans of robots that are present from
-    tick 0 and park, on resources with positions; a solution that breaks a rule, or needs what the format cannot
-    say, is refused.
+    tick 0 and park, on resources with positions. A solution that breaks a rule, or that the format cannot express, is
+    refused.
 
     The result goes to standard output, or with -o to a file.
     """

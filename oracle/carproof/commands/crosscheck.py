@@ -1,4 +1,4 @@
-"""`carproof crosscheck`: the planner to run against the planner to read."""
+"""`carproof crosscheck`: the optimised planner against the reference."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -22,15 +22,15 @@ from carproof.tables import print_line
     short_help="Ask both engines the same random questions.",
     epilog=examples("carproof crosscheck --examples 10000", "carproof crosscheck --seed 7 -o difference.json"),
 )
-@click.option("--examples", "count", type=click.IntRange(min=1), default=1000, help="How many random questions.")
+@click.option("--examples", "count", type=click.IntRange(min=1), default=1000, help="The number of random questions.")
 @click.option("--seed", type=click.IntRange(min=0), default=0, help="The seed of the questions.")
 @output_option
 @json_option
 def command(count: int, seed: int, output: Path | None, as_json: bool) -> Answer:
     """Ask both engines the same questions, and stop at the first difference.
 
-    Random instances are planned by every planner that both have, and robots are added to fleets under way. A
-    difference is made as small as can be; its document holds the question and both answers.
+    Random instances are planned by every planner that both engines have, and robots are added to fleets under way. A
+    difference is shrunk; its document holds the question and both answers.
 
     Exit codes: 0 no difference, 1 a difference, 2 bad usage.
     """

@@ -1,4 +1,4 @@
-"""`carproof demo`: the main job from end to end, on the paper's map and on a MovingAI one."""
+"""`carproof demo`: make, plan and check, on the paper's map and on a MovingAI one."""
 
 from dataclasses import dataclass
 from importlib.resources import files
@@ -46,7 +46,7 @@ def command(folder: Path) -> Answer:
     except OSError as error:
         raise click.ClickException(f"{folder}: it cannot be made: {error.strerror}") from error
     instances = {"paper": grid_instance(Grid(), Fleet()), "depot": depot(folder)}
-    for planner in PLANNERS.values():  # what is not compiled yet is compiled before any time is taken
+    for planner in PLANNERS.values():  # compile what is not compiled yet, before any time is measured
         plan_showing("", None, instances["depot"], planner)
     results: list[Result] = []
     for name, instance in instances.items():

@@ -1,4 +1,4 @@
-"""`carproof dependencies`: which visits wait for which, and what delays do."""
+"""`carproof dependencies`: the action dependency graph, and the effect of delays."""
 
 from pathlib import Path
 
@@ -23,7 +23,7 @@ from carproof.tables import print_line, print_table
 
 
 @click.command(
-    short_help="Show what waits for what, and what delays do.",
+    short_help="Show which visits wait, and what delays do.",
     epilog=examples(
         "carproof dependencies town.json plans.json",
         "carproof dependencies town.json plans.json --delay r7:3:5",
@@ -39,10 +39,11 @@ from carproof.tables import print_line, print_table
 def command(
     *, instance: str, solution: str, delays: tuple[str, ...], picture: Path | None, output: Path | None, as_json: bool
 ) -> Answer:
-    """Make the dependency graph of SOLUTION: which visits wait for which if robots keep the order of the plans.
+    """Make the action dependency graph of SOLUTION: which visits wait for which if robots keep the planned order.
 
-    Says whether the graph has no cycle, so that an execution in order never stops, and else the shortest one; which
-    delays of the least sum make robots collide that keep to the clock; and, for delays asked about, who is late.
+    The command prints the shortest cycle of the graph, if it has one; without a cycle, an execution in the planned
+    order never stops. It also prints the delays of the least sum that make robots collide that keep to the clock and,
+    with --delay, the robots that arrive late.
 
     Exit codes: 0 there is no cycle, 1 there is one, 2 bad input.
     """

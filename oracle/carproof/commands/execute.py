@@ -1,4 +1,4 @@
-"""`carproof execute`: what drivers make of a solution when robots are delayed."""
+"""`carproof execute`: simulations of a solution with delayed robots."""
 
 from pathlib import Path
 
@@ -39,7 +39,7 @@ MOST_SHOWN = 3
 @click.option("--driver", type=click.Choice(DRIVERS), help="How robots are driven.  [default: all three]")
 @click.option("--delays", metavar="CHANCE[:TICKS]|FILE", default="0.05", help="Delays: a model, or a list in a file.")
 @click.option("--seed", type=click.IntRange(0, 2**64 - 1), default=0, help="The seed of the delays.")
-@click.option("--trace", type=OutputFile(), help="Write what happened to this file; needs --driver.")
+@click.option("--trace", type=OutputFile(), help="Write the trace to this file; needs --driver.")
 @click.option("--followed", type=OutputFile(), help="Write the solution whose order was kept; needs --driver.")
 @json_option
 def command(  # noqa: PLR0913 - one parameter for each argument and option
@@ -55,12 +55,13 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 ) -> Answer:
     """Execute SOLUTION with robots that need longer at some visits than planned.
 
-    Robots on the `clock` keep to the ticks of their own plans as well as they can. Robots in `order` enter a resource
-    when all have left it that leave first by the plans. With `switching`, a robot that waits for a late one may go
-    first where this is safe and makes the sum of arrivals less. --delays 0.05:3 delays each visit but a robot's last
-    with a chance of 0.05 by 1 to 3 ticks; a file has a list of [robot, visit, ticks], visits counted from 0.
+    Driver `clock`: robots keep to the ticks of their own plans as well as they can. Driver `order`: a robot enters a
+    resource when all have left it that are planned to leave first. Driver `switching`: a robot that waits for a late
+    one may go first, where this is safe and makes the sum of arrivals smaller. --delays 0.05:3 delays each visit but a
+    robot's last with a chance of 0.05 by 1 to 3 ticks; a file has a list of [robot, visit, ticks], visits counted from
+    0.
 
-    Mean and worst are ticks by which robots arrive later than planned.
+    Mean and worst count the ticks by which robots arrive later than planned.
 
     Exit codes: 0 nobody collides or stands for ever, 1 somebody does, 2 bad input.
     """

@@ -1,4 +1,4 @@
-"""`carproof gap`: how far each planner is from the optimum."""
+"""`carproof gap`: the distance of each planner from the optimum."""
 
 from typing import TYPE_CHECKING, get_args
 
@@ -37,7 +37,7 @@ MOST_INSTANCES = 10_000
 @click.argument("instance", type=InputFile(), required=False)
 @limit_option
 @json_option
-@click.option("--size", type=RangeType(), help="Generate square grids, this many cells wide, like 3..8.")
+@click.option("--size", type=RangeType(), help="Generate square grids of this width, like 3..8.")
 @click.option(
     "--map",
     "maps",
@@ -51,7 +51,10 @@ MOST_INSTANCES = 10_000
     "--seed", type=click.IntRange(0, LARGEST_SEED - MOST_INSTANCES), default=0, help="The seed of the first instance."
 )
 @click.option(
-    "--after-goal", type=click.Choice(get_args(AfterGoal)), default="vanish", help="What robots do after their goals."
+    "--after-goal",
+    type=click.Choice(get_args(AfterGoal)),
+    default="vanish",
+    help="Robots vanish or park after their goals.",
 )
 def command(  # noqa: PLR0913 - one parameter for each argument and option
     *,
@@ -69,15 +72,15 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
     The optimum is found by a search and not proved (see optimum).
 
-    The price of an order is how far the best of all orders is from the optimum, if robots are planned one after
-    the other; it is known for small fleets. The price of the search is how far the planner is from the best order.
+    The price of an order is the distance of the best order from the optimum, if robots are planned one after the other;
+    it is known for small fleets. The price of the search is the distance of the planner from the best order.
 
-    With --size instead of INSTANCE, grids are generated, and the table shows means in per cent of the optimum with
-    95 % intervals: the price of an order is the best order above the optimum, `found` is in how many instances
-    it is known or the planner plans all robots, and what is not found is in no mean.
+    With --size instead of INSTANCE, grids are generated, and the table shows means in per cent of the optimum with 95 %
+    intervals. The price of an order is the excess of the best order over the optimum. `found` is the number of
+    instances in which that order is known, or in which the planner plans all robots. Other instances are in no mean.
 
-    Exit codes: 0 the optimum is found, 1 the robots cannot all be planned, 2 bad input, 3 undecided within the limit.
-    Of a family they tell the worst of its instances.
+    Exit codes: 0 the optimum is found, 1 the robots cannot all be planned, 2 bad input, 3 undecided within the limit. A
+    family has the worst code of its instances.
     """
     require("pysat")
     if (instance is None) == (size is None):

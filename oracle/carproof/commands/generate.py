@@ -15,7 +15,7 @@ from carproof.options import RangeType, examples, json_option, output_option
 from carproof.results import show_instance
 
 T = TypeVar("T", Fleet, Grid, Traits, Warehouse)
-AFTER_GOAL = "What robots do after their goals."
+AFTER_GOAL = "Robots vanish or park after their goals."
 F = TypeVar("F", bound=Callable[..., Any])
 
 
@@ -29,7 +29,7 @@ def fleet_options(default: Fleet) -> Callable[[F], F]:
             "--after-goal",
             type=click.Choice(get_args(AfterGoal)),
             default=default.after_goal,
-            help="What robots do after their goals.",
+            help="Robots vanish or park after their goals.",
         ),
         click.option(
             "--distinct",

@@ -59,8 +59,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 ) -> Answer:
     """Give ROBOT the earliest plan that the histories of the others allow, and plan the others around it.
 
-    What robots have done by --now is kept. As few others as is seen get new plans. Where one finds no plan around the
-    earliest one, it keeps its own, and ROBOT goes as early as that allows.
+    Robots keep the visits that they have made by --now. The command tries to change few plans of others. A robot that
+    finds no plan around the earliest one keeps its own, and ROBOT goes as early as that allows.
 
     Exit codes: 0 no lawful update lets ROBOT arrive earlier, 1 it goes, but perhaps not first, or there is no plan and
     nothing is written, 2 bad input.

@@ -1,4 +1,4 @@
-"""`carproof optimum`: the least total cost of plans for all robots, with a proof if one is asked for."""
+"""`carproof optimum`: the least total cost of plans for all robots, with a proof if asked for."""
 
 from pathlib import Path
 from time import perf_counter
@@ -37,12 +37,12 @@ COLUMNS = ("robots", "shortest paths", "lower bound", "cost", "answer", "time")
 def command(instance: str, limit: int, proof: Path | None, output: Path | None, as_json: bool) -> Answer:
     """Find the least total cost of plans for all robots of INSTANCE, and plans that have it.
 
-    The answer is found by a search and not proved: it rests on the solver. With --proof it is proved: files are
-    written, for at most --limit seconds more, with which others can check the least cost, or that the robots cannot
-    all be planned, and they are checked at once (see verify-proof).
+    The answer comes from a search and is not proved: it rests on the solver. With --proof it is proved: the command
+    writes files with which others can check the least cost, or that the robots cannot all be planned. Writing takes at
+    most --limit seconds more, and the files are checked at once (see verify-proof).
 
-    --output writes the plans as a solution, --json prints cost, lower bound and solution. In the document, "proved" is
-    true where the search ended with an answer, and "checked" where the proof of --proof was checked.
+    --output writes the plans as a solution; --json prints cost, lower bound and solution. In the document, "proved" is
+    true if the search ended with an answer, and "checked" if the proof of --proof was checked.
 
     Exit codes: 0 optimum found, 1 the robots cannot all be planned, 2 bad input, 3 undecided within the limit.
     """
@@ -74,7 +74,7 @@ def command(instance: str, limit: int, proof: Path | None, output: Path | None, 
 
 
 def _undecided(best: "Optimum", limit: int) -> str:
-    """What is known of the optimum, in a line."""
+    """The known facts about the optimum, on one line."""
     known = f"undecided after {limit} s: plans of all robots cost at least {best.lower}"
     if best.cost is None:
         return f"{known}; no plans of all robots found yet"

@@ -61,9 +61,9 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 ) -> Answer:
     """Plan all robots of INSTANCE, a document or - for standard input.
 
-    An option that is not given keeps the planner's default; one that the planner does not have is refused.
-    Where the planner leaves robots out, some rounds of a polish and small groups planned jointly repair that. Robots
-    that cannot be planned are listed with the reason, and the others are planned all the same.
+    An option that is not given keeps the planner's default; one that the planner does not have is refused. If the
+    planner leaves robots out, some rounds of a polish and small groups planned jointly repair that. Robots that stay
+    unplanned are listed with the reason; the others keep their plans.
 
     Exit codes: 0 every robot has a plan, 1 some robot has none, 2 bad input.
     """
@@ -89,6 +89,6 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
 
 def repairs_unasked(context: click.Context, options: dict[str, Any]) -> bool:
-    """Whether plans are repaired by default: not those of a planner that is named, nor the paper's."""
+    """Whether plans are repaired by default: not if a planner is named, nor in paper mode."""
     is_named = context.get_parameter_source("planner") is not click.core.ParameterSource.DEFAULT
     return not is_named and options["baseline"] is not False

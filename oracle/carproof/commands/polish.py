@@ -42,7 +42,7 @@ COLUMNS = ("plans", "unplanned", "total cost", "bound", "gap", "rounds", "time")
     ),
 )
 @solution_files
-@click.option("--iterations", type=int, help=f"How many rounds.  [default: {ITERATIONS}]", show_default=False)
+@click.option("--iterations", type=int, help=f"The number of rounds.  [default: {ITERATIONS}]", show_default=False)
 @click.option("--seconds", type=float, help="For how long, in place of a number of rounds.")
 @click.option("--seed", type=int, default=0, help="The seed of all choices.")
 @click.option("--bound", type=InputFile(), help="The certificate of a lower bound, of `carproof bound`.")
@@ -62,11 +62,11 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 ) -> Answer:
     """Improve SOLUTION, plans for INSTANCE, round by round; robots without a plan get one, if it can be found.
 
-    SOLUTION is in any format that check reads (--from), and what is written is carproof's document.
-    A round takes out a few robots, replans them, and keeps what is not worse. Equal --iterations and --seed
-    give equal plans. Without --seconds, small groups are planned jointly at the end if a robot is still left out.
-    All robots are planned from their release on: none is under way. The bound, which no plans of all robots are
-    below, is the sum of the shortest paths, or that of --bound, which is verified first.
+    SOLUTION is in any format that check reads (--from); the result is carproof's document. This is large neighbourhood
+    search: a round removes a few robots, replans them, and keeps the new plans if they are not worse. Equal
+    --iterations and --seed give equal plans. Without --seconds, small groups are planned jointly at the end if a robot
+    is still left out. All robots are planned from their release on: none is under way. The lower bound is the sum of
+    the shortest paths, or that of --bound, which is verified first.
 
     Exit codes: 0 every robot has a plan, 1 some robot has none, 2 bad input.
     """
@@ -107,7 +107,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
 
 def bound_of(instance: Instance, certificate: str | None) -> int:
-    """What all plans together cost at least: by the certificate, if there is one, else by the shortest paths."""
+    """A lower bound on the total cost: that of the certificate, if there is one, else the sum of shortest paths."""
     if certificate is None:
         return sum_of_shortest_paths(instance, instance.robot)
     from carp_spec.bounds import read_bound  # noqa: PLC0415 - only for those who have a certificate

@@ -43,7 +43,7 @@ from carproof.tables import print_line, print_table
 @solution_argument
 @click.argument("robot")
 @now_option
-@click.option("--certificate", type=OutputFile(), help="Write what shows that no plan arrives earlier to this file.")
+@click.option("--certificate", type=OutputFile(), help="Write a proof that no plan arrives earlier to this file.")
 @engine_option
 @output_option
 @json_option
@@ -60,8 +60,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 ) -> Answer:
     """Find the plan with which ROBOT arrives earliest beside the plans of SOLUTION.
 
-    Those plans stay as they are. A plan that SOLUTION has of ROBOT itself is what it has followed until --now.
-    The file of --certificate is for carproof verify-query, also where there is no plan.
+    Those plans stay as they are. If SOLUTION has a plan of ROBOT, the robot has followed it until --now. carproof
+    verify-query checks the file of --certificate, which is also written if there is no plan.
 
     Exit codes: 0 a plan is found, 1 no plan exists, 2 bad input.
     """

@@ -40,11 +40,11 @@ from carproof.tables import print_line
 @output_option
 @json_option
 def command(*, instance: str, solution: str, trace: str, output: Path | None, as_json: bool) -> Answer:
-    """Give the plans of SOLUTION new ticks: what TRACE has stays, and the rest follows in order as early as possible.
+    """Give the plans of SOLUTION new ticks: the visits of TRACE stay, the others follow in order as early as possible.
 
     The result is a solution under way at the tick of the trace: `add` and `query` take it with --now.
 
-    Exit codes: 0 here are the plans, 2 bad input, or no lawful plan has such a history.
+    Exit codes: 0 there are new plans, 2 bad input, or no lawful plan has such a history.
     """
     refuse_two_standard_inputs(instance, solution, trace)
     problem, given, done = read_instance_file(instance), read_solution_file(solution), read_trace_file(trace)

@@ -1,4 +1,4 @@
-"""`carproof rules`: what the rules say."""
+"""`carproof rules`: the rules with their statements."""
 
 from difflib import get_close_matches
 from typing import Any
@@ -18,7 +18,7 @@ from carproof.tables import print_table
 )
 @click.argument("id", required=False)
 def command(id: str | None) -> Answer:
-    """List all rules, or tell the rule ID in full."""
+    """List all rules, or print the rule ID in full."""
     if id is None:
         print_table(["rule", "statement"], [(rule.id, rule.statement) for rule in ALL_RULES])
     else:

@@ -38,10 +38,10 @@ def command(name: str | None, as_json: bool) -> Answer:
 
     The theorems are those of the proved kernel: `make kernel` has Coq check their proofs, this command does not.
 
-    A lemma has formulas about whole numbers of any size: z3 shows that their premises can hold and that their
-    claims cannot fail. It has mutants too, with one planted error, which z3 must refute by an example. The lemmas
-    are no theorems about the planners: each says, after "By hand:", which induction and which link to the
-    program z3 does not check.
+    A lemma has formulas about whole numbers of any size: z3 shows that their premises can hold and that their claims
+    cannot fail. It also has mutants with one planted error, which z3 must refute by an example. The lemmas are not
+    theorems about the planners: each names, after "By hand:", the induction and the link to the program that z3 does
+    not check.
 
     Exit codes: 0 all are checked, 1 some fail (or z3 could not tell), 2 bad input.
     """
@@ -101,7 +101,7 @@ def print_theorem(theorem: "Theorem") -> None:
 
 
 def print_report(report: "LemmaReport") -> None:
-    """Print a lemma in full: its statement, what z3 proved, and what refutes its mutants."""
+    """Print a lemma in full: its statement, its proved formulas, and the examples that refute its mutants."""
     click.echo(f"{report.lemma.name}\n\n{report.lemma.statement.strip()}\n")
     print_line(f"Supports: {', '.join(report.lemma.rules)}")
     print_table(["formula", "result"], [(formula, "proved by z3") for formula in report.formulas])

@@ -34,9 +34,9 @@ from carproof.untangling import untangle
 def command(*, instance: str, solution: str, engine: str | None, output: Path | None, as_json: bool) -> Answer:
     """Replan robots of SOLUTION until no robots enter each other's places in a circle.
 
-    In each such rotation the robot is replanned whose plan then costs least more; the others keep their plans.
+    In each such rotation, the robot is replanned whose plan becomes longer by the least; the others keep their plans.
 
-    Exit codes: 0 no rotation is left, 1 out of one no robot finds another plan, and nothing is written, 2 bad input.
+    Exit codes: 0 no rotation is left, 1 no robot of a rotation finds another plan, and nothing is written, 2 bad input.
     """
     refuse_two_standard_inputs(instance, solution)
     problem = read_instance_file(instance)

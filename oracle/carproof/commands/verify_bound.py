@@ -34,8 +34,8 @@ COLUMNS = ("lower bound", "robots", "prices", "cuts", "horizon", "decided by")
 def command(*, instance: str, certificate: str, kernel: bool, as_json: bool) -> Answer:
     """Check that CERTIFICATE proves its lower bound on the total cost of plans for all robots of INSTANCE.
 
-    The least cost with prices of each robot is found again, in whole numbers, by code that shares nothing with the
-    search for the prices. The proved kernel (--kernel) assumes of each cut that its formula is right.
+    The least priced cost of each robot is computed again, in whole numbers, by code that shares nothing with the search
+    for the prices. The proved kernel (--kernel) assumes that the formula of each cut is right.
 
     Exit codes: 0 the bound is proved, 1 it is not, 2 bad input, 3 the kernel cannot decide.
     """

@@ -24,9 +24,9 @@ def command(folder: Path, instance: str | None, as_json: bool) -> Answer:
     """Check that the files in FOLDER prove the least total cost of their instance, or that there are no plans of all.
 
     Both formulas are made again from the instance and compared. The model's plans are judged. The refutation of a
-    smaller cost is checked step by step, and z3 is asked about both formulas. Where the robots cannot all be planned,
-    the obstacle is checked: a robot without a way, a goal where too many robots park, a refutation of plans of any
-    cost, or the end of a search over few joint states.
+    smaller cost is checked step by step, and z3 is asked about both formulas. If the robots cannot all be planned, the
+    obstacle is checked: a robot without a way, a goal where too many robots park, a refutation of plans of any cost, or
+    a complete search over few joint states.
 
     Exit codes: 0 the claim is proved, 1 it is not, 2 bad input, 3 undecided, because z3 did not answer in time.
     """

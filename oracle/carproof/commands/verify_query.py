@@ -36,10 +36,10 @@ COLUMNS = ("robot", "now", "earliest arrival", "labels", "decided by")
 def command(*, instance: str, solution: str, certificate: str, kernel: bool, as_json: bool) -> Answer:
     """Check that CERTIFICATE proves how early its robot can arrive beside the plans of SOLUTION.
 
-    No plan of the robot that breaks no rule, alone or together with the plans of the others, and that keeps what the
-    robot has done of its own plan, arrives before the bound of the certificate; or it has no plan at all.
+    It proves that no lawful plan of the robot beside the plans of the others arrives before the bound of the
+    certificate, or that no such plan exists. A lawful plan keeps the visits that the robot has made of its own plan.
 
-    Exit codes: 0 this is proved, 1 it is not, 2 bad input.
+    Exit codes: 0 the bound is proved, 1 it is not, 2 bad input.
     """
     refuse_two_standard_inputs(instance, solution, certificate)
     problem, given = read_instance_file(instance), read_solution_file(solution)

@@ -1,4 +1,4 @@
-"""`carproof view`: a solution to look at."""
+"""`carproof view`: a solution as a page or a picture."""
 
 from pathlib import Path
 
@@ -32,11 +32,11 @@ def command(problem: Problem, at: int | None, chart: bool, output: Path | None) 
     """Show the plans of SOLUTION on the map of INSTANCE, in one HTML file that needs no network.
 
     SOLUTION is in any format that check reads (--from). The page has the map with its robots moving, the chart of
-    resources by time with its free windows, and all broken rules; a broken solution is shown like any other. Its
-    keys are listed in it. Resources without positions of their own are laid out. The file goes to standard output,
-    or with -o to a file.
+    resources by time with its free windows, all broken rules, and a list of its keys. A broken solution is shown like
+    any other. Resources without positions are laid out automatically. The file goes to standard output, or with -o to a
+    file.
 
-    Exit codes: 0 it is drawn, 2 bad input, or more than a picture can show.
+    Exit codes: 0 the picture is drawn, 2 bad input, or too large for a picture.
     """
     if at is not None and chart:
         raise click.UsageError("Only one of --at and --chart can be drawn.")

@@ -10,11 +10,11 @@ from carproof.tables import print_line
 
 @click.command(short_help="Compile the planner before it is needed.", epilog=examples("carproof warm"))
 def command() -> Answer:
-    """Compile the planner, so that no later command has to: a minute, once for an installation.
+    """Compile the planner, so that no later command has to. This takes a minute, once per installation.
 
-    Without it the first command that plans does so, and says so. The machine code is kept beside the sources of
-    carproof, in the user's cache folder, or among the temporary files: in the first of these that can be written,
-    or in the folder that NUMBA_CACHE_DIR names.
+    Otherwise the first command that plans compiles it, and says so. The machine code is kept in the folder that
+    NUMBA_CACHE_DIR names or else in the first of these that can be written: beside the sources of carproof, in the
+    user's cache folder, or among the temporary files.
 
     Exit codes: 0 it is compiled, 2 bad usage.
     """

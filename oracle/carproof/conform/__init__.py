@@ -1,5 +1,5 @@
-"""The conformance runner: asks somebody's program questions, judges its answers, and shrinks what it gets wrong.
+"""The conformance runner: asks a program questions, judges its answers, and shrinks the failing ones.
 
-Read it in this order: `cases` (a question), `findings` (what can be wrong), `judges` (what a level asks of an
-answer), `subjects` (who is asked: a process that stays up, a process per question, or a Python function), `run`.
+Read it in this order: `cases` (questions), `findings` (faults of answers), `judges` (the demands of each level),
+`subjects` (a process that stays up, a process per question, or a Python function), `run`.
 """

@@ -8,7 +8,7 @@ _ADVICE = {
     "plan/start": "Begin the first visit at the robot's start, at its release.",
     "plan/goal": "End at the goal: for ever where robots park, and after the goal's duration where they vanish.",
     "plan/move": "Follow edges only, in their direction if the graph is directed.",
-    "plan/resource": "Name only resources of the instance; an id that is a number is another than its digits as text.",
+    "plan/resource": 'Name only resources of the instance; the number 1 and the text "1" are different ids.',
     "plan/contiguous": "Enter each resource at the tick at which the one before is left.",
     "solution/covers": "List each robot once: with a plan, or as unplanned.",
     "solution/order": "List in the planning order each robot that has a plan, and no other.",
@@ -56,6 +56,6 @@ _ADVICE = {
 
 
 def advice_for(rule: str) -> str:
-    """What to look at first; a program that judges may name a rule that does not exist."""
+    """The first thing to look at; a program that judges may name a rule that does not exist."""
     family = rule.partition("/")[0]
     return _ADVICE.get(rule) or _ADVICE.get(family, "Name only rules that carproof rules lists.")

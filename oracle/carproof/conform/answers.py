@@ -1,4 +1,4 @@
-"""What a program answers, decoded as strictly as documents are."""
+"""The answers of a program, decoded as strictly as documents."""
 
 from dataclasses import dataclass
 from typing import Any, TypeAlias
@@ -19,14 +19,14 @@ MOST_SHOWN = 200
 
 @dataclass(frozen=True, slots=True)
 class Skipped:
-    """The program does not offer what was asked."""
+    """The program does not offer the op that was asked."""
 
     why: str
 
 
 @dataclass(frozen=True, slots=True)
 class NotAsked:
-    """The program cannot be asked this: its kind of input has no words for it."""
+    """The program cannot be asked this: its input format cannot express it."""
 
     why: str
 

@@ -1,8 +1,9 @@
-"""Has the proved kernel decide what it can of an answer: whether its plans break a rule, and whether they are late.
+"""Lets the proved kernel decide what it can about an answer: whether its plans break a rule, and whether they are late.
 
-The kernel checks all plans together. From the level complete-in-context on it gets, for each robot beside the plans
-before it, a certificate that no plan arrives before the best one that carproof finds, and checks that this plan breaks
-no rule. It does not know `fleet/history`, the rules of what a planner chooses, nor instances that forbid following.
+The kernel checks all plans together. From the level complete-in-context on, it gets a certificate for each robot beside
+the plans before it: no plan arrives before the best one that carproof finds. It also checks that this plan breaks no
+rule. The kernel does not cover `fleet/history`, the rules about a planner's choices, and instances that forbid
+following.
 """
 
 from carp_spec import Carp, Instance, Plan, Solution
@@ -65,7 +66,7 @@ def _solution_with(case: Case, answer: QueryDocument) -> Solution:
 
 
 def _is_early(case: Case, answer: QueryDocument | Solution, level: Level) -> bool:
-    """Whether no robot has a better plan; the kernel must accept why, or the better plan."""
+    """Whether no robot has a better plan; the kernel must accept the certificate, or the better plan."""
     instance = case.instance
     if isinstance(answer, QueryDocument):
         assert case.robot is not None  # noqa: S101 - a promise of ours

@@ -21,9 +21,9 @@ NO_PLANS = Solution((), ())
 class Case:
     """A question: an op of the protocol with its fields.
 
-    A planner of `None` for `plan` leaves the choice to the program: that is what programs are asked that only plan
-    whole instances. A `classical` one is answered in a format of classical planners, which does not tell the order of
-    the plans.
+    A planner of `None` for `plan` leaves the choice to the program; programs that only plan whole instances are asked
+    this. A `classical` question is answered in a format of classical planners, which does not have the order of the
+    plans.
     """
 
     stage: Stage
@@ -38,7 +38,7 @@ class Case:
 
     @property
     def size(self) -> tuple[int, int, int, int]:
-        """How much there is to look at, for who wants the smallest failure."""
+        """The size of the question, by which the smallest failure is chosen."""
         graph = self.instance.graph
         visits = sum(len(plan.visits) for plan in self.solution.plans)
         return (len(self.instance.robots), len(graph.resources), len(graph.edges), visits)

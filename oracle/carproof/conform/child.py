@@ -1,4 +1,4 @@
-"""A process with limits: it is asked one line at a time, and nothing that it does can hang or flood its parent."""
+"""A process with limits: it gets one line at a time, and cannot hang or flood its parent."""
 
 import os
 import selectors
@@ -23,7 +23,7 @@ _LIMITED = 'ulimit -c 0 && { [ "$0" = 0 ] || ulimit -v "$0"; } && exec "$@"'
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What a process may use: seconds for an answer, MiB of address space (0: any), bytes of an answer."""
+    """The limits of a process: seconds for an answer, MiB of address space (0: any), bytes of an answer."""
 
     seconds: float = 10.0
     memory: int = 4096
@@ -31,7 +31,7 @@ class Limits:
 
 
 def environment() -> Mapping[str, str]:
-    """The environment of a process: nothing in it shows which case is asked."""
+    """The environment of a process; it does not reveal which case is asked."""
     return {name: value for name, value in os.environ.items() if not name.startswith(_HIDDEN)}
 
 
@@ -52,7 +52,7 @@ def end_group(process: subprocess.Popen[bytes]) -> None:
 
 
 def exit_code(process: subprocess.Popen[bytes], seconds: float) -> int | None:
-    """Its exit code as soon as it has one; the process is not waited for, so that its group can still be killed."""
+    """The exit code as soon as there is one; the process is not reaped, so that its group can still be killed."""
     deadline = monotonic() + seconds
     while (seen := os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT)) is None:
         if monotonic() > deadline:
@@ -100,7 +100,7 @@ class Child:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """End the process, whatever happened."""
+        """End the process in any case."""
         self.kill()
 
     def kill(self) -> None:
@@ -171,7 +171,7 @@ class Child:
         return answer
 
     def _keep_errors(self, selector: selectors.BaseSelector | None) -> bool:
-        """Read from standard error, and say whether there may be more."""
+        """Read from standard error, and return whether more may come."""
         try:
             piece = os.read(self._stderr.fileno(), _PIECE)
         except BlockingIOError:
@@ -194,7 +194,7 @@ class Child:
             raise self._fault(Category.CRASH, is_alive.id, f"{ending(code)} when it was asked to stop")
 
     def _death(self) -> Fault:
-        """Why there is no more output."""
+        """The reason why there is no more output."""
         code = exit_code(self._process, _LAST_SECONDS)
         how = "it closed its output" if code is None else ending(code)
         cut = f", after {len(self._output)} bytes of an answer" if self._output else ""

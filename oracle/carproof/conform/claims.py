@@ -1,4 +1,4 @@
-"""Which questions a program is left out of: those with features that it does not claim to plan."""
+"""The questions that a program is not asked, because it does not claim to plan their features."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ FEATURES: Mapping[str, Callable[[Instance], bool]] = {
     "park": lambda instance: instance.after_goal == "park",
     "vanish": lambda instance: instance.after_goal == "vanish",
 }
-"""What an instance can have that is more than classical, and what robots do after their goals."""
+"""The features of an instance beyond classical ones, and the policies after the goal."""
 UNSOLVABLE = "robots without a plan"
 
 
@@ -35,11 +35,11 @@ class Claims:
 
     @property
     def left_out(self) -> list[str]:
-        """What the program is not asked, in the order of `FEATURES`."""
+        """The features that the program is not asked, in the order of `FEATURES`."""
         return [name for name in FEATURES if name in self.without] + [UNSOLVABLE] * self.solvable
 
     def why_not(self, case: Case) -> str | None:
-        """Why the program is not asked a case, `None` if it is."""
+        """The reason why the program is not asked a case, `None` if it is asked."""
         for name, has in FEATURES.items():
             if name in self.without and has(case.instance):
                 return f"it does not claim {name}"

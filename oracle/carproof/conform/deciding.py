@@ -1,4 +1,4 @@
-"""Whether right answers are enough for a level, or the program has only kept silent well."""
+"""Whether the right answers are enough for a level; a program that answers nothing has shown nothing."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from carproof.conform.outcome import Outcome
 
 @dataclass(slots=True)
 class Tally:
-    """How many cases a program could be asked, how many it answered rightly, and on how many it tried or gave up."""
+    """The numbers of cases that a program could be asked, answered rightly, tried, and gave up."""
 
     asked: int = 0
     answered: int = 0
@@ -37,7 +37,7 @@ class Tally:
 
 
 def smoke_shortfalls(outcomes: list[Outcome]) -> Iterator[str]:
-    """Why the smoke cases are not enough: each that could be asked must be answered."""
+    """The reasons why the smoke cases are not enough: each that could be asked must be answered."""
     asked = [outcome for outcome in outcomes if outcome.case.stage == "smoke" and outcome.asked]
     silent = [outcome for outcome in asked if not outcome.is_judged]
     if silent:
@@ -47,7 +47,7 @@ def smoke_shortfalls(outcomes: list[Outcome]) -> Iterator[str]:
 
 
 def random_shortfalls(tallies: Mapping[Op, Tally]) -> Iterator[str]:
-    """Why the random cases are not enough."""
+    """The reasons why the random cases are not enough."""
     for op, tally in tallies.items():
         if not answers_enough(tally.answered, tally.asked):
             some = f"it answered {tally.answered} of {tally.asked} random cases of {op}"

@@ -18,7 +18,7 @@ FORMAT = "carproof-conformance/1"
 
 
 def counts(report: Report) -> dict[str, Counter[str]]:
-    """How many cases of each stage came to what."""
+    """The number of cases of each stage, by result."""
     by_stage: dict[str, Counter[str]] = {}
     for outcome in report.outcomes:
         by_stage.setdefault(outcome.case.stage, Counter())[label(outcome)] += 1
@@ -116,5 +116,5 @@ def _test(suite: Element, stage: str, name: str, finding: Finding | None, folder
 
 
 def _printable(text: str) -> str:
-    """The text without what XML cannot hold."""
+    """The text without the characters that XML cannot hold."""
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)

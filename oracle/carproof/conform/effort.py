@@ -1,4 +1,4 @@
-"""What an answer shows that nothing is wrong with: who always says that there is no plan is never wrong at `sound`."""
+"""The effort that a right answer shows: a program that never returns a plan is never wrong at `sound`."""
 
 from enum import Enum
 
@@ -16,7 +16,7 @@ from carproof.optima import OptimumDocument
 
 
 class Effort(Enum):
-    """Whether an answer is one that shows something."""
+    """Whether an answer shows effort."""
 
     TRIED = "tried"
     GAVE_UP = "gave up"
@@ -24,7 +24,7 @@ class Effort(Enum):
 
 
 def why_undecided(case: Case, answer: Answer, level: Level) -> str | None:
-    """Why a right answer counts as none: it is undecided, or carproof is, so that nobody can judge it."""
+    """The reason why a right answer does not count: it is undecided, or carproof cannot decide it."""
     if case.op not in ("plan", "optimum") or case.planner is not None or level < Level.COMPLETE:
         return None
     is_open = isinstance(answer, OptimumDocument) and not answer.proved
@@ -41,7 +41,7 @@ def _plans_all(answer: Answer) -> bool:
 
 
 def effort(case: Case, answer: Answer) -> Effort:
-    """Whether a right answer shows something; a verdict does in any case."""
+    """Whether a right answer shows effort; a verdict always does."""
     match answer:
         case QueryDocument():
             return _planned(case, answer.plan is not None)
@@ -58,7 +58,7 @@ def effort(case: Case, answer: Answer) -> Effort:
 
 
 def _planned(case: Case, has_plan: bool) -> Effort:
-    """Of the robot that is asked for."""
+    """Whether the robot that is asked for has a plan."""
     assert case.robot is not None  # noqa: S101 - a promise of ours
     if has_plan:
         return Effort.TRIED
@@ -84,7 +84,7 @@ def _polished(case: Case, answer: Solution) -> Effort:
 
 
 def _bounded(case: Case, answer: BoundDocument) -> Effort:
-    """No less than the robots need if each is alone, which is a bound that nobody has to search for."""
+    """At least the sum of the robots' costs alone, a bound that needs no search."""
     least = cost_alone(case.instance)
     if not least:
         return Effort.NOTHING_TO_DO

@@ -1,4 +1,4 @@
-"""What can be wrong with an answer, and the rules that a program breaks besides those of plans: `program/...`."""
+"""Faults of answers, and the rules of programs besides those of plans: `program/...`."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -8,15 +8,15 @@ from carp_spec import Rule
 from carp_spec.rule import DESIGN, rule
 
 LEAST_ANSWERED = 90
-"""In 100 random cases of an op. They are small, so that a program that offers the op can answer nearly all of them, and
-two in three have two robots or more, so that one that answers only the easy ones does not come near."""
+"""In 100 random cases of an op. The cases are small, so a program that offers the op can answer nearly all of them. Two
+in three have two robots or more, so a program that answers only the easy ones stays far below."""
 LEAST_TRIED = 50
 """In 100 random cases of an op in which there is something to do. A sound planner may miss plans; one that misses most
 of them, where four robots at most are on a map of six resources, has shown nothing."""
 
 
 class Category(StrEnum):
-    """How a case ends that a program does not pass."""
+    """The ways in which a program fails a case."""
 
     WRONG_ANSWER = "wrong answer"
     CRASH = "crash"
@@ -26,7 +26,7 @@ class Category(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """What is wrong: how, by which rule, and one sentence about it; of a process also the end of its stderr."""
+    """A fault: its category, its rule and one sentence; of a process also the end of its standard error."""
 
     category: Category
     rule: str
@@ -35,7 +35,7 @@ class Finding:
 
     @property
     def key(self) -> tuple[Category, str]:
-        """What two findings of one fault share."""
+        """The part that two findings of one fault share."""
         return (self.category, self.rule)
 
 

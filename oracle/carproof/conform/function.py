@@ -38,8 +38,8 @@ def _written(solution: Solution) -> bytes:
 class Function:
     """A planner that is called with an instance and returns a solution. Nothing limits its time.
 
-    It gets an instance of its own, and its solution is written and read as a document, so that the judges look at
-    nothing that the planner has in its hands.
+    It gets an instance of its own, and its solution is written and read as a document. So the planner cannot change the
+    objects that the judges look at.
     """
 
     def __init__(self, planner: Callable[[Instance], Solution], name: str) -> None:

@@ -1,4 +1,4 @@
-"""The demands of each level on an answer. A program is judged by its answer alone, not by how it was found."""
+"""The demands of each level on an answer. A program is judged by its answer alone, not by its method."""
 
 from collections.abc import Iterator, Sequence
 
@@ -30,7 +30,7 @@ from carproof.results import shown_plan
 
 
 def first_finding(case: Case, answer: Answer, level: Level) -> Finding | None:
-    """The first thing that is wrong with an answer, by the least level that asks for it."""
+    """The first fault of an answer, by the lowest level that demands otherwise."""
     return next(_findings(case, answer, level), None)
 
 
@@ -53,7 +53,7 @@ def _findings(case: Case, answer: Answer, level: Level) -> Iterator[Finding]:
 
 
 def _followed(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int) -> tuple[Plan, ...]:
-    """What a robot has followed until now; one without a plan has been standing at its start since its release."""
+    """The plan that a robot has followed until now; a robot without a plan has stood at its start since its release."""
     request = instance.robot[robot]
     own = tuple(plan for plan in committed if plan.robot == robot)
     standing = (Plan(robot, (Visit(request.start, request.release, None),)),) if request.release <= now else ()
@@ -190,10 +190,10 @@ def _check_findings(case: Case, verdict: VerdictDocument, level: Level) -> Itera
     for rule in broken:
         if rule not in named:
             message = next(violation.message for violation in right.violations if violation.rule == rule)
-            yield wrong(rule, f"the verdict must tell that it is broken: {message}")
+            yield wrong(rule, f"the verdict must report that it is broken: {message}")
     for rule in named:
         if rule not in broken:
-            yield wrong(rule, "the verdict must not tell that it is broken")
+            yield wrong(rule, "the verdict must not report that it is broken")
     if verdict.valid != right.valid:
         yield wrong("program/result", f"valid must be {right.valid}, as the violations say")
     if (verdict.cost, verdict.unplanned) != (right.cost, right.unplanned):

@@ -1,7 +1,7 @@
 """The levels of conformance.
 
-Two questions of completeness are not the same. A prioritized planner can find each robot's plan beside the plans before
-it (complete in context), and leave out a robot that would have a plan had the others made room (not complete).
+There are two kinds of completeness. A prioritized planner can find each robot's plan beside the plans before it
+(complete in context), and still leave out a robot that would have a plan if the others made room (not complete).
 """
 
 from collections.abc import Mapping
@@ -11,10 +11,10 @@ from carproof.conform.cases import Op
 
 
 class Level(IntEnum):
-    """The level at which a program is judged; each asks everything that the ones before it ask.
+    """The level at which a program is judged; each level demands everything that the lower ones demand.
 
-    Planners of whole instances are asked either in the order of their plans, up to `CONTEXT_OPTIMAL`, or about all
-    robots together: then the order of their plans does not count.
+    Planners of whole instances are judged either in the order of their plans, up to `CONTEXT_OPTIMAL`, or on all robots
+    together; then the order of their plans does not count.
     """
 
     SOUND = 1

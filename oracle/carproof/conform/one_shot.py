@@ -17,7 +17,7 @@ from carproof.movingai_writer import MAP_NAME, is_classical, write_movingai
 
 INSTANCE, MAP, SCEN, AGENTS, SOLUTION = "{instance}", "{map}", "{scen}", "{agents}", "{solution}"
 PROBE = movingai_instance(GridMap(3, 2, ("...", "...")), [Robot("r1", "2,0", "0,1")], "park")
-"""An instance in which a right answer is in one format: in one order only is the start of the robot a cell."""
+"""An instance whose right answer fits only one format: only in one order of coordinates is the robot's start a cell."""
 _KEPT_STDERR = 8 * 2**10
 
 
@@ -29,12 +29,13 @@ def names(template: Sequence[str], placeholder: str) -> bool:
 class OneShot:
     """A program with a template of its command line.
 
-    `{instance}` stands for the file that it reads, or `{map}` and `{scen}` for MovingAI files and `{agents}` for how
-    many agents they have; `{solution}` for the file that it writes; without the latter its standard output is its
+    `{instance}` stands for the file that it reads, or `{map}` and `{scen}` for MovingAI files and `{agents}` for the
+    number of their agents. `{solution}` stands for the file that it writes; without it, the standard output is the
     answer. A program that leaves robots unplanned may end with 1.
 
-    One that reads MovingAI files, or writes another format than carproof's, is classical: it is asked only what
-    these can say, and its answer's format is found out if it is not given; nothing is that no robot has a plan.
+    A program that reads MovingAI files, or writes another format than carproof's, is classical: it is asked only what
+    these formats can express. The format of its answer is recognised if it is not given, and empty output means that no
+    robot was planned.
     """
 
     def __init__(self, template: Sequence[str], limits: Limits, format: str | None = None) -> None:
@@ -47,13 +48,13 @@ class OneShot:
         self.ops: tuple[str, ...] = ("plan",)
 
     def start(self) -> None:
-        """Find out the format that it writes; raises `Refusal` if that must be named. It is started for each case."""
+        """Recognise the format that the program writes; raises `Refusal` if it must be named."""
         if self.is_classical and self._format is None:
             with suppress(Fault), TemporaryDirectory(prefix="carproof-") as folder:
                 self._format = self._format_of(self._written(PROBE, Path(folder), self._limits.seconds))
 
     def _format_of(self, written: bytes) -> str | None:
-        """The format of the probe's answer; `None` if it looks like none, which the cases will show."""
+        """The format of the probe's answer; `None` if it fits none, which the cases will show."""
         try:
             return format_of(written, PROBE, "its output")
         except Refusal:

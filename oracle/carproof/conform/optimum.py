@@ -1,4 +1,4 @@
-"""What the level `optimal` asks: the optimum of small instances, as carproof's search finds it."""
+"""The demands of the level `optimal`: the optimum of small instances, as carproof's search finds it."""
 
 from collections.abc import Iterator
 from functools import lru_cache
@@ -23,14 +23,14 @@ def found_cost(instance: Instance) -> tuple[bool, int | None]:
 
 
 def cost_alone(instance: Instance) -> int | None:
-    """What the robots need together if each is alone, `None` if one has no plan even then."""
+    """The sum of the robots' costs if each were alone, `None` if one has no plan even then."""
     plans = [engine_named("reference").query(instance, (), robot) for robot in instance.robot]
     known = [plan for plan in plans if plan is not None]
     return total_cost(instance, known) if len(known) == len(plans) else None
 
 
 def optimum_findings(instance: Instance, answer: OptimumDocument, level: Level) -> Iterator[Finding]:
-    """What is wrong with an answer to `optimum`."""
+    """The fault of an answer to `optimum`, if any."""
     if answer.solution is not None:
         solution = solution_of(answer.solution)
         for violation in judge(instance, solution).violations:
@@ -49,7 +49,7 @@ def optimum_findings(instance: Instance, answer: OptimumDocument, level: Level) 
 
 
 def bound_findings(instance: Instance, certificate: BoundDocument) -> Iterator[Finding]:
-    """What is wrong with an answer to `bound`: its certificate, or a bound above the optimum."""
+    """The fault of an answer to `bound`, if any: its certificate, or a bound above the optimum."""
     from carp_verify.verify_bound import verify_bound  # noqa: PLC0415 - only programs that have bounds need it
 
     try:
@@ -74,7 +74,7 @@ def _against_proof(instance: Instance, answer: OptimumDocument) -> Iterator[Find
 
 
 def plan_cost_findings(instance: Instance, solution: Solution) -> Iterator[Finding]:
-    """What is wrong with the cost of a solution that is to be optimal."""
+    """The fault of the cost of a solution that is to be optimal, if any."""
     is_found, least = found_cost(instance)
     if is_found and least is not None:
         cost = total_cost(instance, solution.plans)
@@ -85,7 +85,7 @@ def plan_cost_findings(instance: Instance, solution: Solution) -> Iterator[Findi
 
 
 def complete_findings(instance: Instance, solution: Solution) -> Iterator[Finding]:
-    """What is wrong with a solution that leaves robots unplanned, if all robots can have plans."""
+    """The fault of a solution that leaves robots unplanned although all can have plans, if any."""
     if not solution.unplanned:
         return
     is_found, least = found_cost(instance)

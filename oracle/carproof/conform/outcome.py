@@ -1,4 +1,4 @@
-"""What came of asking one case."""
+"""The outcome of one case."""
 
 from dataclasses import dataclass
 from time import monotonic
@@ -16,9 +16,9 @@ from carproof.conform.subjects import Subject
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """A case, what is wrong with the answer if anything is, the answer if there is one, and why it was skipped.
+    """A case with the fault of the answer, if any, the answer, if any, and the reason if it was skipped.
 
-    `asked` is whether the program could be asked at all, and `effort` what an answer shows that is not wrong.
+    `asked` is whether the program could be asked at all, and `effort` the effort of a right answer.
     """
 
     case: Case

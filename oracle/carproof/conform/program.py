@@ -18,7 +18,7 @@ _ID_BITS = 31
 
 
 def request_ids(seed: int) -> Iterator[int | str]:
-    """Ids that tell nothing: numbers and strings by turns."""
+    """Ids that reveal nothing: numbers and strings by turns."""
     for number in splitmix64(seed):
         yield number >> (64 - _ID_BITS) if number & 1 else f"{number:016x}"
 
@@ -71,7 +71,7 @@ class Program:
             raise self._broken(fault) from fault
 
     def _broken(self, fault: Fault) -> Fault:
-        """The fault with what the process said on standard error; the process is gone after it."""
+        """The fault with the end of the process's standard error; the process is ended."""
         finding = fault.finding
         stderr = finding.stderr or (self._child.stderr if self._child is not None else "")
         self.kill()

@@ -79,14 +79,14 @@ def _busy_instances(draw: st.DrawFn, sizes: Sizes) -> Instance:
 
 
 def _instances(sizes: Sizes, least_robots: int = 0) -> st.SearchStrategy[Instance]:
-    """Instances of every kind; hypothesis' own leaning to the simplest leaves robots alone, hence the busy ones."""
+    """Instances of every kind; busy ones are added, because hypothesis prefers those in which robots do not meet."""
     any_instance = instances(sizes, least_robots=least_robots)
     return st.one_of(any_instance, _busy_instances(sizes), _busy_instances(sizes))
 
 
 @st.composite
 def _queries(draw: st.DrawFn, sizes: Sizes) -> Case:
-    """One robot against plans of some of the others; it may be under way itself, and the tick be later than 0."""
+    """One robot against plans of some of the others; it may be under way itself, at a tick later than 0."""
     instance = draw(_instances(sizes, least_robots=1))
     robot: RobotId = draw(st.sampled_from(instance.robots)).id
     is_new = draw(st.sampled_from([True, True, True, False]))
@@ -133,7 +133,7 @@ def _checks(draw: st.DrawFn, sizes: Sizes) -> Case:
 
 
 def _claimed(sizes: Sizes, claims: Claims) -> Sizes:
-    """The sizes with which few cases have what is not claimed."""
+    """The sizes with which few cases have features that are not claimed."""
     return replace(
         sizes,
         capacity=1 if "capacities" in claims.without else sizes.capacity,

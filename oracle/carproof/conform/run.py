@@ -23,10 +23,11 @@ MOST_FAULTS = 3
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """How a program is asked; `whole`: whole instances, each by a planner of the program's own.
+    """The way a program is asked.
 
-    `classical`: besides, random ones are classical multi-agent path finding. `claims`: what it can be asked. `kernel`:
-    the name and version of the proved kernel, if it decides.
+    `whole`: only whole instances, each planned by the program's own planner. `classical`: also, random instances are
+    classical multi-agent path finding. `claims`: the features that it can be asked. `kernel`: the name and version of
+    the proved kernel, if it decides.
     """
 
     level: Level = Level.SOUND
@@ -52,11 +53,11 @@ class Options:
 
 @dataclass(slots=True)
 class Report:
-    """What a run has found so far.
+    """The results of a run so far.
 
-    `outcomes` are those of the fixed cases, `random` counts the random ones by what came of them, `tallies` those of
-    each op, and `judged` all answers of each op. `smallest` is the failing random case after shrinking. A fault
-    without a case, at the start or at the stop, is in `faults`.
+    `outcomes` are those of the fixed cases. `random` counts the random cases by outcome, `tallies` those of each op,
+    and `judged` all answers of each op. `smallest` is the failing random case after shrinking. A fault without a case,
+    at the start or at the stop, is in `faults`.
     """
 
     options: Options
@@ -84,12 +85,12 @@ class Report:
 
     @property
     def findings(self) -> list[Finding]:
-        """All that is wrong."""
+        """All findings."""
         return [*self.faults, *(outcome.finding for outcome in self.failures if outcome.finding is not None)]
 
     @property
     def processes_lost(self) -> int:
-        """How many of the fixed cases ended in anything but an answer."""
+        """The number of fixed cases that ended without an answer."""
         findings = [outcome.finding for outcome in self.outcomes if outcome.finding is not None]
         return sum(finding.category != Category.WRONG_ANSWER for finding in findings)
 
@@ -104,7 +105,7 @@ class Report:
 
     @property
     def shortfalls(self) -> list[str]:
-        """Why right answers are too few for the level."""
+        """The reasons why the right answers are too few for the level."""
         if self.findings or self.interrupted:
             return []
         ops = self.options.ops
@@ -123,12 +124,12 @@ class Report:
 
     @property
     def tested(self) -> int:
-        """How many answers to the ops that show the level were judged."""
+        """The number of judged answers to the ops that show the level."""
         return sum(self.judged[op] for op in self.options.ops)
 
     @property
     def is_decided(self) -> bool:
-        """Whether a random case, which nobody knows before, has decided anything."""
+        """Whether a random case, which no program knows in advance, has decided anything."""
         return any(self.tallies[op].decides for op in self.options.ops if op in self.tallies)
 
     @property
@@ -157,7 +158,7 @@ class Report:
 
 
 def label(outcome: Outcome) -> str:
-    """What came of a case, in a word or two."""
+    """The outcome of a case, in a word or two."""
     if outcome.finding is not None:
         return outcome.finding.category.value
     if outcome.effort == Effort.GAVE_UP:

@@ -1,4 +1,4 @@
-"""Writes a failure as files that need no program of ours to read, and a vector that can be asked again."""
+"""Writes a failure as files that can be read without carproof, and as a vector that can be asked again."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -40,7 +40,7 @@ FILES = (
     MAP_NAME,
     SCEN_NAME,
 )
-"""What a folder of a failure can hold."""
+"""The files that the folder of a failure can hold."""
 NO_PICTURE = '<svg xmlns="http://www.w3.org/2000/svg" width="900" height="40"><text x="8" y="24">{}</text></svg>\n'
 
 
@@ -58,7 +58,7 @@ class Origin:
 
 
 def save(outcome: Outcome, folder: Path, origin: Origin = Origin()) -> None:
-    """Write a failure into a folder, which is made if it is not there."""
+    """Write a failure into a folder, which is made if it does not exist."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -153,7 +153,7 @@ def filled(one: str, case: Case, folder: Path) -> str:
 
 
 def about_case(case: Case) -> str:
-    """What the vector says about itself, or the name of the smoke case, and the features; of a random one these."""
+    """The comment of the vector or the name of the smoke case, and the features; of a random case its features."""
     comments = {vector.id: vector.comment for vector in vectors()}
     named = comments.get(case.name, "" if case.name == case.op else case.name)
     return "; ".join(each for each in (named, ", ".join(sorted(features(case.instance)))) if each)
@@ -179,12 +179,12 @@ def vectors_document(outcome: Outcome) -> dict[str, Any]:
 
 
 def claim(answer: Answer) -> dict[str, Any]:
-    """A program's answer as the result that it gave."""
+    """A program's answer as the result in its response."""
     return cast("dict[str, Any]", msgspec.to_builtins(made(answer)))
 
 
 def right_answer(case: Case) -> dict[str, Any]:
-    """The right answer, as far as vectors tell it."""
+    """The right answer, as far as vectors have it."""
     from carp_spec import Carp, judge, plan_cost  # noqa: PLC0415
     from carproof.engines import engine_named  # noqa: PLC0415 - only failures need it
 

@@ -1,7 +1,7 @@
 """The search for a random case that fails, and for the smallest that fails in the same way.
 
-Hypothesis draws and shrinks. What a case has come to once is remembered, so that a program that answers the same
-question now rightly and now wrongly, or the end of the time for shrinking, cannot confuse it.
+Hypothesis draws and shrinks. The first outcome of each case is remembered. So a program that answers the same question
+differently, or the end of the time for shrinking, cannot confuse it.
 """
 
 from collections.abc import Callable
@@ -84,11 +84,11 @@ class FailureSearch:
         return True
 
     def _seconds(self) -> float | None:
-        """How long to wait while shrinking: of a program that is slow only where it fails, not long."""
+        """The time limit while shrinking: short for a program that is slow only where it fails."""
         return min(self._limit, max(_LEAST_SECONDS, _PATIENCE * self._slowest))
 
     def _confirm(self) -> None:
-        """Ask the smallest case that took too long once more, with all the time there is."""
+        """Ask the smallest case that took too long once more, with the full time limit."""
         if self.best is None or self.best.finding is None or self.best.finding.category != Category.TIMEOUT:
             return
         again = self._ask(self.best.case, None)

@@ -1,4 +1,4 @@
-"""Who is asked: whatever can answer a case."""
+"""Subjects: anything that can answer a case."""
 
 from typing import Protocol
 
@@ -7,24 +7,24 @@ from carproof.conform.cases import Case
 
 
 class Subject(Protocol):
-    """Somebody who answers cases; `ops` are the ops that it offers."""
+    """A subject that answers cases; `ops` are the ops that it offers."""
 
     @property
     def name(self) -> str:
-        """What it is called in reports."""
+        """Its name in reports."""
 
     @property
     def ops(self) -> tuple[str, ...]:
         """The ops that it offers."""
 
     def start(self) -> None:
-        """Get ready; raises `Fault` if that goes wrong."""
+        """Get ready; raises `Fault` if that fails."""
 
     def ask(self, case: Case, seconds: float | None = None) -> Reply:
-        """Its reply, within this many seconds (`None`: the usual limit); raises `Fault` if none exists to judge."""
+        """Its reply, within this many seconds (`None`: the usual limit); raises `Fault` without a reply to judge."""
 
     def finish(self) -> None:
-        """Bid farewell; raises `Fault` if that goes wrong."""
+        """End; raises `Fault` if that fails."""
 
     def kill(self) -> None:
         """Leave nothing behind."""

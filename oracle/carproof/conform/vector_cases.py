@@ -1,4 +1,4 @@
-"""The test vectors that a program can be asked. It sees their questions alone; the judges find the answers again."""
+"""The test vectors that a program can be asked. It sees only their questions; the judges compute the answers again."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -15,7 +15,7 @@ from carproof.protocol import Request
 def vector_cases(ops: Sequence[str], level: Level, whole: bool) -> Iterator[Case]:
     """The vectors of the ops that are offered; those with malformed documents are for readers of documents.
 
-    A program need not know of instances that forbid following.
+    A program need not support instances that forbid following.
     """
     for vector in vectors():
         op = next((op for op in ASKED_OPS if op == vector.op), None)
@@ -27,7 +27,7 @@ def vector_cases(ops: Sequence[str], level: Level, whole: bool) -> Iterator[Case
 
 
 def _is_asked(case: Case, level: Level, whole: bool) -> bool:
-    """Whether the level speaks of it: below `exact` programs are asked for no planner but CARP."""
+    """Whether the level covers the vector: below `exact`, programs are asked for no planner but CARP."""
     if case.op == "plan":
         return whole or level >= Level.EXACT or isinstance(case.planner, Carp)
     return case.op != "optimum" or level >= Level.COMPLETE

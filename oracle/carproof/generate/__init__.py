@@ -1,4 +1,4 @@
-"""Instances to try planners on: the paper's grids, and warehouses with aisles. Equal options, equal instance."""
+"""Instances for trying planners: the paper's grids, and warehouses with aisles. Equal options give equal instances."""
 
 from carproof.generate.fleet import Fleet
 from carproof.generate.grid import Grid, grid_instance

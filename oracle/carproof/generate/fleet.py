@@ -10,10 +10,10 @@ from carproof.generate.options import JUST_ONE, JUST_ZERO, Distinct, Range, ends
 
 @dataclass(frozen=True, slots=True)
 class Fleet:
-    """How many robots, and what is drawn for them from the seed.
+    """The number of robots, and the values that are drawn for them from the seed.
 
-    `distinct` says whether no two start at the same resource, and no two end at the same. Of equal seeds the
-    smaller fleet is the larger's first robots, if all are released at one tick.
+    `distinct` is whether no two start at the same resource, and whether no two end at the same. With equal seeds, the
+    smaller fleet has the first robots of the larger one, if all are released at one tick.
     """
 
     robots: int = 100

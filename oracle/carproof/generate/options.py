@@ -1,4 +1,4 @@
-"""What the options of `generate` may be: `generate/...`."""
+"""The rules of the options of `generate`: `generate/...`."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
@@ -37,7 +37,7 @@ class Range:
     high: int
 
     def draw(self, stream: Iterator[int]) -> int:
-        """Take one of them by the next number of the stream; a range of one number takes none from it."""
+        """Choose one by the next number of the stream; a range of one number uses none."""
         if self.low == self.high:
             return self.low
         return self.low + next(stream) % (self.high - self.low + 1)

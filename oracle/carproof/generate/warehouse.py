@@ -13,9 +13,9 @@ from carproof.generate.options import Side, Traits, refuse_large_maps, refuse_wr
 class Warehouse:
     """The plan of a warehouse, in cells.
 
-    `columns` times `rows` racks, each `rack_length` cells wide and `rack_depth` deep, stand with aisles `aisle`
-    cells wide between and around them. The stations, spread evenly, are bays in front of the left aisle. Robots
-    start at cells beside the racks and end at stations, or the other way, as `start_at` says.
+    `columns` times `rows` racks, each `rack_length` cells wide and `rack_depth` deep, stand with aisles `aisle` cells
+    wide between and around them. The stations, spread evenly, are bays in front of the left aisle. Robots start at
+    cells beside the racks and end at stations, or the other way round, by `start_at`.
     """
 
     columns: int = 4

@@ -1,7 +1,7 @@
-"""The ops of the protocol, in one table; the server, `conform`, the schema, the documentation and help are made of it.
+"""The ops of the protocol, in one table from which server, `conform`, schema, documentation and help are made.
 
-To add an op, write a dataclass of its request, a class of its result and a handler into a module of this package, and
-put the handler into `OPS`. `make generated` then writes the schema and the documentation again.
+To add an op, write a dataclass of its request, a class of its result and a handler in a module of this package, and put
+the handler into `OPS`. `make generated` then writes the schema and the documentation again.
 """
 
 from collections.abc import Callable, Mapping
@@ -30,7 +30,7 @@ class StartRequest:
 
 
 class StartDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Who answers, and which ops."""
+    """The name and version of the program, and the ops that it offers."""
 
     name: str
     version: str

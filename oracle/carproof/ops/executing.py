@@ -1,4 +1,4 @@
-"""The ops about executions: what has happened, what waits for what, plans for the rest, and who goes first."""
+"""The ops of executions: traces, dependency graphs, simulations, plans for the rest, and giving way."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -27,7 +27,7 @@ from carproof.untangling import untangle as untangled
 
 @dataclass(frozen=True, slots=True)
 class CheckTraceRequest:
-    """What has happened of a solution."""
+    """The part of a solution that has happened."""
 
     instance: Instance
     solution: Solution
@@ -35,7 +35,7 @@ class CheckTraceRequest:
 
 
 def check_trace(request: CheckTraceRequest, engine: Engine) -> VerdictDocument:
-    """Judge whether a trace follows a solution: ways, durations, and the order of the plans."""
+    """Judge whether a trace follows a solution: paths, durations, and the planned order."""
     del engine
     with inside("$.solution"):
         sound = sound_solution(request.instance, request.solution)
@@ -46,7 +46,7 @@ def check_trace(request: CheckTraceRequest, engine: Engine) -> VerdictDocument:
 
 @dataclass(frozen=True, slots=True)
 class DependenciesRequest:
-    """A solution, and delays about which is asked: each is [robot, position of the visit, ticks]."""
+    """A solution, and delays whose effect is asked for: each is [robot, position of the visit, ticks]."""
 
     instance: Instance
     solution: Solution
@@ -54,7 +54,7 @@ class DependenciesRequest:
 
 
 def dependencies(request: DependenciesRequest, engine: Engine) -> DependenciesDocument:
-    """Make the dependency graph of a solution, and say what delays do."""
+    """Make the action dependency graph of a solution, and compute the effect of delays."""
     del engine
     with inside("$.solution"):
         sound = sound_solution(request.instance, request.solution)
@@ -65,7 +65,7 @@ def dependencies(request: DependenciesRequest, engine: Engine) -> DependenciesDo
 
 @dataclass(frozen=True, slots=True)
 class ExecuteRequest:
-    """A solution, who drives, and delays: each is [robot, position of the visit, ticks]."""
+    """A solution, a driver, and delays: each is [robot, position of the visit, ticks]."""
 
     instance: Instance
     solution: Solution
@@ -74,7 +74,7 @@ class ExecuteRequest:
 
 
 class ExecutedDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What happened, the solution whose order was kept, who collided, and who stands for ever."""
+    """The trace, the solution whose order was kept, the collisions, and the robots that stand for ever."""
 
     trace: TraceDocument
     followed: SolutionDocument
@@ -98,7 +98,7 @@ def execute(request: ExecuteRequest, engine: Engine) -> ExecutedDocument:
 
 @dataclass(frozen=True, slots=True)
 class RetimeRequest:
-    """What has happened of a solution."""
+    """The part of a solution that has happened."""
 
     instance: Instance
     solution: Solution
@@ -123,7 +123,7 @@ class UntangleRequest:
 
 
 class UntangledDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The solution without rotations and the ticks that it costs more.
+    """The solution without rotations, and the ticks by which its cost grew.
 
     `rotation` has the robots of a rotation that is left because none of them finds another plan.
     """
@@ -144,7 +144,7 @@ def untangle(request: UntangleRequest, engine: Engine) -> UntangledDocument:
 
 @dataclass(frozen=True, slots=True)
 class GiveWayRequest:
-    """A robot that is to go first at the tick `now`, perhaps on a route: visits as those of a plan."""
+    """A robot that must go first at the tick `now`, perhaps on a route, which has visits like those of a plan."""
 
     instance: Instance
     solution: Solution
@@ -154,7 +154,7 @@ class GiveWayRequest:
 
 
 class GivenWayDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The new plans, null if there are none; the arrival, and a tick before which no lawful update arrives.
+    """The new plans (null if there are none), the arrival, and a lower bound on the arrival in any lawful update.
 
     `extra` are pairs of a robot replanned and the ticks by which it arrives later; `stuck` are robots that find no
     plan around the earliest one.

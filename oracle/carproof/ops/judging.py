@@ -69,7 +69,7 @@ class AuditRequest:
 
 
 def audit(request: AuditRequest, engine: Engine) -> AuditDocument:
-    """Certify that no robot can arrive earlier beside the plans before its own, in planning order."""
+    """Certify that no robot can arrive earlier beside the plans before its own in planning order."""
     with inside("$.solution"):
         sound = sound_solution(request.instance, request.solution)
     with inside("$.instance"):

@@ -1,7 +1,7 @@
-"""An op of the protocol: its request, its result and its handler, and how JSON holds the first two.
+"""An op of the protocol: its request, its result and its handler, and the JSON of the first two.
 
-A request is a dataclass, each of whose fields is one of the request, or several if it holds options (`OPTIONS`). A
-type in `DOCUMENTS` stands in JSON as its document; any other is a type that msgspec reads and writes.
+A request is a dataclass. Each of its fields is a field of the request, or several if it holds options (`OPTIONS`). A
+type in `DOCUMENTS` stands in JSON as its document; any other type is one that msgspec reads and writes.
 """
 
 import dataclasses
@@ -25,7 +25,7 @@ from carproof.protocol import Request, fields_are_right, value_of
 
 @dataclass(frozen=True, slots=True)
 class Form:
-    """How JSON holds a type: as which document, how that is read, and how it is made."""
+    """The JSON form of a type: the document's class, its reader, and its writer."""
 
     document: type[msgspec.Struct]
     read: Callable[[bytes], Any]
@@ -43,7 +43,7 @@ DOCUMENTS: Mapping[Any, Form] = {
 
 @dataclass(frozen=True, slots=True)
 class PolishOptions:
-    """For how many rounds or seconds to polish, and the seed."""
+    """The rounds or seconds of a polish, and the seed."""
 
     iterations: int | None = None
     seconds: float | None = None
@@ -70,7 +70,7 @@ def _polish_options(request: Request) -> PolishOptions:
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """Options that stand in a request beside its other fields: their classes, and how they are taken.
+    """Options that stand in a request beside its other fields: their classes, and the function that reads them.
 
     Where there are several classes, the field `planner` names one.
     """
@@ -88,7 +88,7 @@ OPTIONS: Mapping[Any, Options] = {
 
 @dataclass(frozen=True, slots=True)
 class Field:
-    """A field of a request as JSON has it; one without default must be there."""
+    """A field of a request in JSON; a field without default is required."""
 
     name: str
     type: Any
@@ -105,7 +105,7 @@ class Op:
     handle: Callable[[Any, Engine], Any]
 
     def read(self, request: Request) -> Any:  # noqa: ANN401 - the op's own request
-        """Take the fields of a request; raises `Refusal` on the first that is wrong, and on one too many."""
+        """Read the fields of a request; raises `Refusal` for the first wrong one, and for an unknown one."""
         values = {}
         for field, hint in _hints(self.request):
             if hint in OPTIONS:
@@ -121,7 +121,7 @@ class Op:
 
     @property
     def statement(self) -> str:
-        """What it does, as its handler says."""
+        """The description of the op, from its handler."""
         return " ".join((self.handle.__doc__ or "").split())
 
     @property
@@ -162,13 +162,13 @@ def document_of(hint: Any) -> Any:  # noqa: ANN401 - a type hint
 
 
 def reader_of(hint: Any) -> Callable[[bytes], Any]:  # noqa: ANN401 - a type hint
-    """What reads a field or a result from JSON."""
+    """The decoder of a field or a result."""
     kind = _required(hint)
     return DOCUMENTS[kind].read if kind in DOCUMENTS else value_of(kind)
 
 
 def made(value: object) -> Any:  # noqa: ANN401 - whatever msgspec writes
-    """What JSON holds of a field or a result."""
+    """The JSON value of a field or a result."""
     return DOCUMENTS[type(value)].make(value) if type(value) in DOCUMENTS else value
 
 

@@ -27,7 +27,7 @@ class QueryDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     plan: tuple[tuple[ResourceId, int, int | None], ...] | None
 
     def plan_of(self, robot: RobotId) -> Plan | None:
-        """The plan, of the robot that was asked for."""
+        """The plan of the robot that was asked for."""
         return None if self.plan is None else Plan(robot, tuple(Visit(*visit) for visit in self.plan))
 
 
@@ -39,8 +39,8 @@ def query_document(plan: Plan | None) -> QueryDocument:
 def query(request: QueryRequest, engine: Engine) -> QueryDocument:
     """Plan one robot beside the plans of the others.
 
-    A plan of the robot itself in `solution` is its own history: what it did before `now` stays, and the plan is in
-    nobody's way.
+    A plan of the robot itself in `solution` is its history: its visits before `now` stay, and the rest of the plan is
+    in no robot's way.
     """
     require_tick(request.now, "$.now")
     require_robot(request.instance, request.robot, "$.robot")
@@ -52,7 +52,7 @@ def query(request: QueryRequest, engine: Engine) -> QueryDocument:
 
 @dataclass(frozen=True, slots=True)
 class PlanRequest:
-    """An instance to plan; without a planner, by the one that is the answerer's first choice."""
+    """An instance to plan, by the planner named or, without one, by the program's first choice."""
 
     instance: Instance
     planner: Planner | None = None

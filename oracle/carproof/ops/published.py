@@ -1,4 +1,4 @@
-"""What is published of the ops: a JSON Schema, a table in the documentation, lists in help.
+"""The published descriptions of the ops: a JSON Schema, a table in the documentation, lists in help.
 
 `python -m carproof.ops.published` writes the schema.
 """
@@ -30,8 +30,8 @@ def schema() -> str:
         _line(op.request.__name__.replace("Request", "Response"), "", ("result", document_of(op.result)))
         for op in OPS.values()
     ]
-    refused = _line("Refused", "Why a request was refused.", ("error", ErrorDocument))
-    skipped = _line("Skipped", "Why a program does not answer a request.", ("skipped", str))
+    refused = _line("Refused", "The reason why a request was refused.", ("error", ErrorDocument))
+    skipped = _line("Skipped", "The reason why a program does not answer a request.", ("skipped", str))
     lines = [*requests, *responses, refused, skipped]
     asked, components = msgspec.json.schema_components(lines, ref_template="#/$defs/{name}")
     return schema_text(NAME, {"description": ABOUT, "anyOf": asked[: len(requests)], "$defs": components})
@@ -88,7 +88,7 @@ def _first_sentence(op: Op) -> str:
 
 
 def op_list(names: Iterable[str] = OPS) -> str:
-    """The ops with what they do, for the end of a command's help."""
+    """The ops with their descriptions, for the end of a command's help."""
     width = max(map(len, OPS)) + 4
     later = " " * width
     ops = (fill(f"  {name:{width - 2}}{_first_sentence(OPS[name])}", 76, subsequent_indent=later) for name in names)

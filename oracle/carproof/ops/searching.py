@@ -1,4 +1,4 @@
-"""The ops that search for what is best: they need the extra `prove`."""
+"""The ops that search for optima and bounds; they need the extra `prove`."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ from carproof.requests import inside, limit_is_positive
 
 @dataclass(frozen=True, slots=True)
 class OptimumRequest:
-    """An instance, and for how many seconds to search."""
+    """An instance, and the seconds to search."""
 
     instance: Instance
     limit: float = DEFAULT_LIMIT
@@ -33,7 +33,7 @@ def optimum(request: OptimumRequest, engine: Engine) -> OptimumDocument:
 
 @dataclass(frozen=True, slots=True)
 class BoundRequest:
-    """An instance, and for how long to search at most."""
+    """An instance, and the limit of the search."""
 
     instance: Instance
     seconds: float | None = None

@@ -27,15 +27,15 @@ class TimeScale:
 
     @property
     def width(self) -> int:
-        """How wide all ticks are together."""
+        """The width of all ticks together."""
         return min(WIDEST, WIDEST_TICK * (self.end - self.first))
 
     def at(self, tick: int) -> int:
-        """Where the tick begins."""
+        """The place where the tick begins."""
         return LABELS + (tick - self.first) * self.width // (self.end - self.first)
 
     def span(self, start: int, end: int | None) -> tuple[int, int]:
-        """Where an interval begins and how wide it is; one for ever continues to the chart's edge."""
+        """The place where an interval begins, and its width; one for ever continues to the chart's edge."""
         left, right = self.at(start), self.at(self.end if end is None else min(end, self.end))
         return left, max(1, right - left)
 
@@ -70,7 +70,7 @@ def visited_places(scene: Scene) -> list[int]:
 
 
 def row_height(scene: Scene, place: int) -> int:
-    """How high a place's row is."""
+    """The height of a place's row."""
     return scene.places[place].lanes * LANE + GAP
 
 

@@ -13,7 +13,7 @@ SIDE = 32
 """Drawing units of a resource's side."""
 RADIUS = 13
 NUDGES = ((0, 0), (1, 1), (-1, -1), (1, -1), (-1, 1))
-"""Where robots over the capacity go, in halves of a radius, so that each is seen and all stay near the resource."""
+"""The shifts of robots beyond the capacity, in halves of a radius: each is seen, and all stay near the resource."""
 
 Stays: TypeAlias = list[tuple[int, int, Occupation]]
 """Occupations of a resource, each with the index of its plan and of its visit."""

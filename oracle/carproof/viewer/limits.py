@@ -1,4 +1,4 @@
-"""How much one page or picture shows: `view/...`. What is larger is refused before any work is done."""
+"""The limits of a page or picture: `view/...`. Larger solutions are refused before any work is done."""
 
 from typing import Any
 

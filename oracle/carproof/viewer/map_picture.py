@@ -99,7 +99,7 @@ def robot_picture(robots: Element, track: Track) -> Element:
 
 
 def standing(track: Track, scene: Scene, tick: int) -> Stand | None:
-    """Where the robot is at the tick; a broken plan may name several places; the last visit's counts."""
+    """The robot's stand at the tick; if a broken plan has several, that of the last visit."""
     for stand, enter, leave in reversed(track.stays):
         if enter <= tick and (leave is None or tick < leave):
             return scene.stands[stand]

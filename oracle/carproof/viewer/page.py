@@ -1,7 +1,7 @@
 """The page: one HTML file with map, chart, lists and script; a browser needs nothing else and fetches nothing.
 
-Whatever comes from a document reaches the page escaped: as XML text in the map, and as JSON without `<`, `>`
-and `&` for the script, which shows it as text only. The page's own policy lets no other script run.
+Content from a document reaches the page escaped: as XML text in the map, and as JSON without `<`, `>` and `&` for the
+script, which shows it as text only. The page's content security policy lets no other script run.
 """
 
 from base64 import b64encode

@@ -1,7 +1,7 @@
-"""Where the resources of a graph are drawn: at their own positions, or laid out by networkx.
+"""Placement of the resources of a graph: at their own positions, or laid out by networkx.
 
 Own positions are used if every resource has one, no two share one, and they are not scattered so widely that the
-resources would be dots. Everything that leaves this module is a whole number of drawing units.
+resources would be dots. All results are whole numbers of drawing units.
 """
 
 from collections.abc import Iterable, Mapping, Sequence

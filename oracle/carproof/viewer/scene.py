@@ -1,7 +1,7 @@
 """The scene: all that a picture of a solution shows, with every place and lane worked out.
 
-It is the one thing that the page's script and the stills are made from. Texts are cut to a line that can be
-shown. Resources and robots are numbered; what a broken solution names beyond the instance's comes after them.
+The page's script and the stills are made from nothing else. Texts are cut to a line that can be shown. Resources and
+robots are numbered; those that only a broken solution names come last.
 """
 
 from dataclasses import dataclass
@@ -61,7 +61,7 @@ class Broken:
 
 @dataclass(frozen=True, slots=True)
 class BrokenRule:
-    """A rule that is broken, and how often; not all of that may be listed."""
+    """A broken rule, and the number of its violations; not all of them may be listed."""
 
     id: str
     statement: str

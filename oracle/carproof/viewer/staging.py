@@ -148,7 +148,7 @@ def tracks(stage: Stage, robots: tuple[tuple[RobotId, int | None], ...]) -> Iter
 
 
 def note(known: bool, plan: Plan | None, plans: int) -> str:
-    """What is to be said of a robot beyond its plan."""
+    """The remark about a robot beyond its plan."""
     if not known:
         return "not in the instance"
     if plan is None:
