@@ -7,10 +7,6 @@ from carp_spec import Instance, Planner, Solution
 from carproof.crosscheck import first_difference
 
 
-def test_the_engines_agree() -> None:
-    assert first_difference(30, seed=1) is None
-
-
 def test_a_planted_difference_is_found_and_made_small(monkeypatch: pytest.MonkeyPatch) -> None:
     def forgetful(instance: Instance, planner: Planner) -> Solution:
         del planner

@@ -78,12 +78,6 @@ def test_narrow_and_piped_output_is_legible(carproof: Run, monkeypatch: pytest.M
     assert any("joint/capacity" in each for each in lines)
 
 
-def test_version(carproof: Run) -> None:
-    outcome = carproof("--version")
-    assert outcome.code == 0
-    assert outcome.stdout.startswith("carproof ")
-
-
 @pytest.mark.usefixtures("folder")
 def test_check_loads_nothing_slow() -> None:
     program = (

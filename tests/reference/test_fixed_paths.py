@@ -3,7 +3,7 @@
 from typing import get_args
 
 import pytest
-from tests.reference.examples import grid, instance, line, plan_of
+from tests.spec.making import grid, instance, line, plan_of
 
 from carp_reference import plan
 from carp_reference.fixed_paths import disjoint_paths, find_on_path, shortest_paths

@@ -3,7 +3,7 @@
 from unittest.mock import Mock
 
 import pytest
-from tests.reference.examples import grid, instance, line
+from tests.spec.making import grid, instance, line
 
 from carp_reference import orderings, plan
 from carp_spec import (

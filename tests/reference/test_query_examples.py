@@ -1,7 +1,7 @@
 """The CARP query on instances small enough to work out by hand."""
 
 import pytest
-from tests.reference.examples import grid, instance, line, plan_of
+from tests.spec.making import grid, instance, line, plan_of
 
 import carp_reference
 from carp_reference import query

@@ -1,6 +1,6 @@
 """Why a robot is unplanned."""
 
-from tests.reference.examples import instance, line, plan_of
+from tests.spec.making import instance, line, plan_of
 
 from carp_reference import why_unplanned
 from carp_spec import Resource, ResourceGraph

@@ -1,7 +1,7 @@
 """The naive twin: hand-made cases and its limit; that it agrees with the query, test_twins holds."""
 
 import pytest
-from tests.reference.examples import instance, line, plan_of
+from tests.spec.making import instance, line, plan_of
 
 from carp_reference import time_expanded
 from carp_reference.time_expanded import find_plan_by_ticks

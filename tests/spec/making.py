@@ -20,10 +20,32 @@ from carp_spec import (
 Stay: TypeAlias = tuple[ResourceId, int, int | None]
 
 
-def line(names: str, directed: bool = False) -> ResourceGraph:
-    """A row of resources with capacity and duration 1, at (0, 0), (1, 0), and so on."""
-    resources = tuple(Resource(name, x=position, y=0) for position, name in enumerate(names))
+def line(names: str, directed: bool = False, **durations: int) -> ResourceGraph:
+    """A row of resources at (0, 0), (1, 0), and so on, each named by a letter; durations where they are not 1."""
+    resources = tuple(Resource(name, duration=durations.get(name, 1), x=x, y=0) for x, name in enumerate(names))
     return ResourceGraph(resources, tuple(pairwise(names)), directed)
+
+
+def row(*durations: int, capacity: int = 1) -> ResourceGraph:
+    """A row of resources 0, 1, 2 and so on without positions."""
+    resources = tuple(Resource(number, capacity, duration) for number, duration in enumerate(durations))
+    return ResourceGraph(resources, tuple(pairwise(range(len(durations)))))
+
+
+def grid(width: int, height: int) -> ResourceGraph:
+    """A 4-connected grid of unit capacities and durations; ids are (x, y) as "x,y"."""
+    cells = [(x, y) for y in range(height) for x in range(width)]
+    steps = [((x, y), (x + dx, y + dy)) for x, y in cells for dx, dy in ((1, 0), (0, 1))]
+    return ResourceGraph(
+        tuple(Resource(f"{x},{y}", x=x, y=y) for x, y in cells),
+        tuple((f"{a},{b}", f"{c},{d}") for (a, b), (c, d) in steps if c < width and d < height),
+    )
+
+
+def instance(graph: ResourceGraph, *ends: tuple[str, str], after_goal: AfterGoal = "vanish") -> Instance:
+    """Robots r0, r1, ... with these starts and goals, all released at 0."""
+    robots = tuple(Robot(f"r{index}", start, goal) for index, (start, goal) in enumerate(ends))
+    return Instance(graph, robots, after_goal)
 
 
 def instance_on(graph: ResourceGraph, *robots: Robot, after_goal: AfterGoal = "vanish") -> Instance:

@@ -1,16 +1,30 @@
-"""Nothing that carp_spec hands out can be changed, or given a field that it does not have."""
+"""No data of the specification and the reference can be changed, or given a field that they do not have."""
 
+import importlib
+import pkgutil
+from collections.abc import Iterator
 from dataclasses import is_dataclass
+from types import ModuleType
 from typing import Any
 
 import msgspec
 import pytest
-from tests.classes import classes_of
 
+import carp_reference
 import carp_spec
+from carp_reference.problem import Problem
 from carp_spec.documents import InstanceDocument
 
-DATACLASSES = [each for each in classes_of(carp_spec) if is_dataclass(each)]
+
+def classes_of(package: ModuleType) -> Iterator[type[Any]]:
+    """Every class of every module of the package, except those imported from elsewhere."""
+    for module in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
+        for value in vars(importlib.import_module(module.name)).values():
+            if isinstance(value, type) and value.__module__ == module.name:
+                yield value
+
+
+DATACLASSES = [each for package in (carp_spec, carp_reference) for each in classes_of(package) if is_dataclass(each)]
 STRUCTS = [each for each in classes_of(carp_spec) if issubclass(each, msgspec.Struct)]
 
 
@@ -28,5 +42,5 @@ def test_documents_are_frozen_and_refuse_unknown_fields(kind: type[msgspec.Struc
 
 
 def test_the_classes_that_everybody_uses_are_among_them() -> None:
-    assert {carp_spec.Plan, carp_spec.Rule, carp_spec.Verdict, carp_spec.Neighbourhood} <= {*DATACLASSES}
+    assert {carp_spec.Plan, carp_spec.Rule, carp_spec.Verdict, carp_spec.Neighbourhood, Problem} <= {*DATACLASSES}
     assert InstanceDocument in STRUCTS

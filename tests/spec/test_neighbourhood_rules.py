@@ -4,7 +4,6 @@ from fractions import Fraction
 from itertools import islice
 from math import isqrt
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from tests.spec.making import instance_on, line, plan_of
@@ -12,13 +11,9 @@ from tests.spec.strategies import FEWER
 
 from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Visit
 from carp_spec.neighbourhood_rules import (
-    baseline_is_tried,
     distance,
     nearest,
     neighbourhood_orders,
-    next_trajectory,
-    replaces_best,
-    replanned_from,
 )
 from carp_spec.permutations import splitmix64
 
@@ -95,35 +90,6 @@ def test_nearest_is_the_first_with_the_least_distance_to_any_member(distances: l
 def test_means_are_compared_as_fractions() -> None:
     third = Fraction(10**30, 3 * 10**30 - 1)
     assert nearest([[third], [Fraction(1, 3)]]) == 1
-
-
-@pytest.mark.parametrize(
-    ("baseline", "rounds", "tried"), [(True, 0, True), (True, 3, True), (False, 0, True), (False, 1, False)]
-)
-def test_the_baseline_is_tried_unless_in_paper_mode_with_a_round_to_come(
-    baseline: bool, rounds: int, tried: bool
-) -> None:
-    assert baseline_is_tried(baseline, rounds) is tried
-
-
-@pytest.mark.parametrize(
-    ("cost", "best", "replaced"), [(5, None, True), (4, 5, True), (5, 5, False), (6, 5, False), (0, None, True)]
-)
-def test_only_a_smaller_total_replaces_the_best(cost: int, best: int | None, replaced: bool) -> None:
-    assert replaces_best(cost, best) is replaced
-
-
-@pytest.mark.parametrize(("taken", "planned", "start"), [(0, 4, 0), (3, 4, 3), (4, 4, 4), (3, 1, 1), (0, 0, 0)])
-def test_replanning_starts_at_the_earlier_of_the_robot_taken_and_the_first_without_plan(
-    taken: int, planned: int, start: int
-) -> None:
-    assert replanned_from(taken, planned) == start
-
-
-def test_a_robot_without_a_new_plan_keeps_its_trajectory() -> None:
-    before, after = plan_of("r", ("a", 0, 1)), plan_of("r", ("b", 0, 1))
-    assert next_trajectory(before, after) == after
-    assert next_trajectory(before, None) == before
 
 
 def test_rounds_of_one_robot_share_its_stream() -> None:

@@ -8,7 +8,7 @@ from tests.spec.making import Stay, instance_on, line, plan_of
 
 import carp_reference
 from carp_spec import AfterGoal, Instance, Plan, Robot
-from carp_spec.query_rules import absence_is_true, expansion_key, plan_is_optimal, plan_is_sound
+from carp_spec.query_rules import absence_is_true, plan_is_optimal, plan_is_sound
 
 LATEST = 6
 NAMES = "abc"
@@ -63,16 +63,3 @@ def test_a_plan_that_arrives_later_than_a_sound_rival_is_not_optimal() -> None:
     instance = Instance(line(NAMES), (asked,))
     late = plan_of("asked", ("a", 0, 2), ("b", 2, 3))
     assert not plan_is_optimal(instance, [], late, rivals(asked, "vanish"))
-
-
-def test_the_expansion_order_is_f_then_g_then_resource_then_window() -> None:
-    keys = [
-        expansion_key(4, 0, 9, 9),
-        expansion_key(5, 3, 0, 8),
-        expansion_key(5, 3, 1, 0),
-        expansion_key(5, 3, 1, 7),
-        expansion_key(5, 2, 0, 0),
-    ]
-    assert keys == sorted(keys)
-    assert len(set(keys)) == len(keys)
-    assert expansion_key(5, 3, 1, 7) == (5, -3, 1, 7)

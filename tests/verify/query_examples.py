@@ -3,8 +3,10 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+from tests.spec.making import plan_of
+
 from carp_reference.certifying import Certifier
-from carp_spec import AfterGoal, Instance, Plan, Resource, ResourceGraph, Robot, RobotId, Solution, Visit
+from carp_spec import AfterGoal, Instance, Plan, Resource, ResourceGraph, Robot, RobotId, Solution
 from carp_spec.query_certificates import QueryCertificateDocument
 
 
@@ -43,13 +45,9 @@ def beside(instance: Instance, robot: RobotId, *plans: Plan, now: int = 0) -> Qu
     return Question(instance, Solution(plans, order, unplanned), robot, now)
 
 
-def walk(robot: RobotId, *visits: tuple[str, int, int | None]) -> Plan:
-    return Plan(robot, tuple(Visit(*visit) for visit in visits))
-
-
 EAST = Robot("r", "a", "d")
 WEST = Robot("s", "d", "a")
-WESTWARDS = walk("s", ("d", 0, 1), ("c", 1, 3), ("b", 3, 4), ("a", 4, 5))
+WESTWARDS = plan_of("s", ("d", 0, 1), ("c", 1, 3), ("b", 3, 4), ("a", 4, 5))
 VANISHING = town("vanish", EAST, WEST)
 PARKING = town("park", EAST, replace(WEST, goal="e"))
 HOME = town("vanish", Robot("r", "b", "b"), WEST)
@@ -57,41 +55,41 @@ QUESTIONS = {
     "alone": beside(VANISHING, "r"),
     "head-on": beside(VANISHING, "r", WESTWARDS),
     "blocked for ever": beside(
-        town("park", EAST, replace(WEST, goal="c")), "r", walk("s", ("d", 0, 1), ("c", 1, None))
+        town("park", EAST, replace(WEST, goal="c")), "r", plan_of("s", ("d", 0, 1), ("c", 1, None))
     ),
-    "parking": beside(PARKING, "r", walk("s", ("d", 0, 1), ("c", 1, 3), ("b", 3, 4), ("e", 4, None))),
+    "parking": beside(PARKING, "r", plan_of("s", ("d", 0, 1), ("c", 1, 3), ("b", 3, 4), ("e", 4, None))),
     "a goal that is passed later": beside(
         town("park", replace(EAST, goal="b"), replace(WEST, goal="e")),
         "r",
-        walk("s", ("d", 0, 1), ("c", 1, 3), ("b", 3, 4), ("e", 4, None)),
+        plan_of("s", ("d", 0, 1), ("c", 1, 3), ("b", 3, 4), ("e", 4, None)),
     ),
     "out of reach": beside(town("vanish", replace(WEST, id="r"), directed=True), "r"),
     "room for two": beside(town("vanish", EAST, WEST, capacity=2), "r", WESTWARDS),
     "room for two, and back into it": beside(
         town("vanish", EAST, replace(WEST, pace=3), Robot("t", "e", "a"), capacity=2),
         "r",
-        walk("s", ("d", 0, 3), ("c", 3, 9), ("b", 9, 12), ("a", 12, 15)),
-        walk("t", ("e", 0, 4), ("b", 4, 5), ("a", 5, 6)),
+        plan_of("s", ("d", 0, 3), ("c", 3, 9), ("b", 9, 12), ("a", 12, 15)),
+        plan_of("t", ("e", 0, 4), ("b", 4, 5), ("a", 5, 6)),
     ),
     "slow": beside(town("vanish", replace(EAST, pace=2), WEST), "r", WESTWARDS),
     "under way": beside(
-        VANISHING, "r", WESTWARDS, walk("r", ("a", 0, 1), ("b", 1, 2), ("c", 2, 4), ("d", 4, 5)), now=1
+        VANISHING, "r", WESTWARDS, plan_of("r", ("a", 0, 1), ("b", 1, 2), ("c", 2, 4), ("d", 4, 5)), now=1
     ),
-    "ended": beside(HOME, "r", walk("r", ("b", 0, 1)), now=4),
+    "ended": beside(HOME, "r", plan_of("r", ("b", 0, 1)), now=4),
     "ended, and in the way": beside(
         town("vanish", Robot("r", "b", "b"), Robot("s", "b", "e")),
         "r",
-        walk("s", ("b", 0, 1), ("e", 1, 2)),
-        walk("r", ("b", 0, 1)),
+        plan_of("s", ("b", 0, 1), ("e", 1, 2)),
+        plan_of("r", ("b", 0, 1)),
         now=4,
     ),
     "in the way": beside(
-        VANISHING, "r", WESTWARDS, walk("r", ("a", 0, 4), ("b", 4, 5), ("c", 5, 7), ("d", 7, 8)), now=4
+        VANISHING, "r", WESTWARDS, plan_of("r", ("a", 0, 4), ("b", 4, 5), ("c", 5, 7), ("d", 7, 8)), now=4
     ),
     "at its goal": beside(HOME, "r"),
     "may leave its goal now": beside(HOME, "r", now=1),
     "stayed too long at its goal": beside(
-        HOME, "r", walk("s", ("d", 0, 6), ("c", 6, 8), ("b", 8, 9), ("a", 9, 10)), now=3
+        HOME, "r", plan_of("s", ("d", 0, 6), ("c", 6, 8), ("b", 8, 9), ("a", 9, 10)), now=3
     ),
 }
 

@@ -14,6 +14,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.profiles import draws
+from tests.verify.tiny import TINY
 
 from carp_optimum.bound import Progress, lower_bound
 from carp_optimum.cut_search import prove
@@ -28,7 +29,6 @@ from carp_verify.joint_search import least_total_cost
 from carp_verify.verify_bound import Budget, RobotSearch, Tariff, predecessors, verify_bound
 from carproof.strategies import PlannedInstance, Sizes, instances, planned_instances
 
-TINY = Sizes(resources=4, robots=3, capacity=2, duration=2, release=2, pace=2)
 SCALE = 4
 HORIZON = 6
 UNSOUND_DRAT = "91 0\n92 -91 0\nd 92 -91 0\n-92 0\n0\n"

@@ -1,21 +1,17 @@
 import pytest
 from hypothesis import given, settings
 from tests.profiles import draws
+from tests.spec.making import row
+from tests.verify.tiny import TINY
 
 from carp_optimum.solver import Deadline, Solver
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, check, total_cost
 from carp_verify.encoding import Conflict, Encoding, violated
 from carp_verify.joint_search import least_total_cost
-from carproof.strategies import PlannedInstance, Sizes, instances, planned_instances
+from carproof.strategies import PlannedInstance, instances, planned_instances
 
-TINY = Sizes(resources=4, robots=3, capacity=2, duration=2, release=2, pace=2)
 SECONDS = 60
 HORIZON = 6
-
-
-def line(*durations: int, capacity: int = 1) -> ResourceGraph:
-    resources = tuple(Resource(i, capacity, duration) for i, duration in enumerate(durations))
-    return ResourceGraph(resources, tuple((i, i + 1) for i in range(len(durations) - 1)))
 
 
 def has_model(encoding: Encoding) -> bool:
@@ -99,7 +95,7 @@ def test_the_nodes_of_a_horizon_are_counted_before_they_are_made(instance: Insta
 
 
 def test_horizons_that_need_too_many_clauses_are_refused_at_once() -> None:
-    instance = Instance(line(1, 1), (Robot("a", 0, 1), Robot("b", 1, 0)))
+    instance = Instance(row(1, 1), (Robot("a", 0, 1), Robot("b", 1, 0)))
     for most, horizons in ((30, (9, 5)), (29, (9, 5)), (10**6, (10**99, 0)), (10**6, (0, 10**99))):
         encoding = Encoding(instance, most=most)
         with pytest.raises(Refusal, match=f"the clauses of the formula must be at most {most}"):
@@ -109,23 +105,23 @@ def test_horizons_that_need_too_many_clauses_are_refused_at_once() -> None:
 
 def test_delays_are_never_below_zero() -> None:
     for bound in (0, -1, -(10**99)):
-        assert bounded(Instance(line(1, 1), (Robot("a", 0, 1),)), [1], bound, closed=False).formula.clauses[-1] == ()
+        assert bounded(Instance(row(1, 1), (Robot("a", 0, 1),)), [1], bound, closed=False).formula.clauses[-1] == ()
 
 
 def test_a_robot_that_is_later_than_its_horizon_has_no_plan() -> None:
-    encoding = Encoding(Instance(line(1, 1), (Robot("a", 0, 1), Robot("b", 1, 1))))
+    encoding = Encoding(Instance(row(1, 1), (Robot("a", 0, 1), Robot("b", 1, 1))))
     encoding.grow_to([1, 0])
     assert encoding.plans([True] * (encoding.formula.variables + 1)) == [None, None]
 
 
 def test_the_time_is_looked_at_before_each_robot() -> None:
     looks: list[int] = []
-    Encoding(Instance(line(1, 1), (Robot("a", 0, 1), Robot("b", 1, 0))), lambda: looks.append(1))
+    Encoding(Instance(row(1, 1), (Robot("a", 0, 1), Robot("b", 1, 0))), lambda: looks.append(1))
     assert len(looks) == 2
 
 
 def test_a_conflict_is_named_by_its_tick_and_its_resources() -> None:
-    head_on = Instance(line(1, 1), (Robot("a", 0, 1), Robot("b", 1, 0)))
+    head_on = Instance(row(1, 1), (Robot("a", 0, 1), Robot("b", 1, 0)))
     encoding = Encoding(head_on)
     encoding.grow_to([0, 0])
     solver = Solver(encoding.formula, Deadline(SECONDS).check)
@@ -138,7 +134,7 @@ def test_a_conflict_is_named_by_its_tick_and_its_resources() -> None:
 def test_a_long_stay_needs_no_more_variables_than_a_short_one() -> None:
     sizes = []
     for duration in (1, 1000):
-        encoding = Encoding(Instance(line(duration, duration, duration), (Robot("a", 0, 2), Robot("b", 1, 2))))
+        encoding = Encoding(Instance(row(duration, duration, duration), (Robot("a", 0, 2), Robot("b", 1, 2))))
         encoding.grow_to([0, 0])
         encoding.forbid_all()
         sizes.append((encoding.formula.variables, len(encoding.formula.clauses)))

@@ -7,11 +7,9 @@ from pathlib import Path
 import pytest
 from tests.oracle.running import Run
 
-from carp_spec import RULES
 from carp_verify.engine import Formula, Lemma, Unproved, examine, prove, refute
 from carp_verify.lemmas import MODULES, lemma_named
 from carp_verify.smt import Undecided, equal, find_model, integers, negation
-from carp_verify.support import UNSUPPORTED, support_of_rules
 from carp_verify.theorems import THEOREMS, Theorem
 
 KERNEL = Path(__file__).parents[2] / "verify/kernel"
@@ -68,12 +66,6 @@ def test_every_failure_is_reported() -> None:
     report = examine(Lemma("t", "s", (), lambda: iter([wrong]), lambda: iter([right])))
     assert len(report.failures) == 2
     assert not report.checked
-
-
-def test_every_rule_has_a_lemma_or_a_theorem_or_a_reason_for_having_neither() -> None:
-    supported = support_of_rules()
-    assert {rule.id for rule in RULES} == supported.keys() | UNSUPPORTED.keys()
-    assert not supported.keys() & UNSUPPORTED.keys()
 
 
 def test_the_theorems_are_those_that_coq_is_asked_about() -> None:

@@ -5,32 +5,29 @@ from itertools import count
 import pytest
 from hypothesis import given, settings
 from tests.profiles import draws
+from tests.spec.making import grid, row
+from tests.verify.tiny import TINY
 
 from carp_optimum.optimum import optimum
-from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, judge
+from carp_spec import AfterGoal, Instance, Refusal, Resource, ResourceGraph, Robot, judge
 from carp_verify.encoding import Encoding
 from carp_verify.joint_search import least_total_cost
 from carp_verify.unsolvable import describe
 from carproof.generate import Fleet, Grid, grid_instance
-from carproof.strategies import Sizes, instances
+from carproof.strategies import instances
 
-TINY = Sizes(resources=4, robots=3, capacity=2, duration=2, release=2, pace=2)
 LONG = 60
 
 
-def grid(size: int, *robots: Robot, after_goal: str = "vanish") -> Instance:
-    cells = [(x, y) for y in range(size) for x in range(size)]
-    edges = [((x, y), (x + dx, y + dy)) for x, y in cells for dx, dy in ((1, 0), (0, 1)) if max(x + dx, y + dy) < size]
-    named = tuple((f"{a},{b}", f"{c},{d}") for (a, b), (c, d) in edges)
-    graph = ResourceGraph(tuple(Resource(f"{x},{y}") for x, y in cells), named)
-    return Instance(graph, robots, "park" if after_goal == "park" else "vanish")
+def on_grid(size: int, *robots: Robot, after_goal: AfterGoal = "vanish") -> Instance:
+    return Instance(grid(size, size), robots, after_goal)
 
 
-def turned_ring(size: int, after_goal: str = "vanish") -> Instance:
+def turned_ring(size: int, after_goal: AfterGoal = "vanish") -> Instance:
     """Every cell has a robot that wants to the opposite cell, all of them crossing at the middle."""
     cells = [(x, y) for y in range(size) for x in range(size) if (x, y) != (size // 2, size // 2)]
     robots = (Robot(i, f"{x},{y}", f"{size - 1 - x},{size - 1 - y}") for i, (x, y) in enumerate(cells))
-    return grid(size, *robots, after_goal=after_goal)
+    return on_grid(size, *robots, after_goal=after_goal)
 
 
 @settings(max_examples=draws(1200))
@@ -46,12 +43,12 @@ def test_the_optimum_is_that_of_the_joint_search(instance: Instance) -> None:
 
 
 def test_the_same_instance_gives_the_same_solution() -> None:
-    instance = grid(5, *(Robot(i, f"{i},0", f"{4 - i},4") for i in range(5)), Robot(5, "4,4", "0,0"))
+    instance = on_grid(5, *(Robot(i, f"{i},0", f"{4 - i},4") for i in range(5)), Robot(5, "4,4", "0,0"))
     assert optimum(instance, LONG) == optimum(instance, LONG)
 
 
 def test_nobody_costs_nothing() -> None:
-    best = optimum(grid(2), LONG)
+    best = optimum(on_grid(2), LONG)
     assert (best.cost, best.decided) == (0, True)
 
 
@@ -63,16 +60,16 @@ def test_nobody_costs_nothing() -> None:
             "no way leads from 0 to 1, the goal of robot a",
         ),
         (
-            grid(2, Robot("a", "0,0", "1,1"), Robot("b", "1,0", "1,1"), after_goal="park"),
+            on_grid(2, Robot("a", "0,0", "1,1"), Robot("b", "1,0", "1,1"), after_goal="park"),
             "2 robots are to park in 1,1, which has a capacity of 1",
         ),
         (
-            grid(3, Robot("a", "0,0", "1,1"), Robot("b", "0,0", "2,2")),
+            on_grid(3, Robot("a", "0,0", "1,1"), Robot("b", "0,0", "2,2")),
             "robots are in one place, or exchange places, however late they are",
         ),
         (
             Instance(
-                ResourceGraph(tuple(map(Resource, range(12))), tuple((i, i + 1) for i in range(11))),
+                row(*[1] * 12),
                 (Robot("a", 0, 11), Robot("b", 11, 0)),
             ),
             "a search over all states of the robots together finds no plan set",
@@ -125,7 +122,7 @@ def test_an_undecided_search_leaves_the_best_plans_found_and_a_bound(
 
 @pytest.mark.parametrize("most", [20, 200], ids=["at once", "while it grows"])
 def test_a_formula_too_large_is_refused_with_the_limit_named(most: int) -> None:
-    instance = grid(6, Robot("a", "0,0", "5,5"), Robot("b", "5,5", "0,0"))
+    instance = on_grid(6, Robot("a", "0,0", "5,5"), Robot("b", "5,5", "0,0"))
     encoding = Encoding(instance, most=most)
     with pytest.raises(Refusal, match=f"clauses of the formula must be at most {most}, the limit"):
         encoding.grow_to([1, 1])
@@ -136,7 +133,7 @@ def test_a_formula_too_large_is_refused_with_the_limit_named(most: int) -> None:
 def test_the_limit_is_kept_on_a_large_map_with_many_robots(limit: int) -> None:
     """Counted in processor time, so that a busy machine does not matter."""
     robots = (Robot(i, f"{i},{7 * i % 60}", f"{11 * i % 60},{59 - i}") for i in range(50))
-    instance = grid(60, *robots)
+    instance = on_grid(60, *robots)
     started = time.process_time()
     best = optimum(instance, limit)
     assert time.process_time() - started < 2 * limit + 0.5
@@ -145,8 +142,7 @@ def test_the_limit_is_kept_on_a_large_map_with_many_robots(limit: int) -> None:
 
 def test_far_releases_do_not_make_the_search_over_all_states_endless() -> None:
     """The states would be looked at tick by tick until the release."""
-    line = ResourceGraph(tuple(map(Resource, range(12))), tuple((i, i + 1) for i in range(11)))
-    instance = Instance(line, (Robot("a", 0, 11, 3_000_000), Robot("b", 11, 0, 3_000_000)))
+    instance = Instance(row(*[1] * 12), (Robot("a", 0, 11, 3_000_000), Robot("b", 11, 0, 3_000_000)))
     started = time.process_time()
     assert not optimum(instance, 1).decided
     assert time.process_time() - started < 2
@@ -156,7 +152,9 @@ def test_a_search_over_too_many_states_leaves_the_search_for_an_optimum_going(mo
     monkeypatch.setattr("carp_verify.unsolvable.FEW_STATES", 10**9)
     monkeypatch.setattr("carp_verify.joint_search.refuse_size", refuse_anything)
     monkeypatch.setattr("carp_optimum.optimum.DELAY_OF_DOUBT", 1)
-    instance = grid(3, Robot("a", "0,1", "2,1"), Robot("b", "2,1", "0,1"), Robot("c", "1,0", "1,2"), after_goal="park")
+    instance = on_grid(
+        3, Robot("a", "0,1", "2,1"), Robot("b", "2,1", "0,1"), Robot("c", "1,0", "1,2"), after_goal="park"
+    )
     best = optimum(instance, LONG)
     assert (best.cost, best.shortest) == (9, 6)
 

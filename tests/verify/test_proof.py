@@ -7,11 +7,14 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from tests.profiles import draws
+from tests.spec.making import grid
 from tests.verify.test_bound import UNSOUND_DRAT
+from tests.verify.tiny import TINY
 
 from carp_optimum.optimum import optimum
 from carp_optimum.proving import write_proof
 from carp_spec import (
+    AfterGoal,
     Instance,
     Refusal,
     Resource,
@@ -24,21 +27,16 @@ from carp_spec import (
 )
 from carp_verify.bound_rules import ContradictionError
 from carp_verify.proof import FILES, ProofError, verify_proof
-from carproof.strategies import Sizes, instances
+from carproof.strategies import instances
 
 SECONDS = 60
-TINY = Sizes(resources=4, robots=3, capacity=2, duration=2, release=2, pace=2)
 
 
-def crossing(after_goal: str = "vanish") -> Instance:
+def crossing(after_goal: AfterGoal = "vanish") -> Instance:
     """Four robots that cross a 3 x 3 grid and turn each other round: delays are needed."""
-    cells = [(x, y) for y in range(3) for x in range(3)]
-    edges = [((x, y), (x + dx, y + dy)) for x, y in cells for dx, dy in ((1, 0), (0, 1)) if max(x + dx, y + dy) < 3]
-    named = tuple((f"{a},{b}", f"{c},{d}") for (a, b), (c, d) in edges)
     ends = (("0,1", "2,1"), ("2,1", "0,1"), ("1,0", "1,2"), ("1,2", "1,0"))
-    robots = tuple(Robot(i, start, goal) for i, (start, goal) in enumerate(ends))
-    graph = ResourceGraph(tuple(Resource(f"{x},{y}") for x, y in cells), named)
-    return Instance(graph, robots, "park" if after_goal == "park" else "vanish")
+    robots = tuple(Robot(number, *each) for number, each in enumerate(ends))
+    return Instance(grid(3, 3), robots, after_goal)
 
 
 def prove(instance: Instance, directory: Path) -> int:
@@ -98,7 +96,7 @@ def drop_clause(text: str) -> str:
 
 
 @pytest.mark.parametrize("after_goal", ["vanish", "park"])
-def test_a_proof_directory_proves_its_cost(after_goal: str, tmp_path: Path) -> None:
+def test_a_proof_directory_proves_its_cost(after_goal: AfterGoal, tmp_path: Path) -> None:
     instance = crossing(after_goal)
     cost = prove(instance, tmp_path)
     assert cost > 8

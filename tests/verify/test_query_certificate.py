@@ -8,7 +8,8 @@ import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.verify.query_examples import QUESTIONS, VANISHING, WESTWARDS, Question, beside, fleets, town, walk
+from tests.spec.making import plan_of
+from tests.verify.query_examples import QUESTIONS, VANISHING, WESTWARDS, Question, beside, fleets, town
 
 import carp_optimized.certifying
 import carp_reference
@@ -137,7 +138,7 @@ def test_each_rule_refuses_what_breaks_it(rule: str, name: str, changes: dict[st
 
 def test_plans_that_break_a_rule_or_are_of_one_robot_or_of_none_are_refused() -> None:
     certificate = QUESTIONS["head-on"].certified()[1]
-    jumping, stranger = walk("s", ("d", 0, 1), ("a", 1, 2)), walk("moon", ("a", 0, 1))
+    jumping, stranger = plan_of("s", ("d", 0, 1), ("a", 1, 2)), plan_of("moon", ("a", 0, 1))
     for plans in ((jumping,), (WESTWARDS, WESTWARDS), (stranger,)):
         assert rule_broken(beside(VANISHING, "r", *plans), certificate) == "query-certificate/plans"
 
@@ -211,7 +212,7 @@ def test_ticks_of_any_size_are_checked() -> None:
 
 def test_a_window_late_in_time_needs_a_label_if_the_robot_fits_into_it() -> None:
     instance = town("vanish", Robot("r", "a", "c"), Robot("s", "c", "d"), Robot("t", "e", "c"))
-    before, behind = walk("s", ("c", 0, 10), ("d", 10, 11)), walk("t", ("e", 0, 12), ("b", 12, 14), ("c", 14, 16))
+    before, behind = plan_of("s", ("c", 0, 10), ("d", 10, 11)), plan_of("t", ("e", 0, 12), ("b", 12, 14), ("c", 14, 16))
     question = beside(instance, "r", before, behind)
     plan, certificate = question.certified()
     assert arrival(plan) == 10

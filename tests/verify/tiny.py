@@ -10,8 +10,11 @@ from itertools import combinations
 from carp_spec import AfterGoal, Instance, Move, Resource, ResourceGraph, Robot
 from carp_spec.permutations import shuffle, splitmix64
 from carp_verify.joint_search import joint_states
+from carproof.strategies import Sizes
 
 MOST_STATES = 15_000
+TINY = Sizes(resources=4, robots=3, capacity=2, duration=2, release=2, pace=2)
+"""What hypothesis draws where a test needs it to shrink."""
 
 
 @dataclass(frozen=True, slots=True)
