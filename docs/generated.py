@@ -1,4 +1,4 @@
-"""What the documentation site takes from the code: MkDocs calls these hooks while it builds.
+"""Content that the documentation site takes from the code: MkDocs calls these hooks while it builds.
 
 A page names what belongs in a place by a comment, `<!-- generated: NAME -->`; `PARTS` has what is put there.
 """

@@ -1,4 +1,4 @@
-"""What each verdict of carproof rests on, with its lines of code."""
+"""The trusted base of each verdict of carproof, with its lines of code."""
 
 import io
 import tokenize

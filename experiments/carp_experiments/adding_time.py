@@ -1,7 +1,7 @@
-"""Experiment 2 of the paper: the time to find plans when the k-th robot comes to those before it.
+"""Experiment 2 of the paper: the time to find plans when the k-th robot is added to those before it.
 
 The algorithms of the paper that have no way to add a robot (CARP, CARP10, CARP100, LF) plan all k robots again; the
-neighbourhood planner adds one. Times are of the processor, on a fleet that stays up and is warm.
+neighbourhood planner adds one. Times are processor times, on a warm fleet that stays up.
 """
 
 from collections import defaultdict
@@ -39,7 +39,7 @@ PAPER: Mapping[str, tuple[float, float]] = {
 
 
 def time_row(case: MapCase) -> Row:
-    """Nanoseconds at the first robot, at every fifth and at the last; and how many robots each algorithm planned."""
+    """Nanoseconds at the first robot, every fifth and the last, and the number of robots planned by each algorithm."""
     fleet = fleet_of(case)
     planners = {name: seeded(ALGORITHMS[name], case.assignment) for name in PAPER}
     for planner in planners.values():

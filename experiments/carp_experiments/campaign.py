@@ -16,19 +16,19 @@ UNUSED = ".*You could benefit from adjusting the input task"
 
 
 class Case(Protocol):
-    """One case: what it is called in the store, and what it computes. It must be the same in every process."""
+    """One case: its name in the store, and its computation. It must be the same in every process."""
 
     @property
     def key(self) -> str:
         """The name of the case, unique in its campaign."""
 
     def run(self) -> Row:
-        """Compute the row of the case from nothing but the case."""
+        """Compute the row of the case from the case alone."""
 
 
 @dataclass(frozen=True, slots=True)
 class Workers:
-    """Who computes: `count` processes on this machine (`loky`), or the cluster of a dask scheduler."""
+    """The workers: `count` processes on this machine (`loky`), or the cluster of a dask scheduler."""
 
     count: int = 1
     backend: Backend = "loky"
@@ -36,7 +36,7 @@ class Workers:
 
 
 def run_campaign(cases: Sequence[Case], store: Store, workers: Workers, advance: Callable[[], None]) -> None:
-    """Run the cases that the store does not have yet; `advance` is called for each case, also those it has.
+    """Run the cases that the store does not have yet; `advance` is called for each case, stored ones included.
 
     Raises `Refusal` if a result cannot be written or a worker is lost; the results until then are in the store,
     and the same call continues where it stopped.

@@ -1,4 +1,4 @@
-"""Each claim of the paper's experiments: what it says, what we measured, and whether that reproduces it."""
+"""The claims of the paper's experiments, our measurements, and whether these reproduce the claims."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ COMPARABLE_PER_CENT = 1.0
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """A claim of the paper, what we find, and the verdict on it; and that on our variant, whose baseline is on."""
+    """A claim of the paper, our finding, and the verdict; also the verdict on our variant, whose baseline is on."""
 
     claim: str
     found: str
@@ -131,7 +131,7 @@ def up_to(saved: Savings, own: Means, map: int, names: Sequence[str], paper: int
 
 
 def number_verdict(found: Sequence[Interval], paper: int) -> Verdict:
-    """Reproduced if the intervals hold the paper's number, in part if they say at least that there are fewer."""
+    """Reproduced if the intervals hold the paper's number, in part if they show at least that there are fewer."""
     if not found:
         return "undecided"
     if all(each.low <= paper <= each.high for each in found):
@@ -215,7 +215,7 @@ def related_claims(summary: Sequence[Related]) -> Iterator[Claim]:
 
 
 def known_totals(by_place: Mapping[tuple[str, int], Related], name: str, maps: Sequence[int]) -> dict[int, Interval]:
-    """A method's totals above CARP's, on the maps where a quarter of the assignments tell, and more than one."""
+    """A method's totals above CARP's, on maps where at least a quarter of the assignments, and more than one, count."""
     known = [by_place[name, map] for map in maps if by_place[name, map].compared > 1]
     return {
         each.map: each.above_carp
@@ -225,7 +225,7 @@ def known_totals(by_place: Mapping[tuple[str, int], Related], name: str, maps: S
 
 
 def counts(names: Iterable[str], verdicts: Sequence[Sequence[bool | None]]) -> str:
-    """Of each name, how many of its verdicts are true."""
+    """The number of true verdicts of each name."""
     return ", ".join(f"{name} {each.count(True)} of {len(each)}" for name, each in zip(names, verdicts, strict=True))
 
 
@@ -239,12 +239,12 @@ def verdict_of(parts: Sequence[bool | None]) -> Verdict:
 
 
 def above_zero(interval: Interval) -> bool | None:
-    """Whether the interval says so; `None` if it holds zero."""
+    """Whether the interval lies above zero; `None` if it holds zero."""
     return True if interval.low > 0 else False if interval.high < 0 else None
 
 
 def below_zero(interval: Interval) -> bool | None:
-    """Whether the interval says so; `None` if it holds zero."""
+    """Whether the interval lies below zero; `None` if it holds zero."""
     return above_zero(Interval(-interval.estimate, -interval.high, -interval.low))
 
 

@@ -1,4 +1,4 @@
-"""`carproof experiment`: run an experiment of the paper, or go on with one."""
+"""`carproof experiment`: run an experiment of the paper, or continue one."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -40,10 +40,9 @@ F = TypeVar("F", bound=Callable[..., Any])
 def command() -> None:
     """Run an experiment, or continue the one in a store.
 
-    Results are written to the store as they come. A run that was stopped or
-    killed continues when it is called again with the same store, and a larger
-    run takes over the results of a smaller one. The results and their digest
-    do not depend on who computes them.
+    Results are written to the store as they come. A run that was stopped or killed continues when it is called again
+    with the same store, and a larger run takes over the results of a smaller one. The results and their digest do not
+    depend on the workers.
     """
 
 
@@ -64,7 +63,7 @@ def campaign_options(function: F) -> F:
 
 
 def chosen_workers(count: int, backend: str, scheduler: str | None) -> "Workers":
-    """Who computes; raises `UsageError` if that is not all said."""
+    """The workers; raises `UsageError` if an option is missing."""
     from carp_experiments.campaign import Workers  # noqa: PLC0415
 
     if backend == "dask" and scheduler is None:
@@ -116,7 +115,7 @@ def command_of(experiment: Experiment) -> click.Command:
 
 @command.command("crosscheck")
 @click.option("--quick", is_flag=True, help=f"{QUICK_QUESTIONS} questions.")
-@click.option("--questions", type=click.IntRange(min=1), default=FULL_QUESTIONS, help="How many random questions.")
+@click.option("--questions", type=click.IntRange(min=1), default=FULL_QUESTIONS, help="The number of random questions.")
 @click.option("--seed", type=click.IntRange(0, 2**64 - 1), default=0, help="The seed of the questions.")
 @campaign_options
 def crosscheck(quick: bool, questions: int, seed: int, **campaign: Any) -> Answer:  # noqa: ANN401 - click's
@@ -132,7 +131,7 @@ def crosscheck(quick: bool, questions: int, seed: int, **campaign: Any) -> Answe
 
 @command.command("kernel")
 @click.option("--quick", is_flag=True, help=f"{QUICK_VERDICTS} verdicts.")
-@click.option("--verdicts", type=click.IntRange(min=1), default=FULL_VERDICTS, help="How many random verdicts.")
+@click.option("--verdicts", type=click.IntRange(min=1), default=FULL_VERDICTS, help="The number of random verdicts.")
 @click.option("--seed", type=click.IntRange(0, 2**64 - 1), default=0, help="The seed of the questions.")
 @campaign_options
 def kernel(quick: bool, verdicts: int, seed: int, **campaign: Any) -> Answer:  # noqa: ANN401 - click's
@@ -163,7 +162,7 @@ def go(  # noqa: PLR0913 - the campaign's options
     scheduler: str | None,
     as_json: bool,
 ) -> Answer:
-    """Run the cases that the store does not have, and tell what all of them say."""
+    """Run the cases that the store does not have, and report on all cases."""
     import msgspec  # noqa: PLC0415 - loaded with the experiment
 
     from carp_experiments.campaign import run_campaign  # noqa: PLC0415

@@ -1,7 +1,8 @@
-"""A campaign of random small questions to both engines: the planner to read and the planner to run must agree on all.
+"""A campaign of random small questions to both engines: the reference and the optimised planner must agree on all.
 
 A case is a block of questions, so that a row stands for a second of work. `carproof crosscheck` asks the same kind of
-questions, until a difference, which it makes small; this can be stopped and taken up again, and runs on many machines.
+questions up to the first difference, which it shrinks. This campaign can be stopped and continued, and runs on many
+machines.
 """
 
 from collections.abc import Iterable
@@ -35,7 +36,7 @@ class CrosscheckCase:
         return f"seed {self.seed} questions {self.first:09} to {self.first + self.questions - 1:09}"
 
     def run(self) -> Row:
-        """What all answers cost, how many robots have none, and the questions on which the engines differ."""
+        """The cost of all answers, the number of unplanned robots, and the questions on which the engines differ."""
         block = Block(self.questions)
         for number in range(self.first, self.first + self.questions):
             ask_both(block, self.seed, number)
@@ -76,7 +77,7 @@ def crosscheck_cases(questions: int, seed: int) -> tuple[CrosscheckCase, ...]:
 
 
 def crosscheck_report(rows: Iterable[Row]) -> ExperimentReport:
-    """How many questions were asked, and what differs."""
+    """The number of questions asked, and the differences."""
     blocks = [msgspec.convert(row, Block) for row in rows]
     differences = [each for block in blocks for each in block.differences]
     columns = ("questions", "robots planned", "robots unplanned", "total cost", "differences")

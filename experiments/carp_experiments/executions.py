@@ -27,7 +27,7 @@ class BrokenError(Exception):
 
 
 def part(first: int) -> Counter[str]:
-    """What happened to `PART` executions, from that number on; equal numbers, equal executions."""
+    """The results of `PART` executions from that number on; equal numbers give equal executions."""
     found: Counter[str] = Counter()
     for number in range(first, first + PART, EACH):
         draw = Draw(splitmix64(number))

@@ -24,7 +24,7 @@ SPARSE_MAPS = tuple(range(8))
 
 @dataclass(frozen=True, slots=True)
 class Profile:
-    """How large an experiment is: assignments of start and goal to this many robots, each on every one of the maps."""
+    """The size of an experiment: assignments of start and goal to this many robots, each on all maps."""
 
     assignments: int
     robots: int
@@ -45,7 +45,7 @@ class Profile:
 
 @dataclass(frozen=True, slots=True)
 class Experiment:
-    """An experiment. The case of an assignment and a map is the same in every profile of as many robots."""
+    """An experiment. The case of an assignment and a map is the same in every profile with as many robots."""
 
     name: str
     sentence: str
@@ -113,7 +113,7 @@ EXPERIMENTS = (
     ),
     Experiment(
         "polish",
-        "How far the planner is from a proved lower bound, and the polished planner.",
+        "The distance of the planner, and of polished plans, from a proved lower bound.",
         Profile(100, 100, ALL_MAPS),
         Profile(8, 20, (10, 20)),
         polish_row,
@@ -121,7 +121,7 @@ EXPERIMENTS = (
     ),
     Experiment(
         "unplanned",
-        "What polish leaves unplanned on the sparse maps, and whether it could be planned.",
+        "Robots that polish leaves unplanned on the sparse maps, and whether they could be planned.",
         Profile(20, 100, SPARSE_MAPS),
         Profile(5, 60, (0, 5)),
         unplanned_row,

@@ -1,7 +1,7 @@
 """A campaign of random verdicts: the proved kernel and the checkers in Python must agree on all.
 
 A question is a solution to check, sound or broken in one place, or a query certificate to verify, honest or changed.
-Each fleet that is drawn gives some of all. A case is a block of questions, put to one run of the kernel.
+Each drawn fleet gives some of each kind. A case is a block of questions, put to one run of the kernel.
 """
 
 from collections.abc import Collection, Iterable, Sequence
@@ -43,7 +43,7 @@ class KernelCase:
         return f"seed {self.seed} verdicts {self.first:09} to {self.first + self.verdicts - 1:09}"
 
     def run(self) -> Row:
-        """How many solutions and certificates were accepted and refused, and the questions on which verdicts differ."""
+        """The number of documents accepted and refused of each kind, and the questions on which verdicts differ."""
         fleets = (fleet_questions(self.seed, number) for number in count(self.first // OF_A_FLEET))
         questions = list(islice(chain.from_iterable(fleets), self.verdicts))
         block = compared(self.first, questions, ask([each.request for each in questions]))
@@ -63,7 +63,7 @@ class Verdicts(msgspec.Struct):
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """What the kernel is asked, and what the checkers in Python answer."""
+    """A question to the kernel, and the answer of the checkers in Python."""
 
     request: bytes
     kind: Literal["sound", "broken", "proved", "refused"]
@@ -154,7 +154,7 @@ def changed(draw: Draw, certificate: QueryCertificateDocument) -> QueryCertifica
 
 
 def compared(first: int, questions: Sequence[Question], answers: Sequence[KernelVerdict]) -> Verdicts:
-    """How many questions of each kind there are, and those on which the kernel differs."""
+    """The number of questions of each kind, and those on which the kernel differs."""
     block = Verdicts(len(questions))
     for number, (asked, answer) in enumerate(zip(questions, answers, strict=True), first):
         setattr(block, asked.kind, getattr(block, asked.kind) + 1)
@@ -170,7 +170,7 @@ def kernel_cases(verdicts: int, seed: int) -> tuple[KernelCase, ...]:
 
 
 def kernel_report(rows: Iterable[Row]) -> ExperimentReport:
-    """How many verdicts of each kind there were, and which differ."""
+    """The number of verdicts of each kind, and those that differ."""
     blocks = [msgspec.convert(row, Verdicts) for row in rows]
     differences = [each for block in blocks for each in block.differences]
     counts = ("verdicts", "sound", "broken", "proved", "refused")

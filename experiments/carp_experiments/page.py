@@ -49,7 +49,7 @@ Where our conventions may make the difference:
 
 
 class Run(msgspec.Struct, frozen=True):
-    """What is known of a run beside its summary."""
+    """The facts about a run beside its summary."""
 
     experiment: str
     command: str
@@ -68,7 +68,7 @@ def read_run(name: str) -> Run | None:
 
 
 def claims_of(run: Run) -> Iterator[Claim]:
-    """The paper's claims that a run speaks of."""
+    """The paper's claims that a run decides."""
     if run.experiment == "quality":
         yield from quality_claims(summary_of(run, QualitySummary))
     elif run.experiment == "time":
@@ -80,7 +80,7 @@ def claims_of(run: Run) -> Iterator[Claim]:
 
 
 def summary_of(run: Run, type: type[T]) -> T:
-    """The summary of a run, as what it is."""
+    """The summary of a run, in its own type."""
     return msgspec.json.decode(run.summary, type=type)
 
 

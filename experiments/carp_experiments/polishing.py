@@ -1,8 +1,8 @@
-"""The distance to the optimum at the paper's size: shortest paths, a lower bound, the planner, and what is polished.
+"""The distance to the optimum at the paper's size: shortest paths, a lower bound, the planner, and polished plans.
 
-The bound is that of `carp_optimum.bound`, which no plans of all robots can beat; the polish is `carp_optimized.polish`,
-which also tries to plan robots that have no plan. Both by a number of steps, not by the clock, so that the same numbers
-come out anywhere: on the paper's maps these are about ten seconds of the bound and one and three of the polish.
+The bound is that of `carp_optimum.bound`, which no plans of all robots can beat. The polish is `carp_optimized.polish`,
+which also tries to plan unplanned robots. Both run for a number of steps, not by the clock, so the numbers are the same
+on any machine. On the paper's maps this is about ten seconds of the bound, and one and three of the polish.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -72,7 +72,7 @@ def polish_row(case: MapCase) -> Row:
 def polish_to(
     instance: Instance, solution: Solution, rounds: Sequence[int], seed: int
 ) -> tuple[Solution, list[tuple[int, int]]]:
-    """Polish for the last of these numbers of rounds; what is reached before the first and after each of them.
+    """Polish for the last of these numbers of rounds; the results before the first and after each of them.
 
     The numbers rise, and are multiples of the engine's rounds in one compiled call.
     """
@@ -89,7 +89,7 @@ def polish_to(
 
 
 def reached(instance: Instance, solution: Solution) -> tuple[int, int]:
-    """How many robots have a plan, and the total cost of these plans."""
+    """The number of planned robots, and the total cost of their plans."""
     return len(solution.plans), total_cost(instance, solution.plans)
 
 
@@ -107,10 +107,10 @@ class PolishRow(msgspec.Struct, frozen=True):
 class Polished:
     """A method on one map.
 
-    `failures` are the assignments with an unplanned robot, `unplanned` the mean number of such robots; over the other
-    assignments, `total` is the mean total, `gap` what it is above the bound in per cent and `above` what it is above
-    the sum of shortest paths, with their intervals, `close` how many are at most 1 % above the bound, and `proved` how
-    many are at the bound, and so the optimum.
+    `failures` counts the assignments with an unplanned robot; `unplanned` is the mean number of such robots. The other
+    fields are about the other assignments: `total` is the mean total, `gap` its excess over the bound and `above` its
+    excess over the sum of shortest paths, in per cent with their intervals; `close` counts those at most 1 % above the
+    bound, and `proved` those at the bound, which are optimal.
     """
 
     map: int
@@ -127,7 +127,7 @@ class Polished:
 
 @dataclass(frozen=True, slots=True)
 class Floor:
-    """On one map: the mean sum of shortest paths, the mean bound, and what it is above that sum in per cent.
+    """On one map: the mean sum of shortest paths, the mean bound, and its excess over that sum in per cent.
 
     `bounding` and `polishing` are the mean seconds of processor time of the bound, and of the longest polish.
     """
@@ -160,7 +160,7 @@ def polish_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
 
 
 def floor(map: int, rows: Sequence[PolishRow]) -> Floor:
-    """What no plans can be below, on a map."""
+    """The lower bound on a map."""
     return Floor(
         map,
         fmean(row.shortest for row in rows),
@@ -191,12 +191,12 @@ def polished(map: int, name: str, rows: Sequence[PolishRow], robots: int) -> Pol
 
 
 def per_cent_above(total: int, least: int) -> float:
-    """What a total is above a positive one, in per cent; nothing above one of 0 that is reached."""
+    """The excess of a total over a positive one, in per cent; 0 over a total of 0 that is reached."""
     return 100 * (total - least) / max(least, 1)
 
 
 def gaps_table(methods: Sequence[Polished]) -> Table:
-    """What the totals are above the bound."""
+    """The excess of the totals over the bound."""
     title = (
         "Of each method the mean total over the assignments without an unplanned robot, and by how many per cent it is "
         "above the lower bound, with its 95 % interval if there are several"
@@ -221,7 +221,7 @@ def methods_table(name: str, title: str, methods: Sequence[Polished], cell: Call
 
 
 def bounds_table(floors: Sequence[Floor], methods: Sequence[Polished]) -> Table:
-    """What the bound is, and how many assignments the longest polish brings to within 1 % of it, and to it."""
+    """The bound, and the number of assignments that the longest polish brings to within 1 % of it, and to it."""
     columns = ("map", "shortest", "bound", "above it", "within 1 %", "proved", "bound, s", "polish, s")
     reached = {each.map: each for each in methods if each.method == LONGEST}
     rows = []
@@ -242,13 +242,13 @@ def bounds_table(floors: Sequence[Floor], methods: Sequence[Polished]) -> Table:
 
 
 def gaps_figure(methods: Sequence[Polished]) -> Figure:
-    """What the methods are above the bound."""
+    """The excess of the methods over the bound."""
     lines = {name: [(each.map, each.gap) for each in methods if each.method == name] for name in METHODS}
     return Figure("polish", "Total above the lower bound", (MAP_AXIS, "per cent"), lines, logarithmic=True)
 
 
 def totals_figure(floors: Sequence[Floor], methods: Sequence[Polished]) -> Figure:
-    """What the methods and the bound are above the sum of shortest paths: the optimum lies between."""
+    """The excess of the methods and of the bound over the sum of shortest paths: the optimum lies between."""
     lines = {name: [(each.map, each.above) for each in methods if each.method == name] for name in METHODS}
     lines["lower bound"] = [(each.map, each.above) for each in floors]
     return Figure(

@@ -1,4 +1,4 @@
-"""Experiment 1 of the paper: how often each algorithm fails, and how many actions its plans have.
+"""Experiment 1 of the paper: the failures of each algorithm, and the number of actions of its plans.
 
 100 robots on 21 maps from a spanning tree to the full grid; the same assignments on every map.
 """
@@ -41,8 +41,8 @@ RIVALS = ("CARP", "CARP10", "CARP100", "Proposed_10")
 def quality_row(case: MapCase) -> Row:
     """For each algorithm the robots planned and the total cost; beside them the sum of shortest paths.
 
-    An algorithm that adds robots one by one stops at the first that stays unplanned: the assignment is a failure
-    then, whatever becomes of the others.
+    An algorithm that adds robots one by one stops at the first that stays unplanned, because the assignment is a
+    failure then.
     """
     fleet = fleet_of(case)
     results: dict[str, tuple[int, int]] = {}
@@ -80,7 +80,7 @@ def add_until_failure(fleet: "PlannedFleet", planner: Planner, first: int) -> No
 
 
 def outcome(fleet: "PlannedFleet") -> tuple[int, int]:
-    """How many robots have a plan, and the total cost of these plans."""
+    """The number of planned robots, and the total cost of their plans."""
     return len(fleet.order), total_cost(fleet.instance, fleet.plans)
 
 
@@ -91,7 +91,7 @@ def seeded(planner: Planner, seed: int) -> Planner:
 
 @dataclass(frozen=True, slots=True)
 class Summary:
-    """An algorithm on one map: how many assignments it failed on of how many, and its mean total over the others.
+    """An algorithm on one map: its failures among the assignments, and its mean total over the others.
 
     `total` is the mean with its 95 % interval, or `None` if it failed on all.
     """
@@ -106,7 +106,7 @@ class Summary:
 
 @dataclass(frozen=True, slots=True)
 class Saving:
-    """By how much an algorithm's total is smaller than a rival's, over the cases on which neither fails.
+    """The saving of an algorithm's total over a rival's, in the cases in which neither fails.
 
     Over all maps (`map` is `None`), the interval is that of the assignments' means over their maps. `total` is the
     rival's mean total in these cases.
@@ -122,7 +122,7 @@ class Saving:
 
 @dataclass(frozen=True, slots=True)
 class FailureDifference:
-    """How much more often an algorithm fails than a rival, over all maps, as a share.
+    """The difference between the failure rates of an algorithm and a rival, over all maps.
 
     The interval is that of the assignments' means over their maps.
     """
@@ -198,7 +198,7 @@ def savings_on(map: int | None, rows: Sequence[QualityRow], robots: int) -> Iter
 
 
 def failure_difference(name: str, rival: str, rows: Sequence[QualityRow], robots: int) -> FailureDifference:
-    """How much more often an algorithm fails than a rival, on the same assignments."""
+    """The difference between the failure rates of an algorithm and a rival, on the same assignments."""
     more: dict[int, list[int]] = defaultdict(list)
     for row in rows:
         more[row.assignment].append((row.total(name, robots) is None) - (row.total(rival, robots) is None))
@@ -206,5 +206,5 @@ def failure_difference(name: str, rival: str, rows: Sequence[QualityRow], robots
 
 
 def interval_of_means(groups: Iterable[Sequence[float]]) -> Interval:
-    """The mean of the groups' means: what is measured on the same assignment is not independent."""
+    """The mean of the groups' means, because measurements on the same assignment are not independent."""
     return mean_interval([fmean(group) for group in groups])

@@ -1,8 +1,8 @@
 """The methods that the paper compares by citation: fixed paths, as in ter Mors' comparison, and greedy best-first.
 
-Of 100 robots, fixed paths nearly always leave some without a plan, so their totals are compared over the first robots,
-up to the first that one of the two methods leaves without. As each robot is planned after those before it, these plans
-are those of an instance with no more robots.
+With 100 robots, fixed paths nearly always leave some without a plan. So totals are compared over the first robots, up
+to the first that one of the two methods leaves unplanned. As each robot is planned after those before it, these plans
+are those of an instance with these robots alone.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -89,10 +89,9 @@ def schedule(instance: Instance, paths: Sequence[Sequence[Path]]) -> list[Plan]:
 class Related:
     """A method on one map.
 
-    `unplanned` is the mean number of robots without a plan, `more_unplanned` how many more than by CARP, `failure_rate`
-    the share of assignments with such a robot.
-    `above_carp` is by how many per cent its total is above CARP's for the same robots (`same_robots`), over the
-    `compared` assignments in which there are some.
+    `unplanned` is the mean number of robots without a plan, `more_unplanned` its excess over that of CARP, and
+    `failure_rate` the share of assignments with such a robot. `above_carp` is the excess of its total over CARP's for
+    the same robots (`same_robots`) in per cent, over the `compared` assignments that have some.
     """
 
     map: int

@@ -43,7 +43,7 @@ class Figure:
 class ExperimentReport:
     """The summary of an experiment's rows: numbers for programs, tables and figures for people, lines to print.
 
-    `holds` is false if the rows show what must not be.
+    `holds` is false if the rows contradict the claim of the experiment.
     """
 
     summary: object
@@ -66,7 +66,7 @@ def write_report(folder: Path, name: str, report: ExperimentReport, run: Mapping
 
 
 def rounded(value: Any) -> Any:  # noqa: ANN401 - whatever JSON holds
-    """The same with no more digits than tell anything."""
+    """The same with significant digits only."""
     if isinstance(value, float):
         return round(value, 5)
     if isinstance(value, dict):

@@ -1,4 +1,4 @@
-"""The queries that the neighbourhood planner asks and avoids, and why; beside the paper's 67, 54 and 45 per cent."""
+"""The queries that the neighbourhood planner asks and avoids, by reason, beside the paper's 67, 54 and 45 per cent."""
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
@@ -30,7 +30,7 @@ PAPERS_SHARES = {4: 67, 5: 54, 6: 45}
 def reuse_row(case: MapCase) -> Row:
     """Queries of adding the last robot to the others, which CARP has planned.
 
-    Those asked by size of the neighbourhood and kinds of reuse, and those avoided by each kind of ours.
+    The queries asked, by size of the neighbourhood and kinds of reuse, and those that each kind avoids.
     """
     asked: dict[str, dict[str, int]] = {}
     avoided: dict[str, dict[str, int]] = {}
@@ -52,13 +52,13 @@ def reuse_row(case: MapCase) -> Row:
 
 @dataclass(frozen=True, slots=True)
 class ReuseOf:
-    """What one size of neighbourhood asks, means over the cases.
+    """The queries of one size of neighbourhood, means over the cases.
 
-    `asked` are the queries by kinds of reuse, `avoided` those that each kind of ours avoids where all are on, `last`
-    the share in per cent of the last round's queries for orders that are left where orders share their beginnings (the
-    paper's second reduction), `replanned` the same for the robots outside where those before the one taken out keep
-    their plans (the first). With both of the paper's reductions, `orders` are asked for orders, `outside` for robots
-    outside.
+    `asked` are the queries by kinds of reuse, and `avoided` those that each kind avoids if all are on. `last` is the
+    share in per cent of the last round's queries for orders that is left if orders share their beginnings (the paper's
+    second reduction). `replanned` is the share for the robots outside that is left if those before the one taken out
+    keep their plans (the first reduction). With both reductions, `orders` queries are asked for orders and `outside`
+    for robots outside.
     """
 
     m: int

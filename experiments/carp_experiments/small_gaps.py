@@ -1,6 +1,6 @@
-"""Small maps against the optimum: how far from it each algorithm is, over the density of the map.
+"""Small maps against the optimum: the distance of each algorithm from it, over the density of the map.
 
-Also what a polish of Proposed_4 leaves, and how far below the optimum the lower bound of `carp_optimum.bound` is.
+Also the distance of polished plans of Proposed_4, and of the lower bound of `carp_optimum.bound`.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -31,9 +31,9 @@ STEPS = 1_000
 
 
 def gap_row(case: MapCase) -> Row:
-    """The optimum, or nothing where it was not found in a minute or none exists; robots planned, and total cost.
+    """The optimum (`None` if it was not found in a minute or none exists), robots planned, and total cost.
 
-    Each assignment has a small map of its own. Only a search that comes near its minute can end otherwise on another
+    Each assignment has a small map of its own. Only a search that takes nearly a minute can end differently on another
     machine.
     """
     import carp_optimized as engine  # noqa: PLC0415 - each worker loads it

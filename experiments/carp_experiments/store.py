@@ -22,9 +22,9 @@ TABLE = (
 class Store:
     """An SQLite file that holds the rows of one campaign, each under the key of its case.
 
-    A row is in the file once `add` has returned, and stays there whatever becomes of the process. With it stand the
-    version of carproof that computed it, its digest, and the processor time that it took. The file
-    remembers which campaign it belongs to; opening it for another one is refused.
+    A row is in the file once `add` has returned, and stays there even if the process is killed. Each row has the
+    version of carproof that computed it, its digest, and its processor time. The file has the name of its campaign;
+    opening it for another campaign is refused.
     """
 
     def __init__(self, path: Path, campaign: str) -> None:
@@ -71,7 +71,7 @@ class Store:
                 yield key, row
 
     def digest(self, keys: Iterable[str] | None = None) -> str:
-        """A digest of these rows, or all, the same in whatever order they came; what was measured does not count."""
+        """A digest of these rows, or all, whatever their order; measured times do not count."""
         digest = hashlib.sha256()
         for key, row in self.rows(keys):
             digest.update(_encode({"case": key, "row": digest_of(row)}))

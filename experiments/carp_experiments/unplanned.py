@@ -1,8 +1,9 @@
-"""What polish leaves unplanned on sparse maps, and whether it could be planned: `carproof experiment unplanned`.
+"""Robots that polish leaves unplanned on sparse maps, and whether they could be planned.
 
-Where some robot stays without a plan after all rounds, robots are taken away as long as the others still cannot all be
-planned. Of the few that are left, every order is tried, and the optimum is searched for: either it is found that they,
-and so all robots, can have no plans together, or their plans are kept and the other robots planned around them.
+If some robot stays without a plan after all rounds, robots are removed as long as the others still cannot all be
+planned. For the few that are left, every order is tried and the optimum is searched for. Either the search finds that
+they, and so all robots, can have no plans together; or their plans are kept and the other robots are planned around
+them.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -30,9 +31,9 @@ ATTEMPTS = 5
 
 
 def unplanned_row(case: MapCase) -> Row:
-    """How many robots are unplanned before; after how many rounds none is; what became of those that stay so.
+    """The robots unplanned before, the rounds after which none is, and the groups of those that stay unplanned.
 
-    Only the search for a group's optimum that comes near its minute can end otherwise on another machine.
+    Only a search for a group's optimum that takes nearly a minute can end differently on another machine.
     """
     import carp_optimized as engine  # noqa: PLC0415 - each worker loads it
 
@@ -119,7 +120,7 @@ def blocking_group(instance: Instance, robots: Sequence[RobotId], seed: int) -> 
 
 
 def group_facts(instance: Instance, robots: tuple[RobotId, ...]) -> Group:
-    """What is known of a group."""
+    """The known facts about a group."""
     import carp_optimized as engine  # noqa: PLC0415
     from carp_optimum.optimum import optimum  # noqa: PLC0415
 
@@ -184,7 +185,7 @@ class UnplannedRow(msgspec.Struct, frozen=True):
 
 @dataclass(frozen=True, slots=True)
 class Unplanned:
-    """What came of the assignments on one map.
+    """The results of the assignments on one map.
 
     `before` are those with an unplanned robot before polish, `unplanned` the mean number of these robots; `after` those
     with one after this many rounds. Of the last, `unordered` are those in which a group of robots can be planned in no
@@ -220,7 +221,7 @@ def unplanned_report(rows: Iterable[Row]) -> ExperimentReport:
 
 
 def unplanned_on(map: int, rows: Sequence[UnplannedRow]) -> Unplanned:
-    """What came of the assignments on a map."""
+    """The results of the assignments on a map."""
     stuck = [row for row in rows if row.left]
     return Unplanned(
         map,
