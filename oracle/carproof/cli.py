@@ -1,5 +1,6 @@
 """The command `carproof`: loads the named command and turns its result into an exit code."""
 
+import gc
 import io
 import os
 import sys
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
     from importlib.metadata import EntryPoints
 
 WIDEST_SUMMARY = 200
+ALLOCATIONS = 50_000
+"""After how many objects a process of our own looks for garbage: documents are many objects, and hold no cycles."""
 COMPLETION = "_CARPROOF_COMPLETE"
 SETTINGS = {"help_option_names": ["-h", "--help"], "show_default": True}
 EPILOG = """\b
@@ -93,7 +96,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
-    return supervised(lambda: _run(sys.argv[1:])) if arguments is None else _run(arguments)
+    if arguments is not None:
+        return _run(arguments)
+    gc.set_threshold(ALLOCATIONS)
+    return supervised(lambda: _run(sys.argv[1:]))
 
 
 def _run(arguments: Sequence[str]) -> int:

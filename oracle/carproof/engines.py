@@ -112,12 +112,17 @@ def sum_of_shortest_paths(instance: Instance, robots: Iterable[RobotId]) -> int:
         return total_cost(instance, [plan for plan in alone if plan is not None])
 
 
-def plan_beside(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int) -> Plan | None:
-    """The plan of one robot against committed plans, whatever the size of the numbers."""
+def have_plans_beside(
+    instance: Instance, committed: Sequence[Plan], robots: Sequence[RobotId], now: int
+) -> Sequence[bool]:
+    """Whether each of some robots has a plan against committed plans of others, whatever the size of the numbers."""
     try:
-        return engine_named("optimized").query(instance, committed, robot, now)
+        certifier = engine_named("optimized").certifier(instance)
+        certifier.commit(committed)
     except Refusal:  # numbers that only the reference holds
-        return engine_named("reference").query(instance, committed, robot, now)
+        certifier = engine_named("reference").certifier(instance)
+        certifier.commit(committed)
+    return [certifier.certify(robot, None, now)[0] is not None for robot in robots]
 
 
 def why_unplanned(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0) -> str:

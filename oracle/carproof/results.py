@@ -10,11 +10,12 @@ from carp_spec.documents import visits_document
 from carp_spec.rule import interval
 from carproof.answer import Answer
 from carproof.audit import Audit
-from carproof.engines import plan_beside, sum_of_shortest_paths, why_unplanned
+from carproof.engines import have_plans_beside, sum_of_shortest_paths, why_unplanned
 from carproof.files import print_document, write_whole
 from carproof.tables import print_line, print_table
 
 COLUMNS = ("planner", "robots", "unplanned", "total cost", "shortest paths", "ratio", "time")
+NOT_FOUND = "the planner found no plan for it, though there is one beside the plans of the others"
 
 
 def show_instance(instance: Instance, output: Path | None, as_json: bool) -> Answer:
@@ -56,14 +57,12 @@ def result_row(instance: Instance, solution: Solution, planner: str, seconds: fl
 
 def show_unplanned(instance: Instance, solution: Solution, robots: Sequence[RobotId], now: int = 0) -> None:
     """Print the reasons why robots have no plan, one a line."""
-    for robot in robots:
-        print_line(f"unplanned: robot {robot}: {_why(instance, solution, robot, now)}")
-
-
-def _why(instance: Instance, solution: Solution, robot: RobotId, now: int) -> str:
-    if plan_beside(instance, solution.plans, robot, now) is not None:
-        return "the planner found no plan for it, though there is one beside the plans of the others"
-    return why_unplanned(instance, solution.plans, robot, now)
+    if not robots:
+        return
+    plannable = have_plans_beside(instance, solution.plans, robots, now)
+    for robot, is_plannable in zip(robots, plannable, strict=True):
+        reason = NOT_FOUND if is_plannable else why_unplanned(instance, solution.plans, robot, now)
+        print_line(f"unplanned: robot {robot}: {reason}")
 
 
 def show_addition(instance: Instance, before: Solution, after: Solution, robot: RobotId, now: int) -> None:

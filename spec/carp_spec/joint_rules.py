@@ -2,14 +2,15 @@
 
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
-from itertools import pairwise
+from itertools import groupby, pairwise
+from operator import itemgetter
 from typing import TypeAlias
 
 from carp_spec.model import Instance, Move, Plan, Resource, ResourceId, RobotId, Solution
 from carp_spec.rule import DESIGN, MORS, Breach, Rule, Violation, of_robots, violation_rule
 
-Changes: TypeAlias = dict[int, Counter[RobotId]]
-"""By tick and robot: how many of the robot's stays begin at the tick, minus how many end."""
+Change: TypeAlias = tuple[int, int, RobotId]
+"""A tick at which a stay of the robot begins, with 1, or ends, with -1."""
 
 
 @violation_rule(
@@ -40,37 +41,39 @@ def _crowded(
     instance: Instance, plans: Sequence[Plan], gap: int
 ) -> Iterator[tuple[Resource, tuple[RobotId, ...], int, int | None]]:
     """The resources that are too full if each stay lasts `gap` ticks longer, with the robots and the ticks."""
-    changes: dict[ResourceId, Changes] = defaultdict(lambda: defaultdict(Counter))
+    changes: dict[ResourceId, list[Change]] = defaultdict(list)
     for plan in plans:
         for visit in plan.visits:
             if visit.leave is None or visit.enter < visit.leave:
-                changes[visit.resource][visit.enter][plan.robot] += 1
+                changes[visit.resource].append((visit.enter, 1, plan.robot))
                 if visit.leave is not None:
-                    changes[visit.resource][visit.leave + gap][plan.robot] -= 1
+                    changes[visit.resource].append((visit.leave + gap, -1, plan.robot))
     arrival = {robot: position for position, robot in enumerate(instance.robot)}
     for resource in instance.graph.resources:
         for start, end, crowd in _crowds(resource.capacity, changes[resource.id]):
             yield resource, tuple(sorted(crowd, key=arrival.__getitem__)), start, end
 
 
-def _crowds(capacity: int, changes: Changes) -> Iterator[tuple[int, int | None, set[RobotId]]]:
+def _crowds(capacity: int, changes: list[Change]) -> Iterator[tuple[int, int | None, set[RobotId]]]:
     """The maximal intervals with too many robots at each tick, and all robots that are present at one of the ticks."""
-    present: Counter[RobotId] = Counter()
+    stays: Counter[RobotId] = Counter()
     crowd: set[RobotId] = set()
     start: int | None = None
-    for tick in sorted(changes):
-        for robot, change in changes[tick].items():
-            present[robot] += change
-            if not present[robot]:
-                del present[robot]
-        if len(present) <= capacity:
+    for tick, at_tick in groupby(sorted(changes, key=itemgetter(0)), key=itemgetter(0)):
+        changing = set()
+        for _, change, robot in at_tick:
+            changing.add(robot)
+            stays[robot] += change
+            if not stays[robot]:
+                del stays[robot]
+        if len(stays) <= capacity:
             if start is not None:
                 yield start, tick, crowd
             start = None
         elif start is None:
-            start, crowd = tick, set(present)
+            start, crowd = tick, set(stays)
         else:
-            crowd |= changes[tick].keys()
+            crowd |= changing
     if start is not None:
         yield start, None, crowd
 
@@ -88,11 +91,10 @@ def exchanges_are_avoided(instance: Instance, plans: Sequence[Plan]) -> Iterator
             if visit.resource in instance.graph.index and following.resource in instance.graph.index:
                 movers[following.enter, (visit.resource, following.resource)].append(plan.robot)
     index = instance.graph.index
-    for tick, (source, target) in sorted(movers, key=lambda key: (key[0], index[key[1][0]], index[key[1][1]])):
-        there = movers[tick, (source, target)]
-        back = movers.get((tick, (target, source)), [])
-        robots = tuple(dict.fromkeys(there + back))
-        if index[source] < index[target] and back and len(robots) > 1:
+    met = [(tick, move) for tick, move in movers if index[move[0]] < index[move[1]] and (tick, move[::-1]) in movers]
+    for tick, (source, target) in sorted(met, key=lambda key: (key[0], index[key[1][0]], index[key[1][1]])):
+        robots = tuple(dict.fromkeys(movers[tick, (source, target)] + movers[tick, (target, source)]))
+        if len(robots) > 1:
             reason = f"they exchange {source} and {target} at tick {tick}"
             yield robots, source, tick, tick + 1, reason
 
