@@ -15,9 +15,11 @@ A name is loaded when it is first used, so that importing this page costs nothin
 """
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
 
+TYPE_CHECKING = False  # typing is slow to load, and type checkers know the name
 if TYPE_CHECKING:
+    from typing import Any
+
     from carp_optimized import add, plan, polish, query
     from carp_optimum.bound import lower_bound as bound
     from carp_optimum.optimum import Optimum, optimum
@@ -125,7 +127,7 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:  # noqa: ANN401 - any of the names above
+def __getattr__(name: str) -> "Any":  # noqa: ANN401 - any of the names above
     """Load a name of this page when it is first used."""
     if name == "__version__":
         return import_module("importlib.metadata").version("carproof")

@@ -169,3 +169,15 @@ def print_document(data: bytes) -> None:
     sys.stdout.flush()
     sys.stdout.buffer.write(data)
     sys.stdout.buffer.flush()
+
+
+@contextmanager
+def hypothesis_elsewhere() -> Iterator[None]:
+    """Let hypothesis keep its files in a temporary folder, not in the user's."""
+    from tempfile import TemporaryDirectory  # noqa: PLC0415 - loaded only where used
+
+    from hypothesis.configuration import set_hypothesis_home_dir  # noqa: PLC0415
+
+    with TemporaryDirectory(prefix="carproof-") as folder:
+        set_hypothesis_home_dir(folder)
+        yield

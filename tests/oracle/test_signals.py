@@ -30,8 +30,10 @@ MORE = [
     "audit large.json large-plans.json --engine reference",
     "serve",
     "conform --examples 100000 -- {carproof} serve",
-    "experiment campaign --output campaign",
+    "experiment quality --quick --store quality.sqlite --workers 2",
 ]
+LONG = [each for each in MORE if each != "theorems"]
+PATHS = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2] / "oracle")}
 
 
 @pytest.fixture(scope="module")
@@ -86,7 +88,7 @@ def interrupted(command: str, number: signal.Signals, folder: Path, seconds: flo
     assert stderr.endswith("Interrupted.\n")
     assert "Traceback" not in stderr
     assert processes_of(marker) == []
-    assert {each.name for each in folder.iterdir()} <= before | {"campaign"}
+    assert {each.name for each in folder.iterdir()} <= before | {"quality.sqlite"}
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
@@ -96,11 +98,38 @@ def test_a_signal_ends_a_command_with_all_that_it_started(command: str, number: 
 
 
 @pytest.mark.nightly
-@pytest.mark.parametrize("seconds", [0.5, 4.0])
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("command", MORE)
+@pytest.mark.parametrize(("command", "seconds"), [*((each, 0.1) for each in MORE), *((each, 1.5) for each in LONG)])
 def test_a_signal_ends_every_long_command(command: str, number: signal.Signals, seconds: float, town: Path) -> None:
     interrupted(command, number, town, seconds)
+
+
+EARLY = """
+import os, sys
+from carproof import start
+
+class Interrupting:
+    def find_spec(self, name, *_):
+        if name == "carproof.cli":
+            os.kill(os.getpid(), int(sys.argv[1]))
+
+sys.meta_path.insert(0, Interrupting())
+sys.exit(start.main())
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_while_the_command_is_loaded_shows_no_traceback(number: signal.Signals) -> None:
+    done = subprocess.run([sys.executable, "-c", EARLY, str(int(number))], capture_output=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (128 + number, b"", b"Interrupted.\n")
+
+
+def test_signals_are_heeded_before_anything_slow_is_loaded() -> None:
+    look = "import sys; before = {*sys.modules}; import carproof.start; print(*{*sys.modules} - before)"
+    done = subprocess.run([sys.executable, "-S", "-c", look], capture_output=True, check=True, env=PATHS)
+    loaded = set(done.stdout.decode().split())
+    assert "carproof.start" in loaded
+    assert not {"typing", "enum", "re", "signal", "click"} & loaded
 
 
 STUCK = """

@@ -2,12 +2,10 @@
 
 import shlex
 import shutil
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from secrets import randbits
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 import click
@@ -21,7 +19,7 @@ from carproof.conform.claims import FEATURES, Claims
 from carproof.conform.levels import CLASSICAL_LEVELS, LEVELS, WHOLE_LEVELS, Level
 from carproof.engines import warm
 from carproof.extras import require
-from carproof.files import OutputFile, print_document, write_whole
+from carproof.files import OutputFile, hypothesis_elsewhere, print_document, write_whole
 from carproof.ops.published import op_list
 from carproof.options import examples, json_option, kernel_option
 from carproof.progress import progress
@@ -54,7 +52,7 @@ _LEVELS = "\n".join(
         "carproof conform --solvable --without releases -- ./planner",
         "carproof conform --one-shot -- ./planner {map} {scen} {agents} {solution}",
         "carproof conform --level context-optimal --kernel -- ./planner",
-        "carproof conform --junit conform.xml --html conform.html --save found -- ./planner",
+        "carproof conform --junit conform.xml --html conform.html -- ./planner",
     ),
 )
 @click.argument("program", nargs=-1, required=True, metavar="-- PROGRAM ...")
@@ -172,7 +170,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     before = read_saved(save, origin.judged, one_shot)
     if before.stale is not None:
         click.echo(printable(before.stale), err=True)
-    with progress("asking", number) as advance, _nothing_kept():
+    with progress("asking", number) as advance, hypothesis_elsewhere():
         report = conform(subject, options, advance, before.cases)
     saved = [] if report.interrupted and not report.failures else save_all(report.failures, save, origin)
     if junit is not None:
@@ -186,16 +184,6 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     else:
         _show(report, saved)
     return Answer.UNDECIDED if report.conforms is None else Answer.of(report.conforms)
-
-
-@contextmanager
-def _nothing_kept() -> Iterator[None]:
-    """Let hypothesis keep its files in a temporary folder, not in the user's."""
-    from hypothesis.configuration import set_hypothesis_home_dir  # noqa: PLC0415 - loaded only where used
-
-    with TemporaryDirectory(prefix="carproof-") as folder:
-        set_hypothesis_home_dir(folder)
-        yield
 
 
 def _one_shot(program: tuple[str, ...], limits: "Limits", format: str | None) -> "OneShot":

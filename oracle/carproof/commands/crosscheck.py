@@ -11,7 +11,7 @@ from carp_spec.documents import instance_document, solution_document
 from carproof.answer import Answer
 from carproof.crosscheck import Difference, first_difference
 from carproof.extras import require
-from carproof.files import print_document
+from carproof.files import hypothesis_elsewhere, print_document
 from carproof.options import examples, json_option, output_option
 from carproof.progress import progress
 from carproof.results import write_result
@@ -35,7 +35,7 @@ def command(count: int, seed: int, output: Path | None, as_json: bool) -> Answer
     Exit codes: 0 no difference, 1 a difference, 2 bad usage.
     """
     require("hypothesis")
-    with progress("asking both engines", count) as advance:
+    with hypothesis_elsewhere(), progress("asking both engines", count) as advance:
         difference = first_difference(count, seed, advance)
     written = msgspec.json.encode(document(difference)) + b"\n"
     write_result(written, output, as_json)
