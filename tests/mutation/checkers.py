@@ -49,6 +49,7 @@ TESTS: Mapping[str, Sequence[str]] = {
     "carp_verify.smt": TERMS,
     "carp_verify.engine": TERMS,
     "carp_verify.vocabulary": TERMS,
+    "carp_verify.derivation": TERMS,
     "carp_verify.kernel": KERNEL,
     "carp_verify.verify_query": QUERIES,
     "carp_verify.query_certificate_rules": QUERIES,

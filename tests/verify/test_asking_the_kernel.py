@@ -37,11 +37,13 @@ def folder_of_kernel(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def answers(folder: Path, *lines: str) -> None:
-    """Let the kernel of the folder answer these lines, whatever it is asked."""
+def answers(folder: Path, *lines: str, end: str = "\\n") -> None:
+    """Let the kernel of the folder answer these lines, whatever it is asked, and end as one that refuses does."""
     note = f'for each in "$@"; do echo "$each" >> "{folder}/arguments"; cat "$each" >> "{folder}/files"; done'
-    prints = "".join(f"printf '%s\\n' '{line}'\n" for line in lines)
-    (folder / PROGRAM).write_text(f'#!/bin/sh\n({note}) 2> /dev/null\ncat > "{folder}/input"\n{prints}echo no >&2\n')
+    prints = "".join(f"printf '%s{end}' '{line}'\n" for line in lines)
+    (folder / PROGRAM).write_text(
+        f'#!/bin/sh\n({note}) 2> /dev/null\ncat > "{folder}/input"\n{prints}echo no >&2\nexit 1\n'
+    )
     (folder / PROGRAM).chmod(0o755)
 
 
@@ -65,6 +67,13 @@ def test_a_request_without_an_answer_is_refused(folder: Path, lines: tuple[str, 
     with pytest.raises(Refusal) as refused:
         ask([b"{}\n"] * 2)
     assert (refused.value.path, refused.value.rule) == ("$.kernel", "kernel/answer")
+
+
+def test_a_request_behind_a_line_without_an_end_has_no_answer(folder: Path) -> None:
+    answers(folder, ACCEPTED, end="")
+    with pytest.raises(Refusal, match="ended without an answer"):
+        ask([b"{}\n"] * 2)
+    assert ask([b"{}\n"])[0].accepted
 
 
 def test_the_version_is_asked_of_the_program_itself(folder: Path) -> None:

@@ -14,7 +14,7 @@ from carp_verify.engine import examine
 from carp_verify.lemmas import lemma_named
 from carp_verify.lemmas.reserving_splits_a_window import held_by_parts
 from carp_verify.smt import Answer, Bool, Int, find_model, integer, integers, negation, value_of
-from carp_verify.vocabulary import has_ended, holds, interval, replaces_best, stay_fits
+from carp_verify.vocabulary import has_ended, holds, interval, is_interval, replaces_best, stay_fits
 
 TICKS = range(5)
 STAYS: Sequence[Occupation] = [(a, b) for a in TICKS for b in (*range(a + 1, 5), None)]
@@ -34,6 +34,13 @@ def test_holds_is_occupancy() -> None:
     within = holds(interval("stay"), integer("tick"))
     for stay, tick in product(STAYS, TICKS):
         assert evaluate(within, values_of("stay", stay), {"tick": tick}) == bool(occupancy([stay], tick))
+
+
+def test_an_interval_has_a_tick_and_none_before_0() -> None:
+    term = is_interval(interval("stay"))
+    for start, end in product(range(-1, 4), (*range(-1, 4), None)):
+        ticks = [tick for tick in range(-2, 9) if occupancy([(start, end)], tick)]
+        assert evaluate(term, values_of("stay", (start, end))) == (ticks != [] and min(ticks) >= 0)
 
 
 def test_stay_fits_is_that_of_the_specification() -> None:

@@ -2,11 +2,13 @@
 
 import json
 import re
+from functools import partial
 from pathlib import Path
 
 import pytest
 from tests.oracle.running import Run
 
+from carp_verify import engine
 from carp_verify.engine import Formula, Lemma, Unproved, examine, prove, refute
 from carp_verify.lemmas import MODULES, lemma_named
 from carp_verify.smt import Undecided, equal, find_model, integers, negation
@@ -54,10 +56,35 @@ def test_unknown_is_a_failure() -> None:
         find_model(hard, limit=100)
 
 
-def test_a_lemma_without_mutants_is_not_checked() -> None:
+def test_what_z3_cannot_decide_is_neither_proved_nor_refuted(monkeypatch: pytest.MonkeyPatch) -> None:
+    def puzzled(_: object) -> None:
+        raise Undecided("z3 answers unknown: timeout")
+
     a, b = integers("a b")
-    lemma = Lemma("t", "s", (), lambda: iter([Formula("l", [a < b], a <= b)]), lambda: iter([]))
-    assert not examine(lemma).checked
+    monkeypatch.setattr(engine, "find_model", puzzled)
+    for decide in (prove, refute):
+        with pytest.raises(Unproved, match=r"^z3 answers unknown: timeout$"):
+            decide([a < b], a <= b)
+    lemma = Lemma("t", "s", (), lambda: iter([Formula("f", [a < b], a <= b)]), lambda: iter([Formula("m", [], a < b)]))
+    assert [failure.partition(":")[0] for failure in examine(lemma).failures] == (
+        ["formula 'f' is not proved", "mutant 'm' is not refuted"]
+    )
+
+
+def test_a_lemma_is_checked_by_formulas_and_mutants_without_a_failure() -> None:
+    a, b = integers("a b")
+    formula, mutant = Formula("f", [a < b], a <= b), Formula("m", [a <= b], a < b)
+    for formulas, mutants, checked in (
+        ([formula], [mutant], True),
+        ([formula], [], False),
+        ([], [mutant], False),
+        ([formula, mutant], [mutant], False),
+        ([formula], [mutant, formula], False),
+    ):
+        report = examine(Lemma("t", "s", (), partial(iter, formulas), partial(iter, mutants)))
+        assert report.checked is checked
+        assert report.formulas == ("f",) * len(formulas[:1])
+        assert [name for name, _ in report.refuted] == ["m"] * len(mutants[:1])
 
 
 def test_every_failure_is_reported() -> None:

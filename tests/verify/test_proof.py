@@ -20,6 +20,7 @@ from carp_spec import (
     Resource,
     ResourceGraph,
     Robot,
+    Solution,
     Verdict,
     Violation,
     judge,
@@ -244,6 +245,31 @@ def test_a_formula_about_which_z3_finds_the_opposite_is_refused(
     monkeypatch.setattr("z3.Solver", Mistaken)
     with pytest.raises(ProofError, match=f"^{name}: z3 finds it {answer}, against the evidence"):
         verify_proof(proof)
+
+
+def test_z3_is_asked_about_the_bytes_that_were_compared_whatever_the_files_hold_by_then(
+    proof: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked, compared = [], [(proof / name).read_text() for name in ("reach.cnf", "beat.cnf")]
+
+    class Noting:
+        def set(self, option: str, value: int) -> None: ...
+
+        def from_string(self, formula: str) -> None:
+            asked.append(formula)
+
+        def check(self) -> str:
+            return "unknown"
+
+    def judged(instance: Instance, solution: Solution) -> Verdict:
+        for name in ("reach.cnf", "beat.cnf"):
+            (proof / name).write_text("p cnf 0 0\n")
+        return judge(instance, solution)
+
+    monkeypatch.setattr("carp_verify.proof.judge", judged)
+    monkeypatch.setattr("z3.Solver", Noting)
+    assert not verify_proof(proof).is_decided
+    assert asked == compared
 
 
 def test_a_manifest_with_a_name_twice_is_refused(proof: Path) -> None:
