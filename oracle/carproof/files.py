@@ -12,7 +12,7 @@ import click
 from click.shell_completion import CompletionItem
 
 from carp_spec import Instance, Refusal, Solution, read_instance, read_solution
-from carp_spec.traces import Trace, read_trace
+from carproof.requests import sound_solution
 
 T = TypeVar("T")
 STANDARD_INPUT = "-"
@@ -97,23 +97,27 @@ def read_bytes(name: str) -> bytes:
 
 def read_instance_file(name: str) -> Instance:
     """Read an instance from a file or standard input."""
-    return _read(name, read_instance)
+    return read_file(name, read_instance)
 
 
 def read_solution_file(name: str) -> Solution:
     """Read a solution from a file or standard input."""
-    return _read(name, read_solution)
+    return read_file(name, read_solution)
 
 
-def read_trace_file(name: str) -> Trace:
-    """Read a trace from a file or standard input."""
-    return _read(name, read_trace)
-
-
-def _read(name: str, decode: Callable[[bytes], T]) -> T:
+def read_file(name: str, decode: Callable[[bytes], T]) -> T:
+    """Read a document from a file or standard input."""
     data = read_bytes(name)
     with naming(name):
         return decode(data)
+
+
+def read_sound(instance: str, solution: str, *others: str) -> tuple[Instance, Solution]:
+    """Read an instance and a solution that breaks no rule; `others` are files that the same command reads."""
+    refuse_two_standard_inputs(instance, solution, *others)
+    problem, given = read_instance_file(instance), read_solution_file(solution)
+    with naming(solution):
+        return problem, sound_solution(problem, given)
 
 
 @contextmanager

@@ -4,17 +4,10 @@ import click
 
 from carp_spec import Verdict, total_cost, write_verdict
 from carp_spec.execution_rules import trace_violations
+from carp_spec.traces import read_trace
 from carproof.answer import Answer
-from carproof.files import (
-    naming,
-    print_document,
-    read_instance_file,
-    read_solution_file,
-    read_trace_file,
-    refuse_two_standard_inputs,
-)
+from carproof.files import print_document, read_file, read_sound
 from carproof.options import examples, instance_argument, json_option, solution_argument, trace_argument
-from carproof.requests import sound_solution
 from carproof.tables import print_line
 
 
@@ -33,10 +26,8 @@ def command(*, instance: str, solution: str, trace: str, as_json: bool) -> Answe
 
     Exit codes: 0 no rule is broken, 1 a rule is broken, 2 bad input.
     """
-    refuse_two_standard_inputs(instance, solution, trace)
-    problem, given, done = read_instance_file(instance), read_solution_file(solution), read_trace_file(trace)
-    with naming(solution):
-        sound = sound_solution(problem, given)
+    problem, sound = read_sound(instance, solution, trace)
+    done = read_file(trace, read_trace)
     violations = trace_violations(problem, sound, done)
     verdict = Verdict(total_cost(problem, sound.plans), len(sound.unplanned), violations)
     if as_json:

@@ -8,16 +8,8 @@ from carp_reference.execution import late_robots, order_of
 from carp_spec.documents import write
 from carproof.answer import Answer
 from carproof.executing import DependenciesDocument, delay_named, dependencies_document, dot
-from carproof.files import (
-    OutputFile,
-    naming,
-    read_instance_file,
-    read_solution_file,
-    refuse_two_standard_inputs,
-    write_whole,
-)
+from carproof.files import OutputFile, read_sound, write_whole
 from carproof.options import examples, instance_argument, json_option, output_option, solution_argument
-from carproof.requests import sound_solution
 from carproof.results import write_result
 from carproof.tables import print_line, print_table
 
@@ -47,11 +39,7 @@ def command(
 
     Exit codes: 0 there is no cycle, 1 there is one, 2 bad input.
     """
-    refuse_two_standard_inputs(instance, solution)
-    problem = read_instance_file(instance)
-    given = read_solution_file(solution)
-    with naming(solution):
-        sound = sound_solution(problem, given)
+    problem, sound = read_sound(instance, solution)
     asked = [delay_named(delay, problem, sound) for delay in delays]
     order = order_of(problem, sound)
     document = dependencies_document(order, late_robots(order, asked) if asked else None)

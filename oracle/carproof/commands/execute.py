@@ -9,17 +9,8 @@ from carp_spec.documents import write
 from carp_spec.traces import write_trace
 from carproof.answer import Answer
 from carproof.executing import DRIVERS, Driver, Execution, delays_named, execute, execution_document
-from carproof.files import (
-    OutputFile,
-    naming,
-    print_document,
-    read_instance_file,
-    read_solution_file,
-    refuse_two_standard_inputs,
-    write_whole,
-)
+from carproof.files import OutputFile, print_document, read_sound, write_whole
 from carproof.options import examples, instance_argument, json_option, solution_argument
-from carproof.requests import sound_solution
 from carproof.tables import print_line, print_table
 
 COLUMNS = ("driver", "robots", "delays", "arrived", "late", "mean", "worst", "collisions", "standing", "switches")
@@ -65,13 +56,9 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
     Exit codes: 0 nobody collides or stands for ever, 1 somebody does, 2 bad input.
     """
-    refuse_two_standard_inputs(instance, solution)
     if driver is None and not (trace is None and followed is None):
         raise click.UsageError("--trace and --followed need --driver.")
-    problem = read_instance_file(instance)
-    given = read_solution_file(solution)
-    with naming(solution):
-        sound = sound_solution(problem, given)
+    problem, sound = read_sound(instance, solution)
     chosen = delays_named(delays, sound, seed)
     executions = [execute(problem, sound, each, chosen) for each in ([driver] if driver else DRIVERS)]
     if trace is not None:

@@ -13,7 +13,7 @@ from carproof.engines import engine_named, sum_of_shortest_paths, warm
 from carproof.files import (
     InputFile,
     naming,
-    read_bytes,
+    read_file,
     refuse_two_standard_inputs,
 )
 from carproof.foreign import Problem, solution_files
@@ -113,9 +113,7 @@ def bound_of(instance: Instance, certificate: str | None) -> int:
     from carp_spec.bounds import read_bound  # noqa: PLC0415 - only for those who have a certificate
     from carp_verify.verify_bound import verify_bound  # noqa: PLC0415
 
-    data = read_bytes(certificate)
-    with naming(certificate):
-        return verify_bound(instance, read_bound(data))
+    return read_file(certificate, lambda data: verify_bound(instance, read_bound(data)))
 
 
 def _row(name: str, instance: Instance, solution: Solution, bound: int) -> list[object]:

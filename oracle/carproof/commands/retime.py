@@ -6,14 +6,9 @@ import click
 
 from carp_reference.execution import retime
 from carp_spec import total_cost, write_solution
+from carp_spec.traces import read_trace
 from carproof.answer import Answer
-from carproof.files import (
-    naming,
-    read_instance_file,
-    read_solution_file,
-    read_trace_file,
-    refuse_two_standard_inputs,
-)
+from carproof.files import naming, read_file, read_sound
 from carproof.options import (
     examples,
     instance_argument,
@@ -22,7 +17,6 @@ from carproof.options import (
     solution_argument,
     trace_argument,
 )
-from carproof.requests import sound_solution
 from carproof.results import write_result
 from carproof.tables import print_line
 
@@ -46,10 +40,8 @@ def command(*, instance: str, solution: str, trace: str, output: Path | None, as
 
     Exit codes: 0 there are new plans, 2 bad input, or no lawful plan has such a history.
     """
-    refuse_two_standard_inputs(instance, solution, trace)
-    problem, given, done = read_instance_file(instance), read_solution_file(solution), read_trace_file(trace)
-    with naming(solution):
-        sound = sound_solution(problem, given)
+    problem, sound = read_sound(instance, solution, trace)
+    done = read_file(trace, read_trace)
     with naming(trace):
         after = retime(problem, sound, done)
     write_result(write_solution(after), output, as_json)

@@ -7,7 +7,7 @@ import click
 from carp_spec import total_cost, write_solution
 from carproof.answer import Answer
 from carproof.engines import engine_named
-from carproof.files import naming, read_instance_file, read_solution_file, refuse_two_standard_inputs
+from carproof.files import read_sound
 from carproof.options import (
     engine_option,
     examples,
@@ -16,7 +16,6 @@ from carproof.options import (
     output_option,
     solution_argument,
 )
-from carproof.requests import sound_solution
 from carproof.results import write_result
 from carproof.tables import print_table
 from carproof.untangling import untangle
@@ -38,11 +37,7 @@ def command(*, instance: str, solution: str, engine: str | None, output: Path | 
 
     Exit codes: 0 no rotation is left, 1 no robot of a rotation finds another plan, and nothing is written, 2 bad input.
     """
-    refuse_two_standard_inputs(instance, solution)
-    problem = read_instance_file(instance)
-    given = read_solution_file(solution)
-    with naming(solution):
-        sound = sound_solution(problem, given)
+    problem, sound = read_sound(instance, solution)
     found = untangle(problem, sound, engine_named(engine))
     if found.rotation:
         names = ", ".join(map(str, found.rotation))

@@ -5,14 +5,7 @@ import click
 from carp_spec.bounds import read_bound
 from carp_spec.documents import write
 from carproof.answer import Answer
-from carproof.files import (
-    InputFile,
-    naming,
-    print_document,
-    read_bytes,
-    read_instance_file,
-    refuse_two_standard_inputs,
-)
+from carproof.files import InputFile, print_document, read_file, read_instance_file, refuse_two_standard_inputs
 from carproof.options import examples, instance_argument, json_option, kernel_option
 from carproof.tables import print_line, print_table
 from carproof.verdicts import verify_bound
@@ -41,9 +34,7 @@ def command(*, instance: str, certificate: str, kernel: bool, as_json: bool) -> 
     """
     refuse_two_standard_inputs(instance, certificate)
     problem = read_instance_file(instance)
-    data = read_bytes(certificate)
-    with naming(certificate):
-        document = read_bound(data)
+    document = read_file(certificate, read_bound)
     verdict = verify_bound(problem, document, kernel)
     if as_json:
         print_document(write(verdict))

@@ -7,9 +7,8 @@ from carp_spec.query_certificates import read_query_certificate
 from carproof.answer import Answer
 from carproof.files import (
     InputFile,
-    naming,
     print_document,
-    read_bytes,
+    read_file,
     read_instance_file,
     read_solution_file,
     refuse_two_standard_inputs,
@@ -43,9 +42,7 @@ def command(*, instance: str, solution: str, certificate: str, kernel: bool, as_
     """
     refuse_two_standard_inputs(instance, solution, certificate)
     problem, given = read_instance_file(instance), read_solution_file(solution)
-    data = read_bytes(certificate)
-    with naming(certificate):
-        document = read_query_certificate(data)
+    document = read_file(certificate, read_query_certificate)
     verdict = verify_query(problem, given, document, kernel)
     if as_json:
         print_document(write(verdict))
