@@ -9,16 +9,7 @@ from carp_spec.documents import write
 from carproof.engines import Engine
 from carproof.extras import advice
 from carproof.ops import answer
-from carproof.protocol import (
-    LONGEST_LINE,
-    MISSING,
-    NULL,
-    ErrorDocument,
-    Request,
-    Response,
-    line_is_bounded,
-    refused,
-)
+from carproof.protocol import LONGEST_LINE, MISSING, NULL, ErrorDocument, Request, Response, line_is_bounded, refused
 
 _PIECE = 2**20
 

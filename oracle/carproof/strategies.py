@@ -17,18 +17,7 @@ from itertools import combinations
 
 from hypothesis import strategies as st
 
-from carp_spec import (
-    AfterGoal,
-    Instance,
-    Move,
-    Plan,
-    Resource,
-    ResourceGraph,
-    ResourceId,
-    Robot,
-    RobotId,
-    Solution,
-)
+from carp_spec import AfterGoal, Instance, Move, Plan, Resource, ResourceGraph, ResourceId, Robot, RobotId, Solution
 from carproof.mutations import MUTATIONS, BrokenSolution
 from carproof.questions import FleetUnderWay
 from carproof.timing import path_between, timed_plan

@@ -4,13 +4,7 @@ This page exports the names that planners and their users need most. The modules
 """
 
 from carp_spec.check import Verdict, check, check_update, judge
-from carp_spec.documents import (
-    read_instance,
-    read_solution,
-    write_instance,
-    write_solution,
-    write_verdict,
-)
+from carp_spec.documents import read_instance, read_solution, write_instance, write_solution, write_verdict
 from carp_spec.model import (
     AfterGoal,
     Instance,

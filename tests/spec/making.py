@@ -4,18 +4,7 @@ from collections.abc import Iterable
 from itertools import pairwise
 from typing import TypeAlias
 
-from carp_spec import (
-    AfterGoal,
-    Instance,
-    Plan,
-    Resource,
-    ResourceGraph,
-    ResourceId,
-    Robot,
-    RobotId,
-    Solution,
-    Visit,
-)
+from carp_spec import AfterGoal, Instance, Plan, Resource, ResourceGraph, ResourceId, Robot, RobotId, Solution, Visit
 
 Stay: TypeAlias = tuple[ResourceId, int, int | None]
 

@@ -3,12 +3,7 @@
 from tests.spec.making import VANISHING, instance_on, line, plan_of
 
 from carp_spec import Instance, Resource, ResourceGraph, Robot, Solution, Violation
-from carp_spec.joint_rules import (
-    capacity_is_kept,
-    exchanges_are_avoided,
-    solution_covers_robots,
-    solution_orders_plans,
-)
+from carp_spec.joint_rules import capacity_is_kept, exchanges_are_avoided, solution_covers_robots, solution_orders_plans
 
 NAMES = ("r1", "r2", "r3", "r4")
 ROW = instance_on(line("ab"), *(Robot(name, "a", "b") for name in NAMES))

@@ -10,11 +10,7 @@ from tests.spec.making import instance_on, line, plan_of
 from tests.spec.strategies import FEWER
 
 from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Visit
-from carp_spec.neighbourhood_rules import (
-    distance,
-    nearest,
-    neighbourhood_orders,
-)
+from carp_spec.neighbourhood_rules import distance, nearest, neighbourhood_orders
 from carp_spec.permutations import splitmix64
 
 PLACES = tuple(

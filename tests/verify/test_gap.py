@@ -9,18 +9,7 @@ from carp_optimum.gap import best_order, gap
 from carp_optimum.optimum import optimum
 from carp_optimum.solver import TimeOver
 from carp_reference import query
-from carp_spec import (
-    Carp,
-    Instance,
-    Neighbourhood,
-    Plan,
-    Refusal,
-    Resource,
-    ResourceGraph,
-    Robot,
-    Shuffled,
-    total_cost,
-)
+from carp_spec import Carp, Instance, Neighbourhood, Plan, Refusal, Resource, ResourceGraph, Robot, Shuffled, total_cost
 from carp_verify.bound_rules import ContradictionError
 from carproof.strategies import Sizes, instances
 

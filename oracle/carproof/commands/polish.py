@@ -10,19 +10,9 @@ from carp_spec import Instance, Refusal, Solution, check, total_cost, write_solu
 from carp_spec.polish_rules import ITERATIONS, last_round, require_polish_options
 from carproof.answer import Answer
 from carproof.engines import engine_named, sum_of_shortest_paths, warm
-from carproof.files import (
-    InputFile,
-    naming,
-    read_file,
-    refuse_two_standard_inputs,
-)
+from carproof.files import InputFile, naming, read_file, refuse_two_standard_inputs
 from carproof.foreign import Problem, solution_files
-from carproof.options import (
-    engine_option,
-    examples,
-    json_option,
-    output_option,
-)
+from carproof.options import engine_option, examples, json_option, output_option
 from carproof.progress import found_so_far, gap, search_progress
 from carproof.requests import sound_solution
 from carproof.results import show_unplanned, write_result

@@ -9,14 +9,7 @@ from carp_spec import total_cost, write_solution
 from carp_spec.traces import read_trace
 from carproof.answer import Answer
 from carproof.files import naming, read_file, read_sound
-from carproof.options import (
-    examples,
-    instance_argument,
-    json_option,
-    output_option,
-    solution_argument,
-    trace_argument,
-)
+from carproof.options import examples, instance_argument, json_option, output_option, solution_argument, trace_argument
 from carproof.results import write_result
 from carproof.tables import print_line
 

@@ -8,14 +8,7 @@ from carp_spec import total_cost, write_solution
 from carproof.answer import Answer
 from carproof.engines import engine_named
 from carproof.files import read_sound
-from carproof.options import (
-    engine_option,
-    examples,
-    instance_argument,
-    json_option,
-    output_option,
-    solution_argument,
-)
+from carproof.options import engine_option, examples, instance_argument, json_option, output_option, solution_argument
 from carproof.results import write_result
 from carproof.tables import print_table
 from carproof.untangling import untangle
