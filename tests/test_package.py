@@ -1,0 +1,48 @@
+"""What a package index shows of the package, and which versions of libraries it takes."""
+
+import re
+import runpy
+import sys
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+PROJECT: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+README = (ROOT / "README.md").read_text()
+
+
+@pytest.fixture
+def description(monkeypatch: pytest.MonkeyPatch) -> Callable[[str, str | None], str]:
+    """The function of the build, without what builds."""
+    interface = SimpleNamespace(MetadataHookInterface=object)
+    monkeypatch.setitem(sys.modules, "hatchling.metadata.plugin.interface", interface)
+    function: Callable[[str, str | None], str] = runpy.run_path(str(ROOT / "hatch_build.py"))["description"]
+    return function
+
+
+def test_the_description_has_no_link_that_leads_nowhere(description: Callable[[str, str | None], str]) -> None:
+    without, described = (description(README, source) for source in (None, "https://example.org/carproof"))
+    for text in (without, described):
+        assert re.findall(r"\]\((?!https://)[^)]*\)", text) == []
+        assert "[plan/start] resource 5,1 in [1,2): robot r2 (the first visit" in text
+    assert "![" not in without
+    assert "| try it for an hour | the tutorial |" in without
+    assert "](https://example.org/carproof/raw/main/oracle/pictures/map.svg)" in described
+    assert "[the tutorial](https://example.org/carproof/blob/main/docs/tutorial.md)" in described
+
+
+def test_no_library_is_taken_in_an_untried_major_version() -> None:
+    extras = PROJECT["optional-dependencies"]
+    wanted = [*PROJECT["dependencies"], *extras["prove"], *extras["experiments"], *extras["test"]]
+    assert [each for each in wanted if "<" not in each] == []
+
+
+def test_an_index_can_place_the_package() -> None:
+    assert PROJECT["urls"]
+    assert len(PROJECT["keywords"]) > 3
+    assert {each.partition(" ::")[0] for each in PROJECT["classifiers"]} >= {"Topic", "Intended Audience", "Typing"}
