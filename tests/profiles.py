@@ -21,7 +21,7 @@ def draws(count: int) -> int:
 
 
 def rest_in(marked: str, values: Sequence[Any], *now: int) -> list[Any]:
-    """Parameters of which those at the indices are always run, and the others where what is so marked is."""
+    """Parameters: those at the indices always run, the others only where tests with the mark run."""
     mark = getattr(pytest.mark, marked)
     return [
         value if position in now else pytest.param(*(value if isinstance(value, tuple) else [value]), marks=mark)

@@ -21,7 +21,7 @@ TIMES = 5_000
 
 
 def fleet_of(seed: int, robots: int = ROBOTS) -> PlannedFleet:
-    """A fleet on map 20 of which all robots but the last are planned."""
+    """A fleet on map 20 with all robots but the last planned."""
     fleet = PlannedFleet(grid_instance(Grid(map=20), Fleet(robots=robots, seed=seed)))
     fleet.carp(range(robots - 1))
     return fleet

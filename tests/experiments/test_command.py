@@ -1,4 +1,4 @@
-"""`carproof experiment`: the same digest every time, and what goes wrong is told in a sentence."""
+"""`carproof experiment`: the same digest every time, and errors are one sentence."""
 
 import json
 import sys

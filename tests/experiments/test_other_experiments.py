@@ -69,10 +69,10 @@ def test_a_gap_is_measured_from_the_optimum() -> None:
     assert isinstance(results, dict)
     assert list(results) == [*COMPARED, POLISHED]
     assert all(total >= row["optimum"] for planned, total in results.values() if planned == 5)
-    told = msgspec.convert(row, GapRow)
-    assert told.shortest is not None
-    assert told.optimum is not None
-    assert told.shortest <= told.bound <= told.optimum
+    reported = msgspec.convert(row, GapRow)
+    assert reported.shortest is not None
+    assert reported.optimum is not None
+    assert reported.shortest <= reported.bound <= reported.optimum
     assert results[POLISHED][1] <= results["Proposed_4"][1]
     best = {"map": 3, "assignment": 1, "shortest": 8, "bound": 9, "optimum": 10, "decided": True}
     reached = {**dict.fromkeys((*COMPARED, POLISHED), (5, 10)), "CARP": (5, 12), "LF": (4, 3)}
@@ -158,9 +158,9 @@ def test_polished_plans_lie_between_the_bound_and_the_planner(monkeypatch: pytes
     )
     monkeypatch.setattr(polishing, "STEPS", 20)
     row = MapCase(polishing.polish_row, 12, 0, 10).run()
-    told = msgspec.convert(row, polishing.PolishRow)
-    planned, polished, longer = (told.results[name][1] for name in polishing.METHODS[:3])
-    assert told.shortest <= told.bound <= longer <= polished <= planned
+    reported = msgspec.convert(row, polishing.PolishRow)
+    planned, polished, longer = (reported.results[name][1] for name in polishing.METHODS[:3])
+    assert reported.shortest <= reported.bound <= longer <= polished <= planned
     assert row["left"] == {"Proposed_4": (), "Proposed_10": ()}
     again = dict(MapCase(polishing.polish_row, 12, 0, 10).run())
     assert digest_of(row) == digest_of(again)

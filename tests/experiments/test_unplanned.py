@@ -1,4 +1,4 @@
-"""Robots that block each other are found, and told from those that can have no plans together."""
+"""Robots that block each other are found, and distinguished from those that can have no plans together."""
 
 import pytest
 

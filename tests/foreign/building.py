@@ -26,7 +26,7 @@ def built(language: str) -> Path:
         BUILT.mkdir(parents=True, exist_ok=True)
         part = program.with_suffix(".part")
         filled = [word.format(program=part) for word in command]
-        done = subprocess.run(filled, cwd=HERE / language, capture_output=True, text=True)  # noqa: PLW1510 - told below
+        done = subprocess.run(filled, cwd=HERE / language, capture_output=True, text=True)  # noqa: PLW1510 - reported below
         if done.returncode != 0:
             pytest.fail(f"{language} does not build: {done.stderr}", pytrace=False)
         part.replace(program)

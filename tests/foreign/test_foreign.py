@@ -38,7 +38,7 @@ LEVEL = ("--level", "context-optimal")
 def conform(folder: Path, command: list[str], *options: str) -> dict[str, Any]:
     """Run the runner as a process of its own."""
     run = [sys.executable, "-m", "carproof", "conform", "--json", "--seed", "0", *options, "--", *command]
-    done = subprocess.run(run, capture_output=True, cwd=folder, text=True)  # noqa: PLW1510 - the report tells
+    done = subprocess.run(run, capture_output=True, cwd=folder, text=True)  # noqa: PLW1510 - in the report
     assert done.returncode in (0, 1), done.stderr
     report: dict[str, Any] = json.loads(done.stdout)
     assert report["conforms"] == (done.returncode == 0)

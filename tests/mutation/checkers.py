@@ -73,7 +73,7 @@ TESTS: Mapping[str, Sequence[str]] = {
     "carproof.conform.shrinking": ("oracle/test_conform_shrinking",),
 }
 TINY = 60
-"""So many instances of test_tiny_optima.py are asked for, one by one, of the modules that make or check formulas."""
+"""The number of instances of test_tiny_optima.py, one by one, for modules that make or check formulas."""
 PLANTED: Mapping[str, Sequence[tuple[str, str]]] = {
     "carp_verify.verify_bound": (
         ("is_weight(0, -left[robot])", "is_weight(certificate.scale, cut.multiplier)"),  # per cut, not per robot
@@ -104,7 +104,7 @@ PLANTED: Mapping[str, Sequence[tuple[str, str]]] = {
         ),
     ),
 }
-"""Errors that an audit planted, some of which no test had noticed: texts of the modules, and what to put there."""
+"""Errors that an audit planted, some unnoticed by every test: texts of the modules, and their replacements."""
 LEFT_OUT = (
     "on_a_large_map",
     "nothing_compiled",

@@ -73,7 +73,7 @@ def run_mutants(
 
 
 def outcome(load: Callable[[], None], cases: list[Case]) -> Outcome:
-    """What a process comes to that loads and passes the cases; one that fails, and is no pin, goes to the front."""
+    """The result of a process that loads the cases and runs them; one that fails, and is no pin, goes to the front."""
     place = mmap(-1, 1 << 12)
     child = os.fork()
     if child:

@@ -74,7 +74,8 @@ class Changed(MetaPathFinder, Loader):
 
 
 def cases() -> list[Case]:
-    """What a right planner passes, with the reference's answers; each loads the planner, and counts queries asked."""
+    """The cases that a right planner passes, with the reference's answers; each loads the planner and counts
+    queries."""
     asked: list[Callable[[], int]] = []
     for number in range(QUESTIONS):
         subject, planner = question(1, number)

@@ -30,7 +30,7 @@ POLICIES: tuple[AfterGoal, ...] = ("vanish", "vanish", "park")
 
 @dataclass(frozen=True, slots=True)
 class Arrivals:
-    """Plans that are there, and the robots that are added to them, each at a tick, with what is reused."""
+    """Committed plans, and the robots that are added to them, each at a tick, with the kinds of reuse."""
 
     instance: Instance
     before: tuple[Plan, ...]
@@ -151,7 +151,7 @@ def draw_instance(draw: Draw) -> Instance:
 
 
 def draw_options(draw: Draw) -> Neighbourhood:
-    """Neighbourhoods of up to 6, the larger of which are sampled."""
+    """Neighbourhoods of up to 6; the larger ones are sampled."""
     m = draw.one_of((2, 3, 3, 4, 5, 6))
     sample = draw.between(1, 30) if m > 3 or draw.happens(4) else None
     seed, baseline = draw.between(0, 999), draw.happens(2)

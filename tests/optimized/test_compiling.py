@@ -1,4 +1,4 @@
-"""What is compiled is compiled once, says so, and is compiled again when any source has changed."""
+"""Compilation happens once, is announced, and happens again when any source has changed."""
 
 import ast
 import os
@@ -41,7 +41,7 @@ def start(folder: Path, **variables: str) -> "subprocess.Popen[str]":
 
 
 def call_entries(folder: Path, **variables: str) -> tuple[str, str]:
-    """What a new process writes that calls both entries."""
+    """The output of a new process that calls both entries."""
     with start(folder, **variables) as process:
         return process.communicate()
 

@@ -1,4 +1,4 @@
-"""What random instances seldom reach: full arrays, far goals, plans that have ended, too many plans to remember."""
+"""Cases that random instances seldom reach: full arrays, far goals, ended plans, too many plans to remember."""
 
 from dataclasses import fields, replace
 from itertools import count

@@ -22,12 +22,12 @@ def both(instance: Instance, solution: Solution, iterations: int, seed: int) -> 
     """The polished solution, after a look at whether the two engines agree."""
     last: list[tuple[int, int, int]] = []
     readable = carp_reference.polish(
-        instance, solution, iterations=iterations, seed=seed, advance=lambda *told: last.append(told)
+        instance, solution, iterations=iterations, seed=seed, advance=lambda *reported: last.append(reported)
     )
     reference = last[-1:]
     last.clear()
     fast = carp_optimized.polish(
-        instance, solution, iterations=iterations, seed=seed, advance=lambda *told: last.append(told)
+        instance, solution, iterations=iterations, seed=seed, advance=lambda *reported: last.append(reported)
     )
     assert fast == readable
     assert not reference or last[-1] == reference[0]

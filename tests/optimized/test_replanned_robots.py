@@ -27,7 +27,7 @@ def test_the_robots_behind_get_the_plans_of_the_reference(name: str) -> None:
 
 
 def test_a_plan_alone_is_not_taken_over_from_before_a_round_that_left_a_robot_outside_without_a_plan() -> None:
-    """What was freed in that round is forgotten; 1 of 3,000 fleets like this one has another plan if that is not."""
+    """The stays freed in that round are forgotten; otherwise 1 of 3,000 fleets like this one has another plan."""
     instance = grid_instance(Grid(5, 4, map=1, map_seed=244), Fleet(9, seed=244))
     planner = Neighbourhood(m=5)
     assert carp_optimized.plan(instance, planner) == carp_reference.plan(instance, planner)

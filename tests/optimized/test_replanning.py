@@ -46,7 +46,7 @@ def hulls(plan: Plan) -> Hulls:
 
 
 def may_differ(fleet: PlannedFleet, robot: RobotId, record: int, freed: Hulls) -> bool:
-    """What the lemma says of a query, by what it has expanded."""
+    """The claim of the lemma about a query, by the resources that it has expanded."""
     instance, records = fleet.instance, fleet._state.records
     first, count = int(records.expansions_at[record]), int(records.expansions[record])
     if count == UNKNOWN:

@@ -13,7 +13,7 @@ CROSSCHECK = "from carproof.crosscheck import first_difference; print(first_diff
 
 
 def uncompiled(*arguments: str) -> subprocess.CompletedProcess[str]:
-    """What Python does with the arguments; numbers that wrap around as they shall are no news."""
+    """The result of plain Python for the arguments; wrap-around, which is intended, gives no warning."""
     environment = {**os.environ, "NUMBA_DISABLE_JIT": "1"}
     command = [sys.executable, "-W", "ignore::RuntimeWarning", *arguments]
     return subprocess.run(command, env=environment, capture_output=True, text=True, check=False, cwd=ROOT)

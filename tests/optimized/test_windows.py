@@ -28,13 +28,15 @@ def rows(table: Rows, resource: int) -> list[tuple[int, int, int, int]]:
 def held(fleet: PlannedFleet) -> list[object]:
     """All that is reserved; stays that begin, or end, at a tick are in no order."""
     windows, stays = fleet._state.windows, fleet._state.stays
-    told: list[object] = []
+    reported: list[object] = []
     for resource, each in enumerate(fleet.instance.graph.resources):
-        told.append(rows(windows, resource))
+        reported.append(rows(windows, resource))
         if each.capacity > 1:
             entries = rows(stays, resource)
-            told.append((sorted((start, source) for start, _, source, _ in entries), [end for _, end, *_ in entries]))
-    return told
+            reported.append(
+                (sorted((start, source) for start, _, source, _ in entries), [end for _, end, *_ in entries])
+            )
+    return reported
 
 
 def occupations(plans: Sequence[Plan], resource: object) -> list[Occupation]:

@@ -67,7 +67,7 @@ class Page:
 
     @property
     def tick(self) -> str:
-        """The tick as the page tells it."""
+        """The tick that the page shows."""
         return self.text("tick")
 
     def press(self, *keys: str) -> None:
@@ -93,5 +93,5 @@ class Page:
         return len(self.driver.find_elements(By.CSS_SELECTOR, selector))
 
     def chosen(self, list: str) -> list[str]:
-        """What is chosen in a list."""
+        """The entry chosen in a list."""
         return [each.text for each in self.driver.find_elements(By.CSS_SELECTOR, f"#{list} button.chosen")]

@@ -51,7 +51,7 @@ def published() -> set[str]:
 
 
 class Evasive:
-    """What it does with a request that is neither `start` nor `stop`."""
+    """The response to a request that is neither `start` nor `stop`."""
 
     def __init__(self, how: str) -> None:
         self.published = published() if how in ("skips the unknown", "repeats itself") else set()

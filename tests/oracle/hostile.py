@@ -91,7 +91,7 @@ LINES = {
 FIELDS: dict[str, dict[str, Any]] = {
     "error": {"error": {"kind": "request", "path": "$", "rule": None, "message": "I do not like it"}},
     "skips everything": {"skipped": "no time"},
-    "environment": {"skipped": " ".join(name for name in os.environ if name.startswith(HIDDEN)) or "nothing told"},
+    "environment": {"skipped": " ".join(name for name in os.environ if name.startswith(HIDDEN)) or "nothing visible"},
 }
 ACTS = {
     "endless output": lambda: endless(b"x" * 65536),

@@ -1,4 +1,4 @@
-"""What a command line did, and documents that several tests use."""
+"""The result of a command line, and documents that several tests use."""
 
 import json
 from collections.abc import Callable
@@ -9,7 +9,7 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a command line did."""
+    """The result of a command line."""
 
     code: int
     stdout: str

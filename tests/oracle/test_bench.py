@@ -1,4 +1,4 @@
-"""What `carproof bench` prints, from figures made up, and its progress."""
+"""The output of `carproof bench` for made-up figures, and its progress."""
 
 import json
 from collections.abc import Callable

@@ -55,8 +55,13 @@ def test_a_certificate_that_proves_nothing_is_refused_with_path_rule_and_reason(
     outcome = carproof("verify-bound town.json wrong.json")
     message = "the bound must be 5, the sum of all parts rounded up, and is 6"
     assert (outcome.code, outcome.stdout) == (1, f"not proved: $.bound: {message} [bound/total]\n")
-    told = json.loads(carproof("verify-bound town.json wrong.json --json").stdout)
-    assert (told["bound"], told["path"], told["rule"], told["reason"]) == (None, "$.bound", "bound/total", message)
+    reported = json.loads(carproof("verify-bound town.json wrong.json --json").stdout)
+    assert (reported["bound"], reported["path"], reported["rule"], reported["reason"]) == (
+        None,
+        "$.bound",
+        "bound/total",
+        message,
+    )
 
 
 @pytest.mark.parametrize(

@@ -173,7 +173,7 @@ class Never(int):
 
 @dataclass
 class Duck:
-    """What has the fields of a visit."""
+    """Values with the fields of a visit."""
 
     resource: Any
     enter: Any

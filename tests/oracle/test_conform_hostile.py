@@ -149,7 +149,7 @@ def test_a_program_must_stop_when_it_is_asked_to(how: str, category: Category) -
 def test_the_environment_tells_nothing_of_the_case(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("CARPROOF_SECRET", "the answer")
     assert os.environ["PYTEST_CURRENT_TEST"]
-    assert {outcome.skipped for outcome in run("environment", seconds=GENEROUS).outcomes} == {"nothing told"}
+    assert {outcome.skipped for outcome in run("environment", seconds=GENEROUS).outcomes} == {"nothing visible"}
 
 
 def test_a_program_that_cannot_be_run_is_a_crash() -> None:

@@ -1,4 +1,4 @@
-"""What each level asks: programs that are right but for one thing, and the rule by which they are refused."""
+"""The demands of each level: programs with one fault, and the rule by which they are refused."""
 
 import json
 from collections import Counter

@@ -1,4 +1,4 @@
-"""What came of asking one case: a finding, an answer that shows something or nothing, or none."""
+"""The outcome of one case: a finding, an answer that shows something or nothing, or none."""
 
 from typing import Any
 

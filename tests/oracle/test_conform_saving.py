@@ -1,4 +1,4 @@
-"""What a run saves: each distinct finding, in place of those of an earlier run, with all that repeats it."""
+"""The files that a run saves: each distinct finding, in place of those of an earlier run, with all that repeats it."""
 
 import subprocess
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What a person sees on a terminal while bound and polish search."""
+"""The output on a terminal while bound and polish search."""
 
 import fcntl
 import os
@@ -21,7 +21,7 @@ CODES = re.compile(r"\x1b\[[0-9;?]*[a-zA-Z]")
 
 
 def on_a_terminal(*arguments: object, columns: int = 80) -> list[str]:
-    """What carproof shows on a terminal, each line as often as it is written again."""
+    """The output of carproof on a terminal, each line as often as it is written again."""
     ours, theirs = pty.openpty()
     fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
     environment = {name: value for name, value in os.environ.items() if name not in ("CI", "COLUMNS", "NO_COLOR")}
@@ -41,7 +41,7 @@ def on_a_terminal(*arguments: object, columns: int = 80) -> list[str]:
 def read(terminal: int) -> bytes:
     try:
         return os.read(terminal, 1 << 16)
-    except OSError:  # Linux tells the end of a terminal like this
+    except OSError:  # Linux reports the end of a terminal like this
         return b""
 
 

@@ -79,8 +79,8 @@ def test_a_planner_that_is_wrong_fails_the_test_by_its_rule(
     done = pytest_of_another_project(tmp_path, test)
     saved = tmp_path / "conform-failure" / "test_0"
     assert "1 failed" in done.stdout
-    (told,) = (line for line in done.stdout.splitlines() if line.startswith(f"{category}: "))
-    assert told.endswith(f"[{rule}]")
+    (reported,) = (line for line in done.stdout.splitlines() if line.startswith(f"{category}: "))
+    assert reported.endswith(f"[{rule}]")
     assert f"saved in {saved}" in done.stdout
     assert len(json.loads((saved / "instance.json").read_bytes())["robots"]) <= 1
     assert "Function" not in done.stdout, "no traceback through the runner"

@@ -1,4 +1,4 @@
-"""What the command line refuses: exit code 2, one sentence that names the place, and nothing printed or written."""
+"""Refusals of the command line: exit code 2, one sentence that names the place, and nothing printed or written."""
 
 import json
 from pathlib import Path

@@ -13,10 +13,12 @@ def test_every_rule_is_listed_once_and_told_in_full(carproof: Run) -> None:
     assert listed == [rule.id for rule in ALL_RULES]
     assert len(set(listed)) == len(listed)
     for rule in ALL_RULES:
-        told = carproof("rules", rule.id).stdout
-        assert told.startswith(f"{rule.id}\n\n")
-        assert " ".join(rule.statement.split()) in " ".join(told.split())
-        assert f"Source:    {rule.source}\nPredicate: {rule.predicate.__module__}.{rule.predicate.__name__}\n" in told
+        reported = carproof("rules", rule.id).stdout
+        assert reported.startswith(f"{rule.id}\n\n")
+        assert " ".join(rule.statement.split()) in " ".join(reported.split())
+        assert (
+            f"Source:    {rule.source}\nPredicate: {rule.predicate.__module__}.{rule.predicate.__name__}\n" in reported
+        )
 
 
 def test_requests_obey_their_rules() -> None:

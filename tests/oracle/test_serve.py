@@ -248,8 +248,8 @@ def test_a_refusal_of_the_engine_has_its_place_in_the_request() -> None:
         line(id=1, op="add", instance=large, solution=solution({}), robot="r1"),
     ):
         response, _ = respond(request, engine_named("optimized"))
-        told = json.loads(msgspec.json.encode(response))["error"]
-        assert (told["kind"], told["path"]) == ("limit", "$.instance.graph.nodes[1].duration")
+        reported = json.loads(msgspec.json.encode(response))["error"]
+        assert (reported["kind"], reported["path"]) == ("limit", "$.instance.graph.nodes[1].duration")
 
 
 class Faulty:
@@ -268,9 +268,9 @@ def test_a_fault_of_ours_is_an_error_of_kind_internal(
 ) -> None:
     response, running = respond(line(id=5, op="plan", instance=TWO), Faulty(fault))
     assert running
-    told = json.loads(msgspec.json.encode(response))
-    assert (told["id"], told["error"]["kind"], told["error"]["rule"]) == (5, "internal", None)
-    assert fault.__name__ in told["error"]["message"]
+    reported = json.loads(msgspec.json.encode(response))
+    assert (reported["id"], reported["error"]["kind"], reported["error"]["rule"]) == (5, "internal", None)
+    assert fault.__name__ in reported["error"]["message"]
     assert "Traceback" in capsys.readouterr().err
 
 

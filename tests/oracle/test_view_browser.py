@@ -42,7 +42,7 @@ def collision(driver: Chrome, tmp_path: Path) -> Page:
 
 @pytest.fixture(scope="module")
 def town() -> tuple[Instance, Solution]:
-    """A hundred robots on 20 x 20 cells, of which some hold two robots."""
+    """A hundred robots on 20 x 20 cells, some with room for two."""
     instance = grid_instance(Grid(), Fleet(robots=100), Traits(capacity=Range(1, 2), duration=Range(1, 2)))
     return instance, plan(instance, Carp())
 

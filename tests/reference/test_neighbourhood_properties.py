@@ -1,4 +1,4 @@
-"""What holds of the neighbourhood planner on every instance."""
+"""Properties of the neighbourhood planner on every instance."""
 
 from itertools import permutations
 from unittest.mock import patch

@@ -29,21 +29,23 @@ def test_a_polished_solution_breaks_no_rule_and_is_no_worse(
 def test_robots_without_a_plan_are_given_one_and_improved() -> None:
     instance = grid_instance(Grid(5, 5, map=15), Fleet(robots=10, seed=4))
     nobody = Solution((), (), tuple(robot.id for robot in instance.robots))
-    told: list[tuple[int, int, int]] = []
-    polished = polish(instance, nobody, iterations=120, advance=lambda *each: told.append(each))
+    reported: list[tuple[int, int, int]] = []
+    polished = polish(instance, nobody, iterations=120, advance=lambda *each: reported.append(each))
     assert judge(instance, polished).valid
     assert not polished.unplanned
-    assert told[-1][1:] == worth(instance, polished)
-    worths = [each[1:] for each in told]
+    assert reported[-1][1:] == worth(instance, polished)
+    worths = [each[1:] for each in reported]
     assert worths == sorted(worths, reverse=True)
 
 
 def test_it_ends_where_nothing_can_be_improved() -> None:
     instance = grid_instance(Grid(4, 4), Fleet(robots=1))
     (robot,) = instance.robots
-    told: list[int] = []
-    polished = polish(instance, Solution((), (), (robot.id,)), seconds=1e6, advance=lambda turn, *_: told.append(turn))
-    assert (told, polished.unplanned) == ([1], ())
+    reported: list[int] = []
+    polished = polish(
+        instance, Solution((), (), (robot.id,)), seconds=1e6, advance=lambda turn, *_: reported.append(turn)
+    )
+    assert (reported, polished.unplanned) == ([1], ())
 
 
 def test_a_robot_without_a_way_stays_unplanned() -> None:

@@ -67,8 +67,8 @@ def test_violations_come_rule_by_rule_then_plan_by_plan_and_in_order_of_time() -
         plan_of("r2", ("b", 1, 2), ("c", 2, 3), ("a", 3, None)),
         plan_of("r3", ("f", 0, 9)),
     )
-    told = [(violation.rule, violation.robots, violation.start) for violation in check(VANISHING, wrong)]
-    assert told == [
+    reported = [(violation.rule, violation.robots, violation.start) for violation in check(VANISHING, wrong)]
+    assert reported == [
         ("plan/start", ("r1",), 0),
         ("plan/start", ("r2",), 1),
         ("plan/goal", ("r2",), 3),
@@ -87,7 +87,7 @@ def test_violations_come_rule_by_rule_then_plan_by_plan_and_in_order_of_time() -
 @given(case=instances_with_plans())
 def test_the_checker_agrees_with_the_rules_spelt_out_plan_by_plan(case: tuple[Instance, tuple[Plan, ...]]) -> None:
     instance, plans = case
-    told = Counter(
+    reported = Counter(
         (each.rule, each.robots, each.resource, each.start, each.end)
         for each in check(instance, plans, most=None)
         if each.rule.startswith("plan/")
@@ -97,7 +97,7 @@ def test_the_checker_agrees_with_the_rules_spelt_out_plan_by_plan(case: tuple[In
         for each in plans
         for rule, plan, visit in broken_plan_rules(instance, each)
     )
-    assert told == spelt_out
+    assert reported == spelt_out
 
 
 @FEWER
@@ -105,7 +105,7 @@ def test_the_checker_agrees_with_the_rules_spelt_out_plan_by_plan(case: tuple[In
 def test_the_checker_agrees_with_the_rules_spelt_out_tick_by_tick(case: tuple[Instance, tuple[Plan, ...]]) -> None:
     instance, plans = case
     violations = check(instance, plans, most=None)
-    told = [
+    reported = [
         (each, range(each.start, HORIZON if each.end is None else each.end))
         for each in violations
         if each.rule == "joint/capacity" and each.start is not None
@@ -113,8 +113,8 @@ def test_the_checker_agrees_with_the_rules_spelt_out_tick_by_tick(case: tuple[In
     crowded: dict[tuple[object, int], frozenset[object]] = {
         (resource, tick): robots for resource, tick, robots in crowds(instance, plans)
     }
-    assert Counter((each.resource, tick) for each, ticks in told for tick in ticks) == Counter(crowded.keys())
-    for each, ticks in told:
+    assert Counter((each.resource, tick) for each, ticks in reported for tick in ticks) == Counter(crowded.keys())
+    for each, ticks in reported:
         assert (each.resource, ticks.start - 1) not in crowded
         assert (each.resource, ticks.stop) not in crowded
         assert set(each.robots) == frozenset[object]().union(*(crowded[each.resource, tick] for tick in ticks))

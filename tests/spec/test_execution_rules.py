@@ -50,7 +50,7 @@ def test_no_more_violations_than_asked_for_are_listed_of_each_rule() -> None:
 
 
 def test_edges_that_follow_from_others_are_left_out_and_none_else() -> None:
-    """Every pair of visits of which one is before the other is joined by a way that takes long enough."""
+    """Every pair of visits with one before the other is joined by a path that takes long enough."""
     for seed in range(40):
         instance, solution = wide_case(seed)
         edges = list(dependencies(instance, solution.plans))

@@ -93,8 +93,8 @@ def test_start_and_goal_may_be_the_same_and_shared() -> None:
 
 
 def test_faults_come_in_the_order_of_the_rules() -> None:
-    told = [rule.id for rule in INSTANCE_RULES]
+    reported = [rule.id for rule in INSTANCE_RULES]
     wrong = replace(VANISHING, robots=(Robot("r1", "x", "a", pace=0), Robot("r1", "a", "y", release=-1)))
-    order = [told.index(fault.rule) for fault in instance_faults(wrong)]
+    order = [reported.index(fault.rule) for fault in instance_faults(wrong)]
     assert order == sorted(order)
     assert len(order) == 5

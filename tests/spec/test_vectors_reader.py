@@ -46,8 +46,8 @@ def test_importing_the_reader_reads_no_file() -> None:
 def test_the_page_shows_a_case_as_it_is() -> None:
     (shown,) = re.findall(r'```text\n("id".*?)```', PAGE, re.DOTALL)
     case = next(case for case in vectors("window/fits") if case.id == "window-fits.a-tick-short")
-    told = json.loads("{" + shown + "}")
-    assert told == {name: json.loads(json.dumps(getattr(case, name))) for name in case.__struct_fields__}
+    reported = json.loads("{" + shown + "}")
+    assert reported == {name: json.loads(json.dumps(getattr(case, name))) for name in case.__struct_fields__}
 
 
 def test_the_example_on_the_page_runs() -> None:

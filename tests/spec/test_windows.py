@@ -47,10 +47,10 @@ def test_free_windows_are_the_maximal_runs_of_free_ticks(occupations: list[Occup
 @given(
     occupations=OCCUPATIONS,
     capacity=CAPACITIES,
-    told=st.lists(st.builds(Window, st.integers(-1, 14), st.integers(-1, 14) | st.none()), max_size=4),
+    reported=st.lists(st.builds(Window, st.integers(-1, 14), st.integers(-1, 14) | st.none()), max_size=4),
 )
-def test_no_other_list_of_windows_is_free(occupations: list[Occupation], capacity: int, told: list[Window]) -> None:
-    assert windows_are_free(told, occupations, capacity) == (told == runs(room(occupations, capacity)))
+def test_no_other_list_of_windows_is_free(occupations: list[Occupation], capacity: int, reported: list[Window]) -> None:
+    assert windows_are_free(reported, occupations, capacity) == (reported == runs(room(occupations, capacity)))
 
 
 @given(occupations=OCCUPATIONS, capacity=CAPACITIES)

@@ -1,4 +1,4 @@
-"""What carproof itself says of a case: the right answer, and the rules that are violated.
+"""carproof's own answer to a case, and the rules that are violated.
 
 It asks the checker, the rules' predicates and the readable planner; tests hold every case equal to it.
 """
@@ -70,7 +70,7 @@ from carp_verify.verify_query import verify_query
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """What is violated, in the order of the rules, and the right answer."""
+    """The violated rules, in the order of the rules, and the right answer."""
 
     violated: tuple[str, ...]
     answer: Fields

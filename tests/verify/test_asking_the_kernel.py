@@ -1,4 +1,4 @@
-"""What the kernel's program is asked, and what its answers come to. Shell scripts stand in for it."""
+"""The questions to the kernel's program, and the results of its answers. Shell scripts stand in for it."""
 
 from dataclasses import replace
 from pathlib import Path

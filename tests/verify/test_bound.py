@@ -82,7 +82,7 @@ def certificates(draw: st.DrawFn, instance: Instance) -> BoundDocument:
 
 
 def payment(certificate: BoundDocument, plan: Plan) -> int:
-    """What a plan pays, tick by tick."""
+    """The payments of a plan, tick by tick."""
     ticks = range(certificate.horizon)
     at = {
         tick: visit.resource

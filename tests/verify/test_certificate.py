@@ -35,8 +35,8 @@ STANDING = Plan("r3", (Visit("b", 1, 2),))
 def agree(instance: Instance, plans: tuple[Plan, ...]) -> None:
     """Both find fault with the same resources; the certificate's tick and robots are among the checker's."""
     certified = certify_together(instance, plans)
-    told = [violation for violation in check(instance, plans) if violation.rule.startswith("joint/")]
-    blamed = {(violation.rule, violation.resource) for violation in told}
+    reported = [violation for violation in check(instance, plans) if violation.rule.startswith("joint/")]
+    blamed = {(violation.rule, violation.resource) for violation in reported}
     assert {(breach.rule, breach.resource) for breach in certified.breaches} == blamed
     for breach in certified.breaches:
         assert any(
@@ -45,7 +45,7 @@ def agree(instance: Instance, plans: tuple[Plan, ...]) -> None:
             and violation.resource == breach.resource
             and (violation.start or 0) <= breach.tick
             and (violation.end is None or breach.tick < violation.end)
-            for violation in told
+            for violation in reported
         )
 
 

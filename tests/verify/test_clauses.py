@@ -13,7 +13,7 @@ def is_model(formula: Formula, values: tuple[bool, ...]) -> bool:
 
 
 def models(formula: Formula, inputs: int) -> set[tuple[bool, ...]]:
-    """What the first variables can be in models of the formula."""
+    """The values of the first variables in models of the formula."""
     drawn = product((False, True), repeat=formula.variables)
     return {values[:inputs] for values in drawn if is_model(formula, values)}
 

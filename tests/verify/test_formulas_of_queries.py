@@ -36,7 +36,7 @@ def cases(pattern: Pattern) -> Iterator[SmallCase]:
 
 @dataclass(slots=True)
 class Trace:
-    """What a query did: the nodes taken from its queue, and what its context was asked and answered."""
+    """The steps of a query: the nodes taken from its queue, and the questions to its context with the answers."""
 
     taken: list[Node] = field(default_factory=list)
     answers: list[tuple[Question, object]] = field(default_factory=list)

@@ -80,12 +80,12 @@ def ask(request: str) -> Json:
 
 
 def check(instance: Instance, solution: Solution) -> Json:
-    """What the kernel says of a solution."""
+    """The kernel's answer about a solution."""
     return ask(encoded(op="check", instance=instance_document(instance), solution=solution_document(solution)))
 
 
 def check_bound(instance: Instance, certificate: BoundDocument) -> Json:
-    """What the kernel says of the certificate of a bound."""
+    """The kernel's answer about the certificate of a bound."""
     return ask(encoded(op="verify-bound", instance=instance_document(instance), certificate=certificate))
 
 

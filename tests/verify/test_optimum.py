@@ -84,22 +84,22 @@ def test_an_unsolvable_instance_is_found_with_its_obstacle(instance: Instance, r
 
 
 def clock_of(seconds_a_look: float) -> Iterator[int]:
-    """The nanoseconds that a clock tells which only continues when it is looked at."""
+    """The nanoseconds of a clock that advances only when it is read."""
     return (round(look * seconds_a_look * 1_000_000_000) for look in count())
 
 
 def test_the_search_ends_with_the_first_look_at_the_clock_behind_the_limit() -> None:
     instance = turned_ring(9)
-    told: list[int] = []
+    reported: list[int] = []
 
     def clock() -> int:
-        told.append(next(ticks))
-        return told[-1]
+        reported.append(next(ticks))
+        return reported[-1]
 
     ticks = clock_of(0.01)
     best = optimum(instance, 3, clock)
     assert not best.decided
-    assert [tick >= 3_000_000_000 for tick in told].count(True) <= 2
+    assert [tick >= 3_000_000_000 for tick in reported].count(True) <= 2
     shortest = sum(abs(8 - 2 * x) + abs(8 - 2 * y) for x in range(9) for y in range(9))
     assert best.lower >= shortest
 

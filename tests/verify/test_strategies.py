@@ -40,9 +40,9 @@ def test_planned_instances_break_no_rule(planned: PlannedInstance) -> None:
 
 @given(broken_solutions())
 def test_broken_solutions_break_the_rules_they_name(broken: BrokenSolution) -> None:
-    told = {violation.rule for violation in judge(broken.instance, broken.solution).violations}
+    reported = {violation.rule for violation in judge(broken.instance, broken.solution).violations}
     assert broken.rules
-    assert told >= set(broken.rules)
+    assert reported >= set(broken.rules)
 
 
 @given(fleets_under_way())

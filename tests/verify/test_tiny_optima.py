@@ -23,7 +23,7 @@ SECONDS = 60
 
 
 def faults(number: int) -> Iterator[str]:
-    """What disagrees with the joint search in a case, in words; some questions are for one case in four."""
+    """The disagreements with the joint search in a case, in words; some questions are for one case in four."""
     drawn = case(number)
     is_asked_more = number % 4 == 0
     least = least_total_cost(drawn.instance)
@@ -113,7 +113,7 @@ def model_of(encoding: Encoding) -> Sequence[bool] | None:
 @pytest.mark.parametrize("first", range(0, CASES, BLOCK))
 def test_search_and_formulas_agree_with_the_joint_search(first: int) -> None:
     found = {number: list(faults(number)) for number in range(first, first + BLOCK)}
-    assert {number: told for number, told in found.items() if told} == {}
+    assert {number: reported for number, reported in found.items() if reported} == {}
 
 
 def test_parked_robots_that_may_not_pass_over_their_goal_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,4 +1,4 @@
-"""What must be trusted: the modules that the documentation lists, and the lines of code that it counts."""
+"""The trusted base: the modules that the documentation lists, and the lines of code that it counts."""
 
 import re
 from pathlib import Path

@@ -14,7 +14,7 @@ from carproof.strategies import Sizes
 
 MOST_STATES = 15_000
 TINY = Sizes(resources=4, robots=3, capacity=2, duration=2, release=2, pace=2)
-"""What hypothesis draws where a test needs it to shrink."""
+"""The values that hypothesis draws where a test needs it to shrink."""
 
 
 @dataclass(frozen=True, slots=True)
