@@ -24,7 +24,7 @@ TITLES = {
     "gap": "Small maps against the optimum",
     "related": "Fixed paths and greedy best-first",
     "polish": "The distance to the optimum at the paper's size, and the polish",
-    "unplanned": "What stays unplanned on sparse maps, and why",
+    "unplanned": "Robots left unplanned on sparse maps, and why",
 }
 EXPLANATIONS = """\
 Numbers of actions are means over the assignments on which neither of the two fails, so what they are to be compared

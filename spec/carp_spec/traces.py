@@ -14,7 +14,7 @@ TRACE_FORMAT: Final = "carproof-trace/1"
 
 @dataclass(frozen=True, slots=True)
 class Trace:
-    """What robots have done by the tick `now`, that tick included: the visits that they have entered.
+    """The visits that robots have entered by the tick `now`, that tick included.
 
     A visit that is not left yet has a leave of `None`. A robot that has not appeared yet has no visits.
     """
@@ -24,7 +24,7 @@ class Trace:
 
 
 class TraceDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What robots have done by the tick now: the visits entered, the last with a leave of null if it is not left."""
+    """The visits that robots have entered by the tick now, the last with a leave of null if it is not left."""
 
     format: Literal["carproof-trace/1"]
     now: Tick

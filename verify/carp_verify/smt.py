@@ -61,7 +61,7 @@ def truth(name: str) -> Bool:
 
 
 def never() -> Bool:
-    """What never holds."""
+    """The term that never holds."""
     return Bool(z3.BoolVal(val=False))
 
 

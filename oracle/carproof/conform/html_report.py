@@ -55,7 +55,7 @@ def _table(report: Report) -> str:
 
 
 def _asked(report: Report, origin: Origin) -> Mapping[str, str]:
-    """What was tested, and what was not."""
+    """The tested parts, and those that were left out."""
     options = report.options
     return {
         "level": f"{options.level.label}: {options.level.statement}",
@@ -72,7 +72,7 @@ def _list(entries: Mapping[str, str]) -> str:
 
 
 def _fault(finding: Finding) -> str:
-    """What is wrong with a program at its start or stop."""
+    """The faults of a program at its start or stop."""
     return _details(_headline(finding, "start and stop"), [_list(_explained(finding)), _stderr(finding)])
 
 
