@@ -11,12 +11,19 @@ from tests.oracle.test_conform_judges import Tampered, as_it_is
 
 import carp_reference
 from carp_spec import Carp, Greedy, Instance, Resource, ResourceGraph, Robot, Solution
+from carproof.conform import optimum
 from carproof.conform.cases import ASKED_OPS, Case
 from carproof.conform.claims import FEATURES, Claims, is_solvable
 from carproof.conform.function import Function
 from carproof.conform.levels import Level
 from carproof.conform.run import Options, conform
 from carproof.conform.smoke import EAST, FIRST, FIRST_GOES, WEST, committed, passing_place, row
+
+
+@pytest.fixture(autouse=True)
+def patient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The machine may be busy."""
+    monkeypatch.setattr(optimum, "OPTIMUM_SECONDS", 60)
 
 
 def of(claims: Claims, examples: int = 24) -> Options:
