@@ -21,6 +21,7 @@ from mkdocs.structure.pages import Page
 
 from carp_experiments.page import RESULTS, results
 from carp_spec import RULES, Rule
+from carp_spec.rule import Code
 from carp_spec.vectors import FOLDER, Vector, subjects, vectors
 from carproof.cli import carproof
 from carproof.ops.published import table as ops
@@ -82,15 +83,17 @@ def other_rules() -> str:
     return _rules([rule for rule in ALL_RULES if rule.id not in law])
 
 
-def _rules(rules: Sequence[Rule[..., Any]]) -> str:
+def _rules(rules: Sequence[Rule[..., Any] | Code]) -> str:
     by_family = groupby(rules, lambda rule: rule.id.partition("/")[0])
     return "\n".join(f"## {family}\n\n{''.join(map(_rule, of_family))}" for family, of_family in by_family)
 
 
-def _rule(rule: Rule[..., Any]) -> str:
-    place = f"{rule.predicate.__module__}.{rule.predicate.__qualname__}"
+def _rule(rule: Rule[..., Any] | Code) -> str:
+    predicate = ""
+    if isinstance(rule, Rule):
+        predicate = f" *Predicate:* `{rule.predicate.__module__}.{rule.predicate.__qualname__}`."
     cases = "".join(_cases(rule.id)) if rule.id in subjects() else ""
-    return f"### {rule.id}\n\n{rule.statement}\n\n*Source:* {rule.source}. *Predicate:* `{place}`.\n\n{cases}"
+    return f"### {rule.id}\n\n{rule.statement}\n\n*Source:* {rule.source}.{predicate}\n\n{cases}"
 
 
 def _cases(subject: str) -> Iterator[str]:

@@ -7,10 +7,9 @@ classical problem. The lengths in a scenario are for octile moves, so they are n
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
 
-from carp_spec import AfterGoal, Instance, Refusal, Robot, Rule
-from carp_spec.rule import rule
+from carp_spec import AfterGoal, Instance, Refusal, Robot
+from carp_spec.rule import Code
 from carproof.generate.grid import cell_edges, cell_graph, cell_id
 from carproof.generate.options import MOST_RESOURCES, Traits, size_is_bounded
 
@@ -39,37 +38,19 @@ class GridMap:
         return 0 <= x < self.width and 0 <= y < self.height and self.rows[y][x] in PASSABLE
 
 
-@rule(
+RIGHT_MAP = Code(
     "movingai/map",
     "A map file begins with the lines type, height H, width W and map; then come H rows of W cells, each one of "
     f"{PASSABLE} (passable) or {BLOCKED} (blocked).",
     SOURCE,
 )
-def map_is_right(data: bytes) -> bool:
-    """Whether the file holds a map."""
-    try:
-        read_map(data)
-    except Refusal:
-        return False
-    return True
-
-
-@rule(
+RIGHT_SCENARIO = Code(
     "movingai/scenario",
     "A scenario file begins with the line version 1; each further line has nine fields: bucket, map, width, height, "
     "start x and y, goal x and y, length. Width and height are the map's, start and goal are passable cells of it.",
     SOURCE,
 )
-def scenario_is_right(data: bytes, grid: GridMap) -> bool:
-    """Whether the file holds a scenario of the map."""
-    try:
-        read_scenario(data, grid, None)
-    except Refusal:
-        return False
-    return True
-
-
-MOVINGAI_RULES: tuple[Rule[..., Any], ...] = (map_is_right, scenario_is_right)
+MOVINGAI_RULES: tuple[Code, ...] = (RIGHT_MAP, RIGHT_SCENARIO)
 
 
 def read_map(data: bytes, file: str = "map") -> GridMap:
@@ -79,11 +60,11 @@ def read_map(data: bytes, file: str = "map") -> GridMap:
     for number, (word, right) in enumerate(_HEADER.items()):
         is_number = len(header[number]) == 2 and _is_number(header[number][1])  # noqa: PLR2004 - a word and its value
         if header[number][:1] != [word] or (word in ("height", "width") and not is_number):
-            raise Refusal("document", f"{file}:{number + 1}", map_is_right.id, f"the line must be: {right}")
+            raise Refusal("document", f"{file}:{number + 1}", RIGHT_MAP.id, f"the line must be: {right}")
     grid = GridMap(width=int(header[2][1]), height=int(header[1][1]), rows=tuple(lines[4:]))
     if len(grid.rows) != grid.height:
         message = f"the map must have {grid.height} rows, and has {len(grid.rows)}"
-        raise Refusal("document", f"{file}:{len(lines)}", map_is_right.id, message)
+        raise Refusal("document", f"{file}:{len(lines)}", RIGHT_MAP.id, message)
     for number, row in enumerate(grid.rows, start=5):
         _refuse_wrong_row(row, grid.width, f"{file}:{number}")
     return grid
@@ -91,22 +72,22 @@ def read_map(data: bytes, file: str = "map") -> GridMap:
 
 def _refuse_wrong_row(row: str, width: int, where: str) -> None:
     if len(row) != width:
-        raise Refusal("document", where, map_is_right.id, f"the row must have {width} cells, and has {len(row)}")
+        raise Refusal("document", where, RIGHT_MAP.id, f"the row must have {width} cells, and has {len(row)}")
     for cell in row:
         if cell not in PASSABLE + BLOCKED:
             message = f"a cell must be one of {PASSABLE}{BLOCKED}, not {cell!r}"
-            raise Refusal("document", where, map_is_right.id, message)
+            raise Refusal("document", where, RIGHT_MAP.id, message)
 
 
 def read_scenario(data: bytes, grid: GridMap, agents: int | None, file: str = "scenario") -> tuple[Robot, ...]:
     """Read the first agents of a scenario, all if no number is given; raises `Refusal` with file and line."""
     lines = _lines(data)
     if not lines or lines[0].split() not in (["version", "1"], ["version", "1.0"]):
-        raise Refusal("document", f"{file}:1", scenario_is_right.id, "the line must be: version 1")
+        raise Refusal("document", f"{file}:1", RIGHT_SCENARIO.id, "the line must be: version 1")
     numbered = [(number, line) for number, line in enumerate(lines[1:], start=2) if line.strip()]
     if agents is not None and agents > len(numbered):
         message = f"{agents} agents are asked for, and the scenario has {len(numbered)}"
-        raise Refusal("document", f"{file}:{len(lines)}", scenario_is_right.id, message)
+        raise Refusal("document", f"{file}:{len(lines)}", RIGHT_SCENARIO.id, message)
     return tuple(
         _agent(position, line, grid, f"{file}:{number}")
         for position, (number, line) in enumerate(numbered[:agents], start=1)
@@ -115,7 +96,7 @@ def read_scenario(data: bytes, grid: GridMap, agents: int | None, file: str = "s
 
 def _agent(position: int, line: str, grid: GridMap, where: str) -> Robot:
     def refuse(message: str) -> Refusal:
-        return Refusal("document", where, scenario_is_right.id, message)
+        return Refusal("document", where, RIGHT_SCENARIO.id, message)
 
     fields = line.split("\t") if "\t" in line else line.split()
     if len(fields) != _FIELDS or not all(map(_is_number, fields[2:8])):

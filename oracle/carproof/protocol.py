@@ -16,9 +16,9 @@ from typing import Any, Literal, TypeVar
 
 import msgspec
 
-from carp_spec import Refusal, Rule
+from carp_spec import Refusal
 from carp_spec.documents import require_json, uncapitalized
-from carp_spec.rule import DESIGN, rule
+from carp_spec.rule import DESIGN, Code
 from carproof.requests import inside
 
 VERSION = 1
@@ -45,29 +45,14 @@ class Response(msgspec.Struct, frozen=True, omit_defaults=True):
     error: ErrorDocument | msgspec.UnsetType = msgspec.UNSET
 
 
-@rule("protocol/line", f"A request is a line of at most {LONGEST_LINE // 2**20} MiB.", DESIGN)
-def line_is_bounded(line: bytes) -> bool:
-    """Whether the line, without its end, is short enough."""
-    return len(line) <= LONGEST_LINE
-
-
-@rule(
+SHORT_LINE = Code("protocol/line", f"A request is a line of at most {LONGEST_LINE // 2**20} MiB.", DESIGN)
+RIGHT_FIELDS = Code(
     "protocol/request",
     "A request is a JSON object with an id, an op that the oracle has, and the fields of that op and no others.",
     DESIGN,
 )
-def fields_are_right(given: set[str], needed: set[str], known: set[str]) -> bool:
-    """Whether the fields are all that is needed and nothing unknown."""
-    return needed <= given <= known
-
-
-@rule("protocol/version", f"The version of the protocol is {VERSION}.", DESIGN)
-def version_is_spoken(version: int) -> bool:
-    """Whether it is this version."""
-    return version == VERSION
-
-
-PROTOCOL_RULES: tuple[Rule[..., Any], ...] = (line_is_bounded, fields_are_right, version_is_spoken)
+SPOKEN_VERSION = Code("protocol/version", f"The version of the protocol is {VERSION}.", DESIGN)
+PROTOCOL_RULES: tuple[Code, ...] = (SHORT_LINE, RIGHT_FIELDS, SPOKEN_VERSION)
 
 
 class Request:
@@ -78,7 +63,7 @@ class Request:
         try:
             self._fields = msgspec.json.decode(line, type=dict[str, msgspec.Raw])
         except msgspec.ValidationError as error:
-            raise Refusal("request", "$", fields_are_right.id, "a request must be an object") from error
+            raise Refusal("request", "$", RIGHT_FIELDS.id, "a request must be an object") from error
         self.id = self._fields.pop("id", MISSING)
 
     def __contains__(self, name: str) -> bool:
@@ -88,14 +73,14 @@ class Request:
     def take(self, name: str, decode: Callable[[bytes], T]) -> T:
         """Decode a field and take it out."""
         if name not in self._fields:
-            raise Refusal("request", f"$.{name}", fields_are_right.id, "the field must be there")
+            raise Refusal("request", f"$.{name}", RIGHT_FIELDS.id, "the field must be there")
         with inside(f"$.{name}"):
             return decode(bytes(self._fields.pop(name)))
 
     def op(self) -> str:
         """The op; the request must have an id too."""
         if self.id is MISSING:
-            raise Refusal("request", "$.id", fields_are_right.id, "the field must be there")
+            raise Refusal("request", "$.id", RIGHT_FIELDS.id, "the field must be there")
         op: str = self.take("op", value_of(str))
         return op
 
@@ -106,7 +91,7 @@ class Request:
     def end(self) -> None:
         """Refuse a request with fields that its op does not have."""
         for name in self._fields:
-            raise Refusal("request", f"$.{name}", fields_are_right.id, "the op has no such field")
+            raise Refusal("request", f"$.{name}", RIGHT_FIELDS.id, "the op has no such field")
 
 
 def value_of(kind: Any) -> Callable[[bytes], Any]:  # noqa: ANN401 - msgspec's own word for a type
@@ -117,7 +102,7 @@ def value_of(kind: Any) -> Callable[[bytes], Any]:  # noqa: ANN401 - msgspec's o
             return msgspec.json.decode(data, type=kind)
         except msgspec.ValidationError as error:
             message, _, path = str(error).replace("`", "").partition(" - at ")
-            raise Refusal("request", path or "$", fields_are_right.id, uncapitalized(message)) from error
+            raise Refusal("request", path or "$", RIGHT_FIELDS.id, uncapitalized(message)) from error
 
     return decode
 

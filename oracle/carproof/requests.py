@@ -6,42 +6,22 @@ Refusals name paths in the wrong document: `$.plans[2].visits[0]`.
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import Any
 
-from carp_spec import Instance, Refusal, RobotId, Rule, Solution, Violation, check, judge
-from carp_spec.rule import DESIGN, is_whole, rule
+from carp_spec import Instance, Refusal, RobotId, Solution, Violation, check, judge
+from carp_spec.rule import DESIGN, Code, is_whole
 
-
-@rule("request/robot", "The robot asked for is one of the instance, and one to be added has no plan yet.", DESIGN)
-def robot_is_known(instance: Instance, robot: RobotId) -> bool:
-    """Whether the instance has the robot."""
-    return robot in instance.robot
-
-
-@rule("request/now", "The tick now is a whole number of at least 0.", DESIGN)
-def now_is_a_tick(now: object) -> bool:
-    """Whether it is a tick."""
-    return is_whole(now) and now >= 0
-
-
-@rule(
+KNOWN_ROBOT = Code(
+    "request/robot", "The robot asked for is one of the instance, and one to be added has no plan yet.", DESIGN
+)
+TICK = Code("request/now", "The tick now is a whole number of at least 0.", DESIGN)
+SOUND_PLANS = Code(
     "request/plans",
     "The plans to which a query or a new robot is put break no rule; of the robot itself that a query is for, only "
     "the plan alone. A robot that the solution does not name counts as unplanned.",
     DESIGN,
 )
-def plans_are_sound(instance: Instance, solution: Solution) -> bool:
-    """Whether the plans break no rule."""
-    return judge(instance, completed(instance, solution)).valid
-
-
-@rule("request/limit", "The limit of a search, in seconds or steps, is a number above 0.", DESIGN)
-def limit_is_positive(limit: float) -> bool:
-    """Whether there is time to search."""
-    return limit > 0
-
-
-REQUEST_RULES: tuple[Rule[..., Any], ...] = (robot_is_known, now_is_a_tick, plans_are_sound, limit_is_positive)
+POSITIVE_LIMIT = Code("request/limit", "The limit of a search, in seconds or steps, is a number above 0.", DESIGN)
+REQUEST_RULES: tuple[Code, ...] = (KNOWN_ROBOT, TICK, SOUND_PLANS, POSITIVE_LIMIT)
 
 
 def completed(instance: Instance, solution: Solution) -> Solution:
@@ -86,21 +66,21 @@ def path_to(violation: Violation, solution: Solution) -> str:
 
 def require_robot(instance: Instance, robot: RobotId, path: str) -> None:
     """Raise `Refusal` if the instance does not have the robot."""
-    if not robot_is_known(instance, robot):
-        raise Refusal("request", path, robot_is_known.id, f"the instance must have the robot, and has no {robot!r}")
+    if robot not in instance.robot:
+        raise Refusal("request", path, KNOWN_ROBOT.id, f"the instance must have the robot, and has no {robot!r}")
 
 
 def require_new_robot(instance: Instance, solution: Solution, robot: RobotId, path: str) -> None:
     """Raise `Refusal` if the instance does not have the robot, or the solution a plan of it."""
     require_robot(instance, robot, path)
     if any(plan.robot == robot for plan in solution.plans):
-        raise Refusal("request", path, robot_is_known.id, f"the robot to add must have no plan, and {robot!r} has one")
+        raise Refusal("request", path, KNOWN_ROBOT.id, f"the robot to add must have no plan, and {robot!r} has one")
 
 
 def require_tick(now: object, path: str) -> None:
     """Raise `Refusal` if it is no tick."""
-    if not now_is_a_tick(now):
-        raise Refusal("request", path, now_is_a_tick.id, f"it must be a whole number of at least 0, not {now!r}")
+    if not (is_whole(now) and now >= 0):
+        raise Refusal("request", path, TICK.id, f"it must be a whole number of at least 0, not {now!r}")
 
 
 def robot_called(instance: Instance, name: str) -> RobotId:
@@ -108,7 +88,7 @@ def robot_called(instance: Instance, name: str) -> RobotId:
     called = [robot.id for robot in instance.robots if str(robot.id) == name]
     if len(called) > 1:
         message = f"a robot's id must differ from the others when printed, and {len(called)} print as {name}"
-        raise Refusal("request", "ROBOT", robot_is_known.id, message)
+        raise Refusal("request", "ROBOT", KNOWN_ROBOT.id, message)
     id = called[0] if called else name
     require_robot(instance, id, "ROBOT")
     return id

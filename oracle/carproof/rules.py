@@ -1,9 +1,10 @@
-"""All rules of carproof: the specification's, then those of requests, formats and searches."""
+"""All rules of carproof: the specification's, then those of requests, formats and searches, with their codes."""
 
 from typing import Any
 
 from carp_spec import RULES, Rule
 from carp_spec.limits import LIMIT_RULES
+from carp_spec.rule import Code
 from carp_verify.bound_rules import BOUND_RULES
 from carp_verify.kernel import KERNEL_RULES
 from carp_verify.optimum_rules import OPTIMUM_RULES
@@ -17,7 +18,7 @@ from carproof.protocol import PROTOCOL_RULES
 from carproof.requests import REQUEST_RULES
 from carproof.viewer.limits import VIEW_RULES
 
-ALL_RULES: tuple[Rule[..., Any], ...] = (
+ALL_RULES: tuple[Rule[..., Any] | Code, ...] = (
     *RULES,
     *LIMIT_RULES,
     *REQUEST_RULES,

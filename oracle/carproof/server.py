@@ -9,7 +9,7 @@ from carp_spec.documents import write
 from carproof.engines import Engine
 from carproof.extras import advice
 from carproof.ops import answer
-from carproof.protocol import LONGEST_LINE, MISSING, NULL, ErrorDocument, Request, Response, line_is_bounded, refused
+from carproof.protocol import LONGEST_LINE, MISSING, NULL, SHORT_LINE, ErrorDocument, Request, Response, refused
 
 _PIECE = 2**20
 
@@ -19,7 +19,7 @@ def serve(requests: BinaryIO, responses: BinaryIO, engine: Engine) -> None:
     running = True
     while running and (line := requests.readline(LONGEST_LINE + 1)):
         line = line.removesuffix(b"\n")
-        if line_is_bounded(line):
+        if len(line) <= LONGEST_LINE:
             response, running = respond(line, engine)
         else:
             _skip_line(requests)
@@ -50,7 +50,7 @@ def respond(line: bytes, engine: Engine) -> tuple[Response, bool]:
 
 def _too_long() -> Refusal:
     message = f"the line must have at most {LONGEST_LINE} bytes"
-    return Refusal("limit", "$", line_is_bounded.id, message)
+    return Refusal("limit", "$", SHORT_LINE.id, message)
 
 
 def _skip_line(requests: BinaryIO) -> None:

@@ -19,11 +19,9 @@ from carproof.conform.findings import (
     is_accepted,
     is_alive,
     is_complete,
-    is_in_time,
     is_lower,
     is_optimal,
     is_response,
-    is_result,
     tries_enough,
     wrong,
 )
@@ -206,10 +204,9 @@ def test_of_failures_of_one_rule_the_smallest_is_shown_and_counted_once() -> Non
 
 def test_each_rule_of_programs_is_kept_and_broken_where_it_says() -> None:
     assert [is_alive(code) for code in (None, 0, 1, -9)] == [True, True, False, False]
-    assert [is_in_time(seconds, 2.0) for seconds in (1.9, 2.0, 2.1)] == [True, True, False]
     assert [is_response({"id", name}) for name in ("result", "skipped", "error", "more")] == [True, True, True, False]
     assert not is_response({"id", "result", "error"})
-    assert [rule(given) for rule in (is_result, is_accepted) for given in (None, "", "why")] == [True, False, False] * 2
+    assert [is_accepted(given) for given in (None, "", "why")] == [True, False, False]
     assert [is_optimal(*costs) for costs in ((3, 3), (None, None), (4, 3), (2, 3), (None, 3), (3, None))] == (
         [True, True, False, False, False, False]
     )

@@ -7,7 +7,7 @@ import pytest
 from tests.oracle.running import Run
 
 from carp_spec import read_instance
-from carproof.movingai import map_is_right, read_map, read_scenario, scenario_is_right
+from carproof.movingai import read_map, read_scenario
 
 EXAMPLES = Path(__file__).parent.parent.parent / "oracle/carproof/examples"
 MAP = "type octile\nheight 2\nwidth 3\nmap\n.G@\nS.T\n"
@@ -53,7 +53,6 @@ def test_a_broken_map_is_refused_with_file_and_line(carproof: Run, tmp_path: Pat
     assert (outcome.code, outcome.stdout) == (2, "")
     assert outcome.stderr.startswith(f"Error: {file}:{error}")
     assert outcome.stderr.endswith(" [movingai/map]\n")
-    assert not map_is_right(text.encode())
 
 
 @pytest.mark.parametrize(
@@ -76,12 +75,9 @@ def test_a_broken_scenario_is_refused_with_file_and_line(carproof: Run, tmp_path
     assert (outcome.code, outcome.stdout) == (2, "")
     assert outcome.stderr.startswith(f"Error: {file}:{error}")
     assert outcome.stderr.endswith(" [movingai/scenario]\n")
-    assert not scenario_is_right(text.encode(), read_map(MAP.encode()))
 
 
-def test_the_rules_hold_for_right_files() -> None:
-    assert map_is_right(MAP.encode())
-    assert scenario_is_right(SCENARIO.encode(), read_map(MAP.encode()))
+def test_lines_of_a_map_may_end_as_on_windows() -> None:
     assert read_map(MAP.replace("\n", "\r\n").encode()) == read_map(MAP.encode())
 
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 from carp_spec import Instance, Refusal, Rule, Solution
-from carp_spec.rule import DESIGN, rule
+from carp_spec.rule import DESIGN, Code
 from carproof.adapters import agent_paths, carproof_documents, lacam, libmultirobotplanning, mapf_tracker
 from carproof.adapters.adapter import Adapter
 from carproof.adapters.networkx_graphs import instance_from_networkx, node_is_right
@@ -39,24 +39,19 @@ ADAPTERS: Mapping[str, Adapter] = {
 }
 
 
-@rule(
+CLEAR_FORMAT = Code(
     "adapter/format",
     "A solution whose format is not named looks like one format; of those that it looks like, it is the one in which "
     "every robot begins at its start, or it means the same in each.",
     DESIGN,
 )
-def format_is_clear(text: str, instance: Instance) -> bool:
-    """Whether the format can be recognised."""
-    return len(_possible(text, instance)) == 1
-
-
-ADAPTER_RULES: tuple[Rule[..., Any], ...] = (
+ADAPTER_RULES: tuple[Rule[..., Any] | Code, ...] = (
     *WALK_RULES,
-    format_is_clear,
-    lacam.lines_are_right,
-    libmultirobotplanning.schedule_is_right,
-    mapf_tracker.moves_are_right,
-    agent_paths.paths_are_right,
+    CLEAR_FORMAT,
+    lacam.RIGHT_LINES,
+    libmultirobotplanning.RIGHT_SCHEDULE,
+    mapf_tracker.RIGHT_MOVES,
+    agent_paths.RIGHT_PATHS,
     node_is_right,
 )
 
@@ -82,7 +77,7 @@ def format_of(data: bytes, instance: Instance, file: str = "file") -> str:
         return possible[0]
     looks = ", ".join(name for name, each in ADAPTERS.items() if each.looks_like(text))
     what = f"it could be {looks}" if looks else f"it looks like none of {', '.join(ADAPTERS)}"
-    raise Refusal("document", file, format_is_clear.id, f"the format must be named by --from: {what}")
+    raise Refusal("document", file, CLEAR_FORMAT.id, f"the format must be named by --from: {what}")
 
 
 def named_as(instance: Instance, format: str) -> Instance:

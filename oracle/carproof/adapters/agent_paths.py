@@ -8,7 +8,7 @@ Semantics: `walks`.
 import re
 
 from carp_spec import Instance, Refusal, RobotId, Solution
-from carp_spec.rule import rule
+from carp_spec.rule import Code
 from carproof.adapters.adapter import Adapter
 from carproof.adapters.walks import Cell, Walk, solution_of_walks, tick_by_tick, walks_of_solution
 
@@ -17,26 +17,19 @@ _LINE = re.compile(r"Agent(\d{1,9}):((?:\(-?\d{1,9},-?\d{1,9}\)(?:->)?)+)")
 _CELL = re.compile(r"\((-?\d+),(-?\d+)\)")
 
 
-@rule(
+RIGHT_PATHS = Code(
     "adapter/agent-paths",
     "Each line is Agent, the number of a robot of the instance counted from 0, a colon, and the robot's positions "
     "tick by tick, joined by arrows; each agent has one line at most.",
     "output of EECBS and its kin",
 )
-def paths_are_right(text: str, robots: int) -> bool:
-    """Whether the text is such a file for this many robots."""
-    try:
-        _pairs(text, robots, "file")
-    except Refusal:
-        return False
-    return True
 
 
 def _pairs(text: str, robots: int, file: str) -> dict[int, list[Cell]]:
     """The pairs of numbers of each agent."""
 
     def refuse(number: int, message: str) -> Refusal:
-        return Refusal("document", f"{file}:{number}", paths_are_right.id, message)
+        return Refusal("document", f"{file}:{number}", RIGHT_PATHS.id, message)
 
     agents: dict[int, list[Cell]] = {}
     for number, line in enumerate(text.split("\n"), start=1):

@@ -8,7 +8,7 @@ Semantics: `walks`.
 import re
 
 from carp_spec import Instance, Refusal, RobotId, Solution, total_cost
-from carp_spec.rule import rule
+from carp_spec.rule import Code
 from carproof.adapters.adapter import Adapter
 from carproof.adapters.walks import Cell, Walk, last_arrival, solution_of_walks, tick_by_tick, walks_of_solution
 
@@ -17,26 +17,19 @@ _LINE = re.compile(r"(\d{1,9}):((?:\(-?\d{1,9},-?\d{1,9}\),?)*)")
 _CELL = re.compile(r"\((-?\d+),(-?\d+)\)")
 
 
-@rule(
+RIGHT_LINES = Code(
     "adapter/lacam",
     "After the line solution= comes a line for each tick from 0: the tick, a colon, and a position (x,y) for each "
     "robot of the instance, in its order, joined by commas.",
     "output of LaCAM and input of mapf-visualizer",
 )
-def lines_are_right(text: str, robots: int) -> bool:
-    """Whether the text is such a file for this many robots."""
-    try:
-        _positions(text, robots, "file")
-    except Refusal:
-        return False
-    return True
 
 
 def _positions(text: str, robots: int, file: str) -> list[list[Cell]]:
     """The cells of all robots, tick by tick."""
 
     def refuse(number: int, message: str) -> Refusal:
-        return Refusal("document", f"{file}:{number}", lines_are_right.id, message)
+        return Refusal("document", f"{file}:{number}", RIGHT_LINES.id, message)
 
     lines = [line.replace(" ", "").strip() for line in text.split("\n")]
     if "solution=" not in lines:

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from carp_spec import Instance, Refusal, RobotId, Solution, total_cost
-from carp_spec.rule import rule
+from carp_spec.rule import Code
 from carproof.adapters.adapter import Adapter
 from carproof.adapters.walks import Walk, last_arrival, solution_of_walks, tick_by_tick, walks_of_solution
 
@@ -21,19 +21,12 @@ _NUMBER = re.compile(r"-?\d{1,9}")
 _FIELDS = ("x", "y", "t")
 
 
-@rule(
+RIGHT_SCHEDULE = Code(
     "adapter/libmultirobotplanning",
     "The file is a YAML mapping whose field schedule maps each agent to a list; each entry has x, y and t, whole "
     "numbers, and the t rise. An agent is a robot of the instance, and has one list; an empty one is no plan.",
     "output of libMultiRobotPlanning",
 )
-def schedule_is_right(text: str, instance: Instance) -> bool:
-    """Whether the text is such a file for the instance."""
-    try:
-        _Schedule(text, instance, "file").walks()
-    except Refusal:
-        return False
-    return True
 
 
 class _Schedule:
@@ -59,7 +52,7 @@ class _Schedule:
             raise self.refuse(f"it must be YAML: {problem}") from error
 
     def refuse(self, message: str) -> Refusal:
-        return Refusal("document", f"{self.file}:{self.line}", schedule_is_right.id, message)
+        return Refusal("document", f"{self.file}:{self.line}", RIGHT_SCHEDULE.id, message)
 
     def next(self, *kinds: str, right: str) -> Any:  # noqa: ANN401 - the YAML library has no types
         """The next event, which must be of one of the kinds."""

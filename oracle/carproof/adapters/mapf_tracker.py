@@ -9,7 +9,7 @@ import re
 from itertools import pairwise
 
 from carp_spec import Instance, Refusal, RobotId, Solution
-from carp_spec.rule import rule
+from carp_spec.rule import Code
 from carproof.adapters.adapter import Adapter
 from carproof.adapters.walks import Cell, Walk, require_bounded, require_walks, solution_of_walks, walks_of_solution
 
@@ -22,23 +22,16 @@ _ROW = re.compile(r'(?:"[^"]*"|[^",\n]+)(?:,(?:"[^"]*"|[^",\n]+))*\n*')
 _FIELD = re.compile(r'"([^"]*)"|([^",\n]+)')
 
 
-@rule(
+RIGHT_MOVES = Code(
     "adapter/mapf-tracker",
     "There is a line for each robot of the instance, of the letters l, r, u, d and w, each with a number before it or "
     "none; or a table with one row, whose column path or solution_plan holds these lines.",
     "files of the MAPF tracker",
 )
-def moves_are_right(text: str, robots: int) -> bool:
-    """Whether the text is such a file for this many robots."""
-    try:
-        _lines(text, robots, "file")
-    except Refusal:
-        return False
-    return True
 
 
 def _refuse(file: str, number: int, message: str) -> Refusal:
-    return Refusal("document", f"{file}:{number}", moves_are_right.id, message)
+    return Refusal("document", f"{file}:{number}", RIGHT_MOVES.id, message)
 
 
 def _lines(text: str, robots: int, file: str) -> list[str]:
@@ -119,7 +112,7 @@ def _runs(walk: Walk) -> str:
         step = (next_x - x, next_y - y)
         if step not in _LETTERS:
             message = f"the format cannot hold it: the move from {x},{y} to {next_x},{next_y} is not to a cell beside"
-            raise Refusal("document", "SOLUTION", moves_are_right.id, message)
+            raise Refusal("document", "SOLUTION", RIGHT_MOVES.id, message)
         for letter, count in (("w", leave - enter - 1), (_LETTERS[step], 1)):
             if count and runs and runs[-1][0] == letter:
                 runs[-1] = (letter, runs[-1][1] + count)

@@ -6,6 +6,7 @@ from typing import Any
 import click
 
 from carp_spec import Rule
+from carp_spec.rule import Code
 from carproof.answer import Answer
 from carproof.options import examples
 from carproof.rules import ALL_RULES
@@ -26,7 +27,7 @@ def command(id: str | None) -> Answer:
     return Answer.YES
 
 
-def rule_named(id: str) -> Rule[..., Any]:
+def rule_named(id: str) -> Rule[..., Any] | Code:
     """The rule of that id; the nearest ids are suggested where none exists."""
     rules = {rule.id: rule for rule in ALL_RULES}
     if id not in rules:
@@ -36,9 +37,10 @@ def rule_named(id: str) -> Rule[..., Any]:
     return rules[id]
 
 
-def print_rule(rule: Rule[..., Any]) -> None:
-    """Print a rule in full."""
+def print_rule(rule: Rule[..., Any] | Code) -> None:
+    """Print a rule in full; a code has no predicate."""
     click.echo(f"{rule.id}\n")
     click.echo(click.wrap_text(rule.statement, initial_indent="  ", subsequent_indent="  "))
     click.echo(f"\nSource:    {rule.source}")
-    click.echo(f"Predicate: {rule.predicate.__module__}.{rule.predicate.__name__}")
+    if isinstance(rule, Rule):
+        click.echo(f"Predicate: {rule.predicate.__module__}.{rule.predicate.__name__}")

@@ -8,7 +8,7 @@ import msgspec
 from carp_spec import Refusal, Solution
 from carp_spec.bounds import BoundDocument
 from carp_spec.documents import UNREADABLE, VerdictDocument, is_json, uncapitalized
-from carproof.conform.findings import Category, Fault, Finding, is_accepted, is_response, is_result
+from carproof.conform.findings import RIGHT_RESULT, Category, Fault, Finding, is_accepted, is_response
 from carproof.ops import OPS
 from carproof.ops.op import reader_of
 from carproof.ops.planning import QueryDocument
@@ -90,9 +90,9 @@ def read_result(op: str, data: bytes | msgspec.Raw) -> Any:  # noqa: ANN401 - th
         return reader_of(OPS[op].result)(bytes(data))
     except Refusal as refusal:
         message = f"{what}: {refusal.path}: {refusal.message}, in {shown(bytes(data))}"
-        raise protocol_error(is_result.id, message) from refusal
+        raise protocol_error(RIGHT_RESULT.id, message) from refusal
     except (*UNREADABLE, ValueError) as error:
-        raise protocol_error(is_result.id, f"{what}: {error}") from error
+        raise protocol_error(RIGHT_RESULT.id, f"{what}: {error}") from error
 
 
 def decode_solution(data: bytes) -> Solution:

@@ -11,7 +11,7 @@ from time import monotonic, sleep
 from types import TracebackType
 from typing import IO, Self, cast
 
-from carproof.conform.findings import Category, Fault, Finding, is_alive, is_in_time, is_response
+from carproof.conform.findings import IN_TIME, Category, Fault, Finding, is_alive, is_response
 
 _PIECE = 2**16
 _KEPT_STDERR = 8 * 2**10
@@ -133,7 +133,7 @@ class Child:
                 raise self._death()
             if remaining <= 0:
                 message = f"no complete answer within {seconds:g} s"
-                raise self._fault(Category.TIMEOUT, is_in_time.id, message)
+                raise self._fault(Category.TIMEOUT, IN_TIME.id, message)
             for key, _ in selector.select(remaining):
                 if key.fileobj is self._stdin:
                     unsent = self._send(selector, unsent)
@@ -189,7 +189,7 @@ class Child:
         code = exit_code(self._process, seconds)
         if code is None:
             message = f"it runs on, {seconds:g} s after it was asked to stop"
-            raise self._fault(Category.TIMEOUT, is_in_time.id, message)
+            raise self._fault(Category.TIMEOUT, IN_TIME.id, message)
         if not is_alive(code):
             raise self._fault(Category.CRASH, is_alive.id, f"{ending(code)} when it was asked to stop")
 

@@ -5,7 +5,7 @@ from enum import StrEnum
 from typing import Any
 
 from carp_spec import Rule
-from carp_spec.rule import DESIGN, rule
+from carp_spec.rule import DESIGN, Code, rule
 
 LEAST_ANSWERED = 90
 """In 100 random cases of an op. The cases are small, so a program that offers the op can answer nearly all of them. Two
@@ -58,10 +58,7 @@ def is_alive(code: int | None) -> bool:
     return code is None or code == 0
 
 
-@rule("program/in-time", "Each answer is complete within the time limit, however it arrives.", DESIGN)
-def is_in_time(seconds: float, limit: float) -> bool:
-    """Whether the answer was in time."""
-    return seconds <= limit
+IN_TIME = Code("program/in-time", "Each answer is complete within the time limit, however it arrives.", DESIGN)
 
 
 @rule(
@@ -74,14 +71,11 @@ def is_response(fields: set[str]) -> bool:
     return fields in ({"id", "result"}, {"id", "skipped"}, {"id", "error"})
 
 
-@rule(
+RIGHT_RESULT = Code(
     "program/result",
     "A result has the fields and types of its op; documents obey document/shape, other formats their own rules.",
     DESIGN,
 )
-def is_result(shape_error: str | None) -> bool:
-    """Whether decoding found no error."""
-    return shape_error is None
 
 
 @rule("program/accepts", "A right request is answered by a result or skipped, never by an error.", DESIGN)
@@ -140,11 +134,11 @@ def tries_enough(tried: int, gave_up: int) -> bool:
     return 100 * tried >= LEAST_TRIED * (tried + gave_up)
 
 
-PROGRAM_RULES: tuple[Rule[..., Any], ...] = (
+PROGRAM_RULES: tuple[Rule[..., Any] | Code, ...] = (
     is_alive,
-    is_in_time,
+    IN_TIME,
     is_response,
-    is_result,
+    RIGHT_RESULT,
     is_accepted,
     is_optimal,
     is_complete,

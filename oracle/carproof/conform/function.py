@@ -9,7 +9,7 @@ import msgspec
 from carp_spec import Instance, Solution, read_instance, write_instance, write_solution
 from carproof.conform.answers import NotAsked, Reply, decode_solution, protocol_error
 from carproof.conform.cases import Case
-from carproof.conform.findings import Category, Fault, Finding, is_alive, is_result
+from carproof.conform.findings import RIGHT_RESULT, Category, Fault, Finding, is_alive
 
 Document = dict[str, Any]
 
@@ -22,7 +22,9 @@ def by_documents(planner: Callable[[Document], Document]) -> Callable[[Instance]
         try:
             data = msgspec.json.encode(document)
         except (TypeError, ValueError, OverflowError) as error:
-            raise protocol_error(is_result.id, f"the planner's document cannot be written as JSON: {error}") from error
+            raise protocol_error(
+                RIGHT_RESULT.id, f"the planner's document cannot be written as JSON: {error}"
+            ) from error
         return decode_solution(data)
 
     return plan
@@ -32,7 +34,7 @@ def _written(solution: Solution) -> bytes:
     try:
         return write_solution(solution)
     except Exception as error:
-        raise protocol_error(is_result.id, f"the planner's solution cannot be written as JSON: {error}") from error
+        raise protocol_error(RIGHT_RESULT.id, f"the planner's solution cannot be written as JSON: {error}") from error
 
 
 class Function:
@@ -64,7 +66,7 @@ class Function:
             raise Fault(Finding(Category.CRASH, is_alive.id, message, traceback.format_exc())) from error
         if not isinstance(solution, Solution):
             message = f"a planner must return a carp_spec.Solution, not {type(solution).__name__}"
-            raise protocol_error(is_result.id, message)
+            raise protocol_error(RIGHT_RESULT.id, message)
         return decode_solution(_written(solution))
 
     def finish(self) -> None:

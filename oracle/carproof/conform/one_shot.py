@@ -11,7 +11,7 @@ from carproof.adapters import carproof_documents, format_of, looks_like_none, re
 from carproof.conform.answers import NotAsked, Reply, decode_solution, protocol_error, shown
 from carproof.conform.cases import Case
 from carproof.conform.child import Limits, end_group, ending, environment, exit_code, limited
-from carproof.conform.findings import Category, Fault, Finding, is_alive, is_in_time, is_result
+from carproof.conform.findings import IN_TIME, RIGHT_RESULT, Category, Fault, Finding, is_alive
 from carproof.movingai import GridMap, movingai_instance
 from carproof.movingai_writer import MAP_NAME, is_classical, write_movingai
 
@@ -80,7 +80,7 @@ class OneShot:
             code = self._wait(command, stdout.fileno(), stderr.fileno(), seconds)
         ending_of_errors = self._beginning(errors)[-_KEPT_STDERR:].decode("utf-8", "backslashreplace")
         if code is None:
-            raise Fault(Finding(Category.TIMEOUT, is_in_time.id, f"no answer within {seconds:g} s", ending_of_errors))
+            raise Fault(Finding(Category.TIMEOUT, IN_TIME.id, f"no answer within {seconds:g} s", ending_of_errors))
         answer = solution if names(self._template, SOLUTION) else output
         written = self._beginning(answer) if answer.is_file() else b""
         if code not in (0, 1) or (code == 1 and not written):
@@ -88,7 +88,7 @@ class OneShot:
         if not (written or self.is_classical) or len(written) > self._limits.output:
             much = "nothing" if not written else f"more than {self._limits.output} bytes"
             raise Fault(
-                Finding(Category.PROTOCOL_ERROR, is_result.id, f"it wrote {much} as its answer", ending_of_errors)
+                Finding(Category.PROTOCOL_ERROR, RIGHT_RESULT.id, f"it wrote {much} as its answer", ending_of_errors)
             )
         return written
 
@@ -113,7 +113,7 @@ class OneShot:
             return read_foreign_solution(written, instance, "solution", self._format)
         except Refusal as refusal:
             message = f"the solution is not as it must be, at {refusal}; it is {shown(written)}"
-            raise protocol_error(is_result.id, message) from refusal
+            raise protocol_error(RIGHT_RESULT.id, message) from refusal
 
     def _wait(self, command: Sequence[str], stdout: int, stderr: int, seconds: float) -> int | None:
         """Run the command, and return its exit code, or `None` if it took too long."""

@@ -19,7 +19,7 @@ from carproof.ops.judging import audit, check, verify_bound, verify_query
 from carproof.ops.op import Op, op_of
 from carproof.ops.planning import add, plan, polish, query
 from carproof.ops.searching import bound, optimum
-from carproof.protocol import VERSION, Request, fields_are_right, version_is_spoken
+from carproof.protocol import RIGHT_FIELDS, SPOKEN_VERSION, VERSION, Request
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,9 +40,9 @@ class StartDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 def start(request: StartRequest, engine: Engine) -> StartDocument:
     """Agree on the version of the protocol, and list the ops that may be asked."""
     del engine
-    if not version_is_spoken(request.version):
+    if request.version != VERSION:
         message = f"the version must be {VERSION}, not {request.version}"
-        raise Refusal("request", "$.version", version_is_spoken.id, message)
+        raise Refusal("request", "$.version", SPOKEN_VERSION.id, message)
     return StartDocument("carproof", version("carproof"), tuple(OPS))
 
 
@@ -87,7 +87,7 @@ OPS: Mapping[str, Op] = {op.name: op for op in map(op_of, _HANDLERS)}
 def answer(request: Request, name: str, engine: Engine) -> object:
     """The result of a request, as JSON holds it."""
     if name not in OPS:
-        raise Refusal("request", "$.op", fields_are_right.id, f"the op must be one of {', '.join(OPS)}, not {name!r}")
+        raise Refusal("request", "$.op", RIGHT_FIELDS.id, f"the op must be one of {', '.join(OPS)}, not {name!r}")
     try:
         return OPS[name].answer(request, engine)
     except UndecidedError as error:

@@ -20,7 +20,7 @@ from carp_spec.polish_rules import require_polish_options
 from carp_spec.query_certificates import QueryCertificateDocument, read_query_certificate
 from carp_spec.traces import Trace, TraceDocument, read_trace, trace_document
 from carproof.engines import Engine
-from carproof.protocol import Request, fields_are_right, value_of
+from carproof.protocol import RIGHT_FIELDS, Request, value_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +62,7 @@ def _planner(request: Request) -> Planner:
 def _polish_options(request: Request) -> PolishOptions:
     given = request.options()
     for name in given.keys() - {field.name for field in dataclasses.fields(PolishOptions)}:
-        raise Refusal("request", f"$.{name}", fields_are_right.id, "the op has no such field")
+        raise Refusal("request", f"$.{name}", RIGHT_FIELDS.id, "the op has no such field")
     options = PolishOptions(**given)
     require_polish_options(options.iterations, options.seconds, options.seed)
     return options

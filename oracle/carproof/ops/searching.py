@@ -8,7 +8,7 @@ from carproof.engines import Engine, warm
 from carproof.extras import require
 from carproof.optima import OptimumDocument, optimum_document
 from carproof.options import DEFAULT_LIMIT, DEFAULT_SECONDS
-from carproof.requests import inside, limit_is_positive
+from carproof.requests import POSITIVE_LIMIT, inside
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,9 +25,9 @@ def optimum(request: OptimumRequest, engine: Engine) -> OptimumDocument:
     from carp_optimum.optimum import optimum as search  # noqa: PLC0415 - a server that is not asked need not load it
 
     del engine
-    if not limit_is_positive(request.limit):
+    if request.limit <= 0:
         message = f"the limit must be a number of seconds above 0, not {request.limit}"
-        raise Refusal("request", "$.limit", limit_is_positive.id, message)
+        raise Refusal("request", "$.limit", POSITIVE_LIMIT.id, message)
     return optimum_document(search(request.instance, request.limit))
 
 
@@ -48,8 +48,8 @@ def bound(request: BoundRequest, engine: Engine) -> BoundDocument:
     del engine
     seconds = DEFAULT_SECONDS if request.seconds is None and request.steps is None else request.seconds
     for name, limit in (("seconds", seconds), ("steps", request.steps)):
-        if limit is not None and not limit_is_positive(limit):
-            raise Refusal("request", f"$.{name}", limit_is_positive.id, f"it must be a number above 0, not {limit}")
+        if limit is not None and limit <= 0:
+            raise Refusal("request", f"$.{name}", POSITIVE_LIMIT.id, f"it must be a number above 0, not {limit}")
     warm()
     with inside("$.instance"):
         return lower_bound(request.instance, seconds, request.steps)
