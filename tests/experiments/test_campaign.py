@@ -51,66 +51,59 @@ def test_a_run_goes_on_where_it_stopped(tmp_path: Path) -> None:
     assert len(advanced) == len(CASES)
 
 
+PROGRAM = """
+import sys
+from pathlib import Path
+from carp_experiments.campaign import Workers, run_campaign
+from carp_experiments.store import open_store
+from carp_spec import Refusal
+from tests.experiments.cases import Square
+try:
+    with open_store(Path(sys.argv[1]), "squares") as store:
+        run_campaign([Square(n, 0.02) for n in range(120)], store, Workers(int(sys.argv[2])), lambda: None)
+except Refusal as refusal:
+    sys.exit(str(refusal))
+"""
+
+
+def assert_goes_on(path: Path) -> None:
+    """The rest of the program's cases are added, and no case is lost or doubled."""
+    with open_store(path, "squares") as store:
+        run_campaign([Square(n) for n in range(120)], store, Workers(), nothing)
+        assert [(key, row) for key, row in store.rows()] == [(f"{n:04}", {"square": n * n}) for n in range(120)]
+
+
 def test_a_killed_run_loses_and_doubles_nothing(tmp_path: Path) -> None:
     path = tmp_path / "store"
-    program = (
-        "import sys; from pathlib import Path\n"
-        "from carp_experiments.campaign import Workers, run_campaign\n"
-        "from carp_experiments.store import open_store\n"
-        "from tests.experiments.cases import Square\n"
-        "with open_store(Path(sys.argv[1]), 'slow') as store:\n"
-        "    run_campaign([Square(n, 0.02) for n in range(100)], store, Workers(), lambda: None)\n"
-    )
-    run = subprocess.Popen([sys.executable, "-c", program, str(path)], cwd=ROOT)
+    run = subprocess.Popen([sys.executable, "-c", PROGRAM, str(path), "1"], cwd=ROOT)
     while not path.exists() or _rows(path) < 5:
         time.sleep(0.02)
     run.send_signal(signal.SIGKILL)
     run.wait()
     written = _rows(path)
-    assert 5 <= written < 100
-    with open_store(path, "slow") as store:
+    assert 5 <= written < 120
+    with open_store(path, "squares") as store:
         assert len(store.keys()) == written
-        run_campaign([Square(n) for n in range(100)], store, Workers(), nothing)
-        assert [(key, row) for key, row in store.rows()] == [(f"{n:04}", {"square": n * n}) for n in range(100)]
+    assert_goes_on(path)
 
 
 @pytest.mark.parametrize("workers", [1, 2])
 def test_a_full_disk_is_told_and_the_run_goes_on_once_there_is_room(tmp_path: Path, workers: int) -> None:
-    path = tmp_path / "store"
-    program = (
-        "import sys; from pathlib import Path\n"
-        "from carp_experiments.campaign import Workers, run_campaign\n"
-        "from carp_experiments.store import open_store\n"
-        "from tests.experiments.cases import Square\n"
-        "from carp_spec import Refusal\n"
-        "try:\n"
-        "    with open_store(Path(sys.argv[1]), 'squares') as store:\n"
-        "        cases = [Square(n, 0.01) for n in range(120)]\n"
-        "        run_campaign(cases, store, Workers(int(sys.argv[2])), lambda: None)\n"
-        "except Refusal as refusal:\n"
-        "    sys.exit(str(refusal))\n"
-    )
-    room = 24 * 1024
-
-    def leave_little_room() -> None:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (room, room))
-
+    path, room = tmp_path / "store", 24 * 1024
     run = subprocess.run(
-        [sys.executable, "-c", program, str(path), str(workers)],
+        [sys.executable, "-c", PROGRAM, str(path), str(workers)],
         cwd=ROOT,
         check=False,
         capture_output=True,
         text=True,
-        preexec_fn=leave_little_room,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (room, room)),
     )
     assert run.returncode == 1
     assert "cannot be written" in run.stderr
     assert "continues from there" in run.stderr
     assert run.stderr.count("\n") == 1
     assert 0 < _rows(path) < 120
-    with open_store(path, "squares") as store:
-        run_campaign([Square(n) for n in range(120)], store, Workers(), nothing)
-        assert [(key, row) for key, row in store.rows()] == [(f"{n:04}", {"square": n * n}) for n in range(120)]
+    assert_goes_on(path)
 
 
 def test_a_row_that_was_changed_is_noticed(tmp_path: Path) -> None:

@@ -76,21 +76,12 @@ def test_rows_of_windows_grow() -> None:
         assert_alike(Instance(LINE, convoy), planner)
 
 
-def test_records_grow(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("sizes", [(4, 16, 16), (64, 4, 4)], ids=["records", "visits of plans made elsewhere"])
+def test_room_for_plans_grows(monkeypatch: pytest.MonkeyPatch, sizes: tuple[int, int, int]) -> None:
     no_records = encoding.no_records
-    monkeypatch.setattr(encoding, "no_records", lambda *_: no_records(4, 16, 16))
+    monkeypatch.setattr(encoding, "no_records", lambda *_: no_records(*sizes))
     instance = grid_instance(Grid(4, 4), Fleet(9))
     assert_alike(instance, Neighbourhood(m=3))
-    plans = carp_reference.plan(instance, Carp()).plans
-    fleet = PlannedFleet(instance)
-    fleet.commit(plans)
-    assert fleet.plans == plans
-
-
-def test_visits_of_plans_made_elsewhere_grow(monkeypatch: pytest.MonkeyPatch) -> None:
-    no_records = encoding.no_records
-    monkeypatch.setattr(encoding, "no_records", lambda *_: no_records(64, 4, 4))
-    instance = grid_instance(Grid(4, 4), Fleet(9))
     plans = carp_reference.plan(instance, Carp()).plans
     fleet = PlannedFleet(instance)
     fleet.commit(plans)
@@ -104,31 +95,29 @@ def test_a_plan_longer_than_the_records_that_a_fleet_begins_with_is_planned() ->
     assert [visit.enter for visit in plan.visits] == [cell.id for cell in cells]
 
 
-@pytest.mark.parametrize("cut", [("keys", "nodes"), ("expanded", "ready")])
-def test_the_scratch_of_a_query_grows(monkeypatch: pytest.MonkeyPatch, cut: tuple[str, str]) -> None:
+UNEVEN = ResourceGraph((*LINE.resources[:2], Resource("c", duration=2), Resource("d")), (*LINE.edges, ("b", "d")))
+
+
+@pytest.mark.parametrize(
+    ("cut", "instance", "planner"),
+    [
+        (("keys", "nodes"), grid_instance(Grid(4, 4), Fleet(9)), Neighbourhood(m=3)),
+        (("expanded", "ready"), grid_instance(Grid(4, 4), Fleet(9)), Neighbourhood(m=3)),
+        (("keys", "nodes"), Instance(UNEVEN, (Robot("r", "a", "b"), Robot("s", "d", "c"))), Carp()),
+    ],
+    ids=["the queue of a query", "what it expands", "the queue of a guide, where a resource waits several times"],
+)
+def test_scratch_grows(
+    monkeypatch: pytest.MonkeyPatch, cut: tuple[str, str], instance: Instance, planner: Planner
+) -> None:
     no_search, calls = encoding.no_search, count()
 
     def search(windows: int, edges: int) -> Search:
         whole = no_search(windows, edges)
-        if next(calls):
-            return whole
-        return whole._replace(**{name: getattr(whole, name)[:2].copy() for name in cut})
+        return whole if next(calls) else whole._replace(**{name: getattr(whole, name)[:2].copy() for name in cut})
 
     monkeypatch.setattr(encoding, "no_search", search)
-    assert_alike(grid_instance(Grid(4, 4), Fleet(9)), Neighbourhood(m=3))
-
-
-def test_the_queue_of_a_guide_grows(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where durations differ, a resource can wait in it several times."""
-    no_search, calls = encoding.no_search, count()
-
-    def search(windows: int, edges: int) -> Search:
-        whole = no_search(windows, edges)
-        return whole if next(calls) else whole._replace(keys=whole.keys[:2].copy(), nodes=whole.nodes[:2].copy())
-
-    monkeypatch.setattr(encoding, "no_search", search)
-    graph = ResourceGraph((*LINE.resources[:2], Resource("c", duration=2), Resource("d")), (*LINE.edges, ("b", "d")))
-    assert_alike(Instance(graph, (Robot("r", "a", "b"), Robot("s", "d", "c"))), Carp())
+    assert_alike(instance, planner)
 
 
 def test_guides_that_do_not_all_fit_are_made_again(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -14,10 +14,14 @@ MAP = "type octile\nheight 2\nwidth 3\nmap\n.G@\nS.T\n"
 SCENARIO = "version 1\n0\tm.map\t3\t2\t0\t0\t1\t1\t1.41\n0\tm.map\t3\t2\t1\t1\t0\t0\t1.41\n"
 
 
-def test_passable_cells_become_resources_joined_to_those_beside_them(carproof: Run, tmp_path: Path) -> None:
-    (tmp_path / "m.map").write_text(MAP)
-    (tmp_path / "m.scen").write_text(SCENARIO)
-    outcome = carproof("convert", tmp_path / "m.map", tmp_path / "m.scen", "--agents", "1")
+@pytest.fixture(autouse=True)
+def _files(elsewhere: Path) -> None:
+    (elsewhere / "m.map").write_text(MAP)
+    (elsewhere / "m.scen").write_text(SCENARIO)
+
+
+def test_passable_cells_become_resources_joined_to_those_beside_them(carproof: Run) -> None:
+    outcome = carproof("convert m.map m.scen --agents 1")
     assert outcome.code == 0
     instance = read_instance(outcome.stdout.encode())
     assert [resource.id for resource in instance.graph.resources] == ["0,0", "1,0", "0,1", "1,1"]
@@ -46,12 +50,11 @@ def test_after_goal_can_be_vanish_and_all_agents_are_the_default(carproof: Run) 
         (MAP.replace("height 2", "height " + "9" * 5000), "2: the line must be: height"),
     ],
 )
-def test_a_broken_map_is_refused_with_file_and_line(carproof: Run, tmp_path: Path, text: str, error: str) -> None:
-    file = tmp_path / "broken_$.map"
-    file.write_text(text)
-    outcome = carproof("convert", file, EXAMPLES / "depot.scen")
+def test_a_broken_map_is_refused_with_file_and_line(carproof: Run, elsewhere: Path, text: str, error: str) -> None:
+    (elsewhere / "broken_$.map").write_text(text)
+    outcome = carproof("convert broken_$.map m.scen")
     assert (outcome.code, outcome.stdout) == (2, "")
-    assert outcome.stderr.startswith(f"Error: {file}:{error}")
+    assert outcome.stderr.startswith(f"Error: broken_$.map:{error}")
     assert outcome.stderr.endswith(" [movingai/map]\n")
 
 
@@ -67,13 +70,11 @@ def test_a_broken_map_is_refused_with_file_and_line(carproof: Run, tmp_path: Pat
         (SCENARIO.replace("\t1\t1\t0", "\t1\t7\t0"), "3: the start must be a passable cell of the map, and 1,7 is not"),
     ],
 )
-def test_a_broken_scenario_is_refused_with_file_and_line(carproof: Run, tmp_path: Path, text: str, error: str) -> None:
-    (tmp_path / "m.map").write_text(MAP)
-    file = tmp_path / "broken.scen"
-    file.write_text(text)
-    outcome = carproof("convert", tmp_path / "m.map", file)
+def test_a_broken_scenario_is_refused_with_file_and_line(carproof: Run, elsewhere: Path, text: str, error: str) -> None:
+    (elsewhere / "broken.scen").write_text(text)
+    outcome = carproof("convert m.map broken.scen")
     assert (outcome.code, outcome.stdout) == (2, "")
-    assert outcome.stderr.startswith(f"Error: {file}:{error}")
+    assert outcome.stderr.startswith(f"Error: broken.scen:{error}")
     assert outcome.stderr.endswith(" [movingai/scenario]\n")
 
 

@@ -1,11 +1,6 @@
 """Files that are read as they are meant, and outputs that are whole or not there."""
 
 import json
-import os
-import signal
-import subprocess
-import sys
-import time
 from pathlib import Path
 
 import click
@@ -62,21 +57,3 @@ def test_a_write_that_fails_leaves_the_old_file_and_nothing_else(
         write_whole(path, b"new")
     assert path.read_bytes() == b"old"
     assert list(tmp_path.iterdir()) == [path]
-
-
-def test_an_interrupt_ends_with_one_word_and_no_output_file(tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "carproof"]
-    large = subprocess.run([*command, "generate", "grid", "--map", "10"], check=True, capture_output=True).stdout
-    (tmp_path / "town.json").write_bytes(large)
-    arguments = ["plan", "town.json", "--planner", "shuffled", "--attempts", "1000000", "-o", "out.json"]
-    with subprocess.Popen(
-        [*command, *arguments], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE
-    ) as process:
-        time.sleep(3)
-        os.kill(process.pid, signal.SIGINT)
-        try:
-            output, errors = process.communicate(timeout=20)
-        finally:
-            process.kill()
-    assert (process.returncode, output, errors) == (130, b"", b"Interrupted.\n")
-    assert [each.name for each in tmp_path.iterdir()] == ["town.json"]

@@ -194,22 +194,17 @@ def test_every_obstacle_that_the_search_finds_can_be_proved(tmp_path: Path) -> N
     assert set(found) == {NoWay, FullGoal, Clauses, States}
 
 
-def test_a_robot_at_its_goal_has_a_way() -> None:
-    instance = line(2, Robot("a", 1, 1), directed=True)
-    assert why_no_obstacle(instance, NoWay("a")) == "there is a way from 1 to 1"
-
-
-def test_a_goal_has_room_for_as_many_robots_as_its_capacity() -> None:
-    instance = line(2, Robot("a", 0, 1), after_goal="park")
-    assert why_no_obstacle(instance, FullGoal(1)) == "1 has room for 1 robots, and 1 park there"
-
-
-def test_a_robot_without_a_way_has_no_clauses() -> None:
-    assert why_no_obstacle(APART, Clauses((0, 0))) == "a robot has no way to its goal, and so no clauses"
-
-
-def test_robots_that_vanish_do_not_fill_their_goal() -> None:
-    assert why_no_obstacle(SOLVABLE[1], FullGoal(1)) == "robots do not park"
+@pytest.mark.parametrize(
+    ("instance", "obstacle", "why_not"),
+    [
+        (line(2, Robot("a", 1, 1), directed=True), NoWay("a"), "there is a way from 1 to 1"),
+        (line(2, Robot("a", 0, 1), after_goal="park"), FullGoal(1), "1 has room for 1 robots, and 1 park there"),
+        (APART, Clauses((0, 0)), "a robot has no way to its goal, and so no clauses"),
+        (SOLVABLE[1], FullGoal(1), "robots do not park"),
+    ],
+)
+def test_why_it_is_no_obstacle(instance: Instance, obstacle: Obstacle, why_not: str) -> None:
+    assert why_no_obstacle(instance, obstacle) == why_not
 
 
 def test_more_joint_states_than_are_searched_are_refused_before_the_search(monkeypatch: pytest.MonkeyPatch) -> None:
