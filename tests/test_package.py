@@ -46,3 +46,9 @@ def test_an_index_can_place_the_package() -> None:
     assert PROJECT["urls"]
     assert len(PROJECT["keywords"]) > 3
     assert {each.partition(" ::")[0] for each in PROJECT["classifiers"]} >= {"Topic", "Intended Audience", "Typing"}
+
+
+def test_a_library_that_has_development_releases_alone_can_be_installed() -> None:
+    extras = PROJECT["optional-dependencies"]
+    wanted = [each for extra in ("prove", "test") for each in extras[extra] if each.startswith("python-sat")]
+    assert wanted == ["python-sat>=1.8.dev1,<2"] * 2, "pip takes no development release that a bound does not name"
