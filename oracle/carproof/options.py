@@ -62,6 +62,18 @@ now_option = click.option(
     default=0,
     help="The tick at which the request is made; robots keep what they have done by then.",
 )
+
+
+def asks_for_a_robot(function: F) -> F:
+    """INSTANCE, SOLUTION and ROBOT, and --now."""
+    return instance_argument(solution_argument(click.argument("robot")(now_option(function))))
+
+
+def gives_plans(function: F) -> F:
+    """--engine, and where the new plans go."""
+    return engine_option(output_option(json_option(function)))
+
+
 limit_option = click.option("--limit", type=click.IntRange(min=1), default=DEFAULT_LIMIT, help="The seconds to search.")
 planner_option = click.option(
     "--planner", metavar="NAME", default=Neighbourhood.name, help=f"One of {', '.join(PLANNERS)}."

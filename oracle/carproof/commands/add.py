@@ -8,20 +8,9 @@ import click
 from carp_spec import Neighbourhood, write_solution
 from carproof.answer import Answer
 from carproof.engines import engine_named
-from carproof.files import naming, read_instance_file, read_solution_file, refuse_two_standard_inputs
-from carproof.options import (
-    ADDING,
-    chosen_planner,
-    engine_option,
-    examples,
-    instance_argument,
-    json_option,
-    now_option,
-    output_option,
-    planner_options,
-    solution_argument,
-)
-from carproof.requests import require_new_robot, require_tick, robot_called, sound_solution
+from carproof.files import naming, read_sound
+from carproof.options import ADDING, asks_for_a_robot, chosen_planner, examples, gives_plans, planner_options
+from carproof.requests import require_new_robot, require_tick, robot_called
 from carproof.results import show_addition, write_result
 
 
@@ -34,14 +23,9 @@ from carproof.results import show_addition, write_result
         "carproof add town.json plans.json r2 --now 2 --m 5",
     ),
 )
-@instance_argument
-@solution_argument
-@click.argument("robot")
-@now_option
+@asks_for_a_robot
 @planner_options(*ADDING)
-@engine_option
-@output_option
-@json_option
+@gives_plans
 def command(  # noqa: PLR0913 - one parameter for each argument and option
     *,
     instance: str,
@@ -60,13 +44,9 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
     Exit codes: 0 the robot has a plan, 1 it has none and all plans stay as they were, 2 bad input.
     """
-    refuse_two_standard_inputs(instance, solution)
     require_tick(now, "$.now")
     chosen = cast("Neighbourhood", chosen_planner(Neighbourhood.name, options))
-    problem = read_instance_file(instance)
-    given = read_solution_file(solution)
-    with naming(solution):
-        before = sound_solution(problem, given)
+    problem, before = read_sound(instance, solution)
     id = robot_called(problem, robot)
     require_new_robot(problem, before, id, "ROBOT")
     with naming(instance):

@@ -12,21 +12,11 @@ from carproof.files import (
     InputFile,
     naming,
     read_bytes,
-    read_instance_file,
-    read_solution_file,
-    refuse_two_standard_inputs,
+    read_sound,
 )
 from carproof.giving_way import give_way
-from carproof.options import (
-    engine_option,
-    examples,
-    instance_argument,
-    json_option,
-    now_option,
-    output_option,
-    solution_argument,
-)
-from carproof.requests import require_tick, robot_called, sound_solution
+from carproof.options import asks_for_a_robot, examples, gives_plans
+from carproof.requests import require_tick, robot_called
 from carproof.results import write_result
 from carproof.tables import print_line, print_table
 
@@ -38,14 +28,9 @@ from carproof.tables import print_line, print_table
         "carproof give-way town.json plans.json person --now 12 --route route.json",
     ),
 )
-@instance_argument
-@solution_argument
-@click.argument("robot")
-@now_option
+@asks_for_a_robot
 @click.option("--route", type=InputFile(), help="A list of visits [resource, enter, leave] that ROBOT keeps to.")
-@engine_option
-@output_option
-@json_option
+@gives_plans
 def command(  # noqa: PLR0913 - one parameter for each argument and option
     *,
     instance: str,
@@ -65,13 +50,9 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     Exit codes: 0 no lawful update lets ROBOT arrive earlier, 1 it goes, but perhaps not first, or there is no plan and
     nothing is written, 2 bad input.
     """
-    refuse_two_standard_inputs(instance, solution, *([route] if route else []))
     require_tick(now, "$.now")
-    problem = read_instance_file(instance)
-    given = read_solution_file(solution)
+    problem, sound = read_sound(instance, solution, *([route] if route else []))
     id = robot_called(problem, robot)
-    with naming(solution):
-        sound = sound_solution(problem, given)
     visits = None if route is None else read_route(route)
     found = give_way(problem, sound, id, now, engine_named(engine), visits)
     for each in found.stuck:

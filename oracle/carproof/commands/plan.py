@@ -14,11 +14,9 @@ from carproof.files import naming, read_instance_file
 from carproof.options import (
     PLANNING,
     chosen_planner,
-    engine_option,
     examples,
+    gives_plans,
     instance_argument,
-    json_option,
-    output_option,
     planner_option,
     planner_options,
 )
@@ -43,9 +41,7 @@ from carproof.results import show_solution, write_result
     default=None,
     help="Plan robots that are left out together with others.  [default: unless --planner or --no-baseline is given]",
 )
-@engine_option
-@output_option
-@json_option
+@gives_plans
 @click.pass_context
 def command(  # noqa: PLR0913 - one parameter for each argument and option
     context: click.Context,

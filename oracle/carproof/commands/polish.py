@@ -12,7 +12,7 @@ from carproof.answer import Answer
 from carproof.engines import engine_named, sum_of_shortest_paths, warm
 from carproof.files import InputFile, naming, read_file, refuse_two_standard_inputs
 from carproof.foreign import Problem, solution_files
-from carproof.options import engine_option, examples, json_option, output_option
+from carproof.options import examples, gives_plans
 from carproof.progress import found_so_far, gap, search_progress
 from carproof.requests import sound_solution
 from carproof.results import show_unplanned, write_result
@@ -36,9 +36,7 @@ COLUMNS = ("plans", "unplanned", "total cost", "bound", "gap", "rounds", "time")
 @click.option("--seconds", type=float, help="For how long, in place of a number of rounds.")
 @click.option("--seed", type=int, default=0, help="The seed of all choices.")
 @click.option("--bound", type=InputFile(), help="The certificate of a lower bound, of `carproof bound`.")
-@engine_option
-@output_option
-@json_option
+@gives_plans
 def command(  # noqa: PLR0913 - one parameter for each argument and option
     *,
     problem: Problem,

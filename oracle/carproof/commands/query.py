@@ -17,15 +17,7 @@ from carproof.files import (
     write_whole,
 )
 from carproof.ops.planning import query_document
-from carproof.options import (
-    engine_option,
-    examples,
-    instance_argument,
-    json_option,
-    now_option,
-    output_option,
-    solution_argument,
-)
+from carproof.options import asks_for_a_robot, examples, gives_plans
 from carproof.requests import require_tick, robot_called, sound_solution
 from carproof.results import write_result
 from carproof.tables import print_line, print_table
@@ -39,14 +31,9 @@ from carproof.tables import print_line, print_table
         "carproof query town.json plans.json r7 --certificate r7.json",
     ),
 )
-@instance_argument
-@solution_argument
-@click.argument("robot")
-@now_option
+@asks_for_a_robot
 @click.option("--certificate", type=OutputFile(), help="Write a proof that no plan arrives earlier to this file.")
-@engine_option
-@output_option
-@json_option
+@gives_plans
 def command(  # noqa: PLR0913 - one parameter for each argument and option
     *,
     instance: str,

@@ -8,7 +8,7 @@ from carp_spec import total_cost, write_solution
 from carproof.answer import Answer
 from carproof.engines import engine_named
 from carproof.files import read_sound
-from carproof.options import engine_option, examples, instance_argument, json_option, output_option, solution_argument
+from carproof.options import examples, gives_plans, instance_argument, solution_argument
 from carproof.results import write_result
 from carproof.tables import print_table
 from carproof.untangling import untangle
@@ -20,9 +20,7 @@ from carproof.untangling import untangle
 )
 @instance_argument
 @solution_argument
-@engine_option
-@output_option
-@json_option
+@gives_plans
 def command(*, instance: str, solution: str, engine: str | None, output: Path | None, as_json: bool) -> Answer:
     """Replan robots of SOLUTION until no robots enter each other's places in a circle.
 
