@@ -80,13 +80,17 @@ class Page:
         found = [each for each in self.driver.find_elements(By.CSS_SELECTOR, selector) if text in each.text]
         found[0].click()
 
-    def robots(self) -> dict[str, str]:
-        """Where the map shows which robots: the names with their transforms."""
+    def robots(self) -> dict[str, tuple[float, ...]]:
+        """Where the map shows which robots: the names with places and radii in units of the drawing."""
         shown = self.script(
-            "return [...document.querySelectorAll('.map .robot')].filter((each) => each.style.display !== 'none')"
-            ".map((each) => [each.querySelector('title').textContent, each.getAttribute('transform')])"
+            "const { tracks } = JSON.parse(document.getElementById('scene').textContent);"
+            "return viewer.map.poses.map((pose, at) => pose && [tracks[at].label, pose.x, pose.y, pose.radius])"
         )
-        return dict(shown)
+        return {name: tuple(pose) for name, *pose in filter(None, shown)}
+
+    def number(self, expression: str) -> Any:  # noqa: ANN401 - whatever the expression is
+        """What an expression of the page is, such as `viewer.map.scale`."""
+        return self.script(f"return {expression}")
 
     def count(self, selector: str) -> int:
         """How many elements there are."""

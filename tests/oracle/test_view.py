@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
-from tests.oracle.running import BEHIND, EAST, EAST_PLAN, Run, corridor, solution
+from tests.oracle.running import BEHIND, EAST, EAST_PLAN, TWO_PLANNED, Document, Run, corridor, solution
 from tests.oracle.viewing import COLLIDING, CORRIDOR, HOSTILE, SVG, drawn, picture_of, scene_of, without_positions
 
 from carp_spec import Resource, ResourceGraph, judge, read_instance, read_solution
@@ -152,8 +152,39 @@ def test_one_way_moves_are_arrows(carproof: Run, tmp_path: Path) -> None:
     instance["graph"]["edges"].append({"source": "b", "target": "a"})
     picture = picture_of(drawn(carproof, tmp_path, instance, solution({"r1": EAST_PLAN}), "--at", "0"))
     paths = {each.get("class"): each.get("d", "") for each in picture.iter(f"{SVG}path")}
-    assert paths["edge"] == "M26 26L66 26"
+    assert "edge" not in paths
+    assert paths["joint"].count("M") == 4
     assert paths["one-way"].count("M") == paths["head"].count("z") == 3
+
+
+def square(*lacking: str) -> Document:
+    """Three by three cells, of which some are obstacles."""
+    cells = [f"{x}{y}" for y in range(3) for x in range(3) if f"{x}{y}" not in lacking]
+    ways = [
+        (a, b) for a in cells for b in cells if a < b and abs(int(a[0]) - int(b[0])) + abs(int(a[1]) - int(b[1])) == 1
+    ]
+    nodes = [{"id": cell, "x": 3 * int(cell[0]), "y": 3 * int(cell[1])} for cell in cells]
+    edges = [{"source": source, "target": target} for source, target in ways]
+    return {**corridor([]), "graph": {"nodes": nodes, "edges": edges}}
+
+
+def test_what_lies_between_the_squares_of_a_grid_is_a_wall(carproof: Run, tmp_path: Path) -> None:
+    def floor(instance: Document) -> str | None:
+        picture = picture_of(drawn(carproof, tmp_path, instance, solution({}), "--at", "0"))
+        paths = {each.get("class"): each.get("d", "") for each in picture.iter(f"{SVG}path")}
+        return paths["joint"] if paths.get("wall") == "M0 0h132v132h-132z" else None
+
+    whole = floor(square())
+    assert whole is not None
+    assert (whole.count("h8v32"), whole.count("h32v8"), whole.count("h8v8")) == (6, 6, 4)
+    assert "M42 42h8v8h-8z" in whole
+    around = floor(square("11"))
+    assert around is not None
+    assert (around.count("h8v32"), around.count("h32v8"), around.count("h8v8")) == (4, 4, 0)
+    slanted = square()
+    slanted["graph"]["edges"].append({"source": "00", "target": "11"})
+    assert floor(slanted) is None
+    assert floor(without_positions(square())) is None
 
 
 def test_robots_that_share_a_resource_stand_side_by_side() -> None:
@@ -225,6 +256,48 @@ def test_what_is_too_large_is_refused_with_the_limit(
     assert f"a picture shows at most 1 {name}, and this one would have {what}" in outcome.stderr.replace("\n", " \n")
     assert outcome.stderr.endswith("[view/size]\n")
     assert not (tmp_path / "out.html").exists()
+
+
+def trace(now: int, *behind: list[object]) -> Document:
+    """What robot r1 has done, and what r2 has, by a tick."""
+    plans = {"r1": [["a", 0, 2], ["b", 2, None]], "r2": behind}
+    return {
+        "format": "carproof-trace/1",
+        "now": now,
+        "plans": [{"robot": each, "visits": plans[each]} for each in plans],
+    }
+
+
+def test_a_trace_is_shown_beside_the_plans(carproof: Run, tmp_path: Path) -> None:
+    (tmp_path / "trace.json").write_text(json.dumps(trace(6, ["b", 0, 1], ["c", 1, None])))
+    scene = scene_of(drawn(carproof, tmp_path, CORRIDOR, TWO_PLANNED, "--trace", str(tmp_path / "trace.json")))
+    done = [
+        [(scene["places"][scene["stands"][stand]["place"]]["label"], *ticks) for stand, *ticks in track["done"]]
+        for track in scene["tracks"]
+    ]
+    assert done == [[("a", 0, 2), ("b", 2, None)], [("b", 0, 1), ("c", 1, None)]]
+    assert [track["note"] for track in scene["tracks"]] == ["late by 1", ""]
+    assert (scene["now"], scene["last"], scene["violations"]) == (6, 6, [])
+    assert [place["lanes_done"] for place in scene["places"]] == [1, 1, 1, 0, 0]
+
+
+def test_the_rules_that_a_trace_breaks_are_listed_where_the_plans_break_none(carproof: Run, tmp_path: Path) -> None:
+    (tmp_path / "trace.json").write_text(json.dumps(trace(6, ["b", 0, None])))
+    option = ("--trace", str(tmp_path / "trace.json"))
+    scene = scene_of(drawn(carproof, tmp_path, CORRIDOR, TWO_PLANNED, *option))
+    assert [rule["id"] for rule in scene["rules"]] == ["execution/order"]
+    assert scene["violations"][0]["tracks"] == [0]
+    scene = scene_of(drawn(carproof, tmp_path, CORRIDOR, COLLIDING, *option))
+    assert [rule["id"] for rule in scene["rules"]] == ["joint/capacity"]
+
+
+@pytest.mark.parametrize("option", [("--chart",), ("--at", "1")])
+def test_a_still_with_a_trace_is_refused(carproof: Run, tmp_path: Path, option: tuple[str, ...]) -> None:
+    (tmp_path / "town.json").write_text(json.dumps(CORRIDOR))
+    town = tmp_path / "town.json"
+    outcome = carproof("view", town, town, "--trace", town, *option)
+    assert outcome.code == 2
+    assert "--trace is for the page, without --at and --chart." in outcome.stderr
 
 
 def test_only_the_first_of_very_many_violations_are_listed(

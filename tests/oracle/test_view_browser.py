@@ -12,12 +12,26 @@ from tests.oracle.browser import Page, chromium, logged
 from tests.oracle.viewing import COLLIDING, CORRIDOR, HOSTILE, SVG, picture_of
 
 from carp_reference import plan
-from carp_spec import Carp, Instance, Plan, Robot, Solution, Visit, read_instance, read_solution
+from carp_spec import (
+    Carp,
+    Instance,
+    Plan,
+    Resource,
+    ResourceGraph,
+    Robot,
+    Solution,
+    Visit,
+    read_instance,
+    read_solution,
+)
+from carp_spec.traces import Trace
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
+from carproof.viewer.map_picture import ROBOT_RADIUS
 from carproof.viewer.page import page
 from carproof.viewer.stills import map_still
 
 LATER = 30
+FEWEST_FRAMES = 30
 CHART_IS_DRAWN = "return document.getElementById('chart').width > 400"
 
 
@@ -47,6 +61,31 @@ def town() -> tuple[Instance, Solution]:
     return instance, plan(instance, Carp())
 
 
+@pytest.fixture(scope="module")
+def warehouse() -> tuple[Instance, Solution]:
+    """450 robots on 120 x 30 cells, fifteen in a row, that drive a hundred cells to the right one behind the other."""
+    resources = tuple(Resource(f"{x},{y}", x=x, y=y) for y in range(30) for x in range(120))
+    edges = tuple((f"{x},{y}", f"{x + 1},{y}") for y in range(30) for x in range(119))
+    starts = [(x, y) for y in range(30) for x in range(15)]
+    robots = tuple(Robot(f"r{at}", f"{x},{y}", f"{x + 100},{y}") for at, (x, y) in enumerate(starts))
+    plans = tuple(
+        Plan(f"r{at}", tuple(Visit(f"{x + tick},{y}", tick, tick + 1) for tick in range(101)))
+        for at, (x, y) in enumerate(starts)
+    )
+    return Instance(ResourceGraph(resources, edges), robots), Solution(plans, tuple(each.id for each in robots))
+
+
+def rotation() -> tuple[Instance, Solution]:
+    """Four robots on 2 x 2 cells, each of which enters the place of the next at tick 1."""
+    ring = ((0, 0), (1, 0), (1, 1), (0, 1))
+    resources = tuple(Resource(f"{x}{y}", x=x, y=y) for x, y in ring)
+    names = [each.id for each in resources] * 2
+    edges = tuple((names[at], names[at + 1]) for at in range(4))
+    robots = tuple(Robot(f"r{at}", names[at], names[at + 1]) for at in range(4))
+    plans = tuple(Plan(f"r{at}", (Visit(names[at], 0, 1), Visit(names[at + 1], 1, 2))) for at in range(4))
+    return Instance(ResourceGraph(resources, edges), robots), Solution(plans, tuple(each.id for each in robots))
+
+
 def wait_for(shown: Page, body: str) -> None:
     WebDriverWait(shown.driver, LATER).until(lambda _: shown.script(body))
 
@@ -72,19 +111,16 @@ def test_the_page_and_the_still_agree_at_every_tick(
     shown = opened(driver, tmp_path, *town)
     for tick in (0, 1, 7, 15):
         still = picture_of(map_still(*town, tick, "town").decode())
-        expected = {each.findtext(f"{SVG}title"): each.get("transform", "").replace("e-2", "") for each in still[-1]}
-        drawn = shown.robots()
-        assert {name: places(at) for name, at in drawn.items()} == {
-            name: places(at, percent=True) for name, at in expected.items()
-        }
+        assert shown.robots() == {each.findtext(f"{SVG}title"): placed(each.get("transform", "")) for each in still[-1]}
         shown.script("document.getElementById('forward').click()")
         for _ in range({0: 0, 1: 5, 7: 7, 15: 0}[tick]):
             shown.script("document.getElementById('forward').click()")
 
 
-def places(transform: str, *, percent: bool = False) -> tuple[float, ...]:
-    x, y, scale = transform.replace("translate(", "").replace("scale(", "").replace(")", "").split()
-    return float(x), float(y), float(scale) / (100 if percent else 1)
+def placed(transform: str) -> tuple[float, ...]:
+    """The place and the radius of a robot in a still."""
+    x, y, scale = transform.replace("translate(", "").replace("scale(", "").replace("e-2)", "").replace(")", "").split()
+    return float(x), float(y), float(scale) / ROBOT_RADIUS
 
 
 def slider(shown: Page) -> int:
@@ -140,7 +176,7 @@ def test_a_planted_collision_is_counted_listed_and_marked_at_its_tick(collision:
     assert collision.text("violations").startswith("joint/capacity 2\nAt no tick do more robots")
     marks = []
     for _ in range(4):
-        marks.append((collision.count(".map .marks .violation"), collision.count(".robot.blamed")))
+        marks.append((collision.number("viewer.map.broken.length"), collision.number("viewer.map.blamed.size")))
         collision.press(Keys.ARROW_RIGHT)
     assert marks == [(0, 0), (1, 2), (1, 2), (0, 0)]
     assert collision.robots()
@@ -151,7 +187,7 @@ def test_a_click_on_a_violation_goes_to_its_tick_and_robots(collision: Page) -> 
     assert collision.tick == "tick 2 of 5"
     assert [each[:2] for each in collision.chosen("robots")] == ["r1", "r2"]
     assert collision.text("about").startswith("joint/capacity: resource c in [2,3): robots r1, r2")
-    assert collision.count(".robot.chosen") == 2
+    assert collision.number("viewer.map.chosen") == [0, 1]
     collision.press("n")
     assert collision.tick == "tick 1 of 5"
 
@@ -162,18 +198,170 @@ def test_a_click_on_a_robot_chooses_it_in_map_list_and_chart(collision: Page) ->
     collision.click("#robots button", "r1")
     assert collision.tick == "tick 0 of 5"
     assert collision.text("about") == "robot r1: released at 0, arrives at 2, cost 2, now in a [0, 1)"
-    assert collision.count(".map .trail path") == 2
-    collision.script("document.querySelectorAll('.map .robot')[1].dispatchEvent(new Event('click', {bubbles: true}))")
+    at_robot(collision, "r2", "pointerdown", "pointerup")
     assert [each[:2] for each in collision.chosen("robots")] == ["r2"]
     collision.press(Keys.ESCAPE)
     assert collision.chosen("robots") == []
+
+
+def at_robot(shown: Page, name: str, *events: str, right: int = 0) -> None:
+    """Dispatch pointer events where the map shows a robot, and the last of them some pixels to the right of it."""
+    x, y, _ = shown.robots()[name]
+    for event in events:
+        shown.script(
+            "const [kind, x, y] = arguments, { map } = viewer, { left, top } = map.view.getBoundingClientRect();"
+            "map.view.dispatchEvent(new PointerEvent(kind, { pointerId: 1, clientX: left + x, clientY: top + y }))",
+            event,
+            shown.number(f"viewer.map.px({x})") + (0 if event == events[0] else right),
+            shown.number(f"viewer.map.py({y})"),
+        )
+
+
+VIEW = "[viewer.map.x, viewer.map.y, viewer.map.scale]"
+
+
+def test_choosing_a_robot_zooms_to_it_and_keeps_it_in_sight(
+    driver: Chrome, tmp_path: Path, warehouse: tuple[Instance, Solution]
+) -> None:
+    shown = opened(driver, tmp_path, *warehouse)
+    assert shown.number("viewer.map.isWhole")
+    small = shown.number("viewer.map.scale")
+    shown.script("document.querySelectorAll('#robots button')[7].click()")
+    assert shown.number("viewer.map.scale") > 2 * small
+    for _ in range(12):
+        shown.press(Keys.ARROW_RIGHT)
+        x, y, _ = shown.robots()["r7"]
+        at = shown.number(f"[viewer.map.px({x}), viewer.map.py({y}), viewer.map.size.width, viewer.map.size.height]")
+        assert 0 <= at[0] <= at[2]
+        assert 0 <= at[1] <= at[3]
+    shown.press("0")
+    assert shown.number("viewer.map.scale") == small
+
+
+def test_a_click_on_a_small_robot_zooms_around_it(
+    driver: Chrome, tmp_path: Path, warehouse: tuple[Instance, Solution]
+) -> None:
+    shown = opened(driver, tmp_path, *warehouse)
+    before = shown.number(VIEW)
+    at_robot(shown, "r40", "pointerdown", "pointerup")
+    assert shown.number("viewer.map.chosen") == [40]
+    assert shown.number(VIEW)[2] > before[2]
+
+
+def test_the_map_is_moved_by_dragging_and_keys_and_zoomed_by_wheel_pinch_and_keys(
+    driver: Chrome, tmp_path: Path, warehouse: tuple[Instance, Solution]
+) -> None:
+    shown = opened(driver, tmp_path, *warehouse)
+    views = [shown.number(VIEW)]
+    shown.press("i", "i", "i")
+    views.append(shown.number(VIEW))
+    assert views[-1][2] == pytest.approx(views[0][2] * 1.5**3)
+    at_robot(shown, "r1", "pointerdown", "pointermove", "pointerup", right=-60)
+    views.append(shown.number(VIEW))
+    assert shown.number("viewer.map.chosen") == []
+    assert views[-1][0] == pytest.approx(views[-2][0] + 60 / views[-2][2])
+    shown.press("a", "w")
+    assert shown.number(VIEW)[0] < views[-1][0]
+    shown.press("o")
+    assert shown.number(VIEW)[2] == pytest.approx(views[-1][2] / 1.5)
+    before = shown.number(VIEW)[2]
+    shown.script("viewer.map.view.dispatchEvent(new WheelEvent('wheel', { deltaY: -100, clientX: 300, clientY: 200 }))")
+    wheeled = shown.number(VIEW)[2]
+    assert wheeled > before
+    for kind, pointer, x in (("down", 1, 300), ("down", 2, 400), ("move", 2, 500), ("up", 1, 300), ("up", 2, 500)):
+        shown.script(
+            "viewer.map.view.dispatchEvent(new PointerEvent(arguments[0],"
+            "{ pointerId: arguments[1], clientX: arguments[2], clientY: 200 }))",
+            f"pointer{kind}",
+            pointer,
+            x,
+        )
+    assert shown.number(VIEW)[2] == pytest.approx(min(4, 2 * wheeled))
+
+
+def test_panels_without_content_take_no_room(driver: Chrome, tmp_path: Path) -> None:
+    instance = read_instance(json.dumps(CORRIDOR).encode())
+    shown = opened(driver, tmp_path, Instance(instance.graph, ()), Solution((), ()))
+    assert shown.number("document.getElementById('map-panel').clientWidth") == 1280
+    shown = opened(driver, tmp_path, instance, Solution((), (), ("r1", "r2")))
+    assert shown.number("document.getElementById('chart-panel').hidden")
+    assert shown.number("document.getElementById('violations-panel').hidden")
+    assert shown.number("document.getElementById('robots-panel').clientHeight") > 500
+
+
+def test_starts_and_goals_are_drawn_until_they_are_hidden(
+    driver: Chrome, tmp_path: Path, town: tuple[Instance, Solution]
+) -> None:
+    shown = opened(driver, tmp_path, *town)
+    track = town[0].robots[0]
+    count = (
+        "(() => { const { map } = viewer, place = scene.places.find((each) => each.label === arguments[0]);"
+        "map.draw(); const half = 12 * map.scale; const pen = map.canvas.getContext('2d');"
+        "const data = pen.getImageData(map.px(place.at[0]) - half, map.py(place.at[1]) - half - 1, 2 * half, 2).data;"
+        "return data.filter((each) => each).length; })()"
+    ).replace("scene.places", "JSON.parse(document.getElementById('scene').textContent).places")
+    goal = f"{track.goal}"
+    shown.press(Keys.END)
+    assert shown.number(count.replace("arguments[0]", f"'{goal}'")) > 0
+    shown.press("g")
+    assert shown.number(count.replace("arguments[0]", f"'{goal}'")) == 0
+
+
+def test_robots_that_wait_in_a_circle_are_shown(driver: Chrome, tmp_path: Path) -> None:
+    instance, solution = rotation()
+    shown = opened(driver, tmp_path, instance, solution)
+    shown.press("l")
+    assert shown.text("about").endswith("4 robots wait for others, 4 of them in a circle.")
+    assert sorted(shown.number("(viewer.map.draw(), viewer.map.waits)")) == [[0, 1], [1, 2], [2, 3], [3, 0]]
+    shown.press(Keys.ARROW_RIGHT)
+    assert shown.text("about").endswith("0 robots wait for others.")
+
+
+def test_robots_are_where_the_trace_says_and_rings_where_they_were_to_be(driver: Chrome, tmp_path: Path) -> None:
+    instance, solution = rotation()
+    happened = Trace(1, tuple(Plan(plan.robot, (Visit(plan.visits[0].resource, 0, None),)) for plan in solution.plans))
+    file = tmp_path / "page.html"
+    file.write_bytes(page(instance, solution, "town.json", happened))
+    shown = Page(driver, file)
+    start = shown.robots()
+    shown.press(Keys.ARROW_RIGHT, "l")
+    assert shown.robots() == start
+    ghosts = shown.number("viewer.map.ghosts.map((ghost) => [ghost.x, ghost.y])")
+    places = [list(pose[:2]) for pose in start.values()]
+    assert ghosts == [*places[1:], places[0]]
+    assert "4 of them in a circle" in shown.text("about")
+    assert logged(driver, "browser") == []
+
+
+@pytest.mark.ci
+@pytest.mark.parametrize("width", [1280, 380])
+def test_450_robots_play_at_30_frames_a_second_without_a_graphics_card(
+    driver: Chrome, tmp_path: Path, warehouse: tuple[Instance, Solution], width: int
+) -> None:
+    shown = opened(driver, tmp_path, *warehouse, width=width)
+    shown.press("l", Keys.SPACE)
+    assert shown.text("play") == "Pause"
+    assert frames_a_second(shown) >= FEWEST_FRAMES
+
+
+def frames_a_second(shown: Page) -> float:
+    """How often the page draws in a second, over three seconds."""
+    shown.driver.set_script_timeout(LATER)
+    counted = shown.driver.execute_async_script(
+        "const finish = arguments[0], began = performance.now(); let frames = 0;"
+        "const count = (now) => { frames += 1;"
+        "if (now - began < 3000) requestAnimationFrame(count); else finish(frames * 1000 / (now - began)); };"
+        "requestAnimationFrame(count)"
+    )
+    assert isinstance(counted, float | int)
+    return counted
 
 
 def test_a_click_in_the_chart_goes_to_its_tick_and_robot(collision: Page) -> None:
     wait_for(collision, CHART_IS_DRAWN)
     collision.script(
         "const box = document.getElementById('chart').getBoundingClientRect();"
-        "const width = (box.width - 86) / 6;"
+        "const width = viewer.chart.pixels;"
         "document.getElementById('chart').dispatchEvent(new MouseEvent('click',"
         "{clientX: box.x + 78 + 3.5 * width, clientY: box.y + 22 + 4 * 17 + 2 * 13 - 12, bubbles: true}))"
     )

@@ -4,6 +4,7 @@ from typing import Any
 
 from carp_spec import Instance, Refusal, Rule, Solution
 from carp_spec.rule import DESIGN, rule
+from carp_spec.traces import Trace
 
 MOST_RESOURCES = 50_000
 MOST_EDGES = 200_000
@@ -41,15 +42,18 @@ _MOST = {
 }
 
 
-def refuse_large_pictures(instance: Instance, solution: Solution) -> None:
-    """Raise `Refusal` where a picture of the solution would be too large."""
+def refuse_large_pictures(instance: Instance, solution: Solution, trace: Trace | None = None) -> None:
+    """Raise `Refusal` where a picture of the solution, and of what has happened, would be too large."""
+    plans = solution.plans if trace is None else solution.plans + trace.plans
     refuse_more("resources", len(instance.graph.resources))
     refuse_more("edges", len(instance.graph.edges))
-    refuse_more("robots", max(len(instance.robots), len(solution.plans), len(solution.order), len(solution.unplanned)))
-    refuse_more("visits", sum(len(plan.visits) for plan in solution.plans))
+    refuse_more("robots", max(len(instance.robots), len(plans), len(solution.order), len(solution.unplanned)))
+    refuse_more("visits", sum(len(plan.visits) for plan in plans))
+    if trace is not None:
+        refuse_tick(trace.now, "now")
     for robot in instance.robots:
         refuse_tick(robot.release, f"the release of robot {robot.id}")
-    for plan in solution.plans:
+    for plan in plans:
         for visit in plan.visits:
             for tick in (visit.enter, visit.leave):
                 refuse_tick(tick or 0, f"a visit of robot {plan.robot} to {visit.resource}")

@@ -6,7 +6,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 from carp_spec import ResourceGraph
 from carproof.viewer.lanes import SIDE
-from carproof.viewer.placement import Point
+from carproof.viewer.placement import MARGIN, UNIT, Point
 from carproof.viewer.scene import Broken, Place, Scene, Stand, Track
 from carproof.viewer.shapes import box, drawing, group, hatch_definition, line, path, text
 
@@ -18,24 +18,29 @@ SIZE_OF_LENGTH = (0, 13, 12, 10, 8)
 ROBOT_RADIUS = 10
 HEAD = 9
 HALF = SIDE // 2
+SPARSEST = 4
+"""A grid has at most this many squares for each resource."""
 
 
 def map_picture(graph: ResourceGraph, scene: Scene) -> Element:
-    """Everything that stays, and three empty groups above it: marks of violations, the trail, the robots."""
+    """All that stays: resources, moves, names."""
     picture = drawing(scene.width, scene.height, **{"class": "map"})
     hatch_definition(picture)
     ground = group(picture, "ground")
     ways = edge_ends(graph, scene)
     one_way = [(source, target) for source, target, back in ways if not back]
-    path(ground, "edge thin" if scene.computed else "edge", (line([one, two]) for one, two, back in ways if back))
-    path(ground, "one-way", (line(ends) for ends in one_way))
     located = [(place, place.at) for place in scene.places if place.at is not None]
+    if is_grid(ways, scene):
+        picture.set("class", "map grid")
+        path(ground, "wall", [box(0, 0, scene.width, scene.height)])
+        path(ground, "joint", joints(ways))
+    else:
+        path(ground, "edge thin" if scene.computed else "edge", (line([one, two]) for one, two, back in ways if back))
+    path(ground, "one-way", (line(ends) for ends in one_way))
     path(ground, "cell", (cell(at) for place, at in located if place.capacity == "1"))
     path(ground, "cell roomy", (cell(at) for place, at in located if place.capacity != "1"))
     path(ground, "head", (arrow_head(*ends) for ends in one_way))
     write_names(ground, located)
-    for kind in ("marks", "trail", "robots"):
-        group(picture, kind)
     return picture
 
 
@@ -51,6 +56,30 @@ def edge_ends(graph: ResourceGraph, scene: Scene) -> list[tuple[Point, Point, bo
         if not again and one is not None and two is not None:
             found.append((one, two, back))
     return found
+
+
+def is_grid(ways: Sequence[tuple[Point, Point, bool]], scene: Scene) -> bool:
+    """Whether the resources are squares of a grid that fill much of it, so that all between them can be a wall."""
+    located = [place.at for place in scene.places if place.at is not None]
+    return (
+        not scene.computed
+        and scene.width * scene.height <= SPARSEST * len(located) * UNIT * UNIT
+        and all((x - MARGIN) % UNIT == 0 and (y - MARGIN) % UNIT == 0 for x, y in located)
+        and all(abs(one[0] - two[0]) + abs(one[1] - two[1]) == UNIT for one, two, _ in ways)
+    )
+
+
+def joints(ways: Sequence[tuple[Point, Point, bool]]) -> Iterator[str]:
+    """Path data of the floor between squares that are joined, and between four that are joined in a ring."""
+    joined = {(min(one, two), max(one, two)) for one, two, _ in ways}
+    for (x, y), (end_x, end_y) in sorted(joined):
+        if end_y == y:
+            yield box(x + HALF, y - HALF, UNIT - SIDE, SIDE)
+            below, beside = (x, y + UNIT), (end_x, y + UNIT)
+            if {((x, y), below), ((end_x, y), beside), (below, beside)} <= joined:
+                yield box(x + HALF, y + HALF, UNIT - SIDE, UNIT - SIDE)
+        else:
+            yield box(x - HALF, y + HALF, SIDE, UNIT - SIDE)
 
 
 def cell(centre: Point) -> str:
@@ -116,7 +145,7 @@ def violations_at(scene: Scene, tick: int) -> Iterator[Broken]:
 def still_map(graph: ResourceGraph, scene: Scene, tick: int) -> Element:
     """The map at a tick, with its violations."""
     picture = map_picture(graph, scene)
-    marks, _, robots = picture[-3:]
+    marks, robots = group(picture, "marks"), group(picture, "robots")
     wrong = list(violations_at(scene, tick))
     for place in dict.fromkeys(each.place for each in wrong if each.place is not None):
         centre = scene.places[place].at

@@ -12,23 +12,22 @@ from string import Template
 import msgspec
 
 from carp_spec import Instance, Solution
+from carp_spec.traces import Trace
 from carproof.viewer.limits import refuse_more
-from carproof.viewer.map_picture import map_picture, robot_picture
+from carproof.viewer.map_picture import map_picture
 from carproof.viewer.scene import Scene
 from carproof.viewer.shapes import svg_text
 from carproof.viewer.staging import make_scene
 from carproof.viewer.stills import STYLES, page_file
 
-SCRIPTS = ("scene.js", "clock.js", "map.js", "chart.js", "lists.js", "main.js")
+SCRIPTS = ("scene.js", "clock.js", "waits.js", "map.js", "chart.js", "lists.js", "main.js")
 UNSAFE_IN_HTML = {ord(c): f"\\u{ord(c):04x}" for c in "<>&\u2028\u2029"}
 
 
-def page(instance: Instance, solution: Solution, title: str) -> bytes:
-    """The page of a solution."""
-    scene = make_scene(instance, solution, title)
+def page(instance: Instance, solution: Solution, title: str, trace: Trace | None = None) -> bytes:
+    """The page of a solution, and of what has happened if there is a trace."""
+    scene = make_scene(instance, solution, title, trace)
     picture = map_picture(instance.graph, scene)
-    for track in scene.tracks:
-        robot_picture(picture[-1], track)
     style = "\n".join(map(page_file, (*STYLES, "page.css")))
     script = "\n".join(map(page_file, SCRIPTS))
     filled = Template(page_file("page.html")).substitute(

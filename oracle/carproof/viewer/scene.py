@@ -11,13 +11,17 @@ from carp_spec.windows import Occupation
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """A resource: where its centre is drawn, if it has a place at all, and its lanes and free windows over time."""
+    """A resource: where its centre is drawn, if it has a place at all, and its lanes and free windows over time.
+
+    `lanes_done` are those of the visits that have happened.
+    """
 
     label: str
     capacity: str
     duration: str
     at: tuple[int, int] | None
     lanes: int
+    lanes_done: int
     windows: tuple[Occupation, ...]
 
 
@@ -33,7 +37,10 @@ class Stand:
 
 @dataclass(frozen=True, slots=True)
 class Track:
-    """A robot with one of its plans, or with none; a stay is (stand, enter, leave), and `note` what is odd."""
+    """A robot with one of its plans, or with none; a stay is (stand, enter, leave), and `note` what is odd.
+
+    `stays` are planned, and `done` have happened.
+    """
 
     label: str
     short: str
@@ -45,6 +52,7 @@ class Track:
     cost: int | None
     note: str
     stays: tuple[tuple[int, int, int | None], ...]
+    done: tuple[tuple[int, int, int | None], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,13 +80,16 @@ class BrokenRule:
 class Scene:
     """All that a picture shows.
 
-    `first` and `last` are the ticks between which something happens; `computed` says that the places are not the
-    instance's own positions.
+    `first` and `last` are the ticks between which something happens, and `now` is the tick of the trace, if there is
+    one; `gap` is how many ticks a resource is empty before it is entered again; `computed` says that the places are
+    not the instance's own positions.
     """
 
     title: str
     first: int
     last: int
+    now: int | None
+    gap: int
     cost: str
     unplanned: int
     computed: bool

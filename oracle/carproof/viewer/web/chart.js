@@ -1,6 +1,7 @@
 // The chart of resources by time, on a canvas as large as its window: only what is in sight is drawn.
 
 const LANE = 13;
+const LANE_DONE = 6;
 const GAP = 4;
 const LABELS = 78;
 const AXIS = 22;
@@ -10,35 +11,23 @@ const WIDEST_TICK = 80;
 const NARROWEST_TICK = 12;
 const ROUND_STEPS = [...Array(9).keys()].flatMap((power) => [1, 2, 5].map((digit) => digit * 10 ** power));
 
-/** The colours of the style sheets, for the canvas. */
-function colours() {
-  const style = getComputedStyle(document.documentElement);
-  const named = (name) => style.getPropertyValue(`--${name}`).trim();
-  const plain = ["paper", "panel", "ink", "faint", "line", "window", "wrong", "accent"];
-  const found = Object.fromEntries(plain.map((name) => [name, named(name)]));
-  found.tints = [...Array(6).keys()].map((number) => {
-    const probe = document.body.appendChild(make("i", `tint${number}`));
-    const tint = getComputedStyle(probe);
-    const pair = { fill: tint.getPropertyValue("--fill").trim(), text: tint.getPropertyValue("--text").trim() };
-    probe.remove();
-    return pair;
-  });
-  return found;
-}
-
 class Chart {
   constructor(view, size, canvas, pick) {
     Object.assign(this, { view, size, canvas });
-    this.pen = canvas.getContext("2d");
     this.chosen = [];
     this.time = scene.first;
     this.end = scene.last + Math.max(1, (scene.last - scene.first) / 40);
     this.colours = colours();
     this.stays = scene.places.map(() => []);
+    this.done = scene.places.map(() => []);
     scene.tracks.forEach((track, number) => {
       for (const [stand, enter, leave] of track.stays) {
         const { place, lane } = scene.stands[stand];
         this.stays[place].push({ number, lane, enter, leave });
+      }
+      for (const [stand, enter, leave] of track.done) {
+        const { place, lane } = scene.stands[stand];
+        this.done[place].push({ number, lane, enter, leave: leave ?? scene.now + 1 });
       }
     });
     this.violations = scene.places.map(() => []);
@@ -59,14 +48,15 @@ class Chart {
   showRows(which) {
     this.which = which;
     const everyPlace = scene.places.map((_, place) => place);
-    const visited = everyPlace.filter((place) => this.stays[place].length);
+    const visited = everyPlace.filter((place) => this.stays[place].length || this.done[place].length);
     const ofChosen = this.chosen.flatMap((number) =>
       scene.tracks[number].stays.map(([stand]) => scene.stands[stand].place),
     );
     const places = { all: everyPlace, visited, selected: [...new Set(ofChosen)] }[which];
     let top = AXIS;
     this.rows = places.map((place) => {
-      const row = { place, top, height: scene.places[place].lanes * LANE };
+      const { lanes, lanes_done: done } = scene.places[place];
+      const row = { place, top, height: lanes * LANE + done * LANE_DONE };
       top += row.height + GAP;
       return row;
     });
@@ -86,7 +76,7 @@ class Chart {
     this.pixels = Math.max(this.least, Math.min(this.pixels ?? NARROWEST_TICK, WIDEST_TICK));
     this.size.style.width = `${LABELS + this.pixels * (this.end - scene.first)}px`;
     this.size.style.height = `${this.height}px`;
-    this.drawSoon();
+    this.draw();
   }
 
   zoom(factor) {
@@ -126,18 +116,16 @@ class Chart {
 
   draw() {
     const { clientWidth: width, clientHeight: height, scrollTop } = this.view;
-    const ratio = devicePixelRatio;
-    this.canvas.width = width * ratio;
-    this.canvas.height = height * ratio;
     this.canvas.style.width = `${width}px`;
     this.canvas.style.height = `${height}px`;
-    this.pen.scale(ratio, ratio);
+    this.pen = clearedPen(this.canvas, width, height);
     this.pen.textBaseline = "middle";
     this.pen.font = "11px system-ui, sans-serif";
     this.fill(this.colours.paper, 0, 0, width, height);
     this.drawGrid(width, height);
     const inSight = this.rows.filter((row) => row.top + row.height > scrollTop && row.top < scrollTop + height);
     for (const row of inSight) this.drawRow(row, row.top - scrollTop, width);
+    if (scene.now !== null) this.fill(this.colours.accent, Math.round(this.x(scene.now + 1)), 0, 1, height);
     const now = Math.round(this.x(this.time)) + 0.5;
     this.fill(this.colours.ink, now - 1, 0, 2, height);
     this.drawLabels(inSight, scrollTop, height);
@@ -163,57 +151,41 @@ class Chart {
     return right < LABELS || left > width ? null : [left, Math.max(2, right - left)];
   }
 
+  /** A row: the visits as planned above the free windows, and below them, thinner, those that have happened. */
   drawRow({ place, height }, top, width) {
+    const planned = scene.places[place].lanes * LANE;
     for (const [start, end] of scene.places[place].windows) {
       const part = this.span(start, end, width);
-      if (part) this.fill(this.colours.window, part[0], top, part[1], height);
+      if (part) this.fill(this.colours.window, part[0], top, part[1], planned);
     }
-    for (const stay of this.stays[place]) this.drawStay(stay, top, width);
+    for (const stay of this.stays[place]) this.drawStay(stay, top + stay.lane * LANE, LANE, width);
+    for (const stay of this.done[place])
+      this.drawStay(stay, top + planned + stay.lane * LANE_DONE, LANE_DONE, width);
     for (const { start, end } of this.violations[place]) {
       const part = this.span(start, end, width);
-      if (part) this.drawViolation(part[0], top, part[1], height);
+      if (part) drawHatched(this.pen, this.colours.wrong, part[0], top, part[1], height);
     }
   }
 
-  drawStay({ number, lane, enter, leave }, top, width) {
+  drawStay({ number, enter, leave }, y, high, width) {
     const part = this.span(enter, leave, width);
     if (!part) return;
     const [left, wide] = part;
     const { tint, short } = scene.tracks[number];
-    const y = top + lane * LANE;
     const isChosen = this.chosen.includes(number);
     this.pen.globalAlpha = this.chosen.length && !isChosen ? 0.35 : 1;
-    this.fill(this.colours.tints[tint].fill, left, y + 1, Math.max(1, wide - 1), LANE - 2);
-    if (wide > short.length * TEXT_WIDTH + 2) {
+    this.fill(this.colours.tints[tint].fill, left, y + 1, Math.max(1, wide - 1), high - 2);
+    if (high === LANE && wide > short.length * TEXT_WIDTH + 2) {
       this.pen.fillStyle = this.colours.tints[tint].text;
       this.pen.textAlign = "center";
-      this.pen.fillText(short, left + wide / 2, y + LANE / 2 + 0.5);
+      this.pen.fillText(short, left + wide / 2, y + high / 2 + 0.5);
     }
     this.pen.globalAlpha = 1;
     if (isChosen) {
       this.pen.strokeStyle = this.colours.ink;
       this.pen.lineWidth = 2;
-      this.pen.strokeRect(left, y + 1, Math.max(1, wide - 1), LANE - 2);
+      this.pen.strokeRect(left, y + 1, Math.max(1, wide - 1), high - 2);
     }
-  }
-
-  drawViolation(left, top, width, height) {
-    const { pen } = this;
-    pen.save();
-    pen.strokeStyle = this.colours.wrong;
-    pen.lineWidth = 2;
-    pen.strokeRect(left, top, width, height);
-    pen.beginPath();
-    pen.rect(left, top, width, height);
-    pen.clip();
-    pen.beginPath();
-    for (let x = left - height; x < left + width; x += 5) {
-      pen.moveTo(x, top + height);
-      pen.lineTo(x + height, top);
-    }
-    pen.lineWidth = 1;
-    pen.stroke();
-    pen.restore();
   }
 
   drawLabels(rows, scrollTop, height) {

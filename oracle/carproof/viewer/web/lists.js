@@ -70,7 +70,7 @@ class RobotList {
 
 /** One line about a robot at the time. */
 function aboutRobot(track, time) {
-  const at = stayAt(track, time);
+  const at = stayAt(track.stays, time);
   const [stand, enter, leave] = at < 0 ? [] : track.stays[at];
   const now =
     at < 0 ? "on no resource now" : `now in ${scene.places[scene.stands[stand].place].label} ${interval(enter, leave)}`;

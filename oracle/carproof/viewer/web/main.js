@@ -1,9 +1,24 @@
 // Wires the parts of the page together.
 
 const clock = new Clock(scene.first, scene.last);
+const STEP = 80;
+const WIDE = 1.7;
 const state = { chosen: [], violation: null };
 
-const map = new MapView(document.querySelector("#map-view svg"), (chosen) => choose(chosen));
+/** Panels without content take no room, and a wide map gets most of the width. */
+function arrange() {
+  byId("chart-panel").hidden = !scene.tracks.some(({ stays, done }) => stays.length || done.length);
+  byId("violations-panel").hidden = !scene.rules.length;
+  byId("robots-panel").hidden = !scene.tracks.length;
+  byId("lists").hidden = !scene.rules.length && !scene.tracks.length;
+  byId("map-view").style.setProperty("--aspect", `${scene.width} / ${scene.height}`);
+  document.body.classList.toggle("wide", scene.width > WIDE * scene.height);
+  document.body.classList.toggle("no-chart", byId("chart-panel").hidden);
+  document.body.classList.toggle("no-lists", byId("lists").hidden);
+}
+
+arrange();
+const map = new MapView(byId("map-view"), chooseOnMap);
 const chart = new Chart(byId("chart-view"), byId("chart-size"), byId("chart"), (tick, chosen) => {
   clock.stopAt(tick);
   if (chosen) choose(chosen);
@@ -13,26 +28,38 @@ const robots = new RobotList(byId("robots"), jumpToRobot);
 
 function choose(chosen, violation = null) {
   Object.assign(state, { chosen, violation });
-  map.drawTrail(chosen);
+  map.choose(chosen);
   chart.choose(chosen);
   robots.show(chosen);
   violations.show(violation);
   draw();
 }
 
+function chooseOnMap(chosen) {
+  choose(chosen);
+  const pose = map.poses[chosen[0]];
+  if (pose) map.focus([pose.x, pose.y], true);
+}
+
+/** Choose a robot, go to a tick at which it is on the map, and zoom to it, or to its start if it has no plan. */
 function jumpToRobot(number) {
-  const track = scene.tracks[number];
+  const { stays, start } = scene.tracks[number];
   choose([number]);
-  if (!track.stays.length) return;
-  if (stayAt(track, clock.time) < 0) clock.stopAt(track.stays[0][1]);
-  const stay = track.stays[Math.max(0, stayAt(track, clock.time))];
-  reveal(scene.stands[stay[0]].place);
+  if (stays.length && stayAt(stays, clock.time) < 0) clock.stopAt(stays[0][1]);
+  const stay = stays[Math.max(0, stayAt(stays, clock.time))];
+  const place = stay ? scene.stands[stay[0]].place : start;
+  const { x, y } = map.poses[number] ?? {};
+  const at = x === undefined ? scene.places[place]?.at : [x, y];
+  if (at) map.focus(at);
+  if (stay) revealInChart(place);
 }
 
 function jumpToViolation(violation) {
   choose(violation.tracks, violation);
   if (violation.start !== null) clock.stopAt(violation.start);
-  if (violation.place !== null) reveal(violation.place);
+  if (violation.place === null) return;
+  if (scene.places[violation.place].at) map.focus(scene.places[violation.place].at);
+  revealInChart(violation.place);
 }
 
 function nextViolation(step) {
@@ -47,8 +74,7 @@ function nextRobot(step) {
   if (count) jumpToRobot(Math.min(count - 1, Math.max(0, at + step)));
 }
 
-function reveal(place) {
-  if (scene.places[place].at) map.reveal(scene.places[place].at);
+function revealInChart(place) {
   if (!chart.reveal(place)) {
     byId("rows").value = "all";
     chart.showRows("all");
@@ -57,25 +83,36 @@ function reveal(place) {
 }
 
 function draw() {
-  map.draw(clock.time, state.chosen);
+  map.setTime(clock.time);
   chart.setTime(clock.time, true);
   byId("slider").value = clock.tick;
   byId("tick").value = `tick ${clock.tick} of ${scene.last}`;
   byId("play").textContent = clock.playing ? "Pause" : "Play";
   byId("speed").value = `${counted(clock.speed, "tick")}/s`;
-  byId("about").textContent = about();
+  const text = about();
+  if (byId("about").textContent !== text) byId("about").textContent = text;
 }
 
 function about() {
   if (state.violation) return `${scene.rules[state.violation.rule].id}: ${state.violation.message}`;
   if (state.chosen.length) return aboutRobot(scene.tracks[state.chosen[0]], clock.tick);
-  const moving = scene.tracks.filter((track) => stayAt(track, clock.tick) >= 0).length;
+  const there = counted(map.poses.filter((pose) => pose).length, "robot");
   const places = scene.computed ? " The map's positions are laid out, not given." : "";
-  return `${counted(moving, "robot")} on the map. Click one to follow it.${places}`;
+  return `${there} on the map. ${aboutTrace()}${aboutWaits()}${places}`;
 }
 
-function counted(count, word) {
-  return `${count} ${word}${count === 1 ? "" : "s"}`;
+function aboutTrace() {
+  if (scene.now === null) return "";
+  return clock.tick > scene.now
+    ? `After tick ${scene.now}: as planned. `
+    : "Dashed rings are where robots were to be by their plans. ";
+}
+
+function aboutWaits() {
+  if (!map.shown.waits) return "Click one to follow it.";
+  const [waiting, inCircle] = [map.waits, [...map.circle]].map((waits) => new Set(waits.map(([robot]) => robot)).size);
+  const round = inCircle ? `, ${inCircle} of them in a circle` : "";
+  return `${counted(waiting, "robot")} wait${waiting === 1 ? "s" : ""} for others${round}.`;
 }
 
 function drawStrip() {
@@ -100,6 +137,17 @@ function writeFacts() {
     `${counted(names, "robot")}${unplanned} · total cost ${scene.cost} · ${counted(scene.places.length, "resource")}`;
 }
 
+/** Show or hide a part of the map; the button says which it is. */
+function toggle(what) {
+  map.show(what, !map.shown[what]);
+  byId(what).ariaPressed = String(map.shown[what]);
+  draw();
+}
+
+function showMapAlone() {
+  byId("map-alone").ariaPressed = String(document.body.classList.toggle("map-alone"));
+}
+
 const KEYS = {
   " ": () => clock.toggle(),
   ArrowLeft: (event) => clock.step(event.shiftKey ? -10 : -1),
@@ -111,6 +159,16 @@ const KEYS = {
   "+": () => clock.changeSpeed(1),
   "=": () => clock.changeSpeed(1),
   "-": () => clock.changeSpeed(-1),
+  i: () => map.zoom(1.5),
+  o: () => map.zoom(1 / 1.5),
+  0: () => map.fit(),
+  w: () => map.pan(0, -STEP),
+  a: () => map.pan(-STEP, 0),
+  s: () => map.pan(0, STEP),
+  d: () => map.pan(STEP, 0),
+  g: () => toggle("goals"),
+  l: () => toggle("waits"),
+  m: () => showMapAlone(),
   n: () => nextViolation(1),
   p: () => nextViolation(-1),
   Escape: () => choose([]),
@@ -138,6 +196,9 @@ const CLICKS = {
   "map-in": () => map.zoom(1.5),
   "map-out": () => map.zoom(1 / 1.5),
   "map-fit": () => map.fit(),
+  goals: () => toggle("goals"),
+  waits: () => toggle("waits"),
+  "map-alone": showMapAlone,
   "chart-in": () => chart.zoom(1.5),
   "chart-out": () => chart.zoom(1 / 1.5),
   help: () => byId("keys").showModal(),
@@ -150,6 +211,9 @@ byId("rows").addEventListener("change", (event) => chart.showRows(event.target.v
 byId("find").addEventListener("input", (event) => robots.find(event.target.value));
 new ResizeObserver(drawStrip).observe(byId("strip"));
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", drawStrip);
+
+/** For pages that embed this one, and for its tests. */
+globalThis.viewer = { clock, map, chart, choose };
 
 writeFacts();
 clock.listen(draw);

@@ -1,18 +1,26 @@
-// The map: moves the robots that Python drew, marks what is broken, shows the trail of the chosen robots.
+// The map: a still picture of the resources, and above it a canvas with all that moves or is chosen.
 
-const ROBOT_RADIUS = 10;
+const UNIT = 40;
 const HALF_SIDE = 16;
-const SMALLEST_TEXT = 5;
+const HALF_GOAL = 12;
+const SMALLEST_RADIUS = [2, 3.5];
+const SMALLEST_MARK = 5;
+const SMALLEST_GOAL = 2;
+const SMALLEST_WITH_NAME = 6;
+const SIZE_OF_LENGTH = [0, 1.3, 1.2, 1, 0.8];
+const READABLE = 0.75;
+const LARGEST = 4;
+const LARGEST_WHOLE = 2.5;
 const CLICK_DISTANCE = 4;
 const glides = !matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 /** Where a robot is drawn: it stays in the middle and moves on during the last tick of a stay. */
-function poseAt(track, time) {
-  const at = stayAt(track, time);
+function poseAt(stays, time) {
+  const at = stayAt(stays, time);
   if (at < 0) return null;
-  const [stand, enter, leave] = track.stays[at];
+  const [stand, enter, leave] = stays[at];
   const here = scene.stands[stand];
-  const next = track.stays[at + 1];
+  const next = stays[at + 1];
   const there = next && next[1] === leave ? scene.stands[next[0]] : null;
   if (!here.at || !there?.at || !glides) return here.at && { x: here.at[0], y: here.at[1], radius: here.radius };
   const begin = Math.max(enter, leave - 1);
@@ -26,124 +34,342 @@ function poseAt(track, time) {
 }
 
 class MapView {
-  constructor(svg, choose) {
-    this.svg = svg;
-    this.whole = { x: 0, y: 0, width: scene.width, height: scene.height };
-    this.shown = { ...this.whole };
-    [this.marks, this.trail, this.robotLayer] = ["marks", "trail", "robots"].map((kind) =>
-      svg.querySelector(`.${kind}`),
-    );
-    this.robots = [...this.robotLayer.children];
-    this.robots.forEach((robot, number) => (robot.dataset.number = number));
-    this.listenToPointer(choose);
-    new ResizeObserver(() => this.showPart()).observe(svg);
-  }
-
-  draw(time, chosen) {
-    this.robots.forEach((robot, number) => {
-      const pose = poseAt(scene.tracks[number], time);
-      robot.style.display = pose ? "" : "none";
-      if (!pose) return;
-      robot.setAttribute("transform", `translate(${pose.x} ${pose.y}) scale(${pose.radius / ROBOT_RADIUS})`);
-      robot.classList.toggle("chosen", chosen.includes(number));
+  constructor(view, choose) {
+    this.view = view;
+    this.svg = view.querySelector("svg");
+    this.canvas = view.querySelector("canvas");
+    this.colours = colours();
+    this.shown = { goals: true, waits: false };
+    this.chosen = [];
+    this.isWhole = true;
+    this.setTime(scene.first);
+    new MapPointers(this, choose);
+    new ResizeObserver(() => this.resize()).observe(view);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+      this.colours = colours();
+      this.drawSoon();
     });
-    this.robotLayer.classList.toggle("dimmed", chosen.length > 0);
-    this.drawMarks(Math.floor(time));
+    this.resize();
   }
 
-  drawMarks(tick) {
-    if (tick === this.markedTick) return;
-    this.markedTick = tick;
-    const broken = scene.violations.filter((violation) => isBrokenAt(violation, tick));
-    const places = new Set(broken.map((violation) => violation.place));
-    const blamed = new Set(broken.flatMap((violation) => violation.tracks));
-    const boxes = [...places].filter((place) => place !== null && scene.places[place].at);
-    this.marks.replaceChildren(...boxes.map((place) => this.box(place, "violation")));
-    this.robots.forEach((robot, number) => robot.classList.toggle("blamed", blamed.has(number)));
-  }
-
-  box(place, kind) {
-    const [x, y] = scene.places[place].at;
-    const size = 2 * HALF_SIDE;
-    return makeDrawn("rect", { class: kind, x: x - HALF_SIDE, y: y - HALF_SIDE, width: size, height: size });
-  }
-
-  drawTrail(chosen) {
-    this.trail.replaceChildren();
-    for (const number of chosen) {
-      const { stays, goal } = scene.tracks[number];
-      const points = stays.map(([stand]) => scene.stands[stand].at).filter((at) => at);
-      if (points.length) this.trail.append(makeDrawn("path", { d: `M${points.map((at) => at.join(" ")).join("L")}` }));
-      if (goal !== null && scene.places[goal].at) {
-        const [x, y] = scene.places[goal].at;
-        const size = 2 * HALF_SIDE;
-        const corner = `M${x - HALF_SIDE} ${y - HALF_SIDE}`;
-        this.trail.append(makeDrawn("path", { class: "goal", d: `${corner}h${size}v${size}h${-size}z` }));
-      }
+  setTime(time) {
+    this.time = time;
+    const isKnown = scene.now !== null && time < scene.now + 1;
+    this.poses = scene.tracks.map(({ stays, done }) => poseAt(isKnown ? done : stays, time));
+    this.ghosts = isKnown ? scene.tracks.map(({ stays }) => poseAt(stays, time)) : [];
+    const tick = Math.floor(time);
+    if (tick !== this.tick) {
+      this.tick = tick;
+      this.broken = scene.violations.filter((violation) => isBrokenAt(violation, tick));
+      this.blamed = new Set(this.broken.flatMap((violation) => violation.tracks));
+      this.waits = null;
     }
+    if (this.shown.waits) this.findWaits();
+    this.follow();
+    this.drawSoon();
+  }
+
+  /** Find once for each tick who waits for whom, and who does in a circle. */
+  findWaits() {
+    if (this.waits) return;
+    this.waits = waitsAt(this.tick);
+    this.circle = circular(this.waits);
+  }
+
+  choose(chosen) {
+    this.chosen = chosen;
+    this.drawSoon();
+  }
+
+  show(what, isShown) {
+    this.shown[what] = isShown;
+    this.setTime(this.time);
+  }
+
+  /** Zoom to a place so far that robots are legible there; the place comes to the middle, or stays where it was clicked. */
+  focus([x, y], isKept = false) {
+    const factor = Math.max(1, READABLE / this.scale);
+    if (isKept) this.zoom(factor, this.px(x), this.py(y));
+    else this.look(x, y, Math.max(this.scale, factor * this.scale));
+  }
+
+  /** Keep the robot that is chosen in sight, if only a part of the map is shown. */
+  follow() {
+    const pose = this.chosen.length === 1 && !this.isWhole ? this.poses[this.chosen[0]] : null;
+    if (pose) this.reveal([pose.x, pose.y]);
   }
 
   /** Move the part that is shown so that the point is in it. */
   reveal([x, y]) {
-    const { x: left, y: top, width, height } = this.shown;
-    if (x < left || x > left + width || y < top || y > top + height) {
-      this.shown = { ...this.shown, x: x - width / 2, y: y - height / 2 };
-      this.showPart();
-    }
+    const { width, height } = this.size;
+    const isSeen = this.px(x) >= 0 && this.px(x) <= width && this.py(y) >= 0 && this.py(y) <= height;
+    if (!isSeen) this.look(x, y, this.scale);
   }
 
-  zoom(factor, x = this.shown.x + this.shown.width / 2, y = this.shown.y + this.shown.height / 2) {
-    const { shown, whole } = this;
-    const width = Math.min(whole.width, Math.max(4 * HALF_SIDE, shown.width / factor));
-    const scale = width / shown.width;
-    const moved = { x: x - (x - shown.x) * scale, y: y - (y - shown.y) * scale, width, height: shown.height * scale };
-    this.shown = width === whole.width ? { ...whole } : moved;
-    this.showPart();
+  zoom(factor, px = this.size.width / 2, py = this.size.height / 2) {
+    const [x, y] = [this.x + px / this.scale, this.y + py / this.scale];
+    const scale = this.limited(this.scale * factor);
+    this.look(x + (this.size.width / 2 - px) / scale, y + (this.size.height / 2 - py) / scale, scale);
+  }
+
+  pan(dx, dy) {
+    const { width, height } = this.size;
+    this.look(this.x + (width / 2 + dx) / this.scale, this.y + (height / 2 + dy) / this.scale, this.scale);
   }
 
   fit() {
-    this.shown = { ...this.whole };
-    this.showPart();
+    this.look(scene.width / 2, scene.height / 2, this.leastScale());
   }
 
-  showPart() {
-    const { x, y, width, height } = this.shown;
-    this.svg.setAttribute("viewBox", `${x} ${y} ${width} ${height}`);
-    this.robotLayer.classList.toggle("tiny", ROBOT_RADIUS * this.pixelsPerUnit() < SMALLEST_TEXT);
+  leastScale() {
+    return Math.min(LARGEST_WHOLE, this.size.width / scene.width, this.size.height / scene.height);
   }
 
-  pixelsPerUnit() {
-    const { width, height } = this.svg.getBoundingClientRect();
-    return Math.min(width / this.shown.width, height / this.shown.height);
+  limited(scale) {
+    return Math.min(LARGEST, Math.max(this.leastScale(), scale));
   }
 
-  listenToPointer(choose) {
-    let from = null;
-    this.svg.addEventListener("pointerdown", (event) => {
-      from = { x: event.clientX, y: event.clientY, shown: { ...this.shown }, moved: false };
+  /** Show the part around a point; the map never leaves the view. */
+  look(x, y, scale) {
+    this.scale = this.limited(scale);
+    this.isWhole = this.scale === this.leastScale();
+    const [width, height] = [this.size.width / this.scale, this.size.height / this.scale];
+    const within = (middle, part, all) => (part >= all ? all / 2 : Math.min(all - part / 2, Math.max(part / 2, middle)));
+    this.x = within(x, width, scene.width) - width / 2;
+    this.y = within(y, height, scene.height) - height / 2;
+    this.svg.setAttribute("viewBox", `${this.x} ${this.y} ${width} ${height}`);
+    this.view.classList.toggle("whole", this.isWhole);
+    this.drawSoon();
+  }
+
+  resize() {
+    const before = this.size;
+    this.size = { width: Math.max(1, this.view.clientWidth), height: Math.max(1, this.view.clientHeight) };
+    if (this.isWhole) this.fit();
+    else this.look(this.x + before.width / 2 / this.scale, this.y + before.height / 2 / this.scale, this.scale);
+    this.draw();
+  }
+
+  px(x) {
+    return (x - this.x) * this.scale;
+  }
+
+  py(y) {
+    return (y - this.y) * this.scale;
+  }
+
+  radius(pose) {
+    const [least, enough] = SMALLEST_RADIUS;
+    return Math.max(least, Math.min(enough, HALF_SIDE * 1.5 * this.scale), pose.radius * this.scale);
+  }
+
+  /** The robot that is drawn at a point of the view, or -1. */
+  robotAt(px, py) {
+    const distance = (pose) => Math.hypot(this.px(pose.x) - px, this.py(pose.y) - py);
+    let [found, nearest] = [-1, Infinity];
+    this.poses.forEach((pose, number) => {
+      if (pose && distance(pose) <= Math.min(nearest, this.radius(pose) + 3))
+        [found, nearest] = [number, distance(pose)];
     });
-    this.svg.addEventListener("pointermove", (event) => {
-      if (!from || event.pointerType === "touch") return;
-      const [dx, dy] = [event.clientX - from.x, event.clientY - from.y];
-      from.moved ||= Math.hypot(dx, dy) > CLICK_DISTANCE;
-      const scale = this.pixelsPerUnit();
-      if (from.moved) this.shown = { ...from.shown, x: from.shown.x - dx / scale, y: from.shown.y - dy / scale };
-      if (from.moved) this.showPart();
+    return found;
+  }
+
+  drawSoon() {
+    this.waiting ??= requestAnimationFrame(() => {
+      this.waiting = undefined;
+      this.draw();
     });
-    addEventListener("pointerup", () => setTimeout(() => (from = null)));
-    this.svg.addEventListener("click", (event) => {
-      if (from?.moved) return;
-      const robot = event.target.closest(".robot");
-      choose(robot ? [Number(robot.dataset.number)] : []);
+  }
+
+  draw() {
+    this.pen = clearedPen(this.canvas, this.size.width, this.size.height);
+    this.drawViolations();
+    if (this.shown.goals) this.drawGoals();
+    for (const number of this.chosen) this.drawTrail(scene.tracks[number]);
+    if (this.shown.waits) this.drawWaits();
+    this.drawGhosts();
+    this.drawRobots();
+  }
+
+  drawViolations() {
+    const places = new Set(this.broken.map((violation) => violation.place));
+    const half = Math.max(SMALLEST_MARK, HALF_SIDE * this.scale);
+    for (const place of places) {
+      const at = place === null ? null : scene.places[place].at;
+      if (at)
+        drawHatched(this.pen, this.colours.wrong, this.px(at[0]) - half, this.py(at[1]) - half, 2 * half, 2 * half);
+    }
+  }
+
+  /** Starts as small rings and goals as squares, those of chosen robots stronger. */
+  drawGoals() {
+    const { pen } = this;
+    Object.assign(pen, { fillStyle: this.colours.faint, textAlign: "center", textBaseline: "middle" });
+    scene.tracks.forEach(({ start, goal, tint, short }, number) => {
+      const isChosen = this.chosen.includes(number);
+      pen.globalAlpha = isChosen ? 1 : this.chosen.length ? 0.2 : this.scale < READABLE / 2 ? 0.5 : 0.75;
+      pen.strokeStyle = this.colours.tints[tint].fill;
+      pen.lineWidth = isChosen ? 3 : this.scale < READABLE ? 1.25 : 2;
+      const half = Math.max(SMALLEST_GOAL, HALF_GOAL * this.scale);
+      const goalAt = goal === null ? null : scene.places[goal].at;
+      if (goalAt) pen.strokeRect(this.px(goalAt[0]) - half, this.py(goalAt[1]) - half, 2 * half, 2 * half);
+      if (goalAt && half > SMALLEST_WITH_NAME) {
+        pen.font = `${Math.round(0.8 * half)}px system-ui, sans-serif`;
+        pen.fillText(short, this.px(goalAt[0]), this.py(goalAt[1]) + 0.5);
+      }
+      const startAt = start === null ? null : scene.places[start].at;
+      if (startAt) this.ring(this.px(startAt[0]), this.py(startAt[1]), half / 2);
     });
-    this.svg.addEventListener(
-      "wheel",
-      (event) => {
-        event.preventDefault();
-        const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(this.svg.getScreenCTM().inverse());
-        this.zoom(event.deltaY < 0 ? 1.25 : 0.8, point.x, point.y);
-      },
-      { passive: false },
-    );
+    pen.globalAlpha = 1;
+  }
+
+  ring(x, y, radius) {
+    this.pen.beginPath();
+    this.pen.arc(x, y, radius, 0, 2 * Math.PI);
+    this.pen.stroke();
+  }
+
+  drawTrail({ stays }) {
+    const points = stays.map(([stand]) => scene.stands[stand].at).filter((at) => at);
+    this.pen.beginPath();
+    for (const [x, y] of points) this.pen.lineTo(this.px(x), this.py(y));
+    Object.assign(this.pen, { strokeStyle: this.colours.ink, lineWidth: 2.5, lineJoin: "round", globalAlpha: 0.7 });
+    this.pen.stroke();
+    this.pen.globalAlpha = 1;
+  }
+
+  /** Arrows from robots that wait to those that they wait for; those of a circle are red. */
+  drawWaits() {
+    for (const wait of this.waits) {
+      const [from, to] = wait.map((number) => this.poses[number]);
+      const isOfChosen = !this.chosen.length || wait.some((number) => this.chosen.includes(number));
+      this.pen.globalAlpha = isOfChosen ? 0.9 : 0.2;
+      if (from && to) this.arrow(from, to, this.circle.has(wait) ? this.colours.wrong : this.colours.ink);
+    }
+    this.pen.globalAlpha = 1;
+  }
+
+  arrow(from, to, colour) {
+    const { pen } = this;
+    const angle = Math.atan2(to.y - from.y, to.x - from.x);
+    const [x, y, gap] = [this.px(to.x), this.py(to.y), this.radius(to)];
+    const at = (distance, side) => [
+      x - distance * Math.cos(angle) - side * Math.sin(angle),
+      y - distance * Math.sin(angle) + side * Math.cos(angle),
+    ];
+    Object.assign(pen, { strokeStyle: colour, fillStyle: colour, lineWidth: 2 });
+    pen.beginPath();
+    pen.moveTo(this.px(from.x), this.py(from.y));
+    pen.lineTo(...at(gap + 4, 0));
+    pen.stroke();
+    pen.beginPath();
+    pen.moveTo(...at(gap, 0));
+    pen.lineTo(...at(gap + 8, 4));
+    pen.lineTo(...at(gap + 8, -4));
+    pen.fill();
+  }
+
+  /** Where robots would be by their plans, where that is not where they are. */
+  drawGhosts() {
+    const { pen } = this;
+    pen.setLineDash([3, 3]);
+    this.ghosts.forEach((ghost, number) => {
+      const pose = this.poses[number];
+      if (!ghost || (pose && pose.x === ghost.x && pose.y === ghost.y)) return;
+      pen.globalAlpha = this.chosen.length && !this.chosen.includes(number) ? 0.2 : 1;
+      Object.assign(pen, { strokeStyle: this.colours.tints[scene.tracks[number].tint].fill, lineWidth: 2 });
+      this.ring(this.px(ghost.x), this.py(ghost.y), this.radius(ghost));
+      if (!pose) return;
+      pen.beginPath();
+      pen.moveTo(this.px(pose.x), this.py(pose.y));
+      pen.lineTo(this.px(ghost.x), this.py(ghost.y));
+      pen.stroke();
+    });
+    pen.setLineDash([]);
+    pen.globalAlpha = 1;
+  }
+
+  drawRobots() {
+    const { pen } = this;
+    const { width, height } = this.size;
+    pen.textAlign = "center";
+    pen.textBaseline = "middle";
+    this.poses.forEach((pose, number) => {
+      if (!pose) return;
+      const [x, y, radius] = [this.px(pose.x), this.py(pose.y), this.radius(pose)];
+      if (x < -radius || y < -radius || x > width + radius || y > height + radius) return;
+      const { tint, short } = scene.tracks[number];
+      const isChosen = this.chosen.includes(number);
+      pen.globalAlpha = this.chosen.length && !isChosen ? 0.45 : 1;
+      pen.fillStyle = this.colours.tints[tint].fill;
+      pen.beginPath();
+      pen.arc(x, y, radius, 0, 2 * Math.PI);
+      pen.fill();
+      const isBlamed = this.blamed.has(number);
+      pen.strokeStyle = isChosen ? this.colours.ink : isBlamed ? this.colours.wrong : this.colours.paper;
+      pen.lineWidth = isChosen ? 3 : isBlamed ? 2.5 : 1;
+      pen.stroke();
+      if (radius < SMALLEST_WITH_NAME) return;
+      pen.font = `600 ${Math.round(radius * SIZE_OF_LENGTH[Math.min(short.length, 4)])}px system-ui, sans-serif`;
+      pen.fillStyle = this.colours.tints[tint].text;
+      pen.fillText(short, x, y + 0.5);
+    });
+    pen.globalAlpha = 1;
+  }
+}
+
+/** The pointers on the map: one moves it or chooses a robot, two enlarge it, and so does the wheel. */
+class MapPointers {
+  constructor(map, choose) {
+    Object.assign(this, { map, choose, down: new Map(), isMoved: false });
+    const { view } = map;
+    view.addEventListener("pointerdown", (event) => this.press(event));
+    view.addEventListener("pointermove", (event) => this.move(event));
+    for (const kind of ["pointerup", "pointercancel"]) view.addEventListener(kind, (event) => this.lift(event, kind));
+    view.addEventListener("wheel", (event) => this.turn(event), { passive: false });
+  }
+
+  point({ clientX, clientY }) {
+    const { left, top } = this.map.view.getBoundingClientRect();
+    return { x: clientX - left, y: clientY - top };
+  }
+
+  press(event) {
+    if (!this.down.size) this.isMoved = false;
+    this.down.set(event.pointerId, { ...this.point(event), from: this.point(event) });
+    if (event.isTrusted) this.map.view.setPointerCapture(event.pointerId);
+  }
+
+  move(event) {
+    const before = this.down.get(event.pointerId);
+    if (!before) return;
+    const now = this.point(event);
+    const other = [...this.down].find(([id]) => id !== event.pointerId)?.[1];
+    this.isMoved ||= Boolean(other) || Math.hypot(now.x - before.from.x, now.y - before.from.y) > CLICK_DISTANCE;
+    if (!this.isMoved) return;
+    this.down.set(event.pointerId, { ...before, ...now });
+    if (other) this.pinch(before, now, other);
+    else this.map.pan(before.x - now.x, before.y - now.y);
+  }
+
+  /** One of two pointers moved: their middle stays above the same point of the map. */
+  pinch(before, now, other) {
+    const apart = (one) => Math.max(1, Math.hypot(one.x - other.x, one.y - other.y));
+    this.map.pan((before.x - now.x) / 2, (before.y - now.y) / 2);
+    this.map.zoom(apart(now) / apart(before), (now.x + other.x) / 2, (now.y + other.y) / 2);
+  }
+
+  lift(event, kind) {
+    const isClick = this.down.delete(event.pointerId) && kind === "pointerup" && !this.isMoved;
+    if (!isClick) return;
+    const { x, y } = this.point(event);
+    const robot = this.map.robotAt(x, y);
+    this.choose(robot < 0 ? [] : [robot]);
+  }
+
+  turn(event) {
+    event.preventDefault();
+    const { x, y } = this.point(event);
+    this.map.zoom(Math.exp(-Math.sign(event.deltaY) * Math.min(0.25, Math.abs(event.deltaY) / 400)), x, y);
   }
 }

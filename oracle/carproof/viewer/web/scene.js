@@ -3,16 +3,17 @@
 const byId = (id) => document.getElementById(id);
 const scene = JSON.parse(byId("scene").textContent);
 
+/** Stays that begin in their order and do not overlap, as all have in sound plans: those are searched by halves. */
+const ordered = new WeakSet(
+  scene.tracks
+    .flatMap(({ stays, done }) => [stays, done])
+    .filter((stays) => stays.every(([, enter], at) => !at || (stays[at - 1][2] ?? Infinity) <= enter)),
+);
+
 function make(tag, className, text) {
   const made = document.createElement(tag);
   if (className) made.className = className;
   if (text !== undefined) made.textContent = text;
-  return made;
-}
-
-function makeDrawn(tag, attributes) {
-  const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
   return made;
 }
 
@@ -21,9 +22,16 @@ function holds(start, end, time) {
   return start <= time && (end === null || time < end);
 }
 
-/** The index of the robot's stay at the time, or -1: of several in a broken plan the last. */
-function stayAt(track, time) {
-  return track.stays.findLastIndex(([, enter, leave]) => holds(enter, leave, time));
+/** The index of the stay at the time, or -1: of several in a broken plan the last. */
+function stayAt(stays, time) {
+  if (!ordered.has(stays)) return stays.findLastIndex(([, enter, leave]) => holds(enter, leave, time));
+  let [low, high] = [0, stays.length];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (stays[middle][1] <= time) low = middle + 1;
+    else high = middle;
+  }
+  return low && holds(stays[low - 1][1], stays[low - 1][2], time) ? low - 1 : -1;
 }
 
 /** Whether the violation is to be seen at the time; one that takes no time is seen for one tick. */
@@ -34,4 +42,53 @@ function isBrokenAt(violation, time) {
 
 function interval(enter, leave) {
   return `[${enter}, ${leave === null ? "for ever" : leave})`;
+}
+
+function counted(count, word) {
+  return `${count} ${word}${count === 1 ? "" : "s"}`;
+}
+
+/** The colours of the style sheets, for canvases. */
+function colours() {
+  const style = getComputedStyle(document.documentElement);
+  const named = (name) => style.getPropertyValue(`--${name}`).trim();
+  const plain = ["paper", "panel", "ink", "faint", "line", "window", "wrong", "accent"];
+  const found = Object.fromEntries(plain.map((name) => [name, named(name)]));
+  found.tints = [...Array(6).keys()].map((number) => {
+    const probe = document.body.appendChild(make("i", `tint${number}`));
+    const tint = getComputedStyle(probe);
+    const pair = { fill: tint.getPropertyValue("--fill").trim(), text: tint.getPropertyValue("--text").trim() };
+    probe.remove();
+    return pair;
+  });
+  return found;
+}
+
+/** Make a canvas as large as its box, if it is not, and clear it; sizes are in the page's pixels from then on. */
+function clearedPen(canvas, width, height) {
+  const pen = canvas.getContext("2d");
+  const [wide, high] = [Math.round(width * devicePixelRatio), Math.round(height * devicePixelRatio)];
+  if (canvas.width !== wide || canvas.height !== high) Object.assign(canvas, { width: wide, height: high });
+  pen.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
+  pen.clearRect(0, 0, width, height);
+  return pen;
+}
+
+/** The hatched frame of a violation. */
+function drawHatched(pen, colour, left, top, width, height) {
+  pen.save();
+  pen.strokeStyle = colour;
+  pen.lineWidth = 2;
+  pen.beginPath();
+  pen.rect(left, top, width, height);
+  pen.stroke();
+  pen.clip();
+  pen.beginPath();
+  for (let x = left - height; x < left + width; x += 5) {
+    pen.moveTo(x, top + height);
+    pen.lineTo(x + height, top);
+  }
+  pen.lineWidth = 1;
+  pen.stroke();
+  pen.restore();
 }
