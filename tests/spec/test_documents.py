@@ -1,7 +1,7 @@
 """Documents: what is read is what was written, and every malformed document is refused with path and rule."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any, cast
 from unittest.mock import Mock
 
@@ -116,106 +116,105 @@ def test_a_verdict_is_written_with_its_violations() -> None:
     }
 
 
-# At each path of a document: a value that does not belong there, and the rule that says so.
-WRONG_IN_INSTANCE: list[tuple[str, Json, str]] = [
-    ("$.format", "carproof-instance/2", "document/format"),
-    ("$.format", "carproof-solution/1", "document/format"),
-    ("$.format", 1, "document/format"),
-    ("$.format", None, "document/format"),
-    ("$.after_goal", "stay", "document/shape"),
-    ("$.after_goal", None, "document/shape"),
-    ("$.graph", None, "document/shape"),
-    ("$.graph", [], "document/shape"),
-    ("$.graph.nodes", {}, "document/shape"),
-    ("$.graph.nodes[0]", "a", "document/shape"),
-    ("$.graph.nodes[0].id", None, "document/shape"),
-    ("$.graph.nodes[0].id", True, "document/shape"),
-    ("$.graph.nodes[0].id", 1.0, "document/shape"),
-    ("$.graph.nodes[0].id", [0, 1], "document/shape"),
-    ("$.graph.nodes[1].id", "a", "instance/resource-id"),
-    ("$.graph.nodes[0].capacity", True, "document/shape"),
-    ("$.graph.nodes[0].capacity", 1.0, "document/shape"),
-    ("$.graph.nodes[0].capacity", "1", "document/shape"),
-    ("$.graph.nodes[0].capacity", None, "document/shape"),
-    ("$.graph.nodes[0].capacity", 0, "instance/capacity"),
-    ("$.graph.nodes[2].duration", False, "document/shape"),
-    ("$.graph.nodes[2].duration", 1.5, "document/shape"),
-    ("$.graph.nodes[2].duration", 0, "instance/duration"),
-    ("$.graph.nodes[2].duration", -1, "instance/duration"),
-    ("$.graph.nodes[3].x", None, "document/shape"),
-    ("$.graph.nodes[3].y", 0.0, "document/shape"),
-    ("$.graph.edges", None, "document/shape"),
-    ("$.graph.edges[0]", ["a", "b"], "document/shape"),
-    ("$.graph.edges[0].source", 1.0, "document/shape"),
-    ("$.graph.edges[0].source", "x", "instance/edge"),
-    ("$.graph.edges[0].target", 1, "instance/edge"),
-    ("$.graph.edges[2]", {"source": "d", "target": "d"}, "instance/edge"),
-    ("$.graph.edges[2]", {"source": "a", "target": "b"}, "instance/edge"),
-    ("$.graph.edges[2]", {"source": "b", "target": "a"}, "instance/edge"),
-    ("$.graph.directed", 0, "document/shape"),
-    ("$.graph.directed", None, "document/shape"),
-    ("$.graph.multigraph", 1, "document/shape"),
-    ("$.robots", {}, "document/shape"),
-    ("$.robots[0].id", None, "document/shape"),
-    ("$.robots[2].id", "r1", "instance/robot-id"),
-    ("$.robots[0].start", False, "document/shape"),
-    ("$.robots[0].start", "x", "instance/endpoint"),
-    ("$.robots[1].goal", 0, "instance/endpoint"),
-    ("$.robots[1].release", True, "document/shape"),
-    ("$.robots[1].release", 1.0, "document/shape"),
-    ("$.robots[1].release", -1, "instance/release"),
-    ("$.robots[1].pace", None, "document/shape"),
-    ("$.robots[1].pace", 0, "instance/pace"),
+DOCUMENTS = {"instance": (read_instance, instance_json), "solution": (read_solution, solution_json)}
+KINDS: list[tuple[tuple[str, ...], tuple[type, ...]]] = [
+    (("id", "source", "target", "start", "goal", "robot"), (int, str)),
+    (("capacity", "duration", "x", "y", "release", "pace"), (int,)),
+    (("nodes", "edges", "robots", "plans", "visits", "order", "unplanned"), (list,)),
+    (("graph",), (dict,)),
+    (("directed", "multigraph"), (bool,)),
+    (("after_goal",), ()),
 ]
-
-WRONG_IN_SOLUTION: list[tuple[str, Json, str]] = [
-    ("$.format", "carproof-instance/1", "document/format"),
-    ("$.plans", {}, "document/shape"),
-    ("$.plans[0].robot", None, "document/shape"),
-    ("$.plans[0].robot", 1.0, "document/shape"),
-    ("$.plans[0].visits", None, "document/shape"),
-    ("$.plans[0].visits[1]", ["b", 2], "document/shape"),
-    ("$.plans[0].visits[1]", ["b", 2, 3, 4], "document/shape"),
-    ("$.plans[0].visits[1]", {"resource": "b"}, "document/shape"),
-    ("$.plans[0].visits[1][0]", True, "document/shape"),
-    ("$.plans[0].visits[1][1]", None, "document/shape"),
-    ("$.plans[0].visits[1][1]", 2.0, "document/shape"),
-    ("$.plans[0].visits[1][2]", False, "document/shape"),
-    ("$.plans[0].visits[1][2]", "3", "document/shape"),
-    ("$.order", None, "document/shape"),
-    ("$.order[0]", None, "document/shape"),
-    ("$.unplanned", "r1", "document/shape"),
-    ("$.unplanned", None, "document/shape"),
-]
+"""What may stand in each field, by JSON's kinds; an entry of a list of objects is an object."""
+STRANGE: list[Json] = [None, True, 1.0, 7, "seven", [0, 1], {"seven": 7}]
+GONE = object()
 
 
 def steps_of(path: str) -> list[str | int]:
-    parts = path.removeprefix("$.").replace("[", ".").replace("]", "").split(".")
+    parts = path.replace("[", ".").replace("]", "").split(".")[1:]
     return [int(part) if part.isdigit() else part for part in parts]
 
 
 def put(document: Json, path: str, value: Json) -> bytes:
-    """The document with another value at the path."""
+    """The document with another value at the path, or none."""
     *steps, last = steps_of(path)
     holder = document
     for step in steps:
         holder = holder[step]
-    if isinstance(holder, list) and last == len(holder):
-        holder.append(value)
+    if value is GONE:
+        del holder[last]
     else:
         holder[last] = value
     return encode(document)
 
 
-@pytest.mark.parametrize(("path", "value", "rule"), WRONG_IN_INSTANCE)
+def places(value: Json, path: str = "$") -> Iterator[tuple[str, tuple[type, ...]]]:
+    """Every path of a document below its root, without visits, with what may stand there."""
+    kinds = {field: accepted for fields, accepted in KINDS for field in fields}
+    if isinstance(value, dict):
+        for field in value.keys() & kinds.keys():
+            yield f"{path}.{field}", kinds[field]
+            yield from places(value[field], f"{path}.{field}")
+    elif isinstance(value, list) and not path.endswith("]"):
+        for number, entry in enumerate(value):
+            yield f"{path}[{number}]", (type(entry),) if isinstance(entry, dict | list) else (int, str)
+            yield from places(entry, f"{path}[{number}]")
+
+
+@pytest.mark.parametrize("name", DOCUMENTS)
+def test_a_value_of_another_kind_is_refused_at_its_path(name: str) -> None:
+    read, document = DOCUMENTS[name]
+    count = 0
+    for path, accepted in places(document()):
+        for value in (each for each in STRANGE if type(each) not in accepted):
+            assert refusal(read, put(document(), path, value)) == (path, "document/shape")
+            count += 1
+    assert count > 100
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "rule"),
+    [
+        ("$.format", "carproof-instance/2", "document/format"),
+        ("$.format", "carproof-solution/1", "document/format"),
+        ("$.format", 1, "document/format"),
+        ("$.format", None, "document/format"),
+        ("$.graph.nodes[1].id", "a", "instance/resource-id"),
+        ("$.graph.nodes[0].capacity", 0, "instance/capacity"),
+        ("$.graph.nodes[2].duration", 0, "instance/duration"),
+        ("$.graph.nodes[2].duration", -1, "instance/duration"),
+        ("$.graph.edges[0].source", "x", "instance/edge"),
+        ("$.graph.edges[0].target", 1, "instance/edge"),
+        ("$.graph.edges[2]", {"source": "d", "target": "d"}, "instance/edge"),
+        ("$.graph.edges[2]", {"source": "a", "target": "b"}, "instance/edge"),
+        ("$.graph.edges[2]", {"source": "b", "target": "a"}, "instance/edge"),
+        ("$.robots[2].id", "r1", "instance/robot-id"),
+        ("$.robots[0].start", "x", "instance/endpoint"),
+        ("$.robots[1].goal", 0, "instance/endpoint"),
+        ("$.robots[1].release", -1, "instance/release"),
+        ("$.robots[1].pace", 0, "instance/pace"),
+    ],
+)
 def test_a_wrong_value_in_an_instance_is_refused_at_its_path(path: str, value: Json, rule: str) -> None:
     assert refusal(read_instance, put(instance_json(), path, value)) == (path, rule)
 
 
-@pytest.mark.parametrize(("path", "value", "rule"), WRONG_IN_SOLUTION)
-def test_a_wrong_value_in_a_solution_is_refused_at_its_path(path: str, value: Json, rule: str) -> None:
-    document = solution_json() | {"order": ["r1", "r2", "r3"]}
-    assert refusal(read_solution, put(document, path, value)) == (path, rule)
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        ("[1]", ["b", 2]),
+        ("[1]", ["b", 2, 3, 4]),
+        ("[1]", {"resource": "b"}),
+        ("[1][0]", True),
+        ("[1][1]", None),
+        ("[1][1]", 2.0),
+        ("[1][2]", False),
+        ("[1][2]", "3"),
+    ],
+)
+def test_a_wrong_visit_is_refused_at_its_path(path: str, value: Json) -> None:
+    path = f"$.plans[0].visits{path}"
+    assert refusal(read_solution, put(solution_json(), path, value)) == (path, "document/shape")
 
 
 @pytest.mark.parametrize(
@@ -234,66 +233,46 @@ def test_a_refusal_says_what_would_be_right(path: str, value: Json, message: str
     assert caught.value.message == message
 
 
-def test_a_multigraph_is_refused() -> None:
-    data = put(instance_json(), "$.graph.multigraph", True)
-    assert refusal(read_instance, data) == ("$.graph", "document/shape")
-
-
-def test_half_a_position_is_refused() -> None:
-    document = instance_json()
-    del document["graph"]["nodes"][4]["y"]
-    assert refusal(read_instance, encode(document)) == ("$.graph.nodes[4]", "instance/position")
-
-
-@pytest.mark.parametrize("path", ["$", "$.graph", "$.graph.nodes[0]", "$.graph.edges[0]", "$.robots[0]"])
-def test_a_field_that_an_instance_does_not_have_is_refused_where_it_stands(path: str) -> None:
-    field = f"{path}.colour"
-    assert refusal(read_instance, put(instance_json(), field, 1)) == (path, "document/shape")
-
-
-@pytest.mark.parametrize("path", ["$", "$.plans[0]"])
-def test_a_field_that_a_solution_does_not_have_is_refused_where_it_stands(path: str) -> None:
-    assert refusal(read_solution, put(solution_json(), f"{path}.colour", 1)) == (path, "document/shape")
-
-
-def test_a_field_whose_name_looks_like_a_path_does_not_mislead() -> None:
-    path = refusal(read_instance, put(instance_json(), "$.robots[1].colour", 1))[0]
-    document = instance_json()
-    document["robots"][1]["x - at `$.graph"] = 1
-    assert refusal(read_instance, encode(document)) == (path, "document/shape") == ("$.robots[1]", "document/shape")
+@pytest.mark.parametrize(
+    ("path", "value", "where", "rule"),
+    [
+        ("$.graph.multigraph", True, "$.graph", "document/shape"),
+        ("$.graph.nodes[4].y", GONE, "$.graph.nodes[4]", "instance/position"),
+        *((f"{at}.colour", 1, at, "document/shape") for at in ("$", "$.graph", "$.graph.nodes[0]", "$.robots[0]")),
+        *((f"$.{part}", GONE, "$", "document/shape") for part in ("graph", "after_goal", "robots")),
+        *((f"$.graph.{part}", GONE, "$.graph", "document/shape") for part in ("nodes", "edges")),
+        *((f"$.robots[0].{part}", GONE, "$.robots[0]", "document/shape") for part in ("id", "start", "goal")),
+        *((f"$.graph.edges[0].{part}", GONE, "$.graph.edges[0]", "document/shape") for part in ("source", "target")),
+        ("$.graph.edges[0].colour", 1, "$.graph.edges[0]", "document/shape"),
+        ("$.graph.nodes[0].id", GONE, "$.graph.nodes[0]", "document/shape"),
+    ],
+)
+def test_what_an_object_has_too_much_or_too_little_is_refused_where_it_stands(
+    path: str, value: Json, where: str, rule: str
+) -> None:
+    assert refusal(read_instance, put(instance_json(), path, value)) == (where, rule)
 
 
 @pytest.mark.parametrize(
-    ("holder", "fields"),
+    ("path", "value", "where"),
     [
-        ("$.graph", ["nodes", "edges"]),
-        ("$.graph.nodes[0]", ["id"]),
-        ("$.graph.edges[0]", ["source", "target"]),
-        ("$.robots[0]", ["id", "start", "goal"]),
+        ("$.colour", 1, "$"),
+        ("$.plans[0].colour", 1, "$.plans[0]"),
+        ("$.plans", GONE, "$"),
+        ("$.order", GONE, "$"),
+        ("$.unplanned", GONE, "$"),
     ],
 )
-def test_a_field_that_is_missing_is_refused_where_it_should_stand(holder: str, fields: list[str]) -> None:
-    for field in fields:
-        document = instance_json()
-        at = document
-        for step in steps_of(holder):
-            at = at[step]
-        del at[field]
-        assert refusal(read_instance, encode(document)) == (holder, "document/shape")
+def test_a_field_too_many_or_too_few_in_a_solution_is_refused_where_it_stands(
+    path: str, value: Json, where: str
+) -> None:
+    assert refusal(read_solution, put(solution_json(), path, value)) == (where, "document/shape")
 
 
-@pytest.mark.parametrize("field", ["graph", "after_goal", "robots"])
-def test_an_instance_without_one_of_its_parts_is_refused(field: str) -> None:
+def test_a_field_whose_name_looks_like_a_path_does_not_mislead() -> None:
     document = instance_json()
-    del document[field]
-    assert refusal(read_instance, encode(document)) == ("$", "document/shape")
-
-
-@pytest.mark.parametrize("field", ["plans", "order", "unplanned"])
-def test_a_solution_without_one_of_its_parts_is_refused(field: str) -> None:
-    document = solution_json()
-    del document[field]
-    assert refusal(read_solution, encode(document)) == ("$", "document/shape")
+    document["robots"][1]["x - at `$.graph"] = 1
+    assert refusal(read_instance, encode(document)) == ("$.robots[1]", "document/shape")
 
 
 @pytest.mark.parametrize("read", [read_instance, read_solution])
