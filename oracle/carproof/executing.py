@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal, TypeAlias
+from typing import Literal, TypeAlias, get_args
 
 import msgspec
 
@@ -27,7 +27,7 @@ from carp_spec.rule import DESIGN, rule
 from carp_spec.traces import Trace
 
 Driver: TypeAlias = Literal["clock", "order", "switching"]
-DRIVERS: tuple[Driver, ...] = ("clock", "order", "switching")
+DRIVERS: tuple[Driver, ...] = get_args(Driver)
 MILLION = 1_000_000
 DIGITS = 6  # of a chance, behind the point
 TOGETHER = ("joint/capacity", "joint/exchange")

@@ -1,7 +1,6 @@
 """The ops of executions: traces, dependency graphs, simulations, plans for the rest, and giving way."""
 
 from dataclasses import dataclass
-from typing import Literal
 
 import msgspec
 
@@ -12,16 +11,10 @@ from carp_spec.documents import SolutionDocument, VerdictDocument, solution_docu
 from carp_spec.execution_rules import trace_violations
 from carp_spec.traces import Trace, TraceDocument, trace_document
 from carproof.engines import Engine
-from carproof.executing import (
-    DependenciesDocument,
-    delays_are_right,
-    dependencies_document,
-)
-from carproof.executing import (
-    execute as executed,
-)
+from carproof.executing import DependenciesDocument, Driver, delays_are_right, dependencies_document
+from carproof.executing import execute as executed
 from carproof.giving_way import give_way as given_way
-from carproof.requests import inside, require_robot, require_tick, sound_solution
+from carproof.requests import inside, require_robot, require_tick, sound_within
 from carproof.untangling import untangle as untangled
 
 
@@ -37,8 +30,7 @@ class CheckTraceRequest:
 def check_trace(request: CheckTraceRequest, engine: Engine) -> VerdictDocument:
     """Judge whether a trace follows a solution: paths, durations, and the planned order."""
     del engine
-    with inside("$.solution"):
-        sound = sound_solution(request.instance, request.solution)
+    sound = sound_within(request.instance, request.solution)
     violations = trace_violations(request.instance, sound, request.trace)
     cost = total_cost(request.instance, sound.plans)
     return verdict_document(Verdict(cost, len(sound.unplanned), violations))
@@ -56,8 +48,7 @@ class DependenciesRequest:
 def dependencies(request: DependenciesRequest, engine: Engine) -> DependenciesDocument:
     """Make the action dependency graph of a solution, and compute the effect of delays."""
     del engine
-    with inside("$.solution"):
-        sound = sound_solution(request.instance, request.solution)
+    sound = sound_within(request.instance, request.solution)
     delays = _delays(sound, request.delays)
     order = order_of(request.instance, sound)
     return dependencies_document(order, late_robots(order, delays) if delays else None)
@@ -69,7 +60,7 @@ class ExecuteRequest:
 
     instance: Instance
     solution: Solution
-    driver: Literal["clock", "order", "switching"]
+    driver: Driver
     delays: tuple[tuple[RobotId, int, int], ...] = ()
 
 
@@ -85,8 +76,7 @@ class ExecutedDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 def execute(request: ExecuteRequest, engine: Engine) -> ExecutedDocument:
     """Simulate robots that need longer at some visits than planned."""
     del engine
-    with inside("$.solution"):
-        sound = sound_solution(request.instance, request.solution)
+    sound = sound_within(request.instance, request.solution)
     found = executed(request.instance, sound, request.driver, _delays(sound, request.delays))
     return ExecutedDocument(
         trace_document(found.trace),
@@ -108,8 +98,7 @@ class RetimeRequest:
 def retime(request: RetimeRequest, engine: Engine) -> Solution:
     """Make plans for the rest of the way, in the same order and as early as possible."""
     del engine
-    with inside("$.solution"):
-        sound = sound_solution(request.instance, request.solution)
+    sound = sound_within(request.instance, request.solution)
     with inside("$.trace"):
         return retimed(request.instance, sound, request.trace)
 
@@ -135,8 +124,7 @@ class UntangledDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True)
 
 def untangle(request: UntangleRequest, engine: Engine) -> UntangledDocument:
     """Replan robots until no robots enter each other's places in a circle."""
-    with inside("$.solution"):
-        sound = sound_solution(request.instance, request.solution)
+    sound = sound_within(request.instance, request.solution)
     with inside("$.instance"):
         found = untangled(request.instance, sound, engine)
     return UntangledDocument(solution_document(found.solution), found.extra, found.rotation)
@@ -171,8 +159,7 @@ def give_way(request: GiveWayRequest, engine: Engine) -> GivenWayDocument:
     """Give a robot the earliest plan that the histories of the others allow, and plan the others around it."""
     require_tick(request.now, "$.now")
     require_robot(request.instance, request.robot, "$.robot")
-    with inside("$.solution"):
-        sound = sound_solution(request.instance, request.solution)
+    sound = sound_within(request.instance, request.solution)
     route = None if request.route is None else tuple(Visit(*visit) for visit in request.route)
     found = given_way(request.instance, sound, request.robot, request.now, engine, route)
     return GivenWayDocument(

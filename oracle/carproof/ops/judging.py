@@ -8,7 +8,7 @@ from carp_spec.documents import VerdictDocument, verdict_document
 from carp_spec.query_certificates import QueryCertificateDocument
 from carproof.audit import ask_kernel, audit_in_order
 from carproof.engines import Engine
-from carproof.requests import inside, sound_solution
+from carproof.requests import inside, sound_within
 from carproof.results import AuditDocument, VerifiedBoundDocument, VerifiedQueryDocument, audit_document
 from carproof.verdicts import verify_bound as bound_verdict
 from carproof.verdicts import verify_query as query_verdict
@@ -70,8 +70,7 @@ class AuditRequest:
 
 def audit(request: AuditRequest, engine: Engine) -> AuditDocument:
     """Certify that no robot can arrive earlier beside the plans before its own in planning order."""
-    with inside("$.solution"):
-        sound = sound_solution(request.instance, request.solution)
+    sound = sound_within(request.instance, request.solution)
     with inside("$.instance"):
         found = audit_in_order(request.instance, sound, engine)
     if request.kernel:

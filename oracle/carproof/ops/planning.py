@@ -8,7 +8,7 @@ from carp_spec import Instance, Neighbourhood, Plan, Planner, ResourceId, RobotI
 from carp_spec.documents import visits_document
 from carproof.engines import Engine, warm
 from carproof.ops.op import PolishOptions
-from carproof.requests import inside, require_new_robot, require_robot, require_tick, sound_solution
+from carproof.requests import inside, require_new_robot, require_robot, require_tick, sound_within
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,8 +44,7 @@ def query(request: QueryRequest, engine: Engine) -> QueryDocument:
     """
     require_tick(request.now, "$.now")
     require_robot(request.instance, request.robot, "$.robot")
-    with inside("$.solution"):
-        committed = sound_solution(request.instance, request.solution, request.robot)
+    committed = sound_within(request.instance, request.solution, request.robot)
     with inside("$.instance"):
         return query_document(engine.query(request.instance, committed.plans, request.robot, request.now))
 
@@ -80,8 +79,7 @@ def add(request: AddRequest, engine: Engine) -> Solution:
     instance = request.instance
     require_tick(request.now, "$.now")
     require_new_robot(instance, request.solution, request.robot, "$.robot")
-    with inside("$.solution"):
-        before = sound_solution(instance, request.solution)
+    before = sound_within(instance, request.solution)
     with inside("$.instance"):
         return engine.add(instance, before, request.robot, request.now, request.options)
 
@@ -97,8 +95,7 @@ class PolishRequest:
 
 def polish(request: PolishRequest, engine: Engine) -> Solution:
     """Improve a solution, for a number of rounds or for a time."""
-    with inside("$.solution"):
-        before = sound_solution(request.instance, request.solution)
+    before = sound_within(request.instance, request.solution)
     if request.options.seconds is not None:
         warm()
     with inside("$.instance"):
