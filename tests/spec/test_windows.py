@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from carp_spec.windows import Occupation, Window, free_windows, occupancy, stay_fits, windows_are_free
@@ -14,15 +14,15 @@ STAYS = st.tuples(st.integers(0, 12), st.integers(1, 6) | st.none()).map(
 )
 OCCUPATIONS = st.lists(STAYS, max_size=6)
 CAPACITIES = st.integers(1, 3)
+GAPS = st.integers(0, 1)
 
 
-def room(occupations: Sequence[Occupation], capacity: int) -> list[bool]:
-    """Tick by tick, whether one more robot has room."""
-    return [
-        capacity
-        > len([enter for enter, leave in occupations if tick in range(enter, HORIZON if leave is None else leave)])
-        for tick in range(HORIZON)
-    ]
+def room(occupations: Sequence[Occupation], capacity: int, gap: int = 0) -> list[bool]:
+    """Tick by tick, whether one more robot has room, in that tick and the `gap` ticks after it."""
+    ticks = range(HORIZON + gap)
+    stays = [range(enter, HORIZON + gap if leave is None else leave + gap) for enter, leave in occupations]
+    free = [capacity > sum(tick in stay for stay in stays) for tick in ticks]
+    return [all(free[tick : tick + gap + 1]) for tick in range(HORIZON)]
 
 
 def runs(ticks: Sequence[bool]) -> list[Window]:
@@ -37,25 +37,34 @@ def test_occupancy_counts_the_stays_that_hold_the_tick(occupations: list[Occupat
     assert (occupancy(occupations, tick) < capacity) == room(occupations, capacity)[tick]
 
 
-@given(occupations=OCCUPATIONS, capacity=CAPACITIES)
-def test_free_windows_are_the_maximal_runs_of_free_ticks(occupations: list[Occupation], capacity: int) -> None:
-    windows = free_windows(occupations, capacity)
-    assert list(windows) == runs(room(occupations, capacity))
-    assert windows_are_free(windows, occupations, capacity)
+@given(occupations=OCCUPATIONS, capacity=CAPACITIES, gap=GAPS)
+@example(occupations=[(0, 1), (3, None)], capacity=1, gap=1)  # the tick between them is no window
+def test_free_windows_are_the_maximal_runs_of_free_ticks(
+    occupations: list[Occupation], capacity: int, gap: int
+) -> None:
+    windows = free_windows(occupations, capacity, gap)
+    assert list(windows) == runs(room(occupations, capacity, gap))
+    assert windows_are_free(windows, occupations, capacity, gap)
 
 
 @given(
     occupations=OCCUPATIONS,
     capacity=CAPACITIES,
+    gap=GAPS,
     reported=st.lists(st.builds(Window, st.integers(-1, 14), st.integers(-1, 14) | st.none()), max_size=4),
 )
-def test_no_other_list_of_windows_is_free(occupations: list[Occupation], capacity: int, reported: list[Window]) -> None:
-    assert windows_are_free(reported, occupations, capacity) == (reported == runs(room(occupations, capacity)))
+def test_no_other_list_of_windows_is_free(
+    occupations: list[Occupation], capacity: int, gap: int, reported: list[Window]
+) -> None:
+    is_right = reported == runs(room(occupations, capacity, gap))
+    assert windows_are_free(reported, occupations, capacity, gap) == is_right
 
 
-@given(occupations=OCCUPATIONS, capacity=CAPACITIES)
-def test_every_small_change_to_the_free_windows_is_refused(occupations: list[Occupation], capacity: int) -> None:
-    windows = free_windows(occupations, capacity)
+@given(occupations=OCCUPATIONS, capacity=CAPACITIES, gap=GAPS)
+def test_every_small_change_to_the_free_windows_is_refused(
+    occupations: list[Occupation], capacity: int, gap: int
+) -> None:
+    windows = free_windows(occupations, capacity, gap)
     for at, window in enumerate(windows):
         last = HORIZON if window.end is None else window.end
         for others in (
@@ -68,9 +77,9 @@ def test_every_small_change_to_the_free_windows_is_refused(occupations: list[Occ
             (window, window),
             (window, Window(last, last)),
         ):
-            assert not windows_are_free((*windows[:at], *others, *windows[at + 1 :]), occupations, capacity)
+            assert not windows_are_free((*windows[:at], *others, *windows[at + 1 :]), occupations, capacity, gap)
     if len(windows) > 1:
-        assert not windows_are_free(windows[::-1], occupations, capacity)
+        assert not windows_are_free(windows[::-1], occupations, capacity, gap)
 
 
 @given(
