@@ -42,7 +42,8 @@ def test_the_others_give_way(carproof: Run) -> None:
 
 def test_a_fixed_route_is_kept_and_a_wrong_one_refused(carproof: Run, elsewhere: Path) -> None:
     save(route=APART, half=APART[:2])
-    assert carproof(f"{PERSON_FIRST} --route route.json -o after.json").code == 0
+    outcome = carproof(f"{PERSON_FIRST} --route route.json -o after.json")
+    assert (outcome.code, outcome.stdout.splitlines()[0]) == (0, "robot person arrives at tick 3: on its route")
     plans = json.loads((elsewhere / "after.json").read_text())["plans"]
     assert plans[0] == {"robot": "person", "visits": APART}
     outcome = carproof(f"{PERSON_FIRST} --route half.json -o none.json")

@@ -47,8 +47,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     Robots keep the visits that they have made by --now. The command tries to change few plans of others. A robot that
     finds no plan around the earliest one keeps its own, and ROBOT goes as early as that allows.
 
-    Exit codes: 0 no lawful update lets ROBOT arrive earlier, 1 it goes, but perhaps not first, or there is no plan and
-    nothing is written, 2 bad input.
+    Exit codes: 0 no lawful update (with --route: on that route) lets ROBOT arrive earlier, 1 it goes, but perhaps not
+    first, or there is no plan and nothing is written, 2 bad input.
     """
     require_tick(now, "$.now")
     problem, sound = read_sound(instance, solution, *([route] if route else []))
@@ -62,7 +62,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
         return Answer.NO
     write_result(write_solution(found.solution), output, as_json)
     if not as_json:
-        proved = "no lawful update is earlier" if found.is_first else f"none is earlier than {found.least}"
+        least = "no lawful update is earlier" if found.is_first else f"none is earlier than {found.least}"
+        proved = least if visits is None else "on its route"
         print_line(f"robot {id} arrives at tick {found.arrival}: {proved}")
         print_table(["replanned", "later by"], found.extra.items(), numbers=["later by"])
     return Answer.of(found.is_first)

@@ -20,7 +20,7 @@ from carproof.untangling import untangle as untangled
 
 @dataclass(frozen=True, slots=True)
 class CheckTraceRequest:
-    """The part of a solution that has happened."""
+    """A solution, and the trace of what has happened."""
 
     instance: Instance
     solution: Solution
@@ -88,7 +88,7 @@ def execute(request: ExecuteRequest, engine: Engine) -> ExecutedDocument:
 
 @dataclass(frozen=True, slots=True)
 class RetimeRequest:
-    """The part of a solution that has happened."""
+    """A solution, and the trace of what has happened."""
 
     instance: Instance
     solution: Solution
@@ -144,8 +144,8 @@ class GiveWayRequest:
 class GivenWayDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The new plans (null if there are none), the arrival, and a lower bound on the arrival in any lawful update.
 
-    `extra` are pairs of a robot replanned and the ticks by which it arrives later; `stuck` are robots that find no
-    plan around the earliest one.
+    With a route, the bound holds for updates on that route. `extra` are pairs of a robot replanned and the ticks by
+    which it arrives later; `stuck` are robots that find no plan around the earliest one.
     """
 
     solution: SolutionDocument | None
