@@ -17,7 +17,7 @@ from carproof.conform import effort as efforts
 from carproof.conform import judges
 from carproof.conform import optimum as optima
 from carproof.conform.answers import Answer
-from carproof.conform.cases import Case, Op, request_of
+from carproof.conform.cases import Case, request_of
 from carproof.conform.effort import Effort, effort, why_undecided
 from carproof.conform.findings import wrong
 from carproof.conform.judges import first_finding
@@ -54,7 +54,7 @@ LAST_FIRST = passing_place(
 )
 
 
-def case(op: Op, instance: Instance, now: int = 0, planner: Planner | None = None, **plans: Sequence[Stay]) -> Case:
+def case(op: str, instance: Instance, now: int = 0, planner: Planner | None = None, **plans: Sequence[Stay]) -> Case:
     return Case("smoke", "one", op, instance, committed(instance, **plans), "new", now, planner)
 
 

@@ -8,7 +8,7 @@ from tests.oracle.test_conform_judges import Tampered, as_it_is, no_plan
 from carp_spec import Robot
 from carproof.conform import run
 from carproof.conform.answers import Reply, Skipped
-from carproof.conform.cases import Case, Op, Stage
+from carproof.conform.cases import Case, Stage
 from carproof.conform.deciding import Tally, random_shortfalls, smoke_shortfalls
 from carproof.conform.effort import Effort
 from carproof.conform.findings import (
@@ -38,23 +38,23 @@ WRONG = wrong("plan/move", "it jumps")
 CRASH = Finding(Category.CRASH, "program/alive", "it is gone")
 
 
-def case(stage: Stage = "random", op: Op = "query", robots: int = 0, name: str = "one") -> Case:
+def case(stage: Stage = "random", op: str = "query", robots: int = 0, name: str = "one") -> Case:
     return Case(stage, name, op, row([Robot(number, "a", "b") for number in range(robots)]))
 
 
-def tried(stage: Stage = "random", op: Op = "query", effort: Effort = Effort.TRIED) -> Outcome:
+def tried(stage: Stage = "random", op: str = "query", effort: Effort = Effort.TRIED) -> Outcome:
     return Outcome(case(stage, op), None, NOBODY, effort=effort)
 
 
-def skipped(stage: Stage = "random", op: Op = "query") -> Outcome:
+def skipped(stage: Stage = "random", op: str = "query") -> Outcome:
     return Outcome(case(stage, op), skipped="no time")
 
 
-def not_asked(stage: Stage = "random", op: Op = "query") -> Outcome:
+def not_asked(stage: Stage = "random", op: str = "query") -> Outcome:
     return Outcome(case(stage, op), skipped="no words", asked=False)
 
 
-def failed(stage: Stage = "random", op: Op = "query", finding: Finding = WRONG, robots: int = 0) -> Outcome:
+def failed(stage: Stage = "random", op: str = "query", finding: Finding = WRONG, robots: int = 0) -> Outcome:
     return Outcome(case(stage, op, robots), finding, NOBODY)
 
 
@@ -106,7 +106,7 @@ def test_smoke_cases_that_could_be_asked_must_be_answered() -> None:
 def test_nine_in_ten_random_cases_of_each_op_must_be_answered_and_half_of_them_tried() -> None:
     gave_up = tried(effort=Effort.GAVE_UP)
     assert list(random_shortfalls({"query": tally(*[tried()] * 9, skipped()), "add": tally(tried(), gave_up)})) == []
-    few: dict[Op, Tally] = {
+    few: dict[str, Tally] = {
         "query": tally(tried()),
         "plan": tally(*[tried()] * 8, skipped()),
         "add": tally(tried(), gave_up, gave_up),
@@ -294,7 +294,7 @@ def test_whatever_happens_there_is_a_report_and_the_subject_is_ended(
     ],
 )
 def test_random_cases_are_shared_out_among_the_ops(
-    ops: tuple[Op, ...], examples: int, asked: dict[Op, int], monkeypatch: pytest.MonkeyPatch
+    ops: tuple[str, ...], examples: int, asked: dict[str, int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(run, "smoke_cases", lambda *_: [])
     monkeypatch.setattr(run, "vector_cases", lambda *_: [])

@@ -9,7 +9,7 @@ from tests.oracle.test_conform_judges import Tampered, no_plan
 from carp_spec import Solution
 from carp_spec.registry import RULES
 from carproof.conform.advice import _ADVICE, advice_for
-from carproof.conform.cases import ASKED_OPS, Case, Op
+from carproof.conform.cases import ASKED_OPS, Case
 from carproof.conform.findings import PROGRAM_RULES, wrong
 from carproof.conform.levels import Level
 from carproof.conform.outcome import Outcome
@@ -69,7 +69,7 @@ def test_findings_of_an_earlier_run_are_cleared_and_no_other_file(tmp_path: Path
 
 @pytest.mark.parametrize("whole", [False, True])
 def test_saved_cases_are_read_as_they_were_asked(tmp_path: Path, whole: bool) -> None:
-    ops: tuple[Op, ...] = ("plan",) if whole else ASKED_OPS
+    ops: tuple[str, ...] = ("plan",) if whole else ASKED_OPS
     cases = [*smoke_cases(ops, Level.COMPLETE, whole), *vector_cases(ops, Level.COMPLETE, whole)]
     one_of_each = list({case.op: case for case in cases}.values())
     save_all([Outcome(case, wrong("plan/move", "it is wrong"), NOBODY) for case in one_of_each], tmp_path, ORIGIN)

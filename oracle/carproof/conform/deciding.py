@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from carproof.conform.cases import Op
 from carproof.conform.effort import Effort
 from carproof.conform.findings import LEAST_ANSWERED, LEAST_TRIED, answers_enough, tries_enough
 from carproof.conform.outcome import Outcome
@@ -46,7 +45,7 @@ def smoke_shortfalls(outcomes: list[Outcome]) -> Iterator[str]:
         yield f"{message} [{answers_enough.id}]"
 
 
-def random_shortfalls(tallies: Mapping[Op, Tally]) -> Iterator[str]:
+def random_shortfalls(tallies: Mapping[str, Tally]) -> Iterator[str]:
     """The reasons why the random cases are not enough."""
     for op, tally in tallies.items():
         if not answers_enough(tally.answered, tally.asked):

@@ -7,8 +7,6 @@ There are two kinds of completeness. A prioritized planner can find each robot's
 from collections.abc import Mapping
 from enum import IntEnum
 
-from carproof.conform.cases import Op
-
 
 class Level(IntEnum):
     """The level at which a program is judged; each level demands everything that the lower ones demand.
@@ -48,7 +46,7 @@ WHOLE_LEVELS = tuple(level for level in Level if level != Level.EXACT)
 """The levels of planners of whole instances, which choose planner and order themselves."""
 CLASSICAL_LEVELS = (Level.SOUND, Level.COMPLETE, Level.OPTIMAL)
 """The levels of planners whose answers do not tell in which order the plans were made."""
-JUDGED_OPS: Mapping[Level, tuple[Op, ...]] = {
+JUDGED_OPS: Mapping[Level, tuple[str, ...]] = {
     Level.SOUND: ("check", "query", "plan", "add", "polish", "bound"),
     Level.COMPLETE_IN_CONTEXT: ("query", "plan", "add"),
     Level.CONTEXT_OPTIMAL: ("query", "plan"),

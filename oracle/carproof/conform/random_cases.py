@@ -22,7 +22,7 @@ from carp_spec import (
     Solution,
     TimeExpanded,
 )
-from carproof.conform.cases import Case, Op
+from carproof.conform.cases import Case
 from carproof.conform.claims import EVERYTHING, Claims
 from carproof.conform.levels import Level
 from carproof.strategies import Sizes, broken_solutions, committed_plans, fleets_under_way, instances, solutions
@@ -145,14 +145,14 @@ def _claimed(sizes: Sizes, claims: Claims) -> Sizes:
 
 def random_cases(
     ops: Sequence[str], level: Level, whole: bool, claims: Claims = EVERYTHING
-) -> Mapping[Op, st.SearchStrategy[Case]]:
+) -> Mapping[str, st.SearchStrategy[Case]]:
     """Cases of each op that is offered."""
     sizes = _claimed(SIZES, claims)
     if whole:
         return {"plan": _plans([None], sizes)}
     planners = EXACT_PLANNERS if level >= Level.EXACT else (Carp(),)
     small = st.one_of(instances(_claimed(OPTIMUM_SIZES, claims)), _busy_instances(sizes), _busy_instances(sizes))
-    by_op: dict[Op, st.SearchStrategy[Case]] = {
+    by_op: dict[str, st.SearchStrategy[Case]] = {
         "query": _queries(sizes),
         "plan": _plans(planners, sizes),
         "add": _additions(sizes),

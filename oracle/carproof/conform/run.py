@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
-from carproof.conform.cases import Case, Op
+from carproof.conform.cases import Case
 from carproof.conform.claims import EVERYTHING, Claims
 from carproof.conform.deciding import Tally, random_shortfalls, smoke_shortfalls
 from carproof.conform.effort import Effort
@@ -46,7 +46,7 @@ class Options:
         return self.kernel or "carp_spec"
 
     @property
-    def ops(self) -> tuple[Op, ...]:
+    def ops(self) -> tuple[str, ...]:
         """The ops by which the level is shown."""
         return ("plan",) if self.whole else JUDGED_OPS[self.level]
 
@@ -64,7 +64,7 @@ class Report:
     program: str = ""
     outcomes: list[Outcome] = field(default_factory=list)
     random: Counter[str] = field(default_factory=Counter)
-    tallies: dict[Op, Tally] = field(default_factory=dict)
+    tallies: dict[str, Tally] = field(default_factory=dict)
     judged: Counter[str] = field(default_factory=Counter)
     smallest: Outcome | None = None
     faults: list[Finding] = field(default_factory=list)

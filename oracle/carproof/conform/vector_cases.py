@@ -6,7 +6,7 @@ from dataclasses import replace
 from carp_spec import Carp
 from carp_spec.documents import write
 from carp_spec.vectors import Vector, vectors
-from carproof.conform.cases import ASKED_OPS, Case, Op
+from carproof.conform.cases import ASKED_OPS, Case
 from carproof.conform.levels import Level
 from carproof.ops import OPS
 from carproof.protocol import Request
@@ -33,7 +33,7 @@ def _is_asked(case: Case, level: Level, whole: bool) -> bool:
     return case.op != "optimum" or level >= Level.COMPLETE
 
 
-def case_of(vector: Vector, op: Op) -> Case:
+def case_of(vector: Vector, op: str) -> Case:
     """The question of a vector; raises `Refusal` if it is none."""
     request = Request(write({"id": vector.id, **vector.request}))
     asked = OPS[request.op()].read(request)
