@@ -95,9 +95,9 @@ def _is_waiting(order: Order, enters: Mapping[Node, int], first: Node, second: N
 
 
 def _neighbours(order: Order) -> Iterator[tuple[Node, Node]]:
-    """The pairs of visits to places for one robot, the second right after the first."""
+    """The pairs of visits to places for one robot, the second right after the first; who parks goes last."""
     for visits in _sequences(order).values():
-        yield from pairwise(visits)
+        yield from (pair for pair in pairwise(visits) if order.visit(pair[1]).leave is not None)
 
 
 def _sequences(order: Order) -> dict[ResourceId, list[Node]]:

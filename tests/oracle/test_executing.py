@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from tests.oracle.running import Document, Outcome, Run, line, save, solution, town
 from tests.profiles import draws
 
+from carp_reference.execution import Delay
 from carp_spec import check, judge, read_instance, read_solution
 from carp_spec.execution_rules import is_acyclic, trace_violations
 from carp_spec.traces import read_trace
@@ -133,6 +134,14 @@ def test_who_switches_follows_the_order_that_came_of_it(case: PlannedInstance) -
     assert not trace_violations(instance, switching.followed, switching.trace)
     assert not {each.rule for each in check(instance, switching.trace.plans)} & {"joint/capacity", "joint/exchange"}
     assert sum(switching.late.values()) <= sum(order.late.values())
+
+
+def test_nobody_switches_to_park_in_the_way() -> None:
+    robots = [{"id": "r0", "start": "a", "goal": "c"}, {"id": "r1", "start": "d", "goal": "b"}]
+    instance = read_instance(line(**town("ab bc db", robots, "park")))
+    plans = {"r0": [["a", 0, 1], ["b", 1, 2], ["c", 2, None]], "r1": [["d", 0, 2], ["b", 2, None]]}
+    late = execute(instance, read_solution(line(**solution(plans))), "switching", (Delay("r0", 0, 5),))
+    assert (late.switches, late.collisions, late.late) == (0, (), {"r0": 5, "r1": 5})
 
 
 def test_an_executed_trace_reads_as_it_was_written(carproof: Run, elsewhere: Path) -> None:
