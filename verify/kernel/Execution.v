@@ -134,6 +134,32 @@ Proof.
       * destruct (L k K) as (s & S & ?). exists s. split; [exact S | lia].
 Qed.
 
+(** Where visits keep their order, a resource stays as empty as it was planned to be. *)
+Definition Room_in (ps : list plan) (r : resource) : Prop := forall tick ids, NoDup ids ->
+  (forall id, In id ids -> Crowds ps id (resource_id r) tick) -> Z.of_nat (length ids) <= capacity r.
+
+Lemma order_keeps_room ps ts r : NoDup (map plan_robot ts) ->
+  (forall id n x, Visit_of ts id n x -> exists v, Visit_of ps id n v /\ visit_resource x = visit_resource v) ->
+  (forall one m v other n w y, Visit_of ps one m v -> Visit_of ps other n w -> visit_resource v = resource_id r ->
+    visit_resource w = resource_id r -> Left_before v w -> Visit_of ts other n y ->
+    exists x, Visit_of ts one m x /\ Left_before x y) ->
+  Room_in ps r -> Room_in ts r.
+Proof.
+  intros U A O K tick ids N C.
+  destruct (list_eq_dec Z.eq_dec ids []) as [->|M]; [apply (K tick []); auto; intros ? []|].
+  set (P := fun id t => exists n v x, Visit_of ps id n v /\ Visit_of ts id n x /\ visit_resource v = resource_id r /\
+    enter v = t /\ enter x <= tick /\ Before tick (option_map (Z.add gap) (leave x))).
+  destruct (latest P ids M) as (t & (last & _ & k & w & y & W & Y & E & <- & B & _) & L).
+  { intros id H. destruct (C id H) as (n & x & X & E & T & B). destruct (A id n x X) as (v & V & F).
+    exists (enter v), n, v, x. repeat split; auto. congruence. }
+  apply (K (enter w) ids N). intros id H. destruct (L id H) as (u & (n & v & x & V & X & F & <- & T & D) & G).
+  exists n, v. repeat split; auto. unfold Before. destruct (leave v) as [l|] eqn:Q; simpl; auto.
+  destruct (Z.lt_ge_cases (enter w) (gap + l)) as [H'|H']; [exact H'|]. exfalso.
+  destruct (O id n v last k w y) as (x' & X' & l' & Q' & G'); auto.
+  - exists l. split; [exact Q | lia].
+  - assert (x' = x) as -> by (apply (visit_is_unique ts id n); auto). rewrite Q' in D. simpl in D. lia.
+Qed.
+
 Section Safety.
 Variables ps ts : list plan.
 Hypothesis one_plan_each : NoDup (map plan_robot ps).
@@ -144,22 +170,11 @@ Proof. apply visit_is_unique, (robots_are_named_once ps ts executed). Qed.
 
 Lemma room_stays_kept : Room_is_kept ps -> Room_is_kept ts.
 Proof.
-  intros K r tick ids R N C.
-  destruct (list_eq_dec Z.eq_dec ids []) as [->|M]; [apply (K r tick []); auto; intros ? []|].
-  set (P := fun id t => exists n v x, Visit_of ps id n v /\ Visit_of ts id n x /\ visit_resource v = resource_id r /\
-    enter v = t /\ enter x <= tick /\ Before tick (option_map (Z.add gap) (leave x))).
-  destruct (latest P ids M) as (t & (last & _ & k & w & y & W & Y & E & <- & B & _) & L).
-  { intros id H. destruct (C id H) as (n & x & X & E & T & B).
-    destruct (visits_are_planned ps ts executed id n x X) as (v & V & F).
-    exists (enter v), n, v, x. repeat split; auto. congruence. }
-  apply (K r (enter w) ids R N). intros id H. destruct (L id H) as (u & (n & v & x & V & X & F & <- & T & D) & U).
-  exists n, v. repeat split; auto. unfold Before. destruct (leave v) as [l|] eqn:Q; simpl; auto.
-  destruct (Z.lt_ge_cases (enter w) (gap + l)) as [G|G]; [exact G|]. exfalso.
-  destruct (order_is_kept ps ts executed id n v last k w y) as (x' & X' & l' & Q' & G'); auto.
-  - congruence.
-  - exists l. split; [exact Q | lia].
-  - assert (x' = x) as -> by (apply (executed_once id n); auto).
-    rewrite Q' in D. simpl in D. lia.
+  intros K r tick ids R. revert tick ids. apply (order_keeps_room ps ts r).
+  - exact (robots_are_named_once ps ts executed).
+  - exact (visits_are_planned ps ts executed).
+  - intros one m v other n w y V W E F. apply (order_is_kept ps ts executed one m v other n w y V W). congruence.
+  - intros tick ids. apply K. exact R.
 Qed.
 
 Lemma moves_of_execution id r s tick : Makes_move ts id r s tick -> exists n v w y,

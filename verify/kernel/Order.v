@@ -65,15 +65,15 @@ Definition is_opposite (ps : list plan) (one other : node) : bool :=
 
 (** A robot enters when the one before it has entered its next visit, or has stayed in its last one for the
     duration. *)
-Definition waits (ps : list plan) (one other : node * visit) : list dependency :=
+Definition wait (ps : list plan) (one : node * visit) (n : node) : dependency :=
   let (m, v) := one in
+  match visit_at ps (next m) with
+  | Some _ => Dependency (next m) n (if is_opposite ps m n then 1 else gap) false
+  | None => Dependency m n (needs (fst m) (visit_resource v) + gap) true
+  end.
+Definition waits (ps : list plan) (one other : node * visit) : list dependency :=
   let (n, w) := other in
-  if (visit_resource v =? visit_resource w) && is_left_before v w then
-    match visit_at ps (next m) with
-    | Some _ => [Dependency (next m) n (if is_opposite ps m n then 1 else gap) false]
-    | None => [Dependency m n (needs (fst m) (visit_resource v) + gap) true]
-    end
-  else [].
+  if (visit_resource (snd one) =? visit_resource w) && is_left_before (snd one) w then [wait ps one n] else [].
 
 (** The edges of the dependency graph, also those that follow from others. *)
 Definition dependencies (ps : list plan) : list dependency :=
@@ -175,21 +175,21 @@ Proof.
   - intros [((n, v) & V & T)|((m, v) & V & O)].
     + apply in_stays in V. unfold travels in T. destruct (visit_at ps (next n)) as [w|] eqn:W; [|destruct T].
       apply visit_at_iff in W; auto. destruct T as [<-|[]]. eapply Travel; eauto.
-    + apply in_flat_map in O as ((n, w) & W & O). apply in_stays in V, W. unfold waits in O.
+    + apply in_flat_map in O as ((n, w) & W & O). apply in_stays in V, W. unfold waits in O. simpl in O.
       destruct (Z.eqb_spec (visit_resource v) (visit_resource w)) as [E|]; [|destruct O].
-      destruct (is_left_before v w) eqn:L; [|destruct O]. apply is_left_before_iff in L. simpl in O.
-      destruct (visit_at ps (next m)) as [v'|] eqn:F; destruct O as [<-|[]].
+      destruct (is_left_before v w) eqn:L; [|destruct O]. apply is_left_before_iff in L. destruct O as [<-|[]].
+      unfold wait. destruct (visit_at ps (next m)) as [v'|] eqn:F.
       * apply visit_at_iff in F; auto. eapply Order_moving; eauto.
       * eapply Order_ending; eauto. exact (proj1 (visit_at_none ps (next m) one_plan_each) F).
   - intros [n v w V W|m v v' n w V W E L F|m v n w V W E L F].
     + left. exists (n, v). split; [apply in_stays; exact V|]. unfold travels.
       rewrite (proj2 (visit_at_iff ps (next n) w one_plan_each) W). left. reflexivity.
     + right. exists (m, v). split; [apply in_stays; exact V|]. apply in_flat_map. exists (n, w).
-      split; [apply in_stays; exact W|]. unfold waits.
+      split; [apply in_stays; exact W|]. unfold waits. simpl.
       rewrite (proj2 (Z.eqb_eq _ _) E), (proj2 (is_left_before_iff v w) L).
       rewrite (proj2 (visit_at_iff ps (next m) v' one_plan_each) F). left. reflexivity.
     + right. exists (m, v). split; [apply in_stays; exact V|]. apply in_flat_map. exists (n, w).
-      split; [apply in_stays; exact W|]. unfold waits.
+      split; [apply in_stays; exact W|]. unfold waits. simpl.
       rewrite (proj2 (Z.eqb_eq _ _) E), (proj2 (is_left_before_iff v w) L).
       rewrite (proj2 (visit_at_none ps (next m) one_plan_each) F). left. reflexivity.
 Qed.
