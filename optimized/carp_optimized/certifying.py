@@ -30,7 +30,7 @@ class Certifier:
         index = self._fleet.index(robot)
         plan, expanded = self._fleet.find_with_labels(index, followed, now)
         bound = None if plan is None else plan.visits[-1].enter
-        potential = dict(self._fleet.potential(index))
+        potential = self._fleet.potential(index)
         certificate = QueryCertificateDocument(
             format=QUERY_FORMAT,
             robot=robot,
@@ -41,6 +41,6 @@ class Certifier:
                 for resource, tick in expanded
                 if bound is None or tick + potential[resource] < bound
             ),
-            potential=tuple((self._ids[resource], ticks) for resource, ticks in potential.items()),
+            potential=tuple(zip(map(self._ids.__getitem__, potential), potential.values(), strict=True)),
         )
         return plan, certificate

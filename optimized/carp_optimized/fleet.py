@@ -153,7 +153,7 @@ class PlannedFleet:
         enters[0] = ready - ticks
         return plan, [*zip(resources[first:].tolist(), enters[first:].tolist(), strict=True)]
 
-    def potential(self, robot: int) -> list[tuple[int, int]]:
+    def potential(self, robot: int) -> dict[int, int]:
         """The resources from which the robot can reach its goal, each with the ticks that it needs at least.
 
         Ticks beyond the largest are counted as one more than that.
@@ -161,7 +161,7 @@ class PlannedFleet:
         guide = self._guide(robot)
         ticks = np.where(guide == TOO_FAR, LARGEST + 1, guide >> 32)
         reaching = np.flatnonzero(guide != UNREACHABLE)
-        return [*zip(reaching.tolist(), ticks[reaching].tolist(), strict=True)]
+        return dict(zip(reaching.tolist(), ticks[reaching].tolist(), strict=True))
 
     def _guide(self, robot: int) -> Longs:
         """The guide of the robot's destination."""

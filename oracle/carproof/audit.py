@@ -9,9 +9,10 @@ without a plan.
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
+import msgspec
+
 from carp_spec import Instance, Plan, Refusal, Solution
 from carp_spec.documents import solution_document
-from carp_spec.query_certificates import QueryCertificateDocument
 from carp_verify.bound_rules import ContradictionError
 from carp_verify.kernel import ask, request
 from carp_verify.query_certificate_rules import plans_are_lawful, size_fits
@@ -32,10 +33,13 @@ class Late:
 
 @dataclass(slots=True)
 class Audit:
-    """The findings of an audit, in the order in which it looked at the plans, and the checker that decided."""
+    """The findings of an audit, in the order in which it looked at the plans, and the checker that decided.
+
+    The certificates are in JSON: those of 1,000 robots may have millions of potentials.
+    """
 
     certified: list[Plan] = field(default_factory=list)
-    certificates: list[QueryCertificateDocument] = field(default_factory=list)
+    certificates: list[msgspec.Raw] = field(default_factory=list)
     late: list[Late] = field(default_factory=list)
     by: str = CHECKER
 
@@ -77,7 +81,7 @@ class Auditor:
                 raise
             raise ContradictionError(f"the certificate of robot {plan.robot} was refused: {refusal}") from refusal
         self.audit.certified.append(plan)
-        self.audit.certificates.append(certificate)
+        self.audit.certificates.append(msgspec.Raw(msgspec.json.encode(certificate)))
         return None
 
     def has_room(self, plan: Plan) -> bool:

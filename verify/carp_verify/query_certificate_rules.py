@@ -47,14 +47,18 @@ def is_no_later(bound: int | None, arrival: int) -> bool:
     DESIGN,
 )
 def is_potential(
-    potential: Mapping[ResourceId, int], goal: ResourceId, moves: Iterable[tuple[ResourceId, ResourceId, int]]
+    potential: Mapping[ResourceId, int],
+    goal: ResourceId,
+    moves: Iterable[tuple[ResourceId, Sequence[ResourceId], int]],
 ) -> Iterator[str]:
-    """The first fault of a potential; each move comes with the ticks that the robot needs before it."""
+    """The faults of a potential; each resource comes with those that it leads to, and the ticks needed in it."""
     if potential.get(goal) != 0:
         yield f"{goal}, the goal, must have the potential 0"
-    for source, target, ticks in moves:
-        if target in potential and (source not in potential or potential[source] > ticks + potential[target]):
-            yield f"{source}, which leads to {target}, must have a potential of at most {ticks + potential[target]}"
+    for source, targets, ticks in moves:
+        most = potential.get(source)
+        for target in targets:
+            if target in potential and (most is None or most > ticks + potential[target]):
+                yield f"{source}, which leads to {target}, must have a potential of at most {ticks + potential[target]}"
 
 
 @rule(

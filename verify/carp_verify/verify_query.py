@@ -206,11 +206,8 @@ class Check:
         _require(size_fits, size_fits(total), "$.labels", message)
 
     def _require_potential(self) -> None:
-        moves = (
-            (source, target, self._ticks(source))
-            for source, targets in self.instance.graph.successors.items()
-            for target in targets
-        )
+        graph, pace = self.instance.graph, self.robot.pace
+        moves = ((each.id, graph.successors[each.id], pace * each.duration) for each in graph.resources)
         for fault in is_potential(self.potential, self.robot.goal, moves):
             raise Refusal("document", "$.potential", is_potential.id, fault)
 
