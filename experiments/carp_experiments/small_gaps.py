@@ -14,7 +14,7 @@ from carp_experiments.report import ExperimentReport, Figure, Table
 from carp_experiments.store import Row
 from carp_spec import Greedy, Planner, total_cost
 from carp_verify.bound_rules import require_kept
-from carproof.statistics import Interval, mean_interval
+from carproof.statistics import Interval, excess
 
 SIDE = 8
 LIMIT_IN_SECONDS = 60
@@ -106,14 +106,11 @@ def gap_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
 
 def gap_of(map: int, name: str, rows: Sequence[GapRow], robots: int) -> GapOf:
     """An algorithm, or the bound, on the maps of one density."""
-    reached = [
-        (*((robots, row.bound) if name == BOUND else row.results[name]), row.optimum)
-        for row in rows
-        if row.optimum is not None
-    ]
-    gaps = [100 * (total - best) / best for planned, total, best in reached if planned == robots and best]
-    failures = sum(planned < robots for planned, _, _ in reached)
-    return GapOf(map, name, len(reached), failures, mean_interval(gaps) if gaps else None)
+    known = [row for row in rows if row.optimum is not None]
+    reached = [(robots, row.bound) if name == BOUND else row.results[name] for row in known]
+    totals = (total if planned == robots else None for planned, total in reached)
+    above = excess((total, row.optimum, row.optimum) for total, row in zip(totals, known, strict=True))
+    return GapOf(map, name, len(known), len(known) - above.instances, above.per_cent)
 
 
 def gap_table(summary: Sequence[GapOf], by_map: Mapping[int, Sequence[GapRow]], title: str) -> Table:

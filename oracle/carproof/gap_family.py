@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from carp_optimum.gap import Gap, gap
 from carp_spec import AfterGoal, Instance, Planner
 from carproof.generate import Fleet, Grid, Range, grid_instance
-from carproof.statistics import Interval, mean_interval
+from carproof.statistics import Excess, excess
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,18 +46,6 @@ class Family:
 
 
 @dataclass(frozen=True, slots=True)
-class Excess:
-    """The number of instances that have a value, and the mean in per cent of the optimum; `None` without any."""
-
-    instances: int
-    per_cent: Interval | None
-
-    def __str__(self) -> str:
-        """Print like `1.9 ± 1.6`."""
-        return "-" if self.per_cent is None else f"{self.per_cent:.1f}"
-
-
-@dataclass(frozen=True, slots=True)
 class Cell:
     """The gaps of the instances of one size and map, by seed; those without a known optimum are in no mean."""
 
@@ -75,20 +63,20 @@ class Cell:
     @property
     def delay(self) -> Excess:
         """The optimum above the sum of the shortest paths, in per cent of the latter."""
-        return _excess((each.optimum.cost, each.optimum.shortest, each.optimum.shortest) for each in self.decided)
+        return excess((each.optimum.cost, each.optimum.shortest, each.optimum.shortest) for each in self.decided)
 
     @property
     def price_of_an_order(self) -> Excess:
         """The best order above the optimum, where it is known."""
-        return _excess((each.best_order, each.optimum.cost, each.optimum.cost) for each in self.decided)
+        return excess((each.best_order, each.optimum.cost, each.optimum.cost) for each in self.decided)
 
     def above_optimum(self, planner: int) -> Excess:
         """The planner of that position above the optimum, where it planned all robots."""
-        return _excess((_total(each, planner), each.optimum.cost, each.optimum.cost) for each in self.decided)
+        return excess((_total(each, planner), each.optimum.cost, each.optimum.cost) for each in self.decided)
 
     def price_of_the_search(self, planner: int) -> Excess:
         """The planner of that position above the best order, where both are known."""
-        return _excess((_total(each, planner), each.best_order, each.optimum.cost) for each in self.decided)
+        return excess((_total(each, planner), each.best_order, each.optimum.cost) for each in self.decided)
 
 
 def measured(
@@ -110,13 +98,3 @@ def _total(gap: Gap, planner: int) -> int | None:
     """The planner's total, if it planned all robots."""
     reached = gap.planners[planner]
     return None if reached.unplanned else reached.total
-
-
-def _excess(totals: Iterator[tuple[int | None, int | None, int | None]]) -> Excess:
-    """The mean over those that are known of how much a total exceeds another, in per cent of a third."""
-    values = [
-        100 * (total - other) / (whole or 1)
-        for total, other, whole in totals
-        if total is not None and other is not None and whole is not None
-    ]
-    return Excess(len(values), mean_interval(values) if values else None)

@@ -5,7 +5,8 @@ from typing import Any
 
 from carp_optimum.gap import Gap, PlannerGap
 from carp_spec import Carp, FixedPaths, Greedy, LongestFirst, Neighbourhood, Planner, Shuffled
-from carproof.gap_family import Cell, Excess
+from carproof.gap_family import Cell
+from carproof.statistics import Excess
 
 PLANNERS: tuple[Planner, ...] = (Carp(), Shuffled(), LongestFirst(), Greedy(), FixedPaths(), Neighbourhood())
 
