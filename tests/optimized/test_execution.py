@@ -1,0 +1,80 @@
+"""The compiled dependency graph has the edges and the ticks of the readable one."""
+
+from dataclasses import replace
+
+import numpy as np
+
+import carp_reference
+from carp_optimized.execution import Timetable, timetable
+from carp_reference.execution import Delay, executed, in_order, order_of, planned, retime, stuck
+from carp_reference.execution import earliest as read_earliest
+from carp_spec import Carp, Instance, Refusal, Solution
+from carp_spec.dependencies import Node
+from carp_spec.permutations import splitmix64
+from carproof.questions import Draw, draw_instance
+
+
+def cases(count: int) -> list[tuple[Instance, Solution, Draw]]:
+    found = []
+    for number in range(count):
+        draw = Draw(splitmix64(number))
+        instance = replace(draw_instance(draw), following="forbidden" if number % 3 == 0 else "allowed")
+        solution = carp_reference.plan(instance, Carp())
+        if solution.plans:
+            found.append((instance, solution, draw))
+    return found
+
+
+def numbers(solution: Solution) -> dict[Node, int]:
+    """The visits as the timetable numbers them."""
+    nodes = [(plan.robot, place) for plan in solution.plans for place in range(len(plan.visits))]
+    return {node: number for number, node in enumerate(nodes)}
+
+
+def drawn_delays(solution: Solution, draw: Draw) -> list[Delay]:
+    places = [(plan.robot, place) for plan in solution.plans for place in range(len(plan.visits) - 1)]
+    return [Delay(*node, draw.between(1, 4)) for node in places if draw.happens(3)]
+
+
+def as_array(
+    times: Timetable, number: dict[Node, int], delays: list[Delay]
+) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
+    found = np.zeros(times.enter.size, np.int64)
+    for delay in delays:
+        found[number[delay.robot, delay.visit]] = delay.ticks
+    return found
+
+
+def test_both_make_the_same_graph_and_find_the_same_circles() -> None:
+    for instance, solution, _ in cases(200):
+        order, times, number = order_of(instance, solution), timetable(instance, solution), numbers(solution)
+        edges = sorted((number[edge.before], number[edge.after], edge.ticks) for edge in order.edges)
+        assert sorted(zip(times.before.tolist(), times.after.tolist(), times.ticks.tolist(), strict=True)) == edges
+        assert {number[node] for node in stuck(order)} == set(np.flatnonzero(times.stuck()).tolist())
+
+
+def test_both_propagate_delays_alike() -> None:
+    for instance, solution, draw in cases(200):
+        order, times, number = order_of(instance, solution), timetable(instance, solution), numbers(solution)
+        delays = drawn_delays(solution, draw)
+        late = read_earliest(order, planned(order), delays)
+        assert times.times(times.enter, as_array(times, number, delays)).tolist() == [late[node] for node in number]
+
+
+def test_both_retime_alike() -> None:
+    compared = 0
+    for instance, solution, draw in cases(200):
+        order, times = order_of(instance, solution), timetable(instance, solution)
+        if stuck(order):
+            continue
+        delays = drawn_delays(solution, draw)
+        now = draw.between(0, 6)
+        trace = executed(order, in_order(order, delays), delays, now)
+        try:
+            after = retime(instance, solution, trace)
+        except Refusal:
+            continue
+        entered = {plan.robot: [visit.enter for visit in plan.visits] for plan in trace.plans}
+        assert times.solution_at(times.times(times.least_after(now, entered))) == after
+        compared += 1
+    assert compared > 100
