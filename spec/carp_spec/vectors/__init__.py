@@ -29,7 +29,7 @@ Expected: TypeAlias = Literal["valid", "invalid"]
 Fields: TypeAlias = dict[str, Any]
 
 FLAGS: Final[Mapping[Flag, str]] = {
-    "edge-case": "The least, the first, the last or none of something: where an off-by-one error shows.",
+    "edge-case": "The least, the first, the last or none of something: where an off-by-one shows.",
     "known-bug-elsewhere": "Published planners have been wrong here; the comment says how.",
     "free-choice": "Another answer is as good; only a program that claims carproof's ties must give this one.",
 }
