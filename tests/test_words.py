@@ -21,9 +21,11 @@ AVOIDED = (
     "minds",
     "of which",
 )
-FOLDERS = ("spec", "reference", "optimized", "verify", "optimum", "oracle", "experiments", "docs")
+FOLDERS = ("spec", "reference", "optimized", "verify", "optimum", "oracle", "experiments", "docs", "tests")
 KINDS = {".py", ".md", ".v", ".ml", ".js", ".css", ".html"}
 BREAK = r"\s+(?:(?:#|//)\s+)?"
+WHAT = re.compile(r"\bWhat\b[^.?]*(?:\.|\Z)")
+"""A sentence that begins with What and asks nothing: it names no subject."""
 
 
 def shipped() -> Iterator[Path]:
@@ -31,7 +33,9 @@ def shipped() -> Iterator[Path]:
     yield from (path for path in ROOT.glob("*.md") if path.name != "CHANGELOG.md")
     for folder in FOLDERS:
         files = (path for path in (ROOT / folder).rglob("*") if path.suffix in KINDS)
-        yield from (path for path in files if path.parent != ROOT / "experiments" / "results")
+        yield from (
+            path for path in files if path.parent != ROOT / "experiments" / "results" and path != Path(__file__)
+        )
 
 
 def phrase(words: str) -> re.Pattern[str]:
@@ -44,6 +48,16 @@ def test_an_avoided_phrase_does_not_occur_in_shipped_text(words: str) -> None:
     texts = {path: path.read_text(encoding="utf-8") for path in shipped()}
     assert len(texts) > 200
     assert [str(path.relative_to(ROOT)) for path, text in texts.items() if phrase(words).search(text)] == []
+
+
+def test_no_sentence_begins_with_what_but_questions() -> None:
+    texts = {path: path.read_text(encoding="utf-8") for path in shipped() if path.suffix in {".py", ".md"}}
+    assert [f"{path.relative_to(ROOT)}: {found}" for path, text in texts.items() for found in WHAT.findall(text)] == []
+
+
+def test_a_question_may_begin_with_what() -> None:
+    assert WHAT.search("It ends. What a plan\n    costs.")
+    assert not WHAT.search("What does a plan cost? 3 ticks.")
 
 
 def test_a_phrase_is_found_across_a_line_break_and_not_inside_a_word() -> None:

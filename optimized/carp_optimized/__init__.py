@@ -1,4 +1,4 @@
-"""The planner to run: the plans of `carp_reference`, visit for visit, from compiled code.
+"""The planner to run: compiled code that makes the plans of `carp_reference`, visit for visit.
 
 `query`, `plan`, `add` and `polish` are the same functions; `carp_optimized.fleet` has a fleet that stays up. Importing
 this page loads neither numpy nor numba.

@@ -75,7 +75,7 @@ def known_answer(state: State, answers: Answers, member: int, given: int) -> int
 
 @compiled
 def least_of(answers: Answers, member: int, given: int) -> int:
-    """What the member costs at least against the set of plans, by all answers known; `NO_LIMIT`: it has no plan."""
+    """The least cost of the member against the set of plans, by all answers known; `NO_LIMIT`: it has no plan."""
     least = 0
     answer = int(answers.newest[member])
     while answer != NONE:

@@ -18,7 +18,7 @@ LongTable: TypeAlias = Annotated[npt.NDArray[np.int64], 2]
 NEVER = 2**31 - 1  # the end of what lasts for ever
 LARGEST = 2**30 - 1  # of ticks and durations: the sum of two is still below NEVER
 NONE = -1  # no resource, no record, no slot
-UNKNOWN = -1  # the number of expansions of a plan that no query of ours has made
+UNKNOWN = -1  # the number of expansions of a plan that no query of the fleet has made
 
 SEVERAL = -2  # sources
 BLOCK = 8  # windows are looked at in blocks
@@ -160,7 +160,7 @@ class Records(NamedTuple):
 
 
 class Freed(NamedTuple):
-    """What has been taken back since a mark was set: the hull of the stays in a resource, and where it can be read.
+    """The stays taken back since a mark was set: their hull in each resource, and the resources where it can be read.
 
     `source` is the resource from which the robot came, `SEVERAL` if several stays were taken back.
     The entries of a resource count only where `mark` is `now[0]`; `near` marks them and the resources that lead to one,
@@ -208,7 +208,7 @@ class State(NamedTuple):
 
 
 class Work(NamedTuple):
-    """What adding a robot works on: made once for a fleet and a size of neighbourhood, so that adding makes no arrays.
+    """The arrays for adding a robot, made once for a fleet and a size of neighbourhood.
 
     `queue` holds the robots in planning order, the new one last. `stream[0]` is the state of the random numbers.
     By robot: `before`, the plans followed until now; `ended`, whether they have ended by now; `held`, the plans of the
@@ -244,7 +244,7 @@ class Work(NamedTuple):
 
 
 class Polish(NamedTuple):
-    """What polishing works on.
+    """The arrays for polishing.
 
     `queue` holds the robots that have a plan in planning order, and `plans` the plans by robot; `counts` how many
     robots are in the queue, how many rounds are done, and the generation of the marks. `stream[0]` is the state of the
@@ -279,12 +279,11 @@ class Polish(NamedTuple):
 class Answers(NamedTuple):
     """The answers known in a round: of a member against the set `given`, the plan `plan` (`NONE`: none exists).
 
-    `found` is the plan's record as the query for just this answer made it: what the query read depends on the set.
-    Its cost is at least `least`, which is all that is known where the plan is `LATE`.
-    Plans are numbered; `record[plan]` is the plan's record, `clashes[plan]` the set of plans that it clashes with, of
-    those with which it has been `compared`.
-    The answers of a member are chained from `newest[member]` on by `older`. `used` counts plans and answers.
-    What does not fit is forgotten, which costs time alone.
+    `found` is the plan's record as the query for just this answer made it: its readings depend on the set. Its cost is
+    at least `least`, which is all that is known where the plan is `LATE`. Plans are numbered; `record[plan]` is the
+    plan's record, `clashes[plan]` the set of plans that it clashes with, of those with which it has been `compared`.
+    The answers of a member are chained from `newest[member]` on by `older`. `used` counts plans and answers. Answers
+    that do not fit are forgotten, which costs time alone.
     """
 
     record: Ints

@@ -1,4 +1,4 @@
-"""Queries with certificates: the plan that arrives earliest, and what shows that none arrives earlier."""
+"""Queries with certificates: the plan that arrives earliest, and the evidence that none arrives earlier."""
 
 from collections.abc import Sequence
 

@@ -109,7 +109,7 @@ def is_compiled() -> bool:
 
 
 def is_cached(function: Callable[..., object]) -> bool:
-    """Whether an entry's machine code is on disk; its first call compiles it else.
+    """Whether an entry's machine code is on disk; otherwise its first call compiles it.
 
     Code that is older than any source here or beside the function does not count: numba looks at the source of the
     function alone, not at those of the functions that it calls.
@@ -135,7 +135,7 @@ def _forget(function: Callable[..., object]) -> None:
 
 @cache
 def say_that_it_compiles(is_kept: bool) -> None:
-    """Say to the person who waits why it takes so long, once, and whether it will again."""
+    """Announce the compilation once on standard error, with its time and whether it will happen again."""
     how_often = "once" if is_kept else "in each process, as it finds no folder in which to keep that"
     message = f"carproof compiles its planner, {how_often}: it takes about a minute ..."
     with suppress(OSError):

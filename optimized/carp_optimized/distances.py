@@ -1,4 +1,4 @@
-"""The nearest robot, `neighbourhood/distance` and `neighbourhood/nearest`, exactly and without looking at all of all.
+"""The nearest robot (`neighbourhood/distance`, `neighbourhood/nearest`), exactly and without summing all distances.
 
 The mean distance of two robots is a sum of terms divided by a number of ticks. To fit in 64 bits, each term is split
 into `term >> split` and the rest, and the two are summed apart; `split` is 0 for all but huge coordinates.
@@ -42,7 +42,7 @@ def term(dx: int, dy: int) -> int:
 
 @compiled
 def is_apart(state: State, one: int, other: int, whole: int) -> bool:
-    """Whether the distance of two plans cannot be below whole + 1, by their mean positions alone.
+    """Whether the mean positions of two plans alone show that their distance is at least whole + 1.
 
     The mean of distances is no less than the distance of the means, and each term is less than 1 below what it rounds.
     Both sides are multiplied by the ticks, and not compared where their squares might not fit.
@@ -138,7 +138,7 @@ def nearest(state: State, work: Work, size: int, count: int) -> int:
 def guess(state: State, work: Work, size: int, count: int) -> Mean:
     """A little more than the distance of a robot that is likely to be near the newest member, by start and goal.
 
-    To begin with that saves most walks. The robot itself is nearer than that, so it is found if no other is.
+    Starting with it saves most walks. The robot itself is nearer than that, so it is found if no other is.
     """
     most = Mean(1 << (31 + state.split), 0, 1)  # more than any term
     likely = NONE

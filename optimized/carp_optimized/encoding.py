@@ -1,4 +1,4 @@
-"""From an instance to the arrays of a state; what they cannot hold is refused."""
+"""Encodes an instance as the arrays of a state; numbers that these cannot hold are refused."""
 
 import math
 from collections.abc import Iterator

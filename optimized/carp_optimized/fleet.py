@@ -1,4 +1,4 @@
-"""A fleet that stays up: plans are made and robots added one after the other, on arrays that are kept between."""
+"""A fleet that stays up: plans are made and robots added one after the other, on arrays that persist."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -45,7 +45,7 @@ MANY = 1 << 16  # visits and expansions of records that are no longer held
 
 
 class Scratch(NamedTuple):
-    """What the neighbourhood planner works on, for as long as it is asked with the same options."""
+    """The arrays of the neighbourhood planner, kept as long as its options stay the same."""
 
     options: Native[Options]
     work: Native[Work]
@@ -106,7 +106,7 @@ class PlannedFleet:
         return self._call(lambda: passes.shortest(self._native, robot))
 
     def commit(self, plans: Sequence[Plan]) -> None:
-        """Take over plans made elsewhere, which must fit those there are."""
+        """Take over plans made elsewhere, which must fit the plans of the fleet."""
         records = np.array([self.record(plan) for plan in plans], np.int32)
         robots = np.array([self._index[plan.robot] for plan in plans], np.int32)
         self._call(lambda: passes.reserve_all(self._native, records))
@@ -241,7 +241,7 @@ class PlannedFleet:
         return options.fallback is not None and self._fall_back(robot, now, Shuffled(options.fallback, options.seed))
 
     def polishing(self, seed: int) -> Native[Polish]:
-        """What to polish with, for this fleet alone, from the plans that it has."""
+        """The arrays for polishing this fleet, from the plans that it has."""
 
         def find_alone(robot: int) -> int:
             return passes.find_one(self._empty, robot, NONE, 0)  # another one, if there was too little room
@@ -256,7 +256,7 @@ class PlannedFleet:
         return Native(polish)
 
     def polish(self, polishing: Native[Polish], rounds: int) -> int:
-        """Play that many rounds of `polish/...`; how many were played before there was nothing left to do."""
+        """Play rounds of `polish/...`; returns how many were played before nothing was left to do."""
         self._forget_old_records()
         work = polishing.fields
         size, turn, stream = self._order.size, int(work.counts[TURN]), int(work.stream[0])
@@ -274,7 +274,7 @@ class PlannedFleet:
 
     @property
     def worth(self) -> tuple[int, int]:
-        """How many robots have no plan, and the total cost of the others."""
+        """The number of unplanned robots, and the total cost of the others."""
         return (self._records.size - self._order.size, self._cost(self._records[self._order]))
 
     def _scratch_for(self, options: Neighbourhood) -> Scratch:
@@ -334,7 +334,7 @@ class PlannedFleet:
         return plans
 
     def _hold(self, robots: Ints, records: Ints) -> None:
-        """Note what the windows hold."""
+        """Note the plans that the windows hold."""
         self._order = robots
         self._records = np.full(self._records.size, NONE, np.int32)
         self._records[robots] = records

@@ -1,4 +1,4 @@
-"""What compiled functions that Python calls make of the natives handed to them."""
+"""The types with which numba compiles functions for the natives that Python hands to them."""
 
 from carp_optimized.arrays import Answers, Options, Polish, State, Work
 from carp_optimized.references import dereference

@@ -35,7 +35,7 @@ def add_robot(  # noqa: C901 - Algorithm 1 from its first line to its last
     size: int,
     now: int,
 ) -> bool:
-    """Add the last robot of the queue of `work` to the `size` before it; whether it got a plan.
+    """Add the last robot of the queue of `work` to the `size` before it; returns whether it got a plan.
 
     If so, the queue becomes that of the best candidate. The windows hold the plans before and afterwards.
     """
@@ -88,7 +88,7 @@ def add_robot(  # noqa: C901 - Algorithm 1 from its first line to its last
 
 @compiled
 def begin(state: State, work: Work, size: int, shortest: int, now: int) -> int:
-    """Begin with all robots but the new one outside the neighbourhood; how many of them have not ended by now."""
+    """Begin with all robots but the new one outside the neighbourhood; returns how many have not ended by now."""
     give_ranks(state, work.queue, size + 1)
     under_way = 0
     new = int(work.queue[size])
@@ -203,7 +203,7 @@ def plan_members(
 
 @compiled
 def plan_alone(state: State, work: Work, count: int, now: int, skip_unchanged: bool) -> bool:
-    """Bring the members' plans against the robots outside alone up to date; whether all have one.
+    """Update the members' plans against the robots outside alone; returns whether all have one.
 
     The member taken in last comes with its plan among the robots outside. It saw those before it, and none of them has
     changed in this round, so what was taken back does not touch it; those behind it were added since.

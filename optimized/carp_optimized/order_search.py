@@ -2,17 +2,17 @@
 
 Three kinds of reuse; each leaves the best order and its plans as they are:
 
-- Prefixes. An order that begins like the one before keeps the plans of that beginning: they do not depend on the rest.
+- Prefixes. An order that begins like the one before keeps the plans of that beginning, which do not depend on the rest.
 - Shared answers. A query of a robot against `given` plans is answered by one asked against fewer of them, if the plan
   found then clashes with none of the others: stays that leave room for it do not change it (see
-  `carp_optimized.replanning`). No plan against fewer is no plan against more. So the plans of two prefixes that left
-  the same plans are shared, too. An answer keeps the record of its own query, also where another has found the same
-  plan: what that one read is no measure, for it may have been asked against plans that are not there now.
-- Bounds. A robot costs at least what it costs against the robots outside alone, or against some of the plans of the
-  prefix: more plans leave fewer ways. A prefix whose cost and those of the robots still to come are not below the
-  limit has no order that is strictly better. All answers known are looked at only before a query would be asked. It
-  is asked for a plan that leaves less than the limit to the others, for with another the prefix is cut at once; that
-  none exists gives what the robot costs at least.
+  `carp_optimized.replanning`). No plan against fewer is no plan against more. So two prefixes with the same plans share
+  their answers, too. An answer keeps the record of its own query, even if another query has found the same plan: the
+  readings of the other do not count, because it may have been asked against different plans.
+- Bounds. The cost of a robot is at least that against the robots outside alone, or against some of the plans of the
+  prefix: more plans leave fewer ways. If the cost of a prefix and the least costs of the robots still to come are not
+  below the limit, no order with that prefix is strictly better. All known answers are looked at only before a query
+  would be asked. A query is asked for a plan cheap enough to stay below the limit, because with any other plan the
+  prefix is cut at once. If no such plan exists, that gives a least cost of the robot.
 """
 
 from carp_optimized.answers import known_answer, learn, least_of, number_plan, start_answers
@@ -115,7 +115,7 @@ def plan_order(
     now: int,
     options: Options,
 ) -> int:
-    """Plan the order from the place on. In how many first places the next order must differ; count + 1: it is better.
+    """Plan the order from the place on; returns in how many first places the next must differ, count + 1 if better.
 
     `total_least` is the sum of the least costs of all members.
     """
@@ -149,7 +149,7 @@ def plan_order(
 
 @compiled
 def least_rest(work: Work, answers: Answers, place: int, count: int) -> int:
-    """What the members behind that place cost at least, by all answers known; `NO_LIMIT`: one has no plan."""
+    """The least cost of the members behind that place, by all answers known; `NO_LIMIT`: one has no plan."""
     cost = 0
     for k in range(place + 1, count):
         least = least_of(answers, int(work.order[k]), int(work.given[place]))

@@ -35,7 +35,7 @@ def key_of(row: Ints, size: int) -> int:
 
 @compiled
 def precedes(work: Work, one: int, other: int, size: int) -> int:
-    """-1, 0 or 1 as one order is before, the same as, or after the other."""
+    """-1, 0 or 1 if the first order is before, the same as, or after the second."""
     if work.row_key[one] != work.row_key[other]:
         return -1 if work.row_key[one] < work.row_key[other] else 1
     rows = work.rows
@@ -170,7 +170,7 @@ def take_row(work: Work, row: int, size: int) -> int:
 
 @compiled
 def queries_after(order: Ints, shared: int, size: int) -> int:
-    """How many queries the orders behind this one take that share its first places, where beginnings are shared."""
+    """The number of queries for the orders behind this one with its first places, if beginnings are shared."""
     below = 0
     for k in range(1, size - shared):
         below = k * (1 + below)
@@ -183,7 +183,7 @@ def queries_after(order: Ints, shared: int, size: int) -> int:
 
 @compiled
 def queries_of_rows(work: Work, first: int, end: int, size: int) -> int:
-    """How many queries the rows between two, neither included, take where beginnings are shared."""
+    """The number of queries for the rows between two, both excluded, if beginnings are shared."""
     queries = 0
     for row in range(first + 1, end):
         one = work.rows[work.row_index[row - 1]]

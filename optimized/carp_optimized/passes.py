@@ -1,4 +1,4 @@
-"""Planning many robots one after the other: CARP, and greedy best-first."""
+"""Prioritized planning of many robots: CARP, and greedy best-first."""
 
 from carp_optimized.arrays import NEVER, NONE, TOO_FAR, UNCHANGED, UNKNOWN, Ints, State
 from carp_optimized.compiling import RecordsExhausted, TicksExhausted, entry
@@ -84,10 +84,10 @@ def carp(native: Native[State], order: Ints, before: Ints, now: int, plans: Ints
 
 @entry
 def greedy(native: Native[State], waiting: Ints, found: Ints, order: Ints, plans: Ints, skip_unchanged: bool) -> int:
-    """Plan, in each round, the robot waiting of the cheapest plan; how many have one, in `order` with their `plans`.
+    """Plan, in each round, the waiting robot with the cheapest plan; returns how many have one, in `order`.
 
-    `found` holds what the robots waiting found last, `UNASKED` at first. In later rounds there are only more
-    reservations, so a plan that still fits is found again (see `carp_optimized.replanning`), and no plan is none again.
+    `found` holds what the robots waiting found last, `UNASKED` at first. Later rounds only have more reservations. So a
+    plan that still fits is found again (see `carp_optimized.replanning`), and a robot without a plan stays without one.
     """
     state = state_at(native)
     for count in range(waiting.size):

@@ -50,7 +50,7 @@ def query(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: in
 
 
 def certifier(instance: Instance) -> "Certifier":
-    """What gives plans with certificates, beside no plans as yet."""
+    """A certifying planner with no committed plans yet."""
     from carp_optimized.certifying import Certifier  # noqa: PLC0415 - numba is slow to load
 
     return Certifier(instance)
@@ -91,7 +91,7 @@ def plan(
 
 
 def sum_of_shortest_paths(instance: Instance, robots: Iterable[RobotId]) -> int:
-    """What the robots would cost if each were alone; one without a path adds nothing.
+    """The sum of the robots' costs if each were alone; a robot without a path adds nothing.
 
     Raises `Refusal` for numbers that are too large.
     """
@@ -100,7 +100,7 @@ def sum_of_shortest_paths(instance: Instance, robots: Iterable[RobotId]) -> int:
 
 
 def steps(instance: Instance, planner: Planner) -> int:
-    """How often `plan` calls `advance` at most."""
+    """The most calls of `advance` by `plan`."""
     return planner.attempts if isinstance(planner, Shuffled) else len(instance.robots)
 
 

@@ -1,4 +1,4 @@
-"""The rounds of a polish, `polish/...`: one compiled call plays many, from the first draw to what is kept.
+"""The rounds of a polish, large neighbourhood search (`polish/...`): one compiled call plays many.
 
 A neighbourhood is planned in place: its plans are withdrawn, and those that are not kept are reserved again. An order
 is cut as soon as it leaves more robots unplanned than before, or as many and its cost with the least costs of the
@@ -25,7 +25,7 @@ SIZES = MOST_MEMBERS - LEAST_MEMBERS + 1
 
 @entry
 def play_rounds(native: Native[State], native_polish: Native[Polish], rounds: int) -> int:
-    """Play that many rounds; how many were played before there was nothing left to do."""
+    """Play that many rounds; returns how many were played before nothing was left to do."""
     state = state_at(native)
     polish = polish_at(native_polish)
     for turn in range(rounds):
@@ -43,7 +43,7 @@ def choice(stream: Numbers, among: int) -> int:
 
 @compiled
 def play_round(state: State, polish: Polish) -> bool:
-    """Take out a neighbourhood, replan it and keep what is not worse; `False` if there is nothing to do."""
+    """Take out a neighbourhood, replan it and keep new plans that are not worse; `False` if there is nothing to do."""
     waiting = 0
     delay = 0
     planned = 0
@@ -267,7 +267,7 @@ def is_among(polish: Polish, count: int, robot: int) -> bool:
 
 @compiled
 def draw_order(polish: Polish, size: int, is_repair: bool) -> None:
-    """Bring the members in the order in which they are planned (`polish/order`)."""
+    """Put the members into the order in which they are planned (`polish/order`)."""
     first = 0
     if is_repair or choice(polish.stream, 2) == 0:
         first = 1
@@ -312,10 +312,10 @@ def replan_members(state: State, polish: Polish, size: int) -> None:
 
 @compiled
 def plan_members(state: State, polish: Polish, size: int, missing: int, limit: int) -> int:
-    """Plan and reserve the members in their order; how many, `size` if their plans are to be kept.
+    """Plan and reserve the members in their order; returns how many, `size` if their plans are to be kept.
 
-    They are, if fewer than `missing` are unplanned, or as many and the cost is not above the limit. A member that must
-    be planned is not planned if its plan would cost more than that leaves.
+    They are kept if fewer than `missing` are unplanned, or equally many and the cost is not above the limit. A member
+    that must be planned is not planned if its plan would exceed the rest of the limit.
     """
     rest = 0
     for k in range(size):

@@ -9,7 +9,7 @@ from carp_spec import Instance, Plan, Visit
 
 
 def write_plan(native: Native[State], instance: Instance, robot: int, plan: Plan) -> int:
-    """The record of a plan that no query of ours has made."""
+    """The record of a plan that no query of the fleet has made."""
     leave = plan.visits[-1].leave
     resources = np.array([instance.graph.index[visit.resource] for visit in plan.visits], np.int32)
     enters = np.array([visit.enter for visit in plan.visits], np.int32)

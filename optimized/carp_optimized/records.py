@@ -139,7 +139,7 @@ def same_plan(records: Records, one: int, other: int) -> bool:
 
 @compiled
 def clash(records: Records, one: int, other: int, gap: int) -> bool:
-    """Whether two plans are ever in one resource at a tick, or exchange two; capacities are not looked at.
+    """Whether two plans are ever in one resource at a tick, or exchange two; capacities are ignored.
 
     With a `gap` they must not follow each other either.
     """

@@ -80,7 +80,7 @@ def _hints(kind: type) -> tuple[tuple[str, Any], ...]:
 
 @cache
 def _arrays(kind: type) -> tuple[tuple[str, tuple[type[np.generic], int] | None], ...]:
-    """The fields, and of what kind those that are arrays are."""
+    """The fields, with the kinds of those that are arrays."""
     return tuple((name, ARRAYS.get(hint)) for name, hint in _hints(kind))
 
 
@@ -94,14 +94,14 @@ class View(types.Type):
 
     @property
     def item(self) -> types.Type:
-        """What an index leads to: a row, or a number, in as many bits as sums are made in."""
+        """The value at an index: a row, or a number with as many bits as sums have."""
         if self.dimensions > 1:
             return View(self.dtype, self.dimensions - 1)
         return types.uint64 if self.dtype == types.uint64 else types.int64
 
     @property
     def words(self) -> int:
-        """How many words of the table it takes."""
+        """The number of words that it takes in the table."""
         return 1 + self.dimensions
 
 
@@ -137,7 +137,7 @@ class _ReferenceModel(models.PrimitiveModel):
 
 
 def dereference(kind: type[F]) -> Callable[[Native[F]], F]:
-    """What turns a `Native` handed to a compiled function into the named tuple."""
+    """The conversion of a `Native` handed to a compiled function into the named tuple."""
     reference = Reference(kind)
 
     def lower(context: Any, builder: Any, _: Any, arguments: Any) -> Any:
@@ -213,7 +213,7 @@ class _WriteItem(AbstractTemplate):
 
 
 def place_in(context: Any, builder: Any, kind: View, value: Any, index: Any) -> Any:
-    """The address of what the index leads to."""
+    """The address of the value at the index."""
     view = cgutils.create_struct_proxy(kind)(context, builder, value)
     if context.enable_boundscheck:
         with builder.if_then(builder.icmp_unsigned(">=", index, view.size0), likely=False):

@@ -2,19 +2,19 @@
 
 A query need not be repeated if the windows it would see differ from those it saw as follows.
 
-- Stays were taken back that it could not use. What the search does not insert into its queue again changes nothing,
-  nor does what is inserted with a larger key than all that is popped afterwards, up to the goal: it is never popped.
-  A stay of s taken back in [earliest, latest) lets a resource r that was expanded lead into s at a tick of
-  (earliest - d(s), latest), and, if it is s that was expanded, lead out of it at a tick after earliest, or at
-  earliest to the resource from which the robot came, as it is not met on the way. Where no such tick is one at which
-  r was left, or can be entered now, or has a key that is small enough, nothing changes.
-  A plan that ends in a goal for ever may end there earlier, too.
-- Stays were added that leave room for the plan found. Then it is found again: each window on its path is still
-  entered at the same tick from the same parent, because any other way to a window was a way before, no later, and
-  was refused then; and two entries of the queue are popped in the same order as before, because each is in it as
-  early as its own ancestors are popped, which by induction are popped in the same order. What the query now reads
-  it would have read before too, at ticks no later and with keys no larger popped behind it, so that the first case
-  still applies later on.
+- Stays were taken back that it could not use. An entry that the search does not insert into its queue again changes
+  nothing. Neither does an entry with a larger key than all that are popped afterwards, up to the goal: it is never
+  popped. A stay of s taken back in [earliest, latest) lets a resource r that was expanded lead into s at a tick of
+  (earliest - d(s), latest), and, if it is s that was expanded, lead out of it at a tick after earliest, or at earliest
+  to the resource from which the robot came, as it is not met on the way. Where no such tick is one at which r was left,
+  or can be entered now, or has a key that is small enough, nothing changes. A plan that ends in a goal for ever may end
+  there earlier, too.
+- Stays were added that leave room for the plan found. Then the same plan is found again. Each window on its path is
+  still entered at the same tick from the same parent, because any other way to a window existed before, no later, and
+  was rejected. Two entries of the queue are popped in the same order as before, because each is inserted when its own
+  ancestors are popped, and by induction these are popped in the same order. The query would have read everything that
+  it now reads before too, at ticks no later and with keys no larger popped behind it. So the first case still applies
+  later on.
 
 A plan made earlier and now under way is the same query with fewer ways to begin, so the second case holds for it.
 """
@@ -36,7 +36,7 @@ def forget_freed(freed: Freed) -> None:
 
 @compiled
 def note_freed(state: State, record: int) -> None:
-    """Note the stays of a plan that has been taken back."""
+    """Note that the stays of a plan have been taken back."""
     freed = state.freed
     graph = state.graph
     records = state.records

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Reuse:
-    """Which queries are not repeated; none of it changes a plan.
+    """The queries that are not repeated; no kind of reuse changes a plan.
 
     `kept`: robots before the one taken out keep their plans (the paper's first reduction).
     `unchanged`: a query whose outcome cannot have changed is not asked (`carp_optimized.replanning`).
@@ -23,10 +23,10 @@ class Reuse:
 
 @dataclass(frozen=True, slots=True)
 class Queries:
-    """How many queries were asked, and how many each kind of reuse avoided.
+    """The number of queries asked, and of those that each kind of reuse avoided.
 
-    `bounds` counts what orders that were cut would have asked, with beginnings shared if `prefixes` is on; of orders
-    drawn, only those drawn. A last neighbourhood that is left out before its orders are drawn is not counted.
+    `bounds` counts the queries of the orders that were cut, with beginnings shared if `prefixes` is on; if orders are
+    drawn, it counts only those drawn. A last neighbourhood that is left out before its orders are drawn is not counted.
     """
 
     asked: int

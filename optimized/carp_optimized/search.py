@@ -1,4 +1,4 @@
-"""The CARP query: A* over free windows in the order of `query/ties`."""
+"""The CARP query, a relative of SIPP: A* over free windows in the order of `query/ties`."""
 
 from carp_optimized.arrays import ASKED, BLOCK, LARGEST, NEVER, NO_LIMIT, NONE, TOO_FAR, State
 from carp_optimized.blocks import below, lowest, width
@@ -15,7 +15,7 @@ STANDING = 0  # the slot of no row: a copy of the window in which the robot is w
 
 @compiled
 def find_plan(state: State, robot: int, before: int, now: int, behind: int) -> int:
-    """The record of the robot's plan, whenever it arrives: see `find_plan_by`."""
+    """The record of the robot's plan, whatever its arrival: see `find_plan_by`."""
     return find_plan_by(state, robot, before, now, behind, NEVER)
 
 

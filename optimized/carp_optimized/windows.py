@@ -167,7 +167,7 @@ def append_window(windows: Rows, resource: int, start: int, end: int) -> None:
 
 @compiled
 def sweep_windows(windows: Rows, stays: Rows, resource: int, capacity: int, gap: int) -> None:
-    """Remake the windows of the resource from its stays, which last `gap` ticks longer than the robots are there."""
+    """Make the windows of the resource again from its stays, which last `gap` ticks longer than the robots stay."""
     clear_row(windows, resource)
     into = int(stays.offset[resource])
     out = into

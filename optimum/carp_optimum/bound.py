@@ -1,9 +1,10 @@
 """Finds a good lower bound on the total cost, with a certificate that `carp_verify.verify_bound` checks.
 
-Prices are raised where the robots' cheapest ways need more than there is, and lowered where they need less, step by
-step (`carp_optimum.price_steps`). Where that gains no more, cuts are added (`carp_optimum.cut_search`). The search aims
-a little above the best bound known, and less so after each failure. Source: the target level method of Goffin
-and Kiwiel 1999, over the Lagrangian relaxation of all rules of plans together.
+This is Lagrangian relaxation. Step by step, prices rise where the robots' cheapest ways exceed a capacity, and fall
+where they use less than it (`carp_optimum.price_steps`). When that gains nothing more, cuts are added
+(`carp_optimum.cut_search`). The search aims a little above the best bound known, and closer to it after each failure.
+Source: the target level method of Goffin and Kiwiel 1999, over the Lagrangian relaxation of all rules of plans
+together.
 """
 
 from collections.abc import Callable
@@ -31,7 +32,7 @@ ROUGH_PARTS, PARTS = 7, 8  # of the time: cuts are searched for, then prices alo
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """How far the search is: steps taken, and the best bound so far, in whole ticks."""
+    """The progress of the search: steps taken, and the best bound so far, in whole ticks."""
 
     steps: int
     bound: int
@@ -77,7 +78,7 @@ def lower_bound(
 
 
 def _limit(seconds: float | None, steps: int | None, parts: int) -> Callable[[int], None]:
-    """What raises `TimeOver` once this many parts of the time, or of the steps, are over; it gets the steps taken."""
+    """A function of the steps taken that raises `TimeOver` once this part of the time, or of the steps, is over."""
     deadline = None if seconds is None else Deadline(seconds * parts / PARTS)
 
     def check(count: int) -> None:

@@ -1,4 +1,4 @@
-"""The search for good prices: what is done between the compiled steps of `carp_optimum.price_steps`."""
+"""The search for good prices: the work between the compiled steps of `carp_optimum.price_steps`."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
@@ -119,7 +119,7 @@ class PriceSearch:
         self._kept = self._kept._replace(multipliers=np.concatenate([self._kept.multipliers, none]))
 
     def costs(self) -> Longs:
-        """What the cheapest ways cost the robots, in ticks without prices."""
+        """The costs of the robots' cheapest ways, in ticks without prices."""
         ways = self.market.ways
         last = np.maximum(ways.length - 1, 0)
         return np.where(ways.length > 0, ways.enter[np.arange(len(last)), last] - self.market.requests.release, 0)
@@ -151,7 +151,7 @@ class PriceSearch:
     def climb(
         self, first_aim: int, last_aim: int, check: Callable[[], None], on_step: Callable[[int, int], None]
     ) -> None:
-        """Take steps that aim less and less above the best bound, from the first aim to the last, in parts of a tick.
+        """Take steps that aim closer and closer to the best bound, from the first aim to the last, in parts of a tick.
 
         `check` is called before each and may raise `TimeOver`; `on_step` gets the steps and the best bound.
         """

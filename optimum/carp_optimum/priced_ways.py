@@ -59,7 +59,7 @@ class Ways(NamedTuple):
 
 
 class Usage(NamedTuple):
-    """What the ways use: robots by resource and tick, by move and tick, and those in a resource before and at a tick.
+    """The use of the ways: robots by resource and tick, by move and tick, and those in a resource before and at a tick.
 
     `course` and `course_of_exchange` are the direction in which the prices of the rows were changed last.
     """
@@ -72,7 +72,7 @@ class Usage(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """What a search works on, by node: prices paid on the way there, the node before, the next node of the tick.
+    """The scratch of a search, by node: prices paid on the way there, the node before, the next node of the tick.
 
     `mark[node]` is the generation of the search that reached it, `head` the first node of each tick, modulo its size.
     `keys` and `nodes` are a heap.
@@ -89,7 +89,7 @@ class Scratch(NamedTuple):
 
 
 class Market(NamedTuple):
-    """Everything together: what the compiled functions read and write; nodes have delays below `delays`."""
+    """All arrays that the compiled functions read and write; nodes have delays below `delays`."""
 
     graph: Graph
     requests: Requests
@@ -158,7 +158,7 @@ def duration_of(market: Market, robot: int, resource: int) -> int:
 
 @compiled
 def stay_price(market: Market, resource: int, enter: int, leave: int) -> int:
-    """What a stay in [enter, leave) costs."""
+    """The price of a stay in [enter, leave)."""
     stay = market.prices.stay[resource]
     across = market.prices.across[resource]
     end = min(leave, market.horizon)
@@ -168,7 +168,7 @@ def stay_price(market: Market, resource: int, enter: int, leave: int) -> int:
 
 @compiled
 def move_price(market: Market, move: int, tick: int) -> int:
-    """What a move at the tick costs."""
+    """The price of a move at the tick."""
     back = int(market.prices.back[move])
     if tick >= market.horizon or back == NONE:
         return 0
@@ -177,7 +177,7 @@ def move_price(market: Market, move: int, tick: int) -> int:
 
 @compiled
 def goal_price(market: Market, robot: int, tick: int) -> int:
-    """What the last stay of a robot that arrives at the tick costs."""
+    """The price of the last stay of a robot that arrives at the tick."""
     goal = int(market.requests.goal[robot])
     leave = market.horizon if market.parks else tick + duration_of(market, robot, goal)
     return stay_price(market, goal, tick, leave)
@@ -213,7 +213,7 @@ def way_price(market: Market, robot: int) -> int:
 
 @compiled
 def reach(scratch: Scratch, node: int, tick: int, paid: int, parent: int) -> int:
-    """Reach a node for so much: 1 if it was not reached before, else 0."""
+    """Reach a node at this price; returns 1 if it was not reached before, else 0."""
     generation = int(scratch.generation[0])
     if scratch.mark[node] == generation:
         if paid < scratch.paid[node]:
