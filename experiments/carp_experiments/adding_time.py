@@ -122,10 +122,14 @@ def time_report(rows: Iterable[Row]) -> ExperimentReport:
         Time(name, k, mean_interval(values), mean_interval([value / carp[k] for value in values]))
         for (name, k), values in sorted(times.items())
     )
+    return ExperimentReport(summary, (time_table(summary),), time_figures(summary))
+
+
+def time_figures(summary: Sequence[Time]) -> tuple[Figure, ...]:
+    """The time of each algorithm over k."""
     lines = {name: [(each.k, each.milliseconds) for each in summary if each.algorithm == name] for name in PAPER}
     axes = ("robot", "milliseconds")
-    figure = Figure("time", "Time to plan when the k-th robot comes", axes, lines, logarithmic=True)
-    return ExperimentReport(summary, (time_table(summary),), (figure,))
+    return (Figure("time", "Time to plan when the k-th robot comes", axes, lines, logarithmic=True),)
 
 
 def time_table(summary: Sequence[Time]) -> Table:

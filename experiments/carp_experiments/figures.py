@@ -3,8 +3,12 @@
 from collections.abc import Mapping, Sequence
 from itertools import zip_longest
 from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias
 
 from carproof.statistics import Interval
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 COLOURS = (
     "#000000",
@@ -20,43 +24,142 @@ COLOURS = (
 )
 FAMILIES = ("CARP", "CARP10", "CARP100", "LF", "Proposed_4", "Proposed_5", "Proposed_6", "Proposed_10", "greedy")
 STYLES = ("-", "--", ":")
-SIZE_IN_INCHES = (9, 5)
+MOST_LINES = 7
+"""The most lines of a panel; what has more is drawn in panels, each with CARP to compare with."""
+REFERENCE = "CARP"
+INCHES = 4.4
+MOST_TICKS = 6
+OUTLYING = 1.5
+"""A highest point is left out if it is more than this many times the next."""
+LABEL_DISTANCE = 0.055
+"""The least distance of labels, as a part of a panel's height."""
+
+Lines: TypeAlias = Mapping[str, Sequence[tuple[int, Interval | None]]]
+Known: TypeAlias = dict[str, list[tuple[int, Interval]]]
 
 
-def line_figure(
-    path: Path,
-    title: str,
-    axes: tuple[str, str],
-    lines: Mapping[str, Sequence[tuple[int, Interval | None]]],
-    logarithmic: bool = False,
-) -> None:
+def line_figure(path: Path, title: str, axes: tuple[str, str], lines: Lines, logarithmic: bool = False) -> None:
     """Draw a line with its intervals of 95 % for each name; a point without a value is left out.
 
     Names that differ only behind a plus, such as `CARP` and `CARP + more`, have one colour and different strokes.
+    The axes end where the values do, and a lone point far above all others is named below the title instead.
     """
     import matplotlib as mpl  # noqa: PLC0415 - loaded only where a figure is drawn
 
     mpl.use("svg")
     import matplotlib.pyplot as plt  # noqa: PLC0415
-    from matplotlib.ticker import MaxNLocator  # noqa: PLC0415
 
+    panels = panels_of([*lines])
+    strokes = strokes_of([*lines])
+    shown, outside = without_outliers(known_points(lines, logarithmic), logarithmic)
     with plt.rc_context({"svg.hashsalt": "carproof", "svg.fonttype": "none", "font.size": 9}):
-        figure, plot = plt.subplots(figsize=SIZE_IN_INCHES, layout="constrained")
-        strokes = strokes_of([*lines])
-        for name, points in lines.items():
-            known = [(x, interval) for x, interval in points if interval is not None]
-            xs = [x for x, _ in known]
-            colour, style = strokes[name]
-            estimates = [each.estimate for _, each in known]
-            plot.plot(xs, estimates, style, color=colour, label=name, marker=".", markersize=4, linewidth=1.2)
-            lows, highs = [each.low for _, each in known], [each.high for _, each in known]
-            plot.vlines(xs, lows, highs, color=colour, alpha=0.35, linewidth=0.8)
-        plot.set(title=title, xlabel=axes[0], ylabel=axes[1], yscale="log" if logarithmic else "linear")
-        plot.xaxis.set_major_locator(MaxNLocator(integer=True))
-        plot.grid(alpha=0.3)
-        figure.legend(loc="outside right upper", frameon=False)
+        size = (INCHES * max(len(panels), 1.5), INCHES)
+        figure, plots = plt.subplots(1, len(panels), figsize=size, sharey=True, squeeze=False, layout="constrained")
+        for plot, (heading, names) in zip(plots[0], panels.items(), strict=True):
+            plot.set(title=heading, xlabel=axes[0], yscale="log" if logarithmic else "linear")
+            end_where_values_do(plot, shown)
+            of_panel = {name: shown[name] for name in names if shown[name]}
+            for name, points in of_panel.items():
+                draw_line(plot, points, *strokes[name])
+            write_names(plot, of_panel, {name: strokes[name][0] for name in of_panel})
+        plots[0][0].set_ylabel(axes[1])
+        notes = [f"outside: {estimate:,.0f} of {name} at {axes[0].split()[0]} {x}" for name, x, estimate in outside]
+        figure.suptitle("\n".join([title, *notes]))
         figure.savefig(path, metadata={"Date": None, "Creator": None})
         plt.close(figure)
+
+
+def panels_of(names: Sequence[str]) -> dict[str, tuple[str, ...]]:
+    """The names of each panel by its heading: one without a heading, or one for each kind of planner.
+
+    Raises `ValueError` if that leaves a panel with more lines than can be distinguished.
+    """
+    if len(names) <= MOST_LINES:
+        return {"": tuple(names)}
+    proposed = [name for name in names if name.startswith("Proposed")]
+    kinds = {
+        "one robot after the other": [name for name in names if name not in proposed],
+        "with neighbours, as published": [name for name in proposed if "+" not in name],
+        "with neighbours, and more": [name for name in proposed if "+" in name],
+    }
+    compared = [name for name in names if name == REFERENCE]
+    panels = {heading: tuple(dict.fromkeys([*compared, *kind])) for heading, kind in kinds.items() if kind}
+    if max(map(len, panels.values())) > MOST_LINES:
+        message = f"a panel has at most {MOST_LINES} lines"
+        raise ValueError(message)
+    return panels
+
+
+def known_points(lines: Lines, logarithmic: bool) -> Known:
+    """The points that have a value, and on a logarithmic axis a positive one."""
+    return {
+        name: [(x, each) for x, each in points if each is not None and (each.low > 0 or not logarithmic)]
+        for name, points in lines.items()
+    }
+
+
+def without_outliers(lines: Known, logarithmic: bool) -> tuple[Known, list[tuple[str, int, float]]]:
+    """The lines without a lone point that would flatten all others, and that point."""
+    highest = sorted(((each.estimate, x, name) for name, points in lines.items() for x, each in points), reverse=True)
+    if logarithmic or len(highest) <= 1 or not 0 < OUTLYING * highest[1][0] < highest[0][0]:
+        return lines, []
+    estimate, at, name = highest[0]
+    kept = {each: [point for point in points if (each, point[0]) != (name, at)] for each, points in lines.items()}
+    return kept, [(name, at, estimate)]
+
+
+def end_where_values_do(plot: "Axes", lines: Known) -> None:
+    """Let both axes begin and end with the values, intervals included."""
+    points = [point for line in lines.values() for point in line]
+    first, last = min(x for x, _ in points), max(x for x, _ in points)
+    plot.set_xlim(first, max(last, first + 1))
+    plot.set_xticks(round_ticks(first, last))
+    low, high = min(each.low for _, each in points), max(each.high for _, each in points)
+    if low < high:
+        plot.set_ylim(low, high)
+    plot.spines[["top", "right"]].set_visible(False)
+    plot.grid(alpha=0.3)
+
+
+def round_ticks(first: int, last: int) -> list[int]:
+    """The first number, the last, and round ones between that are not close to these."""
+    steps = (digit * 10**power for power in range(9) for digit in (1, 2, 5))
+    step = next(step for step in steps if step * MOST_TICKS >= last - first)
+    between = [x for x in range(first - first % step, last, step) if min(x - first, last - x) * 2 >= step]
+    return sorted({first, *between, last})
+
+
+def draw_line(plot: "Axes", points: Sequence[tuple[int, Interval]], colour: str, style: str) -> None:
+    """Draw a line and the intervals of its points."""
+    xs = [x for x, _ in points]
+    plot.vlines(xs, [each.low for _, each in points], [each.high for _, each in points], colour, alpha=0.3, lw=0.8)
+    ys = [each.estimate for _, each in points]
+    plot.plot(xs, ys, style, color=colour, marker=".", markersize=4, linewidth=1.2, clip_on=False)
+
+
+def write_names(plot: "Axes", lines: Known, colours: Mapping[str, str]) -> None:
+    """Write the name of each line at its right end, as far from the others as it needs to be."""
+    to_part = plot.transData + plot.transAxes.inverted()
+    ends = {name: points[-1] for name, points in lines.items()}
+    heights = {name: float(to_part.transform((x, each.estimate))[1]) for name, (x, each) in ends.items()}
+    means = {name: sum(each.estimate for _, each in points) / len(points) for name, points in lines.items()}
+    ordered = sorted(ends, key=lambda name: (heights[name], means[name]))
+    for name, height in zip(ordered, spread([heights[name] for name in ordered]), strict=True):
+        colour, places = colours[name], plot.transAxes
+        plot.plot([1, 1.03], [heights[name], height], color=colour, linewidth=0.5, transform=places, clip_on=False)
+        plot.text(1.04, height, name, color=colour, verticalalignment="center", transform=places, clip_on=False)
+
+
+def spread(heights: Sequence[float]) -> list[float]:
+    """Rising heights moved apart to the least distance of labels, and none above the panel if all have room in it."""
+    placed: list[float] = []
+    for height in heights:
+        placed.append(max([height, *(each + LABEL_DISTANCE for each in placed[-1:])]))
+    top = max(1.0, LABEL_DISTANCE * (len(placed) - 1))
+    for at in reversed(range(len(placed))):
+        placed[at] = min(placed[at], top)
+        top = placed[at] - LABEL_DISTANCE
+    return placed
 
 
 def strokes_of(names: Sequence[str]) -> dict[str, tuple[str, str]]:

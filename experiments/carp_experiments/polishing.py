@@ -154,9 +154,8 @@ def polish_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
     floors = tuple(floor(map, each) for map, each in maps)
     methods = tuple(polished(map, name, each, robots) for map, each in maps for name in METHODS)
     tables = (gaps_table(methods), bounds_table(floors, methods), failures_table(methods))
-    return ExperimentReport(
-        PolishSummary(floors, methods), tables, (gaps_figure(methods), totals_figure(floors, methods))
-    )
+    summary = PolishSummary(floors, methods)
+    return ExperimentReport(summary, tables, polish_figures(summary))
 
 
 def floor(map: int, rows: Sequence[PolishRow]) -> Floor:
@@ -241,22 +240,18 @@ def bounds_table(floors: Sequence[Floor], methods: Sequence[Polished]) -> Table:
     return Table("polish-bounds", title, columns, tuple(rows), columns)
 
 
-def gaps_figure(methods: Sequence[Polished]) -> Figure:
-    """The excess of the methods over the bound."""
-    lines = {name: [(each.map, each.gap) for each in methods if each.method == name] for name in METHODS}
-    return Figure("polish", "Total above the lower bound", (MAP_AXIS, "per cent"), lines, logarithmic=True)
+def polish_figures(summary: PolishSummary) -> tuple[Figure, ...]:
+    """The excess of the methods over the bound, and that of both over the sum of shortest paths.
 
-
-def totals_figure(floors: Sequence[Floor], methods: Sequence[Polished]) -> Figure:
-    """The excess of the methods and of the bound over the sum of shortest paths: the optimum lies between."""
-    lines = {name: [(each.map, each.above) for each in methods if each.method == name] for name in METHODS}
-    lines["lower bound"] = [(each.map, each.above) for each in floors]
-    return Figure(
-        "polish-totals",
-        "Total and bound above the sum of shortest paths",
-        (MAP_AXIS, "per cent"),
-        lines,
-        logarithmic=True,
+    The optimum lies between the methods and the bound.
+    """
+    gaps = {name: [(each.map, each.gap) for each in summary.methods if each.method == name] for name in METHODS}
+    totals = {name: [(each.map, each.above) for each in summary.methods if each.method == name] for name in METHODS}
+    totals["lower bound"] = [(each.map, each.above) for each in summary.floors]
+    axes = (MAP_AXIS, "per cent")
+    return (
+        Figure("polish", "Total above the lower bound", axes, gaps, logarithmic=True),
+        Figure("polish-totals", "Total and bound above the sum of shortest paths", axes, totals, logarithmic=True),
     )
 
 

@@ -33,6 +33,11 @@ def report_of(summary: QualitySummary) -> ExperimentReport:
             columns[1:],
         ),
     )
+    return ExperimentReport(summary, tables, quality_figures(summary))
+
+
+def quality_figures(summary: QualitySummary) -> tuple[Figure, ...]:
+    """Failures, totals, and the actions saved against CARP, over all maps."""
     savings = {
         name: [
             (each.map, each.saving)
@@ -52,12 +57,11 @@ def report_of(summary: QualitySummary) -> ExperimentReport:
         ]
         for name in ALGORITHMS
     }
-    figures = (
+    return (
         Figure("quality-failures", "Assignments that fail", (MAP_AXIS, "failure rate"), failures),
         Figure("quality-totals", "Actions of all robots", (MAP_AXIS, "mean total cost"), total),
         Figure("quality-savings", "Fewer actions than CARP, where neither fails", (MAP_AXIS, "actions"), on_maps),
     )
-    return ExperimentReport(summary, tables, figures)
 
 
 def of(summary: QualitySummary, name: str) -> list[Summary]:

@@ -137,9 +137,13 @@ def related_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
             columns[1:],
         ),
     )
+    return ExperimentReport(summary, tables, related_figures(summary))
+
+
+def related_figures(summary: Sequence[Related]) -> tuple[Figure, ...]:
+    """The robots that each method leaves without a plan, over the maps."""
     lines = {name: [(each.map, each.unplanned) for each in summary if each.method == name] for name in METHODS}
-    figure = Figure("related", "Robots without a plan", (MAP_AXIS, f"robots of {robots}"), lines)
-    return ExperimentReport(summary, tables, (figure,))
+    return (Figure("related", "Robots without a plan", (MAP_AXIS, "robots"), lines),)
 
 
 def related_of(map: int, name: str, rows: Sequence[RelatedRow]) -> Related:

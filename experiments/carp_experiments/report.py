@@ -62,7 +62,12 @@ def write_report(folder: Path, name: str, report: ExperimentReport, run: Mapping
     text = "\n".join(f"{table.title}:\n\n{table.markdown}" for table in report.tables)
     (folder / f"{name}.md").write_text(text, encoding="utf-8")
     for figure in report.figures:
-        line_figure(folder / f"{figure.name}.svg", figure.title, figure.axes, figure.lines, figure.logarithmic)
+        write_figure(folder, figure)
+
+
+def write_figure(folder: Path, figure: Figure) -> None:
+    """Draw a figure into the folder, as `NAME.svg`."""
+    line_figure(folder / f"{figure.name}.svg", figure.title, figure.axes, figure.lines, figure.logarithmic)
 
 
 def rounded(value: Any) -> Any:  # noqa: ANN401 - whatever JSON holds

@@ -98,10 +98,15 @@ def gap_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
     """A table over some of the maps, and a figure over all."""
     by_map = rows_by_map(rows, GapRow)
     summary = tuple(gap_of(map, name, each, robots) for map, each in by_map.items() for name in REPORTED)
-    lines = {name: [(each.map, each.gap) for each in summary if each.algorithm == name] for name in REPORTED}
     title = f"Above the optimum that the search found, {robots} robots on {SIDE} x {SIDE} maps"
-    figure = Figure("gap", title, (MAP_AXIS, "per cent above the optimum"), lines)
-    return ExperimentReport(summary, (gap_table(summary, by_map, title),), (figure,))
+    return ExperimentReport(summary, (gap_table(summary, by_map, title),), gap_figures(summary))
+
+
+def gap_figures(summary: Sequence[GapOf]) -> tuple[Figure, ...]:
+    """The gap of each algorithm over the maps."""
+    lines = {name: [(each.map, each.gap) for each in summary if each.algorithm == name] for name in REPORTED}
+    title = f"Above the optimum that the search found, on {SIDE} x {SIDE} maps"
+    return (Figure("gap", title, (MAP_AXIS, "per cent above the optimum"), lines),)
 
 
 def gap_of(map: int, name: str, rows: Sequence[GapRow], robots: int) -> GapOf:
