@@ -120,6 +120,14 @@ Definition Acyclic (edges : list dependency) : Prop := forall n, ~ clos_trans no
 Definition is_ready (edges : list dependency) (waiting : list node) (n : node) : bool :=
   forallb (fun e => negb (same (later e) n) || negb (existsb (same (earlier e)) waiting)) edges.
 
+(** A way along edges, and how many ticks it takes at least. *)
+Inductive Way (edges : list dependency) : node -> node -> Z -> Prop :=
+  | Way_edge e : In e edges -> Way edges (earlier e) (later e) (ticks e)
+  | Way_on m k n a b : Way edges m k a -> Way edges k n b -> Way edges m n (a + b).
+
+Lemma ways_are_kept edges t m n k : (forall e, In e edges -> Keeps t e) -> Way edges m n k -> t m + k <= t n.
+Proof. intros K W. induction W as [e E|m k n a b _ A _ B]; [apply K; exact E | lia]. Qed.
+
 (** The visits that are never entered if each is entered when those have been that it waits for. *)
 Fixpoint stuck (edges : list dependency) (steps : nat) (waiting : list node) : list node :=
   match find (is_ready edges waiting) waiting with
@@ -136,6 +144,9 @@ Proof. induction l as [|x l IH]; simpl; [lia|]. destruct (f x); simpl; lia. Qed.
 Lemma way_of_steps (R S : relation node) : (forall m n, R m n -> clos_trans node S m n) ->
   forall m n, clos_trans node R m n -> clos_trans node S m n.
 Proof. intros H m n C. induction C as [m n K|]; [exact (H m n K) | eapply t_trans; eauto]. Qed.
+
+Lemma way_waits edges m n k : Way edges m n k -> clos_trans node (Waits edges) m n.
+Proof. intros W. induction W as [e E|]; [apply t_step; exists e; auto | eapply t_trans; eauto]. Qed.
 
 (** Where everybody waits for another of finitely many, there is a cycle. *)
 Lemma waiting_for_each_other_is_a_cycle (size : nat) : forall (R : relation node) (ns : list node),

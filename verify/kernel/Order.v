@@ -1,5 +1,5 @@
-(** The dependency graph of plans: which visits wait for which others if robots keep the order of the plans. Executions
-    keep its edges, and without a cycle nobody waits for ever.
+(** The dependency graph of plans: which visits wait for which others if robots keep the order of the plans. Lawful
+    plans and all executions in their order keep its edges.
 
     The functions are there for their proofs: none is faster than it must be to be right. *)
 Require Import ZArith List Bool Lia Relations.
@@ -78,6 +78,18 @@ Definition waits (ps : list plan) (one other : node * visit) : list dependency :
 (** The edges of the dependency graph, also those that follow from others. *)
 Definition dependencies (ps : list plan) : list dependency :=
   flat_map (travels ps) (stays ps) ++ flat_map (fun one => flat_map (waits ps one) (stays ps)) (stays ps).
+
+(** No visit there is after the one and before the other. *)
+Definition is_direct (ps : list plan) (one other : node * visit) : bool :=
+  negb (existsb (fun u => (visit_resource (snd u) =? visit_resource (snd one)) && is_left_before (snd one) (snd u)
+    && is_left_before (snd u) (snd other)) (stays ps)).
+Definition direct_waits (ps : list plan) (one other : node * visit) : list dependency :=
+  if is_direct ps one other then waits ps one other else [].
+
+(** The edges of the dependency graph but for those that follow from others. *)
+Definition direct_dependencies (ps : list plan) : list dependency :=
+  flat_map (travels ps) (stays ps)
+  ++ flat_map (fun one => flat_map (direct_waits ps one) (stays ps)) (stays ps).
 
 (** * Look-ups *)
 
@@ -239,14 +251,23 @@ Proof.
   apply (is_contiguous i a p L). apply consecutive_by_number. eauto.
 Qed.
 
-Lemma next_visit_is_later id n v w : Visit_of ps id n v -> Visit_of ps id (S n) w -> enter v < enter w.
+Lemma needs_are_positive id n v : Visit_of ps id n v -> 1 <= needs id (visit_resource v).
 Proof.
-  intros V W. pose proof (leaves_as_it_moves id n v w V W) as D.
-  destruct (visit_is_known id n v V) as (p & a & r & P & E & F & A & _ & L & R & G).
-  pose proof (respects_durations i a p L v r (enter w) (nth_error_In _ _ F) R G D).
-  unfold least_stay in *. pose proof (paces_are_positive i well_formed a A).
+  intros V. destruct (visit_is_known id n v V) as (p & a & r & _ & _ & _ & A & <- & _ & R & <-).
+  rewrite needs_of by auto. unfold least_stay. pose proof (paces_are_positive i well_formed a A).
   pose proof (durations_are_positive i well_formed r R). nia.
 Qed.
+
+Lemma visits_take_time id n v l : Visit_of ps id n v -> leave v = Some l -> enter v < l.
+Proof.
+  intros V D. pose proof (needs_are_positive id n v V) as P.
+  destruct (visit_is_known id n v V) as (p & a & r & _ & _ & F & A & B & L & R & G).
+  pose proof (respects_durations i a p L v r l (nth_error_In _ _ F) R G D).
+  rewrite <- B, <- G, needs_of in P by auto. lia.
+Qed.
+
+Lemma next_visit_is_later id n v w : Visit_of ps id n v -> Visit_of ps id (S n) w -> enter v < enter w.
+Proof. intros V W. apply (visits_take_time id n v _ V). exact (leaves_as_it_moves id n v w V W). Qed.
 
 Lemma later_visits_are_later id m n v w : Visit_of ps id m v -> Visit_of ps id n w -> (m < n)%nat ->
   enter v < enter w.
@@ -353,82 +374,5 @@ Proof.
     rewrite <- B in X'. pose proof (durations_are_kept _ _ ps ts X a r _ x l A R X') as K.
     rewrite F in K. specialize (K (eq_sym H) D). rewrite <- B, <- H, needs_of by auto. lia.
 Qed.
-
-
-(** * Cycles and deadlocks *)
-
-Lemma edges_join_nodes e : In e (dependencies ps) -> In (earlier e) (nodes ps) /\ In (later e) (nodes ps).
-Proof.
-  intros E. apply (in_dependencies ps one_plan_each) in E. rewrite !in_nodes.
-  destruct E as [n v w V W|m v v' n w V W _ _ V'|m v n w V W _ _ _]; simpl; eauto.
-Qed.
-
-Lemma edges_take_time e : Edge e -> 0 <= ticks e /\ (following_is_forbidden = true -> 1 <= ticks e).
-Proof.
-  assert (P : forall id n v, Visit_of ps id n v -> 1 <= needs id (visit_resource v)).
-  { intros id n v V. destruct (visit_is_known id n v V) as (p & a & r & _ & _ & _ & A & <- & _ & R & <-).
-    rewrite needs_of by auto. unfold least_stay. pose proof (paces_are_positive i well_formed a A).
-    pose proof (durations_are_positive i well_formed r R). nia. }
-  assert (G : 0 <= gap /\ (following_is_forbidden = true -> 1 <= gap)).
-  { unfold Execution.gap. destruct following_is_forbidden; split; intros; lia. }
-  intros [n v w V W|m v v' n w V W _ _ V'|m v n w V W _ _ _]; simpl.
-  - specialize (P _ _ _ V). split; intros; lia.
-  - destruct (is_opposite ps m n); [split; intros; lia | exact G].
-  - specialize (P _ _ _ V). split; intros; lia.
-Qed.
-
-Lemma plans_keep_ways m n v w : clos_trans node (Waits (dependencies ps)) m n ->
-  Visit_of ps (fst m) (snd m) v -> Visit_of ps (fst n) (snd n) w ->
-  enter v <= enter w /\ (following_is_forbidden = true -> enter v < enter w).
-Proof.
-  intros C. revert v w. induction C as [m n (e & E & <- & <-)|m k n _ IH C IK]; intros v w V W.
-  - apply (in_dependencies ps one_plan_each) in E. pose proof (edges_take_time e E) as [P G].
-    destruct (execution_keeps_edges ps e w lawful_solution_executes_itself E W) as (v0 & V0 & K).
-    assert (v0 = v) as -> by eauto using visit_is_unique. split; [lia | intros F; specialize (G F); lia].
-  - assert (K : exists u, Visit_of ps (fst k) (snd k) u).
-    { clear - C one_plan_each. induction C as [k n (e & E & <- & <-)|]; auto. apply in_nodes, edges_join_nodes, E. }
-    destruct K as (u & U). destruct (IH v u V U) as [A B], (IK u w U W) as [D E].
-    split; [lia | intros F; specialize (B F); lia].
-Qed.
-
-(** Robots that wait for each other in a circle enter, by the plans, at one tick: they rotate. *)
-Theorem cycles_are_rotations m n v w : clos_trans node (Waits (dependencies ps)) m n ->
-  clos_trans node (Waits (dependencies ps)) n m ->
-  Visit_of ps (fst m) (snd m) v -> Visit_of ps (fst n) (snd n) w -> enter v = enter w.
-Proof. intros C D V W. destruct (plans_keep_ways m n v w C V W), (plans_keep_ways n m w v D W V). lia. Qed.
-
-(** Where following is forbidden, nobody rotates. *)
-Theorem without_following_no_cycle : following_is_forbidden = true -> Acyclic (dependencies ps).
-Proof.
-  intros F n C. assert (K : exists v, Visit_of ps (fst n) (snd n) v).
-  { destruct (waits_in_a_cycle (dependencies ps) n C) as (m & (e & E & _ & <-) & _).
-    apply in_nodes, edges_join_nodes, E. }
-  destruct K as (v & V). destruct (plans_keep_ways n n v v C V V) as [_ K]. specialize (K F). lia.
-Qed.
-
-(** While a visit is left to enter, one can be entered: all visits that it waits for have been. *)
-Theorem late_robots_never_deadlock ts : Acyclic (dependencies ps) -> Executes ps ts ->
-  (exists id n v, Visit_of ps id n v /\ forall x, ~ Visit_of ts id n x) ->
-  exists id n v, Visit_of ps id n v /\ (forall x, ~ Visit_of ts id n x) /\
-  forall e, In e (dependencies ps) -> later e = (id, n) -> exists x, Visit_of ts (fst (earlier e)) (snd (earlier e)) x.
-Proof.
-  intros A X (id & n & v & V & M). pose proof (robots_are_named_once _ _ ps ts X) as N.
-  set (waiting := filter (fun n => match visit_at ts n with Some _ => false | None => true end) (nodes ps)).
-  assert (W : forall k, In k waiting <-> (exists u, Visit_of ps (fst k) (snd k) u) /\
-    forall x, ~ Visit_of ts (fst k) (snd k) x).
-  { intros k. unfold waiting. rewrite filter_In, in_nodes, <- (visit_at_none ts k N).
-    destruct (visit_at ts k); intuition congruence. }
-  destruct (no_deadlock (dependencies ps) waiting A) as ([id' n'] & I & R).
-  - intros E. assert (H : In (id, n) waiting) by (apply W; simpl; eauto). rewrite E in H. destruct H.
-  - apply W in I as [(u & U) I]. exists id', n', u. split; [exact U|]. split; [exact I|]. intros e E L.
-    destruct (visit_at ts (earlier e)) as [x|] eqn:F; [exists x; apply visit_at_iff; auto|].
-    destruct (R (earlier e)); [exists e; auto|]. apply W. split; [|apply visit_at_none; auto].
-    apply in_nodes, edges_join_nodes, E.
-Qed.
-
-(** The test for cycles: everybody gets to enter if and only if there is none. *)
-Theorem everybody_arrives_exactly_when_acyclic :
-  is_acyclic (dependencies ps) (nodes ps) = true <-> Acyclic (dependencies ps).
-Proof. apply nobody_is_stuck_exactly_when_acyclic. exact edges_join_nodes. Qed.
 End Lawful.
 End Order.

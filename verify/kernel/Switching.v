@@ -1,7 +1,7 @@
 (** Switching: robots enter places for one in another order than planned. Ticks that keep the switched edges break no
     joint rule, so an executor may switch whatever leaves the graph without a cycle. *)
 Require Import ZArith List Bool Lia Sorted.
-From Carproof Require Import Law Execution Dependencies Order Retiming.
+From Carproof Require Import Law Execution Dependencies Order Waiting Retiming.
 Import ListNotations.
 Open Scope Z_scope.
 
@@ -11,7 +11,7 @@ Notation gap := (gap following_is_forbidden).
 Notation Room_is_kept := (Room_is_kept i following_is_forbidden).
 Notation Left_before := (Left_before following_is_forbidden).
 Notation wait := (wait i following_is_forbidden).
-Notation waits := (waits i following_is_forbidden).
+Notation direct_waits := (direct_waits i following_is_forbidden).
 
 (** A place in which the order of visits is given, first to last. *)
 Record row := Row { row_place : Z; sequence : list (node * visit) }.
@@ -26,7 +26,8 @@ Definition has_row (rows : list row) (n : node * visit) : bool :=
 (** The edges of the dependency graph if the visits to some places have another order. *)
 Definition switched (ps : list plan) (rows : list row) : list dependency :=
   flat_map (travels i ps) (stays ps)
-  ++ flat_map (fun one => flat_map (waits ps one) (stays ps)) (filter (fun n => negb (has_row rows n)) (stays ps))
+  ++ flat_map (fun one => flat_map (direct_waits ps one) (stays ps))
+    (filter (fun n => negb (has_row rows n)) (stays ps))
   ++ flat_map (fun x => queue ps (sequence x)) rows.
 
 (** A row holds all visits to a place for one robot at a time; only the last of them may be for ever. *)
@@ -45,7 +46,7 @@ Hypothesis room : Room_is_kept (plans s).
 Notation ps := (plans s).
 Notation timed := (timed i).
 Let one_plan_each : NoDup (map plan_robot ps) := planned_once i s lawful.
-Let known := visit_is_known i s lawful.
+Let needs_are_positive := needs_are_positive i s well_formed lawful.
 Let timed_visit := timed_visit i s lawful.
 
 Variables (rows : list row) (t : times).
@@ -55,13 +56,6 @@ Hypothesis edges_are_kept : forall e, In e (switched ps rows) -> Keeps t e.
 (** The one goes first: it leaves, and the other keeps its edge. *)
 Definition Goes_first (m n : node * visit) : Prop :=
   In m (stays ps) /\ In n (stays ps) /\ (exists l, leave (snd m) = Some l) /\ Keeps t (wait ps m (fst n)).
-
-Lemma needs_are_positive id n v : Visit_of ps id n v -> 1 <= needs i id (visit_resource v).
-Proof.
-  intros V. destruct (known id n v V) as (p & a & r & _ & _ & _ & A & <- & _ & R & <-).
-  rewrite (needs_of i well_formed) by auto. unfold least_stay. pose proof (paces_are_positive i well_formed a A).
-  pose proof (durations_are_positive i well_formed r R). nia.
-Qed.
 
 Lemma travel_is_kept id n v w : Visit_of ps id n v -> Visit_of ps id (S n) w -> t (id, n) + 1 <= t (id, S n).
 Proof.
@@ -144,10 +138,14 @@ Lemma order_is_unchanged m v n w : In (m, v) (stays ps) -> In (n, w) (stays ps) 
   visit_resource v = visit_resource w -> Left_before v w -> has_row rows (m, v) = false -> Goes_first (m, v) (n, w).
 Proof.
   intros M N E L H. split; [exact M|]. split; [exact N|]. split; [destruct L as (l & L & _); eauto|].
-  apply edges_are_kept. unfold switched. apply in_or_app. right. apply in_or_app. left. apply in_flat_map.
-  exists (m, v). split; [apply filter_In; rewrite H; auto|]. apply in_flat_map. exists (n, w). split; [exact N|].
-  unfold Order.waits. simpl. rewrite (proj2 (Z.eqb_eq _ _) E).
-  rewrite (proj2 (is_left_before_iff following_is_forbidden v w) L). left. reflexivity.
+  destruct (way_along_direct_edges i following_is_forbidden s well_formed lawful (switched ps rows) (visit_resource v)
+    (Z.to_nat (enter w - enter v))) with (one := (m, v)) (other := (n, w)) as (k & K & W); auto.
+  - intros u U e F. apply in_or_app. left. apply in_flat_map. eauto.
+  - intros one other A B P e F. apply in_or_app. right. apply in_or_app. left. apply in_flat_map. exists one.
+    split; [|apply in_flat_map; eauto]. apply filter_In. split; [exact A|]. unfold has_row in *. rewrite P. simpl in H.
+    rewrite H. reflexivity.
+  - simpl. lia.
+  - pose proof (ways_are_kept _ t _ _ k edges_are_kept W). unfold Keeps. rewrite wait_ends. simpl in *. lia.
 Qed.
 
 Lemma row_or_none place : (exists x, In x rows /\ row_place x = place) \/
