@@ -144,14 +144,13 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     from carproof.conform.one_shot import OneShot  # noqa: PLC0415
     from carproof.conform.program import Program  # noqa: PLC0415
     from carproof.conform.run import Options, conform  # noqa: PLC0415
-    from carproof.conform.saved import read_saved, save_all  # noqa: PLC0415
+    from carproof.conform.saved import read_saved  # noqa: PLC0415
 
     require("hypothesis", "pysat")
     if format is not None and not one_shot:
         raise click.UsageError("--from concerns the files that programs write with --one-shot.")
     if shutil.which(program[0]) is None:
         raise click.UsageError(f"{program[0]}: there is no such program, or it may not be run.")
-    warm()
     limits = Limits(timeout, memory)
     subject: Subject = _one_shot(program, limits, format) if one_shot else Program(program, limits, seed)
     classical = isinstance(subject, OneShot) and subject.is_classical
@@ -166,13 +165,14 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     options = Options(LEVELS[level], number, seed, timeout, shrinking, one_shot, classical, claims)
     if kernel:
         options = replace(options, kernel=version())
+    warm()
     origin = _origin(program, level, one_shot, seed)
     before = read_saved(save, origin.judged, one_shot)
     if before.stale is not None:
         click.echo(printable(before.stale), err=True)
     with progress("asking", number) as advance, hypothesis_elsewhere():
         report = conform(subject, options, advance, before.cases)
-    saved = [] if report.interrupted and not report.failures else save_all(report.failures, save, origin)
+    saved = _saved(report, save, origin)
     if junit is not None:
         write_whole(junit, junit_document(report, saved))
     if html is not None:
@@ -187,13 +187,33 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
 
 def _one_shot(program: tuple[str, ...], limits: "Limits", format: str | None) -> "OneShot":
+    from tempfile import gettempdir  # noqa: PLC0415 - loaded only where used
+
     from carproof.conform.one_shot import INSTANCE, MAP, SCEN, OneShot, names  # noqa: PLC0415
 
+    try:
+        gettempdir()
+    except FileNotFoundError as error:
+        message = "With --one-shot a folder is needed for the files that the program reads: TMPDIR can name one."
+        raise click.UsageError(message) from error
     has_map, has_scen = names(program, MAP), names(program, SCEN)
     if has_map != has_scen or not (has_map or names(program, INSTANCE)):
         message = f"With --one-shot the program's arguments must hold {INSTANCE}, or {MAP} and {SCEN}."
         raise click.UsageError(message)
     return OneShot(program, limits, format)
+
+
+def _saved(report: "Report", folder: Path, origin: "Origin") -> list[Path]:
+    """Save the failures, and return their folders; where they cannot be written, say so and go on to the verdict."""
+    from carproof.conform.saved import save_all  # noqa: PLC0415 - what draws pictures is loaded when it is needed
+
+    if report.interrupted and not report.failures:
+        return []
+    try:
+        return save_all(report.failures, folder, origin)
+    except click.ClickException as error:
+        click.echo(f"Nothing is saved: {printable(error.message)}", err=True)
+        return []
 
 
 def _origin(program: Sequence[str], level: str, one_shot: bool, seed: int) -> "Origin":
