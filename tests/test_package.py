@@ -1,4 +1,4 @@
-"""What a package index shows of the package, and which versions of libraries it takes."""
+"""The package as an index shows it, and the versions of libraries that it takes."""
 
 import re
 import runpy

@@ -89,7 +89,7 @@ class Page:
         return {name: tuple(pose) for name, *pose in filter(None, shown)}
 
     def number(self, expression: str) -> Any:  # noqa: ANN401 - whatever the expression is
-        """What an expression of the page is, such as `viewer.map.scale`."""
+        """The value of an expression of the page, such as `viewer.map.scale`."""
         return self.script(f"return {expression}")
 
     def count(self, selector: str) -> int:

@@ -158,7 +158,7 @@ def test_one_way_moves_are_arrows(carproof: Run, tmp_path: Path) -> None:
 
 
 def square(*lacking: str) -> Document:
-    """Three by three cells, of which some are obstacles."""
+    """Three by three cells, some of them obstacles."""
     cells = [f"{x}{y}" for y in range(3) for x in range(3) if f"{x}{y}" not in lacking]
     ways = [
         (a, b) for a in cells for b in cells if a < b and abs(int(a[0]) - int(b[0])) + abs(int(a[1]) - int(b[1])) == 1
@@ -259,7 +259,7 @@ def test_what_is_too_large_is_refused_with_the_limit(
 
 
 def trace(now: int, *behind: list[object]) -> Document:
-    """What robot r1 has done, and what r2 has, by a tick."""
+    """The visits of r1 and of r2 by a tick."""
     plans = {"r1": [["a", 0, 2], ["b", 2, None]], "r2": behind}
     return {
         "format": "carproof-trace/1",

@@ -76,7 +76,7 @@ def warehouse() -> tuple[Instance, Solution]:
 
 
 def rotation() -> tuple[Instance, Solution]:
-    """Four robots on 2 x 2 cells, each of which enters the place of the next at tick 1."""
+    """Four robots on 2 x 2 cells; each enters the place of the next at tick 1."""
     ring = ((0, 0), (1, 0), (1, 1), (0, 1))
     resources = tuple(Resource(f"{x}{y}", x=x, y=y) for x, y in ring)
     names = [each.id for each in resources] * 2

@@ -125,7 +125,7 @@ KINDS: list[tuple[tuple[str, ...], tuple[type, ...]]] = [
     (("directed", "multigraph"), (bool,)),
     (("after_goal",), ()),
 ]
-"""What may stand in each field, by JSON's kinds; an entry of a list of objects is an object."""
+"""The JSON kinds that each field may have; an entry of a list of objects is an object."""
 STRANGE: list[Json] = [None, True, 1.0, 7, "seven", [0, 1], {"seven": 7}]
 GONE = object()
 
