@@ -55,6 +55,13 @@ def test_no_sentence_begins_with_what_but_questions() -> None:
     assert [f"{path.relative_to(ROOT)}: {found}" for path, text in texts.items() for found in WHAT.findall(text)] == []
 
 
+def test_readmes_are_short() -> None:
+    words = {path: len(path.read_text(encoding="utf-8").split()) for path in ROOT.glob("*/README.md")}
+    assert len(words) == 7
+    assert {path.parent.name: count for path, count in words.items() if count > 400} == {}
+    assert len((ROOT / "README.md").read_text(encoding="utf-8").splitlines()) <= 80
+
+
 def test_a_question_may_begin_with_what() -> None:
     assert WHAT.search("It ends. What a plan\n    costs.")
     assert not WHAT.search("What does a plan cost? 3 ticks.")
