@@ -13,7 +13,7 @@ import carp_reference
 from carp_spec import Carp, Greedy, Instance, Resource, ResourceGraph, Robot, Solution
 from carproof.conform import optimum
 from carproof.conform.cases import ASKED_OPS, Case
-from carproof.conform.claims import FEATURES, Claims, is_solvable
+from carproof.conform.claims import FEATURES, Claims, features, is_solvable
 from carproof.conform.function import Function
 from carproof.conform.levels import Level
 from carproof.conform.run import Options, conform
@@ -119,6 +119,7 @@ def test_a_case_is_left_out_where_it_has_a_feature_that_is_not_claimed(
         assert claims.why_not(Case("smoke", "one", "plan", without)) is None
         assert claims.why_not(Case("smoke", "one", "plan", having)) == f"it does not claim {feature}"
         assert claims.left_out == [feature, *["robots without a plan"] * solvable]
+    assert (feature in features(having), feature in features(without)) == (feature != "vanish", False)
 
 
 @pytest.mark.parametrize(

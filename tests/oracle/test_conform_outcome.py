@@ -1,5 +1,6 @@
 """The outcome of one case: a finding, an answer that shows something or nothing, or none."""
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -12,7 +13,7 @@ from carproof.conform import outcome
 from carproof.conform.answers import NotAsked, Reply, Skipped
 from carproof.conform.cases import Case
 from carproof.conform.effort import Effort
-from carproof.conform.findings import Category, Fault, Finding
+from carproof.conform.findings import Category, Fault, Finding, wrong
 from carproof.conform.function import Function, by_documents
 from carproof.conform.levels import Level
 from carproof.conform.outcome import Outcome, ask
@@ -70,6 +71,16 @@ def test_a_wrong_answer_is_kept_with_its_finding() -> None:
     assert found.finding is not None
     assert (found.finding.rule, found.answer) == ("query/complete", NOBODY)
     assert (found.skipped, found.effort, found.is_judged) == (None, None, True)
+
+
+def test_a_failure_shows_what_another_of_its_rule_and_category_does_that_has_all_its_features() -> None:
+    jumps, parked = wrong("plan/move", "it jumps"), replace(QUERY, instance=replace(QUERY.instance, after_goal="park"))
+    simple, special = Outcome(QUERY, jumps), Outcome(parked, replace(jumps, message="it jumps too"))
+    assert simple.shows_what(special)
+    assert simple.shows_what(simple)
+    assert not special.shows_what(simple)
+    for other in (CRASH, wrong("plan/goal", "it jumps"), replace(jumps, category=Category.CRASH)):
+        assert not simple.shows_what(Outcome(parked, other))
 
 
 @pytest.mark.parametrize("seconds", [None, 0.5])
@@ -160,7 +171,7 @@ def test_a_planner_of_documents_is_one_of_models() -> None:
     planner = by_documents(lambda document: (seen.append(document), {**written, "plans": plans})[1])  # type: ignore[func-returns-value]
     assert Function(planner, "mine").ask(ALONE) == PLANNED
     assert [each["id"] for each in seen[0]["robots"]] == ["new"]
-    for wrong, words in ((object(), "cannot be written as JSON"), ({**written, "plans": 1}, "the result of plan")):
-        finding = fault_of(by_documents(lambda _, wrong=wrong: wrong))  # type: ignore[misc]
+    for returned, words in ((object(), "cannot be written as JSON"), ({**written, "plans": 1}, "the result of plan")):
+        finding = fault_of(by_documents(lambda _, returned=returned: returned))  # type: ignore[misc]
         assert finding.rule == "program/result"
         assert words in finding.message

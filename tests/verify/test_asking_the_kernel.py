@@ -18,6 +18,7 @@ from carp_verify.kernel import (
     ask,
     is_answer,
     program,
+    program_is_there,
     request,
     verify_bound,
     version,
@@ -67,6 +68,13 @@ def test_a_request_without_an_answer_is_refused(folder: Path, lines: tuple[str, 
     with pytest.raises(Refusal) as refused:
         ask([b"{}\n"] * 2)
     assert (refused.value.path, refused.value.rule) == ("$.kernel", "kernel/answer")
+
+
+def test_an_answer_may_say_more_of_a_solution_or_a_bound(folder: Path) -> None:
+    answers(
+        folder, '{"kernel": "7", "verdict": "accepted", "cost": 3, "unplanned": 1, "bound": 2, "assumed": ["a", "b"]}'
+    )
+    assert ask([b"{}\n"]) == [KernelVerdict("7", "accepted", cost=3, unplanned=1, bound=2, assumed=("a", "b"))]
 
 
 def test_a_request_behind_a_line_without_an_end_has_no_answer(folder: Path) -> None:
@@ -132,6 +140,11 @@ def test_what_is_no_acceptance_is_a_refusal_undecided_or_not_read() -> None:
         with pytest.raises(Refusal, match="carproof-kernel 7: no instance") as refused:
             KernelVerdict("7", "bad input", "$.x", rule, "no instance").accepted  # noqa: B018
         assert (refused.value.kind, refused.value.path, refused.value.rule) == ("document", "$.x", shown)
+
+
+def test_a_kernel_is_there_where_its_program_was_found() -> None:
+    assert program_is_there("/bin/carproof-kernel")
+    assert not program_is_there(None)
 
 
 def test_the_program_named_goes_before_the_one_built_and_this_before_the_one_on_the_path(
