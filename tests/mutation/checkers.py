@@ -63,7 +63,7 @@ TESTS: Mapping[str, Sequence[str]] = {
     "carproof.conform.answers": ("oracle/test_conform_replies",),
     "carproof.conform.levels": REPORT,
     "carproof.conform.deciding": REPORT,
-    "carproof.conform.run": REPORT,
+    "carproof.conform.run": (*REPORT, "oracle/test_conform_saving"),
     "carproof.conform.outcome": OUTCOMES,
     "carproof.conform.function": OUTCOMES,
     "carproof.conform.findings": ("oracle/test_conform_report",),

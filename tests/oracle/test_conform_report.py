@@ -1,6 +1,8 @@
 """Counts of a run, what they decide, and which cases are asked."""
 
+from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 
 import pytest
 from tests.oracle.test_conform_judges import Tampered, as_it_is, no_plan
@@ -9,6 +11,7 @@ from carp_spec import Robot
 from carproof.conform import run
 from carproof.conform.answers import Reply, Skipped
 from carproof.conform.cases import Case, Stage
+from carproof.conform.claims import Claims
 from carproof.conform.deciding import Tally, random_shortfalls, smoke_shortfalls
 from carproof.conform.effort import Effort
 from carproof.conform.findings import (
@@ -28,11 +31,12 @@ from carproof.conform.findings import (
 from carproof.conform.levels import CLASSICAL_LEVELS, JUDGED_OPS, LEVELS, WHOLE_LEVELS, Level
 from carproof.conform.outcome import Outcome
 from carproof.conform.run import MOST_FAULTS, Options, Report, conform, label
-from carproof.conform.smoke import row, smoke_cases
+from carproof.conform.smoke import EAST, row, smoke_cases
 from carproof.conform.vector_cases import vector_cases
 from carproof.movingai_writer import is_classical
 from carproof.ops.planning import QueryDocument
 
+ALONE = row([EAST])
 NOBODY = QueryDocument(None)
 WRONG = wrong("plan/move", "it jumps")
 CRASH = Finding(Category.CRASH, "program/alive", "it is gone")
@@ -339,3 +343,39 @@ def test_planners_of_whole_instances_are_asked_classical_ones_if_they_are_classi
     assert [each.classical for each in asked] == [False] * half + [True] * half
     drawn = [each.instance for each in asked[half:] if each.stage == "random"]
     assert all(is_classical(each) for each in drawn)
+
+
+@pytest.mark.usefixtures("few")
+def test_a_kernel_that_decides_is_asked_about_fixed_and_random_cases(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[Stage] = []
+    monkeypatch.setattr("carproof.conform.outcome.require_agreement", lambda case, *_: asked.append(case.stage))
+    for kernel, by, counts in (
+        (None, "carp_spec", {}),
+        ("carproof-kernel 7", "carproof-kernel 7", {"smoke": 4, "vectors": 1, "random": 3}),
+    ):
+        subject = Tampered(as_it_is)
+        subject.ops = ("query",)
+        options = Options(examples=3, kernel=kernel)
+        conform(subject, options)
+        assert (Counter(asked), options.by) == (counts, by)
+
+
+@pytest.mark.usefixtures("few")
+def test_what_is_not_claimed_is_not_asked_and_counts_for_nothing() -> None:
+    asked: list[Case] = []
+    subject = Tampered(lambda case, reply: (asked.append(case), reply)[1])  # type: ignore[func-returns-value]
+    subject.ops = ("query",)
+    made = conform(subject, Options(examples=5, claims=Claims(frozenset(["vanish"]))))
+    assert [each.instance.after_goal for each in asked] == ["park"] * len(asked)
+    left_out = [each for each in made.outcomes if each.case.instance.after_goal == "vanish"]
+    assert {(each.skipped, each.asked) for each in left_out} == {("it does not claim vanish", False)}
+    assert len(asked) == len(made.outcomes) - len(left_out) + 5
+
+
+@pytest.mark.usefixtures("few")
+def test_saved_cases_of_ops_that_are_offered_are_asked_before_all_others() -> None:
+    subject = Tampered(as_it_is)
+    subject.ops = ("query",)
+    saved = [replace(each, stage="saved", robot="new", instance=ALONE) for each in (case(), case(op="plan"), case())]
+    made = conform(subject, Options(examples=0), saved=saved)
+    assert [each.case.stage for each in made.outcomes] == ["saved", "saved", *["smoke"] * 4, "vectors"]
