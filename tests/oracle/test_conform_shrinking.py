@@ -1,6 +1,7 @@
 """The search for a random case that fails, and for a smaller one that fails in the same way."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 from hypothesis import strategies as st
@@ -74,9 +75,22 @@ def test_a_case_that_fails_otherwise_is_no_smaller_one(other: Finding) -> None:
 
 
 def test_without_time_to_shrink_the_first_failure_stays() -> None:
-    asked = Asked(lambda robots: JUMPS if robots >= 1 else None)
+    asked = Asked(lambda robots: JUMPS if robots >= 3 else None)
     made = search(asked, shrink_seconds=0.0)
     assert best(made) == (asked.robots[-1], JUMPS)
+    assert max(asked.robots[:-1]) < 3 < asked.robots[-1]
+
+
+def test_of_failures_that_hypothesis_takes_for_simpler_the_smallest_is_kept_and_of_equals_the_last() -> None:
+    asked = Asked(lambda robots: JUMPS if robots else None)
+    sized = FailureSearch(asked, 5.0, 60.0)
+    sized.run(st.integers(0, MOST).map(lambda number: case(MOST + 2 - number if number > 1 else 0)), 100, 1)
+    assert best(sized) == (min(robots for robots in asked.robots if robots), JUMPS)
+    assert asked.robots.index(MOST) > asked.robots.index(best(sized)[0]), "a larger one came later"
+    named = FailureSearch(lambda each, _: Outcome(each, JUMPS if int(each.name) >= 3 else None), 5.0, 60.0)
+    named.run(st.integers(0, 99).map(lambda number: replace(case(2), name=str(number))), 100, 1)
+    assert named.best is not None
+    assert named.best.case.name == "3"
 
 
 def test_a_program_that_fails_once_only_is_found_out_and_nothing_is_asked_twice() -> None:
@@ -111,12 +125,20 @@ def test_one_that_takes_too_long_with_less_time_alone_is_given_up_for_the_first(
     assert (asked.robots[-1] < 9, asked.limits[-1]) == (True, None)
 
 
-def test_one_that_fails_otherwise_with_all_the_time_is_given_up_for_the_first() -> None:
+@pytest.mark.parametrize("category", [Category.WRONG_ANSWER, Category.CRASH])
+def test_no_other_failure_is_asked_once_more(category: Category) -> None:
+    asked = Asked(lambda robots: replace(JUMPS, category=category) if robots >= 2 else None)
+    assert best(search(asked))[0] == 2
+    assert asked.limits[-1] is not None
+
+
+@pytest.mark.parametrize("other", [LATE, replace(LATE, category=Category.CRASH)])
+def test_one_that_fails_otherwise_with_all_the_time_is_given_up_for_the_first(other: Finding) -> None:
     asked = Asked(
         lambda robots: (
             NO_ANSWER
             if robots >= 9 or asked.limits[-1] is not None
-            else LATE
+            else other
             if robots < 9 < max(asked.robots)
             else None
         )
