@@ -1,6 +1,7 @@
 """Output for people: tables and lines of text on standard output."""
 
 from collections.abc import Iterable, Sequence
+from textwrap import wrap
 
 import click
 
@@ -28,23 +29,41 @@ def print_line(text: str) -> None:
 def print_table(columns: Sequence[str], rows: Iterable[Sequence[object]], numbers: Sequence[str] = ()) -> None:
     """Print an aligned table; the columns that hold numbers are aligned at their right.
 
-    On a terminal it is as wide as the terminal, elsewhere as wide as its content.
+    Elsewhere than on a terminal it is as wide as its content. A terminal that is too narrow for the longest words of
+    each column gets a line for each cell, with the name of its column.
     """
     from rich import box  # noqa: PLC0415 - a command that prints no table need not load rich
     from rich.console import Console  # noqa: PLC0415
     from rich.table import Table  # noqa: PLC0415
     from rich.text import Text  # noqa: PLC0415
 
+    cells = [[printable(cell) for cell in row] for row in rows]
     table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False, show_edge=False)
     for column in columns:
         table.add_column(column, justify="right" if column in numbers else "left", overflow="fold")
-    for row in rows:
-        table.add_row(*(Text(printable(cell)) for cell in row))
+    for row in cells:
+        table.add_row(*map(Text, row))
     console = Console(highlight=False)
+    widths = Console(highlight=False, width=WIDEST).measure(table)
+    if console.is_terminal and widths.minimum > console.width:
+        _print_records(columns, cells, console.width)
+        return
     if not console.is_terminal:
         console = Console(highlight=False, width=WIDEST)
-        console.width = console.measure(table).maximum
+        console.width = widths.maximum
     with console.capture() as shown:
         console.print(table)
     for line in shown.get().splitlines():
         say(line.rstrip())
+
+
+def _print_records(columns: Sequence[str], rows: Iterable[Sequence[str]], width: int) -> None:
+    """Print a paragraph for each row, with a line for each cell that is not empty."""
+    for number, row in enumerate(rows):
+        if number:
+            say()
+        for column, cell in zip(columns, row, strict=False):
+            for line in (
+                wrap(f"{column}: {cell}", width, subsequent_indent="  ", break_on_hyphens=False) if cell else ()
+            ):
+                say(line)

@@ -68,16 +68,6 @@ def test_a_document_on_standard_output_leaves_standard_error_to_people(carproof:
     assert outcome.stderr
 
 
-@pytest.mark.parametrize("width", [40, None])
-def test_narrow_and_piped_output_is_legible(carproof: Run, monkeypatch: pytest.MonkeyPatch, width: int | None) -> None:
-    if width is not None:
-        monkeypatch.setenv("COLUMNS", str(width))
-        monkeypatch.setenv("FORCE_COLOR", "1")
-    lines = carproof("rules").stdout.splitlines()
-    assert not width or max(map(len, lines)) <= width + 20  # escape sequences
-    assert any("joint/capacity" in each for each in lines)
-
-
 @pytest.mark.usefixtures("folder")
 def test_check_loads_nothing_slow() -> None:
     program = (

@@ -1,0 +1,107 @@
+"""Tables are legible on a terminal of 40 columns and in a pipe: no word is broken, and none is lost."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from tests.oracle.running import BROKEN, TWO, TWO_PLANNED, Run
+
+from carproof.tables import print_table
+
+WIDTH = 40
+ESCAPE = re.compile(r"\x1b\[[0-9;]*m")
+TIME = re.compile(r"\d+(\.\d+)? (m?s|s)\b")
+TABLES = [
+    "rules",
+    "check town.json broken.json",
+    "plan town.json --engine reference --planner carp",
+    "query town.json plans.json r2",
+    "generate grid --width 4 --height 4 --robots 2 -o grid.json",
+    "view town.json plans.json -o page.html",
+    "bound town.json --steps 3",
+    "verify-bound town.json bound.json",
+    "optimum town.json",
+    "polish town.json plans.json --iterations 3",
+    "audit town.json plans.json",
+    "dependencies town.json plans.json",
+    "execute town.json plans.json --delays 0.5:2",
+    "untangle town.json plans.json",
+    "give-way town.json plans.json r2 --now 1 -o after.json",
+    "gap town.json --limit 5",
+    "theorems",
+]
+
+
+@pytest.fixture(scope="module")
+def documents(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("town")
+    for name, document in (("town", TWO), ("plans", TWO_PLANNED), ("broken", BROKEN)):
+        (folder / f"{name}.json").write_text(json.dumps(document))
+    return folder
+
+
+def lines_of(text: str) -> list[str]:
+    return [line for line in ESCAPE.sub("", text).splitlines() if line.strip("─ ")]
+
+
+def words(lines: list[str]) -> set[str]:
+    """The words but those that are broken because no line holds them, and times, which differ."""
+    return {word for line in lines for word in TIME.sub("", line).split() if len(word) <= WIDTH // 2}
+
+
+@pytest.mark.parametrize("command", TABLES)
+def test_a_narrow_terminal_shows_every_word_of_a_table_whole(
+    carproof: Run, monkeypatch: pytest.MonkeyPatch, documents: Path, command: str
+) -> None:
+    monkeypatch.chdir(documents)
+    if command.startswith("verify-bound"):
+        carproof("bound", "town.json", "--steps", "3", "-o", "bound.json")
+    piped = carproof(*command.split())
+    assert piped.code in (0, 1, 3), piped
+    assert piped.stdout
+    monkeypatch.setenv("COLUMNS", str(WIDTH))
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("TERM", "xterm")
+    narrow = carproof(*command.split())
+    shown = " ".join(lines_of(narrow.stdout)).replace(":", " ").split()
+    missing = {word for word in words(lines_of(piped.stdout)) if word not in shown and word.rstrip(":") not in shown}
+    assert missing == set(), narrow.stdout
+
+
+def test_a_table_that_does_not_fit_becomes_a_paragraph_for_each_row(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    columns = ["planner", "shortest paths", "unplanned", "statement"]
+    rows = [("neighbourhood", 12345678, 1, "it is long, and so it needs a second line"), ("carp", 7, "", "short")]
+    print_table(columns, rows, numbers=columns[1:3])
+    piped = capsys.readouterr().out.splitlines()
+    assert piped[0] == "planner        shortest paths  unplanned  statement"
+    assert piped[2] == "neighbourhood        12345678          1  it is long, and so it needs a second line"
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("COLUMNS", str(WIDTH))
+    print_table(columns, rows, numbers=columns[1:3])
+    assert capsys.readouterr().out.splitlines() == [
+        "planner: neighbourhood",
+        "shortest paths: 12345678",
+        "unplanned: 1",
+        "statement: it is long, and so it needs a",
+        "  second line",
+        "",
+        "planner: carp",
+        "shortest paths: 7",
+        "statement: short",
+    ]
+
+
+def test_a_table_whose_words_fit_stays_a_table(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("COLUMNS", str(WIDTH))
+    print_table(["rule", "statement"], [("joint/capacity", "at no tick are more robots in a resource than fit")])
+    lines = lines_of(capsys.readouterr().out)
+    assert lines[0].split() == ["rule", "statement"]
+    assert max(map(len, lines)) <= WIDTH
