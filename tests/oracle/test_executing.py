@@ -63,11 +63,12 @@ def test_dependencies_name_the_cycle_and_who_is_late(carproof: Run) -> None:
     assert outcome.code == 1
     assert "cycle at tick 1: " in outcome.stdout
     assert all(f"robot r{number} into" in outcome.stdout for number in range(4))
-    outcome = carproof("dependencies train.json plans.json --delay r0:0:4 --dot graph.dot")
+    outcome = carproof("dependencies train.json plans.json --delay r0:0:4 --dot graph.dot --svg graph.svg")
     assert outcome.code == 0
     assert "robot r0 is late by 4\nrobot r1 is late by 4\n" in outcome.stdout
     assert "on the clock, robots collide by these delays: robot r0 at visit 0 by 1" in outcome.stdout
     assert Path("graph.dot").read_text().count("->") == 3
+    assert "<title>train.json · plans.json: which visits wait for which</title>" in Path("graph.svg").read_text()
     document = json.loads(carproof("dependencies train.json plans.json --json").stdout)
     assert document["acyclic"]
     assert [visit["slack"] for visit in document["visits"]] == [0, 0, None, None]

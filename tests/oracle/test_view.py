@@ -309,6 +309,6 @@ def test_only_the_first_of_very_many_violations_are_listed(
     assert scene["rules"][0]["count"] == 2
 
 
-@pytest.mark.parametrize("name", ["map.svg", "chart.svg"])
+@pytest.mark.parametrize("name", ["map.svg", "chart.svg", "dependencies.svg"])
 def test_the_pictures_of_the_project_are_drawn_by_it(name: str) -> None:
     assert (FOLDER / name).read_bytes() == sample_pictures()[name], "run: make generated"

@@ -8,10 +8,11 @@ from carp_reference.execution import late_robots, order_of
 from carp_spec.documents import write
 from carproof.answer import Answer
 from carproof.executing import DependenciesDocument, delay_named, dependencies_document, dot
-from carproof.files import OutputFile, read_sound, write_whole
+from carproof.files import OutputFile, naming, read_sound, shown, write_whole
 from carproof.options import examples, instance_argument, json_option, output_option, solution_argument
 from carproof.results import write_result
 from carproof.tables import print_line, print_table
+from carproof.viewer.dependency_picture import dependency_still
 
 
 @click.command(
@@ -20,16 +21,25 @@ from carproof.tables import print_line, print_table
         "carproof dependencies town.json plans.json",
         "carproof dependencies town.json plans.json --delay r7:3:5",
         "carproof dependencies town.json plans.json --dot graph.dot",
+        "carproof dependencies town.json plans.json --svg graph.svg",
     ),
 )
 @instance_argument
 @solution_argument
 @click.option("--delay", "delays", metavar="ROBOT:VISIT:TICKS", multiple=True, help="A delay at a visit, from 0 on.")
-@click.option("--dot", "picture", type=OutputFile(), help="Write the graph for Graphviz to this file.")
+@click.option("--dot", "graph", type=OutputFile(), help="Write the graph for Graphviz to this file.")
+@click.option("--svg", "picture", type=OutputFile(), help="Draw the graph: robots by time, with arrows between visits.")
 @output_option
 @json_option
-def command(
-    *, instance: str, solution: str, delays: tuple[str, ...], picture: Path | None, output: Path | None, as_json: bool
+def command(  # noqa: PLR0913 - one parameter for each argument and option
+    *,
+    instance: str,
+    solution: str,
+    delays: tuple[str, ...],
+    graph: Path | None,
+    picture: Path | None,
+    output: Path | None,
+    as_json: bool,
 ) -> Answer:
     """Make the action dependency graph of SOLUTION: which visits wait for which if robots keep the planned order.
 
@@ -44,7 +54,11 @@ def command(
     order = order_of(problem, sound)
     document = dependencies_document(order, late_robots(order, asked) if asked else None)
     if picture is not None:
-        write_whole(picture, dot(order).encode())
+        with naming(solution):
+            drawn = dependency_still(order, f"{Path(shown(instance)).name} · {Path(shown(solution)).name}")
+        write_whole(picture, drawn)
+    if graph is not None:
+        write_whole(graph, dot(order).encode())
     write_result(write(document), output, as_json)
     if not as_json:
         show(document)

@@ -1,14 +1,13 @@
 """The map: resources and moves, and above them the robots and the violations of a tick."""
 
 from collections.abc import Iterator, Sequence
-from math import isqrt
 from xml.etree.ElementTree import Element, SubElement
 
 from carp_spec import ResourceGraph
 from carproof.viewer.lanes import SIDE
 from carproof.viewer.placement import MARGIN, UNIT, Point
 from carproof.viewer.scene import Broken, Place, Scene, Stand, Track
-from carproof.viewer.shapes import box, drawing, group, hatch_definition, line, path, text
+from carproof.viewer.shapes import box, drawing, group, hatch_definition, head, line, path, text
 
 MOST_NAMED = 200
 MOST_TRAITS = 2_000
@@ -90,12 +89,8 @@ def cell(centre: Point) -> str:
 def arrow_head(source: Point, target: Point) -> str:
     """Path data of the head of an arrow, just outside the resource that it points to."""
     dx, dy = target[0] - source[0], target[1] - source[1]
-    length = max(1, isqrt(dx * dx + dy * dy))
     reach = max(abs(dx), abs(dy), 1)
-    x, y = target[0] - dx * HALF // reach, target[1] - dy * HALF // reach
-    back_x, back_y = x - dx * HEAD // length, y - dy * HEAD // length
-    side_x, side_y = -dy * HEAD // (2 * length), dx * HEAD // (2 * length)
-    return f"M{x} {y}L{back_x + side_x} {back_y + side_y}L{back_x - side_x} {back_y - side_y}z"
+    return head((target[0] - dx * HALF // reach, target[1] - dy * HALF // reach), (dx, dy), HEAD)
 
 
 def write_names(ground: Element, located: Sequence[tuple[Place, Point]]) -> None:

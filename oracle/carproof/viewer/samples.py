@@ -4,8 +4,10 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from carp_reference import plan
+from carp_reference.execution import order_of
 from carp_spec import Carp
 from carproof.generate import Fleet, Grid, grid_instance
+from carproof.viewer.dependency_picture import dependency_still
 from carproof.viewer.stills import chart_still, map_still
 
 FOLDER = Path(__file__).parent.parent.parent / "pictures"
@@ -20,6 +22,7 @@ def sample_pictures() -> Mapping[str, bytes]:
     return {
         "map.svg": map_still(instance, solution, TICK, TITLE),
         "chart.svg": chart_still(instance, solution, TITLE),
+        "dependencies.svg": dependency_still(order_of(instance, solution), TITLE),
     }
 
 

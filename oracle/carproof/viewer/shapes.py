@@ -1,6 +1,7 @@
 """SVG elements and path data; text is escaped by the standard library's XML writer."""
 
 from collections.abc import Iterable
+from math import isqrt
 from xml.etree.ElementTree import Element, SubElement, tostring
 
 NAMESPACE = "http://www.w3.org/2000/svg"
@@ -37,6 +38,15 @@ def box(x: int, y: int, width: int, height: int) -> str:
 def line(points: Iterable[tuple[int, int]]) -> str:
     """Path data of a line through the points."""
     return "M" + "L".join(f"{x} {y}" for x, y in points)
+
+
+def head(tip: tuple[int, int], way: tuple[int, int], length: int) -> str:
+    """Path data of the head of an arrow that comes that way; it is as wide as it is long."""
+    (x, y), (dx, dy) = tip, way
+    far = max(1, isqrt(dx * dx + dy * dy))
+    back_x, back_y = x - dx * length // far, y - dy * length // far
+    side_x, side_y = -dy * length // (2 * far), dx * length // (2 * far)
+    return f"M{x} {y}L{back_x + side_x} {back_y + side_y}L{back_x - side_x} {back_y - side_y}z"
 
 
 def svg_text(element: Element) -> str:
