@@ -8,12 +8,13 @@ from xml.etree import ElementTree as ET
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.wait import WebDriverWait
 from tests.oracle.browser import Page, chromium, logged
-from tests.oracle.test_conform_saving import FAILURES, ORIGIN
+from tests.oracle.test_conform_saving import CASE, FAILURES, ORIGIN
 
 from carproof.conform.claims import Claims
 from carproof.conform.documents import junit_document, report_document
 from carproof.conform.findings import Category, Finding
 from carproof.conform.html_report import html_document
+from carproof.conform.outcome import Outcome
 from carproof.conform.run import Options, Report
 from carproof.conform.saved import save_all
 
@@ -24,7 +25,8 @@ PATIENCE = 30
 
 def failing() -> Report:
     options = Options(claims=Claims(frozenset({"paces"})))
-    return Report(options, HOSTILE, list(FAILURES), Counter(passed=7), faults=[GONE])
+    unasked = [Outcome(CASE, skipped="it plans classical grids", asked=False)] * 2
+    return Report(options, HOSTILE, [*FAILURES, *unasked], Counter(passed=7), faults=[GONE])
 
 
 def test_the_page_has_the_verdict_what_was_asked_and_all_findings(tmp_path: Path) -> None:
@@ -33,6 +35,7 @@ def test_the_page_has_the_verdict_what_was_asked_and_all_findings(tmp_path: Path
     for expected in (
         '<p class="verdict no">DOES NOT CONFORM: ',
         "<dt>left out</dt><dd>paces</dd>",
+        "<dt>not asked</dt><dd>2 cases: it plans classical grids</dd>",
         "<tr><th>random</th><td>7</td>",
         "<b>joint/exchange</b> wrong answer: it is wrong",
         "<dt>advice</dt><dd>Look at the moves of the robots before, not only at their places.</dd>",

@@ -1,5 +1,6 @@
 """The report as one HTML page, which a browser shows without network: the verdict, and each failure in the viewer."""
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from importlib.resources import files
@@ -57,10 +58,12 @@ def _table(report: Report) -> str:
 def _asked(report: Report, origin: Origin) -> Mapping[str, str]:
     """The tested parts, and those that were left out."""
     options = report.options
+    unasked = Counter(outcome.skipped for outcome in report.outcomes if not outcome.asked)
     return {
         "level": f"{options.level.label}: {options.level.statement}",
         "tested": f"{report.tested} answers to {', '.join(options.ops)}",
         "left out": ", ".join(options.claims.left_out) or "nothing",
+        "not asked": "; ".join(f"{count} cases: {why}" for why, count in unasked.items()),
         "seed": str(options.seed),
         "decided by": options.by,
         "again": origin.again,
