@@ -174,8 +174,7 @@ def _collisions(instance: Instance, solution: Solution) -> Iterator[tuple[Delay,
                 ticks = tick + 1 - each.visit.enter - instance.duration(robot, resource)
                 if each.target is not None and each.target == stay.source and ticks > 1:
                     yield (Delay(robot, place, ticks - 1),)
-                if robot not in longer or ticks < longer[robot].ticks:
-                    longer[robot] = Delay(robot, place, ticks)
+                longer[robot] = Delay(robot, place, ticks)  # of a later visit of the same robot, the shorter one
             missing = capacity + 1 - len(present)
             if missing <= len(longer):
                 yield tuple(sorted(longer.values(), key=lambda delay: delay.ticks)[:missing])

@@ -116,8 +116,7 @@ def _switched(order: Order, pairs: Collection[tuple[Node, Node]]) -> list[Depend
     for first, second in pairs:
         visits = sequences[order.visit(first).resource]
         place = visits.index(first)
-        if visits[place : place + 2] == [first, second]:
-            visits[place : place + 2] = [second, first]
+        visits[place : place + 2] = [second, first]
     edges = [edge for edge in order.edges if edge.kind == "travel" or edge.resource not in changed]
     for resource in changed:
         for first, second in pairwise(sequences[resource]):

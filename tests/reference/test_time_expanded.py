@@ -15,6 +15,11 @@ def test_it_joins_ticks_into_visits() -> None:
     )
 
 
+def test_it_does_not_enter_what_does_not_lead_to_the_goal() -> None:
+    fork = ResourceGraph((Resource("a"), Resource("b"), Resource("c")), (("a", "c"), ("a", "b")), directed=True)
+    assert find_plan_by_ticks(instance(fork, ("a", "b")), (), "r0") == plan_of("r0", ("a", 0, 1), ("b", 1, 2))
+
+
 def test_it_ends_where_there_is_no_plan() -> None:
     two = instance(line("abc"), ("b", "b"), ("a", "c"), after_goal="park")
     assert find_plan_by_ticks(two, (plan_of("r0", ("b", 0, None)),), "r1") is None

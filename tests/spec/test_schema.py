@@ -8,7 +8,7 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from carp_spec import Refusal, read_instance, read_solution
-from carp_spec.schema import DOCUMENTS, document_schema, schema_file, write_schemas
+from carp_spec.schema import DOCUMENTS, document_schema, schema_file, schema_text, write_schemas
 
 INSTANCE: dict[str, Any] = {
     "format": "carproof-instance/1",
@@ -97,3 +97,9 @@ def test_schema_and_decoder_reject_the_same_bad_instances(change: dict[str, Any]
 )
 def test_schema_and_decoder_reject_the_same_bad_solutions(change: dict[str, Any]) -> None:
     assert accepted("solution", {**SOLUTION, **change}) == (False, False)
+
+
+def test_a_definition_need_not_be_described() -> None:
+    assert json.loads(schema_text("town", {"$defs": {"Town": {"type": "object"}}}))["$defs"] == {
+        "Town": {"type": "object"}
+    }

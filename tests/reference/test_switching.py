@@ -1,0 +1,77 @@
+"""Executions in which robots change places: as safe as executions in order, and on the whole earlier."""
+
+from collections.abc import Iterator
+
+import pytest
+
+from carp_reference import plan, switching
+from carp_reference.execution import (
+    Delay,
+    executed,
+    in_order,
+    late_robots,
+    on_the_clock,
+    order_of,
+    slack,
+    smallest_collision,
+    stuck,
+)
+from carp_spec import Carp, Instance, Solution, check, judge
+from carp_spec.execution_rules import trace_violations
+from carproof.executing import random_delays
+from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
+
+TOGETHER = {"joint/capacity", "joint/exchange"}
+
+
+def cases() -> Iterator[tuple[Instance, Solution, tuple[Delay, ...]]]:
+    """Crowds on small maps with many delays; robots can follow their plans in order."""
+    small = [(seed, 12, 7, Traits()) for seed in range(12)]
+    wide = [(seed, 20, 11, Traits(capacity=Range(1, 2))) for seed in (1964, 2017)]  # a switch of 1964 is a circle
+    for seed, map, robots, traits in small + wide:
+        fleet = Fleet(robots, seed, ("vanish", "park")[seed % 2])
+        instance = grid_instance(Grid(4, 4, map=map, map_seed=seed), fleet, traits)
+        solution = plan(instance, Carp())
+        if not stuck(order_of(instance, solution)):
+            yield instance, solution, random_delays(solution, 300_000, 5, seed)
+
+
+@pytest.mark.parametrize("tried", [1, 20])
+def test_robots_that_change_places_are_safe_and_mostly_earlier(tried: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(switching, "MOST_TRIED", tried)
+    earlier = 0
+    for instance, solution, delays in cases():
+        found = switching.switching(instance, solution, delays)
+        assert judge(instance, found.solution).valid
+        order = order_of(instance, found.solution)
+        trace = executed(order, found.enters, delays)
+        assert not trace_violations(instance, found.solution, trace)
+        assert not {each.rule for each in check(instance, trace.plans)} & TOGETHER
+        lasts = [(each.robot, len(each.visits) - 1) for each in solution.plans]
+        unswitched = in_order(order_of(instance, solution), delays)
+        earlier += sum(unswitched[node] - found.enters[node] for node in lasts)
+        assert found.switches > 0 or found.enters == unswitched
+    assert earlier > 0
+
+
+def test_robots_that_collide_on_the_clock_have_broken_the_order() -> None:
+    collided = 0
+    for instance, solution, delays in cases():
+        order = order_of(instance, solution)
+        trace = executed(order, on_the_clock(order, delays), delays)
+        if {each.rule for each in check(instance, trace.plans)} & TOGETHER:
+            collided += 1
+            assert trace_violations(instance, solution, trace)
+            least = smallest_collision(instance, solution)
+            assert least is not None
+            assert sum(delay.ticks for delay in least) <= sum(delay.ticks for delay in delays)
+    assert collided > 0
+
+
+def test_slack_is_the_longest_delay_that_makes_nobody_late() -> None:
+    for instance, solution, _ in cases():
+        order = order_of(instance, solution)
+        for node, ticks in slack(order).items():
+            longest = 9 if ticks is None else ticks
+            assert longest == 0 or not late_robots(order, [Delay(*node, longest)])
+            assert ticks is None or late_robots(order, [Delay(*node, ticks + 1)])
