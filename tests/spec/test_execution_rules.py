@@ -7,7 +7,7 @@ import pytest
 from tests.spec.making import CROSSED, RING, ROW, SOLVED, STEP, TURNING, VANISHING, WALK, plan_of, solution_of
 
 from carp_spec import Instance, Plan, Refusal, Solution, Visit, check
-from carp_spec.dependencies import Node, dependencies, is_before, shortest_cycle
+from carp_spec.dependencies import Dependency, Node, dependencies, is_before, shortest_cycle
 from carp_spec.execution_rules import is_acyclic, trace_violations
 from carp_spec.traces import Trace, read_trace, trace_document, write_trace
 
@@ -128,3 +128,9 @@ def test_without_following_there_is_no_edge_that_takes_no_time() -> None:
     instance, solution = CROSSED
     assert any(edge.ticks == 0 for edge in dependencies(instance, solution.plans))
     assert all(edge.ticks > 0 for edge in dependencies(replace(instance, following="forbidden"), solution.plans))
+
+
+def test_a_shortest_cycle_is_found_where_ways_join() -> None:
+    ways = ("ab", "ac", "bd", "cd", "da")
+    edges = tuple(Dependency("order", (way[0], 0), (way[1], 0), 0, "place") for way in ways)
+    assert shortest_cycle(edges) == (edges[0], edges[2], edges[4])
