@@ -79,7 +79,7 @@ def test_a_failure_shows_what_another_of_its_rule_and_category_does_that_has_all
     assert simple.shows_what(special)
     assert simple.shows_what(simple)
     assert not special.shows_what(simple)
-    for other in (CRASH, wrong("plan/goal", "it jumps"), replace(jumps, category=Category.CRASH)):
+    for other in (CRASH, *(wrong(rule, "it jumps") for rule in ("plan/goal", "plan/start"))):
         assert not simple.shows_what(Outcome(parked, other))
 
 

@@ -84,7 +84,7 @@ def test_a_lemma_is_checked_by_formulas_and_mutants_without_a_failure() -> None:
         report = examine(Lemma("t", "s", (), partial(iter, formulas), partial(iter, mutants)))
         assert report.checked is checked
         assert report.formulas == ("f",) * len(formulas[:1])
-        assert [name for name, _ in report.refuted] == ["m"] * len(mutants[:1])
+        assert [(name, shown.partition("=")[0]) for name, shown in report.refuted] == [("m", "a ")] * len(mutants[:1])
 
 
 def test_every_failure_is_reported() -> None:
