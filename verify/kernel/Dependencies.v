@@ -33,7 +33,7 @@ Definition is_kept (t : times) (e : dependency) : bool := t (earlier e) + ticks 
 Definition postponed (t : times) (e : dependency) : times :=
   fun n => if same n (later e) then t (earlier e) + ticks e else t n.
 
-(** Postpone visits until all edges are kept, in at most so many steps. *)
+(** Postpone visits until all edges are kept, in at most that number of steps. *)
 Fixpoint settled (edges : list dependency) (steps : nat) (t : times) : times :=
   match find (fun e => negb (is_kept t e)) edges with
   | None => t

@@ -11,7 +11,7 @@ Variables (i : instance) (following_is_forbidden : bool).
 Notation Executes := (Executes i following_is_forbidden).
 Notation dependencies := (dependencies i following_is_forbidden).
 
-(** The robot needs so many ticks more for the visit than the duration. *)
+(** The robot needs that number of ticks more for the visit than the duration. *)
 Definition delays := node -> Z.
 
 (** Who waits for the robot to have stayed somewhere waits for its delay there too. *)
@@ -29,7 +29,7 @@ Definition total_delay (ps : list plan) (late : delays) : Z :=
 Definition latest_entry (ps : list plan) (late : delays) : times := fun n =>
   match visit_at ps n with Some v => enter v + delay_before ps late (enter v) | None => release_entry n end.
 
-(** When each visit is entered if every robot goes on as soon as the edges and its delays allow. *)
+(** The entry of each visit if every robot continues as soon as the edges and its delays allow. *)
 Definition entry_in_order (ps : list plan) (late : delays) : times :=
   settled (map (delayed late) (dependencies ps))
     (Z.to_nat (distance release_entry (latest_entry ps late) (nodes ps))) release_entry.

@@ -55,7 +55,7 @@ Definition earliest_entry (ps ts : list plan) (now : Z) : times :=
   settled (dependencies ps) (Z.to_nat (distance first (late_entry ps ts now) (nodes ps))) first.
 Definition retimed (ps ts : list plan) (now : Z) : list plan := timed (earliest_entry ps ts now) ps.
 
-(** An execution goes on from what has happened by the tick [now]: that is kept, and all else comes after it. *)
+(** An execution continues what has happened by the tick [now]: that is kept, and all else comes after it. *)
 Record Continues (ts after : list plan) (now : Z) : Prop := {
   what_happened_is_kept : forall id n x, Visit_of ts id n x -> exists y, Visit_of after id n y /\ enter y = enter x;
   the_rest_is_later : forall id n y, Visit_of after id n y -> (exists x, Visit_of ts id n x) \/ now < enter y
@@ -285,7 +285,7 @@ Qed.
 Lemma retimed_plans_are_complete : Completes ps (retimed ps ts now).
 Proof. intros id n v V. destruct (visit_timed (earliest_entry ps ts now) _ _ _ V) as (y & Y & _). eauto. Qed.
 
-(** Another execution, finished or not, that goes on from what has happened. *)
+(** Another execution, finished or not, that continues what has happened. *)
 Lemma retimed_is_least after id n y : Executes ps after -> Continues ts after now -> Visit_of after id n y ->
   earliest_entry ps ts now (id, n) <= enter y.
 Proof.

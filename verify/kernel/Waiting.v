@@ -30,7 +30,7 @@ Let visits_take_time := visits_take_time i s well_formed lawful.
 
 (** * Edges that follow from others *)
 
-(** Between visits of which one is before the other a way leads along direct edges, and takes as long. *)
+(** If one visit is before another, a way leads between them along direct edges, and takes as long. *)
 Lemma way_along_direct_edges edges place size : (forall n, In n (stays ps) -> incl (travels ps n) edges) ->
   (forall one other, In one (stays ps) -> In other (stays ps) -> visit_resource (snd one) = place ->
     incl (direct_waits ps one other) edges) ->
@@ -199,7 +199,7 @@ Proof.
     apply in_nodes, edges_join_nodes, E.
 Qed.
 
-(** The test for cycles: everybody gets to enter if and only if there is none. *)
+(** The test for cycles: every robot gets to enter if and only if no cycle exists. *)
 Theorem everybody_arrives_exactly_when_acyclic :
   is_acyclic (dependencies ps) (nodes ps) = true <-> Acyclic (dependencies ps).
 Proof. apply nobody_is_stuck_exactly_when_acyclic. exact edges_join_nodes. Qed.
