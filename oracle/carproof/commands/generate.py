@@ -15,7 +15,6 @@ from carproof.options import RangeType, examples, json_option, output_option
 from carproof.results import show_instance
 
 T = TypeVar("T", Fleet, Grid, Traits, Warehouse)
-AFTER_GOAL = "Robots vanish or park after their goals."
 F = TypeVar("F", bound=Callable[..., Any])
 
 

@@ -4,7 +4,6 @@ A module has a name, which is a sentence, the rules that it supports, its formul
 the statement and, after "By hand:", the part that z3 does not check. To add a lemma, write the module and list it here.
 """
 
-from collections.abc import Iterator
 from importlib import import_module
 
 from carp_verify.engine import Lemma
@@ -22,8 +21,3 @@ def lemma_named(module: str) -> Lemma:
     lemma = import_module(f"carp_verify.lemmas.{module}").LEMMA
     assert isinstance(lemma, Lemma)  # noqa: S101 - a promise of ours, not of the user's
     return lemma
-
-
-def all_lemmas() -> Iterator[Lemma]:
-    """Load all lemmas, one after the other."""
-    return map(lemma_named, MODULES)
