@@ -157,9 +157,7 @@ def one_by_one(instance: Instance, plans: Sequence[Plan], robots: Sequence[Robot
         plan = fleet.find(fleet.index(robot), None, 0)
         if plan is not None:
             fleet.commit([plan])
-    made = fleet.plans
-    order = tuple(plan.robot for plan in made)
-    return Solution(made, order, tuple(robot for robot in instance.robot if robot not in order))
+    return Solution.of(instance, fleet.plans)
 
 
 class UnplannedRow(msgspec.Struct, frozen=True):

@@ -6,7 +6,7 @@ fault. An audit does not judge the choice between plans that arrive at the same 
 without a plan.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
 import msgspec
@@ -151,16 +151,9 @@ def ask_kernel(instance: Instance, solution: Solution, audit: Audit) -> None:
         document = solution_document(replace(solution, order=order))
         requests = [request("audit", instance, solution=document, certificates=audit.certificates)]
     else:
-        solutions = [solution_of(instance, (*late.before, late.earlier)) for late in audit.late]
+        solutions = [Solution.of(instance, (*late.before, late.earlier)) for late in audit.late]
         requests = [request("check", instance, solution=solution_document(each)) for each in solutions]
     for answer in ask(requests):
         if not answer.accepted:
             raise ContradictionError(f"{CHECKER} and {answer.by} differ: {answer.message} [{answer.rule}]")
         audit.by = answer.by
-
-
-def solution_of(instance: Instance, plans: Sequence[Plan]) -> Solution:
-    """The solution of these plans in which all other robots are unplanned."""
-    order = tuple(plan.robot for plan in plans)
-    planned = set(order)
-    return Solution(tuple(plans), order, tuple(robot for robot in instance.robot if robot not in planned))

@@ -159,8 +159,7 @@ def draw_fleet(draw: Draw, instance: Instance) -> FleetUnderWay:
         plan = draw_plan(draw, instance, plans, robot)
         if plan is not None:
             plans.append(plan)
-    order = tuple(plan.robot for plan in plans)
-    solution = Solution(tuple(plans), order, tuple(id for id in instance.robot if id not in order))
+    solution = Solution.of(instance, plans)
     last = max((visit.leave or visit.enter for plan in plans for visit in plan.visits), default=0)
     return FleetUnderWay(instance, solution, new.id, draw.between(0, last))
 

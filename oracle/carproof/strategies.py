@@ -158,12 +158,7 @@ def _paths(draw: st.DrawFn, graph: ResourceGraph, robot: Robot) -> tuple[Resourc
 
 def solutions(instance: Instance, sizes: Sizes = SMALL) -> st.SearchStrategy[Solution]:
     """Solutions of the instance that break no rule; robots may be unplanned."""
-    return committed_plans(instance, sizes).map(lambda plans: _solution(instance, plans))
-
-
-def _solution(instance: Instance, plans: tuple[Plan, ...]) -> Solution:
-    order = tuple(plan.robot for plan in plans)
-    return Solution(plans, order, tuple(robot for robot in instance.robot if robot not in order))
+    return committed_plans(instance, sizes).map(lambda plans: Solution.of(instance, plans))
 
 
 @st.composite
@@ -197,4 +192,4 @@ def fleets_under_way(
     robot = draw(st.sampled_from(instance.robots)).id
     plans = draw(committed_plans(instance, sizes, without=robot))
     ticks = [tick for plan in plans for visit in plan.visits for tick in (visit.enter, visit.leave) if tick is not None]
-    return FleetUnderWay(instance, _solution(instance, plans), robot, draw(st.integers(0, max(ticks, default=0))))
+    return FleetUnderWay(instance, Solution.of(instance, plans), robot, draw(st.integers(0, max(ticks, default=0))))

@@ -7,7 +7,7 @@ The classes are plain, frozen data and may hold nonsense; `carp_spec.instance_ru
 whether they are right. Source: the paper, section II; ter Mors 2010 for capacities and durations.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Literal, TypeAlias
@@ -149,3 +149,11 @@ class Solution:
     plans: tuple[Plan, ...]
     order: tuple[RobotId, ...]
     unplanned: tuple[RobotId, ...] = ()
+
+    @classmethod
+    def of(cls, instance: Instance, plans: Iterable[Plan]) -> "Solution":
+        """The plans in their order; all other robots of the instance are unplanned."""
+        made = tuple(plans)
+        order = tuple(plan.robot for plan in made)
+        planned = set(order)
+        return cls(made, order, tuple(robot for robot in instance.robot if robot not in planned))

@@ -113,9 +113,7 @@ def polishes_into_each_other(case: Case, reply: Reply) -> Reply:
     """Every robot goes as if it were alone."""
     del reply
     alone = [carp_reference.query(case.instance, (), robot) for robot in case.instance.robot]
-    plans = tuple(plan for plan in alone if plan is not None)
-    planned = tuple(plan.robot for plan in plans)
-    return Solution(plans, planned, tuple(robot for robot in case.instance.robot if robot not in planned))
+    return Solution.of(case.instance, [plan for plan in alone if plan is not None])
 
 
 def polishes_to_more(case: Case, reply: Reply) -> Reply:

@@ -11,7 +11,7 @@ from hypothesis import given
 from tests.spec.making import VANISHING
 from tests.spec.strategies import FEWER, graphs
 
-from carp_spec import Instance, Resource, ResourceGraph, Robot, Solution
+from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Solution
 
 
 @FEWER
@@ -65,6 +65,12 @@ def test_look_ups_are_no_part_of_the_hash_or_of_what_is_printed() -> None:
     assert hash(twin) == hash(VANISHING)
     printed = repr(VANISHING)
     assert not any(f"{look_up}=" in printed for look_up in ("resource", "index", "successors", "robot"))
+
+
+def test_robots_without_a_plan_are_unplanned_in_the_solution_of_some_plans() -> None:
+    last = Plan(VANISHING.robots[-1].id, ())
+    others = tuple(robot.id for robot in VANISHING.robots[:-1])
+    assert Solution.of(VANISHING, [last]) == Solution((last,), (last.robot,), others)
 
 
 def test_the_model_cannot_be_changed() -> None:

@@ -40,9 +40,7 @@ def town(after_goal: AfterGoal, *robots: Robot, directed: bool = False, capacity
 
 def beside(instance: Instance, robot: RobotId, *plans: Plan, now: int = 0) -> Question:
     """A question beside plans."""
-    order = tuple(plan.robot for plan in plans)
-    unplanned = tuple(each for each in instance.robot if each not in order)
-    return Question(instance, Solution(plans, order, unplanned), robot, now)
+    return Question(instance, Solution.of(instance, plans), robot, now)
 
 
 EAST = Robot("r", "a", "d")

@@ -96,9 +96,8 @@ def test_a_checker_and_z3_that_contradict_each_other_are_a_fault(
     plans: tuple[Plan, ...], breaches: list[Breach], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(certificate, "overfull", lambda *_: breaches)
-    robots = tuple(plan.robot for plan in plans)
     with pytest.raises(RuntimeError, match=r"the checker and z3 differ: \[joint/capacity\] resource b "):
-        certify(INSTANCE, Solution(plans, robots, tuple(id for id in INSTANCE.robot if id not in robots)))
+        certify(INSTANCE, Solution.of(INSTANCE, plans))
 
 
 @given(broken_solutions())
@@ -149,9 +148,7 @@ def test_visits_to_no_resource_of_the_graph_are_none_of_its_business() -> None:
 def write(folder: Path, *plans: Plan) -> tuple[Path, Path]:
     files = folder / "instance.json", folder / "solution.json"
     files[0].write_bytes(write_instance(INSTANCE))
-    planned = tuple(plan.robot for plan in plans)
-    unplanned = tuple(robot for robot in INSTANCE.robot if robot not in planned)
-    files[1].write_bytes(write_solution(Solution(plans, planned, unplanned)))
+    files[1].write_bytes(write_solution(Solution.of(INSTANCE, plans)))
     return files
 
 

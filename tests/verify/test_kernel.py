@@ -378,8 +378,7 @@ def test_an_audit_accepts_plans_made_one_after_the_other_and_no_later_one(instan
         if plan is not None:
             certificates.append(query_certificate(problem, plans, robot))
             plans.append(plan)
-    order = tuple(plan.robot for plan in plans)
-    solution = Solution(tuple(plans), order, tuple(robot for robot in instance.robot if robot not in order))
+    solution = Solution.of(instance, plans)
     documents = {"instance": instance_document(instance), "solution": solution_document(solution)}
     assert ask(encoded(op="audit", certificates=certificates, **documents))["verdict"] == "accepted"
     if certificates:

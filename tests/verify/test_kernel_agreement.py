@@ -23,7 +23,7 @@ from carp_experiments.kernel_verdicts import (
     kernel_report,
     verified,
 )
-from carp_spec import Carp, Instance, Plan, Solution
+from carp_spec import Carp, Instance, Solution
 from carp_verify.kernel import KernelVerdict, ask
 from carproof.generate import Fleet, Grid, Warehouse, grid_instance, warehouse_instance
 from carproof.mutations import MUTATIONS
@@ -45,20 +45,15 @@ def differences(questions: Iterator[Question]) -> list[object]:
     return found
 
 
-def beside(instance: Instance, plans: tuple[Plan, ...]) -> Solution:
-    order = tuple(plan.robot for plan in plans)
-    return Solution(plans, order, tuple(robot for robot in instance.robot if robot not in order))
-
-
 def small_questions(case: SmallCase) -> Iterator[Question]:
     """The third robot's plan beside the others and without heed to them, and its certificate, honest and too high."""
-    instance, others = case.instance, beside(case.instance, case.committed)
+    instance, others = case.instance, Solution.of(case.instance, case.committed)
     certifier = carp_reference.certifier(instance)
     alone, _ = certifier.certify(ASKED)
     certifier.commit(case.committed)
     plan, certificate = certifier.certify(ASKED)
     for each in (plan, alone):
-        yield checked(instance, others if each is None else beside(instance, (*case.committed, each)))
+        yield checked(instance, others if each is None else Solution.of(instance, (*case.committed, each)))
     yield verified(instance, others, certificate)
     later = None if certificate.bound is None else certificate.bound + 1
     yield verified(instance, others, msgspec.structs.replace(certificate, bound=later))

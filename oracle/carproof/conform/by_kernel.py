@@ -11,7 +11,6 @@ from carp_spec.documents import VerdictDocument, solution_document
 from carp_spec.limits import following_is_allowed
 from carp_verify.bound_rules import ContradictionError
 from carp_verify.kernel import ask, request
-from carproof.audit import solution_of
 from carproof.conform.answers import Answer
 from carproof.conform.cases import Case
 from carproof.conform.findings import Finding
@@ -62,7 +61,7 @@ def _solution_with(case: Case, answer: QueryDocument) -> Solution:
     assert case.robot is not None  # noqa: S101 - a promise of ours
     others = [plan for plan in case.solution.plans if plan.robot != case.robot]
     found = answer.plan_of(case.robot)
-    return solution_of(case.instance, others if found is None else [*others, found])
+    return Solution.of(case.instance, others if found is None else [*others, found])
 
 
 def _is_early(case: Case, answer: QueryDocument | Solution, level: Level) -> bool:
@@ -83,10 +82,10 @@ def _is_early(case: Case, answer: QueryDocument | Solution, level: Level) -> boo
     requests, is_early = [], True
     for robot in asked:
         best, certificate = certifier.certify(robot, followed[0] if followed else None, case.now)
-        before = solution_document(solution_of(instance, [*committed, *followed]))
+        before = solution_document(Solution.of(instance, [*committed, *followed]))
         requests.append(request("verify-query", instance, solution=before, certificate=certificate))
         if best is not None:
-            beside = solution_document(solution_of(instance, [*committed, best]))
+            beside = solution_document(Solution.of(instance, [*committed, best]))
             requests.append(request("check", instance, solution=beside))
         plan = plans[robot]
         is_early = is_early and not _is_worse(plan, best, level)

@@ -93,9 +93,7 @@ def _queries(draw: st.DrawFn, sizes: Sizes) -> Case:
     plans = draw(committed_plans(instance, sizes, without=robot if is_new else None))
     ends = [visit.leave or visit.enter for plan in plans for visit in plan.visits]
     now = draw(st.just(0) | st.integers(0, max(ends, default=sizes.release)))
-    order = tuple(plan.robot for plan in plans)
-    solution = Solution(plans, order, tuple(each for each in instance.robot if each not in order))
-    return Case("random", "query", "query", instance, solution, robot, now)
+    return Case("random", "query", "query", instance, Solution.of(instance, plans), robot, now)
 
 
 def _plans(planners: Sequence[Planner | None], sizes: Sizes) -> st.SearchStrategy[Case]:
@@ -117,10 +115,7 @@ def _additions(draw: st.DrawFn, sizes: Sizes) -> Case:
 def _polishes(draw: st.DrawFn, sizes: Sizes) -> Case:
     """Plans of some or all robots, most of them slower than they must be."""
     instance = draw(_instances(sizes))
-    plans = draw(committed_plans(instance, sizes))
-    order = tuple(plan.robot for plan in plans)
-    solution = Solution(plans, order, tuple(each for each in instance.robot if each not in order))
-    return Case("random", "polish", "polish", instance, solution)
+    return Case("random", "polish", "polish", instance, draw(solutions(instance, sizes)))
 
 
 @st.composite
