@@ -1,13 +1,16 @@
 """The trusted base of each verdict of carproof, with its lines of code."""
 
 import io
+import re
 import tokenize
+from collections.abc import Iterable
 from pathlib import Path
 
 from carp_spec.readme import markdown_table
 from carp_verify.theorems import THEOREMS
 
 ROOT = Path(__file__).parents[1]
+KERNEL = ROOT / "verify" / "kernel"
 LAW = ("check", "joint_rules", "plan_rules", "instance_rules", "documents", "model", "rule", "refusal")
 BOUND = ("verify_bound", "bound_rules")
 ENCODER = ("encoding", "robot_clauses", "clauses", "optimum_rules")
@@ -41,6 +44,29 @@ def lines_of_code(path: Path) -> int:
         if token.type not in {tokenize.COMMENT, tokenize.NL}:
             begins = token.type in {tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT}
     return len(lines)
+
+
+def kernel_lines(path: Path) -> list[str]:
+    """The lines of a file in Coq or OCaml that hold more than a comment; comments may be nested."""
+    code, depth = [], 0
+    for part in re.split(r"(\(\*|\*\)|\n)", path.read_text()):
+        depth += (part == "(*") - (part == "*)")
+        if part == "\n" or (depth == 0 and part != "*)"):
+            code.append(part)
+    return [line for line in "".join(code).split("\n") if line.strip()]
+
+
+def coq_lines(paths: Iterable[Path]) -> tuple[int, int]:
+    """The lines of definitions in files of Coq, and those of theorems with their proofs."""
+    definitions = proofs = 0
+    for path in paths:
+        is_proof = False
+        for line in kernel_lines(path):
+            is_proof |= line.lstrip().startswith(("Theorem ", "Lemma "))
+            proofs += is_proof
+            definitions += not is_proof
+            is_proof &= not line.rstrip().endswith(("Qed.", "Defined."))
+    return definitions, proofs
 
 
 def table() -> str:

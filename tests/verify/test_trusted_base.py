@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
-from docs.trusted_base import ROOT, VERDICTS, lines_of_code
+from docs.trusted_base import KERNEL, ROOT, VERDICTS, coq_lines, kernel_lines, lines_of_code
 
 
 def test_docstrings_and_comments_are_no_lines_of_code(tmp_path: Path) -> None:
@@ -29,3 +29,36 @@ def test_what_a_trusted_module_imports_is_trusted_too(verdict: str) -> None:
 def test_what_is_trusted_imports_no_search(name: str) -> None:
     source = (ROOT / "verify" / "carp_verify" / f"{name}.py").read_text()
     assert not any(package in source for package in ("carp_optimum", "carp_optimized", "carp_reference", "pysat"))
+
+
+def test_comments_of_coq_and_ocaml_are_no_lines_of_code(tmp_path: Path) -> None:
+    path = tmp_path / "Page.v"
+    path.write_text(
+        "(** A page (* of *)\n    x *)\nDefinition one := 1.\n\nLemma two : 1 = 1.\nProof. auto. Qed. (* x *)\n"
+    )
+    assert kernel_lines(path) == ["Definition one := 1.", "Lemma two : 1 = 1.", "Proof. auto. Qed. "]
+    assert coq_lines([path]) == (1, 2)
+
+
+def test_the_map_of_the_kernel_counts_the_lines_that_must_be_trusted() -> None:
+    text = (KERNEL / "README.md").read_text()
+    counts = re.findall(r"\[(\w+\.\w+)\]\(\1\) (\d+) \|", text)
+    assert {name for name, _ in counts} == {"Extract.v", "Law.v", "reading.ml", "verdicts.ml", "main.ml"}
+    assert {name: len(kernel_lines(KERNEL / name)) for name, _ in counts} == {
+        name: int(count) for name, count in counts
+    }
+
+
+def test_the_map_of_the_kernel_says_to_a_tenth_how_long_the_proofs_are() -> None:
+    found = re.search(r"([\d,]+) lines of other definitions and ([\d,]+) lines", (KERNEL / "README.md").read_text())
+    assert found is not None
+    others = [path for path in KERNEL.glob("*.v") if path.name not in {"Law.v", "Extract.v"}]
+    for said, counted in zip(found.groups(), coq_lines(others), strict=True):
+        assert abs(int(said.replace(",", "")) - counted) <= counted / 10
+
+
+def test_the_map_of_the_kernel_names_every_coq_file() -> None:
+    text = (KERNEL / "README.md").read_text()
+    assert [
+        path.stem for path in KERNEL.glob("*.v") if f"`{path.stem}`" not in text and f"[{path.name}]" not in text
+    ] == []

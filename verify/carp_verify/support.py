@@ -7,7 +7,6 @@ from carp_verify.theorems import THEOREMS
 
 _READING = "it says how a document is written; it claims nothing of whole numbers"
 _DATA = "it is decided by looking at each entry once; there is no argument in it to check, and examples test it"
-_PAIRS = "it compares ticks of two robots; that it keeps them apart is for the kernel to prove, and is tested"
 _CHANCE = "it is a choice by numbers of a stream: which one is made decides how soon plans get better, not whether"
 
 UNSUPPORTED: Mapping[str, str] = {
@@ -17,15 +16,10 @@ UNSUPPORTED: Mapping[str, str] = {
     "instance/position": _DATA,
     "instance/after-goal": _DATA,
     "instance/following": _DATA,
-    "joint/following": "it is joint/capacity with longer stays, which a lemma supports",
     "trace/robots": _DATA,
     "trace/prefix": _DATA,
     "trace/ticks": _DATA,
-    "execution/duration": _DATA,
-    "execution/order": _PAIRS,
-    "execution/exchange": _PAIRS,
     "priority/first": "it follows from query/optimal: no lawful plan beside histories alone is earlier",
-    "execution/acyclic": "it is a search for a cycle; a second one, edge by edge, is tested to find the same",
     "cost/robot": "it is a definition: one difference of two numbers of the plan",
     "neighbourhood/baseline": "it is a choice: which candidate comes first, not what follows from it",
     "neighbourhood/nearest": "it is a choice: the least of given fractions, the first of equals",

@@ -183,6 +183,9 @@ let names numbers = Array.of_list (List.rev numbers.names)
 let require_format path format json =
   match json with
   | `Assoc members when List.assoc_opt "format" members = Some (`String format) -> ()
+  | `Assoc members ->
+      let found = match List.assoc_opt "format" members with Some (`String found) -> ", and is " ^ found | _ -> "" in
+      refuse (path ^ ".format") "document/format" ("the format must be " ^ format ^ found)
   | _ -> refuse (path ^ ".format") "document/format" ("the format must be " ^ format)
 
 (* ---- Instances ---- *)
@@ -266,7 +269,16 @@ let instance_of_json path json =
     | "park" -> Law.Park
     | _ -> shape path "\"vanish\" or \"park\""
   in
-  let field = fields path ~required:[ "format"; "graph"; "after_goal"; "robots" ] ~optional:[] json in
+  let following path json =
+    match text path json with
+    | "allowed" -> ()
+    | "forbidden" -> refuse path "limit/following" "following must be allowed: the kernel does not know joint/following"
+    | _ -> shape path "\"allowed\" or \"forbidden\""
+  in
+  let required_fields = [ "format"; "graph"; "after_goal"; "robots" ] in
+  let field = fields path ~required:required_fields ~optional:[ "following"; "$schema" ] json in
+  ignore (present field "$schema" text);
+  ignore (present field "following" following);
   let resources, edges, directed = required field "graph" graph in
   let after_goal = required field "after_goal" after in
   let robots = required field "robots" (elements robot) in
@@ -291,7 +303,8 @@ let solution_of_json { resource_numbers; robot_numbers; _ } path json =
     let field = fields path ~required:[ "robot"; "visits" ] ~optional:[] json in
     { Law.plan_robot = required field "robot" robot; visits = required field "visits" (elements visit) }
   in
-  let field = fields path ~required:[ "format"; "plans"; "order"; "unplanned" ] ~optional:[] json in
+  let field = fields path ~required:[ "format"; "plans"; "order"; "unplanned" ] ~optional:[ "$schema" ] json in
+  ignore (present field "$schema" text);
   { Law.plans = required field "plans" (elements plan);
     order = required field "order" (elements robot);
     unplanned = required field "unplanned" (elements robot) }
