@@ -23,7 +23,7 @@ PROVED = ("theorem, proved in Coq", "file", "rules")
 
 
 @click.command(
-    short_help="List the theorems behind the rules, and have z3 check the lemmas.",
+    short_help="List the theorems of the rules, and have z3 check lemmas.",
     epilog=examples(
         "carproof theorems",
         "carproof theorems earliest_entry_dominates",
