@@ -1,8 +1,9 @@
 """Pages in headless Chromium."""
 
+import os
 import shutil
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -44,6 +45,21 @@ def chromium(profile: Path) -> Iterator[Chrome]:
 def logged(driver: Chrome, kind: str) -> list[str]:
     """The messages of a log since it was read last: of the `browser`'s console, or of its `performance`."""
     return [entry["message"] for entry in driver.get_log(kind)]  # type: ignore[no-untyped-call]
+
+
+def processor_seconds(driver: Chrome) -> float:
+    """The processor time that the driver and all processes below it have used."""
+    parent: dict[int, int] = {}
+    ticks: dict[int, int] = {}
+    for process in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError):  # it has ended
+            fields = process.read_text().rpartition(")")[2].split()
+            parent[int(process.parent.name)] = int(fields[1])
+            ticks[int(process.parent.name)] = int(fields[11]) + int(fields[12])
+    family = {driver.service.process.pid}
+    while more := {child for child, of in parent.items() if of in family} - family:
+        family |= more
+    return sum(ticks.get(process, 0) for process in family) / os.sysconf("SC_CLK_TCK")
 
 
 class Page:

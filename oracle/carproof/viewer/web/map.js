@@ -1,4 +1,4 @@
-// The map: a still picture of the resources, and above it a canvas with all that moves or is chosen.
+// The map: a still picture of the resources, above it a canvas with starts and goals, and one with all that moves.
 
 const UNIT = 40;
 const HALF_SIDE = 16;
@@ -37,7 +37,8 @@ class MapView {
   constructor(view, choose) {
     this.view = view;
     this.svg = view.querySelector("svg");
-    this.canvas = view.querySelector("canvas");
+    [this.back, this.canvas] = view.querySelectorAll("canvas");
+    this.dots = new Map();
     this.colours = colours();
     this.shown = { goals: true, waits: false };
     this.chosen = [];
@@ -47,6 +48,8 @@ class MapView {
     new ResizeObserver(() => this.resize()).observe(view);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
       this.colours = colours();
+      this.dots.clear();
+      this.hasGoals = false;
       this.drawSoon();
     });
     this.resize();
@@ -78,11 +81,13 @@ class MapView {
 
   choose(chosen) {
     this.chosen = chosen;
+    this.hasGoals = false;
     this.drawSoon();
   }
 
   show(what, isShown) {
     this.shown[what] = isShown;
+    this.hasGoals = false;
     this.setTime(this.time);
   }
 
@@ -139,6 +144,7 @@ class MapView {
     this.y = within(y, height, scene.height) - height / 2;
     this.svg.setAttribute("viewBox", `${this.x} ${this.y} ${width} ${height}`);
     this.view.classList.toggle("whole", this.isWhole);
+    this.hasGoals = false;
     this.drawSoon();
   }
 
@@ -182,9 +188,9 @@ class MapView {
   }
 
   draw() {
+    if (!this.hasGoals) this.drawGoals();
     this.pen = clearedPen(this.canvas, this.size.width, this.size.height);
     this.drawViolations();
-    if (this.shown.goals) this.drawGoals();
     for (const number of this.chosen) this.drawTrail(scene.tracks[number]);
     if (this.shown.waits) this.drawWaits();
     this.drawGhosts();
@@ -201,8 +207,11 @@ class MapView {
     }
   }
 
-  /** Starts as small rings and goals as squares, those of chosen robots stronger. */
+  /** Starts as small rings and goals as squares, those of chosen robots stronger; drawn only where that changes. */
   drawGoals() {
+    this.hasGoals = true;
+    this.pen = clearedPen(this.back, this.size.width, this.size.height);
+    if (!this.shown.goals) return;
     const { pen } = this;
     Object.assign(pen, { fillStyle: this.colours.faint, textAlign: "center", textBaseline: "middle" });
     scene.tracks.forEach(({ start, goal, tint, short }, number) => {
@@ -289,6 +298,21 @@ class MapView {
     pen.globalAlpha = 1;
   }
 
+  /** The picture of a robot that is too small for a name, drawn once for each size. */
+  dot(tint, half) {
+    const key = `${tint} ${half.toFixed(1)}`;
+    if (!this.dots.has(key)) {
+      const canvas = make("canvas");
+      const pen = clearedPen(canvas, 2 * half, 2 * half);
+      Object.assign(pen, { fillStyle: this.colours.tints[tint].fill, strokeStyle: this.colours.paper });
+      pen.arc(half, half, half - 1, 0, 2 * Math.PI);
+      pen.fill();
+      pen.stroke();
+      this.dots.set(key, canvas);
+    }
+    return this.dots.get(key);
+  }
+
   drawRobots() {
     const { pen } = this;
     const { width, height } = this.size;
@@ -300,12 +324,17 @@ class MapView {
       if (x < -radius || y < -radius || x > width + radius || y > height + radius) return;
       const { tint, short } = scene.tracks[number];
       const isChosen = this.chosen.includes(number);
+      const isBlamed = this.blamed.has(number);
       pen.globalAlpha = this.chosen.length && !isChosen ? 0.45 : 1;
+      if (radius < SMALLEST_WITH_NAME && !isChosen && !isBlamed) {
+        const half = radius + 1;
+        pen.drawImage(this.dot(tint, half), x - half, y - half, 2 * half, 2 * half);
+        return;
+      }
       pen.fillStyle = this.colours.tints[tint].fill;
       pen.beginPath();
       pen.arc(x, y, radius, 0, 2 * Math.PI);
       pen.fill();
-      const isBlamed = this.blamed.has(number);
       pen.strokeStyle = isChosen ? this.colours.ink : isBlamed ? this.colours.wrong : this.colours.paper;
       pen.lineWidth = isChosen ? 3 : isBlamed ? 2.5 : 1;
       pen.stroke();
