@@ -1,10 +1,10 @@
 """The planner to run: compiled code that makes the plans of `carp_reference`, visit for visit.
 
-`query`, `plan`, `add` and `polish` are the same functions; `carp_optimized.fleet` has a fleet that stays up. Importing
-this page loads neither numpy nor numba.
+`query`, `plan`, `add`, `polish` and `retime` are the same functions; `carp_optimized.fleet` has a fleet that stays up.
+Importing this page loads neither numpy nor numba.
 """
 
-from carp_optimized.planners import PLANNERS, add, certifier, plan, polish, query, steps, sum_of_shortest_paths
+from carp_optimized.planners import PLANNERS, add, certifier, plan, polish, query, retime, steps, sum_of_shortest_paths
 from carp_optimized.reuse import Queries, Reuse
 
 __all__ = [
@@ -16,6 +16,7 @@ __all__ = [
     "plan",
     "polish",
     "query",
+    "retime",
     "steps",
     "sum_of_shortest_paths",
 ]

@@ -15,7 +15,10 @@ import numpy.typing as npt
 
 from carp_optimized.arrays import Longs
 from carp_optimized.compiling import entry
+from carp_optimized.encoding import refuse_tick, refuse_what_is_too_large
 from carp_spec import Instance, Plan, RobotId, Solution, Visit
+from carp_spec.execution_rules import require_followed, require_lawful_ends
+from carp_spec.traces import Trace
 
 Flags: TypeAlias = npt.NDArray[np.bool_]
 FOR_EVER = 2**62
@@ -153,8 +156,21 @@ class Timetable:
         return Solution(tuple(plans), self.solution.order, self.solution.unplanned)
 
 
+def retime(instance: Instance, solution: Solution, trace: Trace) -> Solution:
+    """The plans for the rest of the way, as `carp_reference.retime` makes them; also refuses too large numbers."""
+    require_followed(instance, solution, trace)
+    refuse_tick("$.now", trace.now)
+    table = timetable(instance, solution)
+    entered = {plan.robot: [visit.enter for visit in plan.visits] for plan in trace.plans}
+    after = table.solution_at(table.times(table.least_after(trace.now, entered)))
+    require_lawful_ends(instance, after, trace)
+    return after
+
+
 def timetable(instance: Instance, solution: Solution) -> Timetable:
-    """Make the dependency graph of a lawful solution whose numbers fit in 62 bits."""
+    """Make the dependency graph of a lawful solution; raises `Refusal` for numbers that are too large."""
+    refuse_what_is_too_large(instance)
+    refuse_tick("$.plans", max((plan.visits[-1].enter for plan in solution.plans), default=0))
     index = instance.graph.index
     visits = [visit for plan in solution.plans for visit in plan.visits]
     starts = np.array([0, *accumulate(len(plan.visits) for plan in solution.plans)], np.int64)

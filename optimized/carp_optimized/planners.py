@@ -27,6 +27,7 @@ from carp_spec.polish_rules import last_round, polishable, require_polish_option
 if TYPE_CHECKING:
     from carp_optimized.certifying import Certifier
     from carp_optimized.fleet import PlannedFleet
+    from carp_spec.traces import Trace
 
 ROUNDS = 50  # of a polish in one compiled call
 PLANNERS = (Carp, Shuffled, LongestFirst, Greedy, Neighbourhood)
@@ -54,6 +55,13 @@ def certifier(instance: Instance) -> "Certifier":
     from carp_optimized.certifying import Certifier  # noqa: PLC0415 - numba is slow to load
 
     return Certifier(instance)
+
+
+def retime(instance: Instance, solution: Solution, trace: "Trace") -> Solution:
+    """The plans for the rest of the way after a trace, in the same order and as early as possible."""
+    from carp_optimized.execution import retime as compiled  # noqa: PLC0415 - numba is slow to load
+
+    return compiled(instance, solution, trace)
 
 
 def plan(

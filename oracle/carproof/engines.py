@@ -7,6 +7,7 @@ from typing import Any, Protocol, cast
 
 from carp_spec import Instance, Neighbourhood, Plan, Planner, Refusal, RobotId, Solution, total_cost
 from carp_spec.query_certificates import QueryCertificateDocument
+from carp_spec.traces import Trace
 from carproof.progress import progress
 
 ENGINES = ("optimized", "reference")
@@ -50,6 +51,9 @@ class Engine(Protocol):
         advance: Callable[[int, int, int], None] = ...,
     ) -> Solution:
         """Better plans; `advance` gets rounds, unplanned robots and total."""
+
+    def retime(self, instance: Instance, solution: Solution, trace: Trace) -> Solution:
+        """The plans for the rest of the way after a trace, in the same order."""
 
 
 class FastestEngine:

@@ -4,8 +4,9 @@ Read it in this order: `context`, `query`, `orderings`, `neighbourhood`, `polish
 `fixed_paths`, `time_expanded`, `reasons`, `planners`.
 """
 
+from carp_reference.execution import retime
 from carp_reference.planners import add, certifier, plan, query
 from carp_reference.polish import polish
 from carp_reference.reasons import why_unplanned
 
-__all__ = ["add", "certifier", "plan", "polish", "query", "why_unplanned"]
+__all__ = ["add", "certifier", "plan", "polish", "query", "retime", "why_unplanned"]

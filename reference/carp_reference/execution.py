@@ -10,10 +10,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-from carp_spec import Instance, Plan, Refusal, ResourceId, RobotId, Solution, Visit
+from carp_spec import Instance, Plan, ResourceId, RobotId, Solution, Visit
 from carp_spec.dependencies import Dependency, Node, dependencies, stays_by_resource
-from carp_spec.execution_rules import trace_violations
-from carp_spec.plan_rules import plan_ends_at_goal, plan_starts_at_release
+from carp_spec.execution_rules import require_followed, require_lawful_ends
 from carp_spec.traces import Trace
 
 
@@ -244,8 +243,7 @@ def retime(instance: Instance, solution: Solution, trace: Trace) -> Solution:
     trace does not follow the solution, and where no lawful plan has the history: a robot appears late, or stays too
     long at its goal.
     """
-    for violation in trace_violations(instance, solution, trace, most=1):
-        raise Refusal("document", path_in_trace(trace, violation.robots[0]), violation.rule, violation.message)
+    require_followed(instance, solution, trace)
     order = order_of(instance, solution)
     least = {(robot.id, 0): robot.release for robot in instance.robots}
     for node in order.nodes:
@@ -254,29 +252,8 @@ def retime(instance: Instance, solution: Solution, trace: Trace) -> Solution:
     happened = {(plan.robot, place): visit for plan in trace.plans for place, visit in enumerate(plan.visits)}
     enters = earliest(order, {**least, **{node: visit.enter for node, visit in happened.items()}})
     after = solution_at(order, enters)
-    refuse_odd_ends(instance, after, trace)
+    require_lawful_ends(instance, after, trace)
     return after
-
-
-def refuse_odd_ends(instance: Instance, after: Solution, trace: Trace) -> None:
-    """Raise `Refusal` where a robot appears late, or stays at its goal for longer than a plan may."""
-    done = {plan.robot: plan for plan in trace.plans}
-    for plan in after.plans:
-        for violation in (*plan_starts_at_release(instance, plan), *plan_ends_at_goal(instance, plan)):
-            message = f"no plan can have this history: {violation.message}"
-            raise Refusal("document", path_in_trace(trace, plan.robot), violation.rule, message)
-        visits = done[plan.robot].visits
-        due = plan.visits[-1].leave
-        is_there = len(visits) == len(plan.visits) and due is not None
-        if is_there and visits[-1].leave != due and (visits[-1].leave is not None or (due or 0) <= trace.now):
-            message = f"no plan can have this history: robot {plan.robot} must leave its goal at {due}"
-            raise Refusal("document", path_in_trace(trace, plan.robot), plan_ends_at_goal.id, message)
-
-
-def path_in_trace(trace: Trace, robot: RobotId) -> str:
-    """The path of the robot in the trace's document."""
-    places = [place for place, plan in enumerate(trace.plans) if plan.robot == robot]
-    return f"$.plans[{places[0]}]" if places else "$.plans"
 
 
 def solution_at(order: Order, enters: Mapping[Node, int]) -> Solution:

@@ -11,7 +11,9 @@ from typing import TypeAlias
 
 from carp_spec.check import MOST_LISTED
 from carp_spec.dependencies import Node, Stay, dependencies, shortest_cycle, stays_by_resource
-from carp_spec.model import Instance, Plan, ResourceId, Solution, Visit
+from carp_spec.model import Instance, Plan, ResourceId, RobotId, Solution, Visit
+from carp_spec.plan_rules import plan_ends_at_goal, plan_starts_at_release
+from carp_spec.refusal import Refusal
 from carp_spec.rule import DESIGN, Breach, Rule, Violation, at_visit, interval, of_robots, violation_rule
 from carp_spec.traces import Trace
 
@@ -192,6 +194,32 @@ def trace_violations(
         if violations:
             return tuple(violations)
     return ()
+
+
+def require_followed(instance: Instance, solution: Solution, trace: Trace) -> None:
+    """Raise `Refusal` if the trace does not follow the lawful solution."""
+    for violation in trace_violations(instance, solution, trace, most=1):
+        raise _refusal(trace, violation.robots[0], violation.rule, violation.message)
+
+
+def require_lawful_ends(instance: Instance, after: Solution, trace: Trace) -> None:
+    """Raise `Refusal` where a plan that keeps the trace appears late, or stays at its goal for longer than it may."""
+    done = {plan.robot: plan for plan in trace.plans}
+    for plan in after.plans:
+        for violation in (*plan_starts_at_release(instance, plan), *plan_ends_at_goal(instance, plan)):
+            message = f"no plan can have this history: {violation.message}"
+            raise _refusal(trace, plan.robot, violation.rule, message)
+        visits = done[plan.robot].visits
+        due = plan.visits[-1].leave
+        is_there = len(visits) == len(plan.visits) and due is not None
+        if is_there and visits[-1].leave != due and (visits[-1].leave is not None or (due or 0) <= trace.now):
+            message = f"no plan can have this history: robot {plan.robot} must leave its goal at {due}"
+            raise _refusal(trace, plan.robot, plan_ends_at_goal.id, message)
+
+
+def _refusal(trace: Trace, robot: RobotId, rule: str, message: str) -> Refusal:
+    places = [place for place, plan in enumerate(trace.plans) if plan.robot == robot]
+    return Refusal("document", f"$.plans[{places[0]}]" if places else "$.plans", rule, message)
 
 
 def _pairs(solution: Solution, trace: Trace) -> Iterator[tuple[Plan, Plan]]:

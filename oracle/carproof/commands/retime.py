@@ -4,12 +4,20 @@ from pathlib import Path
 
 import click
 
-from carp_reference.execution import retime
 from carp_spec import total_cost, write_solution
 from carp_spec.traces import read_trace
 from carproof.answer import Answer
+from carproof.engines import engine_named
 from carproof.files import naming, read_file, read_sound
-from carproof.options import examples, instance_argument, json_option, output_option, solution_argument, trace_argument
+from carproof.options import (
+    engine_option,
+    examples,
+    instance_argument,
+    json_option,
+    output_option,
+    solution_argument,
+    trace_argument,
+)
 from carproof.results import write_result
 from carproof.tables import print_line
 
@@ -24,9 +32,12 @@ from carproof.tables import print_line
 @instance_argument
 @solution_argument
 @trace_argument
+@engine_option
 @output_option
 @json_option
-def command(*, instance: str, solution: str, trace: str, output: Path | None, as_json: bool) -> Answer:
+def command(
+    *, instance: str, solution: str, trace: str, engine: str | None, output: Path | None, as_json: bool
+) -> Answer:
     """Give the plans of SOLUTION new ticks: the visits of TRACE stay, the others follow in order as early as possible.
 
     The result is a solution under way at the tick of the trace: `add` and `query` take it with --now.
@@ -36,7 +47,7 @@ def command(*, instance: str, solution: str, trace: str, output: Path | None, as
     problem, sound = read_sound(instance, solution, trace)
     done = read_file(trace, read_trace)
     with naming(trace):
-        after = retime(problem, sound, done)
+        after = engine_named(engine).retime(problem, sound, done)
     write_result(write_solution(after), output, as_json)
     if not as_json:
         arrivals = {plan.robot: plan.visits[-1].enter for plan in sound.plans}

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import msgspec
 
 from carp_reference.execution import Delay, late_robots, order_of
-from carp_reference.execution import retime as retimed
 from carp_spec import Instance, Refusal, ResourceId, RobotId, Solution, Verdict, Visit, total_cost
 from carp_spec.documents import SolutionDocument, VerdictDocument, solution_document, verdict_document
 from carp_spec.execution_rules import trace_violations
@@ -97,10 +96,9 @@ class RetimeRequest:
 
 def retime(request: RetimeRequest, engine: Engine) -> Solution:
     """Make plans for the rest of the way, in the same order and as early as possible."""
-    del engine
     sound = sound_within(request.instance, request.solution)
     with inside("$.trace"):
-        return retimed(request.instance, sound, request.trace)
+        return engine.retime(request.instance, sound, request.trace)
 
 
 @dataclass(frozen=True, slots=True)
