@@ -61,7 +61,6 @@ Record Continues (ts after : list plan) (now : Z) : Prop := {
   the_rest_is_later : forall id n y, Visit_of after id n y -> (exists x, Visit_of ts id n x) \/ now < enter y
 }.
 
-
 (** * Ticks that keep the edges make an execution *)
 
 Section Lawful.
@@ -77,7 +76,6 @@ Let needed := needs_of i well_formed.
 
 Lemma is_edge e : In e (dependencies ps) <-> Edge e.
 Proof. exact (in_dependencies i following_is_forbidden ps one_plan_each e). Qed.
-
 
 Lemma nth_timed t id vs : forall k n x, nth_error (timed_visits t id k vs) n = Some x ->
   exists v, nth_error vs n = Some v /\ visit_resource x = visit_resource v /\ enter x = t (id, (k + n)%nat) /\
