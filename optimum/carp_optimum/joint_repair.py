@@ -1,9 +1,10 @@
-"""Plans for robots that no planning order leaves room for: small groups are planned jointly, among the other plans.
+"""Plans for robots that a planner leaves out: in small groups, jointly among the other plans, or in another order.
 
 Where robots must let each other pass in a narrow place, the first one planned may leave no plan to the others, whatever
 the order. So a robot without a plan is planned together with those in its way, by conflict-based search (Sharon et al.
 2015) with priorities between robots (Ma et al. 2019). The group grows by the outside robot that its members would meet
-first if they were alone. Nothing here is trusted: the law judges the plans.
+first if they were alone. Where no group is found, all robots are planned one after the other, pass after pass; those
+that a pass leaves out come first in the next. Nothing here is trusted: the law judges the plans.
 """
 
 from collections.abc import Iterator, Sequence
@@ -12,7 +13,7 @@ from heapq import heappop, heappush
 from itertools import count, islice
 from typing import TypeAlias
 
-from carp_optimized import polish, query
+from carp_optimized import polish
 from carp_optimized.fleet import PlannedFleet
 from carp_spec import Instance, Plan, RobotId, Solution, Visit, total_cost
 from carp_spec.joint_rules import JOINT_RULES
@@ -21,10 +22,11 @@ from carp_spec.rule import Violation
 LARGEST_GROUP = 4
 STATES = 200
 """The search for plans of one group ends after this number of states."""
-ALL_STATES = 1000
+ALL_STATES = 300
 """The search for all groups of a solution ends after this number of states."""
-ATTEMPTS = 3
+ATTEMPTS = 4
 ROUNDS = 200
+PASSES = 100
 Avoided: TypeAlias = tuple[RobotId, Plan]
 """A robot, and the plan of another that it has to avoid, or one visit that it must not make."""
 
@@ -32,15 +34,37 @@ Avoided: TypeAlias = tuple[RobotId, Plan]
 def repair(instance: Instance, solution: Solution) -> Solution:
     """Plan the robots of a solution that have a path but no plan, as far as possible; plans of others may change.
 
-    Rounds of `polish/...` come first; groups are planned jointly if these leave a robot out. Raises `Refusal` for a
-    solution that breaks a rule, and for numbers that are too large.
+    An attempt plays rounds of `polish/...` and plans groups jointly. If this leaves a robot out, the next attempt
+    begins with plans in another order. Raises `Refusal` for a solution that breaks a rule, and for numbers that are
+    too large.
     """
+    fleet = PlannedFleet(instance)
+    without_path = {robot for robot in solution.unplanned if fleet.find(fleet.index(robot), None, 0) is None}
     for seed in range(ATTEMPTS):
-        waiting = [robot for robot in solution.unplanned if query(instance, (), robot) is not None]
-        if not waiting:
+        if without_path.issuperset(solution.unplanned):
             break
+        if seed > 0:
+            solution = plan_failed_first(instance, solution)
         solution = polish(instance, solution, iterations=ROUNDS, seed=seed)
         solution = repair_jointly(instance, solution)
+    return solution
+
+
+def plan_failed_first(instance: Instance, solution: Solution) -> Solution:
+    """The plans of the best of some passes of CARP, each with the robots first that the one before left out.
+
+    The solution itself, if no pass plans more robots.
+    """
+    fleet = PlannedFleet(instance)
+    order = [fleet.index(robot) for robot in (*solution.unplanned, *solution.order)]
+    for _ in range(PASSES):
+        fleet.carp(order)
+        planned = {*fleet.order}
+        if len(planned) > len(solution.plans):
+            solution = Solution.of(instance, fleet.plans)
+        if len(planned) == len(order):
+            break
+        order.sort(key=planned.__contains__)
     return solution
 
 

@@ -1,12 +1,13 @@
-"""Robots that no planning order leaves room for get plans in small groups, and the law judges them."""
+"""Robots that a planner leaves out get plans, in small groups or in another order, and the law judges them."""
 
 import pytest
 from hypothesis import given
 
 from carp_optimized import plan
-from carp_optimum.joint_repair import repair, repair_jointly
+from carp_optimum.joint_repair import plan_failed_first, repair, repair_jointly
 from carp_spec import Carp, Instance, Resource, ResourceGraph, Robot, Solution, judge
 from carp_spec.model import Following
+from carproof.generate import Fleet, Grid, grid_instance
 from carproof.strategies import PlannedInstance, Sizes, planned_instances
 
 
@@ -38,6 +39,26 @@ def test_robots_that_cannot_swap_stay_as_they_are() -> None:
     instance = passage(pocket=False)
     given = plan(instance, Carp())
     assert repair(instance, given) == given
+
+
+def test_a_robot_that_no_small_group_helps_is_planned_in_another_order() -> None:
+    instance = grid_instance(Grid(map=0), Fleet(robots=100, seed=45))
+    repaired = repair(instance, plan(instance))
+    assert not repaired.unplanned
+    assert judge(instance, repaired).valid
+
+
+def test_robots_that_failed_are_planned_first_and_a_robot_without_path_changes_nothing() -> None:
+    resources = tuple(Resource(id) for id in ("west", "east", "middle", "dead end", "island"))
+    graph = ResourceGraph(resources, (("middle", "west"), ("middle", "east"), ("middle", "dead end")))
+    robots = (Robot("r1", "west", "middle"), Robot("r2", "east", "dead end"), Robot("r3", "island", "west"))
+    instance = Instance(graph, robots, "park")
+    given = plan(instance, Carp())
+    assert given.order == ("r1",)
+    found = plan_failed_first(instance, given)
+    assert judge(instance, found).valid
+    assert (found.order, found.unplanned) == (("r2", "r1"), ("r3",))
+    assert plan_failed_first(instance, found) == found
 
 
 def test_a_pocket_is_used_up_to_its_capacity() -> None:

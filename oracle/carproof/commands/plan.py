@@ -58,8 +58,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     """Plan all robots of INSTANCE, a document or - for standard input.
 
     An option that is not given keeps the planner's default; one that the planner does not have is refused. If the
-    planner leaves robots out, some rounds of a polish and small groups planned jointly repair that. Robots that stay
-    unplanned are listed with the reason; the others keep their plans.
+    planner leaves robots out, rounds of a polish, small groups planned jointly and other orders repair that. Robots
+    that stay unplanned are listed with the reason.
 
     Exit codes: 0 every robot has a plan, 1 some robot has none, 2 bad input.
     """

@@ -52,9 +52,9 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
     SOLUTION is in any format that check reads (--from); the result is carproof's document. This is large neighbourhood
     search: a round removes a few robots, replans them, and keeps the new plans if they are not worse. Equal
-    --iterations and --seed give equal plans. Without --seconds, small groups are planned jointly at the end if a robot
-    is still left out. All robots are planned from their release on: none is under way. The lower bound is the sum of
-    the shortest paths, or that of --bound, which is verified first.
+    --iterations and --seed give equal plans. Without --seconds, robots that are still left out in the end are planned
+    with others, in small groups or in another order. All robots are planned from their release on: none is under way.
+    The lower bound is the sum of the shortest paths, or that of --bound, which is verified first.
 
     Exit codes: 0 every robot has a plan, 1 some robot has none, 2 bad input.
     """
@@ -79,10 +79,10 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
             instance, before, iterations=iterations, seconds=seconds, seed=seed, advance=advance
         )
         if after.unplanned and seconds is None:
-            from carp_optimum.joint_repair import repair_jointly  # noqa: PLC0415 - numba is slow to load
+            from carp_optimum.joint_repair import repair  # noqa: PLC0415 - numba is slow to load
 
             with suppress(Refusal):  # numbers that only the reference holds
-                after = repair_jointly(instance, after)
+                after = repair(instance, after)
     time = perf_counter() - started
     for violation in check(instance, after.plans):
         raise AssertionError(violation)
