@@ -201,6 +201,38 @@ def in_order(order: Order, delays: Iterable[Delay]) -> dict[Node, int]:
     return {node: tick for node, tick in earliest(order, releases, delays).items() if node not in never}
 
 
+def may_enter(order: Order, trace: Trace, ready: Iterable[RobotId]) -> tuple[RobotId, ...]:
+    """The robots among those ready that enter their next visit at the tick `trace.now`, if all keep the planned order.
+
+    A robot may enter at the tick at which another makes room for it. So robots in a row move together.
+    """
+    happened = {(plan.robot, place): visit for plan in trace.plans for place, visit in enumerate(plan.visits)}
+    enters = {node: visit.enter for node, visit in happened.items()}
+    leaves = {node: visit.leave for node, visit in happened.items()}
+
+    def is_over(edge: Dependency) -> bool:
+        if edge.before not in enters:
+            return False
+        if not waits_for_leaving(order, edge):
+            return enters[edge.before] + edge.ticks <= trace.now
+        leave = leaves.get(edge.before)
+        return leave is not None and leave + edge.ticks - order.duration(edge.before) <= trace.now
+
+    waits_for: dict[Node, list[Dependency]] = defaultdict(list)
+    for edge in order.edges:
+        if edge.kind == "order":
+            waits_for[edge.after].append(edge)
+    chosen = set(ready)
+    waiting = [(plan.robot, len(plan.visits)) for plan in trace.plans if plan.robot in chosen]
+    waiting = [node for node in waiting if node[1] < len(order.plans[node[0]].visits)]
+    entering: list[RobotId] = []
+    while (node := next((each for each in waiting if all(map(is_over, waits_for[each]))), None)) is not None:
+        waiting.remove(node)
+        enters[node] = trace.now
+        entering.append(node[0])
+    return tuple(entering)
+
+
 def stuck(order: Order) -> frozenset[Node]:
     """The visits in a cycle of dependencies, and those that wait for one."""
     missing = dict.fromkeys(order.nodes, 0)

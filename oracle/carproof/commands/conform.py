@@ -16,7 +16,7 @@ from carproof.adapters import ADAPTERS
 from carproof.answer import Answer
 from carproof.conform.cases import ASKED_OPS
 from carproof.conform.claims import FEATURES, Claims
-from carproof.conform.levels import CLASSICAL_LEVELS, LEVELS, WHOLE_LEVELS, Level
+from carproof.conform.levels import CLASSICAL_LEVELS, EXECUTOR_LEVELS, LEVELS, WHOLE_LEVELS, Level
 from carproof.engines import warm
 from carproof.extras import require
 from carproof.files import OutputFile, hypothesis_elsewhere, print_document, write_whole
@@ -52,6 +52,7 @@ _LEVELS = "\n".join(
         "carproof conform --solvable --without releases -- ./planner",
         "carproof conform --one-shot -- ./planner {map} {scen} {agents} {solution}",
         "carproof conform --level context-optimal --kernel -- ./planner",
+        "carproof conform --executor -- carproof serve",
         "carproof conform --junit conform.xml --html conform.html -- ./planner",
     ),
 )
@@ -82,6 +83,7 @@ _LEVELS = "\n".join(
     help=f"Ask nothing that has it; may be repeated. One of {', '.join(FEATURES)}.",
 )
 @click.option("--one-shot", is_flag=True, help="PROGRAM plans one {instance}, or {map} and {scen}.")
+@click.option("--executor", is_flag=True, help="PROGRAM executes plans, by the op drive.")
 @click.option(
     "--from",
     "format",
@@ -106,6 +108,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     solvable: bool,
     without: tuple[str, ...],
     one_shot: bool,
+    executor: bool,
     format: str | None,
     kernel: bool,
     save: Path,
@@ -132,6 +135,9 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     files with {agents} agents, and the output may be in any format that carproof check reads. Then only classical grids
     are asked, and the levels are sound, complete and optimal.
 
+    With --executor it executes plans whose robots are late: at each tick it names the robots that enter their next
+    visit. At the level sound robots must not collide, and all must arrive; at exact they keep the planned order too.
+
     With --kernel the proved kernel decides whether plans break a rule, and whether each arrives as early as possible,
     at the levels sound, complete-in-context and context-optimal. carp_spec decides the rest: histories of robots under
     way, and instances that forbid following.
@@ -141,6 +147,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     """
     from carproof.conform.child import Limits  # noqa: PLC0415 - what runs processes is loaded when it is needed
     from carproof.conform.documents import junit_document, report_document  # noqa: PLC0415
+    from carproof.conform.executor import Executor  # noqa: PLC0415
     from carproof.conform.one_shot import OneShot  # noqa: PLC0415
     from carproof.conform.program import Program  # noqa: PLC0415
     from carproof.conform.run import Options, conform  # noqa: PLC0415
@@ -149,24 +156,21 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     require("hypothesis", "pysat")
     if format is not None and not one_shot:
         raise click.UsageError("--from concerns the files that programs write with --one-shot.")
+    if executor and (one_shot or kernel):
+        raise click.UsageError("--executor can be combined with neither --one-shot nor --kernel.")
     if shutil.which(program[0]) is None:
         raise click.UsageError(f"{program[0]}: there is no such program, or it may not be run.")
     limits = Limits(timeout, memory)
-    subject: Subject = _one_shot(program, limits, format) if one_shot else Program(program, limits, seed)
+    process = Program(program, limits, seed)
+    subject: Subject = _one_shot(program, limits, format) if one_shot else Executor(process) if executor else process
     classical = isinstance(subject, OneShot) and subject.is_classical
-    askable = CLASSICAL_LEVELS if classical else WHOLE_LEVELS if one_shot else tuple(Level)
-    if LEVELS[level] not in askable:
-        what = "MovingAI files" if classical else "whole instances"
-        right = ", ".join(each.label for each in askable)
-        raise click.UsageError(f"Of a planner for {what} --level must be one of {right}.")
-    if kernel and LEVELS[level] > Level.CONTEXT_OPTIMAL:
-        raise click.UsageError(f"With --kernel --level must be at most {Level.CONTEXT_OPTIMAL.label}.")
+    _require_level(LEVELS[level], one_shot, classical, executor, kernel)
     claims = Claims(frozenset(without), solvable)
-    options = Options(LEVELS[level], number, seed, timeout, shrinking, one_shot, classical, claims)
+    options = Options(LEVELS[level], number, seed, timeout, shrinking, one_shot, classical, claims, executor=executor)
     if kernel:
         options = replace(options, kernel=version())
     warm()
-    origin = _origin(program, level, one_shot, seed)
+    origin = _origin(program, level, one_shot, executor, seed)
     before = read_saved(save, origin.judged, one_shot)
     if before.stale is not None:
         click.echo(printable(before.stale), err=True)
@@ -184,6 +188,22 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     else:
         _show(report, saved)
     return Answer.UNDECIDED if report.conforms is None else Answer.of(report.conforms)
+
+
+def _require_level(level: Level, one_shot: bool, classical: bool, executor: bool, kernel: bool) -> None:
+    """Refuse a level at which such a program is not judged."""
+    judged: Sequence[Level] = tuple(Level)
+    what = "a program"
+    if classical:
+        judged, what = CLASSICAL_LEVELS, "a planner for MovingAI files"
+    elif one_shot:
+        judged, what = WHOLE_LEVELS, "a planner for whole instances"
+    elif executor:
+        judged, what = tuple(EXECUTOR_LEVELS), "an executor"
+    if level not in judged:
+        raise click.UsageError(f"Of {what} --level must be one of {', '.join(each.label for each in judged)}.")
+    if kernel and level > Level.CONTEXT_OPTIMAL:
+        raise click.UsageError(f"With --kernel --level must be at most {Level.CONTEXT_OPTIMAL.label}.")
 
 
 def _one_shot(program: tuple[str, ...], limits: "Limits", format: str | None) -> "OneShot":
@@ -216,8 +236,8 @@ def _saved(report: "Report", folder: Path, origin: "Origin") -> list[Path]:
         return []
 
 
-def _origin(program: Sequence[str], level: str, one_shot: bool, seed: int) -> "Origin":
-    """Who is judged, and the command lines that ask again."""
+def _origin(program: Sequence[str], level: str, one_shot: bool, executor: bool, seed: int) -> "Origin":
+    """Who is judged, and the command lines that ask again; no single line asks an executor one case."""
     from carproof.conform.saving import Origin  # noqa: PLC0415 - what draws pictures is loaded when it is needed
 
     context = click.get_current_context()
@@ -228,9 +248,10 @@ def _origin(program: Sequence[str], level: str, one_shot: bool, seed: int) -> "O
             value = context.params[option.name or ""]
             values = value if option.multiple else [value]
             words += [option.opts[0]] if option.is_flag else [w for each in values for w in (option.opts[0], str(each))]
-    judged = shlex.join(["--level", level, *(["--one-shot"] if one_shot else []), "--", *program])
+    way = ["--one-shot"] if one_shot else ["--executor"] if executor else []
+    judged = shlex.join(["--level", level, *way, "--", *program])
     starts = """(echo '{"id":0,"op":"start","version":1}'; cat '{request}') | """
-    one = shlex.join(program) if one_shot else f"{starts}{shlex.join(program)}"
+    one = "" if executor else shlex.join(program) if one_shot else f"{starts}{shlex.join(program)}"
     return Origin(f"carproof conform {judged}", shlex.join(["carproof", "conform", *words, "--", *program]), one)
 
 

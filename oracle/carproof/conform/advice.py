@@ -25,6 +25,8 @@ _ADVICE = {
     "program/lower": "Relax a constraint instead of dropping plans: the bound must hold for every lawful set of plans.",
     "program/answers": "Answer each case of an op that you offer; leave an op out of start that you cannot answer.",
     "program/tries": "Search for a plan before you leave a robot out: most of these cases have one.",
+    "program/ready": "Name robots from the field ready alone.",
+    "program/arrives": "Keep the planned order at each resource: who goes out of turn may block the way of the others.",
     "program/alive": "Run the request again, and read the end of standard error.",
     "program/in-time": "Bound the search by a horizon: where no plan exists, it must end as well.",
     "program/response": "Write one line of JSON for each request, flush it, and write all else to standard error.",

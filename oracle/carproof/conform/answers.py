@@ -8,6 +8,7 @@ import msgspec
 from carp_spec import Refusal, Solution
 from carp_spec.bounds import BoundDocument
 from carp_spec.documents import UNREADABLE, VerdictDocument, is_json, uncapitalized
+from carp_spec.traces import Trace
 from carproof.conform.findings import RIGHT_RESULT, Category, Fault, Finding, is_accepted, is_response
 from carproof.ops import OPS
 from carproof.ops.op import reader_of
@@ -31,7 +32,7 @@ class NotAsked:
     why: str
 
 
-Answer: TypeAlias = QueryDocument | Solution | VerdictDocument | OptimumDocument | BoundDocument
+Answer: TypeAlias = QueryDocument | Solution | VerdictDocument | OptimumDocument | BoundDocument | Trace
 Reply: TypeAlias = Answer | Skipped | NotAsked
 
 

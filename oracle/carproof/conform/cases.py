@@ -10,6 +10,8 @@ from carproof.ops.op import PolishOptions
 
 ASKED_OPS = ("check", "query", "plan", "add", "polish", "optimum", "bound")
 """The ops of the table that programs are asked."""
+EXECUTION = "execute"
+"""The op of an execution, through which `Executor` leads a program by many requests `drive`."""
 Stage: TypeAlias = Literal["saved", "smoke", "vectors", "random"]
 OPTIMUM_SECONDS = 3
 BOUND_STEPS = 100
@@ -23,7 +25,7 @@ class Case:
 
     A planner of `None` for `plan` leaves the choice to the program; programs that only plan whole instances are asked
     this. A `classical` question is answered in a format of classical planners, which does not have the order of the
-    plans.
+    plans. The `delays` of an execution are [robot, position of the visit, ticks].
     """
 
     stage: Stage
@@ -35,13 +37,15 @@ class Case:
     now: int = 0
     planner: Planner | None = None
     classical: bool = False
+    delays: tuple[tuple[RobotId, int, int], ...] = ()
 
     @property
-    def size(self) -> tuple[int, int, int, int]:
+    def size(self) -> tuple[int, ...]:
         """The size of the question, by which the smallest failure is chosen."""
         graph = self.instance.graph
         visits = sum(len(plan.visits) for plan in self.solution.plans)
-        return (len(self.instance.robots), len(graph.resources), len(graph.edges), visits)
+        late = sum(ticks for _, _, ticks in self.delays)
+        return (len(self.instance.robots), len(graph.resources), len(graph.edges), visits, len(self.delays), late)
 
     @property
     def options(self) -> Neighbourhood:
@@ -55,6 +59,7 @@ def request_of(case: Case) -> Any:  # noqa: ANN401 - the request of its op
         "polish": {"options": PolishOptions(POLISH_ROUNDS)},
         "optimum": {"limit": OPTIMUM_SECONDS},
         "bound": {"steps": BOUND_STEPS},
+        "execute": {"driver": "order"},
     }
     kind = OPS[case.op].request
     of_case = {field.name: getattr(case, field.name) for field in fields(kind) if hasattr(case, field.name)}

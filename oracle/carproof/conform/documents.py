@@ -39,7 +39,7 @@ def report_document(report: Report, saved: Sequence[Path]) -> bytes:
         "format": FORMAT,
         "program": report.program,
         "level": report.options.level.label,
-        "statement": report.options.level.statement,
+        "statement": report.options.statement,
         "tested": report.tested,
         "conforms": report.conforms,
         "by": report.options.by,

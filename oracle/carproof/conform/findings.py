@@ -1,10 +1,11 @@
 """Faults of answers, and the rules of programs besides those of plans: `program/...`."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
-from carp_spec import Rule
+from carp_spec import RobotId, Rule
 from carp_spec.rule import DESIGN, Code, rule
 
 LEAST_ANSWERED = 90
@@ -134,6 +135,23 @@ def tries_enough(tried: int, gave_up: int) -> bool:
     return 100 * tried >= LEAST_TRIED * (tried + gave_up)
 
 
+@rule("program/ready", "An executor lets only robots enter that are ready to go on, each of them once.", DESIGN)
+def are_ready(entering: Sequence[RobotId], ready: Sequence[RobotId]) -> bool:
+    """Whether these robots may be named."""
+    return set(entering) <= set(ready) and len(set(entering)) == len(entering)
+
+
+@rule(
+    "program/arrives",
+    "An executor lets each robot arrive: until all have, some robot enters a visit within as many ticks as the plans "
+    "and all delays take together, in which all arrive in the planned order.",
+    DESIGN,
+)
+def all_arrive(standing: Sequence[RobotId]) -> bool:
+    """Whether no robot stands for ever."""
+    return not standing
+
+
 PROGRAM_RULES: tuple[Rule[..., Any] | Code, ...] = (
     is_alive,
     IN_TIME,
@@ -145,4 +163,6 @@ PROGRAM_RULES: tuple[Rule[..., Any] | Code, ...] = (
     is_lower,
     answers_enough,
     tries_enough,
+    are_ready,
+    all_arrive,
 )

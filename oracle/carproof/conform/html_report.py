@@ -60,7 +60,7 @@ def _asked(report: Report, origin: Origin) -> Mapping[str, str]:
     options = report.options
     unasked = Counter(outcome.skipped for outcome in report.outcomes if not outcome.asked)
     return {
-        "level": f"{options.level.label}: {options.level.statement}",
+        "level": f"{options.level.label}: {options.statement}",
         "tested": f"{report.tested} answers to {', '.join(options.ops)}",
         "left out": ", ".join(options.claims.left_out) or "nothing",
         "not asked": "; ".join(f"{count} cases: {why}" for why, count in unasked.items()),

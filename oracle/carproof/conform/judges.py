@@ -18,8 +18,10 @@ from carp_spec import (
 from carp_spec.bounds import BoundDocument
 from carp_spec.documents import VerdictDocument, verdict_document
 from carp_spec.polish_rules import is_kept
+from carp_spec.traces import Trace
 from carproof.conform.answers import Answer
 from carproof.conform.cases import POLISH_ROUNDS, Case
+from carproof.conform.driving import execution_findings
 from carproof.conform.findings import Finding, wrong
 from carproof.conform.levels import Level
 from carproof.conform.optimum import bound_findings, complete_findings, optimum_findings, plan_cost_findings
@@ -44,6 +46,8 @@ def _findings(case: Case, answer: Answer, level: Level) -> Iterator[Finding]:
             yield from optimum_findings(case.instance, answer, level)
         case BoundDocument():
             yield from bound_findings(case.instance, answer)
+        case Trace():
+            yield from execution_findings(case, answer, level)
         case Solution() if case.op == "add":
             yield from _add_findings(case, answer, level)
         case Solution() if case.op == "polish":

@@ -46,6 +46,11 @@ WHOLE_LEVELS = tuple(level for level in Level if level != Level.EXACT)
 """The levels of planners of whole instances, which choose planner and order themselves."""
 CLASSICAL_LEVELS = (Level.SOUND, Level.COMPLETE, Level.OPTIMAL)
 """The levels of planners whose answers do not tell in which order the plans were made."""
+EXECUTOR_LEVELS: Mapping[Level, str] = {
+    Level.SOUND: "robots do not collide, and all arrive",
+    Level.EXACT: "robots do not collide, all arrive, and each resource is entered in the planned order",
+}
+"""The levels of executors, and what they claim."""
 JUDGED_OPS: Mapping[Level, tuple[str, ...]] = {
     Level.SOUND: ("check", "query", "plan", "add", "polish", "bound"),
     Level.COMPLETE_IN_CONTEXT: ("query", "plan", "add"),

@@ -49,16 +49,20 @@ class Program:
 
     def ask(self, case: Case, seconds: float | None = None) -> Reply:
         """Ask the process, a new one if the last is gone."""
+        reply: Reply = self.answer(case.op, request_fields(case), seconds)
+        return reply
+
+    def answer(self, op: str, fields: dict[str, Any], seconds: float | None = None) -> Any:  # noqa: ANN401 - of the op
+        """The result of a request, or `Skipped`; from a new process if the last is gone."""
         if self._child is None:
             self.start()
-        result = self._request(case.op, request_fields(case), seconds or self._limits.seconds)
+        result = self._request(op, fields, seconds or self._limits.seconds)
         if isinstance(result, Skipped):
             return result
         try:
-            reply: Reply = read_result(case.op, result)
+            return read_result(op, result)
         except Fault as fault:
             raise self._broken(fault) from fault
-        return reply
 
     def _request(self, op: str, fields: dict[str, Any], seconds: float) -> msgspec.Raw | Skipped:
         """Send a request; a program that breaks the protocol is started again before the next one."""

@@ -2,9 +2,12 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import TypeAlias
 
+from hypothesis import assume
 from hypothesis import strategies as st
 
+from carp_reference.execution import order_of, stuck
 from carp_spec import (
     AfterGoal,
     Carp,
@@ -22,13 +25,16 @@ from carp_spec import (
     Solution,
     TimeExpanded,
 )
-from carproof.conform.cases import Case
+from carproof.conform.cases import EXECUTION, Case
 from carproof.conform.claims import EVERYTHING, Claims
 from carproof.conform.levels import Level
+from carproof.engines import engine_named
 from carproof.strategies import Sizes, broken_solutions, committed_plans, fleets_under_way, instances, solutions
 
 SIZES = Sizes(resources=6, robots=4)
 OPTIMUM_SIZES = Sizes(resources=5, robots=3, duration=2, release=2)
+LONGEST_DELAY = 3
+MOST_DELAYS = 4
 EXACT_PLANNERS: tuple[Planner, ...] = (
     Carp(),
     Shuffled(attempts=3),
@@ -44,7 +50,8 @@ EXACT_PLANNERS: tuple[Planner, ...] = (
 ADDING = tuple(planner for planner in EXACT_PLANNERS if isinstance(planner, Neighbourhood))
 
 
-SHAPES: tuple[tuple[tuple[int, int], ...], ...] = (
+Edges: TypeAlias = tuple[tuple[int, int], ...]
+SHAPES: tuple[Edges, ...] = (
     ((0, 1), (1, 2)),
     ((0, 1), (1, 2), (2, 3)),
     ((0, 1), (1, 2), (2, 0)),
@@ -55,9 +62,13 @@ SHAPES: tuple[tuple[tuple[int, int], ...], ...] = (
 """Edges of small maps: two rows of cells, a triangle, a row with a place to pass, a ring, a grid."""
 
 
+CORRIDOR: Edges = ((0, 4), (1, 5), (2, 4), (3, 5), (4, 5))
+"""A corridor from 4 to 5; two places are at each end."""
+
+
 @st.composite
-def _shaped_graphs(draw: st.DrawFn, sizes: Sizes) -> ResourceGraph:
-    edges = draw(st.sampled_from(SHAPES))
+def _shaped_graphs(draw: st.DrawFn, sizes: Sizes, shapes: Sequence[Edges] = SHAPES) -> ResourceGraph:
+    edges = draw(st.sampled_from(shapes))
     count = 1 + max(max(edge) for edge in edges)
     numbers = st.tuples(st.sampled_from([1, 1, 1, sizes.capacity]), st.integers(1, sizes.duration))
     attributes = draw(st.lists(numbers, min_size=count, max_size=count))
@@ -74,6 +85,18 @@ def _busy_instances(draw: st.DrawFn, sizes: Sizes) -> Instance:
     goals = draw(st.lists(st.sampled_from(list(graph.index)), min_size=count, max_size=count))
     requests = st.tuples(st.integers(0, sizes.release), st.integers(1, sizes.pace))
     robots = tuple(Robot(id, starts[id], goals[id], *draw(requests)) for id in range(count))
+    policies: list[AfterGoal] = ["vanish", "park"]
+    return Instance(graph, robots, draw(st.sampled_from(policies)))
+
+
+@st.composite
+def _swaps(draw: st.DrawFn, sizes: Sizes) -> Instance:
+    """Two or three robots at the ends of a corridor, each going to where the next one starts."""
+    graph = draw(_shaped_graphs(sizes, (CORRIDOR,)))
+    starts = draw(st.permutations(range(4)))[: draw(st.integers(2, 3))]
+    releases = draw(st.lists(st.integers(0, sizes.release), min_size=len(starts), max_size=len(starts)))
+    ways = zip(starts, [*starts[1:], starts[0]], releases, strict=True)
+    robots = tuple(Robot(id, *way) for id, way in enumerate(ways))
     policies: list[AfterGoal] = ["vanish", "park"]
     return Instance(graph, robots, draw(st.sampled_from(policies)))
 
@@ -125,6 +148,24 @@ def _checks(draw: st.DrawFn, sizes: Sizes) -> Case:
         return Case("random", "check", "check", broken.instance, broken.solution)
     instance = draw(_instances(sizes))
     return Case("random", "check", "check", instance, draw(solutions(instance, sizes)))
+
+
+@st.composite
+def _executions(draw: st.DrawFn, sizes: Sizes) -> Case:
+    """Plans by CARP whose dependency graph has no cycle, and visits that take longer than planned."""
+    instance = draw(st.one_of(_instances(sizes, least_robots=1), _swaps(sizes), _swaps(sizes)))
+    solution = engine_named("reference").plan(instance, Carp())
+    visits = [(plan.robot, place) for plan in solution.plans for place in range(len(plan.visits))]
+    assume(visits and not stuck(order_of(instance, solution)))
+    count = min(draw(st.integers(0, MOST_DELAYS)), len(visits))
+    late = draw(st.lists(st.sampled_from(visits), min_size=count, max_size=count, unique=True))
+    delays = tuple((*node, draw(st.integers(1, LONGEST_DELAY))) for node in late)
+    return Case("random", EXECUTION, EXECUTION, instance, solution, delays=delays)
+
+
+def execution_cases(claims: Claims = EVERYTHING) -> st.SearchStrategy[Case]:
+    """Executions for a program to drive."""
+    return _executions(_claimed(SIZES, claims))
 
 
 def _claimed(sizes: Sizes, claims: Claims) -> Sizes:

@@ -4,12 +4,12 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
-from carproof.conform.cases import Case
+from carproof.conform.cases import EXECUTION, Case
 from carproof.conform.claims import EVERYTHING, Claims
 from carproof.conform.deciding import Tally, random_shortfalls, smoke_shortfalls
 from carproof.conform.effort import Effort
 from carproof.conform.findings import Category, Fault, Finding
-from carproof.conform.levels import JUDGED_OPS, Level
+from carproof.conform.levels import EXECUTOR_LEVELS, JUDGED_OPS, Level
 from carproof.conform.outcome import Outcome, ask
 from carproof.conform.shrinking import SHRINK_SECONDS, FailureSearch
 from carproof.conform.smoke import smoke_cases
@@ -27,7 +27,7 @@ class Options:
 
     `whole`: only whole instances, each planned by the program's own planner. `classical`: also, random instances are
     classical multi-agent path finding. `claims`: the features that it can be asked. `kernel`: the name and version of
-    the proved kernel, if it decides.
+    the proved kernel, if it decides. `executor`: it is to execute plans, not to make them.
     """
 
     level: Level = Level.SOUND
@@ -39,6 +39,12 @@ class Options:
     classical: bool = False
     claims: Claims = EVERYTHING
     kernel: str | None = None
+    executor: bool = False
+
+    @property
+    def statement(self) -> str:
+        """The claim that is judged."""
+        return EXECUTOR_LEVELS[self.level] if self.executor else self.level.statement
 
     @property
     def by(self) -> str:
@@ -48,6 +54,8 @@ class Options:
     @property
     def ops(self) -> tuple[str, ...]:
         """The ops by which the level is shown."""
+        if self.executor:
+            return (EXECUTION,)
         return ("plan",) if self.whole else JUDGED_OPS[self.level]
 
 
@@ -211,11 +219,13 @@ def _ask_fixed(subject: Subject, report: Report, cases: Iterable[Case], advance:
 def _ask_random(subject: Subject, report: Report, advance: Callable[[], None]) -> None:
     """Ask as many of each op."""
     from carproof.conform.classical_cases import classical_cases  # noqa: PLC0415 - loads hypothesis
-    from carproof.conform.random_cases import random_cases  # noqa: PLC0415 - loads hypothesis
+    from carproof.conform.random_cases import execution_cases, random_cases  # noqa: PLC0415 - loads hypothesis
 
     options = report.options
     ours = random_cases(subject.ops, options.level, options.whole, options.claims)
     by_op = {"plan": classical_cases()} if options.classical else ours
+    if options.executor:
+        by_op = {EXECUTION: execution_cases(options.claims)}
 
     def ask_one(case: Case, seconds: float | None) -> Outcome:
         outcome = ask(subject, case, options.level, seconds, options.kernel is not None)

@@ -10,7 +10,7 @@ import msgspec
 
 from carp_spec import Refusal
 from carp_spec.vectors import VectorsDocument
-from carproof.conform.cases import ASKED_OPS, Case
+from carproof.conform.cases import ASKED_OPS, EXECUTION, Case
 from carproof.conform.outcome import Outcome
 from carproof.conform.saving import FILES, Origin, save
 from carproof.conform.vector_cases import case_of
@@ -58,7 +58,7 @@ def read_saved(folder: Path, judged: str, whole: bool) -> Saved:
 def _read_case(folder: Path, name: str) -> Case:
     """A saved case; raises `OSError`, `ValueError` or `Refusal` if it cannot be read."""
     (vector,) = msgspec.json.decode((folder / "vector.json").read_bytes(), type=VectorsDocument).cases
-    (op,) = (each for each in ASKED_OPS if each == vector.op)
+    (op,) = (each for each in (*ASKED_OPS, EXECUTION) if each == vector.op)
     return replace(case_of(vector, op), stage="saved", name=name)
 
 

@@ -11,6 +11,7 @@ import msgspec
 
 from carp_spec import Refusal, Solution, check, write_instance, write_solution
 from carp_spec.documents import instance_document, solution_of
+from carp_spec.traces import Trace
 from carp_spec.vectors import vectors
 from carproof.conform.advice import advice_for
 from carproof.conform.answers import Answer
@@ -114,6 +115,10 @@ def judged_solution(outcome: Outcome) -> Solution:
         return answer
     if isinstance(answer, OptimumDocument) and answer.solution is not None:
         return solution_of(answer.solution)
+    if isinstance(answer, Trace):
+        entered = tuple(plan for plan in answer.plans if plan.visits)
+        missing = tuple(plan.robot for plan in answer.plans if not plan.visits)
+        return Solution(entered, tuple(plan.robot for plan in entered), (*missing, *given.unplanned))
     robot = outcome.case.robot
     plan = answer.plan_of(robot) if isinstance(answer, QueryDocument) and robot is not None else None
     if plan is not None:

@@ -37,6 +37,7 @@ def case_of(vector: Vector, op: str) -> Case:
     """The question of a vector; raises `Refusal` if it is none."""
     request = Request(write({"id": vector.id, **vector.request}))
     asked = OPS[request.op()].read(request)
-    fields = {name: getattr(asked, name) for name in ("solution", "robot", "now", "planner") if hasattr(asked, name)}
+    names = ("solution", "robot", "now", "planner", "delays")
+    fields = {name: getattr(asked, name) for name in names if hasattr(asked, name)}
     options = {"planner": asked.options} if op == "add" else {}
     return Case("vectors", vector.id, op, asked.instance, **fields, **options)

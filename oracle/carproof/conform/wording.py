@@ -7,7 +7,7 @@ from carproof.conform.run import Report
 def verdict(report: Report) -> str:
     """The verdict, with the answers that decided it."""
     level = report.options.level
-    tested = f"{report.program}, level {level.label} ({level.statement}), tested on {report.tested} answers"
+    tested = f"{report.program}, level {level.label} ({report.options.statement}), tested on {report.tested} answers"
     if report.conforms:
         return f"CONFORMS: {tested}; {_answered(report)}"
     if report.conforms is None:

@@ -14,7 +14,7 @@ import msgspec
 from carp_spec import Refusal
 from carp_verify.kernel import UndecidedError, is_answer
 from carproof.engines import Engine
-from carproof.ops.executing import check_trace, dependencies, execute, give_way, retime, untangle
+from carproof.ops.executing import check_trace, dependencies, drive, execute, give_way, retime, untangle
 from carproof.ops.judging import audit, check, verify_bound, verify_query
 from carproof.ops.op import Op, op_of
 from carproof.ops.planning import add, plan, polish, query
@@ -76,6 +76,7 @@ _HANDLERS: tuple[Callable[[Any, Engine], object], ...] = (
     check_trace,
     dependencies,
     execute,
+    drive,
     retime,
     untangle,
     give_way,

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import msgspec
 
-from carp_reference.execution import Delay, late_robots, order_of
+from carp_reference.execution import Delay, late_robots, may_enter, order_of
 from carp_spec import Instance, Refusal, ResourceId, RobotId, Solution, Verdict, Visit, total_cost
 from carp_spec.documents import SolutionDocument, VerdictDocument, solution_document, verdict_document
-from carp_spec.execution_rules import trace_violations
+from carp_spec.execution_rules import require_followed, trace_violations
 from carp_spec.traces import Trace, TraceDocument, trace_document
 from carproof.engines import Engine
 from carproof.executing import DependenciesDocument, Driver, delays_are_right, dependencies_document
@@ -167,6 +167,36 @@ def give_way(request: GiveWayRequest, engine: Engine) -> GivenWayDocument:
         tuple(found.extra.items()),
         found.stuck,
     )
+
+
+@dataclass(frozen=True, slots=True)
+class DriveRequest:
+    """A solution, the trace of what has happened by the tick now, and the robots that can go on then.
+
+    A robot that is `ready` has been released, or has stayed in its last visit for the duration and its delay.
+    """
+
+    instance: Instance
+    solution: Solution
+    trace: Trace
+    ready: tuple[RobotId, ...]
+
+
+class DriveDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The robots among those ready that enter their next visit at the tick `now` of the trace."""
+
+    enter: tuple[RobotId, ...]
+
+
+def drive(request: DriveRequest, engine: Engine) -> DriveDocument:
+    """Let robots enter their next visits, in the planned order at each resource."""
+    del engine
+    sound = sound_within(request.instance, request.solution)
+    with inside("$.trace"):
+        require_followed(request.instance, sound, request.trace)
+    for robot in request.ready:
+        require_robot(request.instance, robot, "$.ready")
+    return DriveDocument(may_enter(order_of(request.instance, sound), request.trace, request.ready))
 
 
 def _delays(solution: Solution, delays: tuple[tuple[RobotId, int, int], ...]) -> tuple[Delay, ...]:

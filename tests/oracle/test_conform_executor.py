@@ -1,0 +1,169 @@
+"""Executors: programs that let late robots go on, tick by tick, and their faults."""
+
+import json
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import pytest
+from hypothesis import given, settings
+from tests.oracle import executors
+from tests.oracle.running import Run
+from tests.profiles import draws
+
+from carp_reference.execution import Delay, executed, in_order, order_of
+from carp_spec.traces import Trace
+from carproof.conform.cases import EXECUTION, Case
+from carproof.conform.child import Limits
+from carproof.conform.driving import execution, execution_findings
+from carproof.conform.executor import Executor
+from carproof.conform.findings import Fault
+from carproof.conform.levels import Level
+from carproof.conform.program import Program
+from carproof.conform.random_cases import execution_cases
+from carproof.conform.run import Options, Report, conform
+from carproof.conform.saved import read_saved, save_all
+from carproof.conform.saving import Origin
+from carproof.conform.smoke import FIRST, committed, row
+from carproof.engines import engine_named
+from carproof.ops.executing import DriveDocument, DriveRequest, drive
+
+SERVE = [sys.executable, "-m", "carproof", "serve", "--engine", "reference"]
+ALONE = Case("random", EXECUTION, EXECUTION, row([FIRST]), committed(row([FIRST]), first=[("a", 0, 1), ("b", 1, 2)]))
+WAITING = (("first", 0, 2),)
+
+
+def way(how: str) -> list[str]:
+    return [sys.executable, executors.__file__, how]
+
+
+class Called(Program):
+    """An executor of this process: its answers need no pipes."""
+
+    def __init__(self, how: str) -> None:
+        super().__init__(way(how), Limits())
+        self.may_go = executors.WAYS[how]
+
+    def start(self) -> None:
+        self.ops = ("drive",)
+
+    def answer(self, op: str, fields: dict[str, Any], seconds: float | None = None) -> DriveDocument:
+        del op, seconds
+        request = msgspec.json.decode(msgspec.json.encode(fields))
+        return DriveDocument(tuple(executors.decide(request, self.may_go)))
+
+
+def run(program: Program, level: Level = Level.SOUND, examples: int = 200) -> Report:
+    return conform(Executor(program), Options(level, examples, seed=5, shrink_seconds=60, executor=True))
+
+
+def smallest(report: Report) -> tuple[str, Case]:
+    assert report.smallest is not None
+    assert report.smallest.finding is not None
+    return report.smallest.finding.rule, report.smallest.case
+
+
+@pytest.mark.parametrize("command", [SERVE, way("order")])
+def test_who_keeps_the_planned_order_conforms(command: list[str]) -> None:
+    report = run(Program(command, Limits()), Level.EXACT, 20)
+    assert (report.findings, report.conforms, report.tested) == ([], True, 20)
+
+
+def test_who_enters_as_soon_as_there_is_room_stands_face_to_face() -> None:
+    rule, case = smallest(run(Called("room")))
+    assert rule == "program/arrives"
+    assert (len(case.instance.robots), case.delays) == (2, ())
+
+
+def test_who_keeps_to_the_clock_enters_too_early() -> None:
+    rule, case = smallest(run(Called("clock")))
+    assert rule == "joint/capacity"
+    assert len(case.instance.robots) == 2
+    assert [ticks for _, _, ticks in case.delays] == [1]
+
+
+@settings(max_examples=draws(200))
+@given(execution_cases())
+def test_carproof_drives_as_its_simulation_in_order_does(case: Case) -> None:
+    driven = execution(case, lambda request: drive(request, engine_named("reference")))
+    assert isinstance(driven, Trace)
+    delays = [Delay(*delay) for delay in case.delays]
+    order = order_of(case.instance, case.solution)
+    assert driven == executed(order, in_order(order, delays), delays, driven.now)
+    assert not list(execution_findings(case, driven, Level.EXACT))
+
+
+def test_an_execution_waits_for_delays_and_ends_with_the_last_arrival() -> None:
+    asked: list[int] = []
+
+    def decide(request: DriveRequest) -> DriveDocument:
+        asked.append(request.trace.now)
+        return DriveDocument(request.ready)
+
+    late = replace(ALONE, delays=WAITING)
+    trace = execution(late, decide)
+    assert isinstance(trace, Trace)
+    assert [(visit.enter, visit.leave) for visit in trace.plans[0].visits] == [(0, 3), (3, 4)]
+    assert (trace.now, asked) == (4, [0, 3])
+
+
+def test_who_lets_nobody_go_is_given_up_after_the_ticks_of_plans_and_delays() -> None:
+    trace = execution(ALONE, lambda _: DriveDocument(()))
+    assert isinstance(trace, Trace)
+    assert trace.now == 2
+    (finding,) = execution_findings(ALONE, trace, Level.SOUND)
+    assert finding.rule == "program/arrives"
+    assert finding.message.startswith("robot first stands for ever: nobody has entered for 1 ticks until 2")
+
+
+@pytest.mark.parametrize("named", [("first", "first"), ("second",)])
+def test_only_robots_that_are_ready_may_be_named_each_once(named: tuple[str, ...]) -> None:
+    with pytest.raises(Fault) as caught:
+        execution(ALONE, lambda _: DriveDocument(named))
+    assert caught.value.finding.rule == "program/ready"
+    assert caught.value.finding.message == f"at tick 0 robots ['first'] are ready, and {[*named]} are to enter"
+
+
+def test_a_failing_execution_is_saved_and_asked_again_with_its_delays(tmp_path: Path) -> None:
+    report = run(Called("clock"))
+    save_all(report.failures, tmp_path, Origin("carproof conform"))
+    (again,) = read_saved(tmp_path, "carproof conform", whole=False).cases
+    _, case = smallest(report)
+    assert (again.op, again.instance, again.solution, again.delays) == (
+        EXECUTION,
+        case.instance,
+        case.solution,
+        case.delays,
+    )
+    saved = json.loads((tmp_path / "vector.json").read_bytes())
+    assert saved["cases"][0]["claim"]["format"] == "carproof-trace/1"
+
+
+@pytest.mark.usefixtures("elsewhere")
+def test_the_verdict_names_the_claim_of_an_executor(process: Run) -> None:
+    outcome = process("conform", "--executor", "--examples", "10", "--", *SERVE)
+    assert outcome.code == 0, outcome
+    assert "level sound (robots do not collide, and all arrive), tested on 10 answers" in outcome.stdout
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--level", "complete"], "Of an executor --level must be one of sound, exact."),
+        (["--one-shot"], "--executor can be combined with neither --one-shot nor --kernel."),
+        (["--kernel"], "--executor can be combined with neither --one-shot nor --kernel."),
+    ],
+)
+def test_questions_that_no_executor_can_be_asked_are_bad_usage(carproof: Run, options: list[str], message: str) -> None:
+    outcome = carproof("conform", "--executor", *options, "--", sys.executable)
+    assert outcome.code == 2
+    assert message in outcome.stderr
+
+
+def test_an_executor_must_offer_to_drive(tmp_path: Path) -> None:
+    planner = tmp_path / "planner.py"
+    planner.write_text(Path(executors.__file__).read_text().replace('["drive"]', '["plan"]'))
+    (fault,) = run(Program([sys.executable, str(planner), "order"], Limits()), examples=0).faults
+    assert (fault.rule, fault.message) == ("program/answers", "the answer to start of an executor must name drive")
