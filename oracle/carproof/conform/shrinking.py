@@ -38,17 +38,14 @@ class FailureSearch:
 
     def run(self, cases: "SearchStrategy[Case]", examples: int, seed: int) -> None:
         """Draw at most `examples` cases."""
-        from hypothesis import HealthCheck, Phase, find, settings  # noqa: PLC0415 - loaded only where used
+        from hypothesis import Phase, find, settings  # noqa: PLC0415 - loaded only where used
         from hypothesis.errors import NoSuchExample, Unsatisfiable  # noqa: PLC0415
 
         limits = settings(
             max_examples=examples,
             deadline=None,
             database=None,
-            derandomize=False,
-            report_multiple_bugs=False,
             phases=(Phase.generate, Phase.shrink),
-            suppress_health_check=list(HealthCheck),
         )
         try:
             find(cases, self._is_failure, settings=limits, random=Random(seed))  # noqa: S311 - cases, no secrets
