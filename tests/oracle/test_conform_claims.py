@@ -93,7 +93,7 @@ def test_the_verdict_lists_what_was_left_out(carproof: Run, tmp_path: Path, monk
 
 
 PLAIN = Instance(ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),)), (Robot("new", "a", "b"),))
-MANY = replace(PLAIN, robots=(Robot("first", "b", "b", 2, 2), *PLAIN.robots))
+MANY = replace(PLAIN, robots=(Robot("first", "b", "b", pace=2, release=1), *PLAIN.robots))
 ISLANDS = replace(PLAIN, graph=ResourceGraph(PLAIN.graph.resources, ()))
 BLOCKED, ASIDE = row([FIRST, WEST]), passing_place([FIRST, Robot("new", "b", "p")])
 ONE_BY_ONE = passing_place([Robot("first", "a", "c"), Robot("new", "c", "a")], "park")

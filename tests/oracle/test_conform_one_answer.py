@@ -82,6 +82,7 @@ QUERY = case("query", ALONE)
 QUERY_EXCHANGE = case("query", HEAD_ON, first=FIRST_GOES)
 QUERY_UNDER_WAY = case("query", ALONE, 2, new=FIRST_GOES)
 QUERY_STANDING = case("query", STANDING, 2, other=[("b", 0, 1)])
+QUERY_AMONG_OTHERS = case("query", AMONG_OTHERS, zed=FIRST_GOES)
 OTHER_PLAN = plan("new", ("a", 0, 1), ("c", 1, 2), ("d", 2, 3))
 OTHER_WAY = query_document(OTHER_PLAN)
 QUERIES: Sequence[Row] = (
@@ -95,11 +96,8 @@ QUERIES: Sequence[Row] = (
     (QUERY_EXCHANGE, goes(*WESTWARDS), {Level.SOUND: "joint/exchange"}),
     (case("query", BEHIND, first=FIRST_GOES), goes(("b", 0, 2), *BEHIND_GOES[1:]), {Level.SOUND: "plan/contiguous"}),
     (case("query", BLOCKED, first=FIRST_GOES), QueryDocument(None), {}),
-    (
-        case("query", AMONG_OTHERS, zed=FIRST_GOES),
-        goes(("b", 1, 2), ("c", 2, 3), ("d", 3, 4)),
-        {Level.SOUND: "joint/capacity"},
-    ),
+    (QUERY_AMONG_OTHERS, QueryDocument(None), {}),
+    (QUERY_AMONG_OTHERS, goes(("b", 1, 2), ("c", 2, 3), ("d", 3, 4)), {Level.SOUND: "joint/capacity"}),
     (QUERY_UNDER_WAY, goes(*FIRST_GOES), {}),
     (QUERY_UNDER_WAY, query_document(later(plan("new", *FIRST_GOES))), {Level.SOUND: "fleet/history"}),
     (QUERY_STANDING, right(QUERY_STANDING), {}),
@@ -345,10 +343,12 @@ def test_where_carproof_is_undecided_nothing_is_called_wrong_nor_counted(monkeyp
 
 
 def test_an_optimum_that_is_not_proved_counts_as_no_answer() -> None:
-    assert why_undecided(OPTIMUM, UNDECIDED, Level.OPTIMAL) == "it leaves the optimum undecided"
-    assert why_undecided(OPTIMUM, claimed(9, 7, proved=False, solution=CARP), Level.OPTIMAL) is not None
+    for level in (Level.OPTIMAL, Level.EXACT):
+        for answer in (UNDECIDED, claimed(9, 7, proved=False, solution=CARP)):
+            assert why_undecided(OPTIMUM, answer, level) == "it leaves the optimum undecided"
     assert why_undecided(OPTIMUM, BEST, Level.OPTIMAL) is None
     assert why_undecided(OPTIMUM, UNDECIDED, Level.COMPLETE) == "it leaves the optimum undecided"
+    assert why_undecided(OPTIMUM, UNDECIDED, Level.CONTEXT_OPTIMAL) is None
     assert why_undecided(OPTIMUM, claimed(9, 7, proved=False, solution=CARP), Level.COMPLETE) is None
     assert why_undecided(case("optimum", BEHIND), claimed(3, 3, proved=False, solution=ONE_OF_TWO), Level.COMPLETE)
     assert why_undecided(case("optimum", BLOCKED), NONE, Level.OPTIMAL) is None

@@ -15,6 +15,7 @@ from carproof.conform.claims import Claims
 from carproof.conform.deciding import Tally, random_shortfalls, smoke_shortfalls
 from carproof.conform.effort import Effort
 from carproof.conform.findings import (
+    PROGRAM_RULES,
     Category,
     Fault,
     Finding,
@@ -164,6 +165,25 @@ def test_counts_decide_whether_a_program_conforms(outcomes: Sequence[Outcome], c
     assert made.reaches_level == (conforms is True or bool(made.findings))
 
 
+def test_answers_to_the_ops_of_the_level_are_counted() -> None:
+    outcomes = (tried(), tried("smoke", "plan"), failed("vectors"), tried(op="bound"), skipped(), not_asked())
+    assert report(Level.CONTEXT_OPTIMAL, *outcomes).tested == 3
+
+
+@pytest.mark.parametrize(
+    ("level", "ops"),
+    [
+        (Level.COMPLETE_IN_CONTEXT, "query or plan or add"),
+        (Level.COMPLETE, "optimum (level complete-in-context: query or plan or add)"),
+        (Level.OPTIMAL, "optimum"),
+    ],
+)
+def test_where_no_op_of_the_level_is_offered_they_are_named(level: Level, ops: str) -> None:
+    (shortfall,) = report(level, tried(op="check")).shortfalls
+    expected = f"it offers nothing that shows the level {level.label}: its answer to start must name {ops}"
+    assert shortfall == expected
+
+
 def test_an_interruption_leaves_undecided_what_is_not_wrong() -> None:
     for outcomes, conforms in (((tried(),), None), ((skipped("smoke"),), None), ((failed("smoke"),), False)):
         made = report(Level.SOUND, *outcomes)
@@ -206,6 +226,20 @@ def test_of_failures_of_one_rule_the_smallest_is_shown_and_counted_once() -> Non
     assert made.processes_lost == 1
 
 
+def test_findings_of_one_category_and_rule_are_of_one_fault() -> None:
+    assert [str(category) for category in Category] == ["wrong answer", "crash", "timeout", "protocol error"]
+    jumps = wrong("plan/move", "it jumps")
+    assert jumps.key == wrong("plan/move", "it flies").key
+    assert jumps.key != wrong("plan/goal", "it jumps").key
+    assert jumps.key != replace(jumps, category=Category.CRASH).key
+
+
+def test_rules_of_programs_have_ids_and_state_their_shares() -> None:
+    assert [each.id.partition("/")[0] for each in PROGRAM_RULES] == ["program"] * len(PROGRAM_RULES)
+    assert "at least 90 in 100" in answers_enough.statement
+    assert "at most 50 in 100" in tries_enough.statement
+
+
 def test_each_rule_of_programs_is_kept_and_broken_where_it_says() -> None:
     assert [is_alive(code) for code in (None, 0, 1, -9)] == [True, True, False, False]
     assert [is_response({"id", name}) for name in ("result", "skipped", "error", "more")] == [True, True, True, False]
@@ -220,12 +254,14 @@ def test_each_rule_of_programs_is_kept_and_broken_where_it_says() -> None:
     assert [is_lower(*bounds) for bounds in ((3, 3), (2, 3), (4, 3), (4, None), (1, 0))] == (
         [True, True, False, True, False]
     )
-    assert [answers_enough(answered, 100) for answered in (89, 90, 91)] == [False, True, True]
-    assert [tries_enough(*counts) for counts in ((0, 0), (50, 50), (49, 51), (51, 49))] == [True, True, False, True]
+    assert [answers_enough(answered, 1000) for answered in (899, 900, 901)] == [False, True, True]
+    assert [tries_enough(*counts) for counts in ((0, 0), (500, 500), (499, 501), (501, 499))] == (
+        [True, True, False, True]
+    )
 
 
 def test_smoke_cases_are_tallied_alone() -> None:
-    made = report(Level.SOUND, tried("smoke"), skipped("smoke"), tried("vectors"), tried())
+    made = report(Level.SOUND, tried("smoke"), skipped("smoke"), tried("saved"), tried("vectors"), tried())
     assert str(made.smoke) == "1 of 2"
 
 
