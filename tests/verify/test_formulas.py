@@ -13,7 +13,20 @@ from carp_verify.derivation import Way, derived
 from carp_verify.engine import examine
 from carp_verify.lemmas import lemma_named
 from carp_verify.lemmas.reserving_splits_a_window import held_by_parts
-from carp_verify.smt import Answer, Bool, Int, find_model, integer, integers, negation, value_of
+from carp_verify.smt import (
+    Answer,
+    Bool,
+    Int,
+    at_least,
+    counted,
+    find_model,
+    greater,
+    integer,
+    integers,
+    negation,
+    truth,
+    value_of,
+)
 from carp_verify.vocabulary import has_ended, holds, interval, is_interval, replaces_best, stay_fits
 
 TICKS = range(5)
@@ -93,13 +106,13 @@ def test_a_term_is_derived_from_whatever_python_does_with_whole_numbers() -> Non
         a, b = way.number(integer("a")), way.number(integer("b"))
         low, high = min(a, b), max(a, b)
         steps = sum(low + step < high for step in range(3))
-        return bool(high - low) and 1 - low != b and steps != 2 and (2 + a - b > 0 or a >= 3)
+        return bool(a - b) and 1 - low != b and steps != 2 and (2 + a - b > 3 or a >= 3)
 
     term = derived(odd_steps)
     for a, b in product(range(-2, 5), repeat=2):
         low, high = min(a, b), max(a, b)
         steps = sum(low + step < high for step in range(3))
-        expected = a != b and 1 - low != b and steps != 2 and (2 + a - b > 0 or a >= 3)
+        expected = a != b and 1 - low != b and steps != 2 and (2 + a - b > 3 or a >= 3)
         assert evaluate(term, {"a": a, "b": b}) == expected
 
 
@@ -112,6 +125,27 @@ def test_a_function_of_one_answer_is_derived_too() -> None:
 def test_a_use_of_a_number_that_is_not_known_is_no_term(use: str) -> None:
     with pytest.raises(TypeError):
         derived(lambda way: eval(use, {"number": way.number(integer("number"))}))  # noqa: S307 - our own source
+
+
+def test_a_term_with_an_unknown_left_has_no_value() -> None:
+    with pytest.raises(ValueError, match="b is no known value"):
+        value_of(integer("b"), {"a": 1})
+
+
+def test_a_model_has_a_value_for_what_no_formula_is_about() -> None:
+    model = find_model([truth("a")])
+    assert model is not None
+    assert isinstance(model.value(integer("b")), int)
+
+
+def test_terms_count_and_compare() -> None:
+    assert [evaluate(counted(truth("a")), {"a": holds}) for holds in (False, True)] == [0, 1]
+    for a, b in product(range(3), repeat=2):
+        assert evaluate(greater(integer("a"), integer("b")), {"a": a, "b": b}) == max(a, b)
+    for values in product((False, True), repeat=3):
+        for count in range(1, 5):
+            term = at_least(count, [truth(name) for name in "abc"])
+            assert evaluate(term, dict(zip("abc", values, strict=True))) == (sum(values) >= count)
 
 
 def outside(start: int, end: int | None) -> list[Occupation]:
