@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from itertools import product
 
 from carp_experiments.adding_time import PAPERS_MAP, time_report, time_row
+from carp_experiments.left_out import left_out_report, left_out_row
 from carp_experiments.map_cases import FULL_MAP, MapCase
 from carp_experiments.polishing import polish_report, polish_row
 from carp_experiments.quality import quality_row
@@ -126,5 +127,13 @@ EXPERIMENTS = (
         Profile(5, 60, (0, 5)),
         unplanned_row,
         lambda rows, _: unplanned_report(rows),
+    ),
+    Experiment(
+        "left-out",
+        "Robots that carproof plan leaves out, before and after its repair.",
+        Profile(100, 100, ALL_MAPS),
+        Profile(5, 60, SOME_MAPS),
+        left_out_row,
+        lambda rows, _: left_out_report(rows),
     ),
 )

@@ -24,6 +24,8 @@ STATES = 200
 """The search for plans of one group ends after this number of states."""
 ALL_STATES = 300
 """The search for all groups of a solution ends after this number of states."""
+FEW = 4
+"""At most this many robots left out are planned in groups: groups of more take longer than other orders."""
 ATTEMPTS = 4
 ROUNDS = 200
 PASSES = 100
@@ -34,9 +36,9 @@ Avoided: TypeAlias = tuple[RobotId, Plan]
 def repair(instance: Instance, solution: Solution) -> Solution:
     """Plan the robots of a solution that have a path but no plan, as far as possible; plans of others may change.
 
-    An attempt plays rounds of `polish/...` and plans groups jointly. If this leaves a robot out, the next attempt
-    begins with plans in another order. Raises `Refusal` for a solution that breaks a rule, and for numbers that are
-    too large.
+    An attempt plays rounds of `polish/...`, and plans groups jointly if few robots are left out. If some still are, the
+    next attempt begins with plans in another order. Raises `Refusal` for a solution that breaks a rule, and for numbers
+    that are too large.
     """
     fleet = PlannedFleet(instance)
     without_path = {robot for robot in solution.unplanned if fleet.find(fleet.index(robot), None, 0) is None}
@@ -46,7 +48,8 @@ def repair(instance: Instance, solution: Solution) -> Solution:
         if seed > 0:
             solution = plan_failed_first(instance, solution)
         solution = polish(instance, solution, iterations=ROUNDS, seed=seed)
-        solution = repair_jointly(instance, solution)
+        if len(solution.unplanned) <= FEW + len(without_path):
+            solution = repair_jointly(instance, solution)
     return solution
 
 
