@@ -15,7 +15,7 @@ MayGo = Callable[["Situation", Id], bool]
 
 
 class Situation:
-    """What has happened by a tick, and the robots that go on at it."""
+    """The visits that robots have made by a tick, and the robots that go on at it."""
 
     def __init__(self, request: Document) -> None:
         self.instance = request["instance"]

@@ -14,6 +14,7 @@ from tests.oracle.running import Run
 from tests.profiles import draws
 
 from carp_reference.execution import Delay, executed, in_order, order_of
+from carp_spec import Robot
 from carp_spec.traces import Trace
 from carproof.conform.cases import EXECUTION, Case
 from carproof.conform.child import Limits
@@ -26,12 +27,13 @@ from carproof.conform.random_cases import execution_cases
 from carproof.conform.run import Options, Report, conform
 from carproof.conform.saved import read_saved, save_all
 from carproof.conform.saving import Origin
-from carproof.conform.smoke import FIRST, committed, row
+from carproof.conform.smoke import committed, row
 from carproof.engines import engine_named
 from carproof.ops.executing import DriveDocument, DriveRequest, drive
 
 SERVE = [sys.executable, "-m", "carproof", "serve", "--engine", "reference"]
-ALONE = Case("random", EXECUTION, EXECUTION, row([FIRST]), committed(row([FIRST]), first=[("a", 0, 1), ("b", 1, 2)]))
+NEAR = row([Robot("first", "a", "b")])
+ALONE = Case("random", EXECUTION, EXECUTION, NEAR, committed(NEAR, first=[("a", 0, 1), ("b", 1, 2)]))
 WAITING = (("first", 0, 2),)
 
 
