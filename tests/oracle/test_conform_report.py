@@ -19,7 +19,9 @@ from carproof.conform.findings import (
     Category,
     Fault,
     Finding,
+    all_arrive,
     answers_enough,
+    are_ready,
     is_accepted,
     is_alive,
     is_complete,
@@ -29,7 +31,7 @@ from carproof.conform.findings import (
     tries_enough,
     wrong,
 )
-from carproof.conform.levels import CLASSICAL_LEVELS, JUDGED_OPS, LEVELS, WHOLE_LEVELS, Level
+from carproof.conform.levels import CLASSICAL_LEVELS, EXECUTOR_LEVELS, JUDGED_OPS, LEVELS, WHOLE_LEVELS, Level
 from carproof.conform.outcome import Outcome
 from carproof.conform.run import MOST_FAULTS, Options, Report, conform, label
 from carproof.conform.smoke import EAST, row, smoke_cases
@@ -201,6 +203,8 @@ def test_a_level_is_shown_by_its_own_ops_and_by_plan_where_whole_instances_are_a
             made = report(level, tried("smoke", op), tried(op=op))
             assert made.conforms is (op in JUDGED_OPS[level])
     assert Options(Level.OPTIMAL, whole=True).ops == ("plan",)
+    assert Options(executor=True).ops == ("execute",)
+    assert Options(executor=True).statement == EXECUTOR_LEVELS[Level.SOUND] != Options().statement
     assert report(Level.OPTIMAL, tried("smoke", "optimum"), tried(op="check")).conforms is None
 
 
@@ -254,6 +258,10 @@ def test_each_rule_of_programs_is_kept_and_broken_where_it_says() -> None:
     assert [is_lower(*bounds) for bounds in ((3, 3), (2, 3), (4, 3), (4, None), (1, 0))] == (
         [True, True, False, True, False]
     )
+    assert [
+        are_ready(*given) for given in ((["a"], ["a", "b"]), (["a"], ["a"]), (["c"], ["a"]), (["a", "a"], ["a"]))
+    ] == ([True, True, False, False])
+    assert [all_arrive(standing) for standing in ([], ["a"])] == [True, False]
     assert [answers_enough(answered, 1000) for answered in (899, 900, 901)] == [False, True, True]
     assert [tries_enough(*counts) for counts in ((0, 0), (500, 500), (499, 501), (501, 499))] == (
         [True, True, False, True]
