@@ -9,6 +9,7 @@ import click
 from carp_experiments.crosscheck import FULL_QUESTIONS, QUICK_QUESTIONS, crosscheck_cases, crosscheck_report
 from carp_experiments.experiments import EXPERIMENTS, Experiment, Profile
 from carp_experiments.kernel_verdicts import FULL_VERDICTS, QUICK_VERDICTS, kernel_cases, kernel_report
+from carp_experiments.map_cases import WAREHOUSE
 from carp_verify.kernel import program
 from carproof.answer import Answer
 from carproof.extras import require
@@ -86,7 +87,13 @@ def command_of(experiment: Experiment) -> click.Command:
     @click.option("--quick", is_flag=True, help="The quick size.")
     @click.option("--assignments", type=click.IntRange(min=1), help="How many assignments.")
     @click.option("--robots", type=click.IntRange(min=1), help="How many robots.")
-    @click.option("--map", "maps", type=click.IntRange(0, 20), multiple=True, help="Only this map; may be repeated.")
+    @click.option(
+        "--map",
+        "maps",
+        type=click.IntRange(0, WAREHOUSE),
+        multiple=True,
+        help=f"Only this map ({WAREHOUSE}: a warehouse); may be repeated.",
+    )
     @campaign_options
     def run(
         quick: bool,

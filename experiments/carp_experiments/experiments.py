@@ -5,8 +5,11 @@ from dataclasses import dataclass
 from itertools import product
 
 from carp_experiments.adding_time import PAPERS_MAP, time_report, time_row
+from carp_experiments.delayed import execution_report, execution_row
+from carp_experiments.following import following_report, following_row
 from carp_experiments.left_out import left_out_report, left_out_row
-from carp_experiments.map_cases import FULL_MAP, MapCase
+from carp_experiments.map_cases import FULL_MAP, WAREHOUSE, MapCase
+from carp_experiments.people import people_report, people_row
 from carp_experiments.polishing import polish_report, polish_row
 from carp_experiments.quality import quality_row
 from carp_experiments.quality_report import quality_report
@@ -135,5 +138,29 @@ EXPERIMENTS = (
         Profile(5, 60, SOME_MAPS),
         left_out_row,
         lambda rows, _: left_out_report(rows),
+    ),
+    Experiment(
+        "execution",
+        "Late robots on the clock, in order and switching: lateness, arrivals and collisions.",
+        Profile(3, 40, (10, 15, FULL_MAP, WAREHOUSE)),
+        Profile(2, 10, (10, 20)),
+        execution_row,
+        lambda rows, _: execution_report(rows),
+    ),
+    Experiment(
+        "following",
+        "The price of plans without rotations: following forbidden, and rotations removed.",
+        Profile(20, 60, (10, 15, FULL_MAP, WAREHOUSE)),
+        Profile(4, 20, (10, FULL_MAP)),
+        following_row,
+        lambda rows, _: following_report(rows),
+    ),
+    Experiment(
+        "people",
+        "People with priority among robots: how early they arrive, and the cost for the robots.",
+        Profile(20, 100, (FULL_MAP,)),
+        Profile(5, 30, (FULL_MAP,)),
+        people_row,
+        people_report,
     ),
 )

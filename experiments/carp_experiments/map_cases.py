@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 
 ROBOTS = 100
 FULL_MAP = 20
+WAREHOUSE = 21
+"""The number that a warehouse of the generator has beside the paper's maps."""
+STATIONS = 20
 MAP_AXIS = f"map (0: spanning tree, {FULL_MAP}: full grid)"
 SHOWN_MAPS = (0, 5, 10, 15, 20)
 
@@ -50,9 +53,18 @@ class MapCase:
 
 
 def instance_of(case: MapCase) -> Instance:
-    """The paper's grid with the robots; raises `Refusal` where they have no place on it."""
-    from carproof.generate import Fleet, Grid, grid_instance  # noqa: PLC0415 - each worker loads it
+    """The paper's grid or the warehouse with the robots; raises `Refusal` where they have no place on it."""
+    from carproof.generate import (  # noqa: PLC0415 - each worker loads it
+        Fleet,
+        Grid,
+        Warehouse,
+        grid_instance,
+        warehouse_instance,
+    )
 
+    if case.map == WAREHOUSE:
+        fleet = Fleet(robots=case.robots, seed=case.assignment, distinct="starts")
+        return warehouse_instance(Warehouse(stations=STATIONS), fleet)
     return grid_instance(Grid(map=case.map), Fleet(robots=case.robots, seed=case.assignment))
 
 
@@ -70,6 +82,11 @@ def rows_by_map(rows: Iterable[Row], shape: type[R]) -> dict[int, list[R]]:
         stored = msgspec.convert(row, shape)
         by_map[stored.map].append(stored)
     return dict(sorted(by_map.items()))
+
+
+def place_name(map: int) -> str:
+    """The name of a map for people."""
+    return "the warehouse" if map == WAREHOUSE else f"map {map}"
 
 
 def shown_maps(maps: Iterable[int]) -> list[int]:

@@ -25,6 +25,17 @@ TITLES = {
     "related": "Fixed paths and greedy best-first",
     "polish": "The distance to the optimum at the paper's size, and the polish",
     "unplanned": "Robots left unplanned on sparse maps, and why",
+    "execution": "Late robots: drivers compared",
+    "following": "The price of plans without rotations",
+    "people": "People first: the cost for the robots",
+}
+MEANINGS = {
+    "execution": "On the clock late robots collide; in order, and switching, none collides or stands for ever, but "
+    "robots are later.",
+    "following": "Removing rotations costs next to nothing; forbidding following costs much more, and leaves more "
+    "robots unplanned.",
+    "people": "Every person gets the proved first arrival, and the robots that give way lose a few ticks together. A "
+    "robot that becomes a person no longer counts in the cost, so it need not grow with the people.",
 }
 EXPLANATIONS = """\
 Numbers of actions are means over the assignments on which neither of the two fails, so what they are to be compared
@@ -101,6 +112,7 @@ def section(name: str, run: Run) -> str:
     """An experiment: the run, its tables, its figures."""
     made = f"`{run.command}`: {run.size}; {run.cases} cases took {run.processor_seconds} s of processor time."
     note = f"{run.note} Digest: `{run.digest}`.".strip()
+    meaning = f"{MEANINGS[name]}\n\n" if name in MEANINGS else ""
     tables = (RESULTS / f"{name}.md").read_text(encoding="utf-8")
     figures = "".join(f"\n![{path.stem}](figures/{path.name})\n" for path in sorted(RESULTS.glob(f"{name}*.svg")))
-    return f"## {TITLES[name]}\n\n{made}\n{note}\n\n{tables}{figures}"
+    return f"## {TITLES[name]}\n\n{made}\n{note}\n\n{meaning}{tables}{figures}"

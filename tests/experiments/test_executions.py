@@ -1,0 +1,64 @@
+"""Late robots, rotations and people: what the experiments measure and how they sum it up."""
+
+import msgspec
+
+from carp_experiments.delayed import PLANNERS, DriverOf, ExecutionRow, execution_report, execution_row
+from carp_experiments.following import FollowingOf, following_report, following_row
+from carp_experiments.map_cases import FULL_MAP, STATIONS, WAREHOUSE, MapCase, instance_of
+from carp_experiments.people import PeopleOf, PeopleRow, people_report, people_row
+from carp_experiments.store import digest_of
+
+
+def test_late_robots_collide_on_the_clock_alone_and_nobody_stands() -> None:
+    row = MapCase(execution_row, FULL_MAP, 1, 30).run()
+    reported = msgspec.convert(row, ExecutionRow)
+    for driven in reported.planners.values():
+        on_clock, in_order, switching = (driven.drivers[name] for name in ("clock", "order", "switching"))
+        assert on_clock[0].collisions == on_clock[0].late == 0
+        assert on_clock[-1].collisions > 0
+        assert all(each.collisions == each.standing == 0 for each in (*in_order, *switching))
+        assert switching[-1].switches > 0
+        assert switching[-1].late <= in_order[-1].late
+    summary = msgspec.convert(execution_report([row, row]).summary, tuple[DriverOf, ...])
+    assert {each.executions for each in summary} == {2}
+    assert all(each.worst.estimate >= each.late.estimate for each in summary)
+
+
+def test_without_following_there_is_no_rotation_and_plans_cost_more() -> None:
+    row = MapCase(following_row, FULL_MAP, 0, 60).run()
+    summary = msgspec.convert(following_report([row]).summary, tuple[FollowingOf, ...])
+    assert all(each.forbidden.estimate > 0 for each in summary)
+    assert all(each.unplanned[0].estimate < each.unplanned[1].estimate for each in summary)
+    priced = {"unplanned": [0, 1], "totals": [100, 110], "whole": 150, "rotations": 2, "extra": 3, "left": False}
+    rows = [
+        {"map": 7, "planners": {name: {**priced, **other} for name in PLANNERS}}
+        for other in ({}, {"totals": [100, 120], "rotations": 0, "extra": 0})
+    ]
+    (line, _) = following_report(rows).tables[0].rows
+    assert (line[3], line[4][:5], line[5:7]) == ("1.0 ± 0.0", "15.00", ("1/2", "0"))
+    assert line[8].startswith("1.000")
+
+
+def test_people_are_first_and_robots_pay() -> None:
+    row = MapCase(people_row, FULL_MAP, 3, 60).run()
+    assert digest_of(row) == digest_of(MapCase(people_row, FULL_MAP, 3, 60).run())
+    reported = msgspec.convert(row, PeopleRow)
+    assert len(reported.people) == 10
+    assert all(person.proved and person.delay == 0 for person in reported.people)
+    assert any(person.replanned for person in reported.people)
+
+
+def test_people_without_a_new_plan_are_counted_apart() -> None:
+    first = {"delay": 0, "proved": True, "replanned": 4, "stuck": 0, "extra": 6, "pushed": 0}
+    unserved = {"delay": None, "proved": False, "replanned": 0, "stuck": 1, "extra": 6, "pushed": 2}
+    row = {"map": 20, "people": [first, unserved], "measured": [10, 20]}
+    one, two = msgspec.convert(people_report([row], 60).summary, tuple[PeopleOf, ...])
+    assert (one.people, one.first, one.unserved, one.replanned.estimate) == (1, 1, 0, 4)
+    assert (two.people, two.first, two.unserved, two.delay, two.stuck) == (2, 1, 1, 0, 1)
+    assert (two.replanned.estimate, two.extra.estimate, two.pushed.estimate, two.milliseconds.estimate) == (2, 6, 2, 15)
+
+
+def test_the_warehouse_has_the_robots() -> None:
+    instance = instance_of(MapCase(execution_row, WAREHOUSE, 0, 100))
+    assert len(instance.robots) == 100
+    assert len({robot.goal for robot in instance.robots}) == STATIONS
