@@ -24,35 +24,46 @@ _SHOW_CURSOR = "\x1b[?25h"
 def supervised(command: Callable[[], int]) -> int:
     """Run a command in a child process, and return its exit code, or 130 or 143 if it was interrupted.
 
-    It returns in both processes; the child's exit code is what the parent's returns.
+    It returns in both processes; the child's exit code is what the parent's returns. The parent handles no signal: it
+    waits for them, so that none can come between a look and a wait.
     """
-    seen: list[int] = []
-    child = 0
-
-    def interrupt(number: int, _: FrameType | None) -> None:
-        if not seen and child:
-            _send(child, number)
-            signal.setitimer(signal.ITIMER_REAL, GRACE)
-        seen.append(number)
-
-    heeded = [number for number in INTERRUPTIONS if signal.getsignal(number) != signal.SIG_IGN]
-    for number in heeded:
-        signal.signal(number, interrupt)
-    signal.signal(signal.SIGALRM, lambda *_: _send(child, signal.SIGKILL))
+    heeded = {number for number in INTERRUPTIONS if signal.getsignal(number) != signal.SIG_IGN}
+    awaited = {*heeded, signal.SIGCHLD, signal.SIGALRM}
+    signal.signal(signal.SIGCHLD, lambda *_: None)  # a system may drop a signal that is ignored, blocked or not
+    signal.pthread_sigmask(signal.SIG_BLOCK, awaited)
     _control(_SUBREAPER, 1)
     child = os.fork()
     if child == 0:
         _control(_DEATH_SIGNAL, signal.SIGKILL)
-        signal.signal(signal.SIGALRM, signal.SIG_DFL)
+        signal.signal(signal.SIGCHLD, signal.SIG_DFL)
         for number in heeded:
             signal.signal(number, stop_once)
-        return INTERNAL_ERROR if seen else command()
-    if seen:
-        _send(child, signal.SIGKILL)
-    _, status = os.waitpid(child, 0)
-    signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, awaited)
+        return command()
+    status, interruption = _watched(child, awaited)
     _kill_orphans()
-    return _exit_code(status, seen)
+    return _exit_code(status, interruption)
+
+
+def _watched(child: int, awaited: set[signal.Signals]) -> tuple[int, int | None]:
+    """The status with which the child ended, and the first interruption, which was passed on; `None`: there was none.
+
+    A child that has not ended `GRACE` seconds after it is killed.
+    """
+    interruption: int | None = None
+    while True:
+        number = signal.sigwait(awaited)
+        if number == signal.SIGCHLD:
+            ended, status = os.waitpid(child, os.WNOHANG)
+            if ended:
+                signal.setitimer(signal.ITIMER_REAL, 0)
+                return status, interruption
+        elif number == signal.SIGALRM:
+            _send(child, signal.SIGKILL)
+        elif interruption is None:
+            interruption = number
+            _send(child, number)
+            signal.setitimer(signal.ITIMER_REAL, GRACE)
 
 
 def stop_once(_: int, __: FrameType | None) -> None:
@@ -63,10 +74,10 @@ def stop_once(_: int, __: FrameType | None) -> None:
     raise KeyboardInterrupt
 
 
-def _exit_code(status: int, seen: list[int]) -> int:
-    if seen:
+def _exit_code(status: int, interruption: int | None) -> int:
+    if interruption is not None:
         _tell((_SHOW_CURSOR if sys.stderr.isatty() else "") + "Interrupted.\n")
-        return 128 + seen[0]
+        return 128 + interruption
     code = os.waitstatus_to_exitcode(status)
     if code >= 0:
         return code

@@ -137,9 +137,9 @@ import os, signal, sys
 from carproof.supervising import supervised
 
 def stuck():
-    worker = os.fork()
     signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT, signal.SIGTERM])
-    print("ready", flush=True)
+    if os.fork():
+        print("ready", flush=True)
     while True:
         signal.pause()
 
