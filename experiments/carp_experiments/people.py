@@ -102,7 +102,7 @@ def extra_cost(instance: Instance, given: Solution, after: Mapping[RobotId, Plan
 
 @dataclass(frozen=True, slots=True)
 class PeopleOf:
-    """The results on one map after this many people, over the assignments that had so many.
+    """The results on one map after this many people, over the assignments with that number.
 
     `first` of the `people` arrive in no lawful update earlier; `unserved` got no new plan; `delay` is the largest of
     the others. The means of an assignment are: robots replanned for a person, the extra cost of all robots without
