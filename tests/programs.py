@@ -12,6 +12,7 @@ DEBIAN_PACKAGES = {
     "go": "golang-go",
     "coqc": "coq",
     "ocamlfind": "ocaml-findlib",
+    "bash": "bash",
 }
 
 

@@ -12,6 +12,7 @@ from xml.etree import ElementTree as ET
 import pytest
 import yaml
 from tests.oracle.running import BROKEN, TWO, TWO_PLANNED
+from tests.programs import require_programs
 
 ROOT = Path(__file__).parents[2]
 ACTION: dict[str, Any] = yaml.safe_load((ROOT / "action.yml").read_text())
@@ -37,6 +38,7 @@ def run_step(name: str, folder: Path, **inputs: str) -> "subprocess.CompletedPro
     given = {each: field["default"] for each, field in ACTION["inputs"].items()}
     given |= {each.replace("_", "-"): value for each, value in inputs.items()}
     step = STEPS[name]
+    require_programs(step["shell"])
     variables = {
         variable: re.sub(r"\$\{\{ inputs\.([a-z-]+) \}\}", lambda match: given[match[1]], value)
         for variable, value in step.get("env", {}).items()
