@@ -33,16 +33,26 @@ class Store:
         identity = f"{campaign} by carproof {self._version}"
         try:
             self._connection = sqlite3.connect(path)
-            with self._connection:
-                self._connection.execute("CREATE TABLE IF NOT EXISTS campaign (identity TEXT NOT NULL)")
-                self._connection.execute(TABLE)
-                known = self._connection.execute("SELECT identity FROM campaign").fetchone()
-                if known is None:
-                    self._connection.execute("INSERT INTO campaign VALUES (?)", (identity,))
         except sqlite3.Error as error:
-            raise self._refusal(f"it cannot be used as a store of results: {error}") from error
-        if known is not None and known[0] != identity:
-            raise self._refusal(f"it holds the results of another campaign, {known[0]}, not of {identity}")
+            raise self._unusable(error) from error
+        try:
+            known = self._identity(identity)
+        except sqlite3.Error as error:
+            self.close()
+            raise self._unusable(error) from error
+        if known != identity:
+            self.close()
+            raise self._refusal(f"it holds the results of another campaign, {known}, not of {identity}")
+
+    def _identity(self, identity: str) -> str:
+        """The campaign that the store holds the results of, this one if it is new."""
+        with self._connection:
+            self._connection.execute("CREATE TABLE IF NOT EXISTS campaign (identity TEXT NOT NULL)")
+            self._connection.execute(TABLE)
+            known = self._connection.execute("SELECT identity FROM campaign").fetchone()
+            if known is None:
+                self._connection.execute("INSERT INTO campaign VALUES (?)", (identity,))
+        return identity if known is None else str(known[0])
 
     def keys(self) -> set[str]:
         """The keys of the cases that are done."""
@@ -86,6 +96,9 @@ class Store:
     def close(self) -> None:
         """Close the file."""
         self._connection.close()
+
+    def _unusable(self, error: sqlite3.Error) -> Refusal:
+        return self._refusal(f"it cannot be used as a store of results: {error}")
 
     def _refusal(self, message: str) -> Refusal:
         return Refusal("request", str(self._path), "campaign/store", message)

@@ -6,6 +6,7 @@ import sqlite3
 import subprocess
 import sys
 import time
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -110,11 +111,11 @@ def test_a_row_that_was_changed_is_noticed(tmp_path: Path) -> None:
     with open_store(tmp_path / "store", "squares") as store:
         store.add("0001", {"square": 1, "measured": {"seconds": 3}})
         before = store.digest()
-    with sqlite3.connect(tmp_path / "store") as connection:
+    with closing(sqlite3.connect(tmp_path / "store")) as connection, connection:
         connection.execute("""UPDATE results SET row = '{"square":1,"measured":{"seconds":4}}'""")
     with open_store(tmp_path / "store", "squares") as store:
         assert store.digest() == before, "what was measured does not count"
-    with sqlite3.connect(tmp_path / "store") as connection:
+    with closing(sqlite3.connect(tmp_path / "store")) as connection, connection:
         connection.execute("""UPDATE results SET row = '{"square":2}'""")
     with open_store(tmp_path / "store", "squares") as store, pytest.raises(Refusal, match="0001 is not the one"):
         store.digest()
@@ -122,7 +123,7 @@ def test_a_row_that_was_changed_is_noticed(tmp_path: Path) -> None:
 
 def _rows(path: Path) -> int:
     try:
-        with sqlite3.connect(path, timeout=10) as connection:
+        with closing(sqlite3.connect(path, timeout=10)) as connection:
             return int(connection.execute("SELECT count(*) FROM results").fetchone()[0])
     except sqlite3.OperationalError:
         return 0
