@@ -99,7 +99,7 @@ def test_a_signal_ends_a_command_with_all_that_it_started(command: str, number: 
 
 @pytest.mark.nightly
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize(("command", "seconds"), [*((each, 0.1) for each in MORE), *((each, 1.5) for each in LONG)])
+@pytest.mark.parametrize(("command", "seconds"), [*((each, 0.1) for each in MORE), *((each, 0.3) for each in LONG)])
 def test_a_signal_ends_every_long_command(command: str, number: signal.Signals, seconds: float, town: Path) -> None:
     interrupted(command, number, town, seconds)
 
