@@ -11,10 +11,11 @@ from dataclasses import replace
 from pathlib import Path
 
 import carp_reference
-from carp_reference.execution import Delay, Order, executed, in_order, on_the_clock, order_of, stuck
+from carp_reference.execution import Order, order_of
 from carp_spec import Carp, check
 from carp_spec.execution_rules import trace_violations
 from carp_spec.permutations import splitmix64
+from carproof.delays import Delay, executed, in_order, on_the_clock, stuck
 from carproof.questions import Draw, draw_instance
 
 PART = 1000

@@ -127,10 +127,3 @@ def have_plans_beside(
         certifier = engine_named("reference").certifier(instance)
         certifier.commit(committed)
     return [certifier.certify(robot, None, now)[0] is not None for robot in robots]
-
-
-def why_unplanned(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0) -> str:
-    """The reason why a robot finds no plan against committed plans of others."""
-    from carp_reference import why_unplanned as why  # noqa: PLC0415 - a command that plans nothing need not load it
-
-    return why(instance, committed, robot, now)

@@ -7,24 +7,14 @@ from typing import Literal, TypeAlias, get_args
 
 import msgspec
 
-from carp_reference.execution import (
-    Delay,
-    Order,
-    executed,
-    in_order,
-    on_the_clock,
-    order_of,
-    planned,
-    slack,
-    smallest_collision,
-    stuck,
-)
-from carp_reference.switching import switching
+from carp_reference.execution import Order, order_of
 from carp_spec import Instance, Refusal, ResourceId, RobotId, Solution, Violation, check
 from carp_spec.dependencies import Node, shortest_cycle
 from carp_spec.permutations import splitmix64
 from carp_spec.rule import DESIGN, rule
 from carp_spec.traces import Trace
+from carproof.delays import Delay, executed, in_order, on_the_clock, planned, slack, smallest_collision, stuck
+from carproof.switching import switching
 
 Driver: TypeAlias = Literal["clock", "order", "switching"]
 DRIVERS: tuple[Driver, ...] = get_args(Driver)

@@ -10,8 +10,9 @@ from carp_spec.documents import visits_document
 from carp_spec.rule import interval
 from carproof.answer import Answer
 from carproof.audit import Audit
-from carproof.engines import have_plans_beside, sum_of_shortest_paths, why_unplanned
+from carproof.engines import have_plans_beside, sum_of_shortest_paths
 from carproof.files import print_document, write_whole
+from carproof.reasons import why_unplanned
 from carproof.tables import print_line, print_table
 
 COLUMNS = ("planner", "robots", "unplanned", "total cost", "shortest paths", "ratio", "time")

@@ -11,12 +11,13 @@ import pytest
 import carp_reference
 from carp_optimized import retime as compiled
 from carp_optimized.execution import Timetable, timetable
-from carp_reference.execution import Delay, executed, in_order, order_of, planned, retime, stuck
 from carp_reference.execution import earliest as read_earliest
+from carp_reference.execution import order_of, retime
 from carp_spec import Carp, Instance, Plan, Refusal, Solution
 from carp_spec.dependencies import Node
 from carp_spec.permutations import splitmix64
 from carp_spec.traces import Trace
+from carproof.delays import Delay, delayed, executed, in_order, planned, stuck
 from carproof.questions import Draw, draw_instance
 
 Engine: TypeAlias = Callable[[Instance, Solution, Trace], Solution]
@@ -65,7 +66,7 @@ def test_both_propagate_delays_alike() -> None:
     for instance, solution, draw in cases(200):
         order, times, number = order_of(instance, solution), timetable(instance, solution), numbers(solution)
         delays = drawn_delays(solution, draw)
-        late = read_earliest(order, planned(order), delays)
+        late = read_earliest(delayed(order, delays), planned(order))
         assert times.times(times.enter, as_array(times, number, delays)).tolist() == [late[node] for node in number]
 
 

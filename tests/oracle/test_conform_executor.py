@@ -13,7 +13,7 @@ from tests.oracle import executors
 from tests.oracle.running import Run
 from tests.profiles import draws
 
-from carp_reference.execution import Delay, executed, in_order, order_of
+from carp_reference.execution import order_of
 from carp_spec import Robot
 from carp_spec.traces import Trace
 from carproof.conform.cases import EXECUTION, Case
@@ -28,6 +28,7 @@ from carproof.conform.run import Options, Report, conform
 from carproof.conform.saved import read_saved, save_all
 from carproof.conform.saving import Origin
 from carproof.conform.smoke import committed, row
+from carproof.delays import Delay, executed, in_order
 from carproof.engines import engine_named
 from carproof.ops.executing import DriveDocument, DriveRequest, drive
 

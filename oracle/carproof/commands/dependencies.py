@@ -4,9 +4,10 @@ from pathlib import Path
 
 import click
 
-from carp_reference.execution import late_robots, order_of
+from carp_reference.execution import order_of
 from carp_spec.documents import write
 from carproof.answer import Answer
+from carproof.delays import late_robots
 from carproof.executing import DependenciesDocument, delay_named, dependencies_document, dot
 from carproof.files import OutputFile, naming, read_sound, shown, write_whole
 from carproof.options import examples, instance_argument, json_option, output_option, solution_argument

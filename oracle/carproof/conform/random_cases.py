@@ -7,7 +7,7 @@ from typing import TypeAlias
 from hypothesis import assume
 from hypothesis import strategies as st
 
-from carp_reference.execution import order_of, stuck
+from carp_reference.execution import order_of
 from carp_spec import (
     AfterGoal,
     Carp,
@@ -28,6 +28,7 @@ from carp_spec import (
 from carproof.conform.cases import EXECUTION, Case
 from carproof.conform.claims import EVERYTHING, Claims
 from carproof.conform.levels import Level
+from carproof.delays import stuck
 from carproof.engines import engine_named
 from carproof.strategies import Sizes, broken_solutions, committed_plans, fleets_under_way, instances, solutions
 

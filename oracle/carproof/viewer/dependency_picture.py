@@ -3,9 +3,10 @@
 from collections.abc import Iterator, Mapping, Sequence
 from xml.etree.ElementTree import Element, SubElement
 
-from carp_reference.execution import Order, slack
+from carp_reference.execution import Order
 from carp_spec import RobotId
 from carp_spec.dependencies import Dependency, Node, shortest_cycle
+from carproof.delays import slack
 from carproof.viewer.chart_picture import AXIS, GAP, LABEL_LENGTH, LABELS, LANE, TimeScale, draw_axis
 from carproof.viewer.limits import refuse_large_pictures, refuse_more
 from carproof.viewer.placement import Point

@@ -10,9 +10,10 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from carp_reference.execution import Delay, Order, earliest, order_of, solution_at, stuck, waits_for_leaving
+from carp_reference.execution import Order, order_of, order_with, solution_at
 from carp_spec import Instance, ResourceId, Solution
 from carp_spec.dependencies import Dependency, Node
+from carproof.delays import Delay, delayed, reached, stuck
 
 MOST_TRIED = 20
 
@@ -30,7 +31,7 @@ def switching(instance: Instance, solution: Solution, delays: Sequence[Delay]) -
     """Execute a solution without a cycle; no delay is at the last visit of a robot."""
     releases = {(robot.id, 0): robot.release for robot in instance.robots}
     order, known, switches = order_of(instance, solution), list[Delay](), 0
-    enters = earliest(order, releases)
+    enters = reached(order, releases)
     hidden = {(delay.robot, delay.visit): delay for delay in delays}
     while hidden:
         now = min(enters[node] for node in hidden)
@@ -39,7 +40,7 @@ def switching(instance: Instance, solution: Solution, delays: Sequence[Delay]) -
         happened = {node: tick for node, tick in enters.items() if tick <= now}
         while True:
             least = {node: happened.get(node, max(now + 1, releases.get(node, 0))) for node in order.nodes}
-            enters = earliest(order, least, known)
+            enters = reached(delayed(order, known), least)
             better = _better(order, enters, least, known, now)
             if better is None:
                 break
@@ -54,13 +55,13 @@ def _better(
     lasts = [(plan.robot, len(plan.visits) - 1) for plan in order.solution.plans]
     total = sum(enters[node] for node in lasts)
     for pairs in _switches(order, enters, now):
-        edges = _switched(order, pairs)
-        times = _longest(order.nodes, edges, least, known, order)
-        if times is None or sum(times[node] for node in lasts) >= total:
+        switched = order_with(order.instance, order.solution, _switched(order, pairs))
+        times = reached(delayed(switched, known), least)
+        if len(times) < len(order.nodes) or sum(times[node] for node in lasts) >= total:
             continue
-        switched = order_of(order.instance, solution_at(order, times))
-        if not stuck(switched):
-            return switched
+        better = order_of(order.instance, solution_at(order, times))
+        if not stuck(better):
+            return better
     return None
 
 
@@ -109,7 +110,7 @@ def _sequences(order: Order) -> dict[ResourceId, list[Node]]:
     return sequences
 
 
-def _switched(order: Order, pairs: Collection[tuple[Node, Node]]) -> list[Dependency]:
+def _switched(order: Order, pairs: Collection[tuple[Node, Node]]) -> tuple[Dependency, ...]:
     """The edges after the switch."""
     sequences = _sequences(order)
     changed = {order.visit(first).resource for first, _ in pairs}
@@ -128,26 +129,4 @@ def _switched(order: Order, pairs: Collection[tuple[Node, Node]]) -> list[Depend
                 came_from = order.visit((second[0], second[1] - 1)).resource if second[1] > 0 else None
                 ticks = max(ticks, int(order.visit(following).resource == came_from))
                 edges.append(Dependency("order", following, second, ticks, resource))
-    return edges
-
-
-def _longest(
-    nodes: Sequence[Node], edges: Sequence[Dependency], least: Mapping[Node, int], known: Sequence[Delay], order: Order
-) -> dict[Node, int] | None:
-    """The earliest entry of each visit; `None` if the edges have a cycle."""
-    longer = {(delay.robot, delay.visit): delay.ticks for delay in known}
-    out_of: dict[Node, list[Dependency]] = defaultdict(list)
-    missing = dict.fromkeys(nodes, 0)
-    for edge in edges:
-        out_of[edge.before].append(edge)
-        missing[edge.after] += 1
-    times = dict(least)
-    ready = [node for node in nodes if missing[node] == 0]
-    for node in ready:
-        for edge in out_of[node]:
-            ticks = edge.ticks + (longer.get(node, 0) if waits_for_leaving(order, edge) else 0)
-            times[edge.after] = max(times[edge.after], times[node] + ticks)
-            missing[edge.after] -= 1
-            if missing[edge.after] == 0:
-                ready.append(edge.after)
-    return times if len(ready) == len(nodes) else None
+    return tuple(edges)
