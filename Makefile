@@ -90,7 +90,7 @@ executions: install
 	nice $(BIN)/python -m carp_experiments.executions executions.jsonl --to 1000000
 
 generated: install
-	$(BIN)/python -m carp_spec.schema
+	$(BIN)/python -m carproof.schema
 	$(BIN)/python -m tests.oracle.test_readme
 	$(BIN)/python -m tests.vectors.writing
 	$(BIN)/python -m carproof.ops.published

@@ -22,10 +22,10 @@ from mkdocs.structure.pages import Page
 from carp_experiments.page import RESULTS, results
 from carp_spec import RULES, Rule
 from carp_spec.rule import Code
-from carp_spec.vectors import FOLDER, Vector, subjects, vectors
 from carproof.cli import carproof
 from carproof.ops.published import table as ops
 from carproof.rules import ALL_RULES
+from carproof.vectors import FOLDER, Vector, subjects, vectors
 
 ROOT = Path(__file__).parents[1]
 PLACE = re.compile(r"<!-- generated: (.+?) -->\n")

@@ -6,13 +6,13 @@ import tokenize
 from collections.abc import Iterable
 from pathlib import Path
 
-from carp_spec.readme import markdown_table
 from carp_verify.theorems import THEOREMS
+from carproof.markdown import markdown_table
 
 ROOT = Path(__file__).parents[1]
 KERNEL = ROOT / "verify" / "kernel"
 LAW = ("check", "joint_rules", "plan_rules", "instance_rules", "documents", "model", "rule", "refusal")
-BOUND = ("verify_bound", "bound_rules")
+BOUND = ("verify_bound", "bound_rules", "bounds")
 ENCODER = ("encoding", "robot_clauses", "clauses", "optimum_rules")
 VERDICTS: dict[str, tuple[tuple[str, ...], str]] = {
     "`check`: no rule is broken": ((), ""),

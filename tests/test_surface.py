@@ -11,10 +11,10 @@ from pathlib import Path
 import click
 import pytest
 
-from carp_spec.schema import FOLDER
 from carproof.cli import carproof
 from carproof.ops import OPS
 from carproof.rules import ALL_RULES
+from carproof.schema import FOLDER
 
 ROOT = Path(__file__).parent.parent
 SURFACE = Path(__file__).with_name("surface.txt")

@@ -16,8 +16,8 @@ from msgspec.structs import replace
 
 from carp_optimum.solver import Deadline, TimeOver
 from carp_spec import Instance
-from carp_spec.bounds import BOUND_FORMAT, BoundDocument, digest
-from carp_spec.limits import require_following
+from carp_verify.bounds import BOUND_FORMAT, BoundDocument, digest
+from carp_verify.limits import require_following
 
 if TYPE_CHECKING:
     from carp_optimum.cut_search import CutSearch

@@ -15,8 +15,8 @@ from carp_optimum.price_search import PriceSearch
 from carp_optimum.proving import refutation
 from carp_optimum.solver import NANOSECONDS, Deadline, TimeOver
 from carp_spec import Instance, Refusal
-from carp_spec.bounds import CutDocument
 from carp_verify.bound_cuts import group_of
+from carp_verify.bounds import CutDocument
 from carp_verify.encoding import beat_formula
 
 LOOKS = 400  # of the search for a group's optimum at its clock

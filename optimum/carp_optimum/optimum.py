@@ -24,11 +24,11 @@ from time import monotonic_ns
 from carp_optimum.heuristics import plans_of_all
 from carp_optimum.solver import Deadline, Solver, TimeOver
 from carp_spec import Instance, Plan, Refusal, Solution, total_cost
-from carp_spec.limits import require_following
 from carp_verify.bound_rules import require_kept
 from carp_verify.clauses import Literal, Unary
 from carp_verify.encoding import Encoding, Evidence, violated
 from carp_verify.joint_search import least_total_cost
+from carp_verify.limits import require_following
 from carp_verify.unsolvable import Clauses, FullGoal, NoWay, Obstacle, States, is_searched
 
 CONFLICTS_TO_SHRINK = 900

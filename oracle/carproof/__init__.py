@@ -60,7 +60,7 @@ if TYPE_CHECKING:
         write_verdict,
     )
     from carp_spec import judge as check
-    from carp_spec.bounds import BoundDocument, read_bound
+    from carp_verify.bounds import BoundDocument, read_bound
     from carp_verify.verify_bound import verify_bound
 
 _ELSEWHERE = {
@@ -69,8 +69,8 @@ _ELSEWHERE = {
     "polish": "carp_optimized",
     "query": "carp_optimized",
     "check": "carp_spec:judge",
-    "BoundDocument": "carp_spec.bounds",
-    "read_bound": "carp_spec.bounds",
+    "BoundDocument": "carp_verify.bounds",
+    "read_bound": "carp_verify.bounds",
     "bound": "carp_optimum.bound:lower_bound",
     "Optimum": "carp_optimum.optimum",
     "optimum": "carp_optimum.optimum",

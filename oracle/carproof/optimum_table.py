@@ -12,9 +12,9 @@ from time import perf_counter
 
 from carp_optimum.optimum import optimum
 from carp_spec import AfterGoal, Instance
-from carp_spec.readme import markdown_table, write_section
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 from carproof.generate.options import JUST_ONE
+from carproof.markdown import markdown_table, write_section
 from carproof.progress import progress
 
 LIMIT = 30

@@ -3,10 +3,11 @@
 from typing import Any
 
 from carp_spec import RULES, Rule
-from carp_spec.limits import LIMIT_RULES
+from carp_spec.planners import ticks_are_held
 from carp_spec.rule import Code
 from carp_verify.bound_rules import BOUND_RULES
 from carp_verify.kernel import KERNEL_RULES
+from carp_verify.limits import following_is_allowed
 from carp_verify.optimum_rules import OPTIMUM_RULES
 from carp_verify.query_certificate_rules import QUERY_CERTIFICATE_RULES
 from carproof.adapters import ADAPTER_RULES
@@ -20,7 +21,8 @@ from carproof.viewer.limits import VIEW_RULES
 
 ALL_RULES: tuple[Rule[..., Any] | Code, ...] = (
     *RULES,
-    *LIMIT_RULES,
+    ticks_are_held,
+    following_is_allowed,
     *REQUEST_RULES,
     delays_are_right,
     *GENERATE_RULES,

@@ -11,7 +11,7 @@ from heapq import heappop, heappush
 from itertools import pairwise
 
 from carp_spec import Instance, Plan, Refusal, ResourceId, RobotId, Visit, has_ended
-from carp_spec.limits import LARGEST_TABLE, ticks_are_held
+from carp_spec.planners import LARGEST_TABLE, ticks_are_held
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,9 +8,10 @@ from dataclasses import asdict, dataclass, fields
 from typing import Any, ClassVar, Literal, TypeAlias, cast, get_args
 
 from carp_spec.refusal import Refusal
-from carp_spec.rule import DESIGN, fault_rule, is_whole
+from carp_spec.rule import DESIGN, fault_rule, is_whole, rule
 
 LARGEST_SEED = 2**64 - 1
+LARGEST_TABLE = 5_000_000
 LARGEST_SAMPLE = 1_000_000
 PathKind: TypeAlias = Literal["shortest", "disjoint"]
 
@@ -143,3 +144,13 @@ def planner_named(name: object, options: Mapping[str, object]) -> Planner:
     for fault in options_are_right(planner):
         raise Refusal("option", fault.path, fault.rule, fault.message)
     return planner
+
+
+@rule(
+    "limit/ticks",
+    "A planner that keeps ticks in tables may refuse an instance that its tables cannot hold: the compiled engine "
+    f"ticks, durations and positions beyond {2**30}, the time-expanded planner more than {LARGEST_TABLE} ticks.",
+    DESIGN,
+)
+def ticks_are_held(ticks: int, most: int) -> bool:
+    return ticks <= most

@@ -11,9 +11,8 @@ import pytest
 
 import carp_reference
 from carp_spec import Carp, Plan, Solution, judge
-from carp_spec.bounds import BoundDocument
 from carp_spec.documents import VerdictDocument, solution_document
-from carp_spec.vectors import VectorsDocument
+from carp_verify.bounds import BoundDocument
 from carproof.conform.answers import Reply
 from carproof.conform.cases import ASKED_OPS, Case, request_fields, request_of
 from carproof.conform.levels import Level
@@ -23,6 +22,7 @@ from carproof.engines import engine_named
 from carproof.ops import OPS
 from carproof.ops.planning import QueryDocument, query_document
 from carproof.optima import OptimumDocument
+from carproof.vectors import VectorsDocument
 
 LATE = {"query/optimal", "joint/capacity", "joint/exchange", "fleet/history"}
 Tamper = Callable[[Case, Reply], Reply]

@@ -13,8 +13,6 @@ from jsonschema import Draft202012Validator
 from tests.oracle.running import REQUESTS, TWO, line
 
 from carp_spec import Instance
-from carp_spec.schema import schema_file
-from carp_spec.vectors import vectors
 from carproof.commands import conform as conform_command
 from carproof.commands import serve as serve_command
 from carproof.conform.cases import ASKED_OPS
@@ -23,7 +21,9 @@ from carproof.ops import OPS
 from carproof.ops.op import Op, op_of, request_fields
 from carproof.ops.published import NAME, schema, table
 from carproof.protocol import Request
+from carproof.schema import schema_file
 from carproof.server import respond
+from carproof.vectors import vectors
 
 
 @cache

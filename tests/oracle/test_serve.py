@@ -25,7 +25,7 @@ from tests.oracle.running import (
     solution,
 )
 
-from carp_spec.bounds import read_bound
+from carp_verify.bounds import read_bound
 from carproof.engines import engine_named
 from carproof.ops import OPS
 from carproof.protocol import LONGEST_LINE

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from carp_spec import RULES
-from carp_spec.vectors import vectors
 from carp_verify.support import UNSUPPORTED, support_of_rules
+from carproof.vectors import vectors
 
 TESTS = Path(__file__).parent.parent
 _FAULTS = "verify/test_rules_as_properties.py::test_a_fault_planted_in_an_instance_is_found_and_no_other"

@@ -34,10 +34,9 @@ from carp_spec import (
     read_instance,
     read_solution,
 )
-from carp_spec.bounds import BOUND_FORMAT, BoundDocument, digest
 from carp_spec.documents import instance_document, solution_document, write
-from carp_spec.vectors import Vector, vectors
 from carp_verify.bound_cuts import group_of
+from carp_verify.bounds import BOUND_FORMAT, BoundDocument, digest
 from carp_verify.clauses import dimacs
 from carp_verify.encoding import Evidence, beat_formula
 from carp_verify.verify_bound import verify_bound
@@ -50,6 +49,7 @@ from carproof.strategies import (
     instances,
     planned_instances,
 )
+from carproof.vectors import Vector, vectors
 
 Json = Any
 

@@ -15,10 +15,10 @@ from tests.vectors.writing import ChangedError, digests, file_text, list_text, l
 
 from carp_reference.time_expanded import find_plan_by_ticks
 from carp_spec import RULES, plan_cost
-from carp_spec.schema import schema_file
-from carp_spec.vectors import DIGESTS, FLAGS, FOLDER, Vector, subjects, vector_file, vectors, vectors_document
 from carp_verify.bound_rules import BOUND_RULES
 from carp_verify.query_certificate_rules import QUERY_CERTIFICATE_RULES
+from carproof.schema import schema_file
+from carproof.vectors import DIGESTS, FLAGS, FOLDER, Vector, subjects, vector_file, vectors, vectors_document
 
 BY_RULE = [rule.id for rule in RULES]
 KNOWN = {*BY_RULE, *(rule.id for rule in (*BOUND_RULES, *QUERY_CERTIFICATE_RULES))}
@@ -127,7 +127,7 @@ def test_a_new_case_is_laid_out_and_listed_and_a_changed_one_is_not(
 ) -> None:
     folder = tmp_path / "vectors"
     shutil.copytree(FOLDER, folder)
-    monkeypatch.setattr("carp_spec.vectors.FOLDER", folder)
+    monkeypatch.setattr("carproof.vectors.FOLDER", folder)
     monkeypatch.setattr(writing, "DIGESTS", folder / "digests.txt")
     document = vectors_document("window/fits")
     added = msgspec.structs.replace(document.cases[0], id="window-fits.added")

@@ -8,8 +8,8 @@ where more robots are in the way, no plans of the group cost less either.
 from collections.abc import Sequence
 
 from carp_spec import Instance, RobotId
-from carp_spec.bounds import CutDocument
 from carp_spec.rule import is_whole
+from carp_verify.bounds import CutDocument
 from carp_verify.clauses import Formula
 from carp_verify.encoding import Encoding, Evidence, beat_formula
 from carp_verify.refutation import NotRefutedError, require_refutation

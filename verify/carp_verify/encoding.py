@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from carp_spec import Instance, Move, Plan, ResourceId, Robot
-from carp_spec.limits import require_following
 from carp_verify.clauses import Clause, Formula, Literal
+from carp_verify.limits import require_following
 from carp_verify.optimum_rules import LARGEST_FORMULA, LARGEST_PROOF
 from carp_verify.robot_clauses import RobotClauses, predecessors
 

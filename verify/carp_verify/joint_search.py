@@ -12,7 +12,7 @@ from itertools import product
 from typing import Literal, TypeAlias
 
 from carp_spec import Instance, ResourceId, Robot
-from carp_spec.limits import require_following
+from carp_verify.limits import require_following
 from carp_verify.optimum_rules import LARGEST_SEARCH, refuse_size
 
 Phase: TypeAlias = Literal["waits", "moves", "arrived"]

@@ -11,10 +11,10 @@ from typing import Any, Final, Literal
 import msgspec
 
 from carp_spec import Instance, Refusal, Rule
-from carp_spec.bounds import BoundDocument
 from carp_spec.documents import instance_document, write, write_instance
-from carp_spec.limits import require_following
 from carp_spec.rule import DESIGN, rule
+from carp_verify.bounds import BoundDocument
+from carp_verify.limits import require_following
 
 PROGRAM: Final = "carproof-kernel"
 VARIABLE: Final = "CARPROOF_KERNEL"

@@ -16,9 +16,9 @@ from typing import TypeAlias
 import msgspec
 
 from carp_spec import Instance, Refusal, ResourceId, RobotId
-from carp_spec.limits import require_following
 from carp_verify.encoding import Encoding
 from carp_verify.joint_search import joint_states, least_total_cost
+from carp_verify.limits import require_following
 
 FEW_STATES = 2_000_000
 

@@ -24,8 +24,6 @@ from itertools import accumulate
 from typing import TypeAlias
 
 from carp_spec import Instance, Refusal, ResourceGraph, ResourceId, Robot, RobotId, Rule
-from carp_spec.bounds import BoundDocument, CutDocument, digest
-from carp_spec.limits import require_following
 from carp_spec.rule import is_whole
 from carp_verify.bound_rules import (
     LARGEST_FORMULA,
@@ -40,6 +38,8 @@ from carp_verify.bound_rules import (
     is_weight,
     size_fits,
 )
+from carp_verify.bounds import BoundDocument, CutDocument, digest
+from carp_verify.limits import require_following
 
 Before: TypeAlias = Mapping[ResourceId, Sequence[ResourceId]]
 

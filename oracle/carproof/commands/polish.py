@@ -98,7 +98,7 @@ def bound_of(instance: Instance, certificate: str | None) -> int:
     """A lower bound on the total cost: that of the certificate, if there is one, else the sum of shortest paths."""
     if certificate is None:
         return sum_of_shortest_paths(instance, instance.robot)
-    from carp_spec.bounds import read_bound  # noqa: PLC0415 - only for those who have a certificate
+    from carp_verify.bounds import read_bound  # noqa: PLC0415 - only for those who have a certificate
     from carp_verify.verify_bound import verify_bound  # noqa: PLC0415
 
     return read_file(certificate, lambda data: verify_bound(instance, read_bound(data)))

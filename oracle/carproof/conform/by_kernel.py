@@ -8,9 +8,9 @@ following.
 
 from carp_spec import Carp, Instance, Plan, Solution
 from carp_spec.documents import VerdictDocument, solution_document
-from carp_spec.limits import following_is_allowed
 from carp_verify.bound_rules import ContradictionError
 from carp_verify.kernel import ask, request
+from carp_verify.limits import following_is_allowed
 from carproof.conform.answers import Answer
 from carproof.conform.cases import Case
 from carproof.conform.findings import Finding

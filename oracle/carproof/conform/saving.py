@@ -12,7 +12,6 @@ import msgspec
 from carp_spec import Refusal, Solution, check, write_instance, write_solution
 from carp_spec.documents import instance_document, solution_of
 from carp_spec.traces import Trace
-from carp_spec.vectors import vectors
 from carproof.conform.advice import advice_for
 from carproof.conform.answers import Answer
 from carproof.conform.cases import POLISH_ROUNDS, Case, case_input, request_fields
@@ -25,6 +24,7 @@ from carproof.ops.op import made
 from carproof.ops.planning import QueryDocument
 from carproof.optima import OptimumDocument
 from carproof.rules import ALL_RULES
+from carproof.vectors import vectors
 from carproof.viewer.stills import chart_still, map_still
 
 SCEN_NAME = "instance.scen"

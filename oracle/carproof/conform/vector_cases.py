@@ -5,11 +5,11 @@ from dataclasses import replace
 
 from carp_spec import Carp
 from carp_spec.documents import write
-from carp_spec.vectors import Vector, vectors
 from carproof.conform.cases import ASKED_OPS, Case
 from carproof.conform.levels import Level
 from carproof.ops import OPS
 from carproof.protocol import Request
+from carproof.vectors import Vector, vectors
 
 
 def vector_cases(ops: Sequence[str], level: Level, whole: bool) -> Iterator[Case]:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from carp_spec import Instance, Refusal
-from carp_spec.bounds import BoundDocument
+from carp_verify.bounds import BoundDocument
 from carproof.engines import Engine, warm
 from carproof.extras import require
 from carproof.optima import OptimumDocument, optimum_document

@@ -1,7 +1,7 @@
-"""The documents' JSON Schemas, made from the same classes that decode them; `python -m carp_spec.schema` writes them.
+"""The documents' JSON Schemas, made from the same classes that decode them; `python -m carproof.schema` writes them.
 
-They are published beside this module in `schemas/`. A schema accepts more than the decoder: JSON Schema counts 1.0 as a
-whole number, which `document/shape` does not, and it cannot express the `instance/...` rules about ids.
+They are published in the folder `schemas` of `carp_spec`. A schema accepts more than the decoder: JSON Schema counts
+1.0 as a whole number, which `document/shape` does not, and it cannot express the `instance/...` rules about ids.
 """
 
 from collections.abc import Mapping
@@ -11,13 +11,14 @@ from typing import Any
 
 import msgspec
 
-from carp_spec.bounds import BoundDocument
+import carp_spec
 from carp_spec.documents import InstanceDocument, SolutionDocument, VerdictDocument
 from carp_spec.query_certificates import QueryCertificateDocument
 from carp_spec.traces import TraceDocument
-from carp_spec.vectors import VectorsDocument
+from carp_verify.bounds import BoundDocument
+from carproof.vectors import VectorsDocument
 
-FOLDER = Path(__file__).with_name("schemas")
+FOLDER = Path(carp_spec.__file__).with_name("schemas")
 DRAFT = "https://json-schema.org/draft/2020-12/schema"
 DOCUMENTS: Mapping[str, type[msgspec.Struct]] = {
     "instance": InstanceDocument,

@@ -1,13 +1,8 @@
 """Test vectors: for every rule, cases that keep it and cases that break it, as JSON for programs in any language.
 
-Each file beside this module lists the cases of one subject, which is a rule's id or an op. A case is a question (`op`,
-`instance` and `input`, the fields of a request of the protocol) with the right `answer`. It also has a verdict: whether
-the judged document is `valid` or `invalid`, and all rules that are `violated`. The judged document is the `claim`, an
-answer that a program might give, or, without a claim, the question's own input. Where no op of the protocol reaches a
-rule, the op is the rule's id and asks its predicate alone.
-
-An id means the same case for ever: `digests.txt` has the digest of every case without its flags and comment, and only
-grows. The files are the only source of the cases. A file is read when its first case is asked for.
+Each file in the folder `vectors` of `carp_spec` lists the cases of one subject, a rule's id or an op. A case is a
+question of the protocol with the right answer, and perhaps a claim, an answer to judge. Where no op reaches a rule, the
+op is the rule's id and asks its predicate alone. A file is read when its first case is asked for.
 """
 
 from collections.abc import Iterator, Mapping
@@ -16,11 +11,12 @@ from typing import Any, Final, Literal, TypeAlias
 
 import msgspec
 
+import carp_spec
 from carp_spec.documents import read_instance, read_solution
 from carp_spec.model import Instance, Solution
 from carp_spec.registry import RULES
 
-FOLDER: Final = Path(__file__).parent
+FOLDER: Final = Path(carp_spec.__file__).with_name("vectors")
 DIGESTS: Final = FOLDER / "digests.txt"
 VECTORS_FORMAT: Final = "carproof-vectors/1"
 

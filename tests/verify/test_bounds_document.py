@@ -7,7 +7,7 @@ import pytest
 from tests.spec.making import instance_on, line
 
 from carp_spec import Refusal, Robot, write_instance
-from carp_spec.bounds import BOUND_FORMAT, digest, read_bound
+from carp_verify.bounds import BOUND_FORMAT, digest, read_bound
 
 
 def test_the_digest_is_that_of_the_document() -> None:

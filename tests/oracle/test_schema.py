@@ -8,7 +8,7 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from carp_spec import Refusal, read_instance, read_solution
-from carp_spec.schema import DOCUMENTS, document_schema, schema_file, schema_text, write_schemas
+from carproof.schema import DOCUMENTS, document_schema, schema_file, schema_text, write_schemas
 
 INSTANCE: dict[str, Any] = {
     "format": "carproof-instance/1",
@@ -55,7 +55,7 @@ def test_a_document_may_name_its_schema() -> None:
 
 
 def test_write_schemas_writes_them_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("carp_spec.schema.FOLDER", tmp_path / "schemas")
+    monkeypatch.setattr("carproof.schema.FOLDER", tmp_path / "schemas")
     write_schemas()
     assert len(list((tmp_path / "schemas").glob("*.schema.json"))) == len(DOCUMENTS)
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from carp_spec.readme import markdown_table, with_section, write_section
+from carproof.markdown import markdown_table, with_section, write_section
 
 
 def test_writing_a_section_replaces_it_and_nothing_else(tmp_path: Path) -> None:
