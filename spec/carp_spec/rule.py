@@ -1,12 +1,12 @@
 """Rules, and the reports of broken ones.
 
-A rule has a stable id, one statement, a source and one predicate, the function that decides it. Whatever mentions a
-rule quotes its id. `carp_spec.registry` lists all rules.
+A rule has a stable id, one statement, a source and one predicate, the function that decides it. `carp_spec.registry`
+lists all rules.
 """
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import wraps
+from functools import partial, wraps
 from typing import Generic, ParamSpec, TypeAlias, TypeGuard, TypeVar
 
 from carp_spec.model import ResourceId, RobotId, Visit
@@ -21,10 +21,7 @@ MOST_NAMED = 5
 
 @dataclass(frozen=True, slots=True)
 class Rule(Generic[P, R]):
-    """A rule: call it to ask its predicate.
-
-    A predicate that yields violations or faults is kept when it yields none.
-    """
+    """A rule; if its predicate yields violations or faults, it is kept when there are none."""
 
     id: str
     statement: str
@@ -38,11 +35,7 @@ class Rule(Generic[P, R]):
 
 def rule(id: str, statement: str, source: str) -> Callable[[Callable[P, R]], Rule[P, R]]:
     """Make the decorated predicate a rule."""
-
-    def decorate(predicate: Callable[P, R]) -> Rule[P, R]:
-        return Rule(id, statement, source, predicate)
-
-    return decorate
+    return lambda predicate: Rule(id, statement, source, predicate)
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,9 +51,9 @@ class Code:
 class Violation:
     """A broken rule of a plan or of a set of plans.
 
-    It happened at `resource` in the ticks [start, end). An end of `None` means for ever; a start of `None` means that
-    no resource or tick is to blame. A resource that is too full is one violation for as long as it stays too full, and
-    `robots` are all robots in it at any of these ticks. `reason` states what is wrong and what would be right.
+    It happened at `resource` in the ticks [start, end); an end of `None` means for ever, a start of `None` that no
+    resource or tick is to blame. A resource that is too full is one violation for as long as it stays too full, with
+    all `robots` in it at any of these ticks.
     """
 
     rule: str
@@ -127,27 +120,21 @@ def violation_rule(
     id: str, statement: str, source: str
 ) -> Callable[[Callable[P, Iterator[Breach]]], Rule[P, Iterator[Violation]]]:
     """Make the decorated predicate, which yields breaches, a rule that yields them as violations of itself."""
-
-    def decorate(predicate: Callable[P, Iterator[Breach]]) -> Rule[P, Iterator[Violation]]:
-        @wraps(predicate)
-        def violations(*args: P.args, **kwargs: P.kwargs) -> Iterator[Violation]:
-            return (Violation(id, *breach) for breach in predicate(*args, **kwargs))
-
-        return Rule(id, statement, source, violations)
-
-    return decorate
+    return lambda predicate: Rule(id, statement, source, _reporting(partial(Violation, id), predicate))
 
 
 def fault_rule(
     id: str, statement: str, source: str
 ) -> Callable[[Callable[P, Iterator[tuple[str, str]]]], Rule[P, Iterator[Fault]]]:
     """Make the decorated predicate, which yields paths and messages, a rule that yields them as faults of itself."""
+    return lambda predicate: Rule(id, statement, source, _reporting(partial(Fault, id), predicate))
 
-    def decorate(predicate: Callable[P, Iterator[tuple[str, str]]]) -> Rule[P, Iterator[Fault]]:
-        @wraps(predicate)
-        def faults(*args: P.args, **kwargs: P.kwargs) -> Iterator[Fault]:
-            return (Fault(id, *found) for found in predicate(*args, **kwargs))
 
-        return Rule(id, statement, source, faults)
+def _reporting(
+    report: Callable[..., R], predicate: Callable[P, Iterator[tuple[object, ...]]]
+) -> Callable[P, Iterator[R]]:
+    @wraps(predicate)
+    def reports(*args: P.args, **kwargs: P.kwargs) -> Iterator[R]:
+        return (report(*found) for found in predicate(*args, **kwargs))
 
-    return decorate
+    return reports

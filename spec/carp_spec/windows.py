@@ -1,8 +1,6 @@
-"""Free time windows: `window/...`, as pure functions on the occupations of one resource.
+"""Free time windows, `window/...`: pure functions on the occupations of one resource."""
 
-An occupation is a committed stay [enter, leave) in the resource; a leave of `None` is for ever.
-"""
-
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -11,6 +9,7 @@ from typing import TypeAlias
 from carp_spec.rule import MORS, rule
 
 Occupation: TypeAlias = tuple[int, int | None]
+"""A committed stay [enter, leave) in the resource; a leave of `None` is for ever."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,11 +35,11 @@ def free_windows(occupations: Sequence[Occupation], capacity: int, gap: int = 0)
         longer = free_windows(_longer(occupations, gap), capacity)
         shorter = (Window(each.start, None if each.end is None else each.end - gap) for each in longer)
         return tuple(each for each in shorter if each.end is None or each.start < each.end)
-    change = {0: 0}
+    change = Counter({0: 0})
     for enter, leave in occupations:
-        change[enter] = change.get(enter, 0) + 1
+        change[enter] += 1
         if leave is not None:
-            change[leave] = change.get(leave, 0) - 1
+            change[leave] -= 1
     windows: list[Window] = []
     inside = 0
     opened: int | None = None
@@ -51,7 +50,7 @@ def free_windows(occupations: Sequence[Occupation], capacity: int, gap: int = 0)
         elif opened is not None and inside >= capacity:
             windows.append(Window(opened, tick))
             opened = None
-    return (*windows, Window(opened, None)) if opened is not None else tuple(windows)
+    return tuple(windows) if opened is None else (*windows, Window(opened, None))
 
 
 @rule(
@@ -63,17 +62,16 @@ def free_windows(occupations: Sequence[Occupation], capacity: int, gap: int = 0)
 )
 def windows_are_free(windows: Sequence[Window], occupations: Sequence[Occupation], capacity: int, gap: int = 0) -> bool:
     longer = _longer(occupations, gap)
-    ends = [end for _, end in longer if end is not None]
-    bounds = [bound for window in windows for bound in (window.start, window.end) if bound is not None]
-    starts = [tick for enter, _ in occupations for tick in (max(enter - gap, 0), enter)]
-    ticks = {0, *starts, *ends, *bounds}
-    shown = [(tick, any(window.start <= tick and window.lasts_until(tick + 1) for window in windows)) for tick in ticks]
-    all_told_rightly = all(
-        free == all(occupancy(longer, each) < capacity for each in (tick, tick + gap)) for tick, free in shown
+    bounds = [*longer, *((enter - gap, enter) for enter, _ in longer), *((each.start, each.end) for each in windows)]
+    changes = {0, *(max(tick, 0) for pair in bounds for tick in pair if tick is not None)}
+    are_right = all(
+        any(window.start <= tick and window.lasts_until(tick + 1) for window in windows)
+        == all(occupancy(longer, each) < capacity for each in (tick, tick + gap))
+        for tick in changes
     )
-    each_lasts = all(window.start >= 0 and (window.end is None or window.start < window.end) for window in windows)
-    gaps_between = all(one.end is not None and one.end < two.start for one, two in pairwise(windows))
-    return all_told_rightly and each_lasts and gaps_between
+    each_lasts = all(each.start >= 0 and (each.end is None or each.start < each.end) for each in windows)
+    are_apart = all(one.end is not None and one.end < other.start for one, other in pairwise(windows))
+    return are_right and each_lasts and are_apart
 
 
 def _longer(occupations: Sequence[Occupation], gap: int) -> list[Occupation]:
