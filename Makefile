@@ -116,7 +116,7 @@ conform: install
 # Every line and branch of the specification and the reference, by their own tests and the vectors; then of the compiled planner, run
 # uncompiled, without the tests that start processes of their own or take long that way.
 coverage: install
-	$(BIN)/pytest --cov --cov-fail-under=100 tests/spec tests/reference tests/verify/test_vectors.py \
+	$(BIN)/pytest --cov --cov-fail-under=100 tests/spec tests/reference tests/verify/test_vectors.py tests/verify/test_documents.py \
 	    tests/verify/test_query_certificate.py
 	NUMBA_DISABLE_JIT=1 HYPOTHESIS_PROFILE=mutation $(BIN)/pytest -W ignore::RuntimeWarning \
 	    --cov --cov-config=tests/optimized/coverage.toml tests/optimized \

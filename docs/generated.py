@@ -20,10 +20,11 @@ from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 
 from carp_experiments.page import RESULTS, results
-from carp_spec import RULES, Rule
+from carp_spec import Rule
 from carp_spec.rule import Code
 from carproof.cli import carproof
 from carproof.ops.published import table as ops
+from carproof.registry import RULES
 from carproof.rules import ALL_RULES
 from carproof.vectors import FOLDER, Vector, subjects, vectors
 

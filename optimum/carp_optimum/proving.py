@@ -9,9 +9,10 @@ import msgspec
 from carp_optimum.hints import NoHintsError, refutation_with_hints
 from carp_optimum.optimum import Optimum
 from carp_optimum.solver import Deadline, Solver
-from carp_spec import Instance, Refusal, write_instance
+from carp_spec import Instance, Refusal
 from carp_verify.bound_rules import ContradictionError
 from carp_verify.clauses import Formula, dimacs
+from carp_verify.documents import write_instance
 from carp_verify.encoding import Evidence, beat_formula, reach_formula
 from carp_verify.optimum_rules import is_provable
 from carp_verify.proof import PROOF_FORMAT, Manifest, UnsolvableManifest, variables

@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from carp_optimum.bound import lower_bound as bound
     from carp_optimum.optimum import Optimum, optimum
     from carp_spec import (
-        RULES,
         AfterGoal,
         Carp,
         Fault,
@@ -52,17 +51,15 @@ if TYPE_CHECKING:
         check_update,
         plan_cost,
         planner_named,
-        read_instance,
-        read_solution,
         total_cost,
-        write_instance,
-        write_solution,
-        write_verdict,
     )
     from carp_spec import judge as check
     from carp_verify.bounds import BoundDocument, read_bound
+    from carp_verify.documents import read_instance, read_solution, write_instance, write_solution, write_verdict
     from carp_verify.verify_bound import verify_bound
+    from carproof.registry import RULES
 
+_DOCUMENTS = ("read_instance", "read_solution", "write_instance", "write_solution", "write_verdict")
 _ELSEWHERE = {
     "add": "carp_optimized",
     "plan": "carp_optimized",
@@ -71,6 +68,8 @@ _ELSEWHERE = {
     "check": "carp_spec:judge",
     "BoundDocument": "carp_verify.bounds",
     "read_bound": "carp_verify.bounds",
+    **dict.fromkeys(_DOCUMENTS, "carp_verify.documents"),
+    "RULES": "carproof.registry",
     "bound": "carp_optimum.bound:lower_bound",
     "Optimum": "carp_optimum.optimum",
     "optimum": "carp_optimum.optimum",

@@ -12,8 +12,8 @@ from dataclasses import dataclass, field, replace
 import msgspec
 
 from carp_spec import Instance, Plan, Refusal, Solution
-from carp_spec.documents import solution_document
 from carp_verify.bound_rules import ContradictionError
+from carp_verify.documents import solution_document
 from carp_verify.kernel import ask, request
 from carp_verify.query_certificate_rules import plans_are_lawful, size_fits
 from carp_verify.verify_query import Traffic, require_certificate

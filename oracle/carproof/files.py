@@ -11,7 +11,8 @@ from typing import TypeVar
 import click
 from click.shell_completion import CompletionItem
 
-from carp_spec import Instance, Refusal, Solution, read_instance, read_solution
+from carp_spec import Instance, Refusal, Solution
+from carp_verify.documents import read_instance, read_solution
 from carproof.requests import sound_solution
 
 T = TypeVar("T")

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Literal
 
 import msgspec
 
-from carp_spec.documents import SolutionDocument, solution_document
+from carp_verify.documents import SolutionDocument, solution_document
 
 if TYPE_CHECKING:
     from carp_optimum.optimum import Optimum

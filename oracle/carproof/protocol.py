@@ -17,8 +17,8 @@ from typing import Any, Literal, TypeVar
 import msgspec
 
 from carp_spec import Refusal
-from carp_spec.documents import require_json, uncapitalized
 from carp_spec.rule import DESIGN, Code
+from carp_verify.documents import require_json, uncapitalized
 from carproof.requests import inside
 
 VERSION = 1

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import msgspec
 
-from carp_spec import Instance, Plan, ResourceId, RobotId, Solution, total_cost, write_instance
-from carp_spec.documents import visits_document
+from carp_spec import Instance, Plan, ResourceId, RobotId, Solution, total_cost
 from carp_spec.rule import interval
+from carp_verify.documents import visits_document, write_instance
 from carproof.answer import Answer
 from carproof.audit import Audit
 from carproof.engines import have_plans_beside, sum_of_shortest_paths

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from carp_spec import RULES, Rule
+from carp_spec import Rule
 from carp_spec.planners import ticks_are_held
 from carp_spec.rule import Code
 from carp_verify.bound_rules import BOUND_RULES
@@ -16,6 +16,7 @@ from carproof.executing import delays_are_right
 from carproof.generate.options import GENERATE_RULES
 from carproof.movingai import MOVINGAI_RULES
 from carproof.protocol import PROTOCOL_RULES
+from carproof.registry import RULES
 from carproof.requests import REQUEST_RULES
 from carproof.viewer.limits import VIEW_RULES
 

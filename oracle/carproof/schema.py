@@ -12,10 +12,9 @@ from typing import Any
 import msgspec
 
 import carp_spec
-from carp_spec.documents import InstanceDocument, SolutionDocument, VerdictDocument
 from carp_spec.query_certificates import QueryCertificateDocument
-from carp_spec.traces import TraceDocument
 from carp_verify.bounds import BoundDocument
+from carp_verify.documents import InstanceDocument, SolutionDocument, TraceDocument, VerdictDocument
 from carproof.vectors import VectorsDocument
 
 FOLDER = Path(carp_spec.__file__).with_name("schemas")

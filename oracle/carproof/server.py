@@ -5,7 +5,7 @@ import traceback
 from typing import BinaryIO
 
 from carp_spec import Refusal
-from carp_spec.documents import write
+from carp_verify.documents import write
 from carproof.engines import Engine
 from carproof.extras import advice
 from carproof.ops import answer

@@ -12,9 +12,9 @@ from typing import Any, Final, Literal, TypeAlias
 import msgspec
 
 import carp_spec
-from carp_spec.documents import read_instance, read_solution
 from carp_spec.model import Instance, Solution
-from carp_spec.registry import RULES
+from carp_verify.documents import read_instance, read_solution
+from carproof.registry import RULES
 
 FOLDER: Final = Path(carp_spec.__file__).with_name("vectors")
 DIGESTS: Final = FOLDER / "digests.txt"

@@ -1,9 +1,9 @@
 """Verdicts on certificates as documents, by the checkers in Python or by the proved kernel."""
 
 from carp_spec import Instance, Refusal, Solution
-from carp_spec.documents import solution_document
 from carp_spec.query_certificates import QueryCertificateDocument
 from carp_verify.bounds import BoundDocument
+from carp_verify.documents import solution_document
 from carp_verify.kernel import ask, request
 from carp_verify.kernel import verify_bound as ask_about_bound
 from carproof.audit import CHECKER

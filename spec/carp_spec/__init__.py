@@ -1,10 +1,9 @@
-"""The specification of context-aware route planning: model, rules, checker, documents.
+"""The specification of context-aware route planning: model, rules, checker.
 
 This page exports the names that planners and their users need most. The modules have the rest.
 """
 
 from carp_spec.check import Verdict, check, check_update, judge
-from carp_spec.documents import read_instance, read_solution, write_instance, write_solution, write_verdict
 from carp_spec.model import (
     AfterGoal,
     Instance,
@@ -31,11 +30,9 @@ from carp_spec.planners import (
     planner_named,
 )
 from carp_spec.refusal import Refusal
-from carp_spec.registry import RULES
 from carp_spec.rule import Fault, Rule, Violation
 
 __all__ = [
-    "RULES",
     "AfterGoal",
     "Carp",
     "Fault",
@@ -66,10 +63,5 @@ __all__ = [
     "judge",
     "plan_cost",
     "planner_named",
-    "read_instance",
-    "read_solution",
     "total_cost",
-    "write_instance",
-    "write_solution",
-    "write_verdict",
 ]

@@ -1,15 +1,13 @@
 """The document that proves how early one robot can arrive beside the plans of the others: `carproof-query/1`.
 
-Planners make it and `carp_verify` checks it; its rules are `query-certificate/...`.
+Planners make it, `carp_verify` reads and checks it.
 """
 
-from typing import Final, Literal
+from typing import Annotated, Final, Literal
 
 import msgspec
 
-from carp_spec.documents import Tick, decode
 from carp_spec.model import ResourceId, RobotId
-from carp_spec.refusal import Refusal
 
 QUERY_FORMAT: Final = "carproof-query/1"
 
@@ -25,15 +23,7 @@ class QueryCertificateDocument(msgspec.Struct, frozen=True, forbid_unknown_field
 
     format: Literal["carproof-query/1"]
     robot: RobotId
-    now: Tick
+    now: Annotated[int, msgspec.Meta(ge=0)]
     bound: int | None
     labels: tuple[tuple[ResourceId, int], ...]
     potential: tuple[tuple[ResourceId, int], ...]
-
-
-def read_query_certificate(data: bytes) -> QueryCertificateDocument:
-    """Read a query certificate; raises `Refusal` if it is malformed. `carp_verify` checks whether it is right."""
-    document = decode(data, QueryCertificateDocument, QUERY_FORMAT)
-    if document.now < 0:
-        raise Refusal("document", "$.now", "document/shape", "now must be at least 0")
-    return document

@@ -11,7 +11,8 @@ import pytest
 from tests.foreign.building import built
 from tests.profiles import rest_in
 
-from carp_spec import judge, read_instance, read_solution
+from carp_spec import judge
+from carp_verify.documents import read_instance, read_solution
 
 BUGS = {
     ("cpp", "one-tick-short"): {"plan/goal", "plan/duration"},

@@ -17,7 +17,7 @@ ALSO: dict[str, list[str]] = {
     "carp_spec.joint_rules": ["test_check.py", "test_rule.py"],
     "carp_spec.check": ["test_rule.py"],
     "carp_spec.rule": ["test_check.py"],
-    "carp_spec.documents": ["test_schema.py"],
+    "carp_verify.documents": ["test_schema.py"],
 }
 
 

@@ -9,8 +9,9 @@ from typing import Any
 
 import msgspec
 
-from carp_spec import Refusal, read_instance
+from carp_spec import Refusal
 from carp_verify.bounds import digest
+from carp_verify.documents import read_instance
 from carproof.conform.cases import ASKED_OPS, request_fields
 from carproof.conform.levels import Level
 from carproof.conform.smoke import smoke_cases

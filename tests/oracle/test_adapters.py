@@ -11,19 +11,8 @@ from tests.oracle.foreign_files import COLUMNS, CORRECT, INSTANCE, LACAM, MAP, M
 from tests.oracle.running import Run
 from tests.profiles import draws
 
-from carp_spec import (
-    Instance,
-    Plan,
-    Refusal,
-    Resource,
-    ResourceGraph,
-    Robot,
-    Solution,
-    Visit,
-    judge,
-    write_instance,
-    write_solution,
-)
+from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, Robot, Solution, Visit, judge
+from carp_verify.documents import write_instance, write_solution
 from carproof.adapters import (
     ADAPTERS,
     read_foreign_solution,

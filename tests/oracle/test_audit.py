@@ -10,9 +10,10 @@ from hypothesis import given
 from tests.oracle.running import EAST, EAST_PLAN, TWO_PLANNED, Run, corridor, line, save, solution, town
 
 import carp_reference
-from carp_spec import Carp, Plan, RobotId, Solution, check, plan_cost, read_instance, read_solution
+from carp_spec import Carp, Plan, RobotId, Solution, check, plan_cost
 from carp_spec.query_certificates import QueryCertificateDocument
 from carp_verify.bound_rules import ContradictionError
+from carp_verify.documents import read_instance, read_solution
 from carproof.audit import audit_in_order, audit_in_some_order, in_order
 from carproof.engines import engine_named
 from carproof.generate import Fleet, Grid, grid_instance

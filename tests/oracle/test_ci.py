@@ -21,7 +21,8 @@ STEPS = {step["name"]: step for step in ACTION["runs"]["steps"] if "name" in ste
 PLANNER = """
 import pathlib, sys
 from carp_reference import plan
-from carp_spec import Carp, read_instance, write_solution
+from carp_spec import Carp
+from carp_verify.documents import read_instance, write_solution
 
 sys.stdout.buffer.write(write_solution(plan(read_instance(pathlib.Path(sys.argv[1]).read_bytes()), Carp())))
 """

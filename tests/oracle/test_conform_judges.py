@@ -11,8 +11,8 @@ import pytest
 
 import carp_reference
 from carp_spec import Carp, Plan, Solution, judge
-from carp_spec.documents import VerdictDocument, solution_document
 from carp_verify.bounds import BoundDocument
+from carp_verify.documents import VerdictDocument, solution_document
 from carproof.conform.answers import Reply
 from carproof.conform.cases import ASKED_OPS, Case, request_fields, request_of
 from carproof.conform.levels import Level

@@ -43,10 +43,9 @@ from tests.oracle.test_conform_one_answer import (
 from tests.oracle.test_kernel_option import stand_in
 from tests.verify.kernel_program import program
 
-from carp_spec import Carp, judge, read_instance, read_solution
-from carp_spec.documents import VerdictDocument
-from carp_spec.query_certificates import read_query_certificate
+from carp_spec import Carp, judge
 from carp_verify.bound_rules import ContradictionError
+from carp_verify.documents import VerdictDocument, read_instance, read_query_certificate, read_solution
 from carp_verify.kernel import KernelVerdict, ask, version
 from carp_verify.verify_query import verify_query
 from carproof.conform import by_kernel

@@ -11,8 +11,8 @@ from tests.oracle.test_conform_judges import later, right_reply
 
 import carp_verify.verify_bound
 from carp_spec import Carp, Greedy, Instance, Neighbourhood, Plan, Planner, Resource, ResourceGraph, Robot, Solution
-from carp_spec.documents import VerdictDocument, solution_document
 from carp_verify.bounds import BoundDocument
+from carp_verify.documents import VerdictDocument, solution_document
 from carproof.conform import effort as efforts
 from carproof.conform import judges
 from carproof.conform import optimum as optima

@@ -7,8 +7,8 @@ import msgspec
 import pytest
 
 from carp_spec import Solution
-from carp_spec.documents import VerdictDocument, solution_document
 from carp_verify.bounds import BoundDocument
+from carp_verify.documents import VerdictDocument, solution_document
 from carproof.conform.answers import MOST_SHOWN, Skipped, decode_solution, read_result, result_of, shown
 from carproof.conform.findings import Category, Fault
 from carproof.conform.smoke import EAST, FIRST_GOES, committed, row

@@ -7,7 +7,6 @@ import pytest
 from tests.oracle.test_conform_judges import Tampered, no_plan
 
 from carp_spec import Solution
-from carp_spec.registry import RULES
 from carproof.conform.advice import _ADVICE, advice_for
 from carproof.conform.cases import ASKED_OPS, Case
 from carproof.conform.findings import PROGRAM_RULES, wrong
@@ -18,6 +17,7 @@ from carproof.conform.saved import Saved, read_saved, save_all
 from carproof.conform.saving import Origin
 from carproof.conform.smoke import EAST, FIRST, WEST, passing_place, row, smoke_cases
 from carproof.conform.vector_cases import vector_cases
+from carproof.registry import RULES
 from carproof.rules import ALL_RULES
 
 CASE = Case("smoke", "plan: head-on", "plan", passing_place([FIRST, WEST]), Solution((), (), ("first", "new")))

@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from tests.oracle.running import Document, Outcome, Run, line, save, solution, town
 from tests.profiles import draws
 
-from carp_spec import check, judge, read_instance, read_solution
+from carp_spec import check, judge
 from carp_spec.execution_rules import is_acyclic, trace_violations
-from carp_spec.traces import read_trace
+from carp_verify.documents import read_instance, read_solution, read_trace
 from carproof.delays import Delay
 from carproof.engines import engine_named
 from carproof.executing import DRIVERS, execute, random_delays

@@ -11,7 +11,7 @@ from tests.verify.kernel_program import program
 from tests.verify.test_bound import crossing, cut_certificate
 
 import carp_verify.kernel
-from carp_spec.documents import write, write_instance
+from carp_verify.documents import write, write_instance
 from carp_verify.kernel import PROGRAM, VARIABLE
 
 STAND_IN = """#!{python}

@@ -38,7 +38,7 @@ def returns_nothing(instance: Instance) -> Solution:
 
 def right_documents(document):
     import json
-    from carp_spec import read_instance, write_solution
+    from carp_verify.documents import read_instance, write_solution
     return json.loads(write_solution(right(read_instance(json.dumps(document).encode()))))
 
 def no_document(document):

@@ -3,7 +3,8 @@
 import pytest
 from tests.oracle.running import BROKEN, Run, line
 
-from carp_spec import Refusal, Rule, Violation, read_solution
+from carp_spec import Refusal, Rule, Violation
+from carp_verify.documents import read_solution
 from carproof.requests import path_to, require_tick
 from carproof.rules import ALL_RULES
 

@@ -7,7 +7,8 @@ from typing import Any
 import pytest
 from jsonschema import Draft202012Validator
 
-from carp_spec import Refusal, read_instance, read_solution
+from carp_spec import Refusal
+from carp_verify.documents import read_instance, read_solution
 from carproof.schema import DOCUMENTS, document_schema, schema_file, schema_text, write_schemas
 
 INSTANCE: dict[str, Any] = {

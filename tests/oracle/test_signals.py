@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 from carp_optimized import plan
-from carp_spec import Carp, write_instance, write_solution
+from carp_spec import Carp
+from carp_verify.documents import write_instance, write_solution
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.supervising import GRACE
 

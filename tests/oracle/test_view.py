@@ -8,7 +8,8 @@ import pytest
 from tests.oracle.running import BEHIND, EAST, EAST_PLAN, TWO_PLANNED, Document, Run, corridor, solution
 from tests.oracle.viewing import COLLIDING, CORRIDOR, HOSTILE, SVG, drawn, picture_of, scene_of, without_positions
 
-from carp_spec import Resource, ResourceGraph, judge, read_instance, read_solution
+from carp_spec import Resource, ResourceGraph, judge
+from carp_verify.documents import read_instance, read_solution
 from carproof.viewer import limits
 from carproof.viewer.chart_picture import TimeScale
 from carproof.viewer.lanes import lanes, spots

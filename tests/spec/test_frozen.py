@@ -13,7 +13,7 @@ import pytest
 import carp_reference
 import carp_spec
 from carp_reference.problem import Problem
-from carp_spec.documents import InstanceDocument
+from carp_verify.documents import InstanceDocument
 
 
 def classes_of(package: ModuleType) -> Iterator[type[Any]]:

@@ -11,7 +11,6 @@ from typing import Any, TypeAlias, cast
 import msgspec
 
 from carp_spec import (
-    RULES,
     Instance,
     Neighbourhood,
     Plan,
@@ -24,10 +23,8 @@ from carp_spec import (
     judge,
     plan_cost,
     planner_named,
-    read_solution,
     total_cost,
 )
-from carp_spec.documents import is_json
 from carp_spec.execution_rules import is_acyclic, trace_violations
 from carp_spec.instance_rules import after_goal_is_known, following_is_known
 from carp_spec.neighbourhood_rules import (
@@ -55,16 +52,16 @@ from carp_spec.polish_rules import (
     ticks_apart,
 )
 from carp_spec.priority_rules import robot_is_first
-from carp_spec.query_certificates import read_query_certificate
 from carp_spec.query_rules import expansion_key
-from carp_spec.traces import read_trace
 from carp_spec.windows import Window, free_windows, stay_fits, windows_are_free
 from carp_verify.bound_rules import BOUND_RULES
 from carp_verify.bounds import read_bound
+from carp_verify.documents import is_json, read_query_certificate, read_solution, read_trace
 from carp_verify.joint_search import least_total_cost
 from carp_verify.query_certificate_rules import QUERY_CERTIFICATE_RULES, plans_are_lawful, robot_is_known
 from carp_verify.verify_bound import verify_bound
 from carp_verify.verify_query import verify_query
+from carproof.registry import RULES
 from carproof.vectors import Fields, Vector
 
 

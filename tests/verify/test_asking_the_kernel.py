@@ -8,8 +8,8 @@ import pytest
 
 import carp_verify.kernel
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
-from carp_spec.documents import instance_document, write, write_instance
 from carp_verify.bounds import BOUND_FORMAT, BoundDocument, digest
+from carp_verify.documents import instance_document, write, write_instance
 from carp_verify.kernel import (
     PROGRAM,
     VARIABLE,

@@ -19,12 +19,12 @@ from tests.verify.tiny import TINY
 from carp_optimum.bound import Progress, lower_bound
 from carp_optimum.cut_search import prove
 from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, ResourceId, Robot, Rule, Visit
-from carp_spec.documents import write
 from carp_spec.plan_rules import plan_cost
 from carp_verify import bound_rules
 from carp_verify import verify_bound as page
 from carp_verify.bound_cuts import formula_of
 from carp_verify.bounds import BOUND_FORMAT, BoundDocument, CutDocument, digest, read_bound
+from carp_verify.documents import write
 from carp_verify.joint_search import least_total_cost
 from carp_verify.verify_bound import Budget, RobotSearch, Tariff, predecessors, verify_bound
 from carproof.strategies import PlannedInstance, Sizes, instances, planned_instances

@@ -8,20 +8,10 @@ from hypothesis import given, settings
 from tests.oracle.running import Run
 from tests.profiles import draws
 
-from carp_spec import (
-    Instance,
-    Plan,
-    Resource,
-    ResourceGraph,
-    Robot,
-    Solution,
-    Visit,
-    check,
-    write_instance,
-    write_solution,
-)
+from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Solution, Visit, check
 from carp_verify import certificate
 from carp_verify.certificate import Breach, certify, certify_together
+from carp_verify.documents import write_instance, write_solution
 from carp_verify.smt import Solver, Undecided
 from carproof.strategies import BrokenSolution, PlannedInstance, broken_solutions, planned_instances
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from carp_spec import RULES
 from carp_verify.support import UNSUPPORTED, support_of_rules
+from carproof.registry import RULES
 from carproof.vectors import vectors
 
 TESTS = Path(__file__).parent.parent

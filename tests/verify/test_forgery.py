@@ -24,11 +24,11 @@ from carp_optimum.bound import lower_bound
 from carp_optimum.optimum import optimum
 from carp_optimum.proving import write_proof
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
-from carp_spec.documents import write
-from carp_spec.query_certificates import QueryCertificateDocument, read_query_certificate
+from carp_spec.query_certificates import QueryCertificateDocument
 from carp_verify.bound_cuts import formula_of
 from carp_verify.bounds import BoundDocument, CutDocument, digest, read_bound
 from carp_verify.clauses import dimacs
+from carp_verify.documents import read_query_certificate, write
 from carp_verify.encoding import Evidence, beat_formula, reach_formula
 from carp_verify.joint_search import least_total_cost
 from carp_verify.proof import FILES, ProofError, verify_proof

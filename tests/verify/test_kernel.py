@@ -31,13 +31,11 @@ from carp_spec import (
     Solution,
     has_ended,
     judge,
-    read_instance,
-    read_solution,
 )
-from carp_spec.documents import instance_document, solution_document, write
 from carp_verify.bound_cuts import group_of
 from carp_verify.bounds import BOUND_FORMAT, BoundDocument, digest
 from carp_verify.clauses import dimacs
+from carp_verify.documents import instance_document, read_instance, read_solution, solution_document, write
 from carp_verify.encoding import Evidence, beat_formula
 from carp_verify.verify_bound import verify_bound
 from carproof.mutations import BrokenSolution

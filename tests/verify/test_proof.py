@@ -13,20 +13,9 @@ from tests.verify.tiny import TINY
 
 from carp_optimum.optimum import optimum
 from carp_optimum.proving import write_proof
-from carp_spec import (
-    AfterGoal,
-    Instance,
-    Refusal,
-    Resource,
-    ResourceGraph,
-    Robot,
-    Solution,
-    Verdict,
-    Violation,
-    judge,
-    write_instance,
-)
+from carp_spec import AfterGoal, Instance, Refusal, Resource, ResourceGraph, Robot, Solution, Verdict, Violation, judge
 from carp_verify.bound_rules import ContradictionError
+from carp_verify.documents import write_instance
 from carp_verify.proof import FILES, ProofError, verify_proof
 from carproof.strategies import instances
 

@@ -13,9 +13,10 @@ from tests.verify.tiny import case
 
 from carp_optimum.optimum import optimum
 from carp_optimum.proving import write_proof
-from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot, write_instance
+from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot
 from carp_verify import unsolvable
 from carp_verify.clauses import dimacs
+from carp_verify.documents import write_instance
 from carp_verify.encoding import Evidence, beat_formula
 from carp_verify.joint_search import least_total_cost
 from carp_verify.proof import PROOF_FORMAT, ProofError, verify_proof

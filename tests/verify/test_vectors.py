@@ -14,9 +14,10 @@ from tests.vectors.judging import finding
 from tests.vectors.writing import ChangedError, digests, file_text, list_text, listed
 
 from carp_reference.time_expanded import find_plan_by_ticks
-from carp_spec import RULES, plan_cost
+from carp_spec import plan_cost
 from carp_verify.bound_rules import BOUND_RULES
 from carp_verify.query_certificate_rules import QUERY_CERTIFICATE_RULES
+from carproof.registry import RULES
 from carproof.schema import schema_file
 from carproof.vectors import DIGESTS, FLAGS, FOLDER, Vector, subjects, vector_file, vectors, vectors_document
 

@@ -11,9 +11,9 @@ from typing import Any, Final, Literal
 import msgspec
 
 from carp_spec import Instance, Refusal, Rule
-from carp_spec.documents import instance_document, write, write_instance
 from carp_spec.rule import DESIGN, rule
 from carp_verify.bounds import BoundDocument
+from carp_verify.documents import instance_document, write, write_instance
 from carp_verify.limits import require_following
 
 PROGRAM: Final = "carproof-kernel"

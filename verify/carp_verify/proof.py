@@ -29,10 +29,10 @@ from typing import Final, Literal
 
 import msgspec
 
-from carp_spec import Instance, Plan, Refusal, Solution, judge, read_instance, write_instance
-from carp_spec.documents import decode, has_format
+from carp_spec import Instance, Plan, Refusal, Solution, judge
 from carp_spec.model import ResourceId, RobotId
 from carp_verify.clauses import dimacs
+from carp_verify.documents import decode, has_format, read_instance, write_instance
 from carp_verify.encoding import Encoding, Evidence, beat_formula, reach_formula
 from carp_verify.optimum_rules import LARGEST_PROOF
 from carp_verify.refutation import NotRefutedError, require_refutation

@@ -1,6 +1,7 @@
 """carproof's own solution document, among the formats to choose from."""
 
-from carp_spec import Instance, Refusal, Solution, read_solution, write_solution
+from carp_spec import Instance, Refusal, Solution
+from carp_verify.documents import read_solution, write_solution
 from carproof.adapters.adapter import Adapter
 
 

@@ -5,7 +5,8 @@ from typing import Any, cast
 
 import click
 
-from carp_spec import Neighbourhood, write_solution
+from carp_spec import Neighbourhood
+from carp_verify.documents import write_solution
 from carproof.answer import Answer
 from carproof.engines import engine_named
 from carproof.files import naming, read_sound

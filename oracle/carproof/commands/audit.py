@@ -5,7 +5,7 @@ from time import perf_counter
 
 import click
 
-from carp_spec.documents import write
+from carp_verify.documents import write
 from carproof.adapters import format_of, read_foreign_solution
 from carproof.answer import Answer
 from carproof.audit import Audit, ask_kernel, audit_in_order, audit_in_some_order

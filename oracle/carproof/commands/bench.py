@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from carp_spec.documents import write
+from carp_verify.documents import write
 from carproof.answer import Answer
 from carproof.bench import GROWTH, PARTS, Added, OnGrid, OnMap, on_grid, on_map, weight
 from carproof.files import print_document

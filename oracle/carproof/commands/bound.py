@@ -6,7 +6,7 @@ from time import perf_counter
 import click
 
 from carp_spec import Instance, judge, total_cost
-from carp_spec.documents import write
+from carp_verify.documents import write
 from carproof.answer import Answer
 from carproof.engines import warm
 from carproof.extras import require

@@ -5,15 +5,16 @@ from pathlib import Path
 
 import click
 
-from carp_spec import RULES, Instance, Solution, Verdict, judge, write_verdict
+from carp_spec import Instance, Solution, Verdict, judge
 from carp_spec.check import MOST_LISTED
-from carp_spec.documents import solution_document, write
 from carp_verify.bound_rules import ContradictionError
+from carp_verify.documents import solution_document, write, write_verdict
 from carp_verify.kernel import KernelVerdict, ask, request
 from carproof.answer import Answer
 from carproof.files import print_document, write_whole
 from carproof.foreign import Problem, solution_files
 from carproof.options import examples, json_option, kernel_option, output_option
+from carproof.registry import RULES
 from carproof.tables import print_line, print_table, say
 
 

@@ -2,9 +2,9 @@
 
 import click
 
-from carp_spec import Verdict, total_cost, write_verdict
+from carp_spec import Verdict, total_cost
 from carp_spec.execution_rules import trace_violations
-from carp_spec.traces import read_trace
+from carp_verify.documents import read_trace, write_verdict
 from carproof.answer import Answer
 from carproof.files import print_document, read_file, read_sound
 from carproof.options import examples, instance_argument, json_option, solution_argument, trace_argument

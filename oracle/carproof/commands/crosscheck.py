@@ -7,7 +7,7 @@ from typing import Any
 import click
 import msgspec
 
-from carp_spec.documents import instance_document, solution_document
+from carp_verify.documents import instance_document, solution_document
 from carproof.answer import Answer
 from carproof.crosscheck import Difference, first_difference
 from carproof.extras import require

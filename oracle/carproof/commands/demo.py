@@ -7,7 +7,8 @@ from time import perf_counter
 
 import click
 
-from carp_spec import Carp, Instance, Neighbourhood, Planner, judge, total_cost, write_instance, write_solution
+from carp_spec import Carp, Instance, Neighbourhood, Planner, judge, total_cost
+from carp_verify.documents import write_instance, write_solution
 from carproof.answer import Answer
 from carproof.engines import plan_showing, sum_of_shortest_paths
 from carproof.files import OutputFile, write_whole

@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from carp_reference.execution import order_of
-from carp_spec.documents import write
+from carp_verify.documents import write
 from carproof.answer import Answer
 from carproof.delays import late_robots
 from carproof.executing import DependenciesDocument, delay_named, dependencies_document, dot

@@ -4,9 +4,7 @@ from pathlib import Path
 
 import click
 
-from carp_spec import write_solution
-from carp_spec.documents import write
-from carp_spec.traces import write_trace
+from carp_verify.documents import write, write_solution, write_trace
 from carproof.answer import Answer
 from carproof.executing import DRIVERS, Driver, Execution, delays_named, execute, execution_document
 from carproof.files import OutputFile, print_document, read_sound, write_whole

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, get_args
 import click
 
 from carp_spec import AfterGoal
-from carp_spec.documents import write
 from carp_spec.planners import LARGEST_SEED
+from carp_verify.documents import write
 from carproof.answer import Answer
 from carproof.extras import require
 from carproof.files import InputFile, print_document, read_instance_file

@@ -5,7 +5,8 @@ from pathlib import Path
 import click
 import msgspec
 
-from carp_spec import Refusal, ResourceId, Visit, write_solution
+from carp_spec import Refusal, ResourceId, Visit
+from carp_verify.documents import write_solution
 from carproof.answer import Answer
 from carproof.engines import engine_named
 from carproof.files import (

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from carp_spec import Instance, write_solution
-from carp_spec.documents import write
+from carp_spec import Instance
+from carp_verify.documents import write, write_solution
 from carproof.answer import Answer
 from carproof.extras import require
 from carproof.files import print_document, read_instance_file, write_whole

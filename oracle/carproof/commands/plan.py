@@ -7,7 +7,8 @@ from typing import Any
 
 import click
 
-from carp_spec import Refusal, check, write_solution
+from carp_spec import Refusal, check
+from carp_verify.documents import write_solution
 from carproof.answer import Answer
 from carproof.engines import plan_showing
 from carproof.files import naming, read_instance_file

@@ -6,8 +6,9 @@ from time import perf_counter
 
 import click
 
-from carp_spec import Instance, Refusal, Solution, check, total_cost, write_solution
+from carp_spec import Instance, Refusal, Solution, check, total_cost
 from carp_spec.polish_rules import ITERATIONS, last_round, require_polish_options
+from carp_verify.documents import write_solution
 from carproof.answer import Answer
 from carproof.engines import engine_named, sum_of_shortest_paths, warm
 from carproof.files import InputFile, naming, read_file, refuse_two_standard_inputs

@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from carp_spec import plan_cost
-from carp_spec.documents import write
+from carp_verify.documents import write
 from carproof.answer import Answer
 from carproof.engines import engine_named
 from carproof.files import (

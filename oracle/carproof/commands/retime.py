@@ -4,8 +4,8 @@ from pathlib import Path
 
 import click
 
-from carp_spec import total_cost, write_solution
-from carp_spec.traces import read_trace
+from carp_spec import total_cost
+from carp_verify.documents import read_trace, write_solution
 from carproof.answer import Answer
 from carproof.engines import engine_named
 from carproof.files import naming, read_file, read_sound

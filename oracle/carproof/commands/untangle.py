@@ -4,7 +4,8 @@ from pathlib import Path
 
 import click
 
-from carp_spec import total_cost, write_solution
+from carp_spec import total_cost
+from carp_verify.documents import write_solution
 from carproof.answer import Answer
 from carproof.engines import engine_named
 from carproof.files import read_sound

@@ -2,8 +2,8 @@
 
 import click
 
-from carp_spec.documents import write
 from carp_verify.bounds import read_bound
+from carp_verify.documents import write
 from carproof.answer import Answer
 from carproof.files import InputFile, print_document, read_file, read_instance_file, refuse_two_standard_inputs
 from carproof.options import examples, instance_argument, json_option, kernel_option

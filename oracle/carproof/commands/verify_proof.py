@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from carp_spec.documents import write
+from carp_verify.documents import write
 from carproof.answer import Answer
 from carproof.extras import require
 from carproof.files import InputFile, print_document, read_instance_file

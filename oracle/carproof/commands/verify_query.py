@@ -2,8 +2,7 @@
 
 import click
 
-from carp_spec.documents import write
-from carp_spec.query_certificates import read_query_certificate
+from carp_verify.documents import read_query_certificate, write
 from carproof.answer import Answer
 from carproof.files import (
     InputFile,

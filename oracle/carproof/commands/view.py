@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from carp_spec.traces import read_trace
+from carp_verify.documents import read_trace
 from carproof.answer import Answer
 from carproof.files import InputFile, naming, read_file, refuse_two_standard_inputs
 from carproof.foreign import Problem, solution_files

@@ -6,9 +6,9 @@ from typing import Any, TypeAlias
 import msgspec
 
 from carp_spec import Refusal, Solution
-from carp_spec.documents import UNREADABLE, VerdictDocument, is_json, uncapitalized
 from carp_spec.traces import Trace
 from carp_verify.bounds import BoundDocument
+from carp_verify.documents import UNREADABLE, VerdictDocument, is_json, uncapitalized
 from carproof.conform.findings import RIGHT_RESULT, Category, Fault, Finding, is_accepted, is_response
 from carproof.ops import OPS
 from carproof.ops.op import reader_of

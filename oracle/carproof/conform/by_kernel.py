@@ -7,8 +7,8 @@ following.
 """
 
 from carp_spec import Carp, Instance, Plan, Solution
-from carp_spec.documents import VerdictDocument, solution_document
 from carp_verify.bound_rules import ContradictionError
+from carp_verify.documents import VerdictDocument, solution_document
 from carp_verify.kernel import ask, request
 from carp_verify.limits import following_is_allowed
 from carproof.conform.answers import Answer

@@ -15,10 +15,10 @@ from carp_spec import (
     plan_cost,
     total_cost,
 )
-from carp_spec.documents import VerdictDocument, verdict_document
 from carp_spec.polish_rules import is_kept
 from carp_spec.traces import Trace
 from carp_verify.bounds import BoundDocument
+from carp_verify.documents import VerdictDocument, verdict_document
 from carproof.conform.answers import Answer
 from carproof.conform.cases import POLISH_ROUNDS, Case
 from carproof.conform.driving import execution_findings

@@ -6,7 +6,8 @@ from contextlib import suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from carp_spec import Instance, Refusal, Robot, Solution, write_instance
+from carp_spec import Instance, Refusal, Robot, Solution
+from carp_verify.documents import write_instance
 from carproof.adapters import carproof_documents, format_of, looks_like_none, read_foreign_solution
 from carproof.conform.answers import NotAsked, Reply, decode_solution, protocol_error, shown
 from carproof.conform.cases import Case

@@ -9,9 +9,9 @@ from xml.sax.saxutils import escape
 import click
 import msgspec
 
-from carp_spec import Refusal, Solution, check, write_instance, write_solution
-from carp_spec.documents import instance_document, solution_of
+from carp_spec import Refusal, Solution, check
 from carp_spec.traces import Trace
+from carp_verify.documents import instance_document, solution_of, write_instance, write_solution
 from carproof.conform.advice import advice_for
 from carproof.conform.answers import Answer
 from carproof.conform.cases import POLISH_ROUNDS, Case, case_input, request_fields

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from carp_spec import Carp
-from carp_spec.documents import write
+from carp_verify.documents import write
 from carproof.conform.cases import ASKED_OPS, Case
 from carproof.conform.levels import Level
 from carproof.ops import OPS

@@ -6,9 +6,16 @@ import msgspec
 
 from carp_reference.execution import order_of
 from carp_spec import Instance, Refusal, ResourceId, RobotId, Solution, Verdict, Visit, total_cost
-from carp_spec.documents import SolutionDocument, VerdictDocument, solution_document, verdict_document
 from carp_spec.execution_rules import require_followed, trace_violations
-from carp_spec.traces import Trace, TraceDocument, trace_document
+from carp_spec.traces import Trace
+from carp_verify.documents import (
+    SolutionDocument,
+    TraceDocument,
+    VerdictDocument,
+    solution_document,
+    trace_document,
+    verdict_document,
+)
 from carproof.delays import Delay, late_robots, may_enter
 from carproof.engines import Engine
 from carproof.executing import DependenciesDocument, Driver, delays_are_right, dependencies_document

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 from carp_spec import Instance, Solution, judge
-from carp_spec.documents import VerdictDocument, verdict_document
 from carp_spec.query_certificates import QueryCertificateDocument
 from carp_verify.bounds import BoundDocument
+from carp_verify.documents import VerdictDocument, verdict_document
 from carproof.audit import ask_kernel, audit_in_order
 from carproof.engines import Engine
 from carproof.requests import inside, sound_within

@@ -12,13 +12,24 @@ from typing import Any, Literal, Union, get_args, get_type_hints
 
 import msgspec
 
-from carp_spec import Instance, Neighbourhood, Planner, Refusal, Solution, planner_named, read_instance, read_solution
-from carp_spec.documents import InstanceDocument, SolutionDocument, instance_document, solution_document
+from carp_spec import Instance, Neighbourhood, Planner, Refusal, Solution, planner_named
 from carp_spec.planners import PLANNERS
 from carp_spec.polish_rules import require_polish_options
-from carp_spec.query_certificates import QueryCertificateDocument, read_query_certificate
-from carp_spec.traces import Trace, TraceDocument, read_trace, trace_document
+from carp_spec.query_certificates import QueryCertificateDocument
+from carp_spec.traces import Trace
 from carp_verify.bounds import BoundDocument, read_bound
+from carp_verify.documents import (
+    InstanceDocument,
+    SolutionDocument,
+    TraceDocument,
+    instance_document,
+    read_instance,
+    read_query_certificate,
+    read_solution,
+    read_trace,
+    solution_document,
+    trace_document,
+)
 from carproof.engines import Engine
 from carproof.protocol import RIGHT_FIELDS, Request, value_of
 

@@ -4,10 +4,11 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from carp_spec import RULES, Instance, Plan, ResourceId, RobotId, Solution, Violation, judge, plan_cost
+from carp_spec import Instance, Plan, ResourceId, RobotId, Solution, Violation, judge, plan_cost
 from carp_spec.execution_rules import trace_violations
 from carp_spec.traces import Trace
 from carp_spec.windows import free_windows
+from carproof.registry import RULES
 from carproof.tables import printable
 from carproof.viewer.lanes import Stays, lanes, occupations, spots
 from carproof.viewer.limits import MOST_LISTED, refuse_large_pictures

@@ -12,21 +12,8 @@ from hypothesis import strategies as st
 from tests.spec.making import PARKED, PARKING, SOLVED, VANISHING, plan_of, solution_of
 from tests.spec.strategies import FEWER, graphs, instances, solutions
 
-from carp_spec import (
-    Instance,
-    Refusal,
-    Resource,
-    ResourceGraph,
-    Robot,
-    Solution,
-    judge,
-    read_instance,
-    read_solution,
-    write_instance,
-    write_solution,
-    write_verdict,
-)
-from carp_spec.documents import (
+from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, Solution, judge
+from carp_verify.documents import (
     INSTANCE_FORMAT,
     SOLUTION_FORMAT,
     Document,
@@ -35,6 +22,11 @@ from carp_spec.documents import (
     has_format,
     has_shape,
     is_json,
+    read_instance,
+    read_solution,
+    write_instance,
+    write_solution,
+    write_verdict,
 )
 
 Json = Any
@@ -399,7 +391,7 @@ def test_a_document_with_random_bytes_in_it_is_refused_by_the_first_rule_that_it
 def test_a_right_document_is_parsed_once(monkeypatch: pytest.MonkeyPatch) -> None:
     parse = Mock(side_effect=json.loads)
     monkeypatch.setattr("json.loads", parse)
-    monkeypatch.setattr("carp_spec.documents.msgspec.json.decode", lambda *_, **__: pytest.fail("parsed again"))
+    monkeypatch.setattr("carp_verify.documents.msgspec.json.decode", lambda *_, **__: pytest.fail("parsed again"))
     data = write_instance(VANISHING)
     assert read_instance(data) == VANISHING
     assert parse.call_count == 1

@@ -2,7 +2,6 @@
 
 from typing import Any
 
-from carp_spec.documents import has_format, has_shape, is_json
 from carp_spec.execution_rules import EXECUTION_RULES, TRACE_RULES, is_acyclic
 from carp_spec.instance_rules import INSTANCE_RULES
 from carp_spec.joint_rules import JOINT_RULES, SOLUTION_RULES
@@ -22,6 +21,7 @@ from carp_spec.priority_rules import robot_is_first
 from carp_spec.query_rules import absence_is_true, expansion_key, plan_is_optimal, plan_is_sound
 from carp_spec.rule import Rule
 from carp_spec.windows import stay_fits, windows_are_free
+from carp_verify.documents import has_format, has_shape, is_json
 
 RULES: tuple[Rule[..., Any], ...] = (
     is_json,

@@ -1,4 +1,4 @@
-"""The documents: instances, solutions and verdicts as JSON.
+"""The documents: instances, solutions, verdicts and traces as JSON; the law in `carp_spec` knows values alone.
 
 Reading is strict. It refuses an unknown field, a boolean or 1.0 in place of a whole number, and a broken `instance/...`
 rule, and names the path and the rule. A value that is written and read again stays equal.
@@ -6,6 +6,7 @@ rule, and names the path and the rule. A value that is written and read again st
 
 import json
 from collections import Counter
+from collections.abc import Sequence
 from contextlib import suppress
 from typing import Annotated, Final, Literal, TypeAlias, TypeVar
 
@@ -26,12 +27,15 @@ from carp_spec.model import (
     Solution,
     Visit,
 )
+from carp_spec.query_certificates import QUERY_FORMAT, QueryCertificateDocument
 from carp_spec.refusal import Refusal
-from carp_spec.rule import DESIGN, Violation, rule
+from carp_spec.rule import DESIGN, rule
+from carp_spec.traces import Trace
 
 INSTANCE_FORMAT: Final = "carproof-instance/1"
 SOLUTION_FORMAT: Final = "carproof-solution/1"
 VERDICT_FORMAT: Final = "carproof-verdict/1"
+TRACE_FORMAT: Final = "carproof-trace/1"
 
 MOST_DIGITS: Final = 100
 ESCAPE: Final = b"\\u"  # the escape of half a surrogate pair is not text, though Python's parser accepts it
@@ -138,6 +142,14 @@ class VerdictDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     violations: tuple[ViolationDocument, ...]
 
 
+class TraceDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The visits that robots have entered by the tick now, the last with a leave of null if it is not left."""
+
+    format: Literal["carproof-trace/1"]
+    now: Annotated[int, msgspec.Meta(ge=0)]
+    plans: tuple[PlanDocument, ...]
+
+
 Document: TypeAlias = InstanceDocument | SolutionDocument | VerdictDocument
 D = TypeVar("D", bound=msgspec.Struct)
 
@@ -165,13 +177,14 @@ def _parsed(data: bytes) -> object:
     return json.loads(data.decode(), object_pairs_hook=_members, parse_int=_whole_number)
 
 
-def _json_error(data: bytes) -> str | None:
+def require_json(data: bytes) -> None:
+    """Raise `Refusal` if the data is no JSON."""
     try:
         msgspec.json.decode(data)
         _parsed(data)
     except (*UNREADABLE, ValueError) as error:
-        return str(error)
-    return None
+        message = f"the document must be JSON in UTF-8: {error}"
+        raise Refusal("document", "$", is_json.id, message) from error
 
 
 @rule(
@@ -181,15 +194,23 @@ def _json_error(data: bytes) -> str | None:
     DESIGN,
 )
 def is_json(data: bytes) -> bool:
-    return _json_error(data) is None
+    try:
+        require_json(data)
+    except Refusal:
+        return False
+    return True
+
+
+def _format(data: bytes) -> str | None:
+    try:
+        return msgspec.json.decode(data, type=_Headed).format
+    except UNREADABLE:
+        return None
 
 
 @rule("document/format", "A document's format names its kind and version, like carproof-instance/1.", DESIGN)
 def has_format(data: bytes, format: str) -> bool:
-    try:
-        return msgspec.json.decode(data, type=_Headed).format == format
-    except UNREADABLE:
-        return False
+    return _format(data) == format
 
 
 def uncapitalized(sentence: str) -> str:
@@ -217,39 +238,19 @@ def has_shape(data: bytes, kind: type[Document]) -> bool:
     return _shape_error(data, kind) is None
 
 
-def require_json(data: bytes) -> None:
-    """Raise `Refusal` if the data is no JSON."""
-    malformed = _json_error(data)
-    if malformed is not None:
-        raise Refusal("document", "$", "document/json", f"the document must be JSON in UTF-8: {malformed}")
-
-
 def decode(data: bytes, kind: type[D], format: str) -> D:
     """Decode a document of the kind, or raise `Refusal` with its first error."""
     if ESCAPE not in data:
         with suppress(*UNREADABLE, ValueError):
             return msgspec.convert(_parsed(data), kind)
-    return _decode_step_by_step(data, kind, format)
-
-
-def _instead(data: bytes) -> str:
-    """The end of a sentence that names the format of a document that has the wrong one; empty if it has none."""
-    try:
-        found = msgspec.json.decode(data, type=_Headed).format
-    except UNREADABLE:
-        return ""
-    return f", and is {found}" if found.isprintable() and len(found) <= MOST_DIGITS else ""
-
-
-def _decode_step_by_step(data: bytes, kind: type[D], format: str) -> D:
-    """Apply one rule after the other, to name the first that is broken."""
     require_json(data)
-    if not has_format(data, format):
-        raise Refusal("document", "$.format", "document/format", f"the format must be {format}{_instead(data)}")
+    found = _format(data)
+    if found != format:
+        instead = f", and is {found}" if found and found.isprintable() and len(found) <= MOST_DIGITS else ""
+        raise Refusal("document", "$.format", has_format.id, f"the format must be {format}{instead}")
     wrong = _shape_error(data, kind)
     if wrong is not None:
-        path, expected = wrong
-        raise Refusal("document", path, "document/shape", expected)
+        raise Refusal("document", wrong[0], has_shape.id, wrong[1])
     return msgspec.json.decode(data, type=kind)
 
 
@@ -310,8 +311,22 @@ def read_solution(data: bytes) -> Solution:
 
 def solution_of(document: SolutionDocument) -> Solution:
     """The solution of a document."""
-    plans = tuple(Plan(each.robot, tuple(Visit(*visit) for visit in each.visits)) for each in document.plans)
-    return Solution(plans, document.order, document.unplanned)
+    return Solution(_plans(document.plans), document.order, document.unplanned)
+
+
+def _plans(documents: Sequence[PlanDocument]) -> tuple[Plan, ...]:
+    return tuple(Plan(each.robot, tuple(Visit(*visit) for visit in each.visits)) for each in documents)
+
+
+def read_trace(data: bytes) -> Trace:
+    """Read a trace; raises `Refusal` if it is malformed. `trace_violations` decides whether it follows a solution."""
+    document = decode(data, TraceDocument, TRACE_FORMAT)
+    return Trace(document.now, _plans(document.plans))
+
+
+def read_query_certificate(data: bytes) -> QueryCertificateDocument:
+    """Read a query certificate; raises `Refusal` if it is malformed."""
+    return decode(data, QueryCertificateDocument, QUERY_FORMAT)
 
 
 def visits_document(plan: Plan) -> tuple[tuple[ResourceId, int, int | None], ...]:
@@ -319,10 +334,18 @@ def visits_document(plan: Plan) -> tuple[tuple[ResourceId, int, int | None], ...
     return tuple((visit.resource, visit.enter, visit.leave) for visit in plan.visits)
 
 
+def _plan_documents(plans: Sequence[Plan]) -> tuple[PlanDocument, ...]:
+    return tuple(PlanDocument(plan.robot, visits_document(plan)) for plan in plans)
+
+
 def solution_document(solution: Solution) -> SolutionDocument:
     """The document of a solution."""
-    plans = tuple(PlanDocument(plan.robot, visits_document(plan)) for plan in solution.plans)
-    return SolutionDocument(SOLUTION_FORMAT, plans, solution.order, solution.unplanned)
+    return SolutionDocument(SOLUTION_FORMAT, _plan_documents(solution.plans), solution.order, solution.unplanned)
+
+
+def trace_document(trace: Trace) -> TraceDocument:
+    """The document of a trace."""
+    return TraceDocument(TRACE_FORMAT, trace.now, _plan_documents(trace.plans))
 
 
 def verdict_document(verdict: Verdict) -> VerdictDocument:
@@ -332,18 +355,7 @@ def verdict_document(verdict: Verdict) -> VerdictDocument:
         valid=verdict.valid,
         cost=verdict.cost,
         unplanned=verdict.unplanned,
-        violations=tuple(_violation_document(violation) for violation in verdict.violations),
-    )
-
-
-def _violation_document(violation: Violation) -> ViolationDocument:
-    return ViolationDocument(
-        violation.rule,
-        violation.robots,
-        violation.resource,
-        violation.start,
-        violation.end,
-        violation.message,
+        violations=msgspec.convert(verdict.violations, tuple[ViolationDocument, ...], from_attributes=True),
     )
 
 
@@ -365,3 +377,8 @@ def write_solution(solution: Solution) -> bytes:
 def write_verdict(verdict: Verdict) -> bytes:
     """Write a verdict document."""
     return write(verdict_document(verdict))
+
+
+def write_trace(trace: Trace) -> bytes:
+    """Write a trace document."""
+    return write(trace_document(trace))

@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from carp_spec import RULES
+from carproof.registry import RULES
 
 RULES_BY_ID = {rule.id: rule for rule in RULES}
 
