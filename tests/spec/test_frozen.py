@@ -2,7 +2,7 @@
 
 import importlib
 import pkgutil
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import is_dataclass
 from types import ModuleType
 from typing import Any
@@ -13,19 +13,26 @@ import pytest
 import carp_reference
 import carp_spec
 from carp_reference.problem import Problem
-from carp_verify.documents import InstanceDocument
+from carp_verify import bounds, documents
 
 
-def classes_of(package: ModuleType) -> Iterator[type[Any]]:
-    """Every class of every module of the package, except those imported from elsewhere."""
+def modules_of(package: ModuleType) -> Iterator[ModuleType]:
+    """Every module of the package."""
     for module in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
-        for value in vars(importlib.import_module(module.name)).values():
-            if isinstance(value, type) and value.__module__ == module.name:
+        yield importlib.import_module(module.name)
+
+
+def classes_of(modules: Iterable[ModuleType]) -> Iterator[type[Any]]:
+    """Every class of the modules, except those imported from elsewhere."""
+    for module in modules:
+        for value in vars(module).values():
+            if isinstance(value, type) and value.__module__ == module.__name__:
                 yield value
 
 
-DATACLASSES = [each for package in (carp_spec, carp_reference) for each in classes_of(package) if is_dataclass(each)]
-STRUCTS = [each for each in classes_of(carp_spec) if issubclass(each, msgspec.Struct)]
+MODULES = [*modules_of(carp_spec), *modules_of(carp_reference)]
+DATACLASSES = [each for each in classes_of(MODULES) if is_dataclass(each)]
+STRUCTS = [each for each in classes_of([*MODULES, documents, bounds]) if issubclass(each, msgspec.Struct)]
 
 
 @pytest.mark.parametrize("kind", DATACLASSES)
@@ -43,4 +50,4 @@ def test_documents_are_frozen_and_refuse_unknown_fields(kind: type[msgspec.Struc
 
 def test_the_classes_that_everybody_uses_are_among_them() -> None:
     assert {carp_spec.Plan, carp_spec.Rule, carp_spec.Verdict, carp_spec.Neighbourhood, Problem} <= {*DATACLASSES}
-    assert InstanceDocument in STRUCTS
+    assert {documents.InstanceDocument, bounds.BoundDocument} <= {*STRUCTS}
