@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from carp_experiments.crosscheck import FULL_QUESTIONS, QUICK_QUESTIONS, crosscheck_cases, crosscheck_report
+from carp_experiments.executions import FULL_EXECUTIONS, QUICK_EXECUTIONS, executions_cases, executions_report
 from carp_experiments.experiments import EXPERIMENTS, Experiment, Profile
 from carp_experiments.kernel_verdicts import FULL_VERDICTS, QUICK_VERDICTS, kernel_cases, kernel_report
 from carp_experiments.map_cases import WAREHOUSE
@@ -36,6 +37,7 @@ F = TypeVar("F", bound=Callable[..., Any])
         "carproof experiment quality --store full.sqlite --report report",
         "carproof experiment crosscheck --questions 50000 --seed 7",
         "carproof experiment kernel --verdicts 100000",
+        "carproof experiment executions --executions 100000",
     )
 )
 def command() -> None:
@@ -134,6 +136,22 @@ def crosscheck(quick: bool, questions: int, seed: int, **campaign: Any) -> Answe
     cases = crosscheck_cases(size, seed)
     command = f"carproof experiment crosscheck --questions {size} --seed {seed}"
     return go("crosscheck", "crosscheck", command, f"{size} questions", cases, crosscheck_report, **campaign)
+
+
+@command.command("executions")
+@click.option("--quick", is_flag=True, help=f"{QUICK_EXECUTIONS} executions.")
+@click.option("--executions", type=click.IntRange(min=1), default=FULL_EXECUTIONS, help="How many executions.")
+@click.option("--seed", type=click.IntRange(0, 2**64 - 1), default=0, help="The seed of solutions and delays.")
+@campaign_options
+def delayed(quick: bool, executions: int, seed: int, **campaign: Any) -> Answer:  # noqa: ANN401 - click's
+    """Execute small random solutions in order with delays: nothing may break, and only a rotation may stop robots.
+
+    Exit codes: 0 all executions end as they must, 1 one does not, 2 bad usage.
+    """
+    size = QUICK_EXECUTIONS if quick else executions
+    cases = executions_cases(size, seed)
+    command = f"carproof experiment executions --executions {size} --seed {seed}"
+    return go("executions", "executions", command, f"{size} executions", cases, executions_report, **campaign)
 
 
 @command.command("kernel")

@@ -1,86 +1,151 @@
-"""Delayed executions of small random solutions: in order none breaks a rule or stops, on the clock some collide.
+"""A campaign of delayed executions in order: without a rotation none breaks a rule or stops, with one each stops.
 
-`python -m carp_experiments.executions FILE --to NUMBER` takes the questions up to that number, and continues where FILE
-ends. Each line of FILE is about `PART` questions.
+In each solution a robot waits for another, and in each execution at least one visit is delayed. The rules of the law
+judge the traces. Executions on the clock, with the same delays, show how many of them would collide.
 """
 
-import argparse
-import json
-from collections import Counter
-from dataclasses import replace
-from pathlib import Path
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
 
-import carp_reference
-from carp_reference.execution import Order, order_of
-from carp_spec import Carp, check
+import msgspec
+
+from carp_experiments.report import ExperimentReport, Table
+from carp_experiments.store import Row
+from carp_reference import plan
+from carp_reference.execution import Delay, Order, executed, in_order, on_the_clock, order_of
+from carp_spec import Carp, Plan, Visit
+from carp_spec.dependencies import Dependency, Node, shortest_cycle
 from carp_spec.execution_rules import trace_violations
+from carp_spec.joint_rules import JOINT_RULES
 from carp_spec.permutations import splitmix64
-from carproof.delays import Delay, executed, in_order, on_the_clock, stuck
-from carproof.questions import Draw, draw_instance
+from carp_spec.traces import Trace
+from carproof.questions import Draw, draw_fleet, draw_instance
 
-PART = 1000
-EACH = 100  # executions of one solution
-TOGETHER = {"joint/capacity", "joint/exchange", "joint/following"}
+BLOCK = 1000
+FULL_EXECUTIONS = 1_000_000
+QUICK_EXECUTIONS = 10_000
+OF_A_SOLUTION = 20
+LONGEST = 6
+SHOWN = 3
+KEPT_BY_WAITING = {"execution/order", "execution/exchange"}
 
 
-class BrokenError(Exception):
-    """An execution in order broke a rule or stopped."""
+class Block(msgspec.Struct):
+    """A row of the campaign. The solutions of `cyclic` executions have a rotation.
+
+    `collided` is how many collide on the clock.
+    """
+
+    executions: int
+    cyclic: int = 0
+    delays: int = 0
+    collided: int = 0
+    broken: list[dict[str, Any]] = msgspec.field(default_factory=list)
 
 
-def part(first: int) -> Counter[str]:
-    """The results of `PART` executions from that number on; equal numbers give equal executions."""
-    found: Counter[str] = Counter()
-    for number in range(first, first + PART, EACH):
-        draw = Draw(splitmix64(number))
+@dataclass(frozen=True, slots=True)
+class ExecutionsCase:
+    """The executions of a seed numbered from `first` on."""
+
+    first: int
+    executions: int = BLOCK
+    seed: int = 0
+
+    @property
+    def key(self) -> str:
+        """Blocks in their order."""
+        return f"seed {self.seed} executions {self.first:09} to {self.first + self.executions - 1:09}"
+
+    def run(self) -> Row:
+        """How many executions were of each kind, and those that did not end as they must."""
+        block = Block(self.executions)
+        for first in range(self.first, self.first + self.executions, OF_A_SOLUTION):
+            draw = Draw(splitmix64(next(splitmix64(self.seed)) + first))
+            order = drawn_order(draw)
+            cycle = shortest_cycle(order.edges)
+            for number in range(first, min(first + OF_A_SOLUTION, self.first + self.executions)):
+                delays = drawn_delays(draw, order, cycle)
+                clock = executed(order, on_the_clock(order, delays), delays)
+                block.cyclic += bool(cycle)
+                block.delays += len(delays)
+                block.collided += bool(crashes(order, clock))
+                wrong = wrong_end(order, delays, cycle)
+                if wrong:
+                    block.broken.append({"number": number, "wrong": wrong, "solution": str(order.solution)})
+        return msgspec.to_builtins(block)  # type: ignore[no-any-return] # a struct becomes a dict
+
+
+def drawn_order(draw: Draw) -> Order:
+    """A solution of few robots, by CARP or by no planner, in which a robot waits for another."""
+    while True:
         instance = draw_instance(draw)
         if draw.happens(3):
             instance = replace(instance, following="forbidden")
-        solution = carp_reference.plan(instance, Carp())
+        solution = draw_fleet(draw, instance).solution if draw.happens(2) else plan(instance, Carp())
         order = order_of(instance, solution)
-        kind = "cyclic" if stuck(order) else "acyclic"
-        for _ in range(EACH):
-            found[kind] += 1
-            found.update(look(order, draw, kind == "cyclic"))
-    return found
+        if delayed_visits(order) and any(edge.before[0] != edge.after[0] for edge in order.edges):
+            return order
 
 
-def look(order: Order, draw: Draw, is_cyclic: bool) -> Counter[str]:
-    """Execute a solution once with random delays; raises `BrokenError`."""
-    instance, solution = order.instance, order.solution
-    places = [(plan.robot, place) for plan in solution.plans for place in range(len(plan.visits) - 1)]
-    delays = [Delay(*node, draw.between(1, 6)) for node in places if draw.happens(4)]
+def delayed_visits(order: Order) -> Sequence[Node]:
+    """The visits that can be delayed: all but the last of each robot."""
+    return [node for node in order.nodes if not order.is_last(node)]
+
+
+def drawn_delays(draw: Draw, order: Order, cycle: Sequence[Dependency]) -> Sequence[Delay]:
+    """Delays of some visits, among them the visit from which a robot enters the rotation."""
+    visits = delayed_visits(order)
+    robot, place = cycle[0].after if cycle else (None, 0)
+    chosen = {draw.one_of(visits) if robot is None else (robot, place - 1)}
+    return [Delay(*node, draw.between(1, LONGEST)) for node in visits if node in chosen or draw.happens(4)]
+
+
+def crashes(order: Order, trace: Trace) -> list[str]:
+    """The rules of robots together that a trace breaks."""
+    return [found.rule for rule in JOINT_RULES for found in rule(order.instance, trace.plans)]
+
+
+def wrong_end(order: Order, delays: Sequence[Delay], cycle: Sequence[Dependency]) -> list[str]:
+    """What is wrong with an execution in order: rules broken, robots too late, or other robots standing than must."""
     enters = in_order(order, delays)
     trace = executed(order, enters, delays)
+    broken = [found.rule for found in trace_violations(order.instance, order.solution, trace)] + crashes(order, trace)
     total = sum(delay.ticks for delay in delays)
-    broken = [violation.rule for violation in trace_violations(instance, solution, trace)]
-    broken += [violation.rule for violation in check(instance, trace.plans) if violation.rule in TOGETHER]
-    too_late = any(tick > order.visit(node).enter + total for node, tick in enters.items())
-    stands = len(enters) < len(order.nodes)
-    if broken or too_late or stands != is_cyclic:
-        raise BrokenError(f"{broken}, too late: {too_late}, stands: {stands}: {instance} {solution} {delays}")
-    clock = executed(order, on_the_clock(order, delays), delays)
-    collides = any(violation.rule in TOGETHER for violation in check(instance, clock.plans))
-    return Counter(delayed=bool(delays), stands=stands, collides=collides)
+    late = [f"{node} is late" for node, tick in enters.items() if tick > order.visit(node).enter + total]
+    never = {node for node in order.nodes if node not in enters}
+    missing = [f"{edge.after} does not stand" for edge in cycle if edge.after not in never]
+    if not cycle:
+        missing += [f"{node} stands" for node in never]
+    return broken + late + missing + [f"{robot} could go on" for robot in able_to_go_on(order, trace)]
 
 
-def main() -> None:
-    """Run the campaign."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("file", type=Path)
-    parser.add_argument("--to", type=int, default=1_000_000)
-    options = parser.parse_args()
-    done = options.file.read_text().splitlines() if options.file.exists() else []
-    totals: Counter[str] = Counter()
-    for line in done:
-        totals.update(json.loads(line))
-    with options.file.open("a") as file:
-        for first in range(len(done) * PART, options.to, PART):
-            found = part(first)
-            totals.update(found)
-            file.write(json.dumps(found) + "\n")
-            file.flush()
-    print(json.dumps(totals))  # noqa: T201 - the result
+def able_to_go_on(order: Order, trace: Trace) -> Iterator[str]:
+    """The standing robots that could go on alone, by the rules."""
+    later = trace.now + LONGEST + max(order.duration(node) for node in order.nodes)
+    for place, done in enumerate(trace.plans):
+        visits = order.plans[done.robot].visits
+        if len(done.visits) < len(visits):
+            left = [*done.visits[:-1], *(Visit(each.resource, each.enter, later) for each in done.visits[-1:])]
+            entered = Plan(done.robot, (*left, Visit(visits[len(left)].resource, later, None)))
+            plans = (*trace.plans[:place], entered, *trace.plans[place + 1 :])
+            broken = trace_violations(order.instance, order.solution, Trace(later, plans))
+            if not KEPT_BY_WAITING & {found.rule for found in broken}:
+                yield str(done.robot)
 
 
-if __name__ == "__main__":
-    main()
+def executions_cases(executions: int, seed: int) -> tuple[ExecutionsCase, ...]:
+    """That many executions, in blocks."""
+    return tuple(ExecutionsCase(first, min(BLOCK, executions - first), seed) for first in range(0, executions, BLOCK))
+
+
+def executions_report(rows: Iterable[Row]) -> ExperimentReport:
+    """The number of executions of each kind, and those that did not end as they must."""
+    blocks = [msgspec.convert(row, Block) for row in rows]
+    broken = [each for block in blocks for each in block.broken]
+    columns = ("executions", "with a rotation", "delays", "collide on the clock", "end wrongly")
+    sums = [sum(getattr(block, name) for block in blocks) for name in ("executions", "cyclic", "delays", "collided")]
+    shown = tuple(f"A WRONG END: {msgspec.json.encode(each).decode()}" for each in broken[:SHOWN])
+    title = "Delayed executions in order: without a rotation all robots arrive, with one its robots stop"
+    table = Table("executions", title, columns, ((*map(str, sums), str(len(broken))),), columns)
+    return ExperimentReport({"broken": broken}, (table,), (), shown, holds=not broken)
