@@ -1,7 +1,8 @@
 """A campaign of delayed executions in order: without a rotation none breaks a rule or stops, with one each stops.
 
-In each solution a robot waits for another, and in each execution at least one visit is delayed. The rules of the law
-judge the traces. Executions on the clock, with the same delays, show how many of them would collide.
+In each solution a robot waits for another, and in each execution at least one visit is delayed. The executions of a
+solution without a rotation are made all at once. Some are made and judged by the law beside them, in order and on the
+clock, and must be the same.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -9,37 +10,40 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import msgspec
+import numpy as np
 
+from carp_experiments.many_executions import LONGEST, Longs, breaches, delays_of, entered_in_order, random_delays
 from carp_experiments.report import ExperimentReport, Table
 from carp_experiments.store import Row
 from carp_reference import plan
 from carp_reference.execution import Delay, Order, executed, in_order, on_the_clock, order_of
-from carp_spec import Carp, Plan, Visit
-from carp_spec.dependencies import Dependency, Node, shortest_cycle
+from carp_spec import Carp, Plan, RobotId, Visit
+from carp_spec.dependencies import Dependency, shortest_cycle
 from carp_spec.execution_rules import trace_violations
 from carp_spec.joint_rules import JOINT_RULES
 from carp_spec.permutations import splitmix64
 from carp_spec.traces import Trace
 from carproof.questions import Draw, draw_fleet, draw_instance
 
-BLOCK = 1000
+BLOCK = 10_000
 FULL_EXECUTIONS = 1_000_000
-QUICK_EXECUTIONS = 10_000
-OF_A_SOLUTION = 20
-LONGEST = 6
+QUICK_EXECUTIONS = 50_000
+OF_A_SOLUTION = 100
+JUDGED = 2
+"""The executions in order of each solution that the law judges too; on the clock it judges one."""
 SHOWN = 3
-KEPT_BY_WAITING = {"execution/order", "execution/exchange"}
 
 
 class Block(msgspec.Struct):
-    """A row of the campaign. The solutions of `cyclic` executions have a rotation.
+    """A row of the campaign: executions, those of solutions with a rotation, and delays; `broken` ended wrongly.
 
-    `collided` is how many collide on the clock.
+    Of the solutions, `collided` collide on the clock.
     """
 
     executions: int
     cyclic: int = 0
     delays: int = 0
+    solutions: int = 0
     collided: int = 0
     broken: list[dict[str, Any]] = msgspec.field(default_factory=list)
 
@@ -64,15 +68,16 @@ class ExecutionsCase:
             draw = Draw(splitmix64(next(splitmix64(self.seed)) + first))
             order = drawn_order(draw)
             cycle = shortest_cycle(order.edges)
-            for number in range(first, min(first + OF_A_SOLUTION, self.first + self.executions)):
-                delays = drawn_delays(draw, order, cycle)
-                clock = executed(order, on_the_clock(order, delays), delays)
-                block.cyclic += bool(cycle)
-                block.delays += len(delays)
-                block.collided += bool(crashes(order, clock))
-                wrong = wrong_end(order, delays, cycle)
-                if wrong:
-                    block.broken.append({"number": number, "wrong": wrong, "solution": str(order.solution)})
+            count = min(OF_A_SOLUTION, self.first + self.executions - first)
+            always = (cycle[0].after[0], cycle[0].after[1] - 1) if cycle else None
+            delays = random_delays(order, next(draw.stream), count, always)
+            singly = [delays_of(order, column) for column in delays.T[: count if cycle else JUDGED]]
+            found = wrong_stops(order, singly, cycle) if cycle else wrong_arrivals(order, delays, singly)
+            block.solutions += 1
+            block.cyclic += count if cycle else 0
+            block.delays += int(np.count_nonzero(delays))
+            block.collided += bool(crashes(order, executed(order, on_the_clock(order, singly[0]), singly[0])))
+            block.broken += [{"number": first + place, "wrong": wrong} for place, wrong in found]
         return msgspec.to_builtins(block)  # type: ignore[no-any-return] # a struct becomes a dict
 
 
@@ -84,54 +89,70 @@ def drawn_order(draw: Draw) -> Order:
             instance = replace(instance, following="forbidden")
         solution = draw_fleet(draw, instance).solution if draw.happens(2) else plan(instance, Carp())
         order = order_of(instance, solution)
-        if delayed_visits(order) and any(edge.before[0] != edge.after[0] for edge in order.edges):
+        waits = any(edge.before[0] != edge.after[0] for edge in order.edges)
+        if waits and any(len(each.visits) > 1 for each in solution.plans):
             return order
 
 
-def delayed_visits(order: Order) -> Sequence[Node]:
-    """The visits that can be delayed: all but the last of each robot."""
-    return [node for node in order.nodes if not order.is_last(node)]
+def wrong_arrivals(order: Order, delays: Longs, singly: Sequence[Sequence[Delay]]) -> Iterator[tuple[int, str]]:
+    """The executions in order that break a rule or are too late, and those that the law judges otherwise."""
+    enters = entered_in_order(order, delays)
+    planned = np.array([[order.visit(node).enter] for node in order.nodes])
+    strays, collisions = breaches(order, enters)
+    late = (enters > planned + delays.sum(axis=0)).any(axis=0)
+    for what, flags in (("does not follow the plans", strays), ("collides", collisions), ("is too late", late)):
+        yield from ((place, what) for place in np.flatnonzero(flags).tolist())
+    for place, each in enumerate(singly):
+        if in_order(order, each) != dict(zip(order.nodes, enters[:, place].tolist(), strict=True)):
+            yield place, "has other ticks"
+        for name, ticks in (("in order", enters[:, place : place + 1]), ("on the clock", on_clock(order, each))):
+            trace = executed(order, dict(zip(order.nodes, ticks[:, 0].tolist(), strict=True)), each)
+            law = not follows(order, trace), bool(crashes(order, trace))
+            if law != tuple(bool(flags[0]) for flags in breaches(order, ticks)):
+                yield place, f"is judged otherwise {name}"
 
 
-def drawn_delays(draw: Draw, order: Order, cycle: Sequence[Dependency]) -> Sequence[Delay]:
-    """Delays of some visits, among them the visit from which a robot enters the rotation."""
-    visits = delayed_visits(order)
-    robot, place = cycle[0].after if cycle else (None, 0)
-    chosen = {draw.one_of(visits) if robot is None else (robot, place - 1)}
-    return [Delay(*node, draw.between(1, LONGEST)) for node in visits if node in chosen or draw.happens(4)]
+def on_clock(order: Order, delays: Sequence[Delay]) -> Longs:
+    """The entries of an execution on the clock, as a column."""
+    enters = on_the_clock(order, delays)
+    return np.array([[enters[node]] for node in order.nodes])
 
 
-def crashes(order: Order, trace: Trace) -> list[str]:
-    """The rules of robots together that a trace breaks."""
-    return [found.rule for rule in JOINT_RULES for found in rule(order.instance, trace.plans)]
+def follows(order: Order, trace: Trace) -> bool:
+    """Whether a trace follows the solution by the rules of the law."""
+    return not trace_violations(order.instance, order.solution, trace)
 
 
-def wrong_end(order: Order, delays: Sequence[Delay], cycle: Sequence[Dependency]) -> list[str]:
-    """What is wrong with an execution in order: rules broken, robots too late, or other robots standing than must."""
-    enters = in_order(order, delays)
-    trace = executed(order, enters, delays)
-    broken = [found.rule for found in trace_violations(order.instance, order.solution, trace)] + crashes(order, trace)
-    total = sum(delay.ticks for delay in delays)
-    late = [f"{node} is late" for node, tick in enters.items() if tick > order.visit(node).enter + total]
-    never = {node for node in order.nodes if node not in enters}
-    missing = [f"{edge.after} does not stand" for edge in cycle if edge.after not in never]
-    if not cycle:
-        missing += [f"{node} stands" for node in never]
-    return broken + late + missing + [f"{robot} could go on" for robot in able_to_go_on(order, trace)]
+def crashes(order: Order, trace: Trace) -> bool:
+    """Whether robots collide by the rules of the law."""
+    return any(True for rule in JOINT_RULES for _ in rule(order.instance, trace.plans))
 
 
-def able_to_go_on(order: Order, trace: Trace) -> Iterator[str]:
-    """The standing robots that could go on alone, by the rules."""
+def wrong_stops(
+    order: Order, singly: Sequence[Sequence[Delay]], cycle: Sequence[Dependency]
+) -> Iterator[tuple[int, str]]:
+    """The executions in order in which robots of the rotation go on, or could by the law, or that break a rule."""
+    for place, delays in enumerate(singly):
+        enters = in_order(order, delays)
+        trace = executed(order, enters, delays)
+        if not follows(order, trace) or crashes(order, trace):
+            yield place, "breaks a rule"
+        if any(edge.after in enters for edge in cycle):
+            yield place, "turns"
+        for robot in able_to_go_on(order, trace):
+            yield place, f"stops robot {robot} without a reason"
+
+
+def able_to_go_on(order: Order, trace: Trace) -> Iterator[RobotId]:
+    """The standing robots that could go on alone."""
     later = trace.now + LONGEST + max(order.duration(node) for node in order.nodes)
     for place, done in enumerate(trace.plans):
         visits = order.plans[done.robot].visits
         if len(done.visits) < len(visits):
             left = [*done.visits[:-1], *(Visit(each.resource, each.enter, later) for each in done.visits[-1:])]
             entered = Plan(done.robot, (*left, Visit(visits[len(left)].resource, later, None)))
-            plans = (*trace.plans[:place], entered, *trace.plans[place + 1 :])
-            broken = trace_violations(order.instance, order.solution, Trace(later, plans))
-            if not KEPT_BY_WAITING & {found.rule for found in broken}:
-                yield str(done.robot)
+            if follows(order, Trace(later, (*trace.plans[:place], entered, *trace.plans[place + 1 :]))):
+                yield done.robot
 
 
 def executions_cases(executions: int, seed: int) -> tuple[ExecutionsCase, ...]:
@@ -143,9 +164,11 @@ def executions_report(rows: Iterable[Row]) -> ExperimentReport:
     """The number of executions of each kind, and those that did not end as they must."""
     blocks = [msgspec.convert(row, Block) for row in rows]
     broken = [each for block in blocks for each in block.broken]
-    columns = ("executions", "with a rotation", "delays", "collide on the clock", "end wrongly")
-    sums = [sum(getattr(block, name) for block in blocks) for name in ("executions", "cyclic", "delays", "collided")]
+    columns = ("executions", "with a rotation", "delays", "end wrongly", "solutions", "collide on the clock")
+    counts = {name: sum(getattr(block, name) for block in blocks) for name in Block.__struct_fields__[:-1]}
+    executions, cyclic, delays, solutions, collided = map(str, counts.values())
     shown = tuple(f"A WRONG END: {msgspec.json.encode(each).decode()}" for each in broken[:SHOWN])
     title = "Delayed executions in order: without a rotation all robots arrive, with one its robots stop"
-    table = Table("executions", title, columns, ((*map(str, sums), str(len(broken))),), columns)
-    return ExperimentReport({"broken": broken}, (table,), (), shown, holds=not broken)
+    row = (executions, cyclic, delays, str(len(broken)), solutions, collided)
+    table = Table("executions", title, columns, (row,), columns)
+    return ExperimentReport({**counts, "broken": broken}, (table,), (), shown, holds=not broken)

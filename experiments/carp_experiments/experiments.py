@@ -18,12 +18,14 @@ from carp_experiments.report import ExperimentReport
 from carp_experiments.reuse_counts import reuse_report, reuse_row
 from carp_experiments.small_gaps import SIDE, gap_report, gap_row
 from carp_experiments.store import Row
+from carp_experiments.streams import stream_report, stream_row
 from carp_experiments.unplanned import unplanned_report, unplanned_row
 from carp_spec import Refusal
 
 ALL_MAPS = tuple(range(FULL_MAP + 1))
 SOME_MAPS = (0, 5, 10, 15, 20)
 SPARSE_MAPS = tuple(range(8))
+MOST_STREAMED = 100_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,7 +144,7 @@ EXPERIMENTS = (
     Experiment(
         "execution",
         "Late robots on the clock, in order and switching: lateness, arrivals and collisions.",
-        Profile(3, 40, (10, 15, FULL_MAP, WAREHOUSE)),
+        Profile(10, 50, (10, 15, FULL_MAP, WAREHOUSE)),
         Profile(2, 10, (10, 20)),
         execution_row,
         lambda rows, _: execution_report(rows),
@@ -162,5 +164,14 @@ EXPERIMENTS = (
         Profile(5, 30, (FULL_MAP,)),
         people_row,
         people_report,
+    ),
+    Experiment(
+        "stream",
+        "Robots that come at random, at several rates: throughput up to saturation, and waiting.",
+        Profile(6, 800, (10, FULL_MAP, WAREHOUSE)),
+        Profile(2, 200, (10, FULL_MAP)),
+        stream_row,
+        stream_report,
+        places=MOST_STREAMED,
     ),
 )

@@ -2,7 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Protocol, TypeVar
 
 import msgspec
@@ -12,6 +12,7 @@ from carp_spec import Instance
 
 if TYPE_CHECKING:
     from carp_optimized.fleet import PlannedFleet
+    from carproof.generate import Fleet
 
 ROBOTS = 100
 FULL_MAP = 20
@@ -54,18 +55,19 @@ class MapCase:
 
 def instance_of(case: MapCase) -> Instance:
     """The paper's grid or the warehouse with the robots; raises `Refusal` where they have no place on it."""
-    from carproof.generate import (  # noqa: PLC0415 - each worker loads it
-        Fleet,
-        Grid,
-        Warehouse,
-        grid_instance,
-        warehouse_instance,
-    )
+    from carproof.generate import Fleet  # noqa: PLC0415 - each worker loads it
 
-    if case.map == WAREHOUSE:
-        fleet = Fleet(robots=case.robots, seed=case.assignment, distinct="starts")
+    fleet = Fleet(robots=case.robots, seed=case.assignment)
+    return map_instance(case.map, replace(fleet, distinct="starts") if case.map == WAREHOUSE else fleet)
+
+
+def map_instance(map: int, fleet: "Fleet") -> Instance:
+    """A map or the warehouse with a fleet; raises `Refusal` where it has no place on it."""
+    from carproof.generate import Grid, Warehouse, grid_instance, warehouse_instance  # noqa: PLC0415
+
+    if map == WAREHOUSE:
         return warehouse_instance(Warehouse(stations=STATIONS), fleet)
-    return grid_instance(Grid(map=case.map), Fleet(robots=case.robots, seed=case.assignment))
+    return grid_instance(Grid(map=map), fleet)
 
 
 def fleet_of(case: MapCase) -> "PlannedFleet":

@@ -28,6 +28,8 @@ TITLES = {
     "execution": "Late robots: drivers compared",
     "following": "The price of plans without rotations",
     "people": "People first: the cost for the robots",
+    "stream": "Streams of robots: throughput up to saturation",
+    "executions": "A million delayed executions in order",
 }
 MEANINGS = {
     "execution": "On the clock late robots collide; in order, and switching, none collides or stands for ever, but "

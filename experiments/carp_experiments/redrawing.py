@@ -12,6 +12,7 @@ from carp_experiments.quality_report import quality_figures
 from carp_experiments.related_work import Related, related_figures
 from carp_experiments.report import Figure, write_figure
 from carp_experiments.small_gaps import GapOf, gap_figures
+from carp_experiments.streams import StreamOf, stream_figures
 
 FIGURES: Mapping[str, Callable[[Run], Sequence[Figure]]] = {
     "quality": lambda run: quality_figures(summary_of(run, QualitySummary)),
@@ -21,6 +22,7 @@ FIGURES: Mapping[str, Callable[[Run], Sequence[Figure]]] = {
     "polish": lambda run: polish_figures(summary_of(run, PolishSummary)),
     "execution": lambda run: execution_figures(summary_of(run, tuple[DriverOf, ...])),
     "people": lambda run: people_figures(summary_of(run, tuple[PeopleOf, ...])),
+    "stream": lambda run: stream_figures(summary_of(run, tuple[StreamOf, ...])),
 }
 """The figures of a run, by the name of its experiment."""
 

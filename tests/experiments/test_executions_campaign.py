@@ -1,61 +1,84 @@
-"""The campaign of delayed executions: it finds a driver that breaks the order, stops, or turns a rotation."""
+"""The campaign of delayed executions: it finds wrong drivers and wrong judges, each planted here once."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
+import numpy as np
 import pytest
 
 from carp_experiments import executions
 from carp_experiments.executions import ExecutionsCase, executions_cases, executions_report
-from carp_experiments.store import Row
+from carp_experiments.many_executions import Flags, Longs, breaches, entered_in_order, random_numbers
 from carp_reference.execution import Delay, Order, earliest, in_order, on_the_clock
 from carp_spec.dependencies import Dependency, Node
+from carp_spec.permutations import splitmix64
 
 
-def wrong_ends(count: int = 1000) -> str:
-    """What the campaign says of the wrong ends of that many executions."""
-    report = executions_report([ExecutionsCase(0, count).run()])
+def wrong_ends(count: int = 2000) -> set[str]:
+    """The faults that the campaign finds in that many executions."""
+    block = ExecutionsCase(0, count, seed=7).run()
+    report = executions_report([block])
     assert report.holds == (not report.lines)
-    return " ".join(report.lines)
+    found = report.summary
+    assert isinstance(found, Mapping)
+    return {each["wrong"] for each in found["broken"]}
 
 
 def test_executions_in_order_end_as_they_must_and_many_collide_on_the_clock() -> None:
-    report = executions_report(case.run() for case in executions_cases(1240, seed=7))
+    report = executions_report(case.run() for case in executions_cases(20_100, seed=7))
     assert report.holds
-    total, cyclic, delays, collided, _ = map(int, report.tables[0].rows[0])
-    assert total == 1240
-    assert cyclic == 40
+    total, cyclic, delays, _, solutions, collided = map(int, report.tables[0].rows[0])
+    assert (total, cyclic, solutions) == (20_100, 500, 201)
     assert delays >= total
-    assert collided > total // 3
+    assert collided > solutions // 3
 
 
-def test_parts_of_a_block_are_those_of_the_whole() -> None:
-    assert ExecutionsCase(0, 40).run() != ExecutionsCase(40, 40).run()
-    assert ExecutionsCase(0, 40, seed=5).run() == ExecutionsCase(0, 40, seed=5).run()
+def test_equal_numbers_are_equal_executions() -> None:
+    assert ExecutionsCase(0, 400).run() == ExecutionsCase(0, 400).run() != ExecutionsCase(0, 400, seed=5).run()
+
+
+def test_random_numbers_are_those_of_the_stream() -> None:
+    stream = splitmix64(2**63 + 5)
+    assert random_numbers(2**63 + 5, 20).tolist() == [next(stream) for _ in range(20)]
 
 
 def test_a_driver_that_keeps_to_the_clock_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(executions, "in_order", on_the_clock)
-    assert "joint/capacity" in wrong_ends()
+    assert "has other ticks" in wrong_ends()
 
 
-def test_a_robot_that_waits_too_long_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    def late(order: Order, delays: Iterable[Delay]) -> dict[Node, int]:
-        delays = list(delays)
-        total = sum(delay.ticks for delay in delays)
-        return {node: tick + total + 1 for node, tick in in_order(order, delays).items()}
+def test_entries_that_do_not_wait_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    def hasty(order: Order, delays: Longs) -> Longs:
+        return entered_in_order(order, np.zeros_like(delays))
 
-    monkeypatch.setattr(executions, "in_order", late)
-    assert "is late" in wrong_ends()
+    monkeypatch.setattr(executions, "entered_in_order", hasty)
+    assert "has other ticks" in wrong_ends()
 
 
-def test_a_robot_that_stops_without_a_reason_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    def stopping(order: Order, delays: Iterable[Delay]) -> dict[Node, int]:
-        enters = in_order(order, delays)
-        return {node: tick for node, tick in enters.items() if node != order.nodes[-1]}
+def test_entries_that_are_too_early_collide(monkeypatch: pytest.MonkeyPatch) -> None:
+    def early(order: Order, delays: Longs) -> Longs:
+        return entered_in_order(order, delays) // 2
 
-    monkeypatch.setattr(executions, "in_order", stopping)
-    assert "stands" in wrong_ends()
-    assert "could go on" in wrong_ends()
+    monkeypatch.setattr(executions, "entered_in_order", early)
+    assert {"does not follow the plans", "collides"} <= wrong_ends()
+
+
+def test_entries_that_are_too_late_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    def late(order: Order, delays: Longs) -> Longs:
+        later: Longs = entered_in_order(order, delays) + delays.sum(axis=0) + 1
+        return later
+
+    monkeypatch.setattr(executions, "entered_in_order", late)
+    assert "is too late" in wrong_ends()
+
+
+@pytest.mark.parametrize("blind", [0, 1])
+def test_a_judge_that_overlooks_a_breach_is_found(blind: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    def overlooking(order: Order, enters: Longs) -> tuple[Flags, Flags]:
+        found = breaches(order, enters)
+        return (found[0] & (blind != 0), found[1] & (blind != 1))
+
+    monkeypatch.setattr(executions, "breaches", overlooking)
+    assert wrong_ends() == {"is judged otherwise on the clock"}
 
 
 def test_a_rotation_that_turns_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -63,7 +86,15 @@ def test_a_rotation_that_turns_is_found(monkeypatch: pytest.MonkeyPatch) -> None
         return earliest(order, {(robot.id, 0): robot.release for robot in order.instance.robots}, delays)
 
     monkeypatch.setattr(executions, "in_order", turning)
-    assert "does not stand" in wrong_ends(3000)
+    assert wrong_ends(20_000) == {"turns"}
+
+
+def test_a_robot_that_stops_without_a_reason_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    def stopping(order: Order, delays: Iterable[Delay]) -> dict[Node, int]:
+        return {node: tick for node, tick in in_order(order, delays).items() if not order.is_last(node)}
+
+    monkeypatch.setattr(executions, "in_order", stopping)
+    assert any("without a reason" in each for each in wrong_ends(20_000))
 
 
 def test_a_rotation_that_the_analysis_misses_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -72,11 +103,4 @@ def test_a_rotation_that_the_analysis_misses_is_found(monkeypatch: pytest.Monkey
         return ()
 
     monkeypatch.setattr(executions, "shortest_cycle", none)
-    assert "stands" in wrong_ends(3000)
-
-
-def test_wrong_ends_are_counted_over_all_blocks() -> None:
-    blocks: list[Row] = [{"executions": 10}, {"executions": 5, "cyclic": 2, "broken": [{"number": 3}]}]
-    report = executions_report(blocks)
-    assert report.tables[0].rows == (("15", "2", "0", "0", "1"),)
-    assert not report.holds
+    assert "has other ticks" in wrong_ends(20_000)

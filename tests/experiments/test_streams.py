@@ -1,0 +1,94 @@
+"""Streams of robots: docks, arrivals, the plans of both planners, and the figures."""
+
+import msgspec
+import pytest
+
+from carp_experiments import streams
+from carp_experiments.map_cases import FULL_MAP, WAREHOUSE, MapCase
+from carp_experiments.store import digest_of
+from carp_experiments.streams import (
+    PLANNERS,
+    RATES,
+    StreamOf,
+    StreamRow,
+    middle_half,
+    stream_instance,
+    stream_report,
+    stream_row,
+    streamed,
+)
+from carp_optimized.fleet import PlannedFleet
+from carp_spec import Neighbourhood, Plan, Visit, check_update
+from carp_spec.instance_rules import instance_faults
+
+SMALL = MapCase(stream_row, FULL_MAP, 1, 120)
+
+
+def test_robots_come_at_the_rate_in_docks_that_nobody_enters() -> None:
+    for place in (10, WAREHOUSE):
+        instance = stream_instance(MapCase(stream_row, place, 3, 200), 400)
+        assert instance_faults(instance) == ()
+        releases = [robot.release for robot in instance.robots]
+        assert releases == sorted(releases)
+        assert 0 <= releases[0] < releases[-1] < 50
+        docks = {robot.start for robot in instance.robots}
+        assert all(instance.graph.resource[dock].capacity == 200 for dock in docks)
+        assert not docks & {target for _, target in instance.graph.moves}
+
+
+def test_docks_leave_the_moves_of_the_map_as_they_are() -> None:
+    graph = stream_instance(SMALL, 400).graph
+    assert sum(len(graph.successors[each.id]) for each in graph.resources[:400]) == 2 * 2 * 20 * 19
+    assert ("3,4", "3,5") in graph.moves
+    assert ("3,5", "3,4") in graph.moves
+
+
+def test_every_robot_gets_a_plan_and_a_higher_rate_makes_robots_wait() -> None:
+    for name in PLANNERS:
+        slow, fast = streamed(SMALL, name, 100), streamed(SMALL, name, 2000)
+        assert slow.shortest == fast.shortest
+        assert slow.shortest <= slow.taken < fast.taken
+        assert slow.half > fast.half
+
+
+def test_who_comes_changes_no_history_and_neighbours_make_room() -> None:
+    case = MapCase(stream_row, 10, 2, 150)
+    instance = stream_instance(case, 1200)
+    fleet, changed = PlannedFleet(instance), 0
+    for place, robot in enumerate(instance.robots):
+        before = fleet.plans
+        assert fleet.add(place, robot.release, Neighbourhood(m=4))
+        assert check_update(before, fleet.plans, robot.release) == ()
+        changed += not {*before} <= {*fleet.plans}
+    assert changed > 10
+    first, second = (streamed(case, name, 1200) for name in PLANNERS)
+    assert second.taken < first.taken
+
+
+def test_a_stream_with_a_robot_without_a_plan_is_not_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(streams, "docked", lambda instance: instance)
+    with pytest.raises(AssertionError):
+        streamed(MapCase(stream_row, 10, 1, 120), "CARP", 2000)
+
+
+def test_the_middle_half_is_between_the_quarters() -> None:
+    plans = [Plan(tick, (Visit("a", 0, tick), Visit("b", tick, tick + 1))) for tick in (70, 10, 20, 30, 40, 50, 60, 80)]
+    assert middle_half(plans) == 70 - 30
+
+
+def test_a_row_is_the_same_every_time() -> None:
+    case = MapCase(stream_row, FULL_MAP, 0, 20)
+    assert digest_of(case.run()) == digest_of(case.run())
+
+
+def test_the_report_has_the_throughput_of_each_rate() -> None:
+    found = [{"half": 50, "taken": 300, "shortest": 200} for _ in RATES]
+    rows = [{"map": 10, "planners": dict.fromkeys(PLANNERS, found)} for _ in range(2)]
+    assert msgspec.convert(rows[0], StreamRow).map == 10
+    report = stream_report(rows, 100)
+    first = msgspec.convert(report.summary, tuple[StreamOf, ...])[0]
+    assert (first.streams, first.rate) == (2, RATES[0])
+    assert (first.throughput.estimate, first.taken.estimate, first.waited.estimate) == (100, 3, 1)
+    assert report.tables[0].rows[0][:4] == ("map 10", "CARP", "100", "100 ± 0")
+    assert [figure.name for figure in report.figures] == ["stream-throughput", "stream-waiting"]
+    assert [*report.figures[0].lines] == ["CARP + map 10", "Proposed_4 + map 10"]
