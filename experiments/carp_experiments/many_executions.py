@@ -10,8 +10,9 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from carp_reference.execution import Delay, Order, waits_for_leaving
+from carp_reference.execution import Order
 from carp_spec.dependencies import Node, stays_by_resource
+from carproof.delays import Delay, waits_for_leaving
 
 Longs: TypeAlias = npt.NDArray[np.int64]
 Flags: TypeAlias = npt.NDArray[np.bool_]

@@ -8,9 +8,10 @@ import pytest
 from carp_experiments import executions
 from carp_experiments.executions import ExecutionsCase, executions_cases, executions_report
 from carp_experiments.many_executions import Flags, Longs, breaches, entered_in_order, random_numbers
-from carp_reference.execution import Delay, Order, earliest, in_order, on_the_clock
+from carp_reference.execution import Order, earliest
 from carp_spec.dependencies import Dependency, Node
 from carp_spec.permutations import splitmix64
+from carproof.delays import Delay, delayed, in_order, on_the_clock
 
 
 def wrong_ends(count: int = 2000) -> set[str]:
@@ -83,7 +84,7 @@ def test_a_judge_that_overlooks_a_breach_is_found(blind: int, monkeypatch: pytes
 
 def test_a_rotation_that_turns_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     def turning(order: Order, delays: Iterable[Delay]) -> dict[Node, int]:
-        return earliest(order, {(robot.id, 0): robot.release for robot in order.instance.robots}, delays)
+        return earliest(delayed(order, delays), {(robot.id, 0): robot.release for robot in order.instance.robots})
 
     monkeypatch.setattr(executions, "in_order", turning)
     assert wrong_ends(20_000) == {"turns"}
