@@ -4,7 +4,8 @@ Where robots must let each other pass in a narrow place, the first one planned m
 the order. So a robot without a plan is planned together with those in its way, by conflict-based search (Sharon et al.
 2015) with priorities between robots (Ma et al. 2019). The group grows by the outside robot that its members would meet
 first if they were alone. Where no group is found, all robots are planned one after the other, pass after pass; those
-that a pass leaves out come first in the next. Nothing here is trusted: the law judges the plans.
+that a pass leaves out come first in the next. Crowds for which that fails too are moved tick by tick, if
+`carp_optimum.steps` can. Nothing here is trusted: the law judges the plans.
 """
 
 from collections.abc import Iterator, Sequence
@@ -15,6 +16,7 @@ from typing import TypeAlias
 
 from carp_optimized import polish
 from carp_optimized.fleet import PlannedFleet
+from carp_optimum.steps import plans_by_steps
 from carp_spec import Instance, Plan, RobotId, Solution, Visit, total_cost
 from carp_spec.joint_rules import JOINT_RULES
 from carp_spec.rule import Violation
@@ -37,8 +39,8 @@ def repair(instance: Instance, solution: Solution) -> Solution:
     """Plan the robots of a solution that have a path but no plan, as far as possible; plans of others may change.
 
     An attempt plays rounds of `polish/...`, and plans groups jointly if few robots are left out. If some still are, the
-    next attempt begins with plans in another order. Raises `Refusal` for a solution that breaks a rule, and for numbers
-    that are too large.
+    next attempt begins with plans in another order, and the last with plans made tick by tick. Raises `Refusal` for a
+    solution that breaks a rule, and for numbers that are too large.
     """
     fleet = PlannedFleet(instance)
     without_path = {robot for robot in solution.unplanned if fleet.find(fleet.index(robot), None, 0) is None}
@@ -50,6 +52,11 @@ def repair(instance: Instance, solution: Solution) -> Solution:
         solution = polish(instance, solution, iterations=ROUNDS, seed=seed)
         if len(solution.unplanned) <= FEW + len(without_path):
             solution = repair_jointly(instance, solution)
+    if not without_path.issuperset(solution.unplanned):
+        able = tuple(each for each in instance.robots if each.id not in without_path)
+        found = plans_by_steps(replace(instance, robots=able))
+        if found is not None:
+            solution = polish(instance, Solution.of(instance, found), iterations=ROUNDS, seed=ATTEMPTS)
     return solution
 
 
