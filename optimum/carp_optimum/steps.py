@@ -49,7 +49,7 @@ def is_stepwise(instance: Instance) -> bool:
 
 
 def plans_by_steps(instance: Instance, steps: int = STEPS) -> tuple[Plan, ...] | None:
-    """Plans of all robots; `None` if the search finds none in so many steps, or the instance is not `is_stepwise`."""
+    """Plans of all robots; `None` if the search finds none in that many steps, or the instance is not `is_stepwise`."""
     if not is_stepwise(instance):
         return None
     crowd = _Crowd(instance)
@@ -134,7 +134,7 @@ class _Crowd:
         return all(place in (goal, GONE) for place, goal in zip(places, self._goals, strict=True))
 
     def node(self, places: Configuration, parent: _Node | None) -> _Node:
-        """A configuration of which nothing has been tried yet."""
+        """A configuration from which nothing has been tried yet."""
         tick = len(self.targets) + 1  # longer than any way, so that robots that wait equally long differ by their ways
         if parent is None:
             waiting = tuple(table[place] for table, place in zip(self.to_goal, places, strict=True))
