@@ -15,6 +15,7 @@ from carp_spec import Instance, Plan, Refusal, Solution
 from carp_verify.bound_rules import ContradictionError
 from carp_verify.documents import solution_document
 from carp_verify.kernel import ask, request
+from carp_verify.limits import require_following
 from carp_verify.query_certificate_rules import plans_are_lawful, size_fits
 from carp_verify.verify_query import Traffic, require_certificate
 from carproof.engines import Engine
@@ -53,6 +54,7 @@ class Auditor:
     """Compares plans with the best ones beside those committed so far."""
 
     def __init__(self, instance: Instance, engine: Engine) -> None:
+        require_following(instance)
         self._instance = instance
         self._certifier = engine.certifier(instance)
         self._traffic = Traffic(instance)

@@ -13,6 +13,7 @@ from click.shell_completion import CompletionItem
 
 from carp_spec import Instance, Refusal, Solution
 from carp_verify.documents import read_instance, read_solution
+from carp_verify.limits import require_following
 from carproof.requests import sound_solution
 
 T = TypeVar("T")
@@ -130,6 +131,12 @@ def naming(name: str) -> Iterator[None]:
         if refusal.kind == "option":
             raise
         raise click.ClickException(f"{shown(name)}: {refusal}") from refusal
+
+
+def require_following_in(name: str, instance: Instance) -> None:
+    """Refuse the instance of that file if it forbids following, for commands that do not know this."""
+    with naming(name):
+        require_following(instance)
 
 
 def shown(name: str) -> str:

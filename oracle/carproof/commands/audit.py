@@ -17,6 +17,7 @@ from carproof.files import (
     read_bytes,
     read_instance_file,
     refuse_two_standard_inputs,
+    require_following_in,
     shown,
 )
 from carproof.foreign import MovingAI, from_option, movingai_options, read_movingai
@@ -75,6 +76,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
         raise click.UsageError("Give INSTANCE and SOLUTION, or --map, --scen and SOLUTION.")
     refuse_two_standard_inputs(*files, *(benchmark.names if benchmark else ()))
     instance = read_movingai(benchmark) if benchmark else read_instance_file(instances[0])
+    require_following_in(files[0], instance)
     data, name = read_bytes(solution), shown(solution)
     format = format or format_of(data, instance, name)
     given = read_foreign_solution(data, instance, name, format)

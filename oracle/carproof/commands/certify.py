@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from carproof.answer import Answer
-from carproof.files import print_document
+from carproof.files import print_document, require_following_in
 from carproof.foreign import Problem, solution_files
 from carproof.options import examples, json_option
 from carproof.progress import progress
@@ -39,6 +39,7 @@ def command(problem: Problem, as_json: bool) -> Answer:
     Exit codes: 0 certified, 1 refused, 2 bad input, 3 z3 could not tell.
     """
     instance, solution = problem.read(as_named=True)
+    require_following_in(problem.names[0], instance)
     from carp_verify.certificate import certify  # noqa: PLC0415 - loads z3
     from carp_verify.smt import Undecided  # noqa: PLC0415
 

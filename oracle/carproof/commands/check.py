@@ -11,7 +11,7 @@ from carp_verify.bound_rules import ContradictionError
 from carp_verify.documents import solution_document, write, write_verdict
 from carp_verify.kernel import KernelVerdict, ask, request
 from carproof.answer import Answer
-from carproof.files import print_document, write_whole
+from carproof.files import print_document, require_following_in, write_whole
 from carproof.foreign import Problem, solution_files
 from carproof.options import examples, json_option, kernel_option, output_option
 from carproof.registry import RULES
@@ -60,6 +60,8 @@ def command(
     Exit codes: 0 no rule is broken, 1 a rule is broken (--require-all: or a robot has no plan), 2 bad input.
     """
     instance, given = problem.read(as_named=True)
+    if kernel:
+        require_following_in(problem.names[0], instance)
     most = None if everything else MOST_LISTED
     verdict = judge(instance, given, most)
     decided = kernel_verdict(instance, given, verdict) if kernel else None

@@ -9,7 +9,7 @@ from carp_spec.planners import LARGEST_SEED
 from carp_verify.documents import write
 from carproof.answer import Answer
 from carproof.extras import require
-from carproof.files import InputFile, print_document, read_instance_file
+from carproof.files import InputFile, print_document, read_instance_file, require_following_in
 from carproof.generate import Range
 from carproof.options import RangeType, examples, json_option, limit_option
 from carproof.progress import progress
@@ -101,6 +101,7 @@ def _gap_of(path: str, limit: int, as_json: bool) -> Answer:
     from carproof.gap_report import PLANNERS, gap_document, gap_rows  # noqa: PLC0415 - loads the planners
 
     problem = read_instance_file(path)
+    require_following_in(path, problem)
     measured = gap(problem, PLANNERS, limit)
     best = measured.optimum
     if as_json:

@@ -10,7 +10,7 @@ from carp_spec import Instance
 from carp_verify.documents import write, write_solution
 from carproof.answer import Answer
 from carproof.extras import require
-from carproof.files import print_document, read_instance_file, write_whole
+from carproof.files import print_document, read_instance_file, require_following_in, write_whole
 from carproof.optima import optimum_document
 from carproof.options import examples, instance_argument, json_option, limit_option, output_option
 from carproof.tables import print_line, print_table
@@ -51,6 +51,7 @@ def command(instance: str, limit: int, proof: Path | None, output: Path | None, 
     from carp_verify.unsolvable import describe  # noqa: PLC0415
 
     problem = read_instance_file(instance)
+    require_following_in(instance, problem)
     started = perf_counter()
     best = optimum(problem, limit)
     seconds = perf_counter() - started

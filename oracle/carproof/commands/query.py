@@ -14,6 +14,7 @@ from carproof.files import (
     read_instance_file,
     read_solution_file,
     refuse_two_standard_inputs,
+    require_following_in,
     write_whole,
 )
 from carproof.ops.planning import query_document
@@ -57,6 +58,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     require_tick(now, "$.now")
     problem = read_instance_file(instance)
     given = read_solution_file(solution)
+    if certificate is not None:
+        require_following_in(instance, problem)
     id = robot_called(problem, robot)
     with naming(solution):
         committed = sound_solution(problem, given, id)

@@ -5,7 +5,14 @@ import click
 from carp_verify.bounds import read_bound
 from carp_verify.documents import write
 from carproof.answer import Answer
-from carproof.files import InputFile, print_document, read_file, read_instance_file, refuse_two_standard_inputs
+from carproof.files import (
+    InputFile,
+    print_document,
+    read_file,
+    read_instance_file,
+    refuse_two_standard_inputs,
+    require_following_in,
+)
 from carproof.options import examples, instance_argument, json_option, kernel_option
 from carproof.tables import print_line, print_table
 from carproof.verdicts import verify_bound
@@ -34,6 +41,7 @@ def command(*, instance: str, certificate: str, kernel: bool, as_json: bool) -> 
     """
     refuse_two_standard_inputs(instance, certificate)
     problem = read_instance_file(instance)
+    require_following_in(instance, problem)
     document = read_file(certificate, read_bound)
     verdict = verify_bound(problem, document, kernel)
     if as_json:

@@ -11,6 +11,7 @@ from carproof.files import (
     read_instance_file,
     read_solution_file,
     refuse_two_standard_inputs,
+    require_following_in,
 )
 from carproof.options import examples, instance_argument, json_option, kernel_option, solution_argument
 from carproof.tables import print_line, print_table
@@ -41,6 +42,7 @@ def command(*, instance: str, solution: str, certificate: str, kernel: bool, as_
     """
     refuse_two_standard_inputs(instance, solution, certificate)
     problem, given = read_instance_file(instance), read_solution_file(solution)
+    require_following_in(instance, problem)
     document = read_file(certificate, read_query_certificate)
     verdict = verify_query(problem, given, document, kernel)
     if as_json:
