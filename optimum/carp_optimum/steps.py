@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from random import Random
 from typing import TypeAlias
 
+from carp_optimized.fleet import PlannedFleet
 from carp_spec import Instance, Plan, Visit
 
 STEPS = 10_000
@@ -98,29 +99,13 @@ class _Crowd:
         self._parks = instance.after_goal == "park"
         self.targets = [[graph.index[each] for each in graph.successors[one.id]] for one in graph.resources]
         self._goals = [graph.index[robot.goal] for robot in instance.robots]
-        self.to_goal = self._distances()
+        fleet = PlannedFleet(instance)
+        far = len(self.targets)  # more than any way
+        self.to_goal = [
+            [potential.get(place, far) for place in range(far)]
+            for potential in map(fleet.potential, range(len(self._goals)))
+        ]
         self.starts: Configuration = tuple(graph.index[robot.start] for robot in instance.robots)
-
-    def _distances(self) -> list[list[int]]:
-        """The moves from each resource to each robot's goal; a number above all others where no way leads there."""
-        sources: list[list[int]] = [[] for _ in self.targets]
-        for place, targets in enumerate(self.targets):
-            for target in targets:
-                sources[target].append(place)
-        tables: dict[int, list[int]] = {}
-        for goal in self._goals:
-            if goal not in tables:
-                table = [len(sources)] * len(sources)
-                table[goal] = 0
-                queue = deque([goal])
-                while queue:
-                    place = queue.popleft()
-                    for source in sources[place]:
-                        if table[source] == len(sources) and source != goal:
-                            table[source] = table[place] + 1
-                            queue.append(source)
-                tables[goal] = table
-        return [tables[goal] for goal in self._goals]
 
     def can_begin(self) -> bool:
         """Whether no two robots start in one place, or park in one, and each has a way to its goal."""
