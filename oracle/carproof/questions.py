@@ -11,13 +11,11 @@ from carp_spec import (
     Greedy,
     Instance,
     LongestFirst,
-    Move,
     Neighbourhood,
     Plan,
     Planner,
     Resource,
     ResourceGraph,
-    ResourceId,
     Robot,
     RobotId,
     Shuffled,
@@ -29,8 +27,6 @@ from carproof.timing import path_between, timed_plan
 
 T = TypeVar("T")
 
-SIZES = (1, 2, 3, 4, 4, 5, 5, 6)
-MOST_ROBOTS = 5
 MOST_MEMBERS = 4
 SIMPLE_PLANNERS: tuple[Planner, ...] = (Carp(), LongestFirst(), Greedy())
 
@@ -43,6 +39,29 @@ class FleetUnderWay:
     solution: Solution
     robot: RobotId
     now: int
+
+
+@dataclass(frozen=True, slots=True)
+class Mix:
+    """The values that instances are made of; one that stands twice is drawn twice as often.
+
+    Graphs are trees with at most `more` further edges. A directed one has each edge in one direction or, with
+    `both_ways`, three in four edges in both. With `goals_apart`, the goals of most instances are as distinct as the
+    starts.
+    """
+
+    sizes: Sequence[int] = (1, 2, 3, 4, 4, 5, 5, 6)
+    robots: Sequence[int] = (1, 2, 3, 4, 5)
+    capacities: Sequence[int] = (2, 1, 1, 1)
+    durations: Sequence[int] = (1, 2, 3)
+    releases: Sequence[int] = (0, 1, 2, 3, 4)
+    paces: Sequence[int] = (1, 2)
+    more: int = 6
+    both_ways: bool = False
+    goals_apart: bool = False
+
+
+SMALL = Mix()
 
 
 Question: TypeAlias = tuple[Instance, Planner] | tuple[FleetUnderWay, Neighbourhood]
@@ -84,32 +103,33 @@ def draw_question(draw: Draw) -> Question:
     return instance, draw_planner(draw)
 
 
-def draw_instance(draw: Draw) -> Instance:
+def draw_instance(draw: Draw, mix: Mix = SMALL) -> Instance:
     """An instance of a few resources and robots."""
-    size = draw.one_of(SIZES)
+    size = draw.one_of(mix.sizes)
     ids = draw_ids(draw, size)
     simple = draw.happens(3)
     resources = tuple(
         Resource(
             id,
-            1 if simple or not draw.happens(4) else 2,
-            1 if simple else draw.between(1, 3),
+            1 if simple else draw.one_of(mix.capacities),
+            1 if simple else draw.one_of(mix.durations),
             *((None, None) if draw.happens(8) else (draw.between(-2, 3), draw.between(-2, 3))),
         )
         for id in ids
     )
-    graph = ResourceGraph(resources, draw_edges(draw, ids), directed=draw.happens(4))
-    count = draw.between(1, MOST_ROBOTS)
+    graph = draw_graph(draw, resources, mix)
+    count = draw.one_of(mix.robots)
     starts = [draw.one_of(ids) for _ in range(count)] if draw.happens(3) else [*shuffle(ids, draw.stream), *ids]
+    goals = [*shuffle(ids, draw.stream), *ids] if mix.goals_apart and not draw.happens(4) else None
     robots = tuple(
         Robot(
             id,
             start,
-            draw.one_of(ids),
-            0 if simple or draw.happens(2) else draw.between(0, 4),
-            1 if simple or draw.happens(2) else draw.between(1, 2),
+            goals[place] if goals else draw.one_of(ids),
+            0 if simple or draw.happens(2) else draw.one_of(mix.releases),
+            1 if simple or draw.happens(2) else draw.one_of(mix.paces),
         )
-        for id, start in zip(draw_ids(draw, count), starts, strict=False)
+        for place, (id, start) in enumerate(zip(draw_ids(draw, count), starts, strict=False))
     )
     policies: tuple[AfterGoal, ...] = ("vanish", "park")
     return Instance(graph, robots, draw.one_of(policies))
@@ -121,13 +141,18 @@ def draw_ids(draw: Draw, count: int) -> Sequence[str | int]:
     return shuffle(pool, draw.stream)[:count]
 
 
-def draw_edges(draw: Draw, ids: Sequence[ResourceId]) -> tuple[Move, ...]:
-    """A tree, which seldom lacks an edge, and up to as many more edges as there are resources."""
+def draw_graph(draw: Draw, resources: tuple[Resource, ...], mix: Mix) -> ResourceGraph:
+    """A tree, which seldom lacks an edge, and some more edges."""
+    ids = [resource.id for resource in resources]
     edges = [(draw.one_of(ids[:place]), ids[place]) for place in range(1, len(ids)) if not draw.happens(12)]
     pairs = list(combinations(ids, 2))
-    more = [draw.one_of(pairs) for _ in range(draw.between(0, len(ids)))] if pairs else []
+    more = [draw.one_of(pairs) for _ in range(draw.between(0, min(mix.more, len(ids))))] if pairs else []
     present = {frozenset(edge): edge for edge in (*more, *edges)}
-    return tuple((target, source) if draw.happens(2) else (source, target) for source, target in present.values())
+    moves = [(target, source) if draw.happens(2) else (source, target) for source, target in present.values()]
+    directed = draw.happens(4)
+    if directed and mix.both_ways:
+        moves += [(target, source) for source, target in moves if not draw.happens(4)]
+    return ResourceGraph(resources, tuple(moves), directed)
 
 
 def draw_planner(draw: Draw) -> Planner:

@@ -13,7 +13,7 @@ filtered out, so drawing is fast. Examples shrink to few resources, few robots, 
 """
 
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import permutations
 
 from hypothesis import strategies as st
 
@@ -105,8 +105,8 @@ def _pairs(draw: st.DrawFn, ids: list[ResourceId]) -> tuple[Move, ...]:
     """Pairs to join: each resource but the first with one before it or, seldom, with none; and some more."""
     parents = [draw(st.sampled_from([*reversed(ids[:position]), None])) for position in range(1, len(ids))]
     forest = [(parent, id) for parent, id in zip(parents, ids[1:], strict=True) if parent is not None]
-    more = st.lists(st.sampled_from([*combinations(ids, 2)]), max_size=len(ids)) if len(ids) > 1 else st.just([])
-    return tuple(dict.fromkeys([*forest, *draw(more)]))
+    more = st.lists(st.sampled_from([*permutations(ids, 2)]), max_size=len(ids)) if len(ids) > 1 else st.just([])
+    return tuple({frozenset(pair): pair for pair in [*forest, *draw(more)]}.values())
 
 
 @st.composite
@@ -115,14 +115,26 @@ def instances(
     sizes: Sizes = SMALL,
     graphs: st.SearchStrategy[ResourceGraph] | None = None,
     least_robots: int = 0,
+    *,
+    starts_apart: bool = False,
+    goals_apart: bool = False,
 ) -> Instance:
-    """Instances on drawn graphs: starts and goals may be shared, the same, or out of reach of each other."""
+    """Instances on drawn graphs: the goal of a robot may be its start, or out of reach.
+
+    Robots may share starts and goals, unless these are kept apart.
+    """
     graph = draw(resource_graphs(sizes) if graphs is None else graphs)
-    resources = st.sampled_from([resource.id for resource in graph.resources])
-    count = draw(st.integers(least_robots, sizes.robots))
-    requests = st.tuples(resources, resources, st.integers(0, sizes.release), st.integers(1, sizes.pace))
-    ids = draw(_ids(count))
-    robots = tuple(Robot(id, *draw(requests)) for id in ids)
+    places = [resource.id for resource in graph.resources]
+    most = min(sizes.robots, len(places)) if starts_apart or goals_apart else sizes.robots
+    ids = draw(_ids(draw(st.integers(least_robots, most))))
+
+    def ends(apart: bool) -> list[ResourceId]:
+        alike = st.lists(st.sampled_from(places), min_size=len(ids), max_size=len(ids))
+        return draw(st.permutations(places) if apart else alike)
+
+    starts, goals = ends(starts_apart), ends(goals_apart)
+    numbers = st.tuples(st.integers(0, sizes.release), st.integers(1, sizes.pace))
+    robots = tuple(Robot(id, start, goal, *draw(numbers)) for id, start, goal in zip(ids, starts, goals, strict=False))
     policies: list[AfterGoal] = ["vanish", "park"]
     return Instance(graph, robots, draw(st.sampled_from(policies)))
 

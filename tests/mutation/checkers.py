@@ -71,7 +71,7 @@ TESTS: Mapping[str, Sequence[str]] = {
     "carproof.conform.by_kernel": ("oracle/test_conform_kernel",),
     "carproof.conform.shrinking": ("oracle/test_conform_shrinking",),
 }
-TINY = 60
+TINY = 80
 """The number of instances of test_tiny_optima.py, one by one, for modules that make or check formulas."""
 PLANTED: Mapping[str, Sequence[tuple[str, str]]] = {
     "carp_verify.verify_bound": (

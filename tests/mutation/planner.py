@@ -2,9 +2,9 @@
 
 `python -m tests.mutation.planner` lists the mutants that no check notices; with names of modules, of these alone. The
 checks are those of tests/optimized that fit into a few seconds: random small questions and fleets to which robots are
-added, whose answers by the reference are known before the first fork; crowds; and test_replanning.py and
-test_reuse.py. Beside a mutant that survives stands how many queries it asks of the fleets, where it asks other ones:
-more cost time alone, fewer want a reason. Starting pytest and numba for each mutant would take ten times as long.
+added, whose answers by the reference are known before the first fork; test_replanning.py and test_reuse.py. Beside a
+mutant that survives stands how many queries it asks of the fleets, where it asks other ones: more cost time alone,
+fewer want a reason. Starting pytest and numba for each mutant would take ten times as long.
 """
 
 import os
@@ -26,7 +26,7 @@ import numpy as np
 import tests.conftest  # noqa: F401 - the profile
 from tests.mutation.forking import ROOT, Case, chosen, outcome, run_mutants
 from tests.mutation.mutants import Mutant, mutants
-from tests.optimized.arrivals import Arrivals, arrivals, convoy, scaled
+from tests.optimized.arrivals import CROWDED, ROOMS, Arrivals, arrivals, convoy, scaled
 from tests.optimized.towns import TOWNS
 
 import carp_reference
@@ -36,7 +36,7 @@ from carproof.questions import question
 FOLDER = ROOT / "optimized" / "carp_optimized"
 MODULES = ("replanning", "order_search", "answers", "neighbourhood", "orders", "distances", "passes", "windows")
 QUESTIONS = 150
-FLEETS = (*range(120), 157, 202, 209, 307, 330, 381, 435, 466, 596, 935)  # the last ones notice what others do not
+FLEETS = 300  # of each kind
 CONVOYS = 10
 SECONDS = 4  # of the processor, for one case
 KINDS = ("kept", "unchanged", "prefixes", "shared", "bounds")
@@ -49,7 +49,6 @@ TESTS: Sequence[tuple[str, str, tuple[object, ...]]] = (
         (),
     ),
     ("test_replanned_robots", "test_orders_are_drawn_in_a_round_too_in_which_a_member_has_no_plan", ()),
-    ("test_same_plans", "test_crowds_are_planned_alike", ()),
     ("test_replanning", "test_a_query_is_repeated_only_where_the_lemma_says_and_else_finds_the_same", ()),
     ("test_reuse", "test_orders_that_begin_alike_share_the_queries_of_their_beginning", (4, 64, 96)),
     ("test_reuse", "test_without_reuse_every_query_is_asked", ()),
@@ -82,7 +81,8 @@ def cases() -> list[Case]:
         expected = ask(carp_reference.plan, carp_reference.add, subject, planner)
         choices = {CHOICES[0], CHOICES[number % len(CHOICES)]} if isinstance(planner, Neighbourhood) else {CHOICES[0]}
         asked += [partial(ask_question, subject, planner, choice, expected) for choice in choices]
-    fleets = (*map(arrivals, FLEETS), *map(convoy, range(CONVOYS)), *(scaled(arrivals(k), 2**26, 1) for k in range(5)))
+    fleets = [arrivals(number, mix) for number in range(FLEETS) for mix in (CROWDED, ROOMS)]
+    fleets += [*map(convoy, range(CONVOYS)), *(scaled(fleet, 2**26, 1) for fleet in fleets[:10:2])]
     asked += [partial(ask_fleet, fleet, fleet.by_reference()) for fleet in fleets]
     return [Case(each, SECONDS) for each in (*asked, *map(as_case, TESTS))]
 

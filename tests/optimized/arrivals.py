@@ -9,23 +9,26 @@ from dataclasses import dataclass, replace
 
 import carp_reference
 from carp_optimized import Queries, Reuse
-from carp_spec import (
-    AfterGoal,
-    Instance,
-    Neighbourhood,
-    Plan,
-    Resource,
-    ResourceGraph,
-    ResourceId,
-    Robot,
-    RobotId,
-    Solution,
-    Visit,
-)
+from carp_spec import Instance, Neighbourhood, Plan, ResourceId, RobotId, Solution, Visit
 from carp_spec.permutations import shuffle, splitmix64
-from carproof.questions import Draw, draw_edges, draw_plan
+from carproof.questions import Draw, Mix, draw_instance, draw_plan
 
-POLICIES: tuple[AfterGoal, ...] = ("vanish", "vanish", "park")
+CROWDED = Mix(
+    sizes=range(4, 17),
+    robots=range(4, 10),
+    capacities=(1, 1, 2, 3),
+    durations=range(1, 5),
+    releases=range(9),
+    paces=range(1, 4),
+    both_ways=True,
+)
+"""As many robots as resources, or half as many."""
+ROOMS = Mix(
+    sizes=range(3, 7), robots=(8,), capacities=(1, 2, 2, 3), durations=(1, 2), releases=range(7), more=0, both_ways=True
+)
+"""More robots than resources, some with room for several, so that those behind one stand in its way."""
+CONVOY = Mix(sizes=range(6, 10), robots=(30,), capacities=(1,), durations=(1, 2), more=0, both_ways=True)
+"""Many robots pass few resources one behind the other: there are more windows than are compared at once."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,10 +86,10 @@ def visits_of(plan: Plan) -> list[tuple[ResourceId, int, int | None]]:
     return [(visit.resource, visit.enter, visit.leave) for visit in plan.visits]
 
 
-def arrivals(number: int) -> Arrivals:
+def arrivals(number: int, mix: Mix = CROWDED) -> Arrivals:
     """The question of that number."""
     draw = Draw(splitmix64(next(splitmix64(11)) + number))
-    instance = draw_instance(draw)
+    instance = draw_instance(draw, mix)
     robots = shuffle(instance.robots, draw.stream)
     there = draw.between(0, len(robots) - 1) if draw.happens(2) else 0
     before: list[Plan] = []
@@ -104,50 +107,13 @@ def arrivals(number: int) -> Arrivals:
 
 
 def convoy(number: int) -> Arrivals:
-    """Many robots pass few resources one behind the other, so that there are more windows than are compared at once."""
+    """The same for a convoy, whose robots come one behind the other and are all added at once."""
     draw = Draw(splitmix64(next(splitmix64(12)) + number))
-    size = draw.between(6, 9)
-    cells = tuple(Resource(k, duration=draw.between(1, 2), x=k, y=draw.between(0, 1)) for k in range(size))
-    tree = tuple((draw.between(max(0, k - 2), k - 1), k) for k in range(1, size))
-    robots = tuple(
-        Robot(k, draw.between(0, size - 1), draw.between(0, size - 1), draw.between(0, 90), draw.between(1, 2))
-        for k in range(30)
-    )
+    drawn = draw_instance(draw, CONVOY)
+    robots = tuple(replace(each, release=draw.between(0, 90)) for each in drawn.robots)
     options = Neighbourhood(m=draw.between(2, 3), baseline=draw.happens(2))
-    return Arrivals(
-        Instance(ResourceGraph(cells, tree), robots), (), tuple((each.id, 0) for each in robots), options, Reuse()
-    )
-
-
-def draw_instance(draw: Draw) -> Instance:
-    """As many robots as resources, or half as many."""
-    size = draw.between(4, 9) if draw.happens(3) else draw.between(9, 16)
-    simple, narrow = draw.happens(3), draw.happens(2)
-    resources = tuple(
-        Resource(
-            k,
-            1 if narrow else draw.one_of((1, 1, 2, 3)),
-            1 if simple else draw.between(1, 4),
-            *((None, None) if draw.happens(8) else (draw.between(-2, 5), draw.between(-2, 5))),
-        )
-        for k in range(size)
-    )
-    tree = tuple((draw.between(0, k - 1), k) for k in range(1, size))
-    edges = {frozenset(edge): edge for edge in (*draw_edges(draw, range(size)), *tree)}
-    graph = ResourceGraph(resources, tree if draw.happens(3) else tuple(edges.values()))
-    if draw.happens(8):
-        graph = ResourceGraph(resources, draw_edges(draw, range(size)), directed=True)
-    robots = tuple(
-        Robot(
-            k,
-            draw.between(0, size - 1),
-            draw.between(0, size - 1),
-            0 if simple else draw.between(0, 8),
-            1 if simple or draw.happens(2) else draw.between(1, 3),
-        )
-        for k in range(draw.between(4, 9))
-    )
-    return Instance(graph, robots, draw.one_of(POLICIES))
+    added = tuple((each.id, 0) for each in robots)
+    return Arrivals(replace(drawn, robots=robots, after_goal="vanish"), (), added, options, Reuse())
 
 
 def draw_options(draw: Draw) -> Neighbourhood:

@@ -1,7 +1,7 @@
 """Robots that are added one after the other to a fleet that stays up get the reference's plans, whatever is reused."""
 
 import pytest
-from tests.optimized.arrivals import arrivals, convoy, scaled
+from tests.optimized.arrivals import ROOMS, arrivals, convoy, scaled
 from tests.profiles import rest_in
 
 QUESTIONS = 600
@@ -12,6 +12,13 @@ PARTS = 6
 def test_robots_that_arrive_while_time_passes_are_planned_alike(part: int) -> None:
     for number in range(part, QUESTIONS, PARTS):
         question = arrivals(number)
+        assert question.by_fleet()[0] == question.by_reference(), number
+
+
+@pytest.mark.parametrize("part", rest_in("ci", range(PARTS), 0))
+def test_more_robots_than_resources_are_planned_alike(part: int) -> None:
+    for number in range(part, QUESTIONS, PARTS):
+        question = arrivals(number, ROOMS)
         assert question.by_fleet()[0] == question.by_reference(), number
 
 

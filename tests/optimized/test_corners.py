@@ -1,18 +1,15 @@
 """Cases that random instances seldom reach: full arrays, far goals, ended plans, too many plans to remember."""
 
-from dataclasses import fields, replace
+from dataclasses import fields
 from itertools import count
 from math import isqrt, sqrt
 
 import numba
 import pytest
-from hypothesis import HealthCheck, given, settings
-from tests.optimized.test_same_plans import crowds
-from tests.profiles import draws
 
 import carp_optimized
 import carp_reference
-from carp_optimized import Queries, Reuse, answers, encoding
+from carp_optimized import Queries, Reuse, encoding
 from carp_optimized.__main__ import compile_all
 from carp_optimized.arrays import Search
 from carp_optimized.distances import term
@@ -153,18 +150,6 @@ def test_robots_whose_plans_have_ended_are_left_alone() -> None:
     for now in (0, 2, 6, 7, 40):
         question = (instance, Solution(plans, ("r", "s"), ("t",)), "t", now, Neighbourhood(m=3))
         assert carp_optimized.add(*question) == carp_reference.add(*question)
-
-
-@settings(max_examples=draws(60), suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(crowds())
-def test_what_does_not_fit_into_the_memory_of_a_round_is_forgotten(
-    monkeypatch: pytest.MonkeyPatch, instance: Instance
-) -> None:
-    """It shows where the source runs uncompiled: compiled code has the numbers in it."""
-    monkeypatch.setattr(answers, "PLANS", 3)
-    monkeypatch.setattr(answers, "ANSWERS", 4)
-    room = replace(instance, robots=instance.robots[:6])
-    assert_alike(room, Neighbourhood(m=4, baseline=False))
 
 
 def test_terms_of_distances_are_whole_roots() -> None:

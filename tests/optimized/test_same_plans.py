@@ -1,8 +1,7 @@
 """The optimised planner makes the reference's plans, visit for visit, whatever kinds of reuse are on."""
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
-from tests.profiles import draws
 
 import carp_optimized
 import carp_reference
@@ -14,9 +13,6 @@ from carp_spec import (
     LongestFirst,
     Neighbourhood,
     Planner,
-    Resource,
-    ResourceGraph,
-    Robot,
     Shuffled,
 )
 from carproof.strategies import FleetUnderWay, Sizes, fleets_under_way, instances
@@ -46,17 +42,6 @@ def kinds_of_reuse() -> st.SearchStrategy[Reuse]:
     return st.builds(Reuse, kept=on, unchanged=on, prefixes=on, shared=on, bounds=on)
 
 
-@st.composite
-def crowds(draw: st.DrawFn) -> Instance:
-    """This many robots for so few resources, some with room for several, that those behind one stand in its way."""
-    size = draw(st.integers(3, 6))
-    indices = st.integers(0, size - 1)
-    resources = tuple(Resource(k, draw(st.sampled_from((1, 2, 2, 3))), draw(st.integers(1, 2))) for k in range(size))
-    tree = tuple((k, draw(st.integers(0, k - 1))) for k in range(1, size))
-    robots = tuple(Robot(k, draw(indices), draw(indices), draw(st.integers(0, 6))) for k in range(8))
-    return Instance(ResourceGraph(resources, tree), robots, draw(st.sampled_from(("vanish", "park"))))
-
-
 @given(fleets_under_way(SIZES), st.data())
 def test_a_query_finds_the_same_plan(fleet: FleetUnderWay, data: st.DataObject) -> None:
     robot = data.draw(st.sampled_from([fleet.robot, *fleet.solution.order]))
@@ -73,10 +58,3 @@ def test_planning_all_robots_makes_the_same_solution(instance: Instance, planner
 def test_adding_a_robot_makes_the_same_solution(fleet: FleetUnderWay, options: Neighbourhood, reuse: Reuse) -> None:
     question = (fleet.instance, fleet.solution, fleet.robot, fleet.now, options)
     assert carp_optimized.add(*question, reuse) == carp_reference.add(*question)
-
-
-@settings(max_examples=draws(400))
-@given(crowds(), st.integers(2, 3), st.booleans(), kinds_of_reuse())
-def test_crowds_are_planned_alike(instance: Instance, m: int, baseline: bool, reuse: Reuse) -> None:
-    options = Neighbourhood(m=m, baseline=baseline)
-    assert carp_optimized.plan(instance, options, reuse=reuse) == carp_reference.plan(instance, options)

@@ -1,48 +1,18 @@
-"""Random instances and random plans, right and wrong."""
-
-from fractions import Fraction
-from typing import get_args
+"""Random plans, right and wrong."""
 
 from hypothesis import settings
 from hypothesis import strategies as st
 from tests.profiles import draws
 
-from carp_spec import AfterGoal, Instance, Plan, Resource, ResourceGraph, ResourceId, Robot, RobotId, Solution, Visit
+from carp_spec import Instance, Plan, RobotId, Solution, Visit
+from carproof.strategies import Sizes, instances
 
 FEWER = settings(max_examples=draws(250))
 """For tests with large examples."""
 
 IDS = st.one_of(st.integers(-5, 5), st.text(max_size=3))
 NOWHERE = "nowhere"
-
-
-@st.composite
-def resources(draw: st.DrawFn, id: ResourceId) -> Resource:
-    position = draw(st.none() | st.tuples(st.integers(-4, 4), st.integers(-4, 4)))
-    x, y = position or (None, None)
-    return Resource(id, draw(st.integers(1, 3)), draw(st.integers(1, 3)), x, y)
-
-
-@st.composite
-def graphs(draw: st.DrawFn) -> ResourceGraph:
-    ids = draw(st.lists(IDS, min_size=1, max_size=5, unique=True))
-    directed = draw(st.booleans())
-    moves = [(one, other) for one in ids for other in ids if one != other]
-    edges = (
-        draw(st.lists(st.sampled_from(moves), unique_by=None if directed else frozenset, unique=directed))
-        if moves
-        else []
-    )
-    return ResourceGraph(tuple(draw(resources(id)) for id in ids), tuple(edges), directed)
-
-
-@st.composite
-def instances(draw: st.DrawFn, most_robots: int = 4) -> Instance:
-    graph = draw(graphs())
-    ends = st.sampled_from(list(graph.index))
-    ids = draw(st.lists(IDS, max_size=most_robots, unique=True))
-    robots = tuple(Robot(id, draw(ends), draw(ends), draw(st.integers(0, 3)), draw(st.integers(1, 2))) for id in ids)
-    return Instance(graph, robots, draw(st.sampled_from(get_args(AfterGoal))))
+SIZES = Sizes(capacity=3)
 
 
 @st.composite
@@ -70,7 +40,7 @@ def walks(draw: st.DrawFn, instance: Instance, robot: RobotId) -> Plan:
 @st.composite
 def instances_with_plans(draw: st.DrawFn) -> tuple[Instance, tuple[Plan, ...]]:
     """An instance and plans of some of its robots; a robot may have two."""
-    instance = draw(instances())
+    instance = draw(instances(SIZES))
     robots = draw(st.lists(st.sampled_from(list(instance.robot)), max_size=5)) if instance.robots else []
     return instance, tuple(draw(walks(instance, robot)) for robot in robots)
 
@@ -85,6 +55,3 @@ def solutions(draw: st.DrawFn) -> Solution:
     plans = st.builds(Plan, IDS, st.lists(visits, max_size=4).map(tuple))
     robots = st.lists(IDS, max_size=4).map(tuple)
     return Solution(draw(st.lists(plans, max_size=4).map(tuple)), draw(robots), draw(robots))
-
-
-FRACTIONS = st.fractions(min_value=Fraction(0), max_value=Fraction(9), max_denominator=6)

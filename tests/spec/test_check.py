@@ -1,6 +1,7 @@
 """The checker as a whole: silent on correct plans, and exactly right about each planted violation."""
 
 from collections import Counter
+from dataclasses import replace
 from time import process_time
 
 import pytest
@@ -8,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.spec.making import PARKED, PARKING, SOLVED, VANISHING, instance_on, line, plan_of, solution_of
 from tests.spec.naive import HORIZON, broken_plan_rules, crowds, exchanges
-from tests.spec.strategies import FEWER, instances, instances_with_plans
+from tests.spec.strategies import FEWER, SIZES, instances_with_plans
 
 import carp_reference
 from carp_spec import (
@@ -31,7 +32,9 @@ from carp_spec import (
     judge,
 )
 from carp_spec.check import MOST_LISTED
+from carproof.strategies import instances
 
+FEW = replace(SIZES, robots=3)
 PLANNERS: tuple[Planner, ...] = (
     Carp(),
     Shuffled(attempts=2),
@@ -55,7 +58,7 @@ def test_hand_made_correct_plans_break_no_rule(instance: Instance, plans: tuple[
 
 
 @FEWER
-@given(instance=instances(most_robots=3), planner=st.sampled_from(PLANNERS))
+@given(instance=instances(FEW), planner=st.sampled_from(PLANNERS))
 def test_what_the_planners_plan_breaks_no_rule(instance: Instance, planner: Planner) -> None:
     verdict = judge(instance, carp_reference.plan(instance, planner))
     assert verdict.violations == ()

@@ -5,14 +5,15 @@ from dataclasses import replace
 import pytest
 from hypothesis import given
 from tests.spec.making import PARKING, VANISHING, instance_on, line
-from tests.spec.strategies import FEWER, instances
+from tests.spec.strategies import FEWER, SIZES
 
 from carp_spec import Fault, Instance, Resource, ResourceGraph, Robot
 from carp_spec.instance_rules import INSTANCE_RULES, instance_faults
+from carproof.strategies import instances
 
 
 @FEWER
-@given(instance=instances())
+@given(instance=instances(SIZES))
 def test_a_right_instance_has_no_faults(instance: Instance) -> None:
     assert instance_faults(instance) == ()
 

@@ -9,13 +9,14 @@ from typing import Any
 import pytest
 from hypothesis import given
 from tests.spec.making import VANISHING
-from tests.spec.strategies import FEWER, graphs
+from tests.spec.strategies import FEWER, SIZES
 
 from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Solution
+from carproof.strategies import resource_graphs
 
 
 @FEWER
-@given(graph=graphs())
+@given(graph=resource_graphs(SIZES))
 def test_a_move_is_an_edge_or_in_an_undirected_graph_its_reverse(graph: ResourceGraph) -> None:
     for source in graph.index:
         for target in graph.index:
@@ -25,7 +26,7 @@ def test_a_move_is_an_edge_or_in_an_undirected_graph_its_reverse(graph: Resource
 
 
 @FEWER
-@given(graph=graphs())
+@given(graph=resource_graphs(SIZES))
 def test_successors_stand_in_the_order_of_the_resources(graph: ResourceGraph) -> None:
     for source in graph.index:
         reached = [each.id for each in graph.resources if graph.has_move(source, each.id)]
@@ -33,7 +34,7 @@ def test_successors_stand_in_the_order_of_the_resources(graph: ResourceGraph) ->
 
 
 @FEWER
-@given(graph=graphs())
+@given(graph=resource_graphs(SIZES))
 def test_resources_are_found_by_id_and_by_index(graph: ResourceGraph) -> None:
     for position, resource in enumerate(graph.resources):
         assert graph.resource[resource.id] is resource

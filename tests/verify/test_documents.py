@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from tests.spec.making import PARKED, PARKING, SOLVED, VANISHING, plan_of, solution_of
-from tests.spec.strategies import FEWER, graphs, instances, solutions
+from tests.spec.strategies import FEWER, SIZES, solutions
 
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, Solution, judge
 from carp_verify.documents import (
@@ -28,6 +28,7 @@ from carp_verify.documents import (
     write_solution,
     write_verdict,
 )
+from carproof.strategies import instances, resource_graphs
 
 Json = Any
 
@@ -54,7 +55,7 @@ def refusal(read: Callable[[bytes], object], data: bytes) -> tuple[str, str]:
 
 
 @FEWER
-@given(instance=instances())
+@given(instance=instances(SIZES))
 def test_an_instance_is_read_as_it_was_written(instance: Instance) -> None:
     assert read_instance(write_instance(instance)) == instance
 
@@ -419,7 +420,7 @@ def test_directed_networkx_node_link_data_is_read() -> None:
 
 
 @FEWER
-@given(graph=graphs())
+@given(graph=resource_graphs(SIZES))
 def test_networkx_reads_what_is_written(graph: ResourceGraph) -> None:
     document = json.loads(write_instance(Instance(graph, ())))
     read = nx.node_link_graph(document["graph"], edges="edges")

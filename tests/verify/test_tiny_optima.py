@@ -4,7 +4,7 @@ import os
 from collections.abc import Iterator, Sequence
 
 import pytest
-from tests.verify.tiny import Case, case
+from tests.verify.tiny import case
 
 from carp_optimum.optimum import optimum
 from carp_optimum.solver import Deadline, Solver
@@ -15,6 +15,7 @@ from carp_verify.joint_search import least_total_cost
 from carp_verify.proof import solution_of
 from carp_verify.robot_clauses import Node, RobotClauses
 from carp_verify.unsolvable import FullGoal, NoWay, Obstacle, why_no_obstacle
+from carproof.questions import Draw
 
 NIGHTLY = os.environ.get("HYPOTHESIS_PROFILE") == "nightly"
 CASES = 50_000 if NIGHTLY else 3_000
@@ -24,17 +25,17 @@ SECONDS = 60
 
 def faults(number: int) -> Iterator[str]:
     """The disagreements with the joint search in a case, in words; some questions are for one case in four."""
-    drawn = case(number)
+    instance, draw = case(number)
     is_asked_more = number % 4 == 0
-    least = least_total_cost(drawn.instance)
+    least = least_total_cost(instance)
     if least is not None or is_asked_more:
-        yield from faults_of_search(drawn.instance, least)
+        yield from faults_of_search(instance, least)
     if least is not None:
-        yield from faults_of_obstacles(drawn.instance)
-    if not Encoding(drawn.instance).wayless:
-        yield from faults_of_bounds(drawn, least)
+        yield from faults_of_obstacles(instance)
+    if not Encoding(instance).wayless:
+        yield from faults_of_bounds(instance, draw, least)
         if is_asked_more:
-            yield from faults_of_plans(drawn, least)
+            yield from faults_of_plans(instance, draw, least)
 
 
 def faults_of_search(instance: Instance, least: int | None) -> Iterator[str]:
@@ -59,43 +60,43 @@ def faults_of_obstacles(instance: Instance) -> Iterator[str]:
             yield f"there are plans, though it has the obstacle {obstacle}"
 
 
-def faults_of_bounds(drawn: Case, least: int | None) -> Iterator[str]:
+def faults_of_bounds(instance: Instance, draw: Draw, least: int | None) -> Iterator[str]:
     """Whatever the horizons, more than the least is not refuted; where they reach as far as the bound, less is."""
-    bound, delay = bound_of(drawn, least)
-    if has_model(beat_formula(drawn.instance, bound, evidence(drawn, max(delay - 1, 0)))):
+    bound, delay = bound_of(instance, draw, least)
+    if has_model(beat_formula(instance, bound, evidence(instance, draw, max(delay - 1, 0)))):
         yield f"the formula of less than {bound} has a model, and the least is {least}"
-    nearest = next(drawn.chance) % 2 * delay
-    if least is not None and not has_model(beat_formula(drawn.instance, least + 1, evidence(drawn, nearest, delay))):
+    nearest = draw.between(0, 1) * delay
+    if least is not None and not has_model(beat_formula(instance, least + 1, evidence(instance, draw, nearest, delay))):
         yield f"the formula of less than {least + 1} has no model, and the least is {least}"
 
 
-def faults_of_plans(drawn: Case, least: int | None) -> Iterator[str]:
+def faults_of_plans(instance: Instance, draw: Draw, least: int | None) -> Iterator[str]:
     """Where no robot is later than its horizon, less than the least has no model, and models hold plans of it."""
-    bound, delay = bound_of(drawn, least)
-    if has_model(reach_formula(drawn.instance, bound - 1, evidence(drawn, 0, delay))):
+    bound, delay = bound_of(instance, draw, least)
+    if has_model(reach_formula(instance, bound - 1, evidence(instance, draw, 0, delay))):
         yield f"the formula of at most {bound - 1} has a model, and the least is {least}"
     if least is not None:
-        reach = reach_formula(drawn.instance, least, evidence(drawn, delay))
+        reach = reach_formula(instance, least, evidence(instance, draw, delay))
         model = model_of(reach)
         if model is None:
             yield f"the formula of at most {least} has no model"
         else:
             plans = [plan for plan in reach.plans(model) if plan is not None]
-            yield from faults_of_solution(drawn.instance, solution_of(plans), least)
+            yield from faults_of_solution(instance, solution_of(plans), least)
 
 
-def bound_of(drawn: Case, least: int | None) -> tuple[int, int]:
+def bound_of(instance: Instance, draw: Draw, least: int | None) -> tuple[int, int]:
     """A total that no plans are below, and the sum of delays of plans that have it."""
-    shortest = Encoding(drawn.instance).shortest
-    delay = 1 + next(drawn.chance) % 5 if least is None else least - shortest
+    shortest = Encoding(instance).shortest
+    delay = draw.between(1, 5) if least is None else least - shortest
     return shortest + delay, delay
 
 
-def evidence(drawn: Case, nearest: int, more: int = 1) -> Evidence:
+def evidence(instance: Instance, draw: Draw, nearest: int, more: int = 1) -> Evidence:
     """Horizons from the nearest to `more` ticks further, and delays added in any order."""
-    robots = range(len(drawn.instance.robots))
-    horizons = tuple(nearest + next(drawn.chance) % (more + 1) for _ in robots)
-    return Evidence(horizons, shuffle(robots, drawn.chance))
+    robots = range(len(instance.robots))
+    horizons = tuple(draw.between(nearest, nearest + more) for _ in robots)
+    return Evidence(horizons, shuffle(robots, draw.stream))
 
 
 def has_model(encoding: Encoding) -> bool:
@@ -126,7 +127,7 @@ def test_parked_robots_that_may_not_pass_over_their_goal_are_noticed(monkeypatch
     monkeypatch.setattr(RobotClauses, "leads_to", leads_to)
     noticed = []
     for number in range(BLOCK):
-        drawn = case(number)
-        if not Encoding(drawn.instance).wayless:
-            noticed += list(faults_of_bounds(drawn, least_total_cost(drawn.instance)))
+        instance, draw = case(number)
+        if not Encoding(instance).wayless:
+            noticed += list(faults_of_bounds(instance, draw, least_total_cost(instance)))
     assert noticed

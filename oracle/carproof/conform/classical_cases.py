@@ -1,30 +1,37 @@
 """Random cases of classical multi-agent path finding, for planners that read MovingAI files."""
 
+from dataclasses import replace
+
 from hypothesis import strategies as st
 
-from carp_spec import Instance, Robot
+from carp_spec import Instance, Resource, ResourceGraph
 from carproof.conform.cases import Case
 from carproof.generate.grid import cell_id
 from carproof.movingai import BLOCKED, PASSABLE, GridMap, movingai_instance
+from carproof.strategies import Sizes, instances
 
-WIDTH, HEIGHT, ROBOTS = 4, 3, 4
+WIDTH, HEIGHT = 4, 3
+SIZES = Sizes(robots=4, release=0, pace=1)
 
 
 @st.composite
-def classical_instances(draw: st.DrawFn) -> Instance:
-    """Small grids, some cells blocked, with robots of different starts and different goals; most meet."""
+def _grids(draw: st.DrawFn) -> ResourceGraph:
+    """Small grids, some cells blocked."""
     width, height = draw(st.integers(1, WIDTH)), draw(st.integers(1, HEIGHT))
     kinds = st.sampled_from([PASSABLE[0], PASSABLE[0], PASSABLE[0], BLOCKED[0]])
     rows = tuple("".join(draw(st.lists(kinds, min_size=width, max_size=width))) for _ in range(height))
-    grid = GridMap(width, height, rows)
-    cells = [cell_id(x, y) for y in range(height) for x in range(width) if grid.is_passable(x, y)]
-    if not cells:
-        grid, cells = GridMap(1, 1, (PASSABLE[0],)), [cell_id(0, 0)]
-    starts, goals = draw(st.permutations(cells)), draw(st.permutations(cells))
-    count = draw(st.integers(1, min(ROBOTS, len(cells))))
-    ends = list(zip(starts, goals, strict=True))[:count]
-    robots = [Robot(f"r{number}", start, goal) for number, (start, goal) in enumerate(ends, start=1)]
-    return movingai_instance(grid, robots, "park")
+    graph = movingai_instance(GridMap(width, height, rows), (), "park").graph
+    return graph if graph.resources else ResourceGraph((Resource(cell_id(0, 0), x=0, y=0),), ())
+
+
+def classical_instances() -> st.SearchStrategy[Instance]:
+    """Grids with robots of different starts and different goals; most meet."""
+    return instances(SIZES, _grids(), 1, starts_apart=True, goals_apart=True).map(_classical)
+
+
+def _classical(instance: Instance) -> Instance:
+    robots = (replace(robot, id=f"r{number}") for number, robot in enumerate(instance.robots, start=1))
+    return replace(instance, robots=tuple(robots), after_goal="park")
 
 
 def classical_cases() -> st.SearchStrategy[Case]:

@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 
 from carp_reference.execution import order_of
 from carp_spec import (
-    AfterGoal,
     Carp,
     FixedPaths,
     Greedy,
@@ -19,7 +18,6 @@ from carp_spec import (
     Planner,
     Resource,
     ResourceGraph,
-    Robot,
     RobotId,
     Shuffled,
     Solution,
@@ -77,29 +75,21 @@ def _shaped_graphs(draw: st.DrawFn, sizes: Sizes, shapes: Sequence[Edges] = SHAP
     return ResourceGraph(resources, edges)
 
 
-@st.composite
-def _busy_instances(draw: st.DrawFn, sizes: Sizes) -> Instance:
+def _swaps(sizes: Sizes) -> st.SearchStrategy[Instance]:
+    """Two or three robots in a corridor, each going to where the next one starts."""
+    corridor = _shaped_graphs(sizes, (CORRIDOR,))
+    return instances(replace(sizes, robots=3), corridor, 2, starts_apart=True).map(_swapped)
+
+
+def _swapped(instance: Instance) -> Instance:
+    following = (*instance.robots[1:], instance.robots[0])
+    robots = (replace(each, goal=after.start) for each, after in zip(instance.robots, following, strict=True))
+    return replace(instance, robots=tuple(robots))
+
+
+def _busy_instances(sizes: Sizes) -> st.SearchStrategy[Instance]:
     """Two or more robots on a small map, from different starts: most are in each other's way."""
-    graph = draw(_shaped_graphs(sizes))
-    starts = draw(st.permutations(list(graph.index)))
-    count = draw(st.integers(2, min(sizes.robots, len(starts))))
-    goals = draw(st.lists(st.sampled_from(list(graph.index)), min_size=count, max_size=count))
-    requests = st.tuples(st.integers(0, sizes.release), st.integers(1, sizes.pace))
-    robots = tuple(Robot(id, starts[id], goals[id], *draw(requests)) for id in range(count))
-    policies: list[AfterGoal] = ["vanish", "park"]
-    return Instance(graph, robots, draw(st.sampled_from(policies)))
-
-
-@st.composite
-def _swaps(draw: st.DrawFn, sizes: Sizes) -> Instance:
-    """Two or three robots at the ends of a corridor, each going to where the next one starts."""
-    graph = draw(_shaped_graphs(sizes, (CORRIDOR,)))
-    starts = draw(st.permutations(range(4)))[: draw(st.integers(2, 3))]
-    releases = draw(st.lists(st.integers(0, sizes.release), min_size=len(starts), max_size=len(starts)))
-    ways = zip(starts, [*starts[1:], starts[0]], releases, strict=True)
-    robots = tuple(Robot(id, *way) for id, way in enumerate(ways))
-    policies: list[AfterGoal] = ["vanish", "park"]
-    return Instance(graph, robots, draw(st.sampled_from(policies)))
+    return instances(sizes, _shaped_graphs(sizes), 2, starts_apart=True)
 
 
 def _instances(sizes: Sizes, least_robots: int = 0) -> st.SearchStrategy[Instance]:
