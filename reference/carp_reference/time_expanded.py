@@ -4,11 +4,11 @@ It shares no code with the query over windows, which is tested against it: both 
 tick, or both find none. Where several plans arrive as early, the two may differ.
 """
 
-from collections import Counter, defaultdict
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from heapq import heappop, heappush
-from itertools import pairwise
+from itertools import count, groupby, pairwise
 
 from carp_spec import Instance, Plan, Refusal, ResourceId, RobotId, Visit, has_ended
 from carp_spec.planners import LARGEST_TABLE, ticks_are_held
@@ -37,6 +37,12 @@ class Table:
         stays = all(self.is_free_during(visit.resource, visit.enter, visit.leave) for visit in visits)
         return stays and not any((to.resource, at.resource, to.enter) in self.moves for at, to in pairwise(visits))
 
+    def may_end(self, robot: RobotId, resource: ResourceId, enter: int) -> bool:
+        """Whether a robot that enters the resource at the tick may end its plan there."""
+        parks = self.instance.after_goal == "park"
+        leave = None if parks else enter + self.instance.duration(robot, resource)
+        return resource == self.instance.robot[robot].goal and self.is_free_during(resource, enter, leave)
+
 
 @dataclass(frozen=True, slots=True)
 class Moment:
@@ -51,21 +57,16 @@ class Moment:
 
 def table_of(instance: Instance, committed: Sequence[Plan]) -> Table:
     """Write the committed plans into a table; raises `Refusal` by `limit/ticks`."""
-    ticks = [tick for plan in committed for visit in plan.visits for tick in (visit.enter, visit.leave or 0)]
-    still = max(ticks, default=0) + instance.gap
-    size = sum((still + 1 if v.leave is None else v.leave) - v.enter for plan in committed for v in plan.visits)
+    visits = [visit for plan in committed for visit in plan.visits]
+    still = max((tick for visit in visits for tick in (visit.enter, visit.leave or 0)), default=0) + instance.gap
+    size = sum((still + 1 if visit.leave is None else visit.leave) - visit.enter for visit in visits)
     _refuse_too_many("the committed plans occupy", size)
     occupied: Counter[tuple[ResourceId, int]] = Counter()
-    for plan in committed:
-        for visit in plan.visits:
-            leave = still + 1 if visit.leave is None else visit.leave + instance.gap
-            occupied.update((visit.resource, tick) for tick in range(visit.enter, leave))
-    moves = frozenset(
-        (visit.resource, following.resource, following.enter)
-        for plan in committed
-        for visit, following in pairwise(plan.visits)
-    )
-    return Table(instance, occupied, moves, still)
+    for visit in visits:
+        leave = still + 1 if visit.leave is None else visit.leave + instance.gap
+        occupied.update((visit.resource, tick) for tick in range(visit.enter, leave))
+    moves = ((at.resource, to.resource, to.enter) for plan in committed for at, to in pairwise(plan.visits))
+    return Table(instance, occupied, frozenset(moves), still)
 
 
 def _refuse_too_many(what: str, ticks: int) -> None:
@@ -87,52 +88,35 @@ def find_plan_by_ticks(
     request = instance.robot[robot]
     entered = [] if before is None else [visit for visit in before.visits if visit.enter <= now]
     *past, current = entered or [Visit(request.start, request.release, None)]
-    still = max(table.still, now, current.enter)
-    longest_way = sum(instance.duration(robot, resource.id) for resource in instance.graph.resources)
-    _refuse_too_many(f"robot {robot} may be under way for", still - current.enter + longest_way)
-    duration = instance.duration(robot, current.resource)
-    ready = max(current.enter + duration, now)
+    longest_way = sum(instance.duration(robot, resource) for resource in instance.graph.index)
+    longest = max(table.still, now, current.enter) - current.enter + longest_way
+    _refuse_too_many(f"robot {robot} may be under way for", longest)
+    due = current.enter + instance.duration(robot, current.resource)
+    ready = max(due, now)
     if not table.allows([*past, Visit(current.resource, current.enter, ready)]):
         return None
-    ends = ready == current.enter + duration and _may_end(table, robot, current.resource, current.enter)
-    if instance.after_goal == "park":
-        ends = _may_end(table, robot, current.resource, current.enter)
-    start = Moment(current.resource, current.enter, ready - current.enter - 1, ends, None)
-    last = _search(table, robot, start)
+    is_in_time = ready == due or instance.after_goal == "park"
+    ends = is_in_time and table.may_end(robot, current.resource, current.enter)
+    last = _search(table, robot, Moment(current.resource, current.enter, ready - current.enter - 1, ends, None))
     return None if last is None else Plan(robot, (*past, *_visits(instance, robot, last)))
-
-
-def _may_end(table: Table, robot: RobotId, resource: ResourceId, enter: int) -> bool:
-    """Whether a robot that enters the resource at the tick may end its plan there."""
-    if resource != table.instance.robot[robot].goal:
-        return False
-    parks = table.instance.after_goal == "park"
-    leave = None if parks else enter + table.instance.duration(robot, resource)
-    return table.is_free_during(resource, enter, leave)
 
 
 def _search(table: Table, robot: RobotId, start: Moment) -> Moment | None:
     hops = _hops_to_goal(table.instance, robot)
-    queue: list[tuple[int, int, Moment]] = []
+    pushes = count()
+    queue = [(start.tick, next(pushes), start)]
     seen: set[tuple[ResourceId, int, int]] = set()
-    pushes = 0
-
-    def push(moment: Moment) -> None:
-        nonlocal pushes
-        if moment.resource in hops:
-            pushes += 1
-            heappush(queue, (moment.tick + (0 if moment.arrived else hops[moment.resource]), pushes, moment))
-
-    push(start)
     while queue:
         _, _, moment = heappop(queue)
-        state = (moment.resource, min(moment.tick, table.still), moment.rest)
         if moment.arrived:
             return moment
+        state = (moment.resource, min(moment.tick, table.still), moment.rest)
         if state not in seen:
             seen.add(state)
             for following in _next_moments(table, robot, moment):
-                push(following)
+                if following.resource in hops:
+                    f = following.tick + (0 if following.arrived else hops[following.resource])
+                    heappush(queue, (f, next(pushes), following))
     return None
 
 
@@ -144,23 +128,17 @@ def _next_moments(table: Table, robot: RobotId, moment: Moment) -> Iterator[Mome
         for target in table.instance.graph.successors[moment.resource]:
             if table.is_free(target, tick) and (target, moment.resource, tick) not in table.moves:
                 rest = table.instance.duration(robot, target) - 1
-                yield Moment(target, tick, rest, _may_end(table, robot, target, tick), moment)
+                yield Moment(target, tick, rest, table.may_end(robot, target, tick), moment)
 
 
-def _hops_to_goal(instance: Instance, robot: RobotId) -> dict[ResourceId, int]:
+def _hops_to_goal(instance: Instance, robot: RobotId) -> Mapping[ResourceId, int]:
     """The least number of moves from each resource to the goal: no plan needs fewer ticks."""
-    predecessors: dict[ResourceId, list[ResourceId]] = defaultdict(list)
-    for source, targets in instance.graph.successors.items():
-        for target in targets:
-            predecessors[target].append(source)
+    import networkx as nx  # noqa: PLC0415 - loaded only where used
+
+    backward = nx.DiGraph((target, source) for source, target in instance.graph.moves)
     goal = instance.robot[robot].goal
-    hops = {goal: 0}
-    reached = [goal]
-    for resource in reached:
-        for predecessor in predecessors[resource]:
-            if predecessor not in hops:
-                hops[predecessor] = hops[resource] + 1
-                reached.append(predecessor)
+    backward.add_node(goal)
+    hops: Mapping[ResourceId, int] = nx.single_source_shortest_path_length(backward, goal)
     return hops
 
 
@@ -169,12 +147,10 @@ def _visits(instance: Instance, robot: RobotId, last: Moment) -> tuple[Visit, ..
     moments = [last]
     while moments[-1].before is not None:
         moments.append(moments[-1].before)
-    moments.reverse()
-    entries = [moments[0], *(later for earlier, later in pairwise(moments) if earlier.resource != later.resource)]
+    stays = [next(stay) for _, stay in groupby(reversed(moments), key=lambda moment: moment.resource)]
     leave = None if instance.after_goal == "park" else last.tick + instance.duration(robot, last.resource)
-    ticks = [*(moment.tick for moment in entries), leave]
-    stays = zip(entries, ticks, ticks[1:], strict=False)
-    return tuple(Visit(moment.resource, enter, leave) for moment, enter, leave in stays if enter is not None)
+    visits = [Visit(at.resource, at.tick, to.tick) for at, to in pairwise(stays)]
+    return (*visits, Visit(last.resource, stays[-1].tick, leave))
 
 
 def time_expanded(instance: Instance) -> tuple[Plan, ...]:

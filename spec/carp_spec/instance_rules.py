@@ -1,60 +1,51 @@
-"""The rules of an instance: `instance/...`.
+"""The rules of an instance, `instance/...`: each yields its faults with their paths in the instance document."""
 
-Each predicate takes the instance and yields its faults, each with its path in the instance document.
-"""
+from collections.abc import Iterator, Sequence
 
-from collections.abc import Iterable, Iterator, Sequence
-
-from carp_spec.model import Instance
-from carp_spec.rule import DESIGN, MORS, Fault, Rule, fault_rule, is_whole
+from carp_spec.model import Instance, Resource, Robot
+from carp_spec.rule import DESIGN, MORS, Fault, Found, Rule, fault_rule, is_whole
 
 PAPER = "paper, section II"
 
 
-def _id_faults(path: str, ids: Sequence[object]) -> Iterator[tuple[str, str]]:
+def _wrong_ids(path: str, entries: Sequence[Resource | Robot]) -> Found:
     first_at: dict[object, int] = {}
-    for position, id in enumerate(ids):
+    for position, entry in enumerate(entries):
         here = f"{path}[{position}].id"
-        if not (is_whole(id) or isinstance(id, str)):
-            yield here, f"the id must be a string or a whole number, not {id!r}"
-        elif id in first_at:
-            yield here, f"{id!r} is the id of entry {first_at[id]} too; ids must be unique"
-        else:
-            first_at[id] = position
+        if not (is_whole(entry.id) or isinstance(entry.id, str)):
+            yield here, f"the id must be a string or a whole number, not {entry.id!r}"
+        elif first_at.setdefault(entry.id, position) < position:
+            yield here, f"{entry.id!r} is the id of entry {first_at[entry.id]} too; ids must be unique"
 
 
-def _number_faults(path: str, name: str, values: Iterable[object], least: int) -> Iterator[tuple[str, str]]:
-    for position, value in enumerate(values):
+def _wrong_numbers(path: str, entries: Sequence[Resource | Robot], name: str, least: int) -> Found:
+    for position, entry in enumerate(entries):
+        value = getattr(entry, name)
         if not is_whole(value) or value < least:
-            message = f"the {name} must be a whole number of at least {least}, not {value!r}"
-            yield f"{path}[{position}].{name}", message
+            yield f"{path}[{position}].{name}", f"the {name} must be a whole number of at least {least}, not {value!r}"
 
 
 @fault_rule("instance/resource-id", "Resource ids are strings or whole numbers, and no two are the same.", DESIGN)
-def resource_ids_are_unique(instance: Instance) -> Iterator[tuple[str, str]]:
-    ids = [resource.id for resource in instance.graph.resources]
-    yield from _id_faults("$.graph.nodes", ids)
+def resource_ids_are_unique(instance: Instance) -> Found:
+    return _wrong_ids("$.graph.nodes", instance.graph.resources)
 
 
 @fault_rule("instance/capacity", "A resource's capacity is a whole number of at least 1.", f"{PAPER}; {MORS}")
-def capacities_are_positive(instance: Instance) -> Iterator[tuple[str, str]]:
-    capacities = (resource.capacity for resource in instance.graph.resources)
-    yield from _number_faults("$.graph.nodes", "capacity", capacities, 1)
+def capacities_are_positive(instance: Instance) -> Found:
+    return _wrong_numbers("$.graph.nodes", instance.graph.resources, "capacity", 1)
 
 
 @fault_rule("instance/duration", "A resource's duration is a whole number of ticks, at least 1.", f"{PAPER}; {MORS}")
-def durations_are_positive(instance: Instance) -> Iterator[tuple[str, str]]:
-    durations = (resource.duration for resource in instance.graph.resources)
-    yield from _number_faults("$.graph.nodes", "duration", durations, 1)
+def durations_are_positive(instance: Instance) -> Found:
+    return _wrong_numbers("$.graph.nodes", instance.graph.resources, "duration", 1)
 
 
 @fault_rule("instance/position", "A resource's x and y are both whole numbers or both absent.", DESIGN)
-def positions_are_whole(instance: Instance) -> Iterator[tuple[str, str]]:
+def positions_are_whole(instance: Instance) -> Found:
     for position, resource in enumerate(instance.graph.resources):
-        both_whole = is_whole(resource.x) and is_whole(resource.y)
-        both_absent = resource.x is None and resource.y is None
-        if not (both_whole or both_absent):
-            message = f"x and y must both be whole numbers or both be absent, not {resource.x!r} and {resource.y!r}"
+        x, y = resource.x, resource.y
+        if not (is_whole(x) and is_whole(y)) and not (x is None and y is None):
+            message = f"x and y must both be whole numbers or both be absent, not {x!r} and {y!r}"
             yield f"$.graph.nodes[{position}]", message
 
 
@@ -64,7 +55,7 @@ def positions_are_whole(instance: Instance) -> Iterator[tuple[str, str]]:
     "(in an undirected graph, not in the other direction either).",
     DESIGN,
 )
-def edges_join_resources(instance: Instance) -> Iterator[tuple[str, str]]:
+def edges_join_resources(instance: Instance) -> Found:
     graph = instance.graph
     first_at: dict[object, int] = {}
     for position, (source, target) in enumerate(graph.edges):
@@ -75,18 +66,17 @@ def edges_join_resources(instance: Instance) -> Iterator[tuple[str, str]]:
         if source == target:
             yield path, f"it must join two different resources, and joins {source!r} to itself"
         edge = (source, target) if graph.directed else frozenset((source, target))
-        if edge in first_at:
+        if first_at.setdefault(edge, position) < position:
             yield path, f"it must be listed once, and is entry {first_at[edge]} too"
-        first_at.setdefault(edge, position)
 
 
 @fault_rule("instance/robot-id", "Robot ids are strings or whole numbers, and no two are the same.", DESIGN)
-def robot_ids_are_unique(instance: Instance) -> Iterator[tuple[str, str]]:
-    yield from _id_faults("$.robots", [robot.id for robot in instance.robots])
+def robot_ids_are_unique(instance: Instance) -> Found:
+    return _wrong_ids("$.robots", instance.robots)
 
 
 @fault_rule("instance/endpoint", "A robot's start and goal are resources of the graph.", PAPER)
-def endpoints_are_resources(instance: Instance) -> Iterator[tuple[str, str]]:
+def endpoints_are_resources(instance: Instance) -> Found:
     for position, robot in enumerate(instance.robots):
         for name, end in (("start", robot.start), ("goal", robot.goal)):
             if end not in instance.graph.index:
@@ -95,9 +85,8 @@ def endpoints_are_resources(instance: Instance) -> Iterator[tuple[str, str]]:
 
 
 @fault_rule("instance/release", "A robot's release is a tick: a whole number of at least 0.", DESIGN)
-def releases_are_ticks(instance: Instance) -> Iterator[tuple[str, str]]:
-    releases = (robot.release for robot in instance.robots)
-    yield from _number_faults("$.robots", "release", releases, 0)
+def releases_are_ticks(instance: Instance) -> Found:
+    return _wrong_numbers("$.robots", instance.robots, "release", 0)
 
 
 @fault_rule(
@@ -105,23 +94,20 @@ def releases_are_ticks(instance: Instance) -> Iterator[tuple[str, str]]:
     "A robot's pace is a whole number of at least 1.",
     "paper, section V (heterogeneous robots)",
 )
-def paces_are_positive(instance: Instance) -> Iterator[tuple[str, str]]:
-    paces = (robot.pace for robot in instance.robots)
-    yield from _number_faults("$.robots", "pace", paces, 1)
+def paces_are_positive(instance: Instance) -> Found:
+    return _wrong_numbers("$.robots", instance.robots, "pace", 1)
 
 
 @fault_rule("instance/after-goal", 'After its goal a robot is to "vanish" or to "park".', DESIGN)
-def after_goal_is_known(instance: Instance) -> Iterator[tuple[str, str]]:
+def after_goal_is_known(instance: Instance) -> Found:
     if instance.after_goal not in ("vanish", "park"):
-        message = f'it must be "vanish" or "park", not {instance.after_goal!r}'
-        yield "$.after_goal", message
+        yield "$.after_goal", f'it must be "vanish" or "park", not {instance.after_goal!r}'
 
 
 @fault_rule("instance/following", 'Following is "allowed" or "forbidden"; where it is left out, it is allowed.', DESIGN)
-def following_is_known(instance: Instance) -> Iterator[tuple[str, str]]:
+def following_is_known(instance: Instance) -> Found:
     if instance.following not in ("allowed", "forbidden"):
-        message = f'it must be "allowed" or "forbidden", not {instance.following!r}'
-        yield "$.following", message
+        yield "$.following", f'it must be "allowed" or "forbidden", not {instance.following!r}'
 
 
 INSTANCE_RULES: tuple[Rule[[Instance], Iterator[Fault]], ...] = (

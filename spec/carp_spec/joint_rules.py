@@ -1,7 +1,7 @@
 """The rules of plans together: `joint/...` and `solution/...`."""
 
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby, pairwise
 from operator import itemgetter
 from typing import TypeAlias
@@ -40,14 +40,14 @@ def following_is_avoided(instance: Instance, plans: Sequence[Plan]) -> Iterator[
 def _crowded(
     instance: Instance, plans: Sequence[Plan], gap: int
 ) -> Iterator[tuple[Resource, tuple[RobotId, ...], int, int | None]]:
-    """The resources that are too full if each stay lasts `gap` ticks longer, with the robots and the ticks."""
+    """The resources that are too full if each stay lasts `gap` ticks longer."""
     changes: dict[ResourceId, list[Change]] = defaultdict(list)
     for plan in plans:
         for visit in plan.visits:
-            if visit.leave is None or visit.enter < visit.leave:
+            if visit.leave is None:
                 changes[visit.resource].append((visit.enter, 1, plan.robot))
-                if visit.leave is not None:
-                    changes[visit.resource].append((visit.leave + gap, -1, plan.robot))
+            elif visit.enter < visit.leave:
+                changes[visit.resource] += [(visit.enter, 1, plan.robot), (visit.leave + gap, -1, plan.robot)]
     arrival = {robot: position for position, robot in enumerate(instance.robot)}
     for resource in instance.graph.resources:
         for start, end, crowd in _crowds(resource.capacity, changes[resource.id]):
@@ -55,7 +55,7 @@ def _crowded(
 
 
 def _crowds(capacity: int, changes: list[Change]) -> Iterator[tuple[int, int | None, set[RobotId]]]:
-    """The maximal intervals with too many robots at each tick, and all robots that are present at one of the ticks."""
+    """The maximal intervals with too many robots at each tick, and all robots that are there at one of them."""
     stays: Counter[RobotId] = Counter()
     crowd: set[RobotId] = set()
     start: int | None = None
@@ -95,8 +95,7 @@ def exchanges_are_avoided(instance: Instance, plans: Sequence[Plan]) -> Iterator
     for tick, (source, target) in sorted(met, key=lambda key: (key[0], index[key[1][0]], index[key[1][1]])):
         robots = tuple(dict.fromkeys(movers[tick, (source, target)] + movers[tick, (target, source)]))
         if len(robots) > 1:
-            reason = f"they exchange {source} and {target} at tick {tick}"
-            yield robots, source, tick, tick + 1, reason
+            yield robots, source, tick, tick + 1, f"they exchange {source} and {target} at tick {tick}"
 
 
 JOINT_RULES: tuple[Rule[[Instance, Sequence[Plan]], Iterator[Violation]], ...] = (
@@ -116,11 +115,11 @@ def solution_covers_robots(instance: Instance, solution: Solution) -> Iterator[B
     planned = Counter(plan.robot for plan in solution.plans)
     unplanned = Counter(solution.unplanned)
     for robot in dict.fromkeys([*instance.robot, *planned, *unplanned]):
+        has = f"{planned[robot]} and {unplanned[robot]}"
         if robot not in instance.robot:
             yield of_robots([robot], "the instance has no such robot")
         elif planned[robot] + unplanned[robot] != 1:
-            reason = f"it must have one plan or be unplanned once, and has {planned[robot]} and {unplanned[robot]}"
-            yield of_robots([robot], reason)
+            yield of_robots([robot], f"it must have one plan or be unplanned once, and has {has}")
 
 
 @violation_rule(
@@ -128,14 +127,17 @@ def solution_covers_robots(instance: Instance, solution: Solution) -> Iterator[B
 )
 def solution_orders_plans(instance: Instance, solution: Solution) -> Iterator[Breach]:
     del instance
-    planned = {plan.robot for plan in solution.plans}
-    named = Counter(solution.order)
-    for robot in dict.fromkeys([*(plan.robot for plan in solution.plans), *solution.order]):
-        if named[robot] != (robot in planned):
-            reason = (
-                f"the order must name it {'once' if robot in planned else 'never'}, and names it {named[robot]} times"
-            )
-            yield of_robots([robot], reason)
+    yield from misnamed("order", solution.order, solution)
+
+
+def misnamed(what: str, names: Iterable[RobotId], solution: Solution) -> Iterator[Breach]:
+    """The robots that have a plan and are not named once, and those that have none and are named."""
+    planned = dict.fromkeys((plan.robot for plan in solution.plans), 1)
+    named = Counter(names)
+    for robot in planned | named:
+        if named[robot] != planned.get(robot, 0):
+            right = "once" if robot in planned else "never"
+            yield of_robots([robot], f"the {what} must name it {right}, and names it {named[robot]} times")
 
 
 SOLUTION_RULES: tuple[Rule[[Instance, Solution], Iterator[Violation]], ...] = (

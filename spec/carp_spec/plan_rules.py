@@ -1,7 +1,4 @@
-"""The rules of one plan: `plan/...`, `cost/...` and `fleet/history`.
-
-Each `plan/...` predicate takes the instance and a plan of one of its robots and yields the violations.
-"""
+"""The rules of one plan: `plan/...`, `cost/...` and `fleet/history`."""
 
 from collections.abc import Iterator, Sequence
 from itertools import pairwise, zip_longest
@@ -58,8 +55,7 @@ def plan_follows_moves(instance: Instance, plan: Plan) -> Iterator[Breach]:
     for visit, following in pairwise(plan.visits):
         known = visit.resource in instance.graph.index and following.resource in instance.graph.index
         if known and not instance.graph.has_move(visit.resource, following.resource):
-            reason = f"the graph has no move to it from {visit.resource}"
-            yield at_visit(plan.robot, following, reason)
+            yield at_visit(plan.robot, following, f"the graph has no move to it from {visit.resource}")
 
 
 @violation_rule("plan/contiguous", "Each visit enters at the tick at which the one before leaves.", MORS)
@@ -67,9 +63,8 @@ def plan_is_contiguous(instance: Instance, plan: Plan) -> Iterator[Breach]:
     del instance
     for visit, following in pairwise(plan.visits):
         if following.enter != visit.leave:
-            leaves = "never left" if visit.leave is None else f"left at {visit.leave}"
-            reason = f"it must enter when it leaves {visit.resource}, which is {leaves}"
-            yield at_visit(plan.robot, following, reason)
+            left = "never left" if visit.leave is None else f"left at {visit.leave}"
+            yield at_visit(plan.robot, following, f"it must enter when it leaves {visit.resource}, which is {left}")
 
 
 @violation_rule(
@@ -80,10 +75,9 @@ def plan_is_contiguous(instance: Instance, plan: Plan) -> Iterator[Breach]:
 def plan_respects_durations(instance: Instance, plan: Plan) -> Iterator[Breach]:
     for visit in plan.visits:
         if visit.resource in instance.graph.index and visit.leave is not None:
-            least = instance.duration(plan.robot, visit.resource)
-            if visit.leave - visit.enter < least:
-                reason = f"it stays {visit.leave - visit.enter} of at least {least} ticks"
-                yield at_visit(plan.robot, visit, reason)
+            stay, least = visit.leave - visit.enter, instance.duration(plan.robot, visit.resource)
+            if stay < least:
+                yield at_visit(plan.robot, visit, f"it stays {stay} of at least {least} ticks")
 
 
 PLAN_RULES: tuple[Rule[[Instance, Plan], Iterator[Violation]], ...] = (
@@ -135,14 +129,15 @@ def plan_keeps_history(before: Plan, after: Plan, now: int) -> Iterator[Breach]:
     history = [visit for visit in before.visits if visit.enter <= now]
     for visit, again in zip_longest(history, after.visits[: len(history)]):
         ended = visit.leave is not None and visit.leave <= now
-        end = f"left at {visit.leave}" if ended else f"left no earlier than {now}"
-        right = f"by {now} it was in {visit.resource}, entered at {visit.enter} and {end}"
-        if again is None:
-            yield at_visit(before.robot, visit, right)
-            continue
-        kept_end = again.leave == visit.leave if ended else again.leave is None or again.leave >= now
-        if (again.resource, again.enter) != (visit.resource, visit.enter) or not kept_end:
-            yield at_visit(before.robot, again, right)
+        is_kept = (
+            again is not None
+            and (again.resource, again.enter) == (visit.resource, visit.enter)
+            and (again.leave == visit.leave if ended else again.leave is None or again.leave >= now)
+        )
+        if not is_kept:
+            end = f"left at {visit.leave}" if ended else f"left no earlier than {now}"
+            right = f"by {now} it was in {visit.resource}, entered at {visit.enter} and {end}"
+            yield at_visit(before.robot, again or visit, right)
     if has_ended(before, now):
         for added in after.visits[len(history) :]:
             yield at_visit(before.robot, added, f"its plan had ended by {now}")

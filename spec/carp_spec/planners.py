@@ -1,14 +1,11 @@
-"""The planners by name, and their options: the same for documents, the command line and Python.
+"""The planners by name, their options and their decisions."""
 
-Each planner's decisions are described beside its options; `carp_reference` and `carp_optimized` implement them.
-"""
-
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
 from typing import Any, ClassVar, Literal, TypeAlias, cast, get_args
 
 from carp_spec.refusal import Refusal
-from carp_spec.rule import DESIGN, fault_rule, is_whole, rule
+from carp_spec.rule import DESIGN, Found, fault_rule, is_whole, rule
 
 LARGEST_SEED = 2**64 - 1
 LARGEST_TABLE = 5_000_000
@@ -96,7 +93,8 @@ Planner: TypeAlias = Carp | Shuffled | LongestFirst | Greedy | Neighbourhood | F
 PLANNERS: Mapping[str, type[Planner]] = {kind.name: kind for kind in get_args(Planner)}
 
 
-def _is_between(value: object, least: int, most: int | None) -> bool:
+def is_between(value: object, least: int, most: int | None = None) -> bool:
+    """Whether the value is a whole number between the two, both included."""
     return is_whole(value) and value >= least and (most is None or value <= most)
 
 
@@ -107,22 +105,18 @@ def _is_between(value: object, least: int, most: int | None) -> bool:
     "may be null.",
     DESIGN,
 )
-def options_are_right(planner: Planner) -> Iterator[tuple[str, str]]:
+def options_are_right(planner: Planner) -> Found:
     limits = {"seed": (0, LARGEST_SEED), "sample": (1, LARGEST_SAMPLE)}
     for name, value in asdict(planner).items():
-        path = f"$.{name}"
+        least, most = limits.get(name, (1, None))
+        right = f"a whole number of at least {least}" if most is None else f"a whole number between {least} and {most}"
+        is_right = is_between(value, least, most) or (value is None and name in ("sample", "fallback"))
         if name == "baseline":
-            if not isinstance(value, bool):
-                yield path, f"the baseline must be true or false, not {value!r}"
+            right, is_right = "true or false", isinstance(value, bool)
         elif name == "paths":
-            if value not in get_args(PathKind):
-                yield path, f'the paths must be "shortest" or "disjoint", not {value!r}'
-        elif not (value is None and name in ("sample", "fallback")):
-            least, most = limits.get(name, (1, None))
-            if not _is_between(value, least, most):
-                bounds = f"of at least {least}" if most is None else f"between {least} and {most}"
-                message = f"the {name} must be a whole number {bounds}, not {value!r}"
-                yield path, message
+            right, is_right = '"shortest" or "disjoint"', value in get_args(PathKind)
+        if not is_right:
+            yield f"$.{name}", f"the {name} must be {right}, not {value!r}"
 
 
 def planner_named(name: object, options: Mapping[str, object]) -> Planner:
@@ -133,14 +127,13 @@ def planner_named(name: object, options: Mapping[str, object]) -> Planner:
     if not isinstance(name, str) or name not in PLANNERS:
         message = f"there is no planner {name!r}; the planners are {', '.join(PLANNERS)}"
         raise Refusal("option", "$.planner", "planner/options", message)
-    kind = PLANNERS[name]
-    known = [field.name for field in fields(kind)]
+    known = [field.name for field in fields(PLANNERS[name])]
     for option in options:
         if option not in known:
             has = f"its options are {', '.join(known)}" if known else "it has none"
             message = f"the planner {name} has no option {option}; {has}"
             raise Refusal("option", f"$.{option}", "planner/options", message)
-    planner = kind(**cast("Mapping[str, Any]", options))
+    planner = PLANNERS[name](**cast("Mapping[str, Any]", options))
     for fault in options_are_right(planner):
         raise Refusal("option", fault.path, fault.rule, fault.message)
     return planner

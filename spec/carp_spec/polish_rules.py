@@ -1,10 +1,8 @@
-"""The rules of polishing, which is large neighbourhood search (LNS): `polish/...`.
+"""The rules of polishing, large neighbourhood search (LNS): `polish/...`.
 
-Each round removes a few robots, the neighbourhood, from a solution and replans them in a drawn order. It keeps the new
-plans if they are not worse. Each predicate makes one decision of a round; planners call it, or are tested against it. A
-round draws, one after the other: its kind, its pivot, what its candidates need, its members, and their order.
-
-Polishing plans whole instances: robots are planned from their release on, and none is under way.
+A round removes a few robots from a solution and replans them in a drawn order. It draws, one after the other: its kind,
+its pivot, what its candidates need, its members, and their order. Robots are planned from their release on: none is
+under way.
 """
 
 from bisect import bisect_right
@@ -12,21 +10,22 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import accumulate, islice
-from typing import Any, Literal, TypeAlias, TypeVar
+from math import inf
+from typing import Any, Literal, TypeAlias, TypeVar, cast
 
 from carp_spec.check import judge
 from carp_spec.model import Instance, Plan, ResourceId, Solution, Visit
 from carp_spec.permutations import shuffle
-from carp_spec.planners import LARGEST_SEED
+from carp_spec.planners import LARGEST_SEED, is_between
 from carp_spec.refusal import Refusal
-from carp_spec.rule import DESIGN, Rule, fault_rule, is_whole, rule
+from carp_spec.rule import DESIGN, Found, Rule, fault_rule, rule
 
 T = TypeVar("T")
 Kind: TypeAlias = Literal["repair", "delayed", "contested", "near"]
 Span: TypeAlias = tuple[int, int | None]
 
-EIGHT_DELAYED: tuple[Kind, ...] = ("delayed",) * 8
-KINDS: tuple[Kind, ...] = (*EIGHT_DELAYED, "contested", "near")
+DELAYED: tuple[Kind, ...] = ("delayed",) * 8
+KINDS: tuple[Kind, ...] = (*DELAYED, "contested", "near")
 LEAST_MEMBERS = 4
 SIZES = 7
 ITERATIONS = 10_000
@@ -59,9 +58,7 @@ def kind_of(turn: int, waiting: int, delay: int, stream: Iterator[int]) -> Kind 
     """`waiting` robots that have a path are unplanned; the delays sum up to `delay`."""
     if waiting > 0 and (turn % 2 == 0 or delay == 0):
         return "repair"
-    if delay == 0:
-        return None
-    return KINDS[next(stream) % len(KINDS)]
+    return None if delay == 0 else KINDS[next(stream) % len(KINDS)]
 
 
 @rule(
@@ -73,9 +70,7 @@ def kind_of(turn: int, waiting: int, delay: int, stream: Iterator[int]) -> Kind 
     f"{LARGE_NEIGHBOURHOOD}; {DESIGN}",
 )
 def pivot_of(weights: Sequence[int], stream: Iterator[int]) -> int:
-    """The robot's place among the weights."""
-    drawn_weight = next(stream) % sum(weights)
-    return bisect_right(list(accumulate(weights)), drawn_weight)
+    return bisect_right(list(accumulate(weights)), next(stream) % sum(weights))
 
 
 @rule(
@@ -86,7 +81,7 @@ def pivot_of(weights: Sequence[int], stream: Iterator[int]) -> int:
     DESIGN,
 )
 def members_of(pivot: T, candidates: Sequence[T], everyone: Sequence[T], stream: Iterator[int]) -> list[T]:
-    """Choose the size and the members; `everyone` is all robots that have a path, in the order of the instance."""
+    """`everyone` is all robots that have a path, in the order of the instance."""
     size = min(LEAST_MEMBERS + next(stream) % SIZES, len(everyone))
     chosen = [pivot, *islice(candidates, size - 1)]
     others = [each for each in everyone if each not in chosen]
@@ -94,13 +89,12 @@ def members_of(pivot: T, candidates: Sequence[T], everyone: Sequence[T], stream:
 
 
 def spans(successors: Mapping[ResourceId, Sequence[ResourceId]], plan: Plan) -> Mapping[ResourceId, Span]:
-    """The span of each resource that the plan visits, and of each that one move leads to from there (`polish/way`)."""
+    """The spans of `polish/way`; plans have their visits in order of time."""
     found: dict[ResourceId, Span] = {}
     for visit in plan.visits:
         for resource in (visit.resource, *successors[visit.resource]):
-            first, last = found.get(resource, (visit.enter, visit.leave))
-            end = None if last is None or visit.leave is None else max(last, visit.leave)
-            found[resource] = (min(first, visit.enter), end)
+            first, _ = found.get(resource, (visit.enter, None))
+            found[resource] = (first, visit.leave)
     return found
 
 
@@ -113,12 +107,11 @@ def spans(successors: Mapping[ResourceId, Sequence[ResourceId]], plan: Plan) -> 
     f"{LARGE_NEIGHBOURHOOD}; {DESIGN}",
 )
 def is_in_way(spans: Mapping[ResourceId, Span], other: Plan) -> bool:
-    return any(_meets(spans[visit.resource], visit) for visit in other.visits if visit.resource in spans)
-
-
-def _meets(span: Span, visit: Visit) -> bool:
-    first, last = span
-    return (visit.leave is None or first <= visit.leave) and (last is None or visit.enter <= last)
+    met = ((visit, *spans[visit.resource]) for visit in other.visits if visit.resource in spans)
+    return any(
+        (visit.leave is None or first <= visit.leave) and (last is None or visit.enter <= last)
+        for visit, first, last in met
+    )
 
 
 @rule(
@@ -174,23 +167,20 @@ def is_kept(before: tuple[int, int], after: tuple[int, int]) -> bool:
     f"number above 0, or neither, which means {ITERATIONS} iterations; and a seed between 0 and 2^64 - 1.",
     DESIGN,
 )
-def options_are_right(iterations: object, seconds: object, seed: object) -> Iterator[tuple[str, str]]:
+def options_are_right(iterations: object, seconds: object, seed: object) -> Found:
     if iterations is not None and seconds is not None:
         yield "$.seconds", "there must be either iterations or seconds, not both"
-    if iterations is not None and not (is_whole(iterations) and iterations >= 0):
+    if iterations is not None and not is_between(iterations, 0):
         yield "$.iterations", f"the iterations must be a whole number of at least 0, not {iterations!r}"
-    if seconds is not None and not _is_time(seconds):
+    is_number = isinstance(seconds, int | float) and not isinstance(seconds, bool)
+    if not (seconds is None or (is_number and 0 < cast("float", seconds) < inf)):
         yield "$.seconds", f"the seconds must be a number above 0, not {seconds!r}"
-    if not (is_whole(seed) and 0 <= seed <= LARGEST_SEED):
+    if not is_between(seed, 0, LARGEST_SEED):
         yield "$.seed", f"the seed must be a whole number between 0 and {LARGEST_SEED}, not {seed!r}"
 
 
-def _is_time(seconds: object) -> bool:
-    return isinstance(seconds, int | float) and not isinstance(seconds, bool) and 0 < seconds < float("inf")
-
-
 def last_round(iterations: int | None, seconds: float | None) -> int | None:
-    """The number of rounds after which a polish ends at the latest; `None`: the time decides."""
+    """The rounds after which a polish ends; `None`: the time decides."""
     return ITERATIONS if iterations is None and seconds is None else iterations
 
 
@@ -201,12 +191,9 @@ def require_polish_options(iterations: object, seconds: object, seed: object) ->
 
 
 def polishable(instance: Instance, solution: Solution) -> Solution:
-    """The solution with every robot that it does not name as an unplanned one.
-
-    Raises `Refusal` with the first rule that the solution breaks.
-    """
+    """The solution, robots that it does not name unplanned; raises `Refusal` with the first rule that it breaks."""
     named = {*solution.unplanned, *(plan.robot for plan in solution.plans)}
-    missing = [robot.id for robot in instance.robots if robot.id not in named]
+    missing = (robot for robot in instance.robot if robot not in named)
     whole = replace(solution, unplanned=(*solution.unplanned, *missing))
     for violation in judge(instance, whole).violations:
         raise Refusal("request", "$.plans", violation.rule, violation.message)

@@ -102,6 +102,9 @@ def named(robots: Sequence[RobotId]) -> str:
     return f"{'robot' if len(robots) == 1 else 'robots'} {names}{others}"
 
 
+Found: TypeAlias = Iterator[tuple[str, str]]
+"""Faults without their rule: path and message."""
+
 Breach: TypeAlias = tuple[tuple[RobotId, ...], ResourceId | None, int | None, int | None, str]
 """A violation without the rule: robots, resource, start, end and reason."""
 
@@ -119,14 +122,12 @@ def of_robots(robots: Sequence[RobotId], reason: str) -> Breach:
 def violation_rule(
     id: str, statement: str, source: str
 ) -> Callable[[Callable[P, Iterator[Breach]]], Rule[P, Iterator[Violation]]]:
-    """Make the decorated predicate, which yields breaches, a rule that yields them as violations of itself."""
+    """Make the decorated predicate, which yields breaches, a rule that yields violations."""
     return lambda predicate: Rule(id, statement, source, _reporting(partial(Violation, id), predicate))
 
 
-def fault_rule(
-    id: str, statement: str, source: str
-) -> Callable[[Callable[P, Iterator[tuple[str, str]]]], Rule[P, Iterator[Fault]]]:
-    """Make the decorated predicate, which yields paths and messages, a rule that yields them as faults of itself."""
+def fault_rule(id: str, statement: str, source: str) -> Callable[[Callable[P, Found]], Rule[P, Iterator[Fault]]]:
+    """Make the decorated predicate, which yields paths and messages, a rule that yields faults."""
     return lambda predicate: Rule(id, statement, source, _reporting(partial(Fault, id), predicate))
 
 
