@@ -21,8 +21,8 @@ from mkdocs.structure.pages import Page
 
 from carp_experiments.page import RESULTS, results
 from carp_spec import Rule
-from carp_spec.rule import Code
 from carproof.cli import carproof
+from carproof.codes import Code
 from carproof.ops.published import table as ops
 from carproof.registry import RULES
 from carproof.rules import ALL_RULES

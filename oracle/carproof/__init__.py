@@ -50,13 +50,13 @@ if TYPE_CHECKING:
         Visit,
         check_update,
         plan_cost,
-        planner_named,
         total_cost,
     )
     from carp_spec import judge as check
     from carp_verify.bounds import BoundDocument, read_bound
     from carp_verify.documents import read_instance, read_solution, write_instance, write_solution, write_verdict
     from carp_verify.verify_bound import verify_bound
+    from carproof.engines import planner_named
     from carproof.registry import RULES
 
 _DOCUMENTS = ("read_instance", "read_solution", "write_instance", "write_solution", "write_verdict")
@@ -70,6 +70,7 @@ _ELSEWHERE = {
     "read_bound": "carp_verify.bounds",
     **dict.fromkeys(_DOCUMENTS, "carp_verify.documents"),
     "RULES": "carproof.registry",
+    "planner_named": "carproof.engines",
     "bound": "carp_optimum.bound:lower_bound",
     "Optimum": "carp_optimum.optimum",
     "optimum": "carp_optimum.optimum",

@@ -176,9 +176,8 @@ def may_enter(order: Order, trace: Trace, ready: Iterable[RobotId]) -> tuple[Rob
 
     A robot may enter at the tick at which another makes room for it. So robots in a row move together.
     """
-    happened = {(plan.robot, place): visit for plan in trace.plans for place, visit in enumerate(plan.visits)}
-    enters = {node: visit.enter for node, visit in happened.items()}
-    leaves = {node: visit.leave for node, visit in happened.items()}
+    enters = {node: visit.enter for node, visit in trace.happened.items()}
+    leaves = {node: visit.leave for node, visit in trace.happened.items()}
 
     def is_over(edge: Dependency) -> bool:
         if edge.before not in enters:

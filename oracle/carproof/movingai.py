@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from carp_spec import AfterGoal, Instance, Refusal, Robot
-from carp_spec.rule import Code
+from carproof.codes import Code
 from carproof.generate.grid import cell_edges, cell_graph, cell_id
 from carproof.generate.options import MOST_RESOURCES, Traits, size_is_bounded
 

@@ -5,9 +5,9 @@ from typing import Any, TypeVar
 
 import click
 
-from carp_spec import FixedPaths, Neighbourhood, Planner, Shuffled, planner_named
+from carp_spec import FixedPaths, Neighbourhood, Planner, Shuffled
 from carp_spec.planners import PLANNERS
-from carproof.engines import ENGINES
+from carproof.engines import ENGINES, planner_named
 from carproof.files import InputFile, OutputFile
 from carproof.generate import Range
 

@@ -17,8 +17,9 @@ from typing import Any, Literal, TypeVar
 import msgspec
 
 from carp_spec import Refusal
-from carp_spec.rule import DESIGN, Code
+from carp_spec.rule import DESIGN
 from carp_verify.documents import require_json, uncapitalized
+from carproof.codes import Code
 from carproof.requests import inside
 
 VERSION = 1

@@ -8,7 +8,8 @@ from contextlib import contextmanager
 from dataclasses import replace
 
 from carp_spec import Instance, Refusal, RobotId, Solution, Violation, check, judge
-from carp_spec.rule import DESIGN, Code, is_whole
+from carp_spec.rule import DESIGN, is_whole
+from carproof.codes import Code
 
 KNOWN_ROBOT = Code(
     "request/robot", "The robot asked for is one of the instance, and one to be added has no plan yet.", DESIGN

@@ -4,13 +4,13 @@ from typing import Any
 
 from carp_spec import Rule
 from carp_spec.planners import ticks_are_held
-from carp_spec.rule import Code
 from carp_verify.bound_rules import BOUND_RULES
 from carp_verify.kernel import KERNEL_RULES
 from carp_verify.limits import following_is_allowed
 from carp_verify.optimum_rules import OPTIMUM_RULES
 from carp_verify.query_certificate_rules import QUERY_CERTIFICATE_RULES
 from carproof.adapters import ADAPTER_RULES
+from carproof.codes import Code
 from carproof.conform.findings import PROGRAM_RULES
 from carproof.executing import delays_are_right
 from carproof.generate.options import GENERATE_RULES

@@ -84,8 +84,7 @@ def retime(instance: Instance, solution: Solution, trace: Trace) -> Solution:
     for node in order.nodes:
         if node[1] > 0 or least[node] <= trace.now:
             least[node] = trace.now + 1
-    happened = {(plan.robot, place): visit for plan in trace.plans for place, visit in enumerate(plan.visits)}
-    enters = earliest(order, {**least, **{node: visit.enter for node, visit in happened.items()}})
+    enters = earliest(order, {**least, **{node: visit.enter for node, visit in trace.happened.items()}})
     after = solution_at(order, enters)
     require_lawful_ends(instance, after, trace)
     return after

@@ -27,7 +27,6 @@ from carp_spec.planners import (
     Planner,
     Shuffled,
     TimeExpanded,
-    planner_named,
 )
 from carp_spec.refusal import Refusal
 from carp_spec.rule import Fault, Rule, Violation
@@ -62,6 +61,5 @@ __all__ = [
     "has_ended",
     "judge",
     "plan_cost",
-    "planner_named",
     "total_cost",
 ]

@@ -29,8 +29,8 @@ class Verdict:
 def check(instance: Instance, plans: Sequence[Plan], most: int | None = MOST_LISTED) -> tuple[Violation, ...]:
     """The violations of plans of the instance's robots: rule by rule, each in the order of the plans or of time.
 
-    At most the first `most` of each rule are returned, or all if it is `None`. The instance must have no faults and
-    know every plan's robot.
+    At most the first `most` of each rule are returned (`None`: all). The instance must have no faults and know every
+    plan's robot.
     """
     violations: list[Violation] = []
     for each in PLAN_RULES:
@@ -41,10 +41,7 @@ def check(instance: Instance, plans: Sequence[Plan], most: int | None = MOST_LIS
 
 
 def judge(instance: Instance, solution: Solution, most: int | None = MOST_LISTED) -> Verdict:
-    """Check a whole solution, with at most the first `most` violations of each rule, or all if it is `None`.
-
-    Plans of robots that the instance does not have break `solution/covers` alone.
-    """
+    """Check a whole solution; plans of robots that the instance does not have break `solution/covers` alone."""
     plans = [plan for plan in solution.plans if plan.robot in instance.robot]
     of_solution = [violation for each in SOLUTION_RULES for violation in islice(each(instance, solution), most)]
     planned = {plan.robot for plan in plans}
@@ -58,7 +55,7 @@ def judge(instance: Instance, solution: Solution, most: int | None = MOST_LISTED
 def check_update(before: Sequence[Plan], after: Sequence[Plan], now: int) -> tuple[Violation, ...]:
     """All violations of `fleet/history` by plans that were made again at the tick now.
 
-    A robot that has a plan before and none after counts as not replanned, and breaks nothing.
+    A robot without a plan after it counts as not replanned, and breaks nothing.
     """
     again = {plan.robot: plan for plan in after}
     return tuple(

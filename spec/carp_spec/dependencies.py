@@ -1,9 +1,8 @@
 """The action dependency graph of a solution: which visits wait for which others if robots keep the planned order.
 
 In each resource, one visit comes *before* another if its robot is planned to have left when the other visit begins (a
-tick earlier where following is forbidden). The nodes of the graph are the visits. An edge leads to a visit that waits
-from the visit whose *entry* it waits for, and has the least number of ticks between the two entries. Source: Hönig et
-al. 2019.
+tick earlier where following is forbidden). An edge leads to a visit that waits from the visit whose *entry* it waits
+for, with the least ticks between the two entries. Source: Hönig et al. 2019.
 """
 
 from bisect import bisect_right
@@ -30,10 +29,10 @@ class Stay:
 
 @dataclass(frozen=True, slots=True)
 class Dependency:
-    """The visit `after` is entered no earlier than `ticks` after the visit `before` has been.
+    """The visit `after` is entered no earlier than `ticks` after the visit `before`.
 
-    An edge of `travel` keeps a robot in a resource for the duration. An edge of `order` lets a robot enter `resource`
-    only after another has left it, by entering its next visit or by staying for the duration of its last one.
+    `travel` keeps a robot in a resource for the duration. `order` lets a robot enter `resource` only after another has
+    left it, by entering its next visit or by staying for the duration of its last one.
     """
 
     kind: Literal["travel", "order"]
@@ -99,34 +98,24 @@ def _direct(instance: Instance, stays: Sequence[Stay]) -> Iterator[tuple[Stay, S
 def shortest_cycle(edges: Sequence[Dependency]) -> tuple[Dependency, ...]:
     """The edges of a shortest cycle, the first by the order of the edges; none if the graph has no cycle.
 
-    The only cycles of a lawful solution are robots that enter each other's places at one tick. So an edge of at least
-    one tick is in no cycle.
+    The only cycles of a lawful solution are robots that enter each other's places at one tick: edges of no ticks.
     """
     following: dict[Node, list[Dependency]] = defaultdict(list)
     for edge in edges:
         if edge.ticks == 0:
             following[edge.before].append(edge)
-    shortest: tuple[Dependency, ...] = ()
-    for start in following:
-        found = _way_back(following, start)
-        if found and (not shortest or len(found) < len(shortest)):
-            shortest = found
-    return shortest
+    return min(filter(None, (_way_back(following, start) for start in following)), key=len, default=())
 
 
 def _way_back(following: dict[Node, list[Dependency]], start: Node) -> tuple[Dependency, ...]:
     """The shortest way from a node back to it."""
-    came_by: dict[Node, Dependency] = {}
-    waiting = [start]
-    for node in waiting:
-        for edge in following.get(node, ()):
-            if edge.after in came_by:
-                continue
-            came_by[edge.after] = edge
+    reached: set[Node] = set()
+    ways: list[tuple[Dependency, ...]] = [()]
+    for way in ways:
+        for edge in following.get(way[-1].after if way else start, ()):
             if edge.after == start:
-                way = [edge]
-                while way[-1].before != start:
-                    way.append(came_by[way[-1].before])
-                return (*reversed(way),)
-            waiting.append(edge.after)
+                return (*way, edge)
+            if edge.after not in reached:
+                reached.add(edge.after)
+                ways.append((*way, edge))
     return ()

@@ -1,37 +1,29 @@
-"""The rules of an execution: `trace/...`, `execution/...`. A trace that keeps them follows a solution.
+"""The rules of an execution, `trace/...` and `execution/...`: a trace that keeps them follows a lawful solution.
 
-Each predicate takes the instance, a lawful solution and the trace. Those of `execution/...` require a trace that keeps
-`trace/...`.
+Those of `execution/...` require a trace that keeps `trace/...`.
 """
 
-from collections import Counter, defaultdict
+from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
-from typing import TypeAlias
+from operator import itemgetter
 
 from carp_spec.check import MOST_LISTED
 from carp_spec.dependencies import Node, Stay, dependencies, shortest_cycle, stays_by_resource
+from carp_spec.joint_rules import misnamed
 from carp_spec.model import Instance, Plan, ResourceId, RobotId, Solution, Visit
 from carp_spec.plan_rules import plan_ends_at_goal, plan_starts_at_release
 from carp_spec.refusal import Refusal
-from carp_spec.rule import DESIGN, Breach, Rule, Violation, at_visit, interval, of_robots, violation_rule
+from carp_spec.rule import DESIGN, Breach, Rule, Violation, at_visit, interval, violation_rule
 from carp_spec.traces import Trace
 
 ADG = "Hönig et al. 2019, action dependency graph; ter Mors 2010"
-Happened: TypeAlias = Mapping[Node, Visit]
 
 
 @violation_rule("trace/robots", "A trace names each robot that has a plan exactly once, and no other.", DESIGN)
 def trace_names_robots(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Breach]:
     del instance
-    planned = {plan.robot for plan in solution.plans}
-    named = Counter(plan.robot for plan in trace.plans)
-    for robot in dict.fromkeys([*(plan.robot for plan in solution.plans), *named]):
-        if named[robot] != (robot in planned):
-            reason = (
-                f"the trace must name it {'once' if robot in planned else 'never'}, and names it {named[robot]} times"
-            )
-            yield of_robots([robot], reason)
+    return misnamed("trace", (plan.robot for plan in trace.plans), solution)
 
 
 @violation_rule(
@@ -44,8 +36,7 @@ def trace_is_prefix(instance: Instance, solution: Solution, trace: Trace) -> Ite
             if place >= len(plan.visits):
                 yield at_visit(plan.robot, visit, "its plan has ended before")
             elif visit.resource != plan.visits[place].resource:
-                reason = f"visit {place} of its plan is to {plan.visits[place].resource}"
-                yield at_visit(plan.robot, visit, reason)
+                yield at_visit(plan.robot, visit, f"visit {place} of its plan is to {plan.visits[place].resource}")
 
 
 @violation_rule(
@@ -57,22 +48,20 @@ def trace_is_prefix(instance: Instance, solution: Solution, trace: Trace) -> Ite
 )
 def trace_keeps_time(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Breach]:
     for plan, done in _pairs(solution, trace):
+        release = instance.robot[plan.robot].release
+        stays = len(done.visits) < len(plan.visits) or instance.after_goal == "park"
         due: int | None = None
         for place, visit in enumerate(done.visits):
-            release = instance.robot[plan.robot].release
-            is_last = place == len(done.visits) - 1
-            stays = len(done.visits) < len(plan.visits) or instance.after_goal == "park"
-            reason = None
             if place == 0 and visit.enter < release:
-                reason = f"it must enter at its release {release} or later"
+                yield at_visit(plan.robot, visit, f"it must enter at its release {release} or later")
             elif place > 0 and visit.enter != due:
-                reason = f"it must enter when it leaves the visit before, {'never' if due is None else f'at {due}'}"
+                left = "never" if due is None else f"at {due}"
+                yield at_visit(plan.robot, visit, f"it must enter when it leaves the visit before, {left}")
             elif visit.enter > trace.now or (visit.leave is not None and not visit.enter <= visit.leave <= trace.now):
-                reason = f"the trace ends at {trace.now}, and no visit is left before it is entered"
-            elif is_last and stays and visit.leave is not None:
-                reason = "it must be left by entering the next visit, or never"
-            if reason is not None:
-                yield at_visit(plan.robot, visit, reason)
+                right = f"the trace ends at {trace.now}, and no visit is left before it is entered"
+                yield at_visit(plan.robot, visit, right)
+            elif stays and visit is done.visits[-1] and visit.leave is not None:
+                yield at_visit(plan.robot, visit, "it must be left by entering the next visit, or never")
             due = visit.leave
 
 
@@ -81,12 +70,10 @@ def trace_keeps_time(instance: Instance, solution: Solution, trace: Trace) -> It
 )
 def durations_are_kept(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Breach]:
     del solution
-    for done in trace.plans:
-        for visit in done.visits:
-            least = instance.duration(done.robot, visit.resource)
-            if visit.leave is not None and visit.leave - visit.enter < least:
-                reason = f"it stayed {visit.leave - visit.enter} of at least {least} ticks"
-                yield at_visit(done.robot, visit, reason)
+    for (robot, _), visit in trace.happened.items():
+        least = instance.duration(robot, visit.resource)
+        if visit.leave is not None and visit.leave - visit.enter < least:
+            yield at_visit(robot, visit, f"it stayed {visit.leave - visit.enter} of at least {least} ticks")
 
 
 @violation_rule(
@@ -96,7 +83,7 @@ def durations_are_kept(instance: Instance, solution: Solution, trace: Trace) -> 
     ADG,
 )
 def order_is_kept(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Breach]:
-    happened = _happened(trace)
+    happened = trace.happened
     for stays in stays_by_resource(solution.plans).values():
         yield from _too_early(stays, stays, happened, instance.gap, instance.gap)
 
@@ -109,7 +96,7 @@ def order_is_kept(instance: Instance, solution: Solution, trace: Trace) -> Itera
 )
 def exchange_order_is_kept(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Breach]:
     del instance
-    happened = _happened(trace)
+    happened = trace.happened
     for stays in stays_by_resource(solution.plans).values():
         leaving: dict[ResourceId | None, list[Stay]] = defaultdict(list)
         entering: dict[ResourceId | None, list[Stay]] = defaultdict(list)
@@ -121,31 +108,29 @@ def exchange_order_is_kept(instance: Instance, solution: Solution, trace: Trace)
 
 
 def _too_early(
-    leaving: Sequence[Stay], entering: Sequence[Stay], happened: Happened, planned: int, least: int
+    leaving: Sequence[Stay], entering: Sequence[Stay], happened: Mapping[Node, Visit], planned: int, least: int
 ) -> Iterator[Breach]:
     """The robots that entered too early: another, planned to be `planned` ticks ahead, was less than `least` ahead.
 
-    Both are swept in the planned order. Of the robots that should have left, the violation names the one that left
-    last.
+    Both are swept in the planned order; the violation names the robot that left last of those that should have left.
     """
-    left = sorted((stay for stay in leaving if stay.visit.leave is not None), key=lambda stay: stay.visit.leave or 0)
+    left = sorted(((stay.visit.leave, stay) for stay in leaving if stay.visit.leave is not None), key=itemgetter(0))
     last: Stay | None = None
     last_left: int | None = -1
     place = 0
     for stay in sorted(entering, key=lambda stay: stay.visit.enter):
-        while place < len(left) and (left[place].visit.leave or 0) + planned <= stay.visit.enter:
-            done = happened.get(left[place].node)
+        while place < len(left) and left[place][0] + planned <= stay.visit.enter:
+            done = happened.get(left[place][1].node)
             leave = None if done is None else done.leave
             if last_left is not None and (leave is None or leave > last_left):
-                last, last_left = left[place], leave
+                last, last_left = left[place][1], leave
             place += 1
         entered = happened.get(stay.node)
         if last is not None and entered is not None and (last_left is None or last_left + least > entered.enter):
             when = "has not left" if last_left is None else f"left at {last_left}"
-            reason = (
-                f"by the plans robot {last.node[0]} leaves first, in {interval(last.visit.enter, last.visit.leave)}"
-            )
-            yield at_visit(stay.node[0], entered, f"{reason}, and {when}")
+            planned_in = interval(last.visit.enter, last.visit.leave)
+            reason = f"by the plans robot {last.node[0]} leaves first, in {planned_in}, and {when}"
+            yield at_visit(stay.node[0], entered, reason)
 
 
 @violation_rule(
@@ -157,17 +142,10 @@ def _too_early(
 def is_acyclic(instance: Instance, solution: Solution) -> Iterator[Breach]:
     cycle = shortest_cycle(tuple(dependencies(instance, solution.plans)))
     if cycle:
-        plans = {plan.robot: plan for plan in solution.plans}
-        robots = [edge.after[0] for edge in cycle]
-        ways = ", ".join(str(edge.resource) for edge in cycle)
         robot, place = cycle[0].after
-        yield (
-            tuple(robots),
-            cycle[0].resource,
-            plans[robot].visits[place].enter,
-            plans[robot].visits[place].enter + 1,
-            f"each enters as the next one leaves: {ways}",
-        )
+        tick = next(plan.visits[place].enter for plan in solution.plans if plan.robot == robot)
+        reason = f"each enters as the next one leaves: {', '.join(str(edge.resource) for edge in cycle)}"
+        yield tuple(edge.after[0] for edge in cycle), cycle[0].resource, tick, tick + 1, reason
 
 
 TRACE_RULES: tuple[Rule[[Instance, Solution, Trace], Iterator[Violation]], ...] = (
@@ -185,10 +163,7 @@ EXECUTION_RULES: tuple[Rule[[Instance, Solution, Trace], Iterator[Violation]], .
 def trace_violations(
     instance: Instance, solution: Solution, trace: Trace, most: int | None = MOST_LISTED
 ) -> tuple[Violation, ...]:
-    """Where the trace does not follow the lawful solution, rule by rule; at most the first `most` of each rule.
-
-    The rules `execution/...` are checked only if the trace keeps the rules `trace/...`.
-    """
+    """Where the trace does not follow the lawful solution, rule by rule, with at most the first `most` of each."""
     for rules in (TRACE_RULES, EXECUTION_RULES):
         violations = [violation for each in rules for violation in islice(each(instance, solution, trace), most)]
         if violations:
@@ -204,22 +179,23 @@ def require_followed(instance: Instance, solution: Solution, trace: Trace) -> No
 
 def require_lawful_ends(instance: Instance, after: Solution, trace: Trace) -> None:
     """Raise `Refusal` where a plan that keeps the trace appears late, or stays at its goal for longer than it may."""
-    done = {plan.robot: plan for plan in trace.plans}
+    happened = trace.happened
     for plan in after.plans:
         for violation in (*plan_starts_at_release(instance, plan), *plan_ends_at_goal(instance, plan)):
             message = f"no plan can have this history: {violation.message}"
             raise _refusal(trace, plan.robot, violation.rule, message)
-        visits = done[plan.robot].visits
         due = plan.visits[-1].leave
-        is_there = len(visits) == len(plan.visits) and due is not None
-        if is_there and visits[-1].leave != due and (visits[-1].leave is not None or (due or 0) <= trace.now):
+        at_goal = happened.get((plan.robot, len(plan.visits) - 1))
+        if at_goal is not None and due is not None and at_goal.leave != due:
+            if at_goal.leave is None and due > trace.now:
+                continue
             message = f"no plan can have this history: robot {plan.robot} must leave its goal at {due}"
             raise _refusal(trace, plan.robot, plan_ends_at_goal.id, message)
 
 
 def _refusal(trace: Trace, robot: RobotId, rule: str, message: str) -> Refusal:
-    places = [place for place, plan in enumerate(trace.plans) if plan.robot == robot]
-    return Refusal("document", f"$.plans[{places[0]}]" if places else "$.plans", rule, message)
+    places = [f"[{place}]" for place, plan in enumerate(trace.plans) if plan.robot == robot]
+    return Refusal("document", f"$.plans{''.join(places[:1])}", rule, message)
 
 
 def _pairs(solution: Solution, trace: Trace) -> Iterator[tuple[Plan, Plan]]:
@@ -228,7 +204,3 @@ def _pairs(solution: Solution, trace: Trace) -> Iterator[tuple[Plan, Plan]]:
     for done in trace.plans:
         if done.robot in plans:
             yield plans[done.robot], done
-
-
-def _happened(trace: Trace) -> Happened:
-    return {(done.robot, place): visit for done in trace.plans for place, visit in enumerate(done.visits)}

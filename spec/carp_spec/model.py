@@ -3,8 +3,8 @@
 Time is counted in `int` ticks from 0. Every interval is half-open, `[enter, leave)`: a robot that leaves at t and a
 robot that enters at t never share the resource. An end of `None` means for ever.
 
-The classes are plain, frozen data and may hold nonsense; `carp_spec.instance_rules` and `carp_spec.check` decide
-whether they are right. Source: the paper, section II; ter Mors 2010 for capacities and durations.
+The classes are plain, frozen data and may hold nonsense, which `instance_rules` and `check` find. Source: the paper,
+section II; ter Mors 2010 for capacities and durations.
 """
 
 from collections.abc import Iterable, Mapping
@@ -23,9 +23,8 @@ Following: TypeAlias = Literal["allowed", "forbidden"]
 class Resource:
     """A place that robots occupy: a cell, a lane, a crossing.
 
-    `capacity` robots fit in at a time, and each needs `duration` ticks, times its own pace, to traverse it. `x` and `y`
-    are its position on the plane, for distances and pictures. A resource without a position counts as standing at (0,
-    0).
+    `capacity` robots fit in at a time, and each needs `duration` ticks, times its own pace, to traverse it. Its
+    position on the plane, `x` and `y`, is for distances and pictures.
     """
 
     id: ResourceId
@@ -39,9 +38,9 @@ class Resource:
 class ResourceGraph:
     """The resources and the edges between them.
 
-    An edge (r, s) of a directed graph is the move from r to s; of an undirected one, that and the move back. The order
-    of `resources` breaks ties. The last four fields are look-ups made from the others: each resource by its id, its
-    index in the order, the resources that one move leads to (in that order), and all moves.
+    An edge (r, s) of a directed graph is the move from r to s; of an undirected one, also the move back. The order of
+    `resources` breaks ties. The last four fields are look-ups: each resource by its id, its index in the order, the
+    resources that one move leads to (in that order), and all moves.
     """
 
     resources: tuple[Resource, ...]
@@ -55,22 +54,19 @@ class ResourceGraph:
     def __post_init__(self) -> None:
         """Make the look-ups; an edge to or from an unknown resource is left to the rules."""
         index = {each.id: position for position, each in enumerate(self.resources)}
-        backward = [] if self.directed else [(target, source) for source, target in self.edges]
+        backward = () if self.directed else ((target, source) for source, target in self.edges)
+        moves = [move for move in (*self.edges, *backward) if move[0] in index and move[1] in index]
         successors: dict[ResourceId, list[ResourceId]] = {each.id: [] for each in self.resources}
-        for source, target in (*self.edges, *backward):
-            if source in index and target in index:
-                successors[source].append(target)
-        for targets in successors.values():
-            targets.sort(key=index.__getitem__)
-        sorted_successors = {source: tuple(targets) for source, targets in successors.items()}
+        for source, target in sorted(moves, key=lambda move: index[move[1]]):
+            successors[source].append(target)
         object.__setattr__(self, "resource", MappingProxyType({each.id: each for each in self.resources}))
         object.__setattr__(self, "index", MappingProxyType(index))
-        object.__setattr__(self, "successors", MappingProxyType(sorted_successors))
-        moves = frozenset((source, target) for source, targets in successors.items() for target in targets)
-        object.__setattr__(self, "moves", moves)
+        in_order = {source: tuple(targets) for source, targets in successors.items()}
+        object.__setattr__(self, "successors", MappingProxyType(in_order))
+        object.__setattr__(self, "moves", frozenset(moves))
 
     def __reduce__(self) -> tuple[type["ResourceGraph"], tuple[object, ...]]:
-        """Copy and pickle the fields alone; the look-ups cannot be pickled and are made again."""
+        """Copy and pickle the fields alone; the look-ups are made again."""
         return type(self), (self.resources, self.edges, self.directed)
 
     def has_move(self, source: ResourceId, target: ResourceId) -> bool:
@@ -80,10 +76,7 @@ class ResourceGraph:
 
 @dataclass(frozen=True, slots=True)
 class Robot:
-    """A request: go from `start` to `goal`, not before the tick `release`.
-
-    A robot of pace p needs p times a resource's duration there.
-    """
+    """A request: go from `start` to `goal`, not before the tick `release`, at `pace` times each duration."""
 
     id: RobotId
     start: ResourceId
@@ -96,9 +89,8 @@ class Robot:
 class Instance:
     """A resource graph, robots in the order of their arrival, and what a robot does after its goal.
 
-    `vanish`: it leaves the system one duration after it enters its goal for the last time. `park`: it stays.
-    Where `following` is forbidden, a robot enters a resource only after a free tick.
-    `robot` is a look-up of the robots by id.
+    `vanish`: it leaves the system one duration after it enters its goal for the last time. `park`: it stays. Where
+    `following` is forbidden, a robot enters a resource only after a free tick. `robot` is a look-up by id.
     """
 
     graph: ResourceGraph
@@ -112,11 +104,11 @@ class Instance:
         object.__setattr__(self, "robot", MappingProxyType({each.id: each for each in self.robots}))
 
     def __reduce__(self) -> tuple[type["Instance"], tuple[object, ...]]:
-        """Copy and pickle the fields alone; the look-up cannot be pickled and is made again."""
+        """Copy and pickle the fields alone; the look-up is made again."""
         return type(self), (self.graph, self.robots, self.after_goal, self.following)
 
     def duration(self, robot: RobotId, resource: ResourceId) -> int:
-        """The least ticks that the robot needs in the resource: the resource's duration times the robot's pace."""
+        """The least ticks that the robot needs in the resource."""
         return self.robot[robot].pace * self.graph.resource[resource].duration
 
     @property

@@ -14,14 +14,12 @@ _WORD = (1 << 64) - 1
 def splitmix64(seed: int) -> Iterator[int]:
     """Yield the 64-bit numbers of the SplitMix64 stream of a seed, without end.
 
-    Source: Steele, Lea and Flood 2014, "Fast splittable pseudorandom number generators", and the
-    constants of its reference implementation.
+    Source: Steele, Lea and Flood 2014, "Fast splittable pseudorandom number generators", and its implementation.
     """
     state = seed & _WORD
     while True:
         state = (state + 0x9E3779B97F4A7C15) & _WORD
-        mixed = state
-        mixed = ((mixed ^ (mixed >> 30)) * 0xBF58476D1CE4E5B9) & _WORD
+        mixed = ((state ^ (state >> 30)) * 0xBF58476D1CE4E5B9) & _WORD
         mixed = ((mixed ^ (mixed >> 27)) * 0x94D049BB133111EB) & _WORD
         yield mixed ^ (mixed >> 31)
 
@@ -35,21 +33,14 @@ def shuffle(items: Sequence[T], stream: Iterator[int]) -> tuple[T, ...]:
     return tuple(shuffled)
 
 
-def all_orders(size: int) -> Iterator[Order]:
-    """Every permutation of the positions 0 .. size - 1, in lexicographic order."""
-    return permutations(range(size))
+def orders(size: int, sample: int | None, stream: Iterator[int]) -> Iterator[Order]:
+    """Permutations of the positions 0 .. size - 1, in lexicographic order.
 
-
-def sampled_orders(size: int, sample: int, stream: Iterator[int]) -> list[Order]:
-    """A sample of distinct permutations, each a shuffle of 0 .. size - 1, in lexicographic order."""
+    All of them if no sample is asked or they are no more than the sample; else that many distinct shuffles.
+    """
+    if sample is None or factorial(size) <= sample:
+        return permutations(range(size))
     drawn: set[Order] = set()
     while len(drawn) < sample:
         drawn.add(shuffle(range(size), stream))
-    return sorted(drawn)
-
-
-def orders(size: int, sample: int | None, stream: Iterator[int]) -> Iterator[Order]:
-    """All permutations if no sample is asked or they are no more than the sample; else a sample of them."""
-    if sample is None or factorial(size) <= sample:
-        return all_orders(size)
-    return iter(sampled_orders(size, sample, stream))
+    return iter(sorted(drawn))

@@ -1,10 +1,9 @@
 """The planners by name, their options and their decisions."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
-from typing import Any, ClassVar, Literal, TypeAlias, cast, get_args
+from dataclasses import asdict, dataclass
+from typing import ClassVar, Literal, TypeAlias, get_args
 
-from carp_spec.refusal import Refusal
 from carp_spec.rule import DESIGN, Found, fault_rule, is_whole, rule
 
 LARGEST_SEED = 2**64 - 1
@@ -117,26 +116,6 @@ def options_are_right(planner: Planner) -> Found:
             right, is_right = '"shortest" or "disjoint"', value in get_args(PathKind)
         if not is_right:
             yield f"$.{name}", f"the {name} must be {right}, not {value!r}"
-
-
-def planner_named(name: object, options: Mapping[str, object]) -> Planner:
-    """Make a planner from its name and options.
-
-    Raises `Refusal` on an unknown name, an option that the planner does not have, or a value out of range.
-    """
-    if not isinstance(name, str) or name not in PLANNERS:
-        message = f"there is no planner {name!r}; the planners are {', '.join(PLANNERS)}"
-        raise Refusal("option", "$.planner", "planner/options", message)
-    known = [field.name for field in fields(PLANNERS[name])]
-    for option in options:
-        if option not in known:
-            has = f"its options are {', '.join(known)}" if known else "it has none"
-            message = f"the planner {name} has no option {option}; {has}"
-            raise Refusal("option", f"$.{option}", "planner/options", message)
-    planner = PLANNERS[name](**cast("Mapping[str, Any]", options))
-    for fault in options_are_right(planner):
-        raise Refusal("option", fault.path, fault.rule, fault.message)
-    return planner
 
 
 @rule(

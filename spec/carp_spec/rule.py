@@ -39,15 +39,6 @@ def rule(id: str, statement: str, source: str) -> Callable[[Callable[P, R]], Rul
 
 
 @dataclass(frozen=True, slots=True)
-class Code:
-    """A requirement on input that is decided where the input is read, by no predicate; refusals quote its id."""
-
-    id: str
-    statement: str
-    source: str
-
-
-@dataclass(frozen=True, slots=True)
 class Violation:
     """A broken rule of a plan or of a set of plans.
 

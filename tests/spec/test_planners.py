@@ -12,9 +12,9 @@ from carp_spec import (
     Refusal,
     Shuffled,
     TimeExpanded,
-    planner_named,
 )
 from carp_spec.planners import LARGEST_SAMPLE, LARGEST_SEED, PLANNERS, options_are_right
+from carproof.engines import planner_named
 
 
 @pytest.mark.parametrize(

@@ -9,11 +9,12 @@ from dataclasses import replace
 from typing import Any
 
 from carp_spec import Instance, Refusal, Rule, Solution
-from carp_spec.rule import DESIGN, Code
+from carp_spec.rule import DESIGN
 from carproof.adapters import agent_paths, carproof_documents, lacam, libmultirobotplanning, mapf_tracker
 from carproof.adapters.adapter import Adapter
 from carproof.adapters.networkx_graphs import instance_from_networkx, node_is_right
 from carproof.adapters.walks import WALK_RULES
+from carproof.codes import Code
 
 __all__ = [
     "ADAPTERS",

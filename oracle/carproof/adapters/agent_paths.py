@@ -8,9 +8,9 @@ Semantics: `walks`.
 import re
 
 from carp_spec import Instance, Refusal, RobotId, Solution
-from carp_spec.rule import Code
 from carproof.adapters.adapter import Adapter
 from carproof.adapters.walks import Cell, Walk, solution_of_walks, tick_by_tick, walks_of_solution
+from carproof.codes import Code
 
 _LOOKS = re.compile(r"\s*Agent[ \t]*\d+[ \t]*:")
 _LINE = re.compile(r"Agent(\d{1,9}):((?:\(-?\d{1,9},-?\d{1,9}\)(?:->)?)+)")

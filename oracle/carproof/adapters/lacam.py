@@ -8,9 +8,9 @@ Semantics: `walks`.
 import re
 
 from carp_spec import Instance, Refusal, RobotId, Solution, total_cost
-from carp_spec.rule import Code
 from carproof.adapters.adapter import Adapter
 from carproof.adapters.walks import Cell, Walk, last_arrival, solution_of_walks, tick_by_tick, walks_of_solution
+from carproof.codes import Code
 
 _HEAD = re.compile(r"^solution=[ \t\r]*$", re.MULTILINE)
 _LINE = re.compile(r"(\d{1,9}):((?:\(-?\d{1,9},-?\d{1,9}\),?)*)")

@@ -11,9 +11,9 @@ from collections.abc import Iterator
 from typing import Any
 
 from carp_spec import Instance, Refusal, RobotId, Solution, total_cost
-from carp_spec.rule import Code
 from carproof.adapters.adapter import Adapter
 from carproof.adapters.walks import Walk, last_arrival, solution_of_walks, tick_by_tick, walks_of_solution
+from carproof.codes import Code
 
 _LOOKS = re.compile(r"^schedule[ \t]*:", re.MULTILINE)
 _AGENT = re.compile(r"agent(\d{1,9})")

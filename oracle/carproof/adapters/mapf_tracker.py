@@ -9,9 +9,9 @@ import re
 from itertools import pairwise
 
 from carp_spec import Instance, Refusal, RobotId, Solution
-from carp_spec.rule import Code
 from carproof.adapters.adapter import Adapter
 from carproof.adapters.walks import Cell, Walk, require_bounded, require_walks, solution_of_walks, walks_of_solution
+from carproof.codes import Code
 
 _STEPS = {"l": (-1, 0), "r": (1, 0), "d": (0, -1), "u": (0, 1), "w": (0, 0)}
 _LETTERS = {step: letter for letter, step in _STEPS.items()}

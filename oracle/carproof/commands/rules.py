@@ -6,8 +6,8 @@ from typing import Any
 import click
 
 from carp_spec import Rule
-from carp_spec.rule import Code
 from carproof.answer import Answer
+from carproof.codes import Code
 from carproof.options import examples
 from carproof.rules import ALL_RULES
 from carproof.tables import print_table

@@ -6,7 +6,8 @@ from enum import StrEnum
 from typing import Any
 
 from carp_spec import RobotId, Rule
-from carp_spec.rule import DESIGN, Code, rule
+from carp_spec.rule import DESIGN, rule
+from carproof.codes import Code
 
 LEAST_ANSWERED = 90
 """In 100 random cases of an op. The cases are small, so a program that offers the op can answer nearly all of them. Two
