@@ -25,11 +25,10 @@ class Certifier:
     ) -> tuple[Plan | None, QueryCertificateDocument]:
         """The plan of the robot that arrives earliest, `None` if it has none, and its certificate.
 
-        `followed` is the plan that the robot has followed until the tick `now`. The labels are the nodes expanded, but
-        for the start, and those from which the goal is not reached before the bound.
+        `followed` is the plan that the robot has followed until the tick `now`. The labels are the nodes expanded after
+        the start from which the goal is reached before the bound.
         """
-        before = {} if followed is None else {robot: followed}
-        problem = replace(self._problem, now=now, before=before)
+        problem = replace(self._problem, now=now, before={} if followed is None else {robot: followed})
         ticks_to_goal = problem.ticks_to_goal[robot]
         expanded: list[Node] = []
         plan = find_plan(problem, self._committed, robot, expanded=expanded)

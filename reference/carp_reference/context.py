@@ -11,10 +11,7 @@ from carp_spec.windows import Occupation, Window, free_windows
 
 @dataclass(frozen=True, slots=True)
 class Context:
-    """The free windows and moves that committed plans leave to the next robot.
-
-    `occupations` holds their stays by resource, `moves` each move (source, target) with its tick.
-    """
+    """What committed plans leave to the next robot: their stays by resource, and their moves with the ticks."""
 
     instance: Instance
     occupations: Mapping[ResourceId, Sequence[Occupation]]
@@ -27,10 +24,8 @@ class Context:
 
     def window_around(self, visit: Visit) -> Window | None:
         """The free window that holds the whole visit, if there is one."""
-        for window in self.windows(visit.resource):
-            if window.start <= visit.enter and window.lasts_until(visit.leave):
-                return window
-        return None
+        windows = self.windows(visit.resource)
+        return next((each for each in windows if each.start <= visit.enter and each.lasts_until(visit.leave)), None)
 
     def is_exchange(self, tick: int, source: ResourceId, target: ResourceId) -> bool:
         """Whether a committed robot makes the opposite move at the tick."""
@@ -48,9 +43,5 @@ def context_of(instance: Instance, committed: Sequence[Plan]) -> Context:
     for plan in committed:
         for visit in plan.visits:
             occupations[visit.resource].append((visit.enter, visit.leave))
-    moves = frozenset(
-        (following.enter, (visit.resource, following.resource))
-        for plan in committed
-        for visit, following in pairwise(plan.visits)
-    )
-    return Context(instance, occupations, moves)
+    moves = ((to.enter, (at.resource, to.resource)) for plan in committed for at, to in pairwise(plan.visits))
+    return Context(instance, occupations, frozenset(moves))

@@ -25,7 +25,7 @@ def fixed_paths(problem: Problem, options: FixedPaths) -> Plans:
 
 
 def find_on_path(problem: Problem, committed: Sequence[Plan], robot: Robot, path: Path) -> Plan | None:
-    """The CARP query with no moves but those of the path; no path visits a resource twice."""
+    """The CARP query with the moves of the path alone, which visits no resource twice."""
     successors = {source: (target,) for source, target in pairwise(path)}
     return find_plan(problem, committed, robot.id, {**successors, robot.goal: ()})
 
@@ -49,7 +49,7 @@ def shortest_paths(problem: Problem, robot: Robot, k: int) -> list[Path]:
 def disjoint_paths(problem: Problem, robot: Robot, k: int) -> list[Path]:
     """At most k paths that share no resource but start and goal, of the least total length (as Suurballe 1974).
 
-    They are a flow of least cost in the graph in which every resource is split into an entrance and an exit.
+    They are a flow of least cost in the graph with each resource split into an entrance and an exit.
     """
     import networkx as nx  # noqa: PLC0415 - loaded only where used
 
@@ -67,7 +67,7 @@ def disjoint_paths(problem: Problem, robot: Robot, k: int) -> list[Path]:
                 if target != robot.start:
                     graph.add_edge(("out", source), ("in", target), capacity=1)
     flow = nx.max_flow_min_cost(graph, "source", ("in", robot.goal))
-    firsts = [target for (_, target), used in flow["out", robot.start].items() if used]
+    firsts = (target for (_, target), used in flow["out", robot.start].items() if used)
     paths = [_follow(flow, robot, first) for first in firsts]
     index = problem.instance.graph.index
     lengths = {path: sum(problem.instance.duration(robot.id, resource) for resource in path) for path in paths}

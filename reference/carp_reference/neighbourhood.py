@@ -25,10 +25,7 @@ from carp_spec.permutations import Order, splitmix64
 
 
 def add_robot(problem: Problem, committed: Plans, new: RobotId, options: Neighbourhood) -> Plans | None:
-    """Add a robot to committed plans: all plans in their new planning order.
-
-    `None` if the robot stays unplanned, and then the committed plans stay as they are.
-    """
+    """All plans with the new robot's, in their new planning order; `None` if it stays unplanned."""
     problem = replace(problem, before={plan.robot: plan for plan in committed})
     plans = _best_candidate(problem, committed, new, options)
     if plans is None and options.fallback is not None:
@@ -78,7 +75,7 @@ def _better(problem: Problem, best: Plans | None, candidate: Plans | None) -> Pl
 def _nearest_outside(
     problem: Problem, trajectories: Mapping[RobotId, Plan], outside: Sequence[RobotId], members: Sequence[RobotId]
 ) -> int:
-    """The position in `outside` of the robot to take in; one whose plan has ended is left alone."""
+    """The position in `outside` of the robot to take in; plans that have ended are left alone."""
     under_way = [robot for robot in outside if not has_ended(problem.before[robot], problem.now)]
     distances = [
         [distance(problem.instance, trajectories[robot], trajectories[member]) for member in members]
@@ -88,7 +85,7 @@ def _nearest_outside(
 
 
 def _replan(problem: Problem, kept: Plans, outside: Sequence[RobotId]) -> Plans:
-    """The plans kept and, in order, new ones for the robots behind them, up to the first that finds none."""
+    """The plans kept, and new ones for the robots behind them, up to the first that finds none."""
     plans = list(kept)
     for robot in outside[len(kept) :]:
         plan = find_plan(problem, plans, robot)
@@ -101,10 +98,7 @@ def _replan(problem: Problem, kept: Plans, outside: Sequence[RobotId]) -> Plans:
 def _plans_of_orders(
     problem: Problem, committed: Plans, members: Sequence[RobotId], orders: Iterable[Order]
 ) -> Iterator[Plans]:
-    """Plan the members in each order against the committed plans; skip the orders in which one finds no plan.
-
-    The orders are sorted lexicographically, and those that begin alike share the queries of their beginning.
-    """
+    """The members' plans in each order in which all find one; orders that begin alike share the first queries."""
     for first, alike in groupby(orders, key=lambda order: order[0]):
         rest = [order[1:] for order in alike]
         plan = find_plan(problem, committed, members[first])

@@ -21,7 +21,7 @@ def carp(problem: Problem, order: Sequence[RobotId]) -> Plans:
 
 
 def shuffled(problem: Problem, order: Sequence[RobotId], attempts: int, seed: int) -> Plans:
-    """The best of several passes of CARP; the first in the order given, each later one in a shuffle of the last."""
+    """The best of several passes of CARP, each but the first in a shuffle of the order before."""
     stream = splitmix64(seed)
     best = carp(problem, order)
     for _ in range(attempts - 1):
@@ -38,7 +38,7 @@ def _worth(problem: Problem, plans: Plans) -> tuple[int, int]:
 
 
 def longest_first(problem: Problem) -> Plans:
-    """CARP with the longest shortest path first; a robot without a path finds no plan wherever it comes."""
+    """CARP with the longest shortest path first; a robot without a path finds no plan anyway."""
     shortest = {robot.id: problem.ticks_to_goal[robot.id].get(robot.start, 0) for robot in problem.instance.robots}
     return carp(problem, sorted(shortest, key=lambda robot: -shortest[robot]))
 

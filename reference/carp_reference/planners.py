@@ -1,6 +1,7 @@
 """The planner's face: `query`, `plan`, `add`, the same as `carp_optimized` has."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from carp_reference.certifying import Certifier
 from carp_reference.fixed_paths import fixed_paths
@@ -43,7 +44,7 @@ def certifier(instance: Instance) -> Certifier:
 
 def plan(instance: Instance, planner: Planner = BY_DEFAULT) -> Solution:
     """Plan all robots of the instance at tick 0, by the neighbourhood planner if none is named."""
-    return _solution(instance, _plans(prepare(instance, 0), planner))
+    return Solution.of(instance, _plans(prepare(instance, 0), planner))
 
 
 def add(instance: Instance, solution: Solution, robot: RobotId, now: int, options: Neighbourhood) -> Solution:
@@ -53,9 +54,10 @@ def add(instance: Instance, solution: Solution, robot: RobotId, now: int, option
     """
     by_robot = {each.robot: each for each in solution.plans}
     committed = tuple(by_robot[each] for each in solution.order)
-    plans = add_robot(prepare(instance, now), committed, robot, options)
+    plans = add_robot(prepare(instance, now), committed, robot, options) or committed
     named = {*by_robot, *solution.unplanned, robot}
-    return _solution(instance, committed if plans is None else plans, named)
+    after = Solution.of(instance, plans)
+    return replace(after, unplanned=tuple(each for each in after.unplanned if each in named))
 
 
 def _plans(problem: Problem, planner: Planner) -> Plans:  # noqa: PLR0911 - one return a planner
@@ -78,10 +80,3 @@ def _plans(problem: Problem, planner: Planner) -> Plans:  # noqa: PLR0911 - one 
             return fixed_paths(problem, planner)
         case _:
             return time_expanded(problem.instance)
-
-
-def _solution(instance: Instance, plans: Plans, named: set[RobotId] | None = None) -> Solution:
-    """The solution of the robots named (all, if none are): those without a plan are unplanned."""
-    order = tuple(each.robot for each in plans)
-    robots = [robot.id for robot in instance.robots if named is None or robot.id in named]
-    return Solution(plans, order, tuple(robot for robot in robots if robot not in order))

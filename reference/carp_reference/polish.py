@@ -1,7 +1,7 @@
 """Polishing, large neighbourhood search (LNS): a solution is improved as the rules `polish/...` decide.
 
-A round removes a pivot and robots related to it, plans them again one after the other, and keeps the new plans if they
-are not worse. Robots without a plan come first, so polishing also repairs a solution.
+A round removes a pivot and robots related to it, plans them again one by one, and keeps the new plans if they are not
+worse. Robots without a plan come first, so polishing also repairs a solution.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -53,9 +53,8 @@ def polish(
 ) -> Solution:
     """Improve a solution for that many rounds or seconds; `advance` gets rounds, unplanned robots and total.
 
-    The polish ends earlier if no plan can be shorter. All robots are planned from their release on: none is under way.
-    Equal iterations and seed give an equal solution. Raises `Refusal` for wrong options, and for a solution that breaks
-    a rule.
+    The polish ends earlier if no plan can be shorter. Equal iterations and seed give an equal solution. Raises
+    `Refusal` for wrong options, and for a solution that breaks a rule.
     """
     require_polish_options(iterations, seconds, seed)
     whole = polishable(instance, solution)
@@ -74,8 +73,7 @@ def polish(
         plans = better
         turn += 1
         advance(turn, *_worth(instance, plans))
-    unplanned = tuple(robot.id for robot in instance.robots if robot.id not in plans)
-    return Solution(tuple(plans.values()), tuple(plans), unplanned)
+    return Solution.of(instance, plans.values())
 
 
 def _round(polishing: Polish, plans: Plans, turn: int) -> Plans | None:

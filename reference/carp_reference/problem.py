@@ -12,8 +12,8 @@ class Problem:
     """An instance, the h of each robot's A*, the tick at which it is planned, and the plans followed until then.
 
     `ticks_to_goal[robot][resource]` is the least number of ticks from entering the resource to entering the robot's
-    goal on the empty graph; a resource from which the goal cannot be reached is not in it. `before` holds the plans
-    that robots have followed: their visits up to the tick `now` are kept (`fleet/history`).
+    goal on the empty graph; resources without a way to the goal are left out. Visits of `before` that are entered up to
+    the tick `now` are kept (`fleet/history`).
     """
 
     instance: Instance

@@ -1,7 +1,7 @@
 """The CARP query: A* over free time windows (ter Mors 2010), a close relative of SIPP (Phillips and Likhachev 2011).
 
-A node is a free window of a resource (a safe interval in SIPP), entered at the earliest possible tick. A robot can wait
-in a window at no cost, so an earlier entry is never worse, and each window needs only one entry.
+A node is a free window of a resource (a safe interval in SIPP), entered as early as possible. A robot can wait in a
+window at no cost, so an earlier entry is never worse, and each window needs only one entry.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -11,7 +11,7 @@ from itertools import pairwise
 
 from carp_reference.context import Context, context_of
 from carp_reference.problem import Problem
-from carp_spec import Plan, ResourceId, RobotId, Visit, has_ended
+from carp_spec import Instance, Plan, ResourceId, RobotId, Visit, has_ended
 from carp_spec.query_rules import expansion_key
 from carp_spec.windows import Window, stay_fits
 
@@ -36,42 +36,32 @@ def find_plan(
 ) -> Plan | None:
     """The plan with the earliest arrival against the committed plans, or `None` if none exists.
 
-    `successors` restricts the moves, if it is given. The nodes that the search expands are added to `expanded`, if it
-    is given.
+    `successors` restricts the moves; the nodes that the search expands are added to `expanded`.
     """
     context = context_of(problem.instance, committed)
     before = problem.before.get(robot)
     if before is not None and has_ended(before, problem.now):
         return before if context.allows(before.visits) else None
-    history = _history(problem, robot)
-    start = _start(context, history)
+    past, start = _start(problem, context, robot)
     if start is None:
         return None
     moves = successors or problem.instance.graph.successors
     last = _search(problem, context, robot, start, moves, [] if expanded is None else expanded)
-    return None if last is None else _plan(problem, robot, history[:-1], last)
+    return None if last is None else Plan(robot, (*past, *_visits(problem.instance, robot, last)))
 
 
-def _history(problem: Problem, robot: RobotId) -> tuple[Visit, ...]:
-    """The visits that the robot has entered by now; the last is the current one, left as early as possible.
-
-    A robot that has no plan yet stands at its start from its release on.
-    """
+def _start(problem: Problem, context: Context, robot: RobotId) -> tuple[Sequence[Visit], Node | None]:
+    """The visits that are over, and the node of the current one; `None` if a committed plan conflicts with them."""
     request = problem.instance.robot[robot]
     before = problem.before.get(robot)
-    entered = () if before is None else tuple(visit for visit in before.visits if visit.enter <= problem.now)
-    *past, current = entered or (Visit(request.start, request.release, None),)
+    entered = [] if before is None else [visit for visit in before.visits if visit.enter <= problem.now]
+    *past, current = entered or [Visit(request.start, request.release, None)]
     ready = max(current.enter + problem.instance.duration(robot, current.resource), problem.now)
-    return (*past, Visit(current.resource, current.enter, ready))
-
-
-def _start(context: Context, history: Sequence[Visit]) -> Node | None:
-    """The node of the current visit; `None` if a committed plan conflicts with the robot's history."""
-    current = history[-1]
-    window = context.window_around(current)
-    if window is None or current.leave is None or not context.allows(history):
-        return None
-    return Node(current.resource, window, current.enter, current.leave, None)
+    stay = Visit(current.resource, current.enter, ready)
+    window = context.window_around(stay)
+    if window is None or not context.allows([*past, stay]):
+        return past, None
+    return past, Node(current.resource, window, current.enter, ready, None)
 
 
 def _search(
@@ -84,8 +74,7 @@ def _search(
 ) -> Node | None:
     """A* in the order of `query/ties`: the node in which the robot ends its plan, or `None`.
 
-    The start is not among the windows entered: a robot that has stayed at its goal too long to end there may
-    come back to the same window.
+    The start is not among the windows entered: a robot that has stayed at its goal too long to end there may come back.
     """
     ticks_to_goal = problem.ticks_to_goal[robot]
     entered: dict[tuple[ResourceId, Window], int] = {}
@@ -103,7 +92,7 @@ def _search(
         if _can_end(problem, robot, node):
             return node
         expanded.append(node)
-        for following in _expand(problem, context, robot, node, successors.get(node.resource, ())):
+        for following in _expand(context, robot, node, successors.get(node.resource, ())):
             key = (following.resource, following.window)
             if key not in entered or following.enter < entered[key]:
                 entered[key] = following.enter
@@ -121,12 +110,10 @@ def _can_end(problem: Problem, robot: RobotId, node: Node) -> bool:
     return node.enter + instance.duration(robot, node.resource) >= problem.now
 
 
-def _expand(
-    problem: Problem, context: Context, robot: RobotId, node: Node, targets: Sequence[ResourceId]
-) -> Iterator[Node]:
+def _expand(context: Context, robot: RobotId, node: Node, targets: Sequence[ResourceId]) -> Iterator[Node]:
     """Every window that one move leads to, entered as early as possible."""
     for target in targets:
-        duration = problem.instance.duration(robot, target)
+        duration = context.instance.duration(robot, target)
         for window in context.windows(target):
             enter = max(node.ready, window.start)
             while context.is_exchange(enter, node.resource, target):
@@ -135,13 +122,12 @@ def _expand(
                 yield Node(target, window, enter, enter + duration, node)
 
 
-def _plan(problem: Problem, robot: RobotId, past: tuple[Visit, ...], last: Node) -> Plan:
+def _visits(instance: Instance, robot: RobotId, last: Node) -> tuple[Visit, ...]:
     """Follow the parents back to the start."""
     path = [last]
     while path[-1].parent is not None:
         path.append(path[-1].parent)
     path.reverse()
+    leave = None if instance.after_goal == "park" else last.enter + instance.duration(robot, last.resource)
     stays = [Visit(node.resource, node.enter, following.enter) for node, following in pairwise(path)]
-    parks = problem.instance.after_goal == "park"
-    leave = None if parks else last.enter + problem.instance.duration(robot, last.resource)
-    return Plan(robot, (*past, *stays, Visit(last.resource, last.enter, leave)))
+    return (*stays, Visit(last.resource, last.enter, leave))

@@ -18,7 +18,7 @@ from tests.verify.tiny import TINY
 
 from carp_reference.context import context_of
 from carp_reference.problem import Problem, prepare
-from carp_reference.query import _expand, _history, _start, find_plan
+from carp_reference.query import _expand, _start, find_plan
 from carp_spec import (
     Instance,
     Plan,
@@ -326,13 +326,13 @@ def query_certificate(problem: Problem, committed: Sequence[Plan], robot: RobotI
     plan = find_plan(problem, committed, robot)
     bound = None if plan is None else plan.visits[-1].enter
     context, potential = context_of(instance, committed), problem.ticks_to_goal[robot]
-    start = _start(context, _history(problem, robot))
+    _, start = _start(problem, context, robot)
     entered: dict[tuple[ResourceId, int], int] = {}
     queue = [] if start is None else [start]
     while queue:
         node = min(queue, key=lambda each: each.enter)
         queue.remove(node)
-        for following in _expand(problem, context, robot, node, instance.graph.successors[node.resource]):
+        for following in _expand(context, robot, node, instance.graph.successors[node.resource]):
             key = (following.resource, following.window.start)
             in_time = following.resource in potential and (
                 bound is None or following.enter + potential[following.resource] < bound
