@@ -3,7 +3,7 @@
 Rotations are removed first, so that every driver has the same plans. All drivers of a solution have the same delays.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import msgspec
@@ -171,17 +171,21 @@ def execution_tables(summary: Sequence[DriverOf]) -> tuple[Table, ...]:
 
 
 def execution_figures(summary: Sequence[DriverOf]) -> tuple[Figure, ...]:
-    """Lateness and collisions on the full grid, or the last map, by the share of delayed visits."""
+    """Lateness, throughput and collisions on the full grid, or the last map, by the share of delayed visits."""
     maps = {each.map for each in summary}
     map = FULL_MAP if FULL_MAP in maps else max(maps)
     lines: dict[str, list[DriverOf]] = {}
     for each in summary:
         if each.map == map:
             lines.setdefault(f"{each.planner} + {each.driver}", []).append(each)
-    late = {name: [(each.share, each.late) for each in line] for name, line in lines.items()}
-    collisions = {name: [(each.share, each.collisions) for each in line] for name, line in lines.items()}
-    axis = "delayed visits, per cent"
+
+    def figure(name: str, title: str, unit: str, value: Callable[[DriverOf], Interval]) -> Figure:
+        drawn = {line: [(each.share, value(each)) for each in points] for line, points in lines.items()}
+        return Figure(f"execution-{name}", f"{title} on {place_name(map)}", ("delayed visits, per cent", unit), drawn)
+
     return (
-        Figure("execution-late", f"Lateness on {place_name(map)}", (axis, "ticks"), late),
-        Figure("execution-collisions", f"Collisions on {place_name(map)}", (axis, "collisions"), collisions),
+        figure("late", "Mean lateness", "ticks", lambda each: each.late),
+        figure("worst", "Worst lateness", "ticks", lambda each: each.worst),
+        figure("arrivals", "Throughput", "arrivals in 100 ticks", lambda each: each.arrivals),
+        figure("collisions", "Collisions", "collisions", lambda each: each.collisions),
     )

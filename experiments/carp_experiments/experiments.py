@@ -144,7 +144,7 @@ EXPERIMENTS = (
     Experiment(
         "execution",
         "Late robots on the clock, in order and switching: lateness, arrivals and collisions.",
-        Profile(10, 50, (10, 15, FULL_MAP, WAREHOUSE)),
+        Profile(5, 50, (10, 15, FULL_MAP, WAREHOUSE)),
         Profile(2, 10, (10, 20)),
         execution_row,
         lambda rows, _: execution_report(rows),
@@ -168,7 +168,7 @@ EXPERIMENTS = (
     Experiment(
         "stream",
         "Robots that come at random, at several rates: throughput up to saturation, and waiting.",
-        Profile(6, 800, (10, FULL_MAP, WAREHOUSE)),
+        Profile(4, 500, (10, FULL_MAP, WAREHOUSE)),
         Profile(2, 200, (10, FULL_MAP)),
         stream_row,
         stream_report,

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 import msgspec
 
 from carp_experiments.delayed import PLANNERS
-from carp_experiments.map_cases import MapCase, instance_of, place_name, rows_by_map
+from carp_experiments.map_cases import MAP_AXIS, WAREHOUSE, MapCase, instance_of, place_name, rows_by_map
 from carp_experiments.quality import ALGORITHMS, seeded
-from carp_experiments.report import ExperimentReport, Table
+from carp_experiments.report import ExperimentReport, Figure, Table
 from carp_experiments.store import Row
 from carp_spec import total_cost
 from carproof.statistics import Interval, mean_interval
@@ -118,7 +118,20 @@ def following_report(rows: Iterable[Row]) -> ExperimentReport:
         )
         for each in summary
     ]
-    return ExperimentReport(summary, (Table("following", title, columns, tuple(lines), columns[2:]),))
+    table = Table("following", title, columns, tuple(lines), columns[2:])
+    return ExperimentReport(summary, (table,), following_figures(summary))
+
+
+def following_figures(summary: Sequence[FollowingOf]) -> tuple[Figure, ...]:
+    """Both prices on the grids, by the map."""
+    lines: dict[str, list[tuple[int, Interval]]] = {}
+    for each in summary:
+        if each.map == WAREHOUSE:
+            continue
+        lines.setdefault(f"{each.planner} + forbidden", []).append((each.map, each.forbidden))
+        lines.setdefault(f"{each.planner} + removed", []).append((each.map, each.extra))
+    axes = (MAP_AXIS, "total cost more, per cent")
+    return (Figure("following", "The price of plans without rotations", axes, lines),) if lines else ()
 
 
 def following_of(map: int, name: str, found: Sequence[Priced]) -> FollowingOf:

@@ -38,6 +38,12 @@ MEANINGS = {
     "robots unplanned.",
     "people": "Every person gets the proved first arrival, and the robots that give way lose a few ticks together. A "
     "robot that becomes a person no longer counts in the cost, so it need not grow with the people.",
+    "stream": "Both planners serve every arrival up to the rate at which the map is full; beyond it the throughput "
+    "stays and robots wait. Robots wait less where neighbours make room. The throughput is that between the first "
+    "quarter of the arrivals at goals and the third.",
+    "executions": "Each execution has a delay, and in each solution a robot waits for another. Without a rotation "
+    "every robot arrives, no rule is broken, and no robot is later than all delays together. The robots of a rotation "
+    "stand for ever, and none of them can go on alone by the rules.",
 }
 EXPLANATIONS = """\
 Numbers of actions are means over the assignments on which neither of the two fails, so what they are to be compared

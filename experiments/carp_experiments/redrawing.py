@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from carp_experiments.adding_time import Time, time_figures
 from carp_experiments.delayed import DriverOf, execution_figures
+from carp_experiments.following import FollowingOf, following_figures
 from carp_experiments.page import RESULTS, Run, read_run, summary_of
 from carp_experiments.people import PeopleOf, people_figures
 from carp_experiments.polishing import PolishSummary, polish_figures
@@ -21,6 +22,7 @@ FIGURES: Mapping[str, Callable[[Run], Sequence[Figure]]] = {
     "related": lambda run: related_figures(summary_of(run, tuple[Related, ...])),
     "polish": lambda run: polish_figures(summary_of(run, PolishSummary)),
     "execution": lambda run: execution_figures(summary_of(run, tuple[DriverOf, ...])),
+    "following": lambda run: following_figures(summary_of(run, tuple[FollowingOf, ...])),
     "people": lambda run: people_figures(summary_of(run, tuple[PeopleOf, ...])),
     "stream": lambda run: stream_figures(summary_of(run, tuple[StreamOf, ...])),
 }

@@ -1,6 +1,7 @@
 """Late robots, rotations and people: what the experiments measure and how they sum it up."""
 
 import msgspec
+import pytest
 
 from carp_experiments.delayed import PLANNERS, DriverOf, ExecutionRow, execution_report, execution_row
 from carp_experiments.following import FollowingOf, following_report, following_row
@@ -22,6 +23,11 @@ def test_late_robots_collide_on_the_clock_alone_and_nobody_stands() -> None:
     summary = msgspec.convert(execution_report([row, row]).summary, tuple[DriverOf, ...])
     assert {each.executions for each in summary} == {2}
     assert all(each.worst.estimate >= each.late.estimate for each in summary)
+    figures = {figure.name: figure for figure in execution_report([row, row]).figures}
+    assert [*figures] == ["execution-late", "execution-worst", "execution-arrivals", "execution-collisions"]
+    (last,) = (each for each in summary if (each.planner, each.driver, each.share) == ("CARP", "order", 20))
+    ends = [figure.lines["CARP + order"][-1] for figure in figures.values()]
+    assert ends == [(20, value) for value in (last.late, last.worst, last.arrivals, last.collisions)]
 
 
 def test_without_following_there_is_no_rotation_and_plans_cost_more() -> None:
@@ -37,6 +43,9 @@ def test_without_following_there_is_no_rotation_and_plans_cost_more() -> None:
     (line, _) = following_report(rows).tables[0].rows
     assert (line[3], line[4][:5], line[5:7]) == ("1.0 ± 0.0", "15.00", ("1/2", "0"))
     assert line[8].startswith("1.000")
+    (figure,) = following_report(rows).figures
+    assert [point[1].estimate for point in figure.lines["CARP + forbidden"] if point[1]] == [pytest.approx(15)]
+    assert following_report([{**each, "map": WAREHOUSE} for each in rows]).figures == ()
 
 
 def test_people_are_first_and_robots_pay() -> None:
