@@ -1,8 +1,9 @@
 """Finds a good lower bound on the total cost, with a certificate that `carp_verify.verify_bound` checks.
 
 This is Lagrangian relaxation. Step by step, prices rise where the robots' cheapest ways exceed a capacity, and fall
-where they use less than it (`carp_optimum.price_steps`). When that gains nothing more, cuts are added
-(`carp_optimum.cut_search`). The search aims a little above the best bound known, and closer to it after each failure.
+where they use less than it (`carp_optimum.price_steps`). When that gains nothing more, deadlines are added
+(`carp_optimum.deadline_search`), and where these gain nothing either, cuts (`carp_optimum.cut_search`). The search aims
+a little above the best bound known, and closer to it after each failure.
 Source: the target level method of Goffin and Kiwiel 1999, over the Lagrangian relaxation of all rules of plans
 together.
 """
@@ -21,6 +22,7 @@ from carp_verify.limits import require_following
 
 if TYPE_CHECKING:
     from carp_optimum.cut_search import CutSearch
+    from carp_optimum.deadline_search import DeadlineSearch
     from carp_optimum.price_search import PriceSearch
 
 SCALE = 1 << 16
@@ -51,12 +53,14 @@ def lower_bound(
     """
     require_following(instance)
     from carp_optimum.cut_search import CutSearch  # noqa: PLC0415 - numba is slow to load
+    from carp_optimum.deadline_search import DeadlineSearch  # noqa: PLC0415
     from carp_optimum.price_search import PriceSearch  # noqa: PLC0415
 
     rough = _limit(seconds, steps, ROUGH_PARTS)
     end = _limit(seconds, steps, PARTS)
     search = PriceSearch(instance, SCALE)
     cuts = CutSearch(search)
+    deadlines = DeadlineSearch(search)
 
     def report(count: int, best: int) -> None:
         on_step(Progress(count, -(-best // SCALE)))
@@ -70,11 +74,11 @@ def lower_bound(
         gain = search.best // FIRST_AIM
         while gain > 0 or not cuts.is_exhausted:
             search.climb(gain, ROUGH_AIM, lambda: rough(search.count), report)
-            gain = cuts.round(look)
+            gain = deadlines.round(look) or cuts.round(look)
     with suppress(TimeOver):
         search.climb(ROUGH_AIM, FINE_AIM, lambda: end(search.count), report)
     search.finish()
-    return _certificate(search, cuts)
+    return _certificate(search, cuts, deadlines)
 
 
 def _limit(seconds: float | None, steps: int | None, parts: int) -> Callable[[int], None]:
@@ -90,7 +94,7 @@ def _limit(seconds: float | None, steps: int | None, parts: int) -> Callable[[in
     return check
 
 
-def _certificate(search: "PriceSearch", cuts: "CutSearch") -> BoundDocument:
+def _certificate(search: "PriceSearch", cuts: "CutSearch", deadlines: "DeadlineSearch") -> BoundDocument:
     prices = search.prices()
     robots = search.least_costs()
     used = tuple(
@@ -98,7 +102,13 @@ def _certificate(search: "PriceSearch", cuts: "CutSearch") -> BoundDocument:
         for cut, multiplier in zip(cuts.cuts, search.multipliers, strict=True)
         if multiplier > 0
     )
+    priced = tuple(
+        replace(each.document, price=int(fee))
+        for each, fee in zip(deadlines.found, search.fees, strict=True)
+        if fee > 0
+    )
     parts = sum(least or 0 for _, least in robots) + sum(cut.multiplier * cut.least for cut in used) - search.worth
+    parts -= sum(each.price * (len(each.robots) - 1) for each in priced)
     return BoundDocument(
         format=BOUND_FORMAT,
         instance=digest(search.instance),
@@ -109,4 +119,5 @@ def _certificate(search: "PriceSearch", cuts: "CutSearch") -> BoundDocument:
         exchanges=prices.exchanges,
         cuts=used,
         robots=robots,
+        deadlines=priced,
     )

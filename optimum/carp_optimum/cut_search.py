@@ -10,6 +10,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import combinations, count
 
+import numpy as np
+
 from carp_optimum.optimum import optimum
 from carp_optimum.price_search import PriceSearch
 from carp_optimum.proving import refutation
@@ -63,7 +65,9 @@ class CutSearch:
             if next(steps) % EVERY == 0:
                 meetings.update(meeting(self.search))
 
-        costs = self.search.wander(STEPS, self.search.scale // 4, look)
+        delays = self.search.wander(STEPS, self.search.scale // 4, look)
+        requests = self.search.market.requests
+        costs = (requests.earliest - requests.release) * STEPS + delays @ np.arange(delays.shape[1])
         broken: list[tuple[int, Cut]] = []
         for members in self._groups(meetings):
             cut = self._cut(members, check)

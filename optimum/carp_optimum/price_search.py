@@ -8,6 +8,7 @@ import numpy as np
 from carp_optimized.arrays import LARGEST, NONE, Graph, Ints, Longs, LongTable
 from carp_optimized.encoding import encode_graph, refuse_tick, refuse_what_is_too_large
 from carp_optimized.references import Native
+from carp_optimum.late_ways import Arrivals, find_late_ways, least_late_cost
 from carp_optimum.price_steps import KEPT, LARGEST_GAIN, PARTS, UNIT, turn_all, walk_all
 from carp_optimum.priced_ways import (
     Market,
@@ -45,17 +46,19 @@ def refuse_table(path: str, what: str, entries: int) -> None:
 
 
 class Point(NamedTuple):
-    """Prices and multipliers of cuts."""
+    """Prices of places, multipliers of cuts, and prices of deadlines."""
 
     resource: LongTable
     exchange: LongTable
     multipliers: Longs
+    fees: Longs
 
 
 class PriceSearch:
     """Prices of an instance and multipliers of cuts; `best` is the best bound found with them, in parts of a tick.
 
-    A cut says that the costs of its members, robots by position, add up to no less than `least`.
+    A cut says that the costs of its members, robots by position, add up to no less than `least`. Deadlines say that one
+    of their members has a larger delay than is allowed to it; `fees` are their prices.
     """
 
     def __init__(self, instance: Instance, scale: int) -> None:
@@ -85,12 +88,18 @@ class PriceSearch:
         self.least = np.zeros(0, np.int64)
         self.multipliers = np.zeros(0, np.int64)
         self._course = np.zeros(0, np.int64)
+        self.deadlines: list[tuple[Ints, Ints]] = []
+        self.fees = np.zeros(0, np.int64)
+        self._course_of_fees = np.zeros(0, np.int64)
+        self._arrivals = Arrivals(*np.zeros((2, robots, self.market.delays + 1), np.int64))
+        self._native_arrivals = Native(self._arrivals)
         self.best = find_ways(self.native)
         self._kept = self._point()
         self.count = 0
 
     def _point(self) -> Point:
-        return Point(self.market.prices.resource.copy(), self.market.prices.exchange.copy(), self.multipliers.copy())
+        prices = self.market.prices
+        return Point(prices.resource.copy(), prices.exchange.copy(), self.multipliers.copy(), self.fees.copy())
 
     def _bound(self) -> int:
         """The bound that the prices and multipliers prove; gives each robot a cheapest way."""
@@ -98,15 +107,35 @@ class PriceSearch:
         weight[:] = self.scale
         for members, multiplier in zip(self.cuts, self.multipliers, strict=True):
             weight[members] -= multiplier
-        return find_ways(self.native) + int((self.multipliers * self.least).sum())
+        proved = int((self.multipliers * self.least).sum())
+        if not self.deadlines:
+            return proved + find_ways(self.native)
+        self._charge()
+        worth = sum(
+            fee * (len(members) - 1) for fee, (members, _) in zip(self.fees.tolist(), self.deadlines, strict=True)
+        )
+        return proved - worth + find_late_ways(self.native, self._native_arrivals)
+
+    def _charge(self) -> None:
+        """Fill the tables of what an arrival costs each robot, by its delay."""
+        requests = self.market.requests
+        cost = self._arrivals.cost
+        cost[:] = 0
+        for fee, (members, delays) in zip(self.fees, self.deadlines, strict=True):
+            cost[members, delays] += fee
+        cost[:] = np.cumsum(cost[:, ::-1], axis=1)[:, ::-1]
+        ticks = np.arange(cost.shape[1]) + (requests.earliest - requests.release)[:, None]
+        cost += requests.weight[:, None] * ticks
+        self._arrivals.least[:] = np.minimum.accumulate(cost[:, ::-1], axis=1)[:, ::-1]
 
     def _restore(self) -> int:
         """Go back to the best prices, without a course: their bound."""
-        self.market.prices.resource[:], self.market.prices.exchange[:], self.multipliers = self._kept
-        self.multipliers = self.multipliers.copy()
+        self.market.prices.resource[:], self.market.prices.exchange[:], multipliers, fees = self._kept
+        self.multipliers, self.fees = multipliers.copy(), fees.copy()
         self.market.usage.course[:] = 0
         self.market.usage.course_of_exchange[:] = 0
         self._course[:] = 0
+        self._course_of_fees[:] = 0
         return self._bound()
 
     def add_cuts(self, cuts: Sequence[tuple[Sequence[int], int]]) -> None:
@@ -117,6 +146,21 @@ class PriceSearch:
         self.multipliers = np.concatenate([self.multipliers, none])
         self._course = np.concatenate([self._course, none])
         self._kept = self._kept._replace(multipliers=np.concatenate([self._kept.multipliers, none]))
+
+    def add_deadlines(self, deadlines: Sequence[Mapping[int, int]]) -> None:
+        """Add deadlines, each the delays that it allows its members, with prices of 0."""
+        self.deadlines.extend(
+            (np.array([*allowed], np.int32), np.array([*allowed.values()], np.int32)) for allowed in deadlines
+        )
+        none = np.zeros(len(deadlines), np.int64)
+        self.fees = np.concatenate([self.fees, none])
+        self._course_of_fees = np.concatenate([self._course_of_fees, none])
+        self._kept = self._kept._replace(fees=np.concatenate([self._kept.fees, none]))
+
+    def delays(self) -> Longs:
+        """The delays of the robots' cheapest ways; 0 for one that has none."""
+        requests = self.market.requests
+        return np.maximum(self.costs() - (requests.earliest - requests.release), 0)
 
     def costs(self) -> Longs:
         """The costs of the robots' cheapest ways, in ticks without prices."""
@@ -130,12 +174,17 @@ class PriceSearch:
         lacking = self.least - np.array([costs[members].sum() for members in self.cuts], np.int64)
         self._course = self._course * KEPT // PARTS + UNIT * lacking
         self._course[(self._course < 0) & (self.multipliers == 0)] = 0
-        square = turn_all(self.native) + int((self._course * self._course).sum())
+        delays = self.delays()
+        surplus = [1 - int((delays[members] > allowed).sum()) for members, allowed in self.deadlines]
+        self._course_of_fees = self._course_of_fees * KEPT // PARTS + UNIT * np.array(surplus, np.int64)
+        self._course_of_fees[(self._course_of_fees < 0) & (self.fees == 0)] = 0
+        square = turn_all(self.native) + int((self._course * self._course).sum() + (self._course_of_fees**2).sum())
         if square == 0:
             return False
         walk_all(self.native, gain, square)
         self.multipliers = np.maximum(self.multipliers + gain * UNIT * self._course // square, 0)
         self._limit_multipliers()
+        self.fees = np.maximum(self.fees + gain * UNIT * self._course_of_fees // square, 0)
         self.count += 1
         return True
 
@@ -179,16 +228,16 @@ class PriceSearch:
         """Go back to the best prices."""
         self._restore()
 
-    def wander(self, steps: int, aim: int, on_step: Callable[[], None]) -> Longs:
-        """Take this many steps near the best prices: the robots' costs, summed over the steps."""
+    def wander(self, steps: int, aim: int, on_step: Callable[[], None]) -> LongTable:
+        """Take this many steps near the best prices: for each robot, how many of its ways have which delay."""
         bound = self._restore()
-        total = np.zeros(len(self.instance.robots), np.int64)
+        counts = np.zeros((len(self.instance.robots), self.market.delays), np.int64)
         for _ in range(steps):
             self._step(min(max(self.best + aim - bound, 0), LARGEST_GAIN))
             bound = self._bound()
-            total += self.costs()
+            counts[np.arange(len(counts)), np.minimum(self.delays(), self.market.delays - 1)] += 1
             on_step()
-        return total
+        return counts
 
     def prices(self) -> PriceLists:
         """The prices that are not 0."""
@@ -212,9 +261,14 @@ class PriceSearch:
         """The least priced cost of each robot, `None` where it cannot reach its goal."""
         earliest = self.market.requests.earliest
         return tuple(
-            (robot.id, None if earliest[position] == NONE else least_cost(self.native, position))
+            (robot.id, None if earliest[position] == NONE else self._least_cost(position))
             for position, robot in enumerate(self.instance.robots)
         )
+
+    def _least_cost(self, position: int) -> int:
+        if not self.deadlines:
+            return least_cost(self.native, position)
+        return least_late_cost(self.native, self._native_arrivals, position)
 
 
 def _requests(instance: Instance, scale: int) -> Requests:

@@ -1,15 +1,19 @@
-"""Cuts: groups of robots that provably cost more together than prices alone can show.
+"""Cuts and deadlines: groups of robots that provably cost more together than prices alone can show.
 
 A cut is proved like the lower half of an optimum (`carp_verify.proof`), with the group as an instance of its own: the
 formula of a total below `least` is made again from the instance, and its refutation is checked. In the whole instance,
 where more robots are in the way, no plans of the group cost less either.
+
+Deadlines are proved in the same way, by the formula of plans of the group that keep all of them: each robot's horizon
+is the delay with which it would just keep its own, and none is later than that.
 """
 
 from collections.abc import Sequence
 
 from carp_spec import Instance, RobotId
 from carp_spec.rule import is_whole
-from carp_verify.bounds import CutDocument
+from carp_verify.bound_rules import is_deadline
+from carp_verify.bounds import CutDocument, DeadlinesDocument
 from carp_verify.clauses import Formula
 from carp_verify.encoding import Encoding, Evidence, beat_formula
 from carp_verify.refutation import NotRefutedError, require_refutation
@@ -42,4 +46,27 @@ def require_cut(instance: Instance, cut: CutDocument, most: int) -> int:
     """Check a cut's refutation, and return how many clauses its formula has; raises as `formula_of` does."""
     formula = formula_of(instance, cut, most)
     require_refutation(formula.clauses, cut.refutation)
+    return len(formula.clauses)
+
+
+def formula_of_deadlines(instance: Instance, deadlines: DeadlinesDocument, most: int) -> Formula:
+    """The formula that shows deadlines which cannot all be kept; raises as `formula_of` does."""
+    group = group_of(instance, deadlines.robots)
+    encoding = Encoding(group, most=most)
+    if len(deadlines.ticks) != len(group.robots):
+        raise NotRefutedError(f"it must have a deadline of each of {len(group.robots)} robots")
+    for robot, tick in zip(encoding.robots, deadlines.ticks, strict=True):
+        earliest = None if robot.shortest is None else robot.earliest
+        if not is_deadline(tick, earliest):
+            raise NotRefutedError(f"robot {robot.robot.id} can be at its goal at {earliest}, not at {tick!r}")
+    encoding.grow_to([tick - robot.earliest for robot, tick in zip(encoding.robots, deadlines.ticks, strict=True)])
+    encoding.forbid_all()
+    encoding.close()
+    return encoding.formula
+
+
+def require_deadlines(instance: Instance, deadlines: DeadlinesDocument, most: int) -> int:
+    """Check the refutation, and return how many clauses the formula has; raises as `formula_of` does."""
+    formula = formula_of_deadlines(instance, deadlines, most)
+    require_refutation(formula.clauses, deadlines.refutation)
     return len(formula.clauses)

@@ -63,9 +63,21 @@ def is_weight(scale: int, multipliers: int) -> bool:
 
 
 @rule(
+    "bound/deadline",
+    "Deadlines are those of a group of one or more distinct robots, each with a whole tick; their price is a whole "
+    "number of at least 0, and a refutation shows that no plans of the group keep all of them.",
+    DESIGN,
+)
+def is_deadline(tick: object, earliest: int | None) -> bool:
+    """Whether the deadline is not before the tick at which the robot can be at its goal, `None` if it never can."""
+    return earliest is not None and is_whole(tick) and tick >= earliest
+
+
+@rule(
     "bound/total",
     "The bound is the sum of the robots' least costs and of the cuts' least totals by their multipliers, less the sum "
-    "of prices by capacities, divided by the scale and rounded up.",
+    "of prices by capacities, and less the price of each group's deadlines by all its robots but one, divided by the "
+    "scale and rounded up.",
     DESIGN,
 )
 def is_rounded_up(bound: object, parts: int, scale: int) -> bool:
@@ -77,7 +89,7 @@ def is_rounded_up(bound: object, parts: int, scale: int) -> bool:
     "bound/size",
     "Tables by resource and tick, by robot and resource, or by a cut's robot and resource, have at most "
     f"{LARGEST_TABLE} entries; the search for the robots' least costs takes at most {LARGEST_SEARCH} steps, and the "
-    f"formulas of all cuts have at most {LARGEST_FORMULA} clauses together.",
+    f"formulas of all cuts and deadlines have at most {LARGEST_FORMULA} clauses together.",
     DESIGN,
 )
 def size_fits(size: int, limit: int) -> bool:
@@ -112,6 +124,7 @@ BOUND_RULES: tuple[Rule[..., Any], ...] = (
     is_new,
     is_least,
     is_weight,
+    is_deadline,
     is_rounded_up,
     size_fits,
     stay_is_searched,

@@ -31,13 +31,27 @@ class CutDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     refutation: str
 
 
-class BoundDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class DeadlinesDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Deadlines that the robots of a group cannot all keep, and what each of them pays if it keeps its own.
+
+    A robot keeps a deadline if it enters its goal for the last time at that tick or before. The price is in parts of a
+    tick. The refutation is that of the formula of plans of the group that keep all deadlines: LRAT without RAT steps.
+    """
+
+    robots: tuple[RobotId, ...]
+    ticks: tuple[int, ...]
+    price: Price
+    refutation: str
+
+
+class BoundDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
     """A lower bound on the total cost of plans for all robots that can reach their goals, and its certificate.
 
     `instance` is the digest of the instance's document. Prices, multipliers and least costs are in parts of a tick,
     `scale` of them. A price of `resources` is [resource, tick, price], one of `exchanges` [resource, other, tick,
     price]; those not listed are 0, and so are all at or after the tick `horizon`. `robots` gives each robot's least
-    cost with prices, or null where no way leads to its goal.
+    cost with prices, those of its deadlines among them, or null where no way leads to its goal. A document without
+    deadlines may leave `deadlines` out.
     """
 
     format: Literal["carproof-bound/1"]
@@ -49,6 +63,7 @@ class BoundDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     exchanges: tuple[tuple[ResourceId, ResourceId, Tick, Price], ...]
     cuts: tuple[CutDocument, ...]
     robots: tuple[tuple[RobotId, int | None], ...]
+    deadlines: tuple[DeadlinesDocument, ...] = ()
 
 
 def digest(instance: Instance) -> str:

@@ -6,6 +6,10 @@ each robot, together with its payments, is at least the least that `least_cost` 
 robots' costs is counted in the cut instead, and their sum is at least the total that the cut proves. The
 kernel's theorem is `accepted_bound_is_below_every_solution`.
 
+- The price of a deadline is paid by each robot of its group that enters its goal for the last time at its tick or
+  before: by all of the group but one, at most, because its formula has no model. To come late is free of it, so a
+  robot that vanishes at its goal may gain by driving through the goal and on. Then it is searched for that, too.
+
 - A price of a resource r at a tick t is paid by all who are in r at t: at most the capacity of r, by `joint/capacity`.
 - An exchange price of (r, s) at t is paid by all who move from r to s or from s to r at t, and by all who are in r both
   just before t and at t. No more of them than the capacity of r: by `joint/exchange` nobody makes one of the moves;
@@ -30,6 +34,7 @@ from carp_verify.bound_rules import (
     LARGEST_SEARCH,
     LARGEST_TABLE,
     is_about,
+    is_deadline,
     is_least,
     is_new,
     is_price,
@@ -38,10 +43,12 @@ from carp_verify.bound_rules import (
     is_weight,
     size_fits,
 )
-from carp_verify.bounds import BoundDocument, CutDocument, digest
+from carp_verify.bounds import BoundDocument, CutDocument, DeadlinesDocument, digest
 from carp_verify.limits import require_following
 
 Before: TypeAlias = Mapping[ResourceId, Sequence[ResourceId]]
+Fees: TypeAlias = Sequence[tuple[int, int]]
+"""Deadlines of a robot: the tick, and the price of keeping it."""
 
 
 def verify_bound(instance: Instance, certificate: BoundDocument) -> int:
@@ -58,12 +65,13 @@ def verify_bound(instance: Instance, certificate: BoundDocument) -> int:
     table = len(instance.robots) * len(instance.graph.resources)
     _require_size(table, LARGEST_TABLE, "$.robots", "the table of robots by resources")
     tariff = Tariff(instance, certificate)
-    weights, proved = _weights(instance, certificate)
+    weights, proved, clauses = _weights(instance, certificate)
+    fees, worth = _fees(instance, certificate, clauses)
     before = predecessors(instance)
-    parts = proved - tariff.worth
+    parts = proved - tariff.worth - worth
     budget = Budget()
     for position, (robot, (_, claimed)) in enumerate(zip(instance.robots, certificate.robots, strict=True)):
-        least = RobotSearch(tariff, robot, weights[position], before, budget).least_cost()
+        least = RobotSearch(tariff, robot, weights[position], before, budget, fees[robot.id]).least_cost()
         message = f"robot {robot.id} can have no more than {least}, the least of its cost and prices, not {claimed!r}"
         _require(is_least, is_least(claimed, least), f"$.robots[{position}]", message)
         parts += claimed or 0
@@ -81,8 +89,8 @@ def _require(rule: Rule[..., bool], kept: bool, path: str, message: str) -> None
         raise Refusal("document", path, rule.id, message)
 
 
-def _weights(instance: Instance, certificate: BoundDocument) -> tuple[Sequence[int], int]:
-    """The weight of a tick for each robot, and the sum of the cuts' least totals, each by its multiplier."""
+def _weights(instance: Instance, certificate: BoundDocument) -> tuple[Sequence[int], int, int]:
+    """The weight of a tick for each robot, the cuts' least totals by their multipliers, and their clauses."""
     left = dict.fromkeys(instance.robot, certificate.scale)
     resources = len(instance.graph.resources)
     members = sum(len(cut.robots) for cut in certificate.cuts)
@@ -103,20 +111,50 @@ def _weights(instance: Instance, certificate: BoundDocument) -> tuple[Sequence[i
             _require(is_weight, is_weight(0, -left[robot]), f"{path}.multiplier", message)
         clauses += _clauses_of(instance, cut, LARGEST_FORMULA - clauses, path)
         proved += cut.multiplier * cut.least
-    return list(left.values()), proved
+    return list(left.values()), proved, clauses
 
 
-def _clauses_of(instance: Instance, cut: CutDocument, most: int, path: str) -> int:
-    """The number of clauses in the formula of a cut; raises `Refusal` if its refutation does not refute it."""
-    from carp_verify.bound_cuts import require_cut  # noqa: PLC0415 - only a certificate with cuts needs the encoder
+def _fees(instance: Instance, certificate: BoundDocument, clauses: int) -> tuple[Mapping[RobotId, Fees], int]:
+    """The deadlines of each robot with their prices, and the most that all robots together can pay for them.
+
+    The formulas of the cuts before them have so many clauses.
+    """
+    fees: dict[RobotId, list[tuple[int, int]]] = {robot: [] for robot in instance.robot}
+    members = sum(len(deadlines.robots) for deadlines in certificate.deadlines)
+    size = members * len(instance.graph.resources)
+    _require_size(size, LARGEST_TABLE, "$.deadlines", "the resources that robots with deadlines are searched in")
+    worth = 0
+    for number, deadlines in enumerate(certificate.deadlines):
+        path = f"$.deadlines[{number}]"
+        price, robots = deadlines.price, deadlines.robots
+        message = f"the price must be a whole number of at least 0, and is {price!r}"
+        _require(is_deadline, is_whole(price) and price >= 0, f"{path}.price", message)
+        message = "it must name one or more robots of the instance once"
+        known = len(robots) == len(set(robots)) > 0 and fees.keys() >= set(robots)
+        _require(is_deadline, known, f"{path}.robots", message)
+        clauses += _clauses_of(instance, deadlines, LARGEST_FORMULA - clauses, path)
+        for robot, tick in zip(robots, deadlines.ticks, strict=True):
+            fees[robot].append((tick, price))
+        worth += price * (len(robots) - 1)
+    return fees, worth
+
+
+def _clauses_of(instance: Instance, group: CutDocument | DeadlinesDocument, most: int, path: str) -> int:
+    """The number of clauses in the formula of a cut, or of deadlines; raises `Refusal` if its refutation fails."""
+    from carp_verify.bound_cuts import require_cut, require_deadlines  # noqa: PLC0415 - only they need the encoder
     from carp_verify.refutation import NotRefutedError  # noqa: PLC0415
 
+    rule = is_weight if isinstance(group, CutDocument) else is_deadline
     try:
-        return require_cut(instance, cut, most)
+        if isinstance(group, CutDocument):
+            return require_cut(instance, group, most)
+        return require_deadlines(instance, group, most)
     except NotRefutedError as error:
-        raise Refusal("document", path, is_weight.id, f"its proof does not hold: {error}") from error
+        raise Refusal("document", path, rule.id, f"its proof does not hold: {error}") from error
     except Refusal as refusal:
-        message = f"the formulas of the cuts must have at most {LARGEST_FORMULA} clauses together, and would have more"
+        message = (
+            f"the formulas of all groups must have at most {LARGEST_FORMULA} clauses together, and would have more"
+        )
         raise Refusal("document", path, size_fits.id, message) from refusal
 
 
@@ -204,16 +242,22 @@ class Budget:
 class RobotSearch:
     """A* for one robot, over the resources and the ticks at which it is free to leave them.
 
-    The remaining cost is at least the weighted ticks of a shortest way, and from the horizon on exactly that. A robot
-    that vanishes at its goal never gains by driving on, because neither ticks nor prices are negative.
+    The remaining cost is at least the weighted ticks of a shortest way, and from the horizon on exactly that: it is not
+    before the last deadline. A robot that vanishes at its goal, and has no deadline, never gains by driving on, because
+    neither ticks nor prices are negative.
     """
 
-    def __init__(self, tariff: Tariff, robot: Robot, weight: int, before: Before, budget: Budget) -> None:
+    def __init__(
+        self, tariff: Tariff, robot: Robot, weight: int, before: Before, budget: Budget, fees: Fees = ()
+    ) -> None:
         self.tariff = tariff
         self.budget = budget
         self.robot = robot
         self.weight = weight
         self.parks = tariff.instance.after_goal == "park"
+        self.fees = fees
+        self.horizon = max([tariff.horizon, *(tick + 1 for tick, _ in fees)])
+        self.drives_on = self.parks or len(fees) > 0
         self.duration = {resource: tariff.instance.duration(robot.id, resource) for resource in before}
         self.rest = ticks_after_leaving(robot, self.duration, before)
         self.queue: list[tuple[int, int, int, ResourceId | None, int]] = []
@@ -223,12 +267,12 @@ class RobotSearch:
         start, release = self.robot.start, self.robot.release
         if start == self.robot.goal:
             self.arrive(release, 0)
-        if start != self.robot.goal or self.parks:
+        if start != self.robot.goal or self.drives_on:
             self.enter(start, release, 0)
         settled: set[tuple[int, int]] = set()
         while self.queue:
             estimate, minus_tick, number, here, paid = heappop(self.queue)
-            if here is None or -minus_tick >= self.tariff.horizon:
+            if here is None or -minus_tick >= self.horizon:
                 return estimate
             if (number, minus_tick) not in settled:
                 settled.add((number, minus_tick))
@@ -244,7 +288,7 @@ class RobotSearch:
             moved = paid + self.tariff.move(here, target, tick)
             if target == self.robot.goal:
                 self.arrive(tick, moved)
-            if target != self.robot.goal or self.parks:
+            if target != self.robot.goal or self.drives_on:
                 self.enter(target, tick, moved)
 
     def enter(self, resource: ResourceId, tick: int, paid: int) -> None:
@@ -263,7 +307,8 @@ class RobotSearch:
         """Enter the goal for the last time."""
         leave = tick + self.duration[self.robot.goal]
         last = self.tariff.stay(self.robot.goal, tick, max(leave, self.tariff.horizon) if self.parks else leave)
-        total = paid + last + self.weight * (tick - self.robot.release)
+        kept = sum(price for deadline, price in self.fees if tick <= deadline)
+        total = paid + last + kept + self.weight * (tick - self.robot.release)
         heappush(self.queue, (total, -tick, -1, None, total))
 
 

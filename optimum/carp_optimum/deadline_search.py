@@ -1,0 +1,194 @@
+"""The search for deadlines: delays of a group of robots that are too small for all of them together.
+
+Near the best prices, a robot's ways have different delays. Each robot is allowed a delay that only a certain share of
+its ways exceeds, and a solver is asked whether all robots can keep these delays together (the clauses are those of
+`carp_optimum.optimum`, conflict by conflict). If not, it names robots that cannot: a core. A core whose shares add up
+to less than 1 is broken near the best prices, since one of its robots is late in all plans. The core is made small, its
+delays large, and it is proved on its own: the clauses of each robot hold only where that is assumed, so nothing else
+follows from the robots outside. Source: the implicit hitting sets of Davies and Bacchus 2011, with the prices in place
+of the hitting set.
+"""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from itertools import count
+from typing import TypeAlias
+
+from carp_optimized.arrays import Longs
+from carp_optimum.price_search import PriceSearch
+from carp_optimum.proving import refutation
+from carp_optimum.solver import NANOSECONDS, Deadline, Solver, TimeOver
+from carp_spec import Instance, Refusal
+from carp_verify.bound_cuts import formula_of_deadlines
+from carp_verify.bounds import DeadlinesDocument
+from carp_verify.clauses import Literal
+from carp_verify.encoding import Encoding, violated
+from carp_verify.optimum_rules import LARGEST_FORMULA
+
+STEPS = 120
+SHARES = (0, 18, 36, 54, 72)
+"""The largest numbers of steps, of all `STEPS`, in which a robot is later than it is allowed."""
+LARGEST_ENCODING = 2_000_000
+"""Robots times resources, beyond which no deadlines are searched for: each robot is encoded on its own."""
+CONFLICTS_TO_FIND = 3000
+CONFLICTS_TO_SHRINK = 900
+CONFLICTS_TO_RAISE = 300
+MARGIN = 4  # ticks by which a delay is raised above all that the robot has near the best prices
+LARGEST_GROUP = 16
+LOOKS = 400  # of a search for a refutation at its clock
+LONGEST_REFUTATION = 1_000_000  # characters
+
+Allowed: TypeAlias = Mapping[int, int]
+"""The largest delay that a robot is allowed, for robots by position."""
+
+
+@dataclass(frozen=True, slots=True)
+class Deadlines:
+    """Delays that the robots cannot all keep, and the certificate of that, without price."""
+
+    allowed: Allowed
+    document: DeadlinesDocument
+
+
+class DeadlineSearch:
+    """Finds deadlines for a search for prices."""
+
+    def __init__(self, search: PriceSearch) -> None:
+        self.search = search
+        self.instance = search.instance
+        self.found: list[Deadlines] = []
+        self.known: set[tuple[tuple[int, int], ...]] = set()
+        self.cores: _Cores | None = None
+
+    def round(self, check: Callable[[], None]) -> int:
+        """Add deadlines that the ways near the best prices break, and return by how much, in parts of a tick.
+
+        `check` may raise `TimeOver`; the deadlines found until then are added first.
+        """
+        if len(self.instance.robots) * len(self.instance.graph.resources) > LARGEST_ENCODING:
+            return 0
+        counts = self.search.wander(STEPS, self.search.scale // 4, check)
+        later = counts.sum(axis=1, keepdims=True) - counts.cumsum(axis=1)  # steps in which the robot exceeds the delay
+        chosen: list[Deadlines] = []
+        gain = 0
+        try:
+            self.cores = self.cores or _Cores(self.instance, self.search, check)
+            self.cores.check = check
+            for share in SHARES:
+                for core in self.cores.disjoint((later <= share).argmax(axis=1).tolist()):
+                    steps = sum(int(later[robot, delay]) for robot, delay in core.items())
+                    if steps < STEPS and len(core) <= LARGEST_GROUP:
+                        raised = self.cores.raised(core, (later == 0).argmax(axis=1) + MARGIN)
+                        deadlines = self._prove(raised, check)
+                        if deadlines is not None:
+                            chosen.append(deadlines)
+                            gain += STEPS - steps
+        finally:
+            self.found += chosen
+            self.search.add_deadlines([deadlines.allowed for deadlines in chosen])
+        return gain * self.search.scale // STEPS
+
+    def _prove(self, allowed: Allowed, check: Callable[[], None]) -> Deadlines | None:
+        """The deadlines with a proof, unless they are known or the proof is too long."""
+        key = tuple(sorted(allowed.items()))
+        if key in self.known:
+            return None
+        self.known.add(key)
+        requests = self.search.market.requests
+        robots = tuple(self.instance.robots[position].id for position in allowed)
+        ticks = tuple(int(requests.earliest[position]) + delay for position, delay in allowed.items())
+        looks = count()
+
+        def clock() -> int:
+            check()
+            return next(looks) * NANOSECONDS
+
+        try:
+            formula = formula_of_deadlines(self.instance, DeadlinesDocument(robots, ticks, 0, ""), LARGEST_FORMULA)
+            lines = refutation(formula, Deadline(LOOKS, clock))
+        except (TimeOver, Refusal):
+            check()
+            return None
+        if len(lines) > LONGEST_REFUTATION:
+            return None
+        return Deadlines(allowed, DeadlinesDocument(robots, ticks, 0, lines))
+
+
+class _Cores:
+    """Cores of the formula of all robots that have a way, with the conflicts that were found so far."""
+
+    def __init__(self, instance: Instance, search: PriceSearch, check: Callable[[], None]) -> None:
+        self.instance = instance
+        self.check = check
+        self.most = search.market.delays - 1
+        self.encoding = Encoding(instance, check)
+        self.present = [self.encoding.formula.variable() for _ in instance.robots]
+        self.solver = Solver(self.encoding.formula, self.look)
+
+    def look(self) -> None:
+        """Look at the clock of this round."""
+        self.check()
+
+    def keeps(self, position: int, delay: int) -> Literal:
+        """The literal that the robot has no larger delay; its clauses hold if it is present."""
+        robot, clauses = self.encoding.robots[position], self.encoding.formula.clauses
+        known = len(clauses)
+        while robot.horizon < delay:
+            robot.grow()
+        clauses[known:] = [(*clause, -self.present[position]) for clause in clauses[known:]]
+        return -robot.late[delay]
+
+    def core(self, allowed: Allowed, conflicts: int) -> Allowed | None:
+        """Robots that cannot all keep their delays; `None` if all can, or if the conflicts do not suffice to say."""
+        literals = {self.present[position]: position for position in allowed}
+        literals |= {self.keeps(position, delay): position for position, delay in allowed.items()}
+        while True:
+            self.look()
+            answer = self.solver.satisfiable([*literals], conflicts)
+            if answer is None:
+                return None
+            if not answer:
+                named = {literals[literal] for literal in self.solver.core()}
+                return {position: delay for position, delay in allowed.items() if position in named}
+            plans = [self.encoding.robots[position].plan(self.solver.model()) for position in allowed]
+            meetings = violated(self.instance, [plan for plan in plans if plan is not None])
+            if not meetings:
+                return None
+            for meeting in meetings:
+                self.encoding.forbid(meeting)
+
+    def disjoint(self, delays: Iterable[int]) -> Iterable[Allowed]:
+        """Cores that have no robot in common, of the robots with these delays."""
+        robots = self.encoding.robots
+        allowed = {at: delay for at, delay in enumerate(delays) if robots[at].shortest is not None}
+        while (core := self.core(allowed, CONFLICTS_TO_FIND)) is not None:
+            core = self.shrunk(core)
+            yield core
+            if not core:
+                return
+            allowed = {position: delay for position, delay in allowed.items() if position not in core}
+
+    def shrunk(self, core: Allowed) -> Allowed:
+        """A core within the core, from which the solver drops nothing quickly."""
+        kept: dict[int, int] = {}
+        while core:
+            position, *rest = core
+            smaller = self.core({**kept, **{other: core[other] for other in rest}}, CONFLICTS_TO_SHRINK)
+            if smaller is None:
+                kept[position] = core[position]
+                core = {other: core[other] for other in rest}
+            else:
+                core = {other: delay for other, delay in smaller.items() if other not in kept}
+                kept = {other: delay for other, delay in kept.items() if other in smaller}
+        return kept
+
+    def raised(self, core: Allowed, most: Longs) -> Allowed:
+        """The core with delays that the solver cannot quickly raise any further, up to the largest that are wanted."""
+        raised = dict(core)
+        for position in core:
+            while raised[position] < min(most[position], self.most):
+                raised[position] += 1
+                if self.core(raised, CONFLICTS_TO_RAISE) is None:
+                    raised[position] -= 1
+                    break
+        return raised

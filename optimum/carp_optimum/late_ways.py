@@ -1,0 +1,176 @@
+"""The cheapest way of each robot under prices and deadlines, compiled.
+
+A table has, for each robot and delay, what an arrival with that delay costs: the ticks by the robot's weight, and the
+prices of the deadlines that it keeps. Another has the least of that and of all greater delays. Every way through a node
+arrives with the node's delay or more, so a node is left out where what was paid and the least of its delay are no
+cheaper than the best known. The last column is for delays that no node has. The search is that of
+`carp_optimum.priced_ways`, but for the tables, and for ways through the goal: to be late can pay.
+"""
+
+from typing import NamedTuple
+
+from carp_optimized.arrays import NONE, LongTable
+from carp_optimized.compiling import compiled, entry
+from carp_optimized.references import Native, dereference
+from carp_optimum.priced_ways import (
+    ENDLESS,
+    Market,
+    add_up,
+    count_way,
+    duration_of,
+    goal_price,
+    market_at,
+    move_between,
+    move_price,
+    reach,
+    stay_price,
+    take_way,
+)
+
+
+class Arrivals(NamedTuple):
+    """By robot and delay: what an arrival costs, and the least of that and of all greater delays."""
+
+    cost: LongTable
+    least: LongTable
+
+
+arrivals_at = dereference(Arrivals)
+
+
+@entry
+def find_late_ways(native: Native[Market], native_arrivals: Native[Arrivals]) -> int:
+    """Give each robot a cheapest way: the sum of their least priced costs, less the prices times the capacities."""
+    market = market_at(native)
+    arrivals = arrivals_at(native_arrivals)
+    total = -add_up(market)
+    for robot in range(market.requests.start.size):
+        if market.requests.earliest[robot] != NONE:
+            count_way(market, robot, -1)
+            total += find_late_way(market, arrivals, robot)
+            count_way(market, robot, 1)
+    return total
+
+
+@entry
+def least_late_cost(native: Native[Market], native_arrivals: Native[Arrivals], robot: int) -> int:
+    """The least priced cost of a robot, once the prices have been added up."""
+    return find_late_way(market_at(native), arrivals_at(native_arrivals), robot)
+
+
+@compiled
+def find_late_way(market: Market, arrivals: Arrivals, robot: int) -> int:
+    """Give the robot a cheapest way: the least priced cost of all its ways, or less where a delay has no nodes."""
+    requests = market.requests
+    start = int(requests.start[robot])
+    release = int(requests.release[robot])
+    best = price_of_way(market, arrivals, robot)
+    if start == requests.goal[robot]:
+        at_once = goal_price(market, robot, release) + int(arrivals.cost[robot][0])
+        if at_once < best:
+            best = at_once
+            market.ways.length[robot] = 1
+            market.ways.resource[robot][0] = start
+            market.ways.enter[robot][0] = release
+    if requests.rest[robot][start] != NONE:
+        best = settle_late(market, arrivals, robot, best)
+        best = min(best, int(arrivals.least[robot][market.delays]))
+    return best
+
+
+@compiled
+def price_of_way(market: Market, arrivals: Arrivals, robot: int) -> int:
+    """The priced cost of the way that the robot has; endless if it has none."""
+    resources = market.ways.resource[robot]
+    enters = market.ways.enter[robot]
+    last = int(market.ways.length[robot]) - 1
+    if last < 0:
+        return ENDLESS
+    paid = 0
+    for visit in range(last):
+        here = int(resources[visit])
+        leaves = int(enters[visit + 1])
+        paid += stay_price(market, here, int(enters[visit]), leaves)
+        paid += move_price(market, move_between(market, here, int(resources[visit + 1])), leaves)
+    arrival = int(enters[last])
+    delay = arrival - int(market.requests.earliest[robot])
+    return paid + goal_price(market, robot, arrival) + int(arrivals.cost[robot][delay])
+
+
+@compiled
+def settle_late(market: Market, arrivals: Arrivals, robot: int, best: int) -> int:
+    """Search for a way that costs less than the best known, and take it; the least priced cost."""
+    requests = market.requests
+    scratch = market.scratch
+    start = int(requests.start[robot])
+    release = int(requests.release[robot])
+    earliest = int(requests.earliest[robot])
+    rest = requests.rest[robot]
+    least = arrivals.least[robot]
+    tick = release + duration_of(market, robot, start)
+    delay = tick + int(rest[start]) - earliest
+    if delay >= market.delays:
+        return best
+    scratch.generation[0] = int(scratch.generation[0]) + 1
+    first = start * market.delays + delay
+    pending = reach(scratch, first, tick, stay_price(market, start, release, tick), NONE)
+    found = NONE
+    while pending > 0:
+        place = tick % scratch.head.size
+        node = int(scratch.head[place])
+        scratch.head[place] = NONE
+        while node != NONE:
+            pending -= 1
+            here = node // market.delays
+            paid = int(scratch.paid[node])
+            following = int(scratch.following[node])
+            if paid + int(least[tick + int(rest[here]) - earliest]) < best:
+                price = price_of_arrival(market, arrivals, robot, here, tick, paid)
+                if price < best:
+                    best = price
+                    found = node
+                pending += drive_on(market, robot, node, tick, paid)
+            node = following
+        tick += 1
+    if found != NONE:
+        take_way(market, robot, found)
+    return best
+
+
+@compiled
+def drive_on(market: Market, robot: int, node: int, tick: int, paid: int) -> int:
+    """Wait or move from a node, also through the goal, to come late: how many new nodes are reached."""
+    graph = market.graph
+    scratch = market.scratch
+    rest = market.requests.rest[robot]
+    earliest = int(market.requests.earliest[robot])
+    here = node // market.delays
+    reached = 0
+    if node - here * market.delays + 1 < market.delays:
+        waited = paid
+        if tick < market.horizon:
+            across = market.prices.across[here]
+            waited += int(market.prices.resource[here][tick]) + int(across[tick + 1]) - int(across[tick])
+        reached += reach(scratch, node + 1, tick + 1, waited, node)
+    for move in range(int(graph.first[here]), int(graph.first[here + 1])):
+        target = int(graph.target[move])
+        if rest[target] != NONE:
+            ready = tick + duration_of(market, robot, target)
+            delay = ready + int(rest[target]) - earliest
+            if delay < market.delays:
+                moved = paid + move_price(market, move, tick) + stay_price(market, target, tick, ready)
+                reached += reach(scratch, target * market.delays + delay, ready, moved, node)
+    return reached
+
+
+@compiled
+def price_of_arrival(market: Market, arrivals: Arrivals, robot: int, here: int, tick: int, paid: int) -> int:
+    """The priced cost of moving to the goal now; endless if no move leads there."""
+    graph = market.graph
+    goal = int(market.requests.goal[robot])
+    for move in range(int(graph.first[here]), int(graph.first[here + 1])):
+        if graph.target[move] == goal:
+            delay = tick - int(market.requests.earliest[robot])
+            arrived = paid + move_price(market, move, tick) + goal_price(market, robot, tick)
+            return arrived + int(arrivals.cost[robot][delay])
+    return ENDLESS
