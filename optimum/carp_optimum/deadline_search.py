@@ -28,6 +28,8 @@ from carp_verify.optimum_rules import LARGEST_FORMULA
 STEPS = 120
 SHARES = (0, 18, 36, 54, 72)
 """The largest numbers of steps, of all `STEPS`, in which a robot is later than it is allowed."""
+ENOUGH = 110
+"""The most steps in which robots of a group are late: one of them would have to be in each of `STEPS`."""
 LARGEST_ENCODING = 2_000_000
 """Robots times resources, beyond which no deadlines are searched for: each robot is encoded on its own."""
 CONFLICTS_TO_FIND = 3000
@@ -77,7 +79,7 @@ class DeadlineSearch:
             for share in SHARES:
                 for core in self.cores.disjoint((later <= share).argmax(axis=1).tolist()):
                     steps = sum(int(later[robot, delay]) for robot, delay in core.items())
-                    if steps < STEPS and len(core) <= LARGEST_GROUP:
+                    if steps <= ENOUGH and len(core) <= LARGEST_GROUP:
                         raised = self.cores.raised(core, (later == 0).argmax(axis=1) + MARGIN)
                         deadlines = self._prove(raised, check)
                         if deadlines is not None:

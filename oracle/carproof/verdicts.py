@@ -4,7 +4,7 @@ from carp_spec import Instance, Refusal, Solution
 from carp_spec.query_certificates import QueryCertificateDocument
 from carp_verify.bounds import BoundDocument
 from carp_verify.documents import solution_document
-from carp_verify.kernel import ask, request
+from carp_verify.kernel import UndecidedError, ask, request
 from carp_verify.kernel import verify_bound as ask_about_bound
 from carproof.audit import CHECKER
 from carproof.results import VerifiedBoundDocument, VerifiedQueryDocument
@@ -41,7 +41,12 @@ def verify_bound(instance: Instance, certificate: BoundDocument, kernel: bool) -
 
 
 def _bound_by_kernel(instance: Instance, certificate: BoundDocument) -> VerifiedBoundDocument:
-    """The verdict of the kernel; it assumes that the formulas of cuts, which `carp_verify` makes, are right."""
+    """The verdict of the kernel; it assumes that the formulas of cuts, which `carp_verify` makes, are right.
+
+    Raises `UndecidedError` for a certificate with deadlines.
+    """
+    if certificate.deadlines:
+        raise UndecidedError("the kernel has no theorem about deadlines: verify-bound without --kernel checks them")
     formulas = {}
     if certificate.cuts:
         from carp_verify.bound_cuts import formula_of  # noqa: PLC0415 - only cuts need the encoder

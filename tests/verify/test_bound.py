@@ -18,12 +18,14 @@ from tests.verify.tiny import TINY
 
 from carp_optimum.bound import Progress, lower_bound
 from carp_optimum.cut_search import prove
+from carp_optimum.proving import refutation
+from carp_optimum.solver import Deadline
 from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, ResourceId, Robot, Rule, Visit
 from carp_spec.plan_rules import plan_cost
 from carp_verify import bound_rules
 from carp_verify import verify_bound as page
-from carp_verify.bound_cuts import formula_of
-from carp_verify.bounds import BOUND_FORMAT, BoundDocument, CutDocument, digest, read_bound
+from carp_verify.bound_cuts import formula_of, formula_of_deadlines
+from carp_verify.bounds import BOUND_FORMAT, BoundDocument, CutDocument, DeadlinesDocument, digest, read_bound
 from carp_verify.documents import write
 from carp_verify.joint_search import least_total_cost
 from carp_verify.verify_bound import Budget, RobotSearch, Tariff, predecessors, verify_bound
@@ -50,11 +52,25 @@ def completed(instance: Instance, certificate: BoundDocument) -> BoundDocument:
     tariff = Tariff(instance, certificate)
     before = predecessors(instance)
     robots = tuple(
-        (robot.id, RobotSearch(tariff, robot, certificate.scale, before, Budget()).least_cost())
+        (
+            robot.id,
+            RobotSearch(tariff, robot, certificate.scale, before, Budget(), fees_of(certificate, robot)).least_cost(),
+        )
         for robot in instance.robots
     )
-    parts = sum(least or 0 for _, least in robots) - tariff.worth
+    worth = sum(deadlines.price * (len(deadlines.robots) - 1) for deadlines in certificate.deadlines)
+    parts = sum(least or 0 for _, least in robots) - tariff.worth - worth
     return msgspec.structs.replace(certificate, robots=robots, bound=-(-parts // certificate.scale))
+
+
+def fees_of(certificate: BoundDocument, robot: Robot) -> list[tuple[int, int]]:
+    """The deadlines of a robot with their prices."""
+    return [
+        (tick, deadlines.price)
+        for deadlines in certificate.deadlines
+        for member, tick in zip(deadlines.robots, deadlines.ticks, strict=True)
+        if member == robot.id
+    ]
 
 
 @st.composite
@@ -124,6 +140,25 @@ def test_the_least_cost_is_that_of_the_cheapest_of_all_plans(data: st.DataObject
     assert certificate.robots == ((robot.id, min(costs, default=None)),)
 
 
+@settings(max_examples=draws(120))
+@given(st.data(), instances(Sizes(resources=3, robots=1, capacity=1, duration=2, release=3, pace=1), least_robots=1))
+def test_who_keeps_a_deadline_pays_for_it_and_may_drive_on_through_the_goal_to_miss_it(
+    data: st.DataObject, instance: Instance
+) -> None:
+    certificate = data.draw(certificates(instance))
+    robot = instance.robots[0]
+    fees = data.draw(st.lists(st.tuples(st.integers(0, HORIZON - 1), st.integers(0, 4 * SCALE)), max_size=3))
+    costs = [
+        SCALE * plan_cost(instance, plan)
+        + payment(certificate, plan)
+        + sum(price for tick, price in fees if plan.visits[-1].enter <= tick)
+        for plan in plans_of(instance, robot)
+    ]
+    tariff = Tariff(instance, certificate)
+    search = RobotSearch(tariff, robot, SCALE, predecessors(instance), Budget(), fees)
+    assert search.least_cost() == min(costs, default=None)
+
+
 @settings(max_examples=draws(300))
 @given(st.data(), planned_instances(Sizes(resources=4, robots=4, release=2, wait=1)))
 def test_whatever_the_prices_sound_plans_pay_no_more_than_they_are_worth_and_cost_no_less_than_the_least(
@@ -161,12 +196,91 @@ def test_prices_find_what_the_shortest_paths_miss() -> None:
     assert (seen[0].bound, certificate.bound, least_total_cost(instance)) == (6, 9, 11)
 
 
-def test_cuts_find_what_prices_alone_miss_and_carry_their_proofs() -> None:
+def test_deadlines_find_what_prices_alone_miss_and_carry_their_proofs() -> None:
     instance = crossing()
     certificate = lower_bound(instance, steps=4500)
     assert certificate.bound == 11
-    assert [cut.robots for cut in certificate.cuts if cut.least > 4]
+    assert certificate.deadlines
     assert verify_bound(instance, certificate) == 11
+
+
+def with_deadlines(**fields: object) -> Tamper:
+    """Change the only deadlines."""
+
+    def tamper(certificate: BoundDocument) -> BoundDocument:
+        changed = msgspec.structs.replace(certificate.deadlines[0], **fields)
+        return completed(crossing(), msgspec.structs.replace(certificate, deadlines=(changed,)))
+
+    return tamper
+
+
+@pytest.mark.parametrize(
+    ("tamper", "path", "reason"),
+    [
+        (with_deadlines(price=-1), "$.deadlines[0].price", "must be a whole number of at least 0, and is -1"),
+        (with_deadlines(price=1.5), "$.deadlines[0].price", r"and is 1\.5"),
+        (with_deadlines(price=True), "$.deadlines[0].price", "and is True"),
+        (
+            with_deadlines(robots=("r0", "r0")),
+            "$.deadlines[0].robots",
+            "must name one or more robots of the instance once",
+        ),
+        (with_deadlines(robots=("r0", "moon")), "$.deadlines[0].robots", "one or more robots of the instance"),
+        (with_deadlines(robots=(), ticks=()), "$.deadlines[0].robots", "one or more robots"),
+        (with_deadlines(ticks=(2, 3)), "$.deadlines[0]", "its proof does not hold"),
+        (with_deadlines(ticks=(1, 2)), "$.deadlines[0]", "robot r0 can be at its goal at 2, not at 1"),
+        (with_deadlines(ticks=(2.0, 2)), "$.deadlines[0]", r"not at 2\.0"),
+        (with_deadlines(ticks=(True, 2)), "$.deadlines[0]", "not at True"),
+        (with_deadlines(refutation=""), "$.deadlines[0]", "it does not end with the empty clause"),
+    ],
+)
+def test_tampered_deadlines_are_refused(tamper: Tamper, path: str, reason: str) -> None:
+    with pytest.raises(Refusal, match=reason) as refused:
+        verify_bound(crossing(), tamper(deadline_certificate()))
+    assert (refused.value.path, refused.value.rule) == (path, "bound/deadline")
+
+
+def test_each_robot_has_a_deadline_or_the_deadlines_are_refused() -> None:
+    for ticks in ((2,), (2, 2, 2)):
+        changed = msgspec.structs.replace(deadline_certificate().deadlines[0], ticks=ticks)
+        with pytest.raises(Refusal, match="it must have a deadline of each of 2 robots") as refused:
+            verify_bound(crossing(), msgspec.structs.replace(deadline_certificate(), deadlines=(changed,)))
+        assert refused.value.rule == "bound/deadline"
+
+
+def test_a_robot_without_a_way_has_no_deadline() -> None:
+    crossed = crossing()
+    instance = Instance(crossed.graph, (*crossed.robots, Robot("lost", "north", "island")))
+    deadlines = DeadlinesDocument(("r0", "lost"), (2, 2), 1, "1 0 1 0\n")
+    with pytest.raises(Refusal, match="robot lost can be at its goal at None, not at 2"):
+        verify_bound(instance, msgspec.structs.replace(lower_bound(instance, steps=2), deadlines=(deadlines,)))
+
+
+@cache
+def deadline_certificate() -> BoundDocument:
+    """A certificate without prices of places, in which one of r0 and r2, which meet head-on, comes late."""
+    certificate = msgspec.structs.replace(lower_bound(crossing(), steps=0), resources=(), exchanges=())
+    unproved = DeadlinesDocument(("r0", "r2"), (2, 2), 3 << 15, "")
+    lines = refutation(formula_of_deadlines(crossing(), unproved, 10**6), Deadline(60))
+    proved = msgspec.structs.replace(unproved, refutation=lines)
+    with_it = completed(crossing(), msgspec.structs.replace(certificate, deadlines=(proved,)))
+    assert verify_bound(crossing(), with_it) == with_it.bound == 7
+    return with_it
+
+
+def test_deadlines_are_counted_once_for_all_robots_but_one() -> None:
+    certificate = deadline_certificate()
+    assert [least for _, least in certificate.robots] == [3 << 16, 2 << 16, 3 << 16]
+    dearer = msgspec.structs.replace(certificate, bound=8)
+    with pytest.raises(Refusal, match="the bound must be 7") as refused:
+        verify_bound(crossing(), dearer)
+    assert refused.value.rule == "bound/total"
+
+
+def test_a_document_without_deadlines_is_written_as_before() -> None:
+    certificate = lower_bound(crossing(), steps=2)
+    assert b"deadlines" not in write(certificate)
+    assert read_bound(write(deadline_certificate())) == deadline_certificate()
 
 
 def with_cut(**fields: object) -> Tamper:

@@ -117,7 +117,7 @@ def _weights(instance: Instance, certificate: BoundDocument) -> tuple[Sequence[i
 def _fees(instance: Instance, certificate: BoundDocument, clauses: int) -> tuple[Mapping[RobotId, Fees], int]:
     """The deadlines of each robot with their prices, and the most that all robots together can pay for them.
 
-    The formulas of the cuts before them have so many clauses.
+    The formulas of the cuts have `clauses` clauses already.
     """
     fees: dict[RobotId, list[tuple[int, int]]] = {robot: [] for robot in instance.robot}
     members = sum(len(deadlines.robots) for deadlines in certificate.deadlines)
