@@ -35,8 +35,10 @@ def command(*, instance: str, solution: str, trace: str, as_json: bool) -> Answe
         return Answer.of(verdict.valid)
     for violation in violations:
         print_line(str(violation))
-    lengths = {plan.robot: len(plan.visits) for plan in sound.plans}
-    arrived = sum(len(plan.visits) == lengths.get(plan.robot) for plan in done.plans)
-    result = "no rule is broken" if verdict.valid else "INVALID"
-    print_line(f"{result}: by tick {done.now}, {arrived} of {len(lengths)} robots are at their goals")
+    if verdict.valid:
+        lengths = {plan.robot: len(plan.visits) for plan in sound.plans}
+        arrived = sum(len(plan.visits) == lengths[plan.robot] for plan in done.plans)
+        print_line(f"no rule is broken: by tick {done.now}, {arrived} of {len(lengths)} robots are at their goals")
+    else:
+        print_line("INVALID: the trace does not follow the plans")
     return Answer.of(verdict.valid)
