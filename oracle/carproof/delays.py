@@ -206,18 +206,33 @@ def executed(order: Order, enters: Mapping[Node, int], delays: Iterable[Delay] =
     """The trace of an execution by the tick now, or by its last event."""
     more = longer(delays)
     plans = []
-    last = max(enters.values(), default=0)
     for plan in order.solution.plans:
         visits = []
         for place, visit in enumerate(plan.visits):
             node = (plan.robot, place)
-            if node not in enters or (now is not None and enters[node] > now):
+            if node not in enters:
                 break
             leave = enters.get((plan.robot, place + 1))
             if order.is_last(node) and visit.leave is not None:
                 leave = enters[node] + order.duration(node) + more.get(node, 0)
-            if leave is not None and (now is None or leave <= now):
-                last = max(last, leave)
-            visits.append(Visit(visit.resource, enters[node], leave if now is None or (leave or 0) <= now else None))
+            visits.append(Visit(visit.resource, enters[node], leave))
         plans.append(Plan(plan.robot, tuple(visits)))
-    return Trace(last if now is None else now, tuple(plans))
+    events = (tick for plan in plans for visit in plan.visits for tick in (visit.enter, visit.leave or 0))
+    whole = Trace(max(events, default=0), tuple(plans))
+    return whole if now is None else until(whole, now)
+
+
+def until(trace: Trace, now: int) -> Trace:
+    """The part of a trace that has happened by the tick now."""
+    plans = (
+        Plan(
+            plan.robot,
+            tuple(
+                replace(visit, leave=None if visit.leave is None or visit.leave > now else visit.leave)
+                for visit in plan.visits
+                if visit.enter <= now
+            ),
+        )
+        for plan in trace.plans
+    )
+    return Trace(now, tuple(plans))

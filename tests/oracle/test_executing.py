@@ -1,6 +1,7 @@
 """The commands about executions: `check-trace`, `dependencies`, `execute`, `retime`, `untangle`."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -8,7 +9,7 @@ from hypothesis import given, settings
 from tests.oracle.running import Document, Outcome, Run, line, save, solution, town
 from tests.profiles import draws
 
-from carp_spec import check, judge
+from carp_spec import Solution, Visit, check, check_update, judge
 from carp_spec.execution_rules import is_acyclic, trace_violations
 from carp_verify.documents import read_instance, read_solution, read_trace
 from carproof.delays import Delay
@@ -85,6 +86,116 @@ def test_drivers_collide_wait_or_stand(carproof: Run) -> None:
     assert outcome.stdout.splitlines()[2].split() == ["order", "4", "0", "0", "0", "-", "-", "0", "4", "0"]
     assert carproof("execute train.json plans.json --driver order --delays delays.json --trace done.json").code == 0
     assert carproof("check-trace train.json plans.json done.json").code == 0
+
+
+def test_robots_of_a_rotation_stand_where_dependencies_name_it(carproof: Run) -> None:
+    for delays in ([], [["r2", 0, 5]]):
+        save(delays=delays)
+        named = json.loads(carproof("dependencies ring.json turning.json --json").stdout)["cycle"]
+        outcome = carproof("execute ring.json turning.json --driver order --delays delays.json --trace end.json --json")
+        assert outcome.code == 1
+        assert sorted(json.loads(outcome.stdout)["standing"]) == sorted(named["robots"]) == ["r0", "r1", "r2", "r3"]
+        plans = json.loads(Path("end.json").read_bytes())["plans"]
+        assert [plan["visits"] for plan in plans] == [[[way[0], 0, None]] for way in RING]
+        assert carproof("check-trace ring.json turning.json end.json").code == 0
+
+
+@pytest.fixture
+def late_town(carproof: Run, elsewhere: Path) -> Path:
+    """Robots of a town of which r8 has no plan yet, and what they have done by tick 4 after a delay, in order."""
+    carproof("generate grid --width 6 --height 4 --map 12 --robots 8 --seed 3 -o town.json")
+    carproof("plan town.json --planner carp --engine reference -o plans.json")
+    given = json.loads(Path("plans.json").read_bytes())
+    plans = [plan for plan in given["plans"] if plan["robot"] != "r8"]
+    order = [robot for robot in given["order"] if robot != "r8"]
+    save(plans={**given, "plans": plans, "order": order, "unplanned": ["r8"]}, delays=[["r1", 0, 3]])
+    asked = "execute town.json plans.json --driver order --delays delays.json --trace trace.json --now 4"
+    assert carproof(asked).code == 0
+    assert carproof("check-trace town.json plans.json trace.json").code == 0
+    assert carproof("retime town.json plans.json trace.json --engine reference -o late.json").code == 0
+    return elsewhere
+
+
+def solution_of(folder: Path, name: str) -> Solution:
+    return read_solution((folder / f"{name}.json").read_bytes())
+
+
+def test_plans_after_a_delay_keep_what_has_happened(late_town: Path, carproof: Run) -> None:
+    assert carproof("check town.json late.json").code == 0
+    before, late = solution_of(late_town, "plans"), solution_of(late_town, "late")
+    happened = read_trace((late_town / "trace.json").read_bytes())
+    assert happened.now == 4
+    done = {plan.robot: plan.visits for plan in happened.plans}
+    for old, new in zip(before.plans, late.plans, strict=True):
+        made = done[new.robot]
+        assert [(visit.resource, visit.enter) for visit in new.visits[: len(made)]] == [
+            (visit.resource, visit.enter) for visit in made
+        ]
+        assert [visit.resource for visit in new.visits] == [visit.resource for visit in old.visits]
+        assert all(visit.enter > 4 for visit in new.visits[len(made) :])
+    assert late.plans != before.plans
+
+
+def test_a_robot_is_added_to_plans_after_a_delay(late_town: Path, carproof: Run) -> None:
+    assert carproof("add town.json late.json r8 --now 4 --engine reference -o added.json").code == 1
+    earlier = json.loads(Path("town.json").read_bytes())
+    earlier["robots"][-1]["release"] = 5
+    save(town=earlier)
+    assert carproof("add town.json late.json r8 --now 4 --engine reference -o added.json").code == 0
+    assert carproof("check town.json added.json --require-all").code == 0
+    assert check_update(solution_of(late_town, "late").plans, solution_of(late_town, "added").plans, 4) == ()
+
+
+def test_a_query_after_a_delay_keeps_the_history_and_is_no_later(late_town: Path, carproof: Run) -> None:
+    for plan in solution_of(late_town, "late").plans:
+        outcome = carproof(f"query town.json late.json {plan.robot} --now 4 --engine reference --json")
+        assert outcome.code == 0
+        found = [Visit(*visit) for visit in json.loads(outcome.stdout)["plan"]]
+        assert check_update([plan], [replace(plan, visits=tuple(found))], 4) == ()
+        assert found[-1].enter <= plan.visits[-1].enter
+
+
+def test_an_audit_names_who_is_late_after_a_delay_and_nobody_before(late_town: Path, carproof: Run) -> None:
+    assert carproof("audit town.json plans.json --engine reference").code == 0
+    outcome = carproof("audit town.json late.json --engine reference --json")
+    assert outcome.code == 1
+    audit = json.loads(outcome.stdout)
+    arrivals = {plan.robot: plan.visits[-1].enter for plan in solution_of(late_town, "plans").plans}
+    after = {plan.robot: plan.visits[-1].enter for plan in solution_of(late_town, "late").plans}
+    late = {each["robot"] for each in audit["late"]}
+    assert late == {robot for robot, tick in after.items() if tick > arrivals[robot]}
+    assert {*audit["certified"]} == after.keys() - late
+
+
+def test_polish_takes_plans_after_a_delay_and_makes_them_cheaper(late_town: Path, carproof: Run) -> None:
+    assert carproof("polish town.json late.json --iterations 5 --engine reference -o polished.json").code == 0
+    assert carproof("check town.json polished.json").code == 0
+    instance = read_instance((late_town / "town.json").read_bytes())
+    given, polished = (judge(instance, solution_of(late_town, name)).cost for name in ("late", "polished"))
+    assert polished < given
+
+
+def test_what_happened_on_the_clock_is_no_history_in_order(late_town: Path, carproof: Run) -> None:
+    carproof("execute town.json plans.json --driver clock --delays delays.json --trace trace.json --now 4")
+    assert carproof("check-trace town.json plans.json trace.json").code == 1
+    outcome = carproof("retime town.json plans.json trace.json --engine reference -o other.json")
+    assert (outcome.code, "[execution/order]" in outcome.stderr) == (2, True)
+    assert not (late_town / "other.json").exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ("--driver order --now 3", "--now needs --trace."),
+        ("--trace t.json", "--trace and --followed need --driver."),
+        ("--driver order --trace t.json --now -1", "--now: it must be a whole number of at least 0, not -1"),
+    ],
+)
+def test_wrong_options_of_an_execution_write_nothing(options: str, message: str, carproof: Run) -> None:
+    outcome = carproof(f"execute train.json plans.json {options}")
+    assert outcome.code == 2
+    assert message in outcome.stderr
+    assert not Path("t.json").exists()
 
 
 def test_retimed_plans_are_a_fleet_under_way(carproof: Run) -> None:

@@ -6,9 +6,11 @@ import click
 
 from carp_verify.documents import write, write_solution, write_trace
 from carproof.answer import Answer
+from carproof.delays import until
 from carproof.executing import DRIVERS, Driver, Execution, delays_named, execute, execution_document
 from carproof.files import OutputFile, print_document, read_sound, write_whole
 from carproof.options import examples, instance_argument, json_option, solution_argument
+from carproof.requests import require_tick
 from carproof.tables import print_line, print_table
 
 COLUMNS = ("driver", "robots", "delays", "arrived", "late", "mean", "worst", "collisions", "standing", "switches")
@@ -19,7 +21,7 @@ MOST_SHOWN = 3
     short_help="Simulate robots that are delayed.",
     epilog=examples(
         "carproof execute town.json plans.json --delays 0.05:3",
-        "carproof execute town.json plans.json --delays 0.1 --seed 7 --trace t.json",
+        "carproof execute town.json plans.json --driver order --trace t.json --now 9",
         "carproof execute town.json plans.json --driver clock --delays delays.json",
     ),
 )
@@ -29,6 +31,7 @@ MOST_SHOWN = 3
 @click.option("--delays", metavar="CHANCE[:TICKS]|FILE", default="0.05", help="Delays: a model, or a list in a file.")
 @click.option("--seed", type=click.IntRange(0, 2**64 - 1), default=0, help="The seed of the delays.")
 @click.option("--trace", type=OutputFile(), help="Write the trace to this file; needs --driver.")
+@click.option("--now", type=int, help="End the trace of --trace at this tick, while robots are under way.")
 @click.option("--followed", type=OutputFile(), help="Write the solution whose order was kept; needs --driver.")
 @json_option
 def command(  # noqa: PLR0913 - one parameter for each argument and option
@@ -39,6 +42,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     delays: str,
     seed: int,
     trace: Path | None,
+    now: int | None,
     followed: Path | None,
     as_json: bool,
 ) -> Answer:
@@ -56,11 +60,16 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     """
     if driver is None and not (trace is None and followed is None):
         raise click.UsageError("--trace and --followed need --driver.")
+    if now is not None and trace is None:
+        raise click.UsageError("--now needs --trace.")
+    if now is not None:
+        require_tick(now, "$.now")
     problem, sound = read_sound(instance, solution)
     chosen = delays_named(delays, sound, seed)
     executions = [execute(problem, sound, each, chosen) for each in ([driver] if driver else DRIVERS)]
     if trace is not None:
-        write_whole(trace, write_trace(executions[0].trace))
+        whole = executions[0].trace
+        write_whole(trace, write_trace(whole if now is None else until(whole, now)))
     if followed is not None:
         write_whole(followed, write_solution(executions[0].followed))
     if as_json:

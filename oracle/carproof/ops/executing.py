@@ -16,7 +16,7 @@ from carp_verify.documents import (
     trace_document,
     verdict_document,
 )
-from carproof.delays import Delay, late_robots, may_enter
+from carproof.delays import Delay, late_robots, may_enter, until
 from carproof.engines import Engine
 from carproof.executing import DependenciesDocument, Driver, delays_are_right, dependencies_document
 from carproof.executing import execute as executed
@@ -63,12 +63,13 @@ def dependencies(request: DependenciesRequest, engine: Engine) -> DependenciesDo
 
 @dataclass(frozen=True, slots=True)
 class ExecuteRequest:
-    """A solution, a driver, and delays: each is [robot, position of the visit, ticks]."""
+    """A solution, a driver, and delays, each [robot, position of the visit, ticks]; `now` is the end of the trace."""
 
     instance: Instance
     solution: Solution
     driver: Driver
     delays: tuple[tuple[RobotId, int, int], ...] = ()
+    now: int | None = None
 
 
 class ExecutedDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -83,10 +84,12 @@ class ExecutedDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 def execute(request: ExecuteRequest, engine: Engine) -> ExecutedDocument:
     """Simulate robots that need longer at some visits than planned."""
     del engine
+    if request.now is not None:
+        require_tick(request.now, "$.now")
     sound = sound_within(request.instance, request.solution)
     found = executed(request.instance, sound, request.driver, _delays(sound, request.delays))
     return ExecutedDocument(
-        trace_document(found.trace),
+        trace_document(found.trace if request.now is None else until(found.trace, request.now)),
         solution_document(found.followed),
         tuple(map(str, found.collisions)),
         found.standing,
