@@ -102,7 +102,7 @@ def test_robots_of_a_rotation_stand_where_dependencies_name_it(carproof: Run) ->
 
 @pytest.fixture
 def late_town(carproof: Run, elsewhere: Path) -> Path:
-    """Robots of a town of which r8 has no plan yet, and what they have done by tick 4 after a delay, in order."""
+    """A town in which r8 has no plan yet, and what the others have done by tick 4 after a delay, in order."""
     carproof("generate grid --width 6 --height 4 --map 12 --robots 8 --seed 3 -o town.json")
     carproof("plan town.json --planner carp --engine reference -o plans.json")
     given = json.loads(Path("plans.json").read_bytes())
