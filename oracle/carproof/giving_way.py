@@ -6,11 +6,38 @@ priority is planned first, beside these histories alone, and no plan beside them
 if all others can be planned around it, no lawful update has an earlier arrival (`priority/first`).
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from carp_spec import Instance, Plan, Refusal, RobotId, Solution, Visit, check, check_update, has_ended, plan_cost
+from carp_spec.rule import DESIGN, rule
 from carproof.engines import Engine
+
+
+@rule(
+    "priority/first",
+    "Where the others give way to a robot at the tick now, the result is a lawful update of the plans: it has one "
+    "plan for that robot and for each robot that had one, breaks no rule, and keeps fleet/history. In no lawful "
+    "update does that robot arrive earlier.",
+    DESIGN,
+)
+def robot_is_first(  # noqa: D103 - its statement stands in its decorator
+    instance: Instance,
+    before: Sequence[Plan],
+    after: Sequence[Plan],
+    robot: RobotId,
+    now: int,
+    rivals: Iterable[Sequence[Plan]],
+) -> bool:
+    def is_lawful(update: Sequence[Plan]) -> bool:
+        robots = {plan.robot for plan in update}
+        is_whole = robots == {robot, *(plan.robot for plan in before)} and len(robots) == len(update)
+        return is_whole and not check(instance, update) and not check_update(before, update, now)
+
+    def arrival(update: Sequence[Plan]) -> int:
+        return next(plan.visits[-1].enter for plan in update if plan.robot == robot)
+
+    return is_lawful(after) and not any(is_lawful(rival) and arrival(rival) < arrival(after) for rival in rivals)
 
 
 @dataclass(frozen=True, slots=True)

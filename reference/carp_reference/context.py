@@ -11,7 +11,7 @@ from carp_spec.windows import Occupation, Window, free_windows
 
 @dataclass(frozen=True, slots=True)
 class Context:
-    """What committed plans leave to the next robot: their stays by resource, and their moves with the ticks."""
+    """The stays of committed plans by resource, and their moves with the ticks."""
 
     instance: Instance
     occupations: Mapping[ResourceId, Sequence[Occupation]]

@@ -1,8 +1,7 @@
 """Retiming: after delays, plans for the rest of the way in the planned order, as early as possible.
 
-An edge of the action dependency graph (`carp_spec.dependencies`) leads to a visit that is planned no earlier than the
-one it comes from; an edge of no ticks may join two visits of one tick. So times are propagated in the order of the
-planned ticks, and within a tick until nothing changes.
+An edge of the dependency graph leads to a visit that is planned no earlier than the one it comes from, perhaps at the
+same tick. So times are propagated in the order of the planned ticks, and within a tick until nothing changes.
 """
 
 from collections import defaultdict, deque
@@ -18,7 +17,7 @@ from carp_spec.traces import Trace
 
 @dataclass(frozen=True, slots=True)
 class Order:
-    """A lawful solution with its dependency graph; `nodes` are in the order in which the plans enter them."""
+    """A lawful solution with its dependency graph; `nodes` are in the order of their planned entries."""
 
     instance: Instance
     solution: Solution
@@ -75,8 +74,7 @@ def retime(instance: Instance, solution: Solution, trace: Trace) -> Solution:
     """The plans for the rest of the way, in the same order and as early as possible.
 
     The visits of the trace are kept; every other entry is later than the tick `trace.now`. Raises `Refusal` if the
-    trace does not follow the solution, and where no lawful plan has the history: a robot appears late, or stays too
-    long at its goal.
+    trace does not follow the solution, and where no lawful plan has the history.
     """
     require_followed(instance, solution, trace)
     order = order_of(instance, solution)

@@ -29,7 +29,7 @@ from carp_spec.planners import BY_DEFAULT
 def query(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0) -> Plan | None:
     """The plan of one robot with the earliest arrival against the committed plans, or `None` if none exists.
 
-    A plan of the robot itself among those committed is what it has followed until the tick `now`.
+    Its own plan among those committed is what it has followed until the tick `now`.
     """
     before = {plan.robot: plan for plan in committed if plan.robot == robot}
     others = [plan for plan in committed if plan.robot != robot]
@@ -48,10 +48,7 @@ def plan(instance: Instance, planner: Planner = BY_DEFAULT) -> Solution:
 
 
 def add(instance: Instance, solution: Solution, robot: RobotId, now: int, options: Neighbourhood) -> Solution:
-    """Add a robot of the instance to a solution of the others at the tick `now`.
-
-    If no plan is found, the robot is unplanned and all other plans stay as they are.
-    """
+    """Add a robot to a solution of the others at the tick `now`; if it finds no plan, the other plans stay."""
     by_robot = {each.robot: each for each in solution.plans}
     committed = tuple(by_robot[each] for each in solution.order)
     plans = add_robot(prepare(instance, now), committed, robot, options) or committed

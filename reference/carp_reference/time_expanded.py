@@ -1,7 +1,7 @@
 """The naive twin of the CARP query: A* tick by tick on a table of occupied ticks (the paper's [spatioTempA*]).
 
-It shares no code with the query over windows, which is tested against it: both find a plan that arrives at the same
-tick, or both find none. Where several plans arrive as early, the two may differ.
+It shares no code with the query over windows, which is tested against it: both arrive at the same tick, or both find
+no plan. Where several plans arrive as early, the two may differ.
 """
 
 from collections import Counter
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from heapq import heappop, heappush
 from itertools import count, groupby, pairwise
 
-from carp_spec import Instance, Plan, Refusal, ResourceId, RobotId, Visit, has_ended
+from carp_spec import Instance, Plan, Refusal, ResourceId, RobotId, Visit
 from carp_spec.planners import LARGEST_TABLE, ticks_are_held
 
 
@@ -31,11 +31,6 @@ class Table:
         """Whether one more robot may occupy the resource in [enter, leave), and a tick longer without following."""
         last = max(enter, self.still) + 1 if leave is None else leave + self.instance.gap
         return all(self.is_free(resource, tick) for tick in range(enter, last))
-
-    def allows(self, visits: Sequence[Visit]) -> bool:
-        """Whether one more robot could make these visits."""
-        stays = all(self.is_free_during(visit.resource, visit.enter, visit.leave) for visit in visits)
-        return stays and not any((to.resource, at.resource, to.enter) in self.moves for at, to in pairwise(visits))
 
     def may_end(self, robot: RobotId, resource: ResourceId, enter: int) -> bool:
         """Whether a robot that enters the resource at the tick may end its plan there."""
@@ -75,33 +70,21 @@ def _refuse_too_many(what: str, ticks: int) -> None:
         raise Refusal("limit", "$", ticks_are_held.id, message)
 
 
-def find_plan_by_ticks(
-    instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0, before: Plan | None = None
-) -> Plan | None:
-    """A plan with the earliest arrival, as `carp_reference.query` finds it, or `None`.
-
-    Raises `Refusal` by `limit/ticks`.
-    """
+def find_plan_by_ticks(instance: Instance, committed: Sequence[Plan], robot: RobotId) -> Plan | None:
+    """A plan with the earliest arrival, or `None`; raises `Refusal` by `limit/ticks`."""
     table = table_of(instance, committed)
-    if before is not None and has_ended(before, now):
-        return before if table.allows(before.visits) else None
-    request = instance.robot[robot]
-    entered = [] if before is None else [visit for visit in before.visits if visit.enter <= now]
-    *past, current = entered or [Visit(request.start, request.release, None)]
+    at, release = instance.robot[robot].start, instance.robot[robot].release
     longest_way = sum(instance.duration(robot, resource) for resource in instance.graph.index)
-    longest = max(table.still, now, current.enter) - current.enter + longest_way
-    _refuse_too_many(f"robot {robot} may be under way for", longest)
-    due = current.enter + instance.duration(robot, current.resource)
-    ready = max(due, now)
-    if not table.allows([*past, Visit(current.resource, current.enter, ready)]):
+    _refuse_too_many(f"robot {robot} may be under way for", max(table.still - release, 0) + longest_way)
+    if not table.is_free(at, release):
         return None
-    is_in_time = ready == due or instance.after_goal == "park"
-    ends = is_in_time and table.may_end(robot, current.resource, current.enter)
-    last = _search(table, robot, Moment(current.resource, current.enter, ready - current.enter - 1, ends, None))
-    return None if last is None else Plan(robot, (*past, *_visits(instance, robot, last)))
+    rest = instance.duration(robot, at) - 1
+    last = search(table, robot, Moment(at, release, rest, table.may_end(robot, at, release), None))
+    return None if last is None else Plan(robot, visits_of(instance, robot, last))
 
 
-def _search(table: Table, robot: RobotId, start: Moment) -> Moment | None:
+def search(table: Table, robot: RobotId, start: Moment) -> Moment | None:
+    """The first moment at which the plan can end, or `None`."""
     hops = _hops_to_goal(table.instance, robot)
     pushes = count()
     queue = [(start.tick, next(pushes), start)]
@@ -142,15 +125,15 @@ def _hops_to_goal(instance: Instance, robot: RobotId) -> Mapping[ResourceId, int
     return hops
 
 
-def _visits(instance: Instance, robot: RobotId, last: Moment) -> tuple[Visit, ...]:
+def visits_of(instance: Instance, robot: RobotId, last: Moment) -> tuple[Visit, ...]:
     """Join the moments in one resource into visits."""
     moments = [last]
     while moments[-1].before is not None:
         moments.append(moments[-1].before)
-    stays = [next(stay) for _, stay in groupby(reversed(moments), key=lambda moment: moment.resource)]
+    entries = [next(stay) for _, stay in groupby(reversed(moments), key=lambda moment: moment.resource)]
+    visits = [Visit(at.resource, at.tick, to.tick) for at, to in pairwise(entries)]
     leave = None if instance.after_goal == "park" else last.tick + instance.duration(robot, last.resource)
-    visits = [Visit(at.resource, at.tick, to.tick) for at, to in pairwise(stays)]
-    return (*visits, Visit(last.resource, stays[-1].tick, leave))
+    return (*visits, Visit(last.resource, entries[-1].tick, leave))
 
 
 def time_expanded(instance: Instance) -> tuple[Plan, ...]:

@@ -185,10 +185,8 @@ def require_lawful_ends(instance: Instance, after: Solution, trace: Trace) -> No
             message = f"no plan can have this history: {violation.message}"
             raise _refusal(trace, plan.robot, violation.rule, message)
         due = plan.visits[-1].leave
-        at_goal = happened.get((plan.robot, len(plan.visits) - 1))
-        if at_goal is not None and due is not None and at_goal.leave != due:
-            if at_goal.leave is None and due > trace.now:
-                continue
+        left = happened.get((plan.robot, len(plan.visits) - 1), plan.visits[-1]).leave
+        if due is not None and left != due and (left is not None or due <= trace.now):
             message = f"no plan can have this history: robot {plan.robot} must leave its goal at {due}"
             raise _refusal(trace, plan.robot, plan_ends_at_goal.id, message)
 

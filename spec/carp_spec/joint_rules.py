@@ -55,7 +55,7 @@ def _crowded(
 
 
 def _crowds(capacity: int, changes: list[Change]) -> Iterator[tuple[int, int | None, set[RobotId]]]:
-    """The maximal intervals with too many robots at each tick, and all robots that are there at one of them."""
+    """The maximal intervals with too many robots at each tick, and all robots present at one of them."""
     stays: Counter[RobotId] = Counter()
     crowd: set[RobotId] = set()
     start: int | None = None

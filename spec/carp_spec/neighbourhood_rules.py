@@ -1,7 +1,4 @@
-"""The rules of the neighbourhood planner, the paper's Algorithm 1: `neighbourhood/...`.
-
-Each predicate makes one decision of the algorithm; planners call it, or are tested against it.
-"""
+"""The rules of the neighbourhood planner, the paper's Algorithm 1: each makes one decision, which planners ask."""
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
@@ -38,7 +35,7 @@ def _position(instance: Instance, plan: Plan, tick: int) -> tuple[int, int]:
     "The distance of two robots is the mean, over the ticks from the earlier release to the later arrival, both "
     "included, of the distance of their positions; before its release a robot is at its start, after its arrival at "
     "its goal. Each term is floor(2^16 * sqrt(dx^2 + dy^2)), and means are compared as fractions. A resource without "
-    "a position counts as standing at (0, 0).",
+    "a position stands at (0, 0).",
     f"paper, section III; {DESIGN}",
 )
 def distance(instance: Instance, one: Plan, other: Plan) -> Fraction:
@@ -69,20 +66,20 @@ def nearest(distances_to_members: Sequence[Sequence[Fraction]]) -> int:
     "neighbourhood/replan",
     "The robots behind the one taken out are replanned by CARP in order; those before it keep their plans. If one "
     "finds no plan, it and those behind it have none, the round has no candidate, and the next round replans from "
-    "there or from behind its own robot, whichever is earlier.",
+    "there or behind its own robot, whichever is earlier.",
     f"{ALGORITHM}, line 10; {DESIGN}",
 )
 def replanned_from(taken: int, planned: int) -> int:
-    """The position from which robots are replanned; the first `planned` robots had a plan before."""
+    """The first `planned` robots had a plan before."""
     return min(taken, planned)
 
 
 @rule(
     "neighbourhood/orders",
     "Every permutation of the neighbourhood, in lexicographic order of the positions in it, is planned by CARP "
-    "against the other robots. With a sample size: that many distinct permutations (all, where there are no more), "
-    "drawn by Fisher-Yates from one SplitMix64 stream per added robot, seeded with the seed plus the robot's index "
-    "in the instance, and planned in lexicographic order too.",
+    "against the other robots. With a sample size: that many distinct permutations (at most all), drawn by "
+    "Fisher-Yates from one SplitMix64 stream per added robot, seeded with the seed plus the robot's index in the "
+    "instance, and planned in lexicographic order too.",
     f"{ALGORITHM}, line 11; {DESIGN}",
 )
 def neighbourhood_orders(size: int, sample: int | None, stream: Iterator[int]) -> Iterator[Order]:
@@ -101,8 +98,8 @@ def replaces_best(cost: int, best: int | None) -> bool:
 @rule(
     "neighbourhood/update",
     "The trajectories for the next distances are the new plans of the robots outside the neighbourhood (in a round "
-    "without candidate, of those that got one). For its members they are those of the round's best permutation, if "
-    "it has one. A robot without a new plan keeps the trajectory that it had.",
+    "without candidate, of those that got one), and its members' in the round's best permutation. A robot without a "
+    "new plan keeps its trajectory.",
     f"paper, section III; {DESIGN}",
 )
 def next_trajectory(before: Plan, planned: Plan | None) -> Plan:

@@ -22,7 +22,7 @@ def plan_starts_at_release(instance: Instance, plan: Plan) -> Iterator[Breach]:
 @violation_rule(
     "plan/goal",
     "The last visit is to the robot's goal. With `vanish` it is left exactly one duration (times the robot's pace) "
-    "after it was entered; with `park` it is never left.",
+    "after its entry; with `park` it is never left.",
     "paper, section IV (experiments); decision of carproof",
 )
 def plan_ends_at_goal(instance: Instance, plan: Plan) -> Iterator[Breach]:
@@ -120,9 +120,8 @@ def is_total_cost(instance: Instance, plans: Sequence[Plan], cost: int) -> bool:
 
 @violation_rule(
     "fleet/history",
-    "A plan made again at the tick now keeps every visit that it had entered by now: the last of them is entered at "
-    "the same tick and left no earlier than now, those before it are unchanged. A plan that has ended by now is "
-    "unchanged.",
+    "A plan made again at the tick now keeps every visit entered by now: the last of them is entered at the same tick "
+    "and left no earlier than now, those before it are unchanged. A plan that has ended by now is unchanged.",
     DESIGN,
 )
 def plan_keeps_history(before: Plan, after: Plan, now: int) -> Iterator[Breach]:

@@ -23,9 +23,8 @@ class Carp:
 class Shuffled:
     """The best of `attempts` passes of CARP (the paper's CARP10 and CARP100).
 
-    The first pass is in the order given; the order of each later one is a Fisher-Yates shuffle of the order
-    before, from the SplitMix64 stream of `seed`. A pass with fewer unplanned robots is better, then one with a
-    smaller total cost, then the earlier.
+    The first pass is in the order given, each later one in a Fisher-Yates shuffle of the order before, from the
+    SplitMix64 stream of `seed`. Fewer unplanned robots are better, then a smaller total cost, then the earlier pass.
     """
 
     name: ClassVar = "shuffled"
@@ -51,9 +50,8 @@ class Greedy:
 class Neighbourhood:
     """The paper's Proposed_m: each robot is added together with its m - 1 nearest neighbours, in every order.
 
-    `sample` is the number of orders drawn for a neighbourhood (`None`: all), `baseline` whether keeping all
-    plans is a candidate (`False` is paper mode), `fallback` the attempts of `Shuffled`, with the same seed, when
-    no candidate is found (`None`: none).
+    `sample` is the number of orders drawn (`None`: all), `baseline` whether keeping all plans is a candidate (`False`
+    is paper mode), `fallback` the attempts of `Shuffled`, with the same seed, without a candidate (`None`: none).
     """
 
     name: ClassVar = "neighbourhood"
@@ -72,8 +70,8 @@ BY_DEFAULT = Neighbourhood()
 class FixedPaths:
     """Each robot takes, of its k shortest or at most k disjoint paths, the first on which it arrives earliest.
 
-    The paths are those of the empty graph. Disjoint paths share no resource but start and goal; there are as many as
-    possible up to k, of the least total length. Source: ter Mors' comparison, as the paper cites it.
+    The paths are those of the empty graph. Disjoint paths share no resource but start and goal; they are as many as
+    possible, of the least total length. Source: ter Mors' comparison, as the paper cites it.
     """
 
     name: ClassVar = "fixed-paths"

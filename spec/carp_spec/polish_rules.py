@@ -34,9 +34,9 @@ LARGE_NEIGHBOURHOOD = "Li et al. 2021, MAPF-LNS"
 
 @rule(
     "polish/draws",
-    "All choices of a polish come from the SplitMix64 stream of its seed, in the order in which they are made. A "
-    "choice among n is the next number mod n. To draw some of n things, the thing in place k = 0, 1, ... is swapped "
-    "with the thing in place k plus a choice among n - k; the things in the first places are drawn, in that order.",
+    "All choices of a polish come from the SplitMix64 stream of its seed, in order. A choice among n is the next "
+    "number mod n. To draw some of n things, the thing in place k = 0, 1, ... is swapped with the thing in place k "
+    "plus a choice among n - k; the things in the first places are drawn, in that order.",
     DESIGN,
 )
 def drawn(things: Sequence[T], count: int, stream: Iterator[int]) -> list[T]:
@@ -49,9 +49,9 @@ def drawn(things: Sequence[T], count: int, stream: Iterator[int]) -> list[T]:
 
 @rule(
     "polish/kind",
-    "While a robot that has a path is unplanned, every other round repairs, the first included, and so does every "
-    "round if no robot is delayed. If no robot is unplanned or delayed, the polish ends. In the other rounds a "
-    "choice among 10 decides: 0 to 7 is a round for a delayed robot, 8 for a contested resource, 9 for near robots.",
+    "While a robot that has a path is unplanned, every other round repairs, the first included, and every round if no "
+    "robot is delayed. If no robot is unplanned or delayed, the polish ends. Else a choice among 10 decides: 0 to 7 is "
+    "a round for a delayed robot, 8 for a contested resource, 9 for near robots.",
     f"{LARGE_NEIGHBOURHOOD}; {DESIGN}",
 )
 def kind_of(turn: int, waiting: int, delay: int, stream: Iterator[int]) -> Kind | None:
@@ -63,10 +63,10 @@ def kind_of(turn: int, waiting: int, delay: int, stream: Iterator[int]) -> Kind 
 
 @rule(
     "polish/pivot",
-    "The first member, the pivot, is chosen by weight: it is the first robot, in the order of the instance, at which "
-    "the sum of the weights exceeds a choice among their sum. The weight is 1 of each unplanned robot that has a path "
-    "(repair), the delay, the cost less that of the plan alone, of each planned robot (delayed), or 1 of each planned "
-    "robot (contested, near).",
+    "The first member, the pivot, is the first robot, in the order of the instance, at which the sum of the weights "
+    "exceeds a choice among their sum. The weight is 1 of each unplanned robot that has a path (repair), the delay, "
+    "the cost less that of the plan alone, of each planned robot (delayed), or 1 of each planned robot (contested, "
+    "near).",
     f"{LARGE_NEIGHBOURHOOD}; {DESIGN}",
 )
 def pivot_of(weights: Sequence[int], stream: Iterator[int]) -> int:
@@ -75,9 +75,9 @@ def pivot_of(weights: Sequence[int], stream: Iterator[int]) -> int:
 
 @rule(
     "polish/members",
-    f"The neighbourhood has {LEAST_MEMBERS} robots and a choice among {SIZES} more, but at most all that have a path. "
-    "Its members are the pivot, then the first of the candidates, then, if these are too few, robots drawn from the "
-    "others that have a path, in the order of the instance.",
+    f"The neighbourhood has {LEAST_MEMBERS} robots and a choice among {SIZES} more, but at most all that have a path: "
+    "the pivot, then the first of the candidates, then robots drawn from the others that have a path, in the order of "
+    "the instance.",
     DESIGN,
 )
 def members_of(pivot: T, candidates: Sequence[T], everyone: Sequence[T], stream: Iterator[int]) -> list[T]:
@@ -102,8 +102,8 @@ def spans(successors: Mapping[ResourceId, Sequence[ResourceId]], plan: Plan) -> 
     "polish/way",
     "A robot is in the way of a plan if one of its stays, [enter, leave), meets the span, [first, last], of the "
     "resource: first <= leave and enter <= last. A span is from the first enter to the last leave of the plan's "
-    "visits there and in resources with a move to it. The plan is the one that the pivot has alone (repair; delayed, "
-    "by a choice of 0 among 2) or its own (1). The candidates are the robots in its way, drawn.",
+    "visits there and in resources with a move to it. The plan is that of the pivot alone (repair; delayed, by a "
+    "choice of 0 among 2) or its own (1). The candidates are the robots in its way, drawn.",
     f"{LARGE_NEIGHBOURHOOD}; {DESIGN}",
 )
 def is_in_way(spans: Mapping[ResourceId, Span], other: Plan) -> bool:
@@ -117,8 +117,8 @@ def is_in_way(spans: Mapping[ResourceId, Span], other: Plan) -> bool:
 @rule(
     "polish/contested",
     "A choice among the visits of the pivot's plan gives a resource and the tick at which it is entered. The "
-    "candidates are the other robots that visit the resource, ordered by how many ticks earlier or later they enter "
-    "it, at the visit for which these are fewest; a tie goes to the earlier in the instance.",
+    "candidates are the other robots that visit the resource, ordered by the fewest ticks earlier or later that they "
+    "enter it; a tie goes to the earlier in the instance.",
     f"{LARGE_NEIGHBOURHOOD}; {DESIGN}",
 )
 def ticks_apart(visit: Visit, other: Plan) -> int | None:
@@ -129,8 +129,8 @@ def ticks_apart(visit: Visit, other: Plan) -> int | None:
 
 @rule(
     "polish/near",
-    "The candidates are all other robots that have a plan, ordered by their distance from the pivot, "
-    "`neighbourhood/distance`; a tie goes to the earlier in the instance.",
+    "The candidates are all other robots that have a plan, ordered by their `neighbourhood/distance` from the pivot; a "
+    "tie goes to the earlier in the instance.",
     "paper, Algorithm 1, line 7",
 )
 def by_distance(distances: Sequence[Fraction]) -> list[int]:
@@ -145,7 +145,7 @@ def by_distance(distances: Sequence[Fraction]) -> list[int]:
     DESIGN,
 )
 def order_of(members: Sequence[T], is_repair: bool, stream: Iterator[int]) -> tuple[T, ...]:
-    first = 1 if is_repair or next(stream) % 2 == 0 else 0
+    first = int(is_repair or next(stream) % 2 == 0)
     return (*members[:first], *shuffle(members[first:], stream))
 
 
@@ -153,7 +153,7 @@ def order_of(members: Sequence[T], is_repair: bool, stream: Iterator[int]) -> tu
     "polish/kept",
     "Each member is planned by CARP at tick 0 against the robots outside and the members before it; one that finds "
     "no plan is unplanned. The new plans are kept if fewer robots are unplanned than before, or equally many and the "
-    "total is not larger. The planning order is then that of the robots outside, followed by that of the members.",
+    "total is not larger. The planning order is then that of the robots outside, then that of the members.",
     DESIGN,
 )
 def is_kept(before: tuple[int, int], after: tuple[int, int]) -> bool:
@@ -163,8 +163,8 @@ def is_kept(before: tuple[int, int], after: tuple[int, int]) -> bool:
 
 @fault_rule(
     "polish/options",
-    "The options of a polish are a number of rounds, iterations, a whole number of at least 0, or a time, seconds, a "
-    f"number above 0, or neither, which means {ITERATIONS} iterations; and a seed between 0 and 2^64 - 1.",
+    "A polish has a number of rounds, iterations, a whole number of at least 0, or a time, seconds, above 0, or "
+    f"neither, which means {ITERATIONS} iterations; and a seed between 0 and 2^64 - 1.",
     DESIGN,
 )
 def options_are_right(iterations: object, seconds: object, seed: object) -> Found:

@@ -1,7 +1,6 @@
 """The rules of a query, the search for one robot's plan against committed plans: `query/...`.
 
-`query/optimal` and `query/complete` are about all plans. Their predicates take the rival plans to compare with: to
-enumerate all rivals decides the rule, and to draw some at random gives evidence for it.
+`query/optimal` and `query/complete` take rival plans to compare with: all rivals decide the rule, some are evidence.
 """
 
 from collections.abc import Iterable, Sequence

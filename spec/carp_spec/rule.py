@@ -40,7 +40,7 @@ def rule(id: str, statement: str, source: str) -> Callable[[Callable[P, R]], Rul
 
 @dataclass(frozen=True, slots=True)
 class Violation:
-    """A broken rule of a plan or of a set of plans.
+    """A broken rule of plans.
 
     It happened at `resource` in the ticks [start, end); an end of `None` means for ever, a start of `None` that no
     resource or tick is to blame. A resource that is too full is one violation for as long as it stays too full, with
@@ -56,7 +56,7 @@ class Violation:
 
     @property
     def message(self) -> str:
-        """The violation as one sentence, without the rule's id; it names the first robots and counts the others."""
+        """The violation as one sentence, without the rule's id."""
         robots = named(self.robots)
         if self.start is None:
             return f"{robots} ({self.reason})"
@@ -87,7 +87,7 @@ def interval(start: int, end: int | None) -> str:
 
 
 def named(robots: Sequence[RobotId]) -> str:
-    """Print like `robot r1` or `robots r1, r2`: the first robots by name, and the number of the others."""
+    """Print like `robot r1` or `robots r1, r2 and 3 more`."""
     names = ", ".join(map(str, robots[:MOST_NAMED]))
     others = f" and {len(robots) - MOST_NAMED} more" if len(robots) > MOST_NAMED else ""
     return f"{'robot' if len(robots) == 1 else 'robots'} {names}{others}"

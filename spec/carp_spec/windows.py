@@ -14,7 +14,7 @@ Occupation: TypeAlias = tuple[int, int | None]
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """The ticks [start, end) in which a resource has room for one more robot; an end of `None` is for ever."""
+    """Ticks [start, end) in which a resource has room for one more robot; an end of `None` is for ever."""
 
     start: int
     end: int | None
@@ -56,8 +56,8 @@ def free_windows(occupations: Sequence[Occupation], capacity: int, gap: int = 0)
 @rule(
     "window/free",
     "The free windows of a resource are the maximal intervals, from tick 0, in which fewer committed plans occupy it "
-    "than its capacity, so that there is room for one robot more. Where following is forbidden, a plan counts for a "
-    "tick longer, and a window ends a tick earlier.",
+    "than its capacity. Where following is forbidden, a plan counts for a tick longer, and a window ends a tick "
+    "earlier.",
     f"paper, section III; {MORS}",
 )
 def windows_are_free(windows: Sequence[Window], occupations: Sequence[Occupation], capacity: int, gap: int = 0) -> bool:

@@ -3,11 +3,11 @@
 from dataclasses import replace
 
 import pytest
+from tests.twin import find_plan_by_ticks
 
 import carp_optimized
 import carp_reference
 from carp_optimized import Reuse
-from carp_reference.time_expanded import find_plan_by_ticks
 from carp_spec import Carp, Instance, Solution, check, check_update, judge, plan_cost
 from carp_spec.permutations import splitmix64
 from carproof.questions import Draw, draw_instance, draw_neighbourhood, draw_planner

@@ -5,9 +5,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.enumeration import ASKED, PATTERNS, Pattern, small_cases
 from tests.profiles import rest_in
+from tests.twin import find_plan_by_ticks
 
 from carp_reference import query
-from carp_reference.time_expanded import find_plan_by_ticks
 from carp_spec import Instance, Plan, RobotId, check, check_update, plan_cost
 from carproof.strategies import FleetUnderWay, fleets_under_way
 

@@ -50,7 +50,6 @@ from carp_spec.polish_rules import (
     spans,
     ticks_apart,
 )
-from carp_spec.priority_rules import robot_is_first
 from carp_spec.query_rules import expansion_key
 from carp_spec.windows import Window, free_windows, stay_fits, windows_are_free
 from carp_verify.bound_rules import BOUND_RULES
@@ -61,6 +60,7 @@ from carp_verify.query_certificate_rules import QUERY_CERTIFICATE_RULES, plans_a
 from carp_verify.verify_bound import verify_bound
 from carp_verify.verify_query import verify_query
 from carproof.engines import planner_named
+from carproof.giving_way import robot_is_first
 from carproof.registry import RULES
 from carproof.vectors import Fields, Vector
 

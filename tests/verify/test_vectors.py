@@ -9,11 +9,11 @@ from typing import Any
 import msgspec
 import pytest
 from jsonschema import Draft202012Validator
+from tests.twin import find_plan_by_ticks
 from tests.vectors import writing
 from tests.vectors.judging import finding
 from tests.vectors.writing import ChangedError, digests, file_text, list_text, listed
 
-from carp_reference.time_expanded import find_plan_by_ticks
 from carp_spec import plan_cost
 from carp_verify.bound_rules import BOUND_RULES
 from carp_verify.query_certificate_rules import QUERY_CERTIFICATE_RULES
