@@ -1,6 +1,6 @@
 (** What is extracted to OCaml: whole numbers of any size become those of zarith. *)
 Require Import ExtrOcamlBasic ExtrOcamlZBigInt ZArith.
-From Carproof Require Import Law Collections Checker QueryCertificate Audit Refutation Labels Tables Bound.
+From Carproof Require Import Law Collections Checker QueryCertificate Audit Refutation Labels Tables Bound Formula.
 
 (** Comparisons without a detour; the library maps only [Z.compare] and [Z.eqb]. *)
 Extract Constant Z.leb => "Big_int_Z.le_big_int".
@@ -11,4 +11,5 @@ Extraction Blacklist Bool Int List Nat Option String.
 Separate Extraction instance_accepted accepted lookup_of total_cost covers_accepted order_accepted
   moves_of_graph plan_of_robot_accepted stay_accepted end_accepted same_end has_move
   capacity_accepted exchanges_accepted plans_accepted query_accepted others own certificate_fault audit world_of
-  refutes Map.find broken_rule stay_price wait_price move_price tariff_of resource_table takes_in weight_of.
+  refutes Map.find broken_rule stay_price wait_price move_price tariff_of resource_table takes_in room_in weight_of
+  total_refuted blueprint_accepted Numbered.add Map.mem Map.add.

@@ -9,6 +9,8 @@ let usage =
   \       carproof-kernel verify-bound INSTANCE CERTIFICATE [--cut-formula NUMBER FILE]...\n\
   \       carproof-kernel verify-query INSTANCE SOLUTION CERTIFICATE\n\
   \       carproof-kernel audit INSTANCE SOLUTION CERTIFICATES\n\
+  \       carproof-kernel verify-proof DIRECTORY\n\
+  \       carproof-kernel formula DIRECTORY\n\
   \       carproof-kernel refute FORMULA.cnf PROOF.lrat\n\
   \       carproof-kernel serve\n\
   \       carproof-kernel --version\n"
@@ -47,6 +49,16 @@ let contents file =
 
 let json_of_file file = Reading.json_of_text (contents file)
 let instance_of_file file = Reading.instance_of_json "$" (json_of_file file)
+
+(* The instance and the claim of a proof directory. *)
+let claim_of_directory directory =
+  let instance = instance_of_file (Filename.concat directory "instance.json") in
+  (instance, Reading.claim_of_json instance "$" (json_of_file (Filename.concat directory "manifest.json")))
+
+let print_formula formula =
+  let highest = List.fold_left (List.fold_left (fun known literal -> Z.max known (Z.abs literal))) Z.zero formula in
+  Printf.printf "p cnf %s %d\n" (Z.to_string highest) (List.length formula);
+  List.iter (fun literals -> print_string (String.concat " " (List.map Z.to_string literals @ [ "0\n" ]))) formula
 
 (* The formulas of cuts, by their numbers. *)
 let rec cut_formulas = function
@@ -109,6 +121,21 @@ let () =
           let formulas = cut_formulas options in
           let instance = instance_of_file instance in
           Verdicts.verify_bound formulas instance (Reading.bound_of_json instance "$" (json_of_file certificate))))
+  | [ "verify-proof"; directory ] ->
+      print (answered (fun () ->
+          let instance, claim = claim_of_directory directory in
+          let proof = Reading.proof_of_text (contents (Filename.concat directory "beat.lrat")) in
+          Verdicts.verify_proof instance claim proof))
+  | [ "formula"; directory ] ->
+      let formula = ref None in
+      let ask () =
+        let instance, claim = claim_of_directory directory in
+        match Verdicts.blueprint instance claim with
+        | Error verdict -> verdict
+        | Ok blueprint -> formula := Some blueprint.formula; Verdicts.Accepted []
+      in
+      let answer = answered ask in
+      (match !formula with Some formula -> print_formula formula | None -> print answer)
   | [ "refute"; formula; proof ] ->
       print (answered (fun () ->
           Verdicts.refute (Reading.formula_of_text (contents formula)) (Reading.proof_of_text (contents proof))))

@@ -381,6 +381,48 @@ let query_of_json { resource_numbers; robot_numbers; _ } path json =
         labels = required field "labels" (elements place_and_tick);
         potential = required field "potential" (elements place_and_tick) } }
 
+(* ---- Proofs of optima ---- *)
+
+(* The claim of a manifest: that no plans cost less, or that there are none at all; with what its formula is made of. *)
+type claim = { cost : Z.t option; evidence : Encoder.evidence }
+
+let claim_of_json { instance; _ } path json =
+  require_format path "carproof-proof/2" json;
+  let robots = List.length instance.robots in
+  let small path json =
+    let n = natural path json in
+    if Z.fits_int n then Z.to_int n else shape path "a whole number that fits into memory"
+  in
+  let horizons path json =
+    let found = elements small path json in
+    if List.length found <> robots then shape path (Printf.sprintf "a horizon of each of %d robots" robots);
+    found
+  in
+  let order path json =
+    let found = elements small path json in
+    if List.sort compare found <> List.init robots Fun.id then shape path "each robot's position, from 0, once";
+    found
+  in
+  let digests path = function `Assoc _ -> () | _ -> shape path "an object" in
+  let required_fields = [ "format"; "claim"; "sha256" ] in
+  let field = fields path ~required:required_fields ~optional:[ "cost"; "horizons"; "order"; "obstacle" ] json in
+  required field "sha256" digests;
+  match required field "claim" text with
+  | "optimum" ->
+      let field = fields path ~required:("cost" :: "horizons" :: "order" :: required_fields) ~optional:[] json in
+      let evidence = { Encoder.horizons = required field "horizons" horizons; order = required field "order" order } in
+      { cost = Some (required field "cost" natural); evidence }
+  | "unsolvable" ->
+      let obstacle path json =
+        let field = fields path ~required:[ "kind" ] ~optional:[ "horizons"; "robot"; "goal" ] json in
+        if required field "kind" text <> "clauses" then
+          refuse (path ^ ".kind") "limit/obstacle" "the obstacle must be clauses: the kernel decides no other";
+        required (fields path ~required:[ "kind"; "horizons" ] ~optional:[] json) "horizons" horizons
+      in
+      let field = fields path ~required:("obstacle" :: required_fields) ~optional:[] json in
+      { cost = None; evidence = { horizons = required field "obstacle" obstacle; order = [] } }
+  | _ -> shape (path ^ ".claim") "\"optimum\" or \"unsolvable\""
+
 (* ---- Formulas and refutations ---- *)
 
 (* The words of each line that is neither empty nor a comment. *)

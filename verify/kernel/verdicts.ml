@@ -105,6 +105,26 @@ let refute formula proof =
   if Refutation.refutes formula proof then Accepted []
   else Refused ("refutation", "the proof does not derive the empty clause by its hints")
 
+(* ---- verify-proof ---- *)
+
+(* The formula that the claim is about, or why none is made. *)
+let blueprint (read : Reading.instance) { Reading.cost; evidence } =
+  match Encoder.blueprint read.instance cost evidence with
+  | blueprint -> Ok blueprint
+  | exception Encoder.No_way a ->
+      Error (Refused ("proof/way", "no way leads to the goal of robot " ^ named read a.robot_id))
+  | exception Encoder.Too_large ->
+      Error (Undecided (Printf.sprintf "the formula would have more than %d clauses, the limit" Encoder.most_clauses))
+
+let verify_proof (read : Reading.instance) (claim : Reading.claim) proof =
+  match blueprint read claim with
+  | Error verdict -> verdict
+  | Ok blueprint ->
+      if Formula.total_refuted read.instance claim.cost blueprint proof then
+        Accepted [ ("bound", Option.fold ~none:`Null ~some:whole claim.cost) ]
+      else if Formula.blueprint_accepted read.instance claim.cost blueprint then refute blueprint.formula proof
+      else Undecided "the kernel has made a clause for which it has no reason"
+
 (* ---- verify-bound ---- *)
 
 (* A cut is decided by a formula of the caller's, which must say that its robots cost less: the kernel checks the

@@ -1,0 +1,292 @@
+(** The formula of plans that cost less than a total: each clause comes with a reason, and a clause whose reason holds is
+    kept by every lawful solution that costs less. So if the formula has no model, no solution does.
+
+    Who wrote the clauses, and in which order, does not matter. *)
+Require Import ZArith List Bool Lia.
+From Carproof Require Import Law Collections Checker Ways Prices Labels Tables Bound Refutation Routes.
+Import ListNotations.
+Open Scope Z_scope.
+
+(** What a variable says of a solution. *)
+Inductive meaning :=
+| Free (id place tick : Z)                 (** the robot is free to leave the resource at the tick *)
+| Costs (id least : Z)                     (** the robot costs at least so much *)
+| Present (id place tick : Z)              (** the robot is in the resource at the tick *)
+| Stands (id : Z)                          (** true: a robot that vanishes at its start is there for its duration *)
+| Delayed (first end_ least : Z)           (** robots whose ranks are in [first, end_) are this late together *)
+| Crowded (first end_ place tick least : Z). (** so many robots with ids in [first, end_) are there *)
+
+(** Why a clause holds. *)
+Inductive reason :=
+| Starts (id : Z)
+| Waits_moves_or_arrives (id place tick : Z)
+| Waited_or_moved (id place tick : Z)
+| Passes (id place tick : Z)
+| Arrives (id cost : Z)
+| Costs_one_way (id cost : Z)
+| Is_there (id place tick : Z)
+| Stands_there
+| Adds_delays
+| Adds_robots (place tick : Z)
+| Is_full
+| Are_two (one other place tick : Z)
+| Exchange (one other source target tick : Z)
+| Is_cheaper.
+
+(** What the clauses of a robot rest on: its rank among the delays that are added up, its least cost, the least ticks from
+    leaving a resource to entering the goal, the least tick at which it is free to leave a resource, and resources that
+    lead from its start to its goal. *)
+Record guide := Guide { rank : Z; shortest : Z; rests : Map.t Z; firsts : Map.t Z; leads : list Z }.
+
+(** A formula with the guides of the robots in the instance's order, the meanings of its variables and the reasons of its
+    clauses. *)
+Record blueprint := Blueprint {
+  guides : list guide;
+  meanings : Numbered.t meaning;
+  reasons : list reason;
+  formula : list clause
+}.
+
+(** * The checker *)
+
+Definition member := (robot * guide)%type.
+
+(** What the checker looks up. *)
+Record tables := Tables {
+  policy : after;
+  places : Map.t resource;
+  onwards : Z -> list Z;
+  backwards : Z -> list Z;
+  crew : list member;
+  member_of : Map.t member
+}.
+
+Definition predecessor_table (i : instance) : Map.t (list Z) :=
+  fold_left (fun m e => enlist (snd e) (fst e) m) (moves_of_graph i) (Map.empty (list Z)).
+
+Definition tables_of (i : instance) (b : blueprint) : tables :=
+  let all := combine (robots i) (guides b) in
+  let moves := successor_table i in
+  let back := predecessor_table i in
+  Tables (after_goal i) (resource_table i) (listed moves) (listed back) all (index (fun m => robot_id (fst m)) all).
+
+Section Checker.
+Variable w : tables.
+
+Definition is_passable (a : robot) (r : Z) : bool :=
+  match policy w with Vanish => negb (r =? goal a) | Park => true end.
+
+(** ** Guides *)
+
+Definition at_most (x : option Z) (y : Z) : bool := match x with Some n => n <=? y | None => false end.
+
+(** Along the moves from a resource the rests fall, and the firsts rise, by no more than the durations. *)
+Definition guides_moves (m : member) (r : Z) : bool :=
+  let (a, g) := m in
+  let rest := Map.find r (rests g) in
+  let first := Map.find r (firsts g) in
+  forallb (fun s =>
+    let ticks := takes_in (places w) a s in
+    (negb (s =? goal a) || at_most rest 0) &&
+    match Map.find s (rests g) with
+    | None => true
+    | Some after =>
+        at_most rest (ticks + after) &&
+        match first with
+        | Some ready => negb (is_passable a s) || at_most (Map.find s (firsts g)) (ready + ticks)
+        | None => true
+        end
+    end) (onwards w r).
+
+Definition guide_accepted (ids : list Z) (m : member) : bool :=
+  let (a, g) := m in
+  let ticks := takes_in (places w) a (start a) in
+  leads_on (onwards w) (start a) (leads g) (goal a) &&
+  forallb (guides_moves m) ids &&
+  at_most (Map.find (start a) (firsts g)) (release a + ticks) &&
+  (if start a =? goal a then shortest g <=? 0
+   else match Map.find (start a) (rests g) with Some rest => shortest g <=? ticks + rest | None => false end).
+
+(** ** Clauses *)
+
+(** A literal: whether the variable's meaning must be true. *)
+Definition signed := (bool * meaning)%type.
+
+Definition of_robot (id : Z) (f : robot -> guide -> bool) : bool :=
+  match Map.find id (member_of w) with Some (a, g) => f a g | None => false end.
+
+(** The clause holds if the robot is not free to leave the resource at the tick. *)
+Definition unless_free (c : list signed) (id r t : Z) : bool :=
+  existsb (fun l => match l with (false, Free id' r' t') => (id' =? id) && (r' =? r) && (t' =? t) | _ => false end) c.
+
+(** The clause holds if the robot costs at least x. *)
+Definition if_costs (c : list signed) (id x : Z) : bool :=
+  existsb (fun l => match l with (true, Costs id' y) => (id' =? id) && (y <=? x) | _ => false end) c.
+
+(** The clause holds if the robot costs less than x. *)
+Definition if_cheaper (c : list signed) (id x : Z) : bool :=
+  existsb (fun l => match l with (false, Costs id' y) => (id' =? id) && (x <=? y) | _ => false end) c ||
+  of_robot id (fun _ g => x <=? shortest g).
+
+(** The clause holds if the robot is free to leave the resource at the tick, or it cannot be so. *)
+Definition if_free (c : list signed) (id r t : Z) : bool :=
+  existsb (fun l => match l with (true, Free id' r' t') => (id' =? id) && (r' =? r) && (t' =? t) | _ => false end) c ||
+  of_robot id (fun a g =>
+    negb (is_passable a r) ||
+    match Map.find r (firsts g) with Some ready => t <? ready | None => true end ||
+    match Map.find r (rests g) with Some rest => if_costs c id (t + rest - release a) | None => true end).
+
+(** The clause holds if the robot is not in the resource at the tick. *)
+Definition unless_present (c : list signed) (id r t : Z) : bool :=
+  of_robot id (fun a g =>
+    let ticks := takes_in (places w) a r in
+    existsb (fun l =>
+      match l with
+      | (false, Present id' r' t') => (id' =? id) && (r' =? r) && (t' =? t)
+      | (false, Free id' r' u) => (id' =? id) && (r' =? r) && (t <? u) && (u <=? t + ticks)
+      | (false, Stands id') =>
+          (id' =? id) && negb (is_passable a r) && (start a =? r) && (release a <=? t) && (t <? release a + ticks)
+      | _ => false
+      end) c ||
+    (r =? goal a) && if_costs c id (t + 1 - release a) &&
+      match policy w with Park => true | Vanish => if_cheaper c id (t + 1 - release a - ticks) end).
+
+(** ** Sums: what a false literal says of robots in a range, and what makes a literal true *)
+
+Definition delays_if_false (l : signed) : option (Z * Z * Z) :=
+  match l with
+  | (false, Delayed first end_ least) => Some (first, end_, least)
+  | (false, Costs id least) =>
+      match Map.find id (member_of w) with
+      | Some (_, g) => Some (rank g, rank g + 1, least - shortest g)
+      | None => None
+      end
+  | _ => None
+  end.
+
+Definition true_if_delays (l : signed) : option (Z * Z * Z) :=
+  match l with (true, Delayed first end_ least) => Some (first, end_, least) | _ => None end.
+
+Definition robot_of_meaning (m : meaning) : Z :=
+  match m with Free id _ _ | Costs id _ | Present id _ _ | Stands id => id | Delayed _ _ _ | Crowded _ _ _ _ _ => 0 end.
+
+Definition robots_if_false (r t : Z) (l : signed) : option (Z * Z * Z) :=
+  let id := robot_of_meaning (snd l) in
+  match l with
+  | (false, Crowded first end_ r' t' least) => if (r' =? r) && (t' =? t) then Some (first, end_, least) else None
+  | _ => if unless_present [l] id r t then Some (id, id + 1, 1) else None
+  end.
+
+Definition true_if_robots (r t : Z) (l : signed) : option (Z * Z * Z) :=
+  match l with
+  | (true, Crowded first end_ r' t' least) => if (r' =? r) && (t' =? t) then Some (first, end_, least) else None
+  | _ => None
+  end.
+
+(** The clause adds up one or two numbers: if its other literals are false, its last one is true. *)
+Definition adds (if_false true_if : signed -> option (Z * Z * Z)) (c : list signed) : bool :=
+  match c with
+  | [l; total] =>
+      match if_false l, true_if total with
+      | Some (first, end_, n), Some (first', end', least) => (first' <=? first) && (end_ <=? end') && (least <=? n)
+      | _, _ => false
+      end
+  | [l; k; total] =>
+      match if_false l, if_false k, true_if total with
+      | Some (first, middle, n), Some (middle', end_, m), Some (first', end', least) =>
+          (first' <=? Z.min first middle') && (middle <=? middle') && (Z.max middle end_ <=? end') && (least <=? n + m)
+      | _, _, _ => false
+      end
+  | _ => false
+  end.
+
+Definition room_below (r n : Z) : bool := match Map.find r (places w) with Some x => capacity x <? n | None => false end.
+
+(** The delays of all robots together are below this, if the solution costs less than the total. *)
+Definition delays_below (total : Z) : Z := total - sum (fun m : member => shortest (snd m)) (crew w).
+
+Definition too_late (total : option Z) (c : list signed) : bool :=
+  match total with
+  | None => false
+  | Some k =>
+      let most := delays_below k in
+      (most <=? 0) ||
+      existsb (fun l => match delays_if_false l with Some (_, _, n) => most <=? n | None => false end) c
+  end.
+
+(** The reason holds for the clause. *)
+Definition justified (total : option Z) (c : list signed) (why : reason) : bool :=
+  match why with
+  | Starts id =>
+      of_robot id (fun a _ =>
+        if_free c id (start a) (release a + takes_in (places w) a (start a)) &&
+        (negb (start a =? goal a) || if_cheaper c id 1))
+  | Waits_moves_or_arrives id r t =>
+      of_robot id (fun a _ =>
+        unless_free c id r t && if_free c id r (t + 1) &&
+        forallb (fun s =>
+          if_free c id s (t + takes_in (places w) a s) &&
+          (negb (s =? goal a) || if_cheaper c id (t + 1 - release a))) (onwards w r))
+  | Waited_or_moved id r t =>
+      of_robot id (fun a _ =>
+        let ticks := takes_in (places w) a r in
+        unless_free c id r t && if_free c id r (t - 1) &&
+        forallb (fun s => if_free c id s (t - ticks)) (backwards w r) &&
+        negb ((r =? start a) && (t =? release a + ticks)))
+  | Passes id r t => of_robot id (fun _ _ => unless_free c id r t && if_free c id r t)
+  | Arrives id cost =>
+      of_robot id (fun a _ =>
+        if_costs c id (cost + 1) && if_cheaper c id cost &&
+        forallb (fun s => if_free c id s (release a + cost)) (backwards w (goal a)) &&
+        negb ((start a =? goal a) && (cost =? 0)))
+  | Costs_one_way id cost => of_robot id (fun _ _ => if_costs c id cost && if_cheaper c id cost)
+  | Is_there id r t =>
+      unless_present c id r t &&
+      existsb (fun l =>
+        match l with (true, Present id' r' t') => (id' =? id) && (r' =? r) && (t' =? t) | _ => false end) c
+  | Stands_there => existsb (fun l => match l with (true, Stands _) => true | _ => false end) c
+  | Adds_delays => adds delays_if_false true_if_delays c
+  | Adds_robots r t => adds (robots_if_false r t) (true_if_robots r t) c
+  | Is_full => existsb (fun l => match l with (false, Crowded _ _ r _ n) => room_below r n | _ => false end) c
+  | Are_two one other r t =>
+      negb (one =? other) && room_below r 2 && unless_present c one r t && unless_present c other r t
+  | Exchange one other r s t =>
+      negb (one =? other) && negb (r =? s) && unless_free c one r t && unless_free c other s t &&
+      unless_present c one s t && unless_present c other r t
+  | Is_cheaper => too_late total c
+  end.
+
+(** A literal as its variable's meaning has it; one without a meaning is left out. *)
+Definition read_literal (known : Numbered.t meaning) (l : literal) : option signed :=
+  match Numbered.find (Z.abs l) known with
+  | Some m => if l =? 0 then None else Some (0 <? l, m)
+  | None => None
+  end.
+
+Fixpoint read_clause (known : Numbered.t meaning) (c : clause) : list signed :=
+  match c with
+  | [] => []
+  | l :: rest =>
+      match read_literal known l with Some s => s :: read_clause known rest | None => read_clause known rest end
+  end.
+
+Fixpoint all_justified (total : option Z) (known : Numbered.t meaning) (f : list clause) (why : list reason) : bool :=
+  match f, why with
+  | [], _ => true
+  | c :: f', r :: why' =>
+      if justified total (read_clause known c) r then all_justified total known f' why' else false
+  | _ :: _, [] => false
+  end.
+
+End Checker.
+
+(** Every clause of the formula is kept by every lawful solution that plans every robot and costs less than the total,
+    or by every one, if no total is given. *)
+Definition blueprint_accepted (i : instance) (total : option Z) (b : blueprint) : bool :=
+  let w := tables_of i b in
+  (length (guides b) =? length (robots i))%nat &&
+  forallb (guide_accepted w (resource_ids i)) (crew w) &&
+  all_justified w total (meanings b) (formula b) (reasons b).
+
+Definition total_refuted (i : instance) (total : option Z) (b : blueprint) (lines : list (list word)) : bool :=
+  blueprint_accepted i total b && refutes (formula b) lines.

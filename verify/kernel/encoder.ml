@@ -1,0 +1,366 @@
+(* Builds the formula of plans that cost less than a total, clause for clause as carp_verify.encoding does, and gives the
+   meaning of each variable and the reason of each clause. Nothing here is trusted: the kernel checks every reason. *)
+
+open Formula
+
+(* The horizon of each robot and the order in which delays are added up; the robots' positions are their ids. *)
+type evidence = { horizons : int list; order : int list }
+
+exception Too_large
+exception No_way of Law.robot
+
+let most_clauses = 5_000_000
+
+(* Clauses and variables in the order in which they were added, the last one first. *)
+type draft = {
+  mutable clauses : Z.t list list;
+  mutable reasons : reason list;
+  mutable count : int;
+  mutable meanings : meaning Refutation.Numbered.t;
+  mutable variables : int;
+}
+
+let require draft more = if draft.count + more > most_clauses then raise Too_large
+
+let add draft reason literals =
+  require draft 1;
+  draft.count <- draft.count + 1;
+  draft.reasons <- reason :: draft.reasons;
+  draft.clauses <- List.map Z.of_int literals :: draft.clauses
+
+let variable draft meaning =
+  draft.variables <- draft.variables + 1;
+  draft.meanings <- Refutation.Numbered.add (Z.of_int draft.variables) meaning draft.meanings;
+  draft.variables
+
+(* ---- One robot ---- *)
+
+(* The robot's horizon, its variables of nodes (resource, tick) and of costs, and the ticks of its nodes by resource. *)
+type clerk = {
+  robot : Law.robot;
+  guide : guide;
+  takes : Z.t -> Z.t;
+  parks : bool;
+  onwards : Z.t -> Z.t list;
+  backwards : Z.t -> Z.t list;
+  node : (Z.t * Z.t, int) Hashtbl.t;
+  mutable nodes : (Z.t * Z.t) list; (* the last one first *)
+  ticks : (Z.t, Z.t list) Hashtbl.t; (* increasing *)
+  late : (int, int) Hashtbl.t;
+  mutable horizon : int;
+  mutable unfinished : (Z.t * Z.t) list;
+}
+
+let rest clerk place = Collections.Map.find place clerk.guide.rests
+let earliest clerk = Z.add clerk.robot.release clerk.guide.shortest
+let least_delay clerk (place, tick) = Z.sub (Z.add tick (Option.get (rest clerk place))) (earliest clerk)
+let later_than clerk delay = Hashtbl.find clerk.late (if Z.gt delay (Z.of_int clerk.horizon) then clerk.horizon else Z.to_int delay)
+let stands_still clerk = Z.equal clerk.robot.start clerk.robot.goal && not clerk.parks
+let first_node clerk = (clerk.robot.start, Z.add clerk.robot.release (clerk.takes clerk.robot.start))
+
+let leads_to clerk (place, tick) =
+  let is_open target = rest clerk target <> None && (clerk.parks || not (Z.equal target clerk.robot.goal)) in
+  let entered target = (target, Z.add tick (clerk.takes target)) in
+  (place, Z.succ tick) :: List.map entered (List.filter is_open (clerk.onwards place))
+
+let known_nodes clerk = List.filter_map (Hashtbl.find_opt clerk.node)
+
+let rec insert tick = function
+  | earlier :: later when Z.lt earlier tick -> earlier :: insert tick later
+  | later -> tick :: later
+
+let add_variable_of_node draft clerk (place, tick) meaning =
+  Hashtbl.add clerk.node (place, tick) (variable draft meaning);
+  clerk.nodes <- (place, tick) :: clerk.nodes;
+  Hashtbl.replace clerk.ticks place (insert tick (Option.value ~default:[] (Hashtbl.find_opt clerk.ticks place)))
+
+(* Add the nodes whose least delay is the horizon, and give them in order. *)
+let add_nodes draft clerk =
+  let id = clerk.robot.robot_id and added = Queue.create () in
+  let add_node ((place, tick) as node) =
+    if not (Hashtbl.mem clerk.node node) then (
+      add_variable_of_node draft clerk node (Free (id, place, tick));
+      Queue.add node added)
+  in
+  let is_near node = Z.leq (least_delay clerk node) (Z.of_int clerk.horizon) in
+  let add_following node = List.iter add_node (List.filter is_near (leads_to clerk node)) in
+  let first = first_node clerk in
+  if rest clerk clerk.robot.start <> None && Z.equal (least_delay clerk first) (Z.of_int clerk.horizon) then (
+    add_node first;
+    let at_goal = if Z.equal clerk.robot.start clerk.robot.goal then [ -Hashtbl.find clerk.late 0 ] else [] in
+    add draft (Starts id) (at_goal @ [ Hashtbl.find clerk.node first ]));
+  List.iter add_following clerk.unfinished;
+  let rec follow done_ =
+    match Queue.take_opt added with
+    | None -> List.rev done_
+    | Some node -> add_following node; follow (node :: done_)
+  in
+  follow []
+
+let pass draft clerk ((place, tick) as node) =
+  let delay = least_delay clerk node in
+  if Z.sign delay > 0 then
+    add draft
+      (Passes (clerk.robot.robot_id, place, tick))
+      [ -Hashtbl.find clerk.node node; Hashtbl.find clerk.late (Z.to_int delay - 1) ]
+
+let come_from draft clerk ((place, tick) as node) =
+  if node <> first_node clerk then
+    let entered = Z.sub tick (clerk.takes place) in
+    let sources = (place, Z.pred tick) :: List.map (fun source -> (source, entered)) (clerk.backwards place) in
+    add draft
+      (Waited_or_moved (clerk.robot.robot_id, place, tick))
+      (-Hashtbl.find clerk.node node :: known_nodes clerk sources)
+
+(* Whether all nodes that follow exist. *)
+let go_on draft clerk ((place, tick) as node) =
+  let following = leads_to clerk node in
+  let ways = known_nodes clerk following in
+  let complete = List.length ways = List.length following in
+  let arrives = List.exists (Z.equal clerk.robot.goal) (clerk.onwards place) in
+  let arrival = if arrives then [ -later_than clerk (Z.sub tick (earliest clerk)) ] else [] in
+  let beyond = if complete then [] else [ Hashtbl.find clerk.late clerk.horizon ] in
+  add draft
+    (Waits_moves_or_arrives (clerk.robot.robot_id, place, tick))
+    ((-Hashtbl.find clerk.node node :: ways) @ arrival @ beyond);
+  complete
+
+let arrive_at_horizon draft clerk =
+  let cost = Z.add clerk.guide.shortest (Z.of_int clerk.horizon) in
+  if not (Z.equal clerk.robot.start clerk.robot.goal && clerk.horizon = 0) then
+    let earlier = if clerk.horizon > 0 then [ -Hashtbl.find clerk.late (clerk.horizon - 1) ] else [] in
+    let tick = Z.add clerk.robot.release cost in
+    let sources = known_nodes clerk (List.map (fun source -> (source, tick)) (clerk.backwards clerk.robot.goal)) in
+    add draft (Arrives (clerk.robot.robot_id, cost)) (earlier @ (Hashtbl.find clerk.late clerk.horizon :: sources))
+
+(* Raise the horizon by a tick of delay. *)
+let grow draft clerk =
+  let id = clerk.robot.robot_id in
+  clerk.horizon <- clerk.horizon + 1;
+  let cost = Z.add clerk.guide.shortest (Z.of_int clerk.horizon) in
+  Hashtbl.add clerk.late clerk.horizon (variable draft (Costs (id, Z.succ cost)));
+  if clerk.horizon > 0 then
+    add draft (Costs_one_way (id, cost))
+      [ -Hashtbl.find clerk.late clerk.horizon; Hashtbl.find clerk.late (clerk.horizon - 1) ];
+  if stands_still clerk then (
+    if clerk.horizon = 0 then (
+      let first = first_node clerk in
+      add_variable_of_node draft clerk first (Stands id);
+      add draft Stands_there [ Hashtbl.find clerk.node first ];
+      add draft (Starts id) [ -Hashtbl.find clerk.late 0 ]))
+  else (
+    let added = add_nodes draft clerk in
+    List.iter (fun node -> pass draft clerk node; come_from draft clerk node) added;
+    clerk.unfinished <- List.filter (fun node -> not (go_on draft clerk node)) (clerk.unfinished @ added);
+    arrive_at_horizon draft clerk)
+
+(* The alternatives that put the robot into the resource at the tick: each is literals that hold together. *)
+let stays clerk place tick =
+  let duration = clerk.takes place in
+  let until = Z.add tick duration in
+  let ticks = Option.value ~default:[] (Hashtbl.find_opt clerk.ticks place) in
+  let held = List.filter (fun each -> Z.gt each tick && Z.leq each until) ticks in
+  let nodes = List.map (fun each -> [ Hashtbl.find clerk.node (place, each) ]) held in
+  let delay = Z.sub tick (earliest clerk) in
+  if Z.equal place clerk.robot.goal && Z.sign delay >= 0 && not (stands_still clerk) then
+    let left = Z.sub delay duration in
+    if clerk.parks || Z.sign left < 0 then nodes @ [ [ -later_than clerk delay ] ]
+    else if Z.lt left (Z.of_int clerk.horizon) then nodes @ [ [ -later_than clerk delay; later_than clerk left ] ]
+    else nodes
+  else nodes
+
+(* ---- Sums of unary numbers: the range of the robots that are counted, and a literal for each least number ---- *)
+
+type number = { first : Z.t; end_ : Z.t; least : int list }
+
+let rec up_to most = function x :: rest when most > 0 -> x :: up_to (most - 1) rest | _ -> []
+
+(* [meaning first end_ least] is that of a variable. *)
+let sum draft reason meaning most left right =
+  let lefts = Array.of_list left.least and rights = Array.of_list right.least in
+  let wide = Array.length lefts + Array.length rights in
+  require draft (Array.length lefts * Array.length rights);
+  let first = left.first and end_ = right.end_ in
+  let total = Array.init (min wide most) (fun k -> variable draft (meaning first end_ (Z.of_int (k + 1)))) in
+  Array.iteri (fun k larger -> if k > 0 then add draft reason [ -larger; total.(k - 1) ]) total;
+  for i = 0 to Array.length lefts do
+    for j = 0 to Array.length rights do
+      if i + j > 0 then
+        let premise numbers k = if k > 0 then [ -numbers.(k - 1) ] else [] in
+        add draft reason (premise lefts i @ premise rights j @ [ total.(min (i + j) most - 1) ])
+    done
+  done;
+  { first; end_; least = Array.to_list total }
+
+let at_least draft reason meaning addends most =
+  let rec halve = function
+    | left :: right :: rest -> let both = sum draft reason meaning most left right in both :: halve rest
+    | rest -> rest
+  in
+  let rec all = function [] -> [] | [ number ] -> number.least | numbers -> all (halve numbers) in
+  all (List.map (fun number -> { number with least = up_to most number.least }) addends)
+
+(* ---- All robots ---- *)
+
+type encoding = { draft : draft; clerks : clerk array; presences : (int * Z.t * Z.t, int) Hashtbl.t }
+
+(* A literal that holds if the robot is in the resource at the tick, if it can be there. *)
+let presence { draft; clerks; presences } position place tick =
+  match stays clerks.(position) place tick with
+  | [] -> None
+  | [ [ literal ] ] -> Some literal
+  | alternatives -> (
+      let key = (position, place, tick) in
+      match Hashtbl.find_opt presences key with
+      | Some literal -> Some literal
+      | None ->
+          let literal = variable draft (Present (Z.of_int position, place, tick)) in
+          Hashtbl.add presences key literal;
+          let imply stay = add draft (Is_there (Z.of_int position, place, tick)) (List.map ( ~- ) stay @ [ literal ]) in
+          List.iter imply alternatives;
+          Some literal)
+
+let visitors { clerks; _ } place =
+  let may_visit position =
+    Z.equal place clerks.(position).robot.goal || Hashtbl.mem clerks.(position).ticks place
+  in
+  List.filter may_visit (List.init (Array.length clerks) Fun.id)
+
+let forbid_crowd ({ draft; _ } as encoding) capacity (place, tick) =
+  let present position = Option.map (fun literal -> (position, literal)) (presence encoding position place tick) in
+  let literals = List.filter_map present (visitors encoding place) in
+  if Z.equal capacity Z.one then
+    let rec pairs before = function
+      | [] -> ()
+      | (position, literal) :: rest ->
+          let pair (other, known) =
+            add draft (Are_two (Z.of_int other, Z.of_int position, place, tick)) [ -known; -literal ]
+          in
+          List.iter pair (List.rev before);
+          pairs ((position, literal) :: before) rest
+    in
+    pairs [] literals
+  else if Z.gt (Z.of_int (List.length literals)) capacity then
+    let one (position, literal) =
+      { first = Z.of_int position; end_ = Z.of_int (position + 1); least = [ literal ] }
+    in
+    let meaning first end_ least = Crowded (first, end_, place, tick, least) in
+    let counted = at_least draft (Adds_robots (place, tick)) meaning (List.map one literals) (Z.to_int capacity + 1) in
+    add draft Is_full [ -List.nth counted (Z.to_int capacity) ]
+
+let forbid_exchange ({ draft; clerks; _ } as encoding) source target tick =
+  let moves source target position =
+    match Hashtbl.find_opt clerks.(position).node (source, tick) with
+    | None -> None
+    | Some leaves -> Option.map (fun enters -> (position, [ leaves; enters ])) (presence encoding position target tick)
+  in
+  let there = List.filter_map (moves source target) (visitors encoding source) in
+  let back = List.filter_map (moves target source) (visitors encoding target) in
+  let clash (one, first) (other, second) =
+    if one <> other then
+      add draft
+        (Exchange (Z.of_int one, Z.of_int other, source, target, tick))
+        (List.map ( ~- ) (first @ second))
+  in
+  List.iter (fun mover -> List.iter (clash mover) back) there
+
+(* The resources and ticks at which the robot may enter, in the order of its nodes. *)
+let entries clerk =
+  let entered (place, tick) = (place, Z.sub tick (clerk.takes place)) in
+  let arrival delay = (clerk.robot.goal, Z.add (earliest clerk) (Z.of_int delay)) in
+  let arrivals = if stands_still clerk then [] else List.init (clerk.horizon + 1) arrival in
+  List.rev_append (List.rev_map entered (List.rev clerk.nodes)) arrivals
+
+let without_repetition items =
+  let met = Hashtbl.create 1024 in
+  let is_new item = if Hashtbl.mem met item then false else (Hashtbl.add met item (); true) in
+  List.filter is_new items
+
+let forbid_all ({ clerks; _ } as encoding) capacity =
+  let all = Array.to_list clerks in
+  let crowds = without_repetition (List.concat_map entries all) in
+  let movers = Hashtbl.create 1024 and moves = ref [] in
+  let note position clerk (source, tick) =
+    let try_move target =
+      if stays clerk target tick <> [] then (
+        let key = (tick, source, target) in
+        if not (Hashtbl.mem movers key) then moves := key :: !moves;
+        Hashtbl.replace movers key (position :: Option.value ~default:[] (Hashtbl.find_opt movers key)))
+    in
+    List.iter try_move (clerk.onwards source)
+  in
+  Array.iteri (fun position clerk -> List.iter (note position clerk) (List.rev clerk.nodes)) clerks;
+  List.iter (fun (place, tick) -> forbid_crowd encoding (capacity place) (place, tick)) crowds;
+  let exchange ((tick, source, target) as key) =
+    match Hashtbl.find_opt movers (tick, target, source) with
+    | Some back when Z.lt source target ->
+        if List.length (List.sort_uniq compare (Hashtbl.find movers key @ back)) > 1 then
+          forbid_exchange encoding source target tick
+    | _ -> ()
+  in
+  List.iter exchange (List.rev !moves)
+
+let bound_delays { draft; clerks; _ } total order =
+  let shortest = Array.fold_left (fun sum clerk -> Z.add sum clerk.guide.shortest) Z.zero clerks in
+  let bound = Z.sub total shortest in
+  if Z.sign bound <= 0 then add draft Is_cheaper []
+  else
+    let most = if Z.fits_int bound then Z.to_int bound else max_int in
+    let late position =
+      let { guide; late; horizon; _ } = clerks.(position) in
+      { first = guide.rank; end_ = Z.succ guide.rank; least = List.init (horizon + 1) (Hashtbl.find late) }
+    in
+    let meaning first end_ least = Delayed (first, end_, least) in
+    let delays = at_least draft Adds_delays meaning (List.map late order) most in
+    if List.length delays >= most then add draft Is_cheaper [ -List.nth delays (most - 1) ]
+
+(* ---- Guides ---- *)
+
+(* The least tick at which the robot is free to leave a resource from which it can get to its goal: Dijkstra. *)
+let first_ticks (a : Law.robot) takes onwards is_open =
+  let rec settle firsts queue =
+    match Search.Queue.min_elt_opt queue with
+    | None -> firsts
+    | Some ((tick, place) as first) ->
+        let queue = Search.Queue.remove first queue in
+        if Collections.Map.mem place firsts then settle firsts queue
+        else
+          let enter queue s = if is_open s then Search.Queue.add (Z.add tick (takes s), s) queue else queue in
+          settle (Collections.Map.add place tick firsts) (List.fold_left enter queue (onwards place))
+  in
+  settle Collections.Map.empty (Search.Queue.singleton (Z.add a.release (takes a.start), a.start))
+
+let clerk_of (instance : Law.instance) table (onward, backward) ranks (a : Law.robot) =
+  let takes = Tables.takes_in table a and parks = instance.after_goal = Law.Park in
+  let onwards place = List.sort Z.compare (Search.resources_to onward place) in
+  let backwards place = List.sort Z.compare (Search.resources_to backward place) in
+  let rests = Search.ticks_after takes backward a.goal in
+  let is_open s = Hashtbl.mem rests s && (parks || not (Z.equal s a.goal)) in
+  let shortest =
+    if Z.equal a.start a.goal then Z.zero
+    else match Hashtbl.find_opt rests a.start with Some rest -> Z.add (takes a.start) rest | None -> raise (No_way a)
+  in
+  let guide =
+    { rank = Option.value ~default:Z.zero (Hashtbl.find_opt ranks a.robot_id); shortest;
+      rests = Hashtbl.fold Collections.Map.add rests Collections.Map.empty;
+      firsts = first_ticks a takes onwards is_open;
+      leads = Search.way_on takes onward rests a.goal a.start }
+  in
+  { robot = a; guide; takes; parks; onwards; backwards; node = Hashtbl.create 1024; nodes = [];
+    ticks = Hashtbl.create 64; late = Hashtbl.create 64; horizon = -1; unfinished = [] }
+
+(* Raises [No_way] for a robot without a way to its goal, and [Too_large]. *)
+let blueprint (instance : Law.instance) total { horizons; order } =
+  let draft =
+    { clauses = []; reasons = []; count = 0; meanings = Refutation.Numbered.empty; variables = 0 }
+  in
+  let table = Tables.resource_table instance and moves = Search.moves_of instance and ranks = Hashtbl.create 64 in
+  List.iteri (fun rank position -> Hashtbl.replace ranks (Z.of_int position) (Z.of_int rank)) order;
+  let clerks = Array.of_list (List.map (clerk_of instance table moves ranks) instance.robots) in
+  let grow_to clerk horizon = while clerk.horizon < horizon do grow draft clerk done in
+  List.iteri (fun position horizon -> grow_to clerks.(position) horizon) horizons;
+  let encoding = { draft; clerks; presences = Hashtbl.create 1024 } in
+  forbid_all encoding (Tables.room_in table);
+  Option.iter (fun total -> bound_delays encoding total order) total;
+  { guides = Array.to_list (Array.map (fun clerk -> clerk.guide) clerks); meanings = draft.meanings;
+    reasons = List.rev draft.reasons; formula = List.rev draft.clauses }
