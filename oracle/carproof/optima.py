@@ -35,7 +35,7 @@ def optimum_document(best: "Optimum", is_checked: bool = False) -> OptimumDocume
 class ProofDocument(msgspec.Struct, frozen=True):
     """The result of checking a proof: the least cost, or the reason why there are no plans of all robots.
 
-    If nothing is proved, `reason` is why not.
+    If nothing is proved, `reason` is why not. `by` is the proved kernel, if it was demanded.
     """
 
     proved: bool
@@ -44,10 +44,11 @@ class ProofDocument(msgspec.Struct, frozen=True):
     solution: SolutionDocument | None = None
     obstacle: str | None = None
     reason: str | None = None
+    by: str | None = None
 
 
-def proof_document(verified: "Verified", reason: str | None) -> ProofDocument:
+def proof_document(verified: "Verified", reason: str | None, by: str | None) -> ProofDocument:
     """The document of a proof that holds or, with a reason, of one that z3 did not decide."""
     solution = None if verified.solution is None else solution_document(verified.solution)
     claim: Literal["optimum", "unsolvable"] = "unsolvable" if solution is None else "optimum"
-    return ProofDocument(verified.is_decided, claim, verified.cost, solution, verified.obstacle, reason)
+    return ProofDocument(verified.is_decided, claim, verified.cost, solution, verified.obstacle, reason, by)

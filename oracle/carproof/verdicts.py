@@ -1,13 +1,21 @@
-"""Verdicts on certificates as documents, by the checkers in Python or by the proved kernel."""
+"""Verdicts on certificates and proofs, by the checkers in Python or by the proved kernel."""
 
-from carp_spec import Instance, Refusal, Solution
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from carp_spec import Instance, Refusal, Solution, read_instance
 from carp_spec.query_certificates import QueryCertificateDocument
+from carp_verify.bound_rules import ContradictionError
 from carp_verify.bounds import BoundDocument
 from carp_verify.documents import solution_document
-from carp_verify.kernel import UndecidedError, ask, request
+from carp_verify.kernel import UndecidedError, ask, find_program, request
 from carp_verify.kernel import verify_bound as ask_about_bound
+from carp_verify.kernel import verify_proof as ask_about_proof
 from carproof.audit import CHECKER
 from carproof.results import VerifiedBoundDocument, VerifiedQueryDocument
+
+if TYPE_CHECKING:
+    from carp_verify.proof import ProofFiles, Verified
 
 
 def verify_query(
@@ -63,3 +71,38 @@ def _bound_by_kernel(instance: Instance, certificate: BoundDocument) -> Verified
     if answer.accepted:
         return VerifiedBoundDocument(certificate.bound, None, None, None, answer.by, answer.assumed)
     return VerifiedBoundDocument(None, answer.path, answer.rule, answer.message, answer.by)
+
+
+def verify_proof(folder: Path, instance: Instance | None, kernel: bool) -> "tuple[Verified, str | None]":
+    """Verify a proof directory; also the name of the kernel that proves it too, which is asked where it is built.
+
+    Raises `ProofError`, `ContradictionError` if the kernel decides otherwise, and if the kernel is demanded also
+    `Refusal` if it is not there or knows no such claim, and `UndecidedError`.
+    """
+    from carp_verify.proof import read_proof  # noqa: PLC0415 - loads the encoder
+    from carp_verify.proof import verify_proof as verify  # noqa: PLC0415
+
+    proof = read_proof(folder)
+    verified = verify(proof, instance)
+    if not kernel and find_program() is None:
+        return verified, None
+    try:
+        return verified, _proof_by_kernel(proof, verified)
+    except (Refusal, UndecidedError):
+        if kernel:
+            raise
+        return verified, None
+
+
+def _proof_by_kernel(proof: "ProofFiles", verified: "Verified") -> str:
+    """The kernel's name, if its formula of a smaller total is refuted and it finds the plans lawful."""
+    names = ("instance.json", "manifest.json", "beat.lrat")
+    answer = ask_about_proof({name: proof.contents[name] for name in names if name in proof.contents})
+    if (answer.accepted, answer.bound) != (True, verified.cost):
+        raise ContradictionError(f"{CHECKER} and {answer.by} differ: {answer.message or answer.bound}")
+    if verified.solution is not None:
+        instance = read_instance(proof.contents["instance.json"])
+        (judged,) = ask([request("check", instance, solution=solution_document(verified.solution))])
+        if (judged.accepted, judged.cost, judged.unplanned) != (True, verified.cost, 0):
+            raise ContradictionError(f"{CHECKER} and {judged.by} differ: {judged.message or judged.cost}")
+    return answer.by

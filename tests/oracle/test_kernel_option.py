@@ -7,6 +7,7 @@ from pathlib import Path
 import msgspec
 import pytest
 from tests.oracle.running import EAST, TWO, TWO_PLANNED, Outcome, Run, corridor, line, save, solution
+from tests.oracle.test_optimum import UNSOLVABLE
 from tests.verify.kernel_program import program
 from tests.verify.test_bound import crossing, cut_certificate
 
@@ -26,8 +27,9 @@ for line in sys.stdin:
 
 @pytest.fixture(autouse=True)
 def _certificates(folder: Path, carproof: Run) -> None:
-    """Certificates of a query and of a bound."""
+    """Certificates of a query, of a bound and of an optimum."""
     del folder
+    carproof("optimum town.json --proof proof")
     carproof("query town.json plans.json r1 --certificate query.json")
     carproof("bound town.json --steps 3 -o bound.json")
 
@@ -44,6 +46,7 @@ def stand_in(monkeypatch: pytest.MonkeyPatch, **answer: object) -> None:
 COMMANDS = [
     "check town.json plans.json --kernel",
     "audit town.json plans.json --kernel",
+    "verify-proof proof --kernel",
     "verify-query town.json plans.json query.json --kernel",
     "verify-bound town.json bound.json --kernel",
 ]
@@ -53,7 +56,7 @@ COMMANDS = [
 def test_what_the_kernel_accepts_is_accepted_in_its_name(
     carproof: Run, monkeypatch: pytest.MonkeyPatch, command: str
 ) -> None:
-    stand_in(monkeypatch, verdict="accepted", cost=5, unplanned=0)
+    stand_in(monkeypatch, verdict="accepted", cost=5, unplanned=0, bound=5)
     outcome = carproof(command)
     assert (outcome.code, outcome.stderr) == (0, "")
     assert f"{PROGRAM} 7" in outcome.stdout
@@ -61,7 +64,7 @@ def test_what_the_kernel_accepts_is_accepted_in_its_name(
     assert "7" in document.get("by", document.get("kernel"))
 
 
-@pytest.mark.parametrize("command", COMMANDS[2:])
+@pytest.mark.parametrize("command", COMMANDS[3:])
 def test_what_the_kernel_refuses_is_refused(carproof: Run, monkeypatch: pytest.MonkeyPatch, command: str) -> None:
     stand_in(monkeypatch, verdict="refused", rule="some/rule", message="it is wrong")
     assert carproof(command) == Outcome(1, "not proved: $: it is wrong [some/rule]\n", "")
@@ -94,12 +97,12 @@ def test_without_a_kernel_one_sentence_says_how_to_build_it(
     assert outcome.stderr.startswith(f"Error: --kernel: there is no program {PROGRAM}; `make kernel` builds it, with")
     monkeypatch.setenv(VARIABLE, str(folder / "elsewhere"))
     assert carproof(command).code == 2
-    stand_in(monkeypatch, verdict="accepted", cost=5, unplanned=0)
+    stand_in(monkeypatch, verdict="accepted", cost=5, unplanned=0, bound=5)
     monkeypatch.delenv(VARIABLE)
     assert carproof(command).code == 0, "the program is on the PATH"
 
 
-@pytest.mark.parametrize("command", ["check town.json plans.json", "check town.json broken.json", COMMANDS[1]])
+@pytest.mark.parametrize("command", ["check town.json plans.json", "check town.json broken.json", *COMMANDS[1:3]])
 def test_a_kernel_that_differs_is_a_contradiction(carproof: Run, monkeypatch: pytest.MonkeyPatch, command: str) -> None:
     if "broken" in command:
         stand_in(monkeypatch, verdict="accepted", cost=6, unplanned=0)
@@ -120,8 +123,44 @@ def test_a_refusal_that_the_kernel_shares_is_shown_with_the_violations_of_the_sp
     assert outcome.stdout.endswith(f"decided by {PROGRAM} 7\n")
 
 
+@pytest.mark.parametrize(
+    "answer", [{"bound": 6, "cost": 5}, {"bound": 5, "cost": 4}, {"bound": 5, "cost": 5, "unplanned": 1}]
+)
+def test_a_kernel_that_proves_something_else_is_a_contradiction(
+    carproof: Run, monkeypatch: pytest.MonkeyPatch, answer: dict[str, int]
+) -> None:
+    stand_in(monkeypatch, verdict="accepted", **{"unplanned": 0, **answer})
+    outcome = carproof("verify-proof proof")
+    assert (outcome.code, "Internal contradiction: " in outcome.stderr) == (70, True)
+
+
+def test_a_proof_is_verified_without_a_kernel_that_cannot_decide(
+    carproof: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stand_in(monkeypatch, verdict="undecided", message="too large")
+    decided = carproof("verify-proof proof")
+    assert (decided.code, decided.stderr, "decided by" in decided.stdout) == (0, "", False)
+    monkeypatch.setenv(VARIABLE, "nowhere")
+    assert carproof("verify-proof proof") == decided
+
+
+def test_the_kernel_proves_an_optimum_and_no_obstacle_but_clauses(
+    carproof: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(VARIABLE, program())
+    outcome = carproof("verify-proof proof --kernel")
+    assert (outcome.code, outcome.stdout.splitlines()[-1]) == (0, f"decided by {PROGRAM} 1")
+    document = json.loads(carproof("verify-proof proof --kernel --json").stdout)
+    assert (document["proved"], document["cost"], document["by"]) == (True, 5, f"{PROGRAM} 1")
+    save(lane=UNSOLVABLE)
+    carproof("optimum lane.json --proof lane")
+    assert carproof("verify-proof lane").code == 0
+    outcome = carproof("verify-proof lane --kernel")
+    assert (outcome.code, "the obstacle must be clauses" in outcome.stderr) == (2, True)
+
+
 def test_certificates_of_queries_are_written_and_verified(carproof: Run) -> None:
-    verified = carproof(COMMANDS[2].removesuffix(" --kernel"))
+    verified = carproof(COMMANDS[3].removesuffix(" --kernel"))
     assert (verified.code, verified.stderr) == (0, "")
     assert verified.stdout.splitlines()[-1].split() == ["r1", "0", "2", "0", "carp_verify"]
     certificate = json.loads(Path("query.json").read_text())
@@ -168,13 +207,13 @@ def test_a_bound_with_cuts_is_verified_by_the_kernel_and_the_assumptions_are_nam
     certificate = cut_certificate()
     (folder / "town.json").write_bytes(write_instance(crossing()))
     (folder / "bound.json").write_bytes(write(certificate))
-    outcome = carproof(COMMANDS[3])
+    outcome = carproof(COMMANDS[-1])
     assert (outcome.code, outcome.stderr) == (0, "")
     assert outcome.stdout.count("assumed: the formula given says") == len(certificate.cuts) > 0
-    document = json.loads(carproof(COMMANDS[3], "--json").stdout)
+    document = json.loads(carproof(COMMANDS[-1], "--json").stdout)
     assert (document["bound"], len(document["assumed"])) == (certificate.bound, len(certificate.cuts))
     cuts = (msgspec.structs.replace(certificate.cuts[0], refutation=""), *certificate.cuts[1:])
     (folder / "bound.json").write_bytes(write(msgspec.structs.replace(certificate, cuts=cuts)))
-    outcome = carproof(COMMANDS[3])
+    outcome = carproof(COMMANDS[-1])
     assert (outcome.code, outcome.stdout) == (3, "")
     assert "the refutation of cut 0 does not hold" in outcome.stderr

@@ -55,7 +55,7 @@ def test_that_robots_cannot_all_be_planned_is_found_and_with_a_proof_proved(carp
     outcome = carproof("verify-proof proof --instance lane.json")
     assert (outcome.code, outcome.stdout) == (0, f"proved: the robots cannot all be planned: {obstacle}\n")
     proved = {"proved": True, "claim": "unsolvable", "obstacle": obstacle}
-    assert document_of(carproof, "verify-proof proof") == dict.fromkeys(("cost", "solution", "reason")) | proved
+    assert document_of(carproof, "verify-proof proof") == dict.fromkeys(("cost", "solution", "reason", "by")) | proved
     none = {"cost": None, "lower": 28, "proved": True, "solution": None}
     assert document_of(carproof, "optimum lane.json") == none
 
@@ -93,7 +93,7 @@ def test_a_proof_is_written_and_checked(carproof: Run) -> None:
     assert (outcome.code, outcome.stderr) == (0, "")
     assert outcome.stdout.splitlines()[-1].split() == ["5", "2", "checked", "sat", "unsat"]
     proved = {"proved": True, "claim": "optimum", "cost": 5, "solution": TWO_PLANNED}
-    assert document_of(carproof, "verify-proof proof") == proved | {"obstacle": None, "reason": None}
+    assert document_of(carproof, "verify-proof proof") == proved | {"obstacle": None, "reason": None, "by": None}
 
 
 def test_a_proof_about_which_z3_does_not_answer_is_undecided(carproof: Run, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -77,10 +77,15 @@ class KernelVerdict(msgspec.Struct, frozen=True):
         return self.verdict == "accepted"
 
 
+def find_program() -> str | None:
+    """The kernel's program, if one exists."""
+    built = str(BUILT) if BUILT.is_file() else None
+    return which(os.environ[VARIABLE]) if VARIABLE in os.environ else built or which(PROGRAM)
+
+
 def program() -> str:
     """The kernel's program; raises `Refusal` if none exists."""
-    built = str(BUILT) if BUILT.is_file() else None
-    found = which(os.environ[VARIABLE]) if VARIABLE in os.environ else built or which(PROGRAM)
+    found = find_program()
     if found is None:
         message = (
             f"there is no program {PROGRAM}; `make kernel` builds it, with the Debian packages coq, ocaml, "
@@ -121,6 +126,14 @@ def verify_bound(instance: Instance, certificate: BoundDocument, formulas: Mappi
             (folder / f"{number}.cnf").write_text(formula)
             options += ["--cut-formula", str(number), str(folder / f"{number}.cnf")]
         return _run(["verify-bound", str(folder / "instance.json"), str(folder / "certificate.json"), *options])
+
+
+def verify_proof(files: Mapping[str, bytes]) -> KernelVerdict:
+    """The kernel's answer about a proof directory's instance, manifest and refutation: that no plans cost less."""
+    with TemporaryDirectory() as name:
+        for file, content in files.items():
+            (Path(name) / file).write_bytes(content)
+        return _run(["verify-proof", name])
 
 
 def _run(arguments: Sequence[str]) -> KernelVerdict:

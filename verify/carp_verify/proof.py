@@ -126,19 +126,33 @@ def variables(encoding: Encoding) -> bytes:
     return msgspec.json.format(msgspec.json.encode(robots)) + b"\n"
 
 
-def verify_proof(directory: Path, instance: Instance | None = None) -> Verified:
+@dataclass(frozen=True, slots=True)
+class ProofFiles:
+    """A manifest, and the contents of all files by their names, those beside it with the digests that it gives."""
+
+    manifest: Manifest | UnsolvableManifest
+    contents: Mapping[str, bytes]
+
+
+def read_proof(directory: Path) -> ProofFiles:
+    """The files of a proof directory; raises `ProofError` where one is missing or has another digest."""
+    content = _read_file(directory, "manifest.json")
+    manifest = _manifest(content)
+    return ProofFiles(manifest, {**_read_files(directory, manifest), "manifest.json": content})
+
+
+def verify_proof(proof: Path | ProofFiles, instance: Instance | None = None) -> Verified:
     """Check a proof directory, and that it is about the instance, if one is given.
 
     Raises `ProofError` where it does not prove its claim, and `Refusal` if its instance is malformed.
     """
-    manifest = _read_manifest(directory)
-    files = _read_files(directory, manifest)
-    proved = read_instance(files["instance.json"])
+    read = proof if isinstance(proof, ProofFiles) else read_proof(proof)
+    proved = read_instance(read.contents["instance.json"])
     if instance is not None and write_instance(instance) != write_instance(proved):
         raise ProofError("instance.json", "it is another instance than the one given")
-    if isinstance(manifest, UnsolvableManifest):
-        return _verify_obstacle(proved, manifest.obstacle, files)
-    return _verify_optimum(proved, manifest, files)
+    if isinstance(read.manifest, UnsolvableManifest):
+        return _verify_obstacle(proved, read.manifest.obstacle, read.contents)
+    return _verify_optimum(proved, read.manifest, read.contents)
 
 
 def _verify_obstacle(instance: Instance, obstacle: Obstacle, files: Mapping[str, bytes]) -> Verified:
@@ -162,8 +176,7 @@ def _verify_optimum(instance: Instance, manifest: Manifest, files: Mapping[str, 
     return Verified(manifest.cost, solution, None, *answers)
 
 
-def _read_manifest(directory: Path) -> Manifest | UnsolvableManifest:
-    content = _read_file(directory, "manifest.json")
+def _manifest(content: bytes) -> Manifest | UnsolvableManifest:
     if has_format(content, OLD_FORMAT):
         reason = f"{OLD_FORMAT} has a refutation without hints, which is not accepted; write the proof again"
         raise ProofError("manifest.json", reason)

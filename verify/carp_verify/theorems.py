@@ -151,6 +151,24 @@ THEOREMS = (
         "a formula with an accepted refutation is false, whatever its variables are",
     ),
     Theorem(
+        "Total",
+        "justified_clause_is_kept",
+        "a lawful solution that costs less than a total keeps each clause of its formula",
+        ("cost/total", "joint/capacity", "joint/exchange"),
+    ),
+    Theorem(
+        "Total",
+        "refuted_total_is_impossible",
+        "no lawful solution that plans every plannable robot costs less than a total whose formula is refuted",
+        ("cost/total",),
+    ),
+    Theorem(
+        "Total",
+        "refuted_instance_has_no_solution",
+        "no lawful solution plans every plannable robot if the formula of any total is refuted",
+        ("cost/total",),
+    ),
+    Theorem(
         "Execution",
         "order_preserving_execution_is_safe",
         "robots that keep the order of a lawful solution break no joint rule, whatever the delays",

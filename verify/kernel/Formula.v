@@ -1,5 +1,5 @@
-(** The formula of plans that cost less than a total: each clause comes with a reason, and a clause whose reason holds is
-    kept by every lawful solution that costs less. So if the formula has no model, no solution does.
+(** The formula of plans that cost less than a total: each clause comes with a reason, and a clause whose reason holds
+    is kept by every lawful solution that costs less. So if the formula has no model, no solution does.
 
     Who wrote the clauses, and in which order, does not matter. *)
 Require Import ZArith List Bool Lia.
@@ -9,12 +9,18 @@ Open Scope Z_scope.
 
 (** What a variable says of a solution. *)
 Inductive meaning :=
-| Free (id place tick : Z)                 (** the robot is free to leave the resource at the tick *)
-| Costs (id least : Z)                     (** the robot costs at least so much *)
-| Present (id place tick : Z)              (** the robot is in the resource at the tick *)
-| Stands (id : Z)                          (** true: a robot that vanishes at its start is there for its duration *)
-| Delayed (first end_ least : Z)           (** robots whose ranks are in [first, end_) are this late together *)
-| Crowded (first end_ place tick least : Z). (** so many robots with ids in [first, end_) are there *)
+(** The robot is free to leave the resource at the tick. *)
+| Free (id place tick : Z)
+(** The robot costs at least [least]. *)
+| Costs (id least : Z)
+(** The robot is in the resource at the tick. *)
+| Present (id place tick : Z)
+(** True; the clauses use it of a robot that vanishes at its start, where it is for its duration. *)
+| Stands (id : Z)
+(** The robots with ranks in [first, end_) are at least [least] ticks late together. *)
+| Delayed (first end_ least : Z)
+(** At least [least] robots with ids in [first, end_) are in the resource at the tick. *)
+| Crowded (first end_ place tick least : Z).
 
 (** Why a clause holds. *)
 Inductive reason :=
@@ -33,13 +39,13 @@ Inductive reason :=
 | Exchange (one other source target tick : Z)
 | Is_cheaper.
 
-(** What the clauses of a robot rest on: its rank among the delays that are added up, its least cost, the least ticks from
-    leaving a resource to entering the goal, the least tick at which it is free to leave a resource, and resources that
-    lead from its start to its goal. *)
+(** What the clauses of a robot rest on: its rank among the delays that are added up, its least cost, the least ticks
+    from leaving a resource to entering the goal, the least tick at which it is free to leave a resource, and resources
+    that lead from its start to its goal. *)
 Record guide := Guide { rank : Z; shortest : Z; rests : Map.t Z; firsts : Map.t Z; leads : list Z }.
 
-(** A formula with the guides of the robots in the instance's order, the meanings of its variables and the reasons of its
-    clauses. *)
+(** A formula with the guides of the robots in the instance's order, the meanings of its variables and the reasons of
+    its clauses. *)
 Record blueprint := Blueprint {
   guides : list guide;
   meanings : Numbered.t meaning;
@@ -200,7 +206,8 @@ Definition adds (if_false true_if : signed -> option (Z * Z * Z)) (c : list sign
   | _ => false
   end.
 
-Definition room_below (r n : Z) : bool := match Map.find r (places w) with Some x => capacity x <? n | None => false end.
+Definition room_below (r n : Z) : bool :=
+  match Map.find r (places w) with Some x => capacity x <? n | None => false end.
 
 (** The delays of all robots together are below this, if the solution costs less than the total. *)
 Definition delays_below (total : Z) : Z := total - sum (fun m : member => shortest (snd m)) (crew w).

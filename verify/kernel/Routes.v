@@ -15,8 +15,8 @@ Fixpoint until (to : Z) (vs : list visit) : list visit :=
 Lemma until_the_goal to v rest : until to (v :: rest) = if visit_resource v =? to then [v] else v :: until to rest.
 Proof. reflexivity. Qed.
 
-(** What counts of a robot's visits. A robot that vanishes has arrived where it first enters its goal; going on from there
-    only costs more. *)
+(** The visits that count. A robot that vanishes has arrived where it first enters its goal; going on only costs
+    more. *)
 Definition counted (i : instance) (a : robot) (vs : list visit) : list visit :=
   match after_goal i with Vanish => until (goal a) vs | Park => vs end.
 
@@ -228,7 +228,7 @@ Proof.
   cbn [is_free] in F. apply orb_true_iff in F as [F | F]; auto. decided. congruence.
 Qed.
 
-(** Whoever is free to leave a resource has been in it for its duration. *)
+(** A robot that is free to leave a resource has been in it for its duration. *)
 Lemma free_robot_is_inside vs r t u : Route i a vs -> free vs r t = true -> u < t -> t <= u + takes r ->
   inside vs r u = true.
 Proof.
@@ -256,7 +256,7 @@ Proof.
   destruct (after_goal i); reflexivity.
 Qed.
 
-(** Whoever is free to leave one resource and in another at the same tick moves then. *)
+(** A robot that is free to leave one resource and in another at the same tick moves then. *)
 Lemma free_robot_elsewhere_moves vs r s t : Route i a vs -> free vs r t = true -> inside vs s t = true -> r <> s ->
   exists before v w later, vs = before ++ v :: w :: later /\
   visit_resource v = r /\ visit_resource w = s /\ enter w = t.
@@ -290,7 +290,8 @@ Hypothesis rests_are_least : forall r s, Move i r s ->
 Lemma mover_has_a_rest vs : Route i a vs -> forall v w rest, vs = v :: w :: rest ->
   exists x, rest_of (visit_resource v) = Some x /\ enter w + x <= arrives vs.
 Proof.
-  intros H. induction H as [v Hg | v w rest Hp Hn Hm Hw IH]; intros u x later E; [discriminate | injection E as <- <- <-].
+  intros H. induction H as [v Hg | v w rest Hp Hn Hm Hw IH]; intros u x later E; [discriminate |].
+  injection E as <- <- <-.
   destruct (rests_are_least _ _ Hm) as [Last On]. inversion Hw as [u Hg | u y rest' Hp' Hn' Hm' Hw']; subst.
   - destruct (Last Hg) as (x & R & L). exists x. split; auto. unfold arrives. simpl. lia.
   - destruct (IH w y rest' eq_refl) as (z & R & L). destruct (On z R) as (x & R' & L'). exists x. split; auto.

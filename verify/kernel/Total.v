@@ -1,5 +1,5 @@
-(** A refuted total is impossible: the clauses of an accepted blueprint are kept by every lawful solution that plans every
-    robot and costs less than the total. *)
+(** A refuted total is impossible: the clauses of an accepted blueprint are kept by every lawful solution that plans
+    every robot and costs less than the total. *)
 Require Import ZArith List Bool Lia.
 From Carproof Require Import Law Collections Checker Ways Prices Labels Tables Bound Refutation Routes Formula.
 Import ListNotations.
@@ -332,7 +332,7 @@ Qed.
 
 (** * Clauses of robots together *)
 
-(** Whoever is in a resource on its route occupies it. *)
+(** A robot that is in a resource on its route occupies it. *)
 Lemma robot_inside_occupies m r t : In m (crew w) -> is_in i (fst m) (route (fst m)) r t = true ->
   Occupies (plans s) (robot_id (fst m)) r t.
 Proof.
@@ -357,8 +357,8 @@ Lemma range_is_widened key f first end_ first' end' : (forall m, In m (crew w) -
   first' <= first -> end_ <= end' -> ranged key f first end_ <= ranged key f first' end'.
 Proof.
   intros P L K. unfold ranged. apply sum_is_monotone. intros m H. specialize (P m H).
-  destruct (Z.leb_spec first (key m)), (Z.ltb_spec (key m) end_), (Z.leb_spec first' (key m)), (Z.ltb_spec (key m) end');
-    simpl; lia.
+  destruct (Z.leb_spec first (key m)), (Z.ltb_spec (key m) end_), (Z.leb_spec first' (key m)),
+    (Z.ltb_spec (key m) end'); simpl; lia.
 Qed.
 
 Lemma ranges_are_joined key f first middle middle' end_ first' end' : (forall m, In m (crew w) -> 0 <= f m) ->
@@ -374,7 +374,8 @@ Lemma one_is_in_its_range key f m : (forall m, In m (crew w) -> 0 <= f m) -> In 
   f m <= ranged key f (key m) (key m + 1).
 Proof.
   intros P H. unfold ranged.
-  pose proof (sum_is_above_each (fun x => if (key m <=? key x) && (key x <? key m + 1) then f x else 0) (crew w) m) as S.
+  pose proof (sum_is_above_each
+    (fun x => if (key m <=? key x) && (key x <? key m + 1) then f x else 0) (crew w) m) as S.
   cbv beta in S. rewrite Z.leb_refl, (proj2 (Z.ltb_lt (key m) (key m + 1))) in S by lia. simpl in S. apply S; auto.
   intros x Hx. specialize (P x Hx). destruct (_ && _); lia.
 Qed.
@@ -463,10 +464,11 @@ Proof.
     unfold presence at 1. destruct (_ && _), (is_in _ _ _ _ _); simpl length; simpl Z.b2z; lia. }
   rewrite <- (map_length (fun m => robot_id (fst m))) in L. etransitivity; [exact L |].
   apply (room_is_not_exceeded x r t); auto.
-  - pose proof (robot_ids_are_unique i right) as N. unfold robot_ids in N. rewrite <- (crew_is_all i w tabled), map_map in N.
-    unfold here. clear - N. induction (crew w) as [| m l IH]; simpl in *; auto. inversion N as [| ? ? Hn Hd]; subst.
-    destruct (is_in _ _ _ _ _); simpl; auto. constructor; auto. intros H. apply Hn. apply in_map_iff in H as (x & E & H).
-    apply filter_In in H as [H _]. apply in_map_iff. eauto.
+  - pose proof (robot_ids_are_unique i right) as N. unfold robot_ids in N.
+    rewrite <- (crew_is_all i w tabled), map_map in N. unfold here. clear - N.
+    induction (crew w) as [| m l IH]; simpl in *; auto. inversion N as [| ? ? Hn Hd]; subst.
+    destruct (is_in _ _ _ _ _); simpl; auto. constructor; auto. intros H. apply Hn.
+    apply in_map_iff in H as (x & E & H). apply filter_In in H as [H _]. apply in_map_iff. eauto.
   - intros id H. apply in_map_iff in H as (m & <- & H). apply filter_In in H as [H K].
     apply robot_inside_occupies; auto.
 Qed.
@@ -541,8 +543,9 @@ Proof.
     sum (fun m : member => if (first <=? rank (snd m)) && (rank (snd m) <? end_) then delay m else 0) l +
     sum (fun m : member => shortest (snd m)) l <= sum (fun m : member => cost_of_robot i s (robot_id (fst m))) l).
   { unfold sum. induction l as [| m l IH]; cbn [fold_right]; intros Hl; [lia |].
-    specialize (IH (fun x Hx => Hl x (or_intror Hx))). pose proof (Hl m (or_introl eq_refl)) as M. pose proof (route_costs_no_more m M) as C.
-    pose proof (delays_are_not_negative m M) as D. assert (E : delay m + shortest (snd m) <= cost_of_robot i s (robot_id (fst m))) by (unfold delay; lia).
+    specialize (IH (fun x Hx => Hl x (or_intror Hx))). pose proof (Hl m (or_introl eq_refl)) as M.
+    pose proof (route_costs_no_more m M). pose proof (delays_are_not_negative m M).
+    assert (delay m + shortest (snd m) <= cost_of_robot i s (robot_id (fst m))) by (unfold delay; lia).
     destruct (_ && _); lia. }
   specialize (L (crew w) (fun _ H => H)). lia.
 Qed.
@@ -645,7 +648,8 @@ Lemma justified_clauses_are_satisfied total known f : forall why,
   forall c, In c f -> Satisfies (valuation known) c.
 Proof.
   induction f as [| c f IH]; simpl; intros why L H d Hd; [destruct Hd |].
-  destruct why as [| r why]; [discriminate |]. destruct (justified w total (read_clause known c) r) eqn:J; [| discriminate].
+  destruct why as [| r why]; [discriminate |].
+  destruct (justified w total (read_clause known c) r) eqn:J; [| discriminate].
   destruct Hd as [<- | Hd]; [| apply (IH why L H d Hd)].
   apply kept_clause_is_satisfied, (justified_clause_is_kept total _ r L J).
 Qed.
@@ -662,8 +666,8 @@ Proof.
     total (meanings b) (formula b) (reasons b) L J).
 Qed.
 
-(** If the formula of an accepted blueprint of a total is refuted, no lawful solution that plans every robot with a way to
-    its goal costs less. *)
+(** If the formula of an accepted blueprint of a total is refuted, no lawful solution that plans every robot with a way
+    to its goal costs less. *)
 Theorem refuted_total_is_impossible i total b lines s : Well_formed i -> total_refuted i (Some total) b lines = true ->
   Lawful i s -> Plans_every_plannable_robot i s -> total <= total_cost i s.
 Proof.
@@ -671,8 +675,8 @@ Proof.
   apply (refuted_blueprint_has_no_solution i (Some total) b lines s right H lawful complete).
 Qed.
 
-(** If the formula of an accepted blueprint without a total is refuted, no lawful solution plans every robot with a way to
-    its goal. *)
+(** If the formula of an accepted blueprint without a total is refuted, no lawful solution plans every robot with a way
+    to its goal. *)
 Theorem refuted_instance_has_no_solution i b lines s : Well_formed i -> total_refuted i None b lines = true ->
   Lawful i s -> ~ Plans_every_plannable_robot i s.
 Proof.

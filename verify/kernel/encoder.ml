@@ -1,4 +1,4 @@
-(* Builds the formula of plans that cost less than a total, clause for clause as carp_verify.encoding does, and gives the
+(* Builds the formula of plans that cost less than a total, clause for clause as carp_verify.encoding does, with the
    meaning of each variable and the reason of each clause. Nothing here is trusted: the kernel checks every reason. *)
 
 open Formula
@@ -10,6 +10,8 @@ exception Too_large
 exception No_way of Law.robot
 
 let most_clauses = 5_000_000
+
+module Ticks = Set.Make (Z)
 
 (* Clauses and variables in the order in which they were added, the last one first. *)
 type draft = {
@@ -45,7 +47,7 @@ type clerk = {
   backwards : Z.t -> Z.t list;
   node : (Z.t * Z.t, int) Hashtbl.t;
   mutable nodes : (Z.t * Z.t) list; (* the last one first *)
-  ticks : (Z.t, Z.t list) Hashtbl.t; (* increasing *)
+  ticks : (Z.t, Ticks.t) Hashtbl.t;
   late : (int, int) Hashtbl.t;
   mutable horizon : int;
   mutable unfinished : (Z.t * Z.t) list;
@@ -54,7 +56,7 @@ type clerk = {
 let rest clerk place = Collections.Map.find place clerk.guide.rests
 let earliest clerk = Z.add clerk.robot.release clerk.guide.shortest
 let least_delay clerk (place, tick) = Z.sub (Z.add tick (Option.get (rest clerk place))) (earliest clerk)
-let later_than clerk delay = Hashtbl.find clerk.late (if Z.gt delay (Z.of_int clerk.horizon) then clerk.horizon else Z.to_int delay)
+let later_than clerk delay = Hashtbl.find clerk.late (Z.to_int (Z.min delay (Z.of_int clerk.horizon)))
 let stands_still clerk = Z.equal clerk.robot.start clerk.robot.goal && not clerk.parks
 let first_node clerk = (clerk.robot.start, Z.add clerk.robot.release (clerk.takes clerk.robot.start))
 
@@ -65,14 +67,12 @@ let leads_to clerk (place, tick) =
 
 let known_nodes clerk = List.filter_map (Hashtbl.find_opt clerk.node)
 
-let rec insert tick = function
-  | earlier :: later when Z.lt earlier tick -> earlier :: insert tick later
-  | later -> tick :: later
+let ticks_in clerk place = Option.value ~default:Ticks.empty (Hashtbl.find_opt clerk.ticks place)
 
 let add_variable_of_node draft clerk (place, tick) meaning =
   Hashtbl.add clerk.node (place, tick) (variable draft meaning);
   clerk.nodes <- (place, tick) :: clerk.nodes;
-  Hashtbl.replace clerk.ticks place (insert tick (Option.value ~default:[] (Hashtbl.find_opt clerk.ticks place)))
+  Hashtbl.replace clerk.ticks place (Ticks.add tick (ticks_in clerk place))
 
 (* Add the nodes whose least delay is the horizon, and give them in order. *)
 let add_nodes draft clerk =
@@ -157,10 +157,13 @@ let grow draft clerk =
 (* The alternatives that put the robot into the resource at the tick: each is literals that hold together. *)
 let stays clerk place tick =
   let duration = clerk.takes place in
-  let until = Z.add tick duration in
-  let ticks = Option.value ~default:[] (Hashtbl.find_opt clerk.ticks place) in
-  let held = List.filter (fun each -> Z.gt each tick && Z.leq each until) ticks in
-  let nodes = List.map (fun each -> [ Hashtbl.find clerk.node (place, each) ]) held in
+  let rec held ticks =
+    match ticks () with
+    | Seq.Cons (each, later) when Z.leq each (Z.add tick duration) -> each :: held later
+    | _ -> []
+  in
+  let ticks = held (Ticks.to_seq_from (Z.succ tick) (ticks_in clerk place)) in
+  let nodes = List.map (fun each -> [ Hashtbl.find clerk.node (place, each) ]) ticks in
   let delay = Z.sub tick (earliest clerk) in
   if Z.equal place clerk.robot.goal && Z.sign delay >= 0 && not (stands_still clerk) then
     let left = Z.sub delay duration in
@@ -349,7 +352,7 @@ let clerk_of (instance : Law.instance) table (onward, backward) ranks (a : Law.r
   { robot = a; guide; takes; parks; onwards; backwards; node = Hashtbl.create 1024; nodes = [];
     ticks = Hashtbl.create 64; late = Hashtbl.create 64; horizon = -1; unfinished = [] }
 
-(* Raises [No_way] for a robot without a way to its goal, and [Too_large]. *)
+(* The blueprint and the number of its variables. Raises [No_way] where no way leads to a goal, and [Too_large]. *)
 let blueprint (instance : Law.instance) total { horizons; order } =
   let draft =
     { clauses = []; reasons = []; count = 0; meanings = Refutation.Numbered.empty; variables = 0 }
@@ -362,5 +365,6 @@ let blueprint (instance : Law.instance) total { horizons; order } =
   let encoding = { draft; clerks; presences = Hashtbl.create 1024 } in
   forbid_all encoding (Tables.room_in table);
   Option.iter (fun total -> bound_delays encoding total order) total;
-  { guides = Array.to_list (Array.map (fun clerk -> clerk.guide) clerks); meanings = draft.meanings;
-    reasons = List.rev draft.reasons; formula = List.rev draft.clauses }
+  ( { guides = Array.to_list (Array.map (fun clerk -> clerk.guide) clerks); meanings = draft.meanings;
+      reasons = List.rev draft.reasons; formula = List.rev draft.clauses },
+    draft.variables )

@@ -55,10 +55,10 @@ let claim_of_directory directory =
   let instance = instance_of_file (Filename.concat directory "instance.json") in
   (instance, Reading.claim_of_json instance "$" (json_of_file (Filename.concat directory "manifest.json")))
 
-let print_formula formula =
-  let highest = List.fold_left (List.fold_left (fun known literal -> Z.max known (Z.abs literal))) Z.zero formula in
-  Printf.printf "p cnf %s %d\n" (Z.to_string highest) (List.length formula);
-  List.iter (fun literals -> print_string (String.concat " " (List.map Z.to_string literals @ [ "0\n" ]))) formula
+let print_formula ((blueprint : Formula.blueprint), variables) =
+  Printf.printf "p cnf %d %d\n" variables (List.length blueprint.formula);
+  let print_clause literals = print_string (String.concat " " (List.map Z.to_string literals @ [ "0\n" ])) in
+  List.iter print_clause blueprint.formula
 
 (* The formulas of cuts, by their numbers. *)
 let rec cut_formulas = function
@@ -127,15 +127,15 @@ let () =
           let proof = Reading.proof_of_text (contents (Filename.concat directory "beat.lrat")) in
           Verdicts.verify_proof instance claim proof))
   | [ "formula"; directory ] ->
-      let formula = ref None in
+      let made = ref None in
       let ask () =
         let instance, claim = claim_of_directory directory in
         match Verdicts.blueprint instance claim with
         | Error verdict -> verdict
-        | Ok blueprint -> formula := Some blueprint.formula; Verdicts.Accepted []
+        | Ok formula -> made := Some formula; Verdicts.Accepted []
       in
       let answer = answered ask in
-      (match !formula with Some formula -> print_formula formula | None -> print answer)
+      (match !made with Some formula -> print_formula formula | None -> print answer)
   | [ "refute"; formula; proof ] ->
       print (answered (fun () ->
           Verdicts.refute (Reading.formula_of_text (contents formula)) (Reading.proof_of_text (contents proof))))

@@ -107,10 +107,10 @@ let refute formula proof =
 
 (* ---- verify-proof ---- *)
 
-(* The formula that the claim is about, or why none is made. *)
+(* The formula that the claim is about, with the number of its variables, or why none is made. *)
 let blueprint (read : Reading.instance) { Reading.cost; evidence } =
   match Encoder.blueprint read.instance cost evidence with
-  | blueprint -> Ok blueprint
+  | made -> Ok made
   | exception Encoder.No_way a ->
       Error (Refused ("proof/way", "no way leads to the goal of robot " ^ named read a.robot_id))
   | exception Encoder.Too_large ->
@@ -119,7 +119,7 @@ let blueprint (read : Reading.instance) { Reading.cost; evidence } =
 let verify_proof (read : Reading.instance) (claim : Reading.claim) proof =
   match blueprint read claim with
   | Error verdict -> verdict
-  | Ok blueprint ->
+  | Ok (blueprint, _) ->
       if Formula.total_refuted read.instance claim.cost blueprint proof then
         Accepted [ ("bound", Option.fold ~none:`Null ~some:whole claim.cost) ]
       else if Formula.blueprint_accepted read.instance claim.cost blueprint then refute blueprint.formula proof

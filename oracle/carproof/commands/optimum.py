@@ -14,6 +14,7 @@ from carproof.files import print_document, read_instance_file, require_following
 from carproof.optima import optimum_document
 from carproof.options import examples, instance_argument, json_option, limit_option, output_option
 from carproof.tables import print_line, print_table
+from carproof.verdicts import verify_proof
 
 if TYPE_CHECKING:
     from carp_optimum.optimum import Optimum
@@ -86,7 +87,6 @@ def _prove(folder: Path, instance: Instance, best: "Optimum", limit: int) -> boo
     """Write a proof and check it; whether the limits sufficed."""
     from carp_optimum.proving import write_proof  # noqa: PLC0415 - only for those who ask for a proof
     from carp_optimum.solver import TimeOver  # noqa: PLC0415
-    from carp_verify.proof import verify_proof  # noqa: PLC0415 - only for those who ask for a proof
 
     try:
         write_proof(instance, best, folder, limit)
@@ -95,4 +95,5 @@ def _prove(folder: Path, instance: Instance, best: "Optimum", limit: int) -> boo
         return False
     except OSError as error:
         raise click.ClickException(f"{folder}: it cannot be written: {error.strerror}") from error
-    return verify_proof(folder, instance).is_decided
+    verified, _ = verify_proof(folder, instance, kernel=False)
+    return verified.is_decided

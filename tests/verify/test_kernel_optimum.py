@@ -1,0 +1,244 @@
+"""The kernel makes the formula of a total itself, as the encoder in Python does, and each clause has a reason."""
+
+import json
+import subprocess
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from tests.verify.kernel_program import program
+from tests.verify.test_proof import crossing, drop_last_line, prove
+from tests.verify.test_unsolvable import BORN_TOGETHER
+from tests.verify.tiny import case
+
+from carp_optimum.optimum import optimum
+from carp_optimum.proving import refutation, write_proof
+from carp_optimum.solver import Deadline, Solver
+from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot, read_instance, write_instance
+from carp_spec.permutations import shuffle
+from carp_verify.clauses import Formula, dimacs
+from carp_verify.encoding import Encoding, Evidence, beat_formula
+from carp_verify.joint_search import least_total_cost
+from carp_verify.proof import PROOF_FORMAT
+from carp_verify.unsolvable import Clauses
+
+SECONDS = 60
+CASES = 400
+BLOCK = 100
+
+
+def verdict(folder: Path) -> Any:  # noqa: ANN401 - a document of any shape
+    """The kernel's answer about a proof directory."""
+    done = subprocess.run([program(), "verify-proof", folder], capture_output=True, text=True, check=False)
+    return json.loads(done.stdout)
+
+
+def kernel_formula(folder: Path) -> str:
+    """The formula that the kernel makes of a proof directory's claim."""
+    return subprocess.run([program(), "formula", folder], capture_output=True, text=True, check=True).stdout
+
+
+def claim(folder: Path, instance: Instance, cost: int | None, evidence: Evidence, lrat: str = "") -> None:
+    """Write what the kernel reads of a proof directory."""
+    claimed: Mapping[str, object] = {"claim": "optimum", "cost": cost, "order": evidence.order}
+    if cost is None:
+        claimed = {"claim": "unsolvable", "obstacle": {"kind": "clauses", "horizons": evidence.horizons}}
+    else:
+        claimed = {**claimed, "horizons": evidence.horizons}
+    (folder / "instance.json").write_bytes(write_instance(instance))
+    (folder / "manifest.json").write_text(json.dumps({"format": PROOF_FORMAT, "sha256": {}, **claimed}))
+    (folder / "beat.lrat").write_text(lrat)
+
+
+def is_satisfiable(text: str) -> bool:
+    """Whether a formula in DIMACS has a model."""
+    formula = Formula()
+    header, *lines = text.splitlines()
+    formula.variables = int(header.split()[2])
+    for line in lines:
+        formula.add(*map(int, line.split()[:-1]))
+    if () in formula.clauses:
+        return False
+    solver = Solver(formula, Deadline(SECONDS).check)
+    try:
+        return bool(solver.satisfiable([]))
+    finally:
+        solver.close()
+
+
+def faults(folder: Path, number: int) -> Sequence[str]:
+    """The faults of the kernel's formulas of one tiny instance, in words."""
+    drawn = case(number)
+    instance, chance = drawn.instance, drawn.chance
+    encoding = Encoding(instance)
+    if encoding.wayless:
+        return []
+    found = []
+    robots = range(len(instance.robots))
+    least = least_total_cost(instance)
+    bound = (encoding.shortest if least is None else least) + next(chance) % 3
+    reach = bound - encoding.shortest
+    drawn_horizons = tuple(next(chance) % 6 for _ in robots)
+    far_horizons = tuple(reach for _ in robots)
+    for cost, horizons in ((bound, drawn_horizons), (None, drawn_horizons), (bound, far_horizons)):
+        evidence = Evidence(horizons, shuffle(robots, chance) if cost is not None else ())
+        claim(folder, instance, cost, evidence)
+        text = kernel_formula(folder)
+        if text != dimacs(beat_formula(instance, cost, evidence).formula):
+            found.append(f"the formulas of {cost} with {evidence} differ")
+        if verdict(folder)["verdict"] != "refused":
+            found.append(f"a clause of {cost} with {evidence} has no reason, or nothing refutes it")
+        has_model = is_satisfiable(text)
+        if least is not None and (cost is None or least < cost) and not has_model:
+            found.append(f"the formula of less than {cost} has no model, and the least is {least}")
+        if cost is not None and horizons == far_horizons and has_model != (least is not None and least < bound):
+            found.append(f"the formula of less than {cost} has a model: {has_model}, and the least is {least}")
+    return found
+
+
+@pytest.mark.parametrize("first", range(0, CASES, BLOCK))
+def test_formulas_are_those_of_the_encoder_and_have_models_where_plans_are_cheaper(tmp_path: Path, first: int) -> None:
+    found = {number: faults(tmp_path, number) for number in range(first, first + BLOCK)}
+    assert {number: reported for number, reported in found.items() if reported} == {}
+
+
+def proved(instance: Instance, folder: Path) -> Path:
+    """A proof directory, for what is to be claimed of it."""
+    prove(instance, folder)
+    return folder
+
+
+CORNERS: Mapping[str, Instance] = {
+    "vanish": crossing("vanish"),
+    "park": crossing("park"),
+    "releases and paces": replace(
+        crossing(),
+        robots=tuple(replace(robot, release=k, pace=1 + k % 2) for k, robot in enumerate(crossing().robots)),
+    ),
+    "capacity 2 and durations": Instance(
+        ResourceGraph((Resource(0, 1, 3), Resource(1, 2, 2), Resource(2), Resource(3)), ((0, 1), (1, 2), (1, 3))),
+        (Robot("a", 2, 0), Robot("b", 3, 2), Robot("c", 0, 3), Robot("d", 1, 1)),
+    ),
+    "a full resource": Instance(
+        ResourceGraph((Resource(0, 3), Resource(1, 2, 4), Resource(2, 3)), ((0, 1), (1, 2))),
+        tuple(Robot(number, 0, 2) for number in range(3)),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CORNERS)
+def test_a_proof_directory_is_accepted(name: str, tmp_path: Path) -> None:
+    cost = prove(CORNERS[name], tmp_path)
+    assert verdict(tmp_path) == {"kernel": "1", "verdict": "accepted", "bound": cost}
+
+
+def test_that_no_plans_exist_is_accepted(tmp_path: Path) -> None:
+    best = optimum(BORN_TOGETHER, SECONDS)
+    assert best.obstacle == Clauses((0, 0))
+    write_proof(BORN_TOGETHER, best, tmp_path, SECONDS)
+    assert verdict(tmp_path) == {"kernel": "1", "verdict": "accepted", "bound": None}
+    (tmp_path / "beat.lrat").write_text("")
+    assert verdict(tmp_path)["verdict"] == "refused"
+
+
+def raise_cost(folder: Path) -> None:
+    """Claim a tick more than the least."""
+    manifest = json.loads((folder / "manifest.json").read_text())
+    (folder / "manifest.json").write_text(json.dumps({**manifest, "cost": manifest["cost"] + 1}))
+
+
+def free_the_crossing(folder: Path) -> None:
+    """Put the proof beside an instance on which fewer robots meet."""
+    instance = read_instance((folder / "instance.json").read_bytes())
+    robots = tuple(replace(robot, start="2,2") if robot.id == 0 else robot for robot in instance.robots)
+    (folder / "instance.json").write_bytes(write_instance(replace(instance, robots=robots)))
+
+
+def cut_refutation(folder: Path) -> None:
+    text = (folder / "beat.lrat").read_text()
+    (folder / "beat.lrat").write_text(drop_last_line(text))
+
+
+def shorten_horizons(folder: Path) -> None:
+    manifest = json.loads((folder / "manifest.json").read_text())
+    (folder / "manifest.json").write_text(json.dumps({**manifest, "horizons": [0] * len(manifest["horizons"])}))
+
+
+@pytest.mark.parametrize("tamper", [raise_cost, free_the_crossing, cut_refutation, shorten_horizons])
+def test_a_proof_of_something_else_is_refused(tamper: Callable[[Path], None], tmp_path: Path) -> None:
+    folder = proved(crossing(), tmp_path)
+    tamper(folder)
+    answer = verdict(folder)
+    assert (answer["verdict"], answer["rule"]) == ("refused", "refutation")
+
+
+def test_the_formula_on_file_does_not_matter(tmp_path: Path) -> None:
+    folder = proved(crossing(), tmp_path)
+    (folder / "beat.cnf").write_text("p cnf 1 1\n0\n")
+    assert verdict(folder)["verdict"] == "accepted"
+    (folder / "beat.lrat").write_text("2 0 1 0\n")
+    assert verdict(folder)["verdict"] == "refused"
+
+
+def test_no_total_is_proved_of_a_robot_without_a_way(tmp_path: Path) -> None:
+    graph = ResourceGraph((Resource(0), Resource(1)), ((0, 1),), directed=True)
+    claim(tmp_path, Instance(graph, (Robot("a", 1, 0),)), 3, Evidence((0,), (0,)), "2 0 1 0\n")
+    answer = verdict(tmp_path)
+    assert (answer["verdict"], answer["rule"]) == ("refused", "proof/way")
+    assert answer["message"] == "no way leads to the goal of robot a"
+
+
+@pytest.mark.parametrize(
+    ("change", "path"),
+    [
+        ({"horizons": [1, 1, 1]}, "$.horizons"),
+        ({"horizons": [1, 1, 1, -1]}, "$.horizons[3]"),
+        ({"horizons": [1, 1, 1, True]}, "$.horizons[3]"),
+        ({"order": [0, 1, 2, 2]}, "$.order"),
+        ({"order": [0, 1, 2, 3, 4]}, "$.order"),
+        ({"cost": -1}, "$.cost"),
+        ({"cost": "13"}, "$.cost"),
+        ({"claim": "cheap"}, "$.claim"),
+        ({"format": "carproof-proof/1"}, "$.format"),
+        ({"more": 1}, "$"),
+        ({"sha256": 1}, "$.sha256"),
+    ],
+)
+def test_a_manifest_that_makes_no_formula_is_bad_input(change: Mapping[str, object], path: str, tmp_path: Path) -> None:
+    claim(tmp_path, crossing(), 13, Evidence((2, 2, 2, 2), (0, 1, 2, 3)))
+    manifest = json.loads((tmp_path / "manifest.json").read_text())
+    (tmp_path / "manifest.json").write_text(json.dumps({**manifest, **change}))
+    answer = verdict(tmp_path)
+    assert (answer["verdict"], answer["path"]) == ("bad input", path)
+
+
+def test_an_obstacle_without_a_formula_is_bad_input(tmp_path: Path) -> None:
+    instance = crossing()
+    claim(tmp_path, instance, 13, Evidence((2, 2, 2, 2), (0, 1, 2, 3)))
+    obstacle = {"claim": "unsolvable", "obstacle": {"kind": "no-way", "robot": 0}, "sha256": {}, "format": PROOF_FORMAT}
+    (tmp_path / "manifest.json").write_text(json.dumps(obstacle))
+    answer = verdict(tmp_path)
+    assert (answer["verdict"], answer["path"], answer["rule"]) == ("bad input", "$.obstacle.kind", "limit/obstacle")
+
+
+def test_a_formula_beyond_the_limit_is_not_made(tmp_path: Path) -> None:
+    graph = ResourceGraph((Resource(0), Resource(1)), ((0, 1),))
+    robots = (Robot("a", 0, 1), Robot("b", 1, 0))
+    claim(tmp_path, Instance(graph, robots), 10**30, Evidence((2_300, 2_300), (0, 1)))
+    answer = verdict(tmp_path)
+    assert (answer["verdict"], answer["message"]) == (
+        "undecided",
+        "the formula would have more than 5000000 clauses, the limit",
+    )
+
+
+@pytest.mark.parametrize("after_goal", ["vanish", "park"])
+def test_a_large_duration_or_capacity_is_no_obstacle(after_goal: AfterGoal, tmp_path: Path) -> None:
+    graph = ResourceGraph((Resource(0, 10**30), Resource(1, 1, 10**15), Resource(2, 10**30)), ((0, 1), (1, 2)))
+    instance = Instance(graph, (Robot("a", 0, 2), Robot("b", 0, 2, release=10**15 - 1)), after_goal)
+    least, evidence = 2 * (10**15 + 1) + 1, Evidence((1, 1), (0, 1))
+    lrat = refutation(beat_formula(instance, least, evidence).formula, Deadline(SECONDS))
+    claim(tmp_path, instance, least, evidence, lrat)
+    assert verdict(tmp_path) == {"kernel": "1", "verdict": "accepted", "bound": least}
