@@ -3,11 +3,11 @@
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from carp_spec import Instance, Refusal, Solution, read_instance
+from carp_spec import Instance, Refusal, Solution
 from carp_spec.query_certificates import QueryCertificateDocument
 from carp_verify.bound_rules import ContradictionError
 from carp_verify.bounds import BoundDocument
-from carp_verify.documents import solution_document
+from carp_verify.documents import read_instance, solution_document
 from carp_verify.kernel import UndecidedError, ask, find_program, request
 from carp_verify.kernel import verify_bound as ask_about_bound
 from carp_verify.kernel import verify_proof as ask_about_proof

@@ -16,9 +16,10 @@ from tests.verify.tiny import case
 from carp_optimum.optimum import optimum
 from carp_optimum.proving import refutation, write_proof
 from carp_optimum.solver import Deadline, Solver
-from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot, read_instance, write_instance
+from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot
 from carp_spec.permutations import shuffle
 from carp_verify.clauses import Formula, dimacs
+from carp_verify.documents import read_instance, write_instance
 from carp_verify.encoding import Encoding, Evidence, beat_formula
 from carp_verify.joint_search import least_total_cost
 from carp_verify.proof import PROOF_FORMAT
@@ -70,8 +71,8 @@ def is_satisfiable(text: str) -> bool:
 
 def faults(folder: Path, number: int) -> Sequence[str]:
     """The faults of the kernel's formulas of one tiny instance, in words."""
-    drawn = case(number)
-    instance, chance = drawn.instance, drawn.chance
+    instance, draw = case(number)
+    chance = draw.stream
     encoding = Encoding(instance)
     if encoding.wayless:
         return []
