@@ -85,7 +85,7 @@ gap: install
 optimum-figures: install
 	$(BIN)/python -m carproof.optimum_table
 
-# A million delayed executions in order, about a minute; continues where the store ends.
+# A million delayed executions in order without a rotation, about a minute; continues where the store ends.
 executions: install
 	nice $(BIN)/carproof experiment executions --store executions.sqlite
 

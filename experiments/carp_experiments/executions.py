@@ -27,7 +27,7 @@ from carproof.delays import Delay, executed, in_order, on_the_clock
 from carproof.questions import Draw, draw_fleet, draw_instance
 
 BLOCK = 10_000
-FULL_EXECUTIONS = 1_000_000
+FULL_EXECUTIONS = 1_020_000
 QUICK_EXECUTIONS = 50_000
 OF_A_SOLUTION = 100
 JUDGED = 2

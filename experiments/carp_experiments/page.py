@@ -43,7 +43,8 @@ MEANINGS = {
     "quarter of the arrivals at goals and the third.",
     "executions": "Each execution has a delay, and in each solution a robot waits for another. Without a rotation "
     "every robot arrives, no rule is broken, and no robot is later than all delays together. The robots of a rotation "
-    "stand for ever, and none of them can go on alone by the rules.",
+    "stand for ever, and none of them can go on alone by the rules. A judge on arrays judges all executions without a "
+    "rotation; the law judges two of each solution, and two on the clock, and must say the same.",
 }
 EXPLANATIONS = """\
 Numbers of actions are means over the assignments on which neither of the two fails, so what they are to be compared

@@ -31,6 +31,7 @@ from carproof.conform.smoke import committed, row
 from carproof.delays import Delay, executed, in_order
 from carproof.engines import engine_named
 from carproof.ops.executing import DriveDocument, DriveRequest, drive
+from carproof.server import respond
 
 SERVE = [sys.executable, "-m", "carproof", "serve", "--engine", "reference"]
 NEAR = row([Robot("first", "a", "b")])
@@ -78,6 +79,17 @@ def test_who_enters_as_soon_as_there_is_room_stands_face_to_face() -> None:
     rule, case = smallest(run(Called("room")))
     assert rule == "program/arrives"
     assert (len(case.instance.robots), case.delays) == (2, ())
+
+
+def test_a_program_that_can_stand_for_ever_is_found_and_shrunk_to_few_robots(process: Run, elsewhere: Path) -> None:
+    outcome = process("conform --executor --examples 100 --seed 5 --", *way("room"))
+    assert outcome.code == 1
+    assert "stand for ever: nobody has entered for" in outcome.stdout
+    saved = json.loads((elsewhere / "conform-failure" / "request.json").read_bytes())
+    assert len(saved["instance"]["robots"]) == 2
+    assert (saved["driver"], saved["delays"], "now" in saved) == ("order", [], False)
+    response, _ = respond(json.dumps(saved).encode(), engine_named("reference"))
+    assert json.loads(msgspec.json.encode(response))["result"]["standing"] == []
 
 
 def test_who_keeps_to_the_clock_enters_too_early() -> None:

@@ -59,7 +59,7 @@ def request_of(case: Case) -> Any:  # noqa: ANN401 - the request of its op
         "polish": {"options": PolishOptions(POLISH_ROUNDS)},
         "optimum": {"limit": OPTIMUM_SECONDS},
         "bound": {"steps": BOUND_STEPS},
-        "execute": {"driver": "order"},
+        "execute": {"driver": "order", "now": None},
     }
     kind = OPS[case.op].request
     of_case = {field.name: getattr(case, field.name) for field in fields(kind) if hasattr(case, field.name)}
