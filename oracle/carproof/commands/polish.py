@@ -1,11 +1,13 @@
 """`carproof polish`: improve a solution by replanning neighbourhoods."""
 
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from time import perf_counter
 
 import click
 
+from carp_optimum.many_starts import polish_many
 from carp_spec import Instance, Refusal, Solution, check, total_cost
 from carp_spec.polish_rules import ITERATIONS, last_round, require_polish_options
 from carp_verify.documents import write_solution
@@ -28,6 +30,7 @@ COLUMNS = ("plans", "unplanned", "total cost", "bound", "gap", "rounds", "time")
         "carproof polish town.json plans.json -o better.json",
         "carproof polish town.json plans.json --seconds 5 -o better.json",
         "carproof polish town.json plans.json --iterations 2000 --seed 7",
+        "carproof polish town.json plans.json --seconds 60 --starts 32",
         "carproof polish town.json plans.json --bound certificate.json",
         "carproof polish --map town.map --scen town.scen result.txt -o better.json",
     ),
@@ -36,6 +39,12 @@ COLUMNS = ("plans", "unplanned", "total cost", "bound", "gap", "rounds", "time")
 @click.option("--iterations", type=int, help=f"The number of rounds.  [default: {ITERATIONS}]", show_default=False)
 @click.option("--seconds", type=float, help="For how long, in place of a number of rounds.")
 @click.option("--seed", type=int, default=0, help="The seed of all choices.")
+@click.option(
+    "--starts",
+    type=click.IntRange(1, 1000),
+    default=1,
+    help="How many copies to polish, of which the better half goes on.",
+)
 @click.option("--bound", type=InputFile(), help="The certificate of a lower bound, of `carproof bound`.")
 @gives_plans
 def command(  # noqa: PLR0913 - one parameter for each argument and option
@@ -44,6 +53,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     iterations: int | None,
     seconds: float | None,
     seed: int,
+    starts: int,
     bound: str | None,
     engine: str | None,
     output: Path | None,
@@ -52,8 +62,9 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     """Improve SOLUTION, plans for INSTANCE, round by round; robots without a plan get one, if it can be found.
 
     SOLUTION is in any format that check reads (--from); the result is carproof's document. This is large neighbourhood
-    search: a round removes a few robots, replans them, and keeps the new plans if they are not worse. Equal
-    --iterations and --seed give equal plans. Without --seconds, robots that are still left out in the end are planned
+    search: a round removes a few robots, replans them, and keeps the new plans if they are not worse. With --starts,
+    copies of SOLUTION share the rounds: the worse half of them ends early, again and again. Equal --iterations,
+    --starts and --seed give equal plans. Without --seconds, robots that are still left out in the end are planned
     with others, in small groups or in another order. All robots are planned from their release on: none is under way.
     The lower bound is the sum of the shortest paths, or that of --bound, which is verified first.
 
@@ -76,9 +87,10 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
             played = rounds
             show(rounds, found_so_far(total, least, unplanned))
 
-        after = engine_named(engine).polish(
-            instance, before, iterations=iterations, seconds=seconds, seed=seed, advance=advance
-        )
+        improve = engine_named(engine).polish
+        if starts > 1:
+            improve = partial(polish_many, improve, starts)
+        after = improve(instance, before, iterations=iterations, seconds=seconds, seed=seed, advance=advance)
         if after.unplanned and seconds is None:
             from carp_optimum.joint_repair import repair  # noqa: PLC0415 - numba is slow to load
 
