@@ -43,7 +43,7 @@ COLUMNS = ("plans", "unplanned", "total cost", "bound", "gap", "rounds", "time")
     "--starts",
     type=click.IntRange(1, 1000),
     default=1,
-    help="How many copies to polish, of which the better half goes on.",
+    help="How many copies to polish; the worse half is dropped again and again.",
 )
 @click.option("--bound", type=InputFile(), help="The certificate of a lower bound, of `carproof bound`.")
 @gives_plans
