@@ -70,6 +70,8 @@ TESTS: Mapping[str, Sequence[str]] = {
     "carproof.conform.claims": ("oracle/test_conform_claims",),
     "carproof.conform.by_kernel": ("oracle/test_conform_kernel",),
     "carproof.conform.shrinking": ("oracle/test_conform_shrinking",),
+    "carproof.conform.driving": ("oracle/test_conform_executor",),
+    "carproof.conform.executor": ("oracle/test_conform_executor",),
 }
 TINY = 80
 """The number of instances of test_tiny_optima.py, one by one, for modules that make or check formulas."""

@@ -5,6 +5,7 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
+from unittest.mock import Mock
 
 import msgspec
 import pytest
@@ -16,6 +17,7 @@ from tests.profiles import draws
 from carp_reference.execution import order_of
 from carp_spec import Robot
 from carp_spec.traces import Trace
+from carproof.conform.answers import Skipped
 from carproof.conform.cases import EXECUTION, Case
 from carproof.conform.child import Limits
 from carproof.conform.driving import execution, execution_findings
@@ -131,6 +133,60 @@ def test_who_lets_nobody_go_is_given_up_after_the_ticks_of_plans_and_delays() ->
     (finding,) = execution_findings(ALONE, trace, Level.SOUND)
     assert finding.rule == "program/arrives"
     assert finding.message.startswith("robot first stands for ever: nobody has entered for 1 ticks until 2")
+
+
+TWO = row([Robot("first", "b", "c"), Robot("second", "a", "b")])
+PLANS = committed(TWO, first=[("b", 0, 1), ("c", 1, 2)], second=[("a", 0, 1), ("b", 1, 2)])
+MEETING = Case("random", EXECUTION, EXECUTION, TWO, PLANS)
+
+
+def decided(case: Case, *entering: tuple[int, tuple[str, ...]]) -> Trace:
+    """The execution in which robots enter at ticks, each when it is asked for."""
+    trace = execution(case, lambda request: DriveDocument(dict(entering).get(request.trace.now, ())))
+    assert isinstance(trace, Trace)
+    return trace
+
+
+def rules(case: Case, trace: Trace, level: Level) -> list[str]:
+    return [finding.rule for finding in execution_findings(case, trace, level)]
+
+
+def test_an_execution_ends_with_the_first_collision_and_its_rule() -> None:
+    trace = decided(MEETING, (0, ("first", "second")), (1, ("second",)))
+    assert trace.now == 2
+    for level in (Level.SOUND, Level.EXACT):
+        assert rules(MEETING, trace, level)[0] == "joint/capacity"
+
+
+def test_robots_in_another_order_are_reported_once_and_at_level_exact_alone() -> None:
+    trace = decided(MEETING, (0, ("second",)), (1, ("second",)), (2, ("first",)), (3, ("first",)))
+    assert rules(MEETING, trace, Level.SOUND) == []
+    assert rules(MEETING, trace, Level.EXACT) == ["execution/order"]
+
+
+def test_all_robots_that_stand_for_ever_are_named() -> None:
+    (finding,) = execution_findings(MEETING, decided(MEETING), Level.EXACT)
+    assert finding.message.startswith("robots ['first', 'second'] stand for ever")
+
+
+def test_patience_starts_again_whenever_a_robot_enters() -> None:
+    trace = decided(ALONE, (1, ("first",)), (2, ("first",)))
+    assert [visit.enter for visit in trace.plans[0].visits] == [1, 2]
+
+
+def test_a_program_that_does_not_drive_is_skipped() -> None:
+    skipped = Skipped("no drive here")
+    assert execution(ALONE, lambda _: skipped) is skipped
+
+
+def test_an_executor_has_its_programs_name_and_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    program = Called("order")
+    finished = Mock()
+    monkeypatch.setattr(program, "finish", finished)
+    executor = Executor(program)
+    executor.finish()
+    assert executor.name == program.name
+    finished.assert_called_once_with()
 
 
 @pytest.mark.parametrize("named", [("first", "first"), ("second",)])
