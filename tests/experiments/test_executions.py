@@ -3,11 +3,15 @@
 import msgspec
 import pytest
 
+from carp_experiments import people
 from carp_experiments.delayed import PLANNERS, DriverOf, ExecutionRow, execution_report, execution_row
 from carp_experiments.following import FollowingOf, following_report, following_row
 from carp_experiments.map_cases import FULL_MAP, STATIONS, WAREHOUSE, MapCase, instance_of
 from carp_experiments.people import PeopleOf, PeopleRow, people_report, people_row
 from carp_experiments.store import digest_of
+from carp_spec import Instance, RobotId, Solution
+from carproof.engines import Engine
+from carproof.giving_way import GivenWay, give_way
 
 
 def test_late_robots_collide_on_the_clock_alone_and_nobody_stands() -> None:
@@ -55,6 +59,21 @@ def test_people_are_first_and_robots_pay() -> None:
     assert len(reported.people) == 10
     assert all(person.proved and person.delay == 0 for person in reported.people)
     assert any(person.replanned for person in reported.people)
+
+
+def test_a_person_comes_every_two_ticks_and_is_no_robot_that_has_arrived(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[int] = []
+
+    def noted(instance: Instance, solution: Solution, robot: RobotId, now: int, engine: Engine) -> GivenWay:
+        (plan,) = (each for each in solution.plans if each.robot == robot)
+        assert plan.visits[-1].enter > now
+        asked.append(now)
+        return give_way(instance, solution, robot, now, engine)
+
+    monkeypatch.setattr(people, "give_way", noted)
+    MapCase(people_row, FULL_MAP, 3, 20).run()
+    assert asked == [*range(2, 2 * len(asked) + 1, 2)]
+    assert len(asked) > 5
 
 
 def test_people_without_a_new_plan_are_counted_apart() -> None:
