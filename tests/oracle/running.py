@@ -66,6 +66,31 @@ BEHIND_PLAN = [["b", 0, 1], ["c", 1, 2], ["d", 2, 3], ["e", 3, 4]]
 TWO = corridor([EAST, BEHIND])
 TWO_PLANNED = solution({"r1": EAST_PLAN, "r2": BEHIND_PLAN})
 ONE_PLANNED = solution({"r1": EAST_PLAN})
+UNDER_WAY: Document = {
+    "format": "carproof-trace/1",
+    "now": 2,
+    "plans": [{"robot": "r1", "visits": [["a", 0, None]]}, {"robot": "r2", "visits": [["b", 0, 2], ["c", 2, None]]}],
+}
+"""By tick 2 robot r2 has moved, a tick late, and robot r1 waits."""
+BOUND: Document = {
+    "format": "carproof-bound/1",
+    "instance": "463f01f1b451a1dab18d0ca26092932c91cdce8f71488efcf3d9052315f0d679",
+    "bound": 5,
+    "scale": 1,
+    "horizon": 36,
+    "resources": [],
+    "exchanges": [],
+    "cuts": [],
+    "robots": [["r1", 2], ["r2", 3]],
+}
+EARLIEST: Document = {
+    "format": "carproof-query/1",
+    "robot": "r2",
+    "now": 0,
+    "bound": 3,
+    "labels": [],
+    "potential": [["e", 0], ["d", 1], ["c", 2], ["b", 3], ["a", 4]],
+}
 BROKEN = solution({"r1": EAST_PLAN, "r2": [["b", 0, 2], ["c", 2, 3], ["d", 3, 4], ["e", 4, 5]]})
 
 
@@ -78,7 +103,22 @@ REQUESTS: dict[str, Document] = {
     "polish": {"instance": TWO, "solution": TWO_PLANNED, "iterations": 3},
     "optimum": {"instance": TWO, "limit": 10},
     "bound": {"instance": TWO, "steps": 3},
+    "verify-bound": {"instance": TWO, "certificate": BOUND},
+    "verify-query": {"instance": TWO, "solution": ONE_PLANNED, "certificate": EARLIEST},
     "audit": {"instance": TWO, "solution": TWO_PLANNED},
+    "check-trace": {"instance": TWO, "solution": TWO_PLANNED, "trace": UNDER_WAY},
+    "dependencies": {"instance": TWO, "solution": TWO_PLANNED, "delays": [["r2", 0, 2]]},
+    "execute": {"instance": TWO, "solution": TWO_PLANNED, "driver": "order", "delays": [["r2", 0, 2]], "now": 2},
+    "drive": {"instance": TWO, "solution": TWO_PLANNED, "trace": UNDER_WAY, "ready": ["r1"]},
+    "retime": {"instance": TWO, "solution": TWO_PLANNED, "trace": UNDER_WAY},
+    "untangle": {"instance": TWO, "solution": TWO_PLANNED},
+    "give-way": {
+        "instance": TWO,
+        "solution": TWO_PLANNED,
+        "robot": "r1",
+        "now": 1,
+        "route": [["a", 0, 1], ["b", 1, 2]],
+    },
     "stop": {},
 }
 """A right request of each op."""

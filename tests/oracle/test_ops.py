@@ -45,6 +45,10 @@ def test_the_schema_is_made_of_the_table() -> None:
     assert schema_file(NAME).read_text() == schema(), "`make generated` writes it"
 
 
+def test_a_right_request_of_each_op_is_known() -> None:
+    assert REQUESTS.keys() == OPS.keys()
+
+
 @pytest.mark.parametrize("op", REQUESTS)
 def test_requests_and_responses_keep_to_the_schema(op: str) -> None:
     request = {"id": 1, "op": op, **REQUESTS[op]}
