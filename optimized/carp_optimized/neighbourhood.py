@@ -156,7 +156,7 @@ def take_out(state: State, work: Work, taken: int, size: int, turn: int) -> None
     forget_freed(state.freed)
     if work.held[robot] != NONE:
         withdraw(state, int(work.held[robot]))
-        note_freed(state, int(work.held[robot]))
+        note_freed(state, int(work.held[robot]), 0, 0)
 
 
 @compiled

@@ -131,11 +131,13 @@ def plan_order(
         answer = known_answer(state, answers, member, int(work.given[place])) if options.shared else NONE
         spare = NO_LIMIT
         if answer == NONE and options.bounds and limit < NO_LIMIT:
-            others = least_rest(work, answers, place, count) if options.shared else rest
-            spare = limit - int(work.cost[place]) - others
-            if spare <= (least_of(answers, member, int(work.given[place])) if options.shared else work.least[member]):
-                state.counters[BOUND] += count - place
-                return place
+            spare = limit - int(work.cost[place]) - rest
+            if options.shared:
+                least = least_of(answers, member, int(work.given[place]))
+                spare = spare_for(work, answers, place, count, spare, least)
+                if spare <= least:
+                    state.counters[BOUND] += count - place
+                    return place
         record = plan_member(state, work, answers, place, answer, spare, now, options.shared)
         if record == NONE:
             if spare < NO_LIMIT:
@@ -148,15 +150,17 @@ def plan_order(
 
 
 @compiled
-def least_rest(work: Work, answers: Answers, place: int, count: int) -> int:
-    """The least cost of the members behind that place, by all answers known; `NO_LIMIT`: one has no plan."""
-    cost = 0
+def spare_for(work: Work, answers: Answers, place: int, count: int, spare: int, least: int) -> int:
+    """What a plan for that place must be below, by all answers known of the members behind it.
+
+    `spare` is that by their plans alone. It only shrinks, so nobody else is looked at once it is no more than `least`.
+    """
     for k in range(place + 1, count):
-        least = least_of(answers, int(work.order[k]), int(work.given[place]))
-        if least == NO_LIMIT:
-            return NO_LIMIT
-        cost += least
-    return cost
+        if spare <= least:
+            break
+        member = int(work.order[k])
+        spare -= least_of(answers, member, int(work.given[place])) - int(work.least[member])
+    return spare
 
 
 @compiled

@@ -22,9 +22,9 @@ A plan made earlier and now under way is the same query with fewer ways to begin
 from carp_optimized.arrays import BLOCK, KEPT, NEVER, NONE, SEVERAL, UNCHANGED, UNKNOWN, Freed, Options, State, Work
 from carp_optimized.compiling import compiled
 from carp_optimized.guides import guide_slot
-from carp_optimized.records import same_plan
+from carp_optimized.records import alike_at_end, alike_at_start, same_plan
 from carp_optimized.search import find_plan_by
-from carp_optimized.windows import end_of_run, evict, last_by, plan_fits, reserve, withdraw
+from carp_optimized.windows import end_of_run, evict, last_by, plan_fits, reserve, reserve_but, withdraw, withdraw_but
 
 
 @compiled
@@ -35,16 +35,16 @@ def forget_freed(freed: Freed) -> None:
 
 
 @compiled
-def note_freed(state: State, record: int) -> None:
-    """Note that the stays of a plan have been taken back."""
+def note_freed(state: State, record: int, head: int, tail: int) -> None:
+    """Note that the stays of a plan have been taken back, but for its first `head` and its last `tail`."""
     freed = state.freed
     graph = state.graph
     records = state.records
     mark = int(freed.now[0])
     first = int(records.visits_at[record])
     last = first + int(records.visits[record]) - 1
-    source = NONE
-    for k in range(first, last + 1):
+    source = int(records.resource[first + head - 1]) if head > 0 else NONE
+    for k in range(first + head, last + 1 - tail):
         resource = int(records.resource[k])
         enter = int(records.enter[k]) - state.gap
         leave = int(records.enter[k + 1]) if k < last else int(records.leave[record])
@@ -228,19 +228,31 @@ def replan(state: State, work: Work, size: int, first: int, now: int, options: O
 
 @compiled
 def exchange_plan(state: State, robot: int, record: int, plan: int, lifted: bool) -> None:
-    """Reserve the plan just found instead of that of the record, which may be none, and may be reserved still."""
-    changed = record == NONE or not same_plan(state.records, record, plan)
-    if changed and record != NONE:
-        note_freed(state, record)
-    held = int(state.reserved[robot])
-    if held != NONE and (changed or held != record):
-        withdraw(state, held)
-        held = NONE
-    if held == NONE:
-        if not lifted:
-            evict(state, plan)
-        reserve(state, plan)
-    state.reserved[robot] = plan
+    """Reserve the plan just found instead of that of the record, which may be none, and may be reserved still.
+
+    Stays that both begin or end with, coming from the same place and going to the same place, are neither taken back
+    nor added: to the robots behind nothing has changed there.
+    """
+    is_reserved = state.reserved[robot] != NONE
+    head = 0
+    tail = 0
+    if record != NONE:
+        if same_plan(state.records, record, plan):
+            if is_reserved:
+                state.reserved[robot] = plan
+                return
+        else:
+            head = alike_at_start(state.records, record, plan)
+            tail = alike_at_end(state.records, record, plan)
+            note_freed(state, record, head, tail)
+    if is_reserved:
+        withdraw_but(state, record, head, tail)
+    else:
+        head = 0
+        tail = 0
+    if not lifted:
+        evict(state, plan, head, tail)
+    reserve_but(state, plan, head, tail)
 
 
 @compiled

@@ -201,14 +201,20 @@ def sweep_windows(windows: Rows, stays: Rows, resource: int, capacity: int, gap:
 @compiled
 def reserve(state: State, record: int) -> None:
     """Take the stays of the plan out of the windows; the plan must fit."""
+    reserve_but(state, record, 0, 0)
+
+
+@compiled
+def reserve_but(state: State, record: int, head: int, tail: int) -> None:
+    """Reserve the plan where its first `head` and last `tail` stays are reserved."""
     records = state.records
     robot = int(records.robot[record])
     rank = int(state.rank[robot])
     state.reserved[robot] = record
     first = int(records.visits_at[record])
     last = first + int(records.visits[record]) - 1
-    source = NONE
-    for k in range(first, last + 1):
+    source = int(records.resource[first + head - 1]) if head > 0 else NONE
+    for k in range(first + head, last + 1 - tail):
         resource = int(records.resource[k])
         enter = int(records.enter[k])
         leave = int(records.enter[k + 1]) if k < last else int(records.leave[record])
@@ -224,12 +230,18 @@ def reserve(state: State, record: int) -> None:
 @compiled
 def withdraw(state: State, record: int) -> None:
     """Undo `reserve`."""
+    withdraw_but(state, record, 0, 0)
+
+
+@compiled
+def withdraw_but(state: State, record: int, head: int, tail: int) -> None:
+    """Undo `reserve_but`."""
     records = state.records
     state.reserved[records.robot[record]] = NONE
     first = int(records.visits_at[record])
     last = first + int(records.visits[record]) - 1
-    source = NONE
-    for k in range(first, last + 1):
+    source = int(records.resource[first + head - 1]) if head > 0 else NONE
+    for k in range(first + head, last + 1 - tail):
         resource = int(records.resource[k])
         enter = int(records.enter[k])
         if state.graph.capacity[resource] == 1:
@@ -306,13 +318,16 @@ def plan_fits(state: State, record: int) -> bool:
 
 
 @compiled
-def evict(state: State, record: int) -> None:
-    """Withdraw the plans that the plan, found without account of them, runs into; resources have capacity 1."""
+def evict(state: State, record: int, head: int, tail: int) -> None:
+    """Withdraw the plans that the plan, found without account of them, runs into; resources have capacity 1.
+
+    Its first `head` and last `tail` stays are reserved, and so are the moves between them.
+    """
     records = state.records
     windows = state.windows
     first = int(records.visits_at[record])
     last = first + int(records.visits[record]) - 1
-    for k in range(first, last + 1):
+    for k in range(first + head, last + 1 - tail):
         resource = int(records.resource[k])
         leave = int(records.enter[k + 1]) if k < last else int(records.leave[record])
         target = int(records.resource[k + 1]) if k < last else NONE

@@ -95,7 +95,7 @@ def test_a_query_is_repeated_only_where_the_lemma_says_and_else_finds_the_same(
     for plan in freed:
         withdrawn = int(fleet._records[fleet.index(plan.robot)])
         passes.withdraw_all(fleet._native, np.array([withdrawn], np.int32))
-        note_freed(state, withdrawn)
+        note_freed(state, withdrawn, 0, 0)
         for resource, (earliest, latest) in hulls(plan).items():
             known = whole.get(resource, (earliest, latest))
             whole[resource] = (min(earliest, known[0]), max(latest, known[1]))
