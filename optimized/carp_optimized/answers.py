@@ -11,7 +11,7 @@ def start_answers(answers: Answers, members: int) -> None:
     answers.used[0] = 0
     answers.used[1] = 0
     for member in range(members):
-        answers.newest[member] = NONE
+        answers.oldest[member] = NONE
 
 
 @compiled
@@ -40,7 +40,11 @@ def learn(answers: Answers, member: int, given: int, plan: int, record: int, lea
         answers.plan[used] = plan
         answers.found[used] = record
         answers.least[used] = least
-        answers.older[used] = answers.newest[member]
+        answers.newer[used] = NONE
+        if answers.oldest[member] == NONE:
+            answers.oldest[member] = used
+        else:
+            answers.newer[answers.newest[member]] = used
         answers.newest[member] = used
         answers.used[1] += 1
 
@@ -62,14 +66,14 @@ def has_clash(state: State, answers: Answers, plan: int, given: int) -> bool:
 
 @compiled
 def known_answer(state: State, answers: Answers, member: int, given: int) -> int:
-    """A known answer that holds for the member against the set of plans, or `NONE`."""
-    answer = int(answers.newest[member])
+    """A known answer that holds for the member against the set of plans, or `NONE`; the plan alone is tried first."""
+    answer = int(answers.oldest[member])
     while answer != NONE:
         if int(answers.given[answer]) & ~given == 0 and answers.plan[answer] != LATE:
             plan = int(answers.plan[answer])
             if plan == NONE or not has_clash(state, answers, plan, given):
                 return answer
-        answer = int(answers.older[answer])
+        answer = int(answers.newer[answer])
     return NONE
 
 
@@ -77,9 +81,9 @@ def known_answer(state: State, answers: Answers, member: int, given: int) -> int
 def least_of(answers: Answers, member: int, given: int) -> int:
     """The least cost of the member against the set of plans, by all answers known; `NO_LIMIT`: it has no plan."""
     least = 0
-    answer = int(answers.newest[member])
+    answer = int(answers.oldest[member])
     while answer != NONE:
         if int(answers.given[answer]) & ~given == 0:
             least = max(least, int(answers.least[answer]))
-        answer = int(answers.older[answer])
+        answer = int(answers.newer[answer])
     return least

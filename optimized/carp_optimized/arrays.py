@@ -233,7 +233,6 @@ class Work(NamedTuple):
     found_plans: Ints
     order: Ints
     chosen: Ints
-    reserved: Ints
     least: Longs
     given: Longs
     cost: Longs
@@ -282,8 +281,8 @@ class Answers(NamedTuple):
     `found` is the plan's record as the query for just this answer made it: its readings depend on the set. Its cost is
     at least `least`, which is all that is known where the plan is `LATE`. Plans are numbered; `record[plan]` is the
     plan's record, `clashes[plan]` the set of plans that it clashes with, of those with which it has been `compared`.
-    The answers of a member are chained from `newest[member]` on by `older`. `used` counts plans and answers. Answers
-    that do not fit are forgotten, which costs time alone.
+    The answers of a member are chained from `oldest[member]` to `newest[member]` by `newer`. `used` counts plans and
+    answers. Answers that do not fit are forgotten, which costs time alone.
     """
 
     record: Ints
@@ -294,7 +293,8 @@ class Answers(NamedTuple):
     plan: Ints
     found: Ints
     least: Longs
-    older: Ints
+    newer: Ints
+    oldest: Ints
     newest: Ints
     used: Longs
 

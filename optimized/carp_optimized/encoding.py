@@ -327,7 +327,6 @@ def no_work(robots: int, members: int, sample: int) -> Work:
         found_plans=ints(members),
         order=ints(members),
         chosen=ints(members),
-        reserved=ints(1),
         least=longs(members),
         given=longs(members + 1),
         cost=longs(members + 1),
@@ -381,7 +380,8 @@ def no_answers(members: int) -> Answers:
         plan=np.zeros(ANSWERS, np.int32),
         least=np.zeros(ANSWERS, np.int64),
         found=np.zeros(ANSWERS, np.int32),
-        older=np.zeros(ANSWERS, np.int32),
+        newer=np.zeros(ANSWERS, np.int32),
+        oldest=np.zeros(members, np.int32),
         newest=np.zeros(members, np.int32),
         used=np.zeros(2, np.int64),
     )

@@ -57,7 +57,6 @@ def search_orders(
     row = 0
     while True:
         state.counters[PREFIX] += place
-        withdraw_members(state, work, place)
         cut = int(state.counters[BOUND])
         shared = plan_order(state, work, answers, count, place, limit, rest, now, options)
         if shared > count:
@@ -80,7 +79,7 @@ def search_orders(
             break
         if not options.prefixes:
             place = 0
-    withdraw_members(state, work, 0)
+    hold_members(state, work, 0, count)
     return found
 
 
@@ -88,7 +87,6 @@ def search_orders(
 def start_search(state: State, work: Work, answers: Answers, count: int, options: Options) -> int:
     """Begin a round with what is known of the members alone; the sum of their least costs."""
     start_answers(answers, count)
-    work.reserved[0] = 0
     work.cost[0] = 0
     work.given[0] = 0
     total = 0
@@ -138,7 +136,7 @@ def plan_order(
                 if spare <= least:
                     state.counters[BOUND] += count - place
                     return place
-        record = plan_member(state, work, answers, place, answer, spare, now, options.shared)
+        record = plan_member(state, work, answers, place, count, answer, spare, now, options.shared)
         if record == NONE:
             if spare < NO_LIMIT:
                 state.counters[BOUND] += count - place - 1
@@ -165,7 +163,7 @@ def spare_for(work: Work, answers: Answers, place: int, count: int, spare: int, 
 
 @compiled
 def plan_member(
-    state: State, work: Work, answers: Answers, place: int, answer: int, spare: int, now: int, shared: bool
+    state: State, work: Work, answers: Answers, place: int, count: int, answer: int, spare: int, now: int, shared: bool
 ) -> int:
     """The record of the plan of the member in that place of the order against those before it, or `NONE`.
 
@@ -179,9 +177,7 @@ def plan_member(
         plan = int(answers.plan[answer])
         record = int(answers.found[answer])
     else:
-        for k in range(int(work.reserved[0]), place):
-            reserve(state, int(work.chosen[k]))
-        work.reserved[0] = max(int(work.reserved[0]), place)
+        hold_members(state, work, place, count)
         robot = int(work.members[member])
         latest = min(spare - 1 + int(state.robots.release[robot]), NEVER)
         record = find_plan_by(state, robot, int(work.before[robot]), now, NEVER, latest)
@@ -197,8 +193,12 @@ def plan_member(
 
 
 @compiled
-def withdraw_members(state: State, work: Work, place: int) -> None:
-    """Withdraw the plans from that place of the order on; those before it are reserved only if a query needs it."""
-    while work.reserved[0] > place:
-        work.reserved[0] -= 1
-        withdraw(state, int(work.chosen[work.reserved[0]]))
+def hold_members(state: State, work: Work, place: int, count: int) -> None:
+    """Have the plans before that place of the order reserved, and no other member's; only a query needs it."""
+    for k in range(count):
+        held = int(state.reserved[work.members[work.order[k]]])
+        if held != NONE and (k >= place or held != work.chosen[k]):
+            withdraw(state, held)
+    for k in range(place):
+        if state.reserved[work.members[work.order[k]]] == NONE:
+            reserve(state, int(work.chosen[k]))
