@@ -38,37 +38,43 @@ def make_level_guide(state: State, slot: int, goal: int, step: int) -> None:
     first = state.search.keys  # by level: the next rank
     queue = state.search.nodes
     guide = state.guides.table[slot]
-    if min(first.size, queue.size) < guide.size:
+    if min(first.size, queue.size) <= guide.size:
         raise RoomExhausted
     for resource in range(guide.size):
         guide[resource] = UNREACHABLE
     guide[goal] = 0
     queue[0] = goal
     first[0] = 0
-    count = 1
-    done = 0
-    while done < count:
-        resource = int(queue[done])
-        level = int(guide[resource]) + 1
-        done += 1
-        for edge in range(int(graph.backward_first[resource]), int(graph.backward_first[resource + 1])):
-            source = int(graph.source[edge])
-            if guide[source] != UNREACHABLE:
-                continue
-            if level * step > LARGEST:
-                guide[source] = TOO_FAR
-                continue
-            if level > guide[queue[count - 1]]:
-                first[level] = count
-            guide[source] = level
-            queue[count] = source
-            count += 1
+    begin = 0
+    end = 1
+    level = 1
+    while begin < end and level * step <= LARGEST:
+        first[level] = end
+        count = end
+        for k in range(begin, end):
+            resource = int(queue[k])
+            for edge in range(int(graph.backward_first[resource]), int(graph.backward_first[resource + 1])):
+                source = int(graph.source[edge])
+                if guide[source] == UNREACHABLE:
+                    guide[source] = level
+                    queue[count] = source
+                    count += 1
+        begin = end
+        end = count
+        level += 1
     for resource in range(guide.size):
         level = int(guide[resource])
         if level >= 0:
             guide[resource] = ((level * step) << 32) + first[level]
             first[level] += 1
-    spread_too_far(state, slot)
+    if begin < end:
+        for k in range(begin, end):
+            resource = int(queue[k])
+            for edge in range(int(graph.backward_first[resource]), int(graph.backward_first[resource + 1])):
+                source = int(graph.source[edge])
+                if guide[source] == UNREACHABLE:
+                    guide[source] = TOO_FAR
+        spread_too_far(state, slot)
 
 
 @compiled
