@@ -90,15 +90,17 @@ class Robots(NamedTuple):
 
 
 class Guides(NamedTuple):
-    """The h of A*, made when first asked for: `table[slot]` is the guide of the destination `holds[slot]`.
+    """The h of A*, made when first asked for: `ticks[slot]` is the guide of the destination `holds[slot]`.
 
-    A guide holds, for each resource, its ticks to the goal times 2^32 plus its rank in the order of
-    (ticks to the goal, index). With t * 2^32 added it is the key of `query/ties` of a window entered at t: f first,
-    then the largest g, which is the smallest h, then the smallest index. The last slots to be used are the first
-    to be given away.
+    A guide holds, for each resource, its ticks to the goal. The toll of a resource is that times 2^32 plus its place in
+    the order of (ticks to the goal, index). With t * 2^32 added it is the key of `query/ties` of a window entered at t:
+    f first, then the largest g, which is the smallest h, then the smallest index. Where ticks times a power of two plus
+    the index fit into 32 bits, they are the place; elsewhere it is kept in `rank`. The last slots to be used are the
+    first to be given away.
     """
 
-    table: LongTable
+    ticks: IntTable
+    rank: IntTable
     slot: Ints
     holds: Ints
     next: Longs
@@ -183,9 +185,10 @@ class State(NamedTuple):
 
     `rank` grows in planning order when a robot is added. A query for a robot `behind` a rank takes no account of those
     of a larger rank.
-    No duration is above `longest`, and none below, if they `last_alike`. `roots` are the terms of
-    `neighbourhood/distance` of small squares; all are split after `split` bits. A place is free for `gap` ticks before
-    another robot enters it: then windows begin and end so much later and earlier, and may be of negative length.
+    No duration is above `longest`, and none below, if they `last_alike`. The toll of a resource is its ticks to the
+    goal times `scale` plus its index, if `scale` is not 0. `roots` are the terms of `neighbourhood/distance` of small
+    squares; all are split after `split` bits. A place is free for `gap` ticks before another robot enters it: then
+    windows begin and end so much later and earlier, and may be of negative length.
     """
 
     graph: Graph
@@ -201,6 +204,7 @@ class State(NamedTuple):
     counters: Longs
     longest: int
     last_alike: bool
+    scale: int
     roots: Longs
     split: int
     parks: bool

@@ -32,7 +32,7 @@ from carp_optimized.arrays import (
 )
 from carp_spec import Fault, Instance, Refusal
 
-GUIDE_PLACES = 1 << 24  # how many entries all guides together have at most, if that is room for 64 of them
+GUIDE_PLACES = 1 << 25  # how many entries all guides together have at most, if that is room for 64 of them
 ROOTS = 1024
 STRIPS = 7  # its square is the number of regions; a number of 64 bits has room for 63
 LARGEST_COORDINATE = 2**29
@@ -133,11 +133,20 @@ def encode_robots(instance: Instance) -> tuple[Robots, Ints, Ints]:
     return robots, goals, np.array([pace for _, pace in destinations], np.int32)
 
 
-def no_guides(resources: int, goals: Ints, paces: Ints) -> Guides:
+def scale_of_tolls(resources: int, longest: int, paces: Ints) -> int:
+    """2^32 plus the power of two above all indices; 0 if ticks to the goal times that might not fit into 32 bits."""
+    bits = resources.bit_length()
+    most = resources * longest * int(paces.max(initial=1))
+    return 0 if most >> (32 - bits) else (1 << 32) + (1 << bits)
+
+
+def no_guides(resources: int, goals: Ints, paces: Ints, has_ranks: bool) -> Guides:
     """Guides yet to be made: for all destinations, or as many as fit."""
-    slots = max(1, min(goals.size, max(64, GUIDE_PLACES // max(1, resources))))
+    tables = 2 if has_ranks else 1
+    slots = max(1, min(goals.size, max(64, GUIDE_PLACES // max(1, resources * tables))))
     return Guides(
-        table=np.empty((slots, resources), np.int64),
+        ticks=np.empty((slots, resources), np.int32),
+        rank=np.empty((slots, resources if has_ranks else 0), np.int32),
         slot=np.full(goals.size, NONE, np.int32),
         holds=np.full(slots, NONE, np.int32),
         next=np.zeros(1, np.int64),
@@ -252,20 +261,23 @@ def encode(instance: Instance) -> State:
     resources = graph.duration.size
     places = BLOCK * (1 + 2 * resources)
     visits = 64 * max(64, robots.start.size)
+    longest = int(graph.duration.max(initial=1))
+    scale = scale_of_tolls(resources, longest, paces)
     return State(
         graph=graph,
         robots=robots,
         windows=_all_free(graph, places),
         stays=_no_stays(graph, places),
-        guides=no_guides(resources, goals, paces),
+        guides=no_guides(resources, goals, paces, has_ranks=scale == 0),
         search=no_search(places, graph.target.size),
         records=no_records(max(256, 8 * robots.start.size), visits, visits),
         freed=nothing_freed(resources),
         reserved=np.full(robots.start.size, NONE, np.int32),
         rank=np.zeros(robots.start.size, np.int32),
         counters=np.zeros(COUNTERS, np.int64),
-        longest=int(graph.duration.max(initial=1)),
-        last_alike=bool((graph.duration == graph.duration.max(initial=1)).all()),
+        longest=longest,
+        last_alike=bool((graph.duration == longest).all()),
+        scale=scale,
         roots=roots_of_small_squares(),
         split=split_of_terms(graph),
         parks=instance.after_goal == "park",

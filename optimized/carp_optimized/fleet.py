@@ -20,7 +20,6 @@ from carp_optimized.arrays import (
     UNREACHABLE,
     Answers,
     Ints,
-    Longs,
     Options,
     Polish,
     Records,
@@ -145,7 +144,7 @@ class PlannedFleet:
         if count == 0:
             return plan, []
         resources = search.expanded[:count]
-        enters = (search.popped[:count] - self._guide(robot)[resources]) >> 32
+        enters = (search.popped[:count] >> 32) - self._guide(robot)[resources]
         start, ready = int(resources[0]), int(search.ready[0])
         ticks = int(self._state.robots.pace[robot]) * int(self._state.graph.duration[start])
         overstayed = start == self._state.robots.goal[robot] and not self._state.parks and ready > enters[0] + ticks
@@ -159,15 +158,15 @@ class PlannedFleet:
         Ticks beyond the largest are counted as one more than that.
         """
         guide = self._guide(robot)
-        ticks = np.where(guide == TOO_FAR, LARGEST + 1, guide >> 32)
+        ticks = np.where(guide == TOO_FAR, LARGEST + 1, guide)
         reaching = np.flatnonzero(guide != UNREACHABLE)
         return dict(zip(reaching.tolist(), ticks[reaching].tolist(), strict=True))
 
-    def _guide(self, robot: int) -> Longs:
-        """The guide of the robot's destination."""
+    def _guide(self, robot: int) -> Ints:
+        """The guide of the robot's destination: ticks to the goal."""
         self.ticks_to_goal(robot)  # makes it
         guides = self._state.guides
-        guide: Longs = guides.table[int(guides.slot[self._state.robots.destination[robot]])]
+        guide: Ints = guides.ticks[int(guides.slot[self._state.robots.destination[robot]])]
         return guide
 
     def repeat_query(self, robot: int, times: int) -> None:

@@ -32,17 +32,27 @@ def guide_slot(state: State, destination: int) -> int:
 
 
 @compiled
+def toll_of(state: State, slot: int, resource: int) -> int:
+    """The ticks to the goal times 2^32 plus the place of the resource in their order; below 0: no way."""
+    ticks = int(state.guides.ticks[slot][resource])
+    if ticks < 0:
+        return ticks
+    if state.scale > 0:
+        return ticks * state.scale + resource
+    return (ticks << 32) + int(state.guides.rank[slot][resource])
+
+
+@compiled
 def make_level_guide(state: State, slot: int, goal: int, step: int) -> None:
-    """Reach the resources level by level, each `step` ticks from the one before; then rank them by level and index."""
-    graph = state.graph
-    first = state.search.keys  # by level: the next rank
+    """Reach the resources level by level, each `step` ticks from the one before."""
+    first = state.search.keys  # by level: the number of resources before it
     queue = state.search.nodes
-    guide = state.guides.table[slot]
-    if min(first.size, queue.size) <= guide.size:
+    ticks = state.guides.ticks[slot]
+    if min(first.size, queue.size) <= ticks.size:
         raise RoomExhausted
-    for resource in range(guide.size):
-        guide[resource] = UNREACHABLE
-    guide[goal] = 0
+    for resource in range(ticks.size):
+        ticks[resource] = UNREACHABLE
+    ticks[goal] = 0
     queue[0] = goal
     first[0] = 0
     begin = 0
@@ -50,31 +60,47 @@ def make_level_guide(state: State, slot: int, goal: int, step: int) -> None:
     level = 1
     while begin < end and level * step <= LARGEST:
         first[level] = end
-        count = end
-        for k in range(begin, end):
-            resource = int(queue[k])
-            for edge in range(int(graph.backward_first[resource]), int(graph.backward_first[resource + 1])):
-                source = int(graph.source[edge])
-                if guide[source] == UNREACHABLE:
-                    guide[source] = level
-                    queue[count] = source
-                    count += 1
         begin = end
-        end = count
+        end = reach_sources(state, slot, int(first[level - 1]), end, level)
         level += 1
-    for resource in range(guide.size):
-        level = int(guide[resource])
-        if level >= 0:
-            guide[resource] = ((level * step) << 32) + first[level]
-            first[level] += 1
-    if begin < end:
-        for k in range(begin, end):
-            resource = int(queue[k])
-            for edge in range(int(graph.backward_first[resource]), int(graph.backward_first[resource + 1])):
-                source = int(graph.source[edge])
-                if guide[source] == UNREACHABLE:
-                    guide[source] = TOO_FAR
+    turn_levels_to_ticks(state, slot, step)
+    if reach_sources(state, slot, begin, end, TOO_FAR) > end:
         spread_too_far(state, slot)
+
+
+@compiled
+def reach_sources(state: State, slot: int, begin: int, end: int, level: int) -> int:
+    """Put the resources that lead to those queued from `begin` to `end` behind these; where the queue ends then."""
+    graph = state.graph
+    queue = state.search.nodes
+    ticks = state.guides.ticks[slot]
+    count = end
+    for k in range(begin, end):
+        resource = int(queue[k])
+        for edge in range(int(graph.backward_first[resource]), int(graph.backward_first[resource + 1])):
+            source = int(graph.source[edge])
+            if ticks[source] == UNREACHABLE:
+                ticks[source] = level
+                queue[count] = source
+                count += 1
+    return count
+
+
+@compiled
+def turn_levels_to_ticks(state: State, slot: int, step: int) -> None:
+    """Turn the levels of a guide into ticks, and rank by level and index where ranks are kept."""
+    if state.scale > 0 and step == 1:
+        return
+    first = state.search.keys
+    ticks = state.guides.ticks[slot]
+    rank = state.guides.rank[slot]
+    for resource in range(ticks.size):
+        level = int(ticks[resource])
+        if level >= 0:
+            ticks[resource] = level * step
+            if state.scale == 0:
+                rank[resource] = first[level]
+                first[level] += 1
 
 
 @compiled
@@ -83,29 +109,31 @@ def make_guide(state: State, slot: int, goal: int, pace: int) -> None:
     graph = state.graph
     keys = state.search.keys
     nodes = state.search.nodes
-    guide = state.guides.table[slot]
-    for resource in range(guide.size):
-        guide[resource] = UNREACHABLE
+    ticks = state.guides.ticks[slot]
+    rank = state.guides.rank[slot]
+    for resource in range(ticks.size):
+        ticks[resource] = UNREACHABLE
     keys[0] = goal
     nodes[0] = goal
     size = 1
-    rank = 0
+    settled = 0
     while size > 0:
         key = int(keys[0])
         resource = int(nodes[0])
         size -= 1
         replace_root(keys, nodes, size, int(keys[size]), int(nodes[size]))
-        if guide[resource] >= 0:
+        if ticks[resource] >= 0:
             continue
-        ticks = key >> 32
-        guide[resource] = (ticks << 32) + rank
-        rank += 1
+        ticks[resource] = key >> 32
+        if state.scale == 0:
+            rank[resource] = settled
+        settled += 1
         for edge in range(int(graph.backward_first[resource]), int(graph.backward_first[resource + 1])):
             source = int(graph.source[edge])
-            further = ticks + pace * int(graph.duration[source])
-            if guide[source] < 0:
+            further = (key >> 32) + pace * int(graph.duration[source])
+            if ticks[source] < 0:
                 if further > LARGEST:
-                    guide[source] = TOO_FAR
+                    ticks[source] = TOO_FAR
                 else:
                     push(keys, nodes, size, (further << 32) + source, source)
                     size += 1
@@ -116,13 +144,13 @@ def make_guide(state: State, slot: int, goal: int, pace: int) -> None:
 def spread_too_far(state: State, slot: int) -> None:
     """Mark the resources that lead to the goal only through those that are too far."""
     graph = state.graph
-    guide = state.guides.table[slot]
+    ticks = state.guides.ticks[slot]
     queue = state.search.nodes
-    if queue.size < guide.size:
+    if queue.size < ticks.size:
         raise RoomExhausted
     count = 0
-    for resource in range(guide.size):
-        if guide[resource] == TOO_FAR:
+    for resource in range(ticks.size):
+        if ticks[resource] == TOO_FAR:
             queue[count] = resource
             count += 1
     done = 0
@@ -131,7 +159,7 @@ def spread_too_far(state: State, slot: int) -> None:
         done += 1
         for edge in range(int(graph.backward_first[resource]), int(graph.backward_first[resource + 1])):
             source = int(graph.source[edge])
-            if guide[source] == UNREACHABLE:
-                guide[source] = TOO_FAR
+            if ticks[source] == UNREACHABLE:
+                ticks[source] = TOO_FAR
                 queue[count] = source
                 count += 1

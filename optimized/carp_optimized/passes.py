@@ -24,10 +24,10 @@ def shortest(native: Native[State], robot: int) -> int:
     """The ticks from the robot's start to its goal on the empty graph; 0 if no moves lead there."""
     state = state_at(native)
     slot = guide_slot(state, int(state.robots.destination[robot]))
-    guide = int(state.guides.table[slot][state.robots.start[robot]])
-    if guide == TOO_FAR:
+    ticks = int(state.guides.ticks[slot][state.robots.start[robot]])
+    if ticks == TOO_FAR:
         raise TicksExhausted
-    return max(guide, 0) >> 32
+    return max(ticks, 0)
 
 
 @entry

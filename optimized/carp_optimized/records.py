@@ -65,7 +65,7 @@ def write_expansions(state: State, record: int, expansions: int) -> None:
     search = state.search
     robot = int(records.robot[record])
     pace = int(state.robots.pace[robot])
-    guide = state.guides.table[state.guides.slot[state.robots.destination[robot]]]
+    ticks = state.guides.ticks[state.guides.slot[state.robots.destination[robot]]]
     f = int(records.arrival[record])
     first = int(records.used[2])
     records.expansions_at[record] = first
@@ -78,7 +78,7 @@ def write_expansions(state: State, record: int, expansions: int) -> None:
         regions |= int(state.graph.region[resource])
         records.expanded[first + k] = resource
         records.ready[first + k] = search.ready[k]
-        records.until[first + k] = f - (int(guide[resource]) >> 32) + pace * int(state.graph.duration[resource])
+        records.until[first + k] = f - int(ticks[resource]) + pace * int(state.graph.duration[resource])
         records.largest[first + k] = largest
         largest = max(largest, int(search.popped[k]))
     records.regions[record] = regions

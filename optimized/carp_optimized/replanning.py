@@ -21,7 +21,7 @@ A plan made earlier and now under way is the same query with fewer ways to begin
 
 from carp_optimized.arrays import BLOCK, KEPT, NEVER, NONE, SEVERAL, UNCHANGED, UNKNOWN, Freed, Options, State, Work
 from carp_optimized.compiling import compiled
-from carp_optimized.guides import guide_slot
+from carp_optimized.guides import guide_slot, toll_of
 from carp_optimized.records import alike_at_end, alike_at_start, same_plan
 from carp_optimized.search import find_plan_by
 from carp_optimized.windows import end_of_run, evict, last_by, plan_fits, reserve, reserve_but, withdraw, withdraw_but
@@ -158,7 +158,7 @@ def matters(state: State, record: int, k: int, target: int, entry: int, last_ent
     Exchanges are allowed, and windows of resources with room for several not looked at: no harm but a query.
     """
     robot = int(state.records.robot[record])
-    toll = int(state.guides.table[guide_slot(state, int(state.robots.destination[robot]))][target])
+    toll = toll_of(state, guide_slot(state, int(state.robots.destination[robot])), target)
     largest = int(state.records.largest[k])
     if toll < 0 or (entry << 32) + toll > largest:
         return False

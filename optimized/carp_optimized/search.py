@@ -3,7 +3,7 @@
 from carp_optimized.arrays import ASKED, BLOCK, LARGEST, NEVER, NO_LIMIT, NONE, TOO_FAR, State
 from carp_optimized.blocks import below, lowest, width
 from carp_optimized.compiling import RoomExhausted, TicksExhausted, compiled
-from carp_optimized.guides import guide_slot
+from carp_optimized.guides import guide_slot, toll_of
 from carp_optimized.heap import push, replace_root
 from carp_optimized.records import start_record, write_record
 from carp_optimized.windows import end_of_run, fits, is_exchange, last_by, plan_fits, skip_below, start_of_run
@@ -93,7 +93,6 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
     keys = state.search.keys
     nodes = state.search.nodes
     expanded = state.search.expanded
-    guide = state.guides.table[slot]
     goal = int(state.robots.goal[robot])
     pace = int(state.robots.pace[robot])
     parks = state.parks
@@ -101,8 +100,9 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
     is_bounded = latest <= LARGEST
     largest_key = (latest << 32) + LOW
 
-    if guide[resource] < 0:
-        if guide[resource] == TOO_FAR:
+    toll = toll_of(state, slot, resource)
+    if toll < 0:
+        if toll == TOO_FAR:
             raise TicksExhausted
         return 0
     generation = int(state.search.generation[0]) + 1
@@ -115,7 +115,7 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
     reached[STANDING] = label - enter
     parent[STANDING] = NONE
     best = STANDING
-    best_key = (enter << 32) + int(guide[resource])
+    best_key = (enter << 32) + toll
     if best_key > largest_key:
         return 0
     size = 0
@@ -139,7 +139,7 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
         best_key = NO_LIMIT
         resource = int(windows.resource[node])
         enter = label - int(reached[node])
-        if key != (enter << 32) + int(guide[resource]):
+        if key != (enter << 32) + toll_of(state, slot, resource):
             continue  # entered earlier since this entry was made
         last = node if counts_all else end_of_run(state, node, behind)
         end = int(windows.end[last])
@@ -159,7 +159,7 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
         source = int(windows.source[last])
         for edge in range(int(graph.first[resource]), int(graph.first[resource + 1])):
             target = int(graph.target[edge])
-            toll = int(guide[target])
+            toll = toll_of(state, slot, target)
             if toll < 0:
                 beyond |= toll == TOO_FAR
                 continue

@@ -41,10 +41,10 @@ def dump(fleet: PlannedFleet, robots: list[int]) -> str:
         numbers += [len(targets), *targets]
     for robot in robots:
         passes.shortest(fleet._native, robot)
-        guide = state.guides.table[state.guides.slot[state.robots.destination[robot]]]
+        ticks = state.guides.ticks[state.guides.slot[state.robots.destination[robot]]]
         numbers += [int(state.robots.start[robot]), int(state.robots.release[robot]), int(state.robots.goal[robot])]
-        for each in guide.tolist():
-            numbers += [-1, 0] if each < 0 else [each >> 32, each & (NEVER * 2 + 1)]
+        for resource, each in enumerate(ticks.tolist()):
+            numbers += [-1, 0] if each < 0 else [each, each * state.scale + resource & (NEVER * 2 + 1)]
     return " ".join(map(str, numbers))
 
 
