@@ -43,6 +43,13 @@ def toll_of(state: State, slot: int, resource: int) -> int:
 
 
 @compiled
+def shortest_of(state: State, robot: int) -> int:
+    """The ticks from the robot's start to its goal on the empty graph; below 0: no way."""
+    slot = guide_slot(state, int(state.robots.destination[robot]))
+    return int(state.guides.ticks[slot][state.robots.start[robot]])
+
+
+@compiled
 def make_level_guide(state: State, slot: int, goal: int, step: int) -> None:
     """Reach the resources level by level, each `step` ticks from the one before."""
     first = state.search.keys  # by level: the number of resources before it

@@ -15,6 +15,7 @@ from carp_optimized.arrays import (
 )
 from carp_optimized.compiling import compiled, entry
 from carp_optimized.distances import nearest
+from carp_optimized.guides import shortest_of
 from carp_optimized.natives import answers_at, options_at, state_at, work_at
 from carp_optimized.order_search import search_orders
 from carp_optimized.orders import draw_orders
@@ -187,12 +188,7 @@ def plan_members(
     """
     possible = True
     if options.shared or options.bounds:
-        possible = plan_alone(state, work, count, now, options.unchanged)
-        if possible and options.bounds and limit < NO_LIMIT:
-            least = 0
-            for member in range(count):
-                least += cost_of(state, int(work.alone[member]))
-            possible = least < limit
+        possible = plan_alone(state, work, count, limit if options.bounds else NO_LIMIT, now, options.unchanged)
     if not possible and limit < NO_LIMIT:
         return NONE
     rows = draw_orders(work, count, options.sample, work.stream)
@@ -202,29 +198,36 @@ def plan_members(
 
 
 @compiled
-def plan_alone(state: State, work: Work, count: int, now: int, skip_unchanged: bool) -> bool:
-    """Update the members' plans against the robots outside alone; returns whether all have one.
+def plan_alone(state: State, work: Work, count: int, limit: int, now: int, skip_unchanged: bool) -> bool:
+    """Update the members' plans against the robots outside alone; returns whether all have one and cost less together.
 
     The member taken in last comes with its plan among the robots outside. It saw those before it, and none of them has
     changed in this round, so what was taken back does not touch it; those behind it were added since.
     A plan that still fits can be found again, so none that arrives later is.
+    A robot not looked at yet costs at least its shortest path, so the rest need not be asked once that is too much.
     """
+    least = 0
     for member in range(count):
+        least += shortest_of(state, int(work.members[member]))
+    for member in range(count):
+        if least >= limit:
+            return False
+        robot = int(work.members[member])
         record = int(work.alone[member])
         is_last = member == count - 1
         still_fits = record != NONE and plan_fits(state, record)
         is_known = still_fits and skip_unchanged and state.records.expansions[record] != UNKNOWN
         if is_known and (is_last or not could_use_freed(state, record, NEVER)):
             state.counters[UNCHANGED] += 1
-            continue
-        robot = int(work.members[member])
-        latest = int(state.records.arrival[record]) if still_fits else NEVER
-        work.alone[member] = find_plan_by(state, robot, int(work.before[robot]), now, NEVER, latest)
+        else:
+            latest = int(state.records.arrival[record]) if still_fits else NEVER
+            work.alone[member] = find_plan_by(state, robot, int(work.before[robot]), now, NEVER, latest)
         if work.alone[member] == NONE:
             for k in range(count):
                 work.alone[k] = NONE
             return False
-    return True
+        least += cost_of(state, int(work.alone[member])) - shortest_of(state, robot)
+    return least < limit
 
 
 @compiled

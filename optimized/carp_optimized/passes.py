@@ -2,7 +2,7 @@
 
 from carp_optimized.arrays import NEVER, NONE, TOO_FAR, UNCHANGED, UNKNOWN, Ints, State
 from carp_optimized.compiling import RecordsExhausted, TicksExhausted, entry
-from carp_optimized.guides import guide_slot
+from carp_optimized.guides import shortest_of
 from carp_optimized.natives import state_at
 from carp_optimized.records import close_record, cost_of, start_record
 from carp_optimized.references import Native
@@ -23,8 +23,7 @@ def find_one(native: Native[State], robot: int, before: int, now: int) -> int:
 def shortest(native: Native[State], robot: int) -> int:
     """The ticks from the robot's start to its goal on the empty graph; 0 if no moves lead there."""
     state = state_at(native)
-    slot = guide_slot(state, int(state.robots.destination[robot]))
-    ticks = int(state.guides.ticks[slot][state.robots.start[robot]])
+    ticks = shortest_of(state, robot)
     if ticks == TOO_FAR:
         raise TicksExhausted
     return max(ticks, 0)

@@ -138,40 +138,6 @@ def same_plan(records: Records, one: int, other: int) -> bool:
 
 
 @compiled
-def alike_at_start(records: Records, one: int, other: int) -> int:
-    """How many first stays two plans that differ have in common, with the moves out of them."""
-    here = int(records.visits_at[one])
-    there = int(records.visits_at[other])
-    size = min(int(records.visits[one]), int(records.visits[other]))
-    k = 0
-    while (
-        k < size
-        and records.resource[here + k] == records.resource[there + k]
-        and records.enter[here + k] == records.enter[there + k]
-    ):
-        k += 1
-    return max(k - 1, 0)
-
-
-@compiled
-def alike_at_end(records: Records, one: int, other: int) -> int:
-    """How many last stays two plans that differ have in common, with the moves into them."""
-    if records.leave[one] != records.leave[other]:
-        return 0
-    here = int(records.visits_at[one]) + int(records.visits[one]) - 1
-    there = int(records.visits_at[other]) + int(records.visits[other]) - 1
-    size = min(int(records.visits[one]), int(records.visits[other]))
-    k = 0
-    while (
-        k < size
-        and records.resource[here - k] == records.resource[there - k]
-        and records.enter[here - k] == records.enter[there - k]
-    ):
-        k += 1
-    return max(k - 1, 0)
-
-
-@compiled
 def clash(records: Records, one: int, other: int, gap: int) -> bool:
     """Whether two plans are ever in one resource at a tick, or exchange two; capacities are ignored.
 

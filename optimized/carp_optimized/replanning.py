@@ -19,10 +19,23 @@ A query need not be repeated if the windows it would see differ from those it sa
 A plan made earlier and now under way is the same query with fewer ways to begin, so the second case holds for it.
 """
 
-from carp_optimized.arrays import BLOCK, KEPT, NEVER, NONE, SEVERAL, UNCHANGED, UNKNOWN, Freed, Options, State, Work
+from carp_optimized.arrays import (
+    BLOCK,
+    KEPT,
+    NEVER,
+    NONE,
+    SEVERAL,
+    UNCHANGED,
+    UNKNOWN,
+    Freed,
+    Options,
+    Records,
+    State,
+    Work,
+)
 from carp_optimized.compiling import compiled
 from carp_optimized.guides import guide_slot, toll_of
-from carp_optimized.records import alike_at_end, alike_at_start, same_plan
+from carp_optimized.records import same_plan
 from carp_optimized.search import find_plan_by
 from carp_optimized.windows import end_of_run, evict, last_by, plan_fits, reserve, reserve_but, withdraw, withdraw_but
 
@@ -253,6 +266,40 @@ def exchange_plan(state: State, robot: int, record: int, plan: int, lifted: bool
     if not lifted:
         evict(state, plan, head, tail)
     reserve_but(state, plan, head, tail)
+
+
+@compiled
+def alike_at_start(records: Records, one: int, other: int) -> int:
+    """How many first stays two plans that differ have in common, with the moves out of them."""
+    here = int(records.visits_at[one])
+    there = int(records.visits_at[other])
+    size = min(int(records.visits[one]), int(records.visits[other]))
+    k = 0
+    while (
+        k < size
+        and records.resource[here + k] == records.resource[there + k]
+        and records.enter[here + k] == records.enter[there + k]
+    ):
+        k += 1
+    return max(k - 1, 0)
+
+
+@compiled
+def alike_at_end(records: Records, one: int, other: int) -> int:
+    """How many last stays two plans that differ have in common, with the moves into them."""
+    if records.leave[one] != records.leave[other]:
+        return 0
+    here = int(records.visits_at[one]) + int(records.visits[one]) - 1
+    there = int(records.visits_at[other]) + int(records.visits[other]) - 1
+    size = min(int(records.visits[one]), int(records.visits[other]))
+    k = 0
+    while (
+        k < size
+        and records.resource[here - k] == records.resource[there - k]
+        and records.enter[here - k] == records.enter[there - k]
+    ):
+        k += 1
+    return max(k - 1, 0)
 
 
 @compiled

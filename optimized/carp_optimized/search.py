@@ -97,6 +97,8 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
     pace = int(state.robots.pace[robot])
     parks = state.parks
     counts_all = behind == NEVER
+    several = state.stays.start.size > BLOCK
+    alike = pace * state.longest if state.last_alike else 0
     is_bounded = latest <= LARGEST
     largest_key = (latest << 32) + LOW
 
@@ -144,7 +146,7 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
         last = node if counts_all else end_of_run(state, node, behind)
         end = int(windows.end[last])
         if expansions > 0:
-            ready = enter + pace * int(graph.duration[resource])
+            ready = enter + (alike if alike > 0 else pace * int(graph.duration[resource]))
         if expansions == expanded.size:
             raise RoomExhausted
         expanded[expansions] = resource
@@ -155,7 +157,7 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
             state.search.goal[0] = node
             state.search.expansions[0] = expansions
             return expansions
-        exchanges = graph.capacity[resource] > 1
+        exchanges = several and graph.capacity[resource] > 1
         source = int(windows.source[last])
         for edge in range(int(graph.first[resource]), int(graph.first[resource + 1])):
             target = int(graph.target[edge])
@@ -165,7 +167,7 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
                 continue
             if is_bounded and (ready << 32) + toll > largest_key:
                 continue
-            need = pace * int(graph.duration[target])
+            need = alike if alike > 0 else pace * int(graph.duration[target])
             first = int(windows.offset[target])
             row_end = first + int(windows.size[target])
             is_block = row_end <= first + BLOCK

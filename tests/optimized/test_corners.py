@@ -6,6 +6,7 @@ from math import isqrt, sqrt
 
 import numba
 import pytest
+from tests.optimized.towns import TOWNS
 
 import carp_optimized
 import carp_reference
@@ -121,6 +122,19 @@ def test_guides_that_do_not_all_fit_are_made_again(monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(encoding, "GUIDE_PLACES", 1)
     instance = grid_instance(Grid(9, 9), Fleet(70, distinct="goals"))
     for planner in (Carp(), Greedy()):
+        assert_alike(instance, planner)
+
+
+@pytest.mark.parametrize(
+    "instance", [grid_instance(Grid(9, 9), Fleet(70)), TOWNS["a slow robot"].instance], ids=["levels", "durations"]
+)
+def test_ranks_take_the_place_of_ticks_and_indices_that_do_not_fit_into_32_bits(
+    monkeypatch: pytest.MonkeyPatch, instance: Instance
+) -> None:
+    assert PlannedFleet(instance)._state.guides.rank.size == 0
+    monkeypatch.setattr(encoding, "scale_of_tolls", lambda *_: 0)
+    assert PlannedFleet(instance)._state.guides.rank.size > 0
+    for planner in (Carp(), Neighbourhood(m=3)):
         assert_alike(instance, planner)
 
 
