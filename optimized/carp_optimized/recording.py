@@ -1,11 +1,16 @@
 """Records of plans, seen from Python: writing plans made elsewhere, reading plans, making room."""
 
+from typing import TypeVar
+
 import numpy as np
+import numpy.typing as npt
 
 from carp_optimized.arrays import NEVER, Records, State
 from carp_optimized.passes import record_plan
 from carp_optimized.references import Native
 from carp_spec import Instance, Plan, Visit
+
+T = TypeVar("T", bound=np.generic)
 
 
 def write_plan(native: Native[State], instance: Instance, robot: int, plan: Plan) -> int:
@@ -30,9 +35,14 @@ def read_plan(state: State, instance: Instance, record: int) -> Plan:
 
 
 def enlarged(records: Records) -> Records:
-    """The same records with twice the room."""
-    twice = [np.concatenate([each, np.zeros_like(each)]) for each in records[:-1]]
-    return Records._make([*twice, records.used.copy()])
+    """The same records with twice the room, of which what is not used yet takes no memory."""
+    return Records._make([*(_with_room(each, 2 * len(each)) for each in records[:-1]), records.used.copy()])
+
+
+def _with_room(array: npt.NDArray[T], length: int) -> npt.NDArray[T]:
+    larger = np.zeros((length, *array.shape[1:]), array.dtype)
+    larger[: len(array)] = array
+    return larger
 
 
 def copied(records: Records) -> Records:
