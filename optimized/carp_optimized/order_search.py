@@ -149,7 +149,7 @@ def plan_order(
 
 @compiled
 def spare_for(work: Work, answers: Answers, place: int, count: int, spare: int, least: int) -> int:
-    """What a plan for that place must be below, by all answers known of the members behind it.
+    """The cost that a plan for that place must stay below, by all answers known of the members behind it.
 
     `spare` is that by their plans alone. It only shrinks, so nobody else is looked at once it is no more than `least`.
     """

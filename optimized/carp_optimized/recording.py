@@ -35,7 +35,7 @@ def read_plan(state: State, instance: Instance, record: int) -> Plan:
 
 
 def enlarged(records: Records) -> Records:
-    """The same records with twice the room, of which what is not used yet takes no memory."""
+    """The same records with twice the room; the new half takes no memory until it is used."""
     return Records._make([*(_with_room(each, 2 * len(each)) for each in records[:-1]), records.used.copy()])
 
 
