@@ -117,7 +117,7 @@ REQUESTS: dict[str, Document] = {
         "solution": TWO_PLANNED,
         "robot": "r1",
         "now": 1,
-        "route": [["a", 0, 1], ["b", 1, 2]],
+        "route": EAST_PLAN,
     },
     "stop": {},
 }
