@@ -56,7 +56,7 @@ if TYPE_CHECKING:
     from carp_verify.bounds import BoundDocument, read_bound
     from carp_verify.documents import read_instance, read_solution, write_instance, write_solution, write_verdict
     from carp_verify.verify_bound import verify_bound
-    from carproof.engines import planner_named
+    from carproof.planner_options import planner_named
     from carproof.registry import RULES
 
 _DOCUMENTS = ("read_instance", "read_solution", "write_instance", "write_solution", "write_verdict")
@@ -70,7 +70,7 @@ _ELSEWHERE = {
     "read_bound": "carp_verify.bounds",
     **dict.fromkeys(_DOCUMENTS, "carp_verify.documents"),
     "RULES": "carproof.registry",
-    "planner_named": "carproof.engines",
+    "planner_named": "carproof.planner_options",
     "bound": "carp_optimum.bound:lower_bound",
     "Optimum": "carp_optimum.optimum",
     "optimum": "carp_optimum.optimum",

@@ -1,13 +1,11 @@
 """The planners to choose from, each loaded when it is first used."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import fields
+from collections.abc import Callable, Iterable, Sequence
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any, Protocol, cast
 
 from carp_spec import Instance, Neighbourhood, Plan, Planner, Refusal, RobotId, Solution, total_cost
-from carp_spec.planners import PLANNERS, options_are_right
 from carp_spec.query_certificates import QueryCertificateDocument
 from carp_spec.traces import Trace
 from carproof.progress import progress
@@ -129,23 +127,3 @@ def have_plans_beside(
         certifier = engine_named("reference").certifier(instance)
         certifier.commit(committed)
     return [certifier.certify(robot, None, now)[0] is not None for robot in robots]
-
-
-def planner_named(name: object, options: Mapping[str, object]) -> Planner:
-    """Make a planner from its name and options.
-
-    Raises `Refusal` on an unknown name, an option that the planner does not have, or a value out of range.
-    """
-    if not isinstance(name, str) or name not in PLANNERS:
-        message = f"there is no planner {name!r}; the planners are {', '.join(PLANNERS)}"
-        raise Refusal("option", "$.planner", options_are_right.id, message)
-    known = [field.name for field in fields(PLANNERS[name])]
-    for option in options:
-        if option not in known:
-            has = f"its options are {', '.join(known)}" if known else "it has none"
-            message = f"the planner {name} has no option {option}; {has}"
-            raise Refusal("option", f"$.{option}", options_are_right.id, message)
-    planner = PLANNERS[name](**cast("Mapping[str, Any]", options))
-    for fault in options_are_right(planner):
-        raise Refusal("option", fault.path, fault.rule, fault.message)
-    return planner

@@ -6,10 +6,10 @@ from typing import Any, TypeVar
 import click
 
 from carp_spec import FixedPaths, Neighbourhood, Planner, Shuffled
-from carp_spec.planners import PLANNERS
-from carproof.engines import ENGINES, planner_named
+from carproof.engines import ENGINES
 from carproof.files import InputFile, OutputFile
 from carproof.generate import Range
+from carproof.planner_options import PLANNERS, planner_named
 
 DEFAULT_LIMIT = 60
 DEFAULT_SECONDS = 10

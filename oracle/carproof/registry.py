@@ -15,13 +15,13 @@ from carp_spec.neighbourhood_rules import (
     replanned_from,
 )
 from carp_spec.plan_rules import PLAN_RULES, is_plan_cost, is_total_cost, plan_keeps_history
-from carp_spec.planners import options_are_right
 from carp_spec.polish_rules import POLISH_RULES
 from carp_spec.query_rules import absence_is_true, expansion_key, plan_is_optimal, plan_is_sound
 from carp_spec.rule import Rule
 from carp_spec.windows import stay_fits, windows_are_free
 from carp_verify.documents import has_format, has_shape, is_json
 from carproof.giving_way import robot_is_first
+from carproof.planner_options import options_are_right
 
 RULES: tuple[Rule[..., Any], ...] = (
     is_json,

@@ -1,14 +1,12 @@
 """The planners by name, their options and their decisions."""
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass
-from typing import ClassVar, Literal, TypeAlias, get_args
+from dataclasses import dataclass
+from typing import ClassVar, Literal, TypeAlias
 
-from carp_spec.rule import DESIGN, Found, fault_rule, is_whole, rule
+from carp_spec.rule import DESIGN, rule
 
 LARGEST_SEED = 2**64 - 1
 LARGEST_TABLE = 5_000_000
-LARGEST_SAMPLE = 1_000_000
 PathKind: TypeAlias = Literal["shortest", "disjoint"]
 
 
@@ -87,33 +85,6 @@ class TimeExpanded:
 
 
 Planner: TypeAlias = Carp | Shuffled | LongestFirst | Greedy | Neighbourhood | FixedPaths | TimeExpanded
-PLANNERS: Mapping[str, type[Planner]] = {kind.name: kind for kind in get_args(Planner)}
-
-
-def is_between(value: object, least: int, most: int | None = None) -> bool:
-    """Whether the value is a whole number between the two, both included."""
-    return is_whole(value) and value >= least and (most is None or value <= most)
-
-
-@fault_rule(
-    "planner/options",
-    f"Counts (m, k, attempts, fallback, sample) are whole numbers of at least 1, a sample at most {LARGEST_SAMPLE}; "
-    "a seed is between 0 and 2^64 - 1; baseline is true or false; paths is shortest or disjoint; sample and fallback "
-    "may be null.",
-    DESIGN,
-)
-def options_are_right(planner: Planner) -> Found:
-    limits = {"seed": (0, LARGEST_SEED), "sample": (1, LARGEST_SAMPLE)}
-    for name, value in asdict(planner).items():
-        least, most = limits.get(name, (1, None))
-        right = f"a whole number of at least {least}" if most is None else f"a whole number between {least} and {most}"
-        is_right = is_between(value, least, most) or (value is None and name in ("sample", "fallback"))
-        if name == "baseline":
-            right, is_right = "true or false", isinstance(value, bool)
-        elif name == "paths":
-            right, is_right = '"shortest" or "disjoint"', value in get_args(PathKind)
-        if not is_right:
-            yield f"$.{name}", f"the {name} must be {right}, not {value!r}"
 
 
 @rule(

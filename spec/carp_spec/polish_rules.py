@@ -16,9 +16,9 @@ from typing import Any, Literal, TypeAlias, TypeVar, cast
 from carp_spec.check import judge
 from carp_spec.model import Instance, Plan, ResourceId, Solution, Visit
 from carp_spec.permutations import shuffle
-from carp_spec.planners import LARGEST_SEED, is_between
+from carp_spec.planners import LARGEST_SEED
 from carp_spec.refusal import Refusal
-from carp_spec.rule import DESIGN, Found, Rule, fault_rule, rule
+from carp_spec.rule import DESIGN, Found, Rule, fault_rule, is_between, rule
 
 T = TypeVar("T")
 Kind: TypeAlias = Literal["repair", "delayed", "contested", "near"]

@@ -81,6 +81,11 @@ def is_whole(value: object) -> TypeGuard[int]:
     return isinstance(value, int) and not isinstance(value, bool)
 
 
+def is_between(value: object, least: int, most: int | None = None) -> bool:
+    """Whether the value is a whole number between the two, both included."""
+    return is_whole(value) and value >= least and (most is None or value <= most)
+
+
 def interval(start: int, end: int | None) -> str:
     """Print a half-open interval of ticks; an end of `None` means for ever."""
     return f"[{start},{'for ever' if end is None else end})"

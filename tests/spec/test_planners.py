@@ -13,8 +13,8 @@ from carp_spec import (
     Shuffled,
     TimeExpanded,
 )
-from carp_spec.planners import LARGEST_SAMPLE, LARGEST_SEED, PLANNERS, options_are_right
-from carproof.engines import planner_named
+from carp_spec.planners import LARGEST_SEED
+from carproof.planner_options import LARGEST_SAMPLE, PLANNERS, options_are_right, planner_named
 
 
 @pytest.mark.parametrize(

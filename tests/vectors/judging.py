@@ -59,8 +59,8 @@ from carp_verify.joint_search import least_total_cost
 from carp_verify.query_certificate_rules import QUERY_CERTIFICATE_RULES, plans_are_lawful, robot_is_known
 from carp_verify.verify_bound import verify_bound
 from carp_verify.verify_query import verify_query
-from carproof.engines import planner_named
 from carproof.giving_way import robot_is_first
+from carproof.planner_options import planner_named
 from carproof.registry import RULES
 from carproof.vectors import Fields, Vector
 

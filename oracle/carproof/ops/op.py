@@ -13,7 +13,6 @@ from typing import Any, Literal, Union, get_args, get_type_hints
 import msgspec
 
 from carp_spec import Instance, Neighbourhood, Planner, Refusal, Solution
-from carp_spec.planners import PLANNERS
 from carp_spec.polish_rules import require_polish_options
 from carp_spec.query_certificates import QueryCertificateDocument
 from carp_spec.traces import Trace
@@ -30,7 +29,8 @@ from carp_verify.documents import (
     solution_document,
     trace_document,
 )
-from carproof.engines import Engine, planner_named
+from carproof.engines import Engine
+from carproof.planner_options import PLANNERS, planner_named
 from carproof.protocol import RIGHT_FIELDS, Request, value_of
 
 
