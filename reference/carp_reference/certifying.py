@@ -10,7 +10,7 @@ from carp_spec.query_certificates import QUERY_FORMAT, QueryCertificateDocument
 
 
 class Certifier:
-    """Plans robots one by one beside plans that are committed, each with its certificate."""
+    """Plans robots beside committed plans, each with its certificate."""
 
     def __init__(self, instance: Instance) -> None:
         self._problem = prepare(instance, 0)
@@ -25,8 +25,8 @@ class Certifier:
     ) -> tuple[Plan | None, QueryCertificateDocument]:
         """The plan of the robot that arrives earliest, `None` if it has none, and its certificate.
 
-        `followed` is the plan that the robot has followed until the tick `now`. The labels are the nodes expanded after
-        the start from which the goal is reached before the bound.
+        `followed` is its plan until the tick `now`. The labels are the nodes expanded after the start from which the
+        goal is reached before the bound.
         """
         problem = replace(self._problem, now=now, before={} if followed is None else {robot: followed})
         ticks_to_goal = problem.ticks_to_goal[robot]

@@ -1,8 +1,4 @@
-"""Retiming: after delays, plans for the rest of the way in the planned order, as early as possible.
-
-An edge of the dependency graph leads to a visit that is planned no earlier than the one it comes from, perhaps at the
-same tick. So times are propagated in the order of the planned ticks, and within a tick until nothing changes.
-"""
+"""Retiming: after delays, plans for the rest of the way in the planned order, as early as possible."""
 
 from collections import defaultdict, deque
 from collections.abc import Mapping, Sequence
@@ -55,7 +51,11 @@ def order_with(instance: Instance, solution: Solution, edges: tuple[Dependency, 
 
 
 def earliest(order: Order, least: Mapping[Node, int]) -> dict[Node, int]:
-    """The earliest entry of each visit, none before its tick in `least`."""
+    """The earliest entry of each visit, none before its tick in `least`.
+
+    No edge leads to a visit planned earlier: times are propagated in the planned order, and within a tick until nothing
+    changes.
+    """
     enters = {node: least.get(node, 0) for node in order.nodes}
     for _, group in groupby(order.nodes, key=lambda node: order.visit(node).enter):
         waiting = deque(group)
@@ -71,10 +71,9 @@ def earliest(order: Order, least: Mapping[Node, int]) -> dict[Node, int]:
 
 
 def retime(instance: Instance, solution: Solution, trace: Trace) -> Solution:
-    """The plans for the rest of the way, in the same order and as early as possible.
+    """The visits of the trace are kept; every other entry is later than the tick `trace.now`.
 
-    The visits of the trace are kept; every other entry is later than the tick `trace.now`. Raises `Refusal` if the
-    trace does not follow the solution, and where no lawful plan has the history.
+    Raises `Refusal` if the trace does not follow the solution, and where no lawful plan has the history.
     """
     require_followed(instance, solution, trace)
     order = order_of(instance, solution)

@@ -13,7 +13,7 @@ Flow = dict[tuple[str, ResourceId], dict[tuple[str, ResourceId], int]]
 
 
 def fixed_paths(problem: Problem, options: FixedPaths) -> Plans:
-    """Plan the robots in the order given, each on the first of its paths that arrives earliest."""
+    """Plan the robots in the order given, each on its best path, the first of equals."""
     paths_of = shortest_paths if options.paths == "shortest" else disjoint_paths
     plans: list[Plan] = []
     for robot in problem.instance.robots:

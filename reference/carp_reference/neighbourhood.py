@@ -1,7 +1,6 @@
 """The neighbourhood planner: the paper's Algorithm 1, line by line, as the rules `neighbourhood/...` decide.
 
-A new robot is planned together with its nearest neighbours, in every order. In the paper's notation, `outside` is the
-sequence A, `members` the set N, and `new` the robot a_k.
+In the paper's notation, `outside` is the sequence A, `members` the set N, and `new` the robot a_k.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -12,15 +11,7 @@ from carp_reference.orderings import Plans, shuffled
 from carp_reference.problem import Problem
 from carp_reference.query import find_plan
 from carp_spec import Neighbourhood, Plan, RobotId, has_ended, total_cost
-from carp_spec.neighbourhood_rules import (
-    baseline_is_tried,
-    distance,
-    nearest,
-    neighbourhood_orders,
-    next_trajectory,
-    replaces_best,
-    replanned_from,
-)
+from carp_spec import neighbourhood_rules as rules
 from carp_spec.permutations import Order, splitmix64
 
 
@@ -46,42 +37,42 @@ def _best_candidate(problem: Problem, committed: Plans, new: RobotId, options: N
     members = [new]
     best: Plans | None = None
     rounds = min(options.m - 1, sum(not has_ended(plan, problem.now) for plan in committed))
-    if baseline_is_tried(options.baseline, rounds):
+    if rules.baseline_is_tried(options.baseline, rounds):
         plan = find_plan(problem, committed, new)
         best = None if plan is None else (*committed, plan)
     for _ in range(rounds):
         taken = _nearest_outside(problem, trajectories, outside, members)
         members.append(outside.pop(taken))
-        kept = _replan(problem, kept[: replanned_from(taken, len(kept))], outside)
+        kept = _replan(problem, kept[: rules.replanned_from(taken, len(kept))], outside)
         round_best: Plans | None = None
         if len(kept) == len(outside):
-            orders = neighbourhood_orders(len(members), options.sample, stream)
+            orders = rules.neighbourhood_orders(len(members), options.sample, stream)
             for plans in _plans_of_orders(problem, kept, members, orders):
                 round_best = _better(problem, round_best, (*kept, *plans))
         best = _better(problem, best, round_best)
         planned = {plan.robot: plan for plan in round_best or kept}
-        trajectories = {robot: next_trajectory(plan, planned.get(robot)) for robot, plan in trajectories.items()}
+        trajectories = {robot: rules.next_trajectory(plan, planned.get(robot)) for robot, plan in trajectories.items()}
     return best
 
 
 def _better(problem: Problem, best: Plans | None, candidate: Plans | None) -> Plans | None:
-    """The candidate if it exists and replaces the best so far."""
+    """The better of the two, if any."""
     if candidate is None:
         return best
     best_cost = None if best is None else total_cost(problem.instance, best)
-    return candidate if replaces_best(total_cost(problem.instance, candidate), best_cost) else best
+    return candidate if rules.replaces_best(total_cost(problem.instance, candidate), best_cost) else best
 
 
 def _nearest_outside(
     problem: Problem, trajectories: Mapping[RobotId, Plan], outside: Sequence[RobotId], members: Sequence[RobotId]
 ) -> int:
-    """The position in `outside` of the robot to take in; plans that have ended are left alone."""
+    """The position of the robot to take in; plans that have ended are left alone."""
     under_way = [robot for robot in outside if not has_ended(problem.before[robot], problem.now)]
     distances = [
-        [distance(problem.instance, trajectories[robot], trajectories[member]) for member in members]
+        [rules.distance(problem.instance, trajectories[robot], trajectories[member]) for member in members]
         for robot in under_way
     ]
-    return outside.index(under_way[nearest(distances)])
+    return outside.index(under_way[rules.nearest(distances)])
 
 
 def _replan(problem: Problem, kept: Plans, outside: Sequence[RobotId]) -> Plans:

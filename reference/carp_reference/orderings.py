@@ -1,4 +1,4 @@
-"""Prioritized planners: they plan the robots one after the other, each against the plans before it."""
+"""Prioritized planning: robots one after the other, each against the plans before it."""
 
 from collections.abc import Sequence
 
@@ -11,7 +11,7 @@ Plans = tuple[Plan, ...]
 
 
 def carp(problem: Problem, order: Sequence[RobotId]) -> Plans:
-    """CARP: plan the robots in the order given; one that finds no plan is left out."""
+    """Plan the robots in the order given; one that finds no plan is left out."""
     plans: list[Plan] = []
     for robot in order:
         plan = find_plan(problem, plans, robot)
@@ -21,7 +21,7 @@ def carp(problem: Problem, order: Sequence[RobotId]) -> Plans:
 
 
 def shuffled(problem: Problem, order: Sequence[RobotId], attempts: int, seed: int) -> Plans:
-    """The best of several passes of CARP, each but the first in a shuffle of the order before."""
+    """The best of several passes, as `Shuffled` has them."""
     stream = splitmix64(seed)
     best = carp(problem, order)
     for _ in range(attempts - 1):
@@ -44,7 +44,7 @@ def longest_first(problem: Problem) -> Plans:
 
 
 def greedy(problem: Problem) -> Plans:
-    """Plan, in each round, the robot whose plan costs least; a tie goes to the earlier in the instance."""
+    """Plan, in each round, the robot whose plan costs least."""
     plans: list[Plan] = []
     waiting = [robot.id for robot in problem.instance.robots]
     while waiting:

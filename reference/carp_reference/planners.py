@@ -27,7 +27,7 @@ from carp_spec.planners import BY_DEFAULT
 
 
 def query(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0) -> Plan | None:
-    """The plan of one robot with the earliest arrival against the committed plans, or `None` if none exists.
+    """The plan of one robot with the earliest arrival against the committed plans, or `None`.
 
     Its own plan among those committed is what it has followed until the tick `now`.
     """
@@ -43,7 +43,7 @@ def certifier(instance: Instance) -> Certifier:
 
 
 def plan(instance: Instance, planner: Planner = BY_DEFAULT) -> Solution:
-    """Plan all robots of the instance at tick 0, by the neighbourhood planner if none is named."""
+    """Plan all robots of the instance at tick 0."""
     return Solution.of(instance, _plans(prepare(instance, 0), planner))
 
 

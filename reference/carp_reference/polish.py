@@ -1,7 +1,6 @@
 """Polishing, large neighbourhood search (LNS): a solution is improved as the rules `polish/...` decide.
 
-A round removes a pivot and robots related to it, plans them again one by one, and keeps the new plans if they are not
-worse. Robots without a plan come first, so polishing also repairs a solution.
+Robots without a plan come first, so polishing also repairs a solution.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -11,24 +10,9 @@ from time import perf_counter
 from carp_reference.problem import Problem, prepare
 from carp_reference.query import find_plan
 from carp_spec import Instance, Plan, RobotId, Solution, plan_cost, total_cost
+from carp_spec import polish_rules as rules
 from carp_spec.neighbourhood_rules import distance
 from carp_spec.permutations import splitmix64
-from carp_spec.polish_rules import (
-    Kind,
-    by_distance,
-    drawn,
-    is_in_way,
-    is_kept,
-    kind_of,
-    last_round,
-    members_of,
-    order_of,
-    pivot_of,
-    polishable,
-    require_polish_options,
-    spans,
-    ticks_apart,
-)
 
 Plans = Mapping[RobotId, Plan]
 
@@ -56,9 +40,9 @@ def polish(
     The polish ends earlier if no plan can be shorter. Equal iterations and seed give an equal solution. Raises
     `Refusal` for wrong options, and for a solution that breaks a rule.
     """
-    require_polish_options(iterations, seconds, seed)
-    whole = polishable(instance, solution)
-    last = last_round(iterations, seconds)
+    rules.require_polish_options(iterations, seconds, seed)
+    whole = rules.polishable(instance, solution)
+    last = rules.last_round(iterations, seconds)
     started = perf_counter()
     problem = prepare(instance, 0)
     alone = {robot.id: plan for robot in instance.robots if (plan := find_plan(problem, (), robot.id)) is not None}
@@ -77,46 +61,38 @@ def polish(
 
 
 def _round(polishing: Polish, plans: Plans, turn: int) -> Plans | None:
-    """The plans after one round, in planning order; `None` if there is nothing to improve."""
-    everyone = [robot.id for robot in polishing.problem.instance.robots if robot.id in polishing.alone]
-    waiting = [robot for robot in everyone if robot not in plans]
-    delays = [_delay(polishing, plans, robot) for robot in everyone]
-    kind = kind_of(turn, len(waiting), sum(delays), polishing.stream)
+    """The plans after one round; `None` if there is nothing to improve."""
+    instance, alone, stream = polishing.problem.instance, polishing.alone, polishing.stream
+    everyone = [robot.id for robot in instance.robots if robot.id in alone]
+    least = {robot: plan_cost(instance, alone[robot]) for robot in everyone}
+    delays = [plan_cost(instance, plans[robot]) - least[robot] if robot in plans else 0 for robot in everyone]
+    unplanned = [int(robot not in plans) for robot in everyone]
+    kind = rules.kind_of(turn, sum(unplanned), sum(delays), stream)
     if kind is None:
         return None
-    weights = {"repair": [int(robot not in plans) for robot in everyone], "delayed": delays}
-    pivot = everyone[pivot_of(weights.get(kind, [int(robot in plans) for robot in everyone]), polishing.stream)]
-    candidates = _candidates(polishing, plans, kind, pivot)
-    members = order_of(members_of(pivot, candidates, everyone, polishing.stream), kind == "repair", polishing.stream)
-    changed = _replan(polishing.problem, plans, members)
-    instance = polishing.problem.instance
-    return changed if is_kept(_worth(instance, plans), _worth(instance, changed)) else plans
+    weights = {"repair": unplanned, "delayed": delays}.get(kind, [int(robot in plans) for robot in everyone])
+    pivot = everyone[rules.pivot_of(weights, stream)]
+    members = rules.members_of(pivot, _candidates(polishing, plans, kind, pivot), everyone, stream)
+    changed = _replan(polishing.problem, plans, rules.order_of(members, kind == "repair", stream))
+    return changed if rules.is_kept(_worth(instance, plans), _worth(instance, changed)) else plans
 
 
-def _delay(polishing: Polish, plans: Plans, robot: RobotId) -> int:
-    """The ticks by which the robot arrives later than it would alone."""
-    instance = polishing.problem.instance
-    if robot not in plans:
-        return 0
-    return plan_cost(instance, plans[robot]) - plan_cost(instance, polishing.alone[robot])
-
-
-def _candidates(polishing: Polish, plans: Plans, kind: Kind, pivot: RobotId) -> list[RobotId]:
+def _candidates(polishing: Polish, plans: Plans, kind: rules.Kind, pivot: RobotId) -> list[RobotId]:
     """The robots related to the pivot, in the order in which they are removed."""
     instance = polishing.problem.instance
     others = [plans[robot.id] for robot in instance.robots if robot.id in plans and robot.id != pivot]
     if kind == "near":
         distances = [distance(instance, plans[pivot], other) for other in others]
-        return [others[place].robot for place in by_distance(distances)]
+        return [others[place].robot for place in rules.by_distance(distances)]
     if kind == "contested":
         visits = plans[pivot].visits
         visit = visits[next(polishing.stream) % len(visits)]
-        apart = {other.robot: ticks for other in others if (ticks := ticks_apart(visit, other)) is not None}
+        apart = {other.robot: ticks for other in others if (ticks := rules.ticks_apart(visit, other)) is not None}
         return sorted(apart, key=apart.__getitem__)
     is_own = kind == "delayed" and next(polishing.stream) % 2 == 1
-    wished = spans(instance.graph.successors, plans[pivot] if is_own else polishing.alone[pivot])
-    in_way = [other.robot for other in others if is_in_way(wished, other)]
-    return drawn(in_way, len(in_way), polishing.stream)
+    wished = rules.spans(instance.graph.successors, plans[pivot] if is_own else polishing.alone[pivot])
+    in_way = [other.robot for other in others if rules.is_in_way(wished, other)]
+    return rules.drawn(in_way, len(in_way), polishing.stream)
 
 
 def _replan(problem: Problem, plans: Plans, members: Sequence[RobotId]) -> Plans:

@@ -11,9 +11,8 @@ from carp_spec import Instance, Plan, ResourceId, Robot, RobotId
 class Problem:
     """An instance, the h of each robot's A*, the tick at which it is planned, and the plans followed until then.
 
-    `ticks_to_goal[robot][resource]` is the least number of ticks from entering the resource to entering the robot's
-    goal on the empty graph; resources without a way to the goal are left out. Visits of `before` that are entered up to
-    the tick `now` are kept (`fleet/history`).
+    `ticks_to_goal[robot][resource]` is the least number of ticks from entering the resource to entering the goal on the
+    empty graph, if a way leads there. Visits of `before` entered by the tick `now` are kept (`fleet/history`).
     """
 
     instance: Instance

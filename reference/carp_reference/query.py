@@ -101,7 +101,7 @@ def _search(
 
 
 def _can_end(problem: Problem, robot: RobotId, node: Node) -> bool:
-    """Whether the plan can end in the node: the goal, for ever (`park`) or one duration that is not over (`vanish`)."""
+    """Whether the plan can end in the node: the goal, for ever (`park`) or a duration that is not over (`vanish`)."""
     instance = problem.instance
     if node.resource != instance.robot[robot].goal:
         return False

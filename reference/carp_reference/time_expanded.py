@@ -1,7 +1,6 @@
 """The naive twin of the CARP query: A* tick by tick on a table of occupied ticks (the paper's [spatioTempA*]).
 
-It shares no code with the query over windows, which is tested against it: both arrive at the same tick, or both find
-no plan. Where several plans arrive as early, the two may differ.
+It shares no code with the query over windows, which is tested against it: both find the same tick of arrival.
 """
 
 from collections import Counter
@@ -33,7 +32,7 @@ class Table:
         return all(self.is_free(resource, tick) for tick in range(enter, last))
 
     def may_end(self, robot: RobotId, resource: ResourceId, enter: int) -> bool:
-        """Whether a robot that enters the resource at the tick may end its plan there."""
+        """Whether a robot that enters the resource at the tick may end there."""
         parks = self.instance.after_goal == "park"
         leave = None if parks else enter + self.instance.duration(robot, resource)
         return resource == self.instance.robot[robot].goal and self.is_free_during(resource, enter, leave)

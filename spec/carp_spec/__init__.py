@@ -1,6 +1,6 @@
 """The specification of context-aware route planning: model, rules, checker.
 
-This page exports the names that planners and their users need most. The modules have the rest.
+It exports the names that planners need most.
 """
 
 from carp_spec.check import Verdict, check, check_update, judge

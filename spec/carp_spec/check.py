@@ -27,10 +27,9 @@ class Verdict:
 
 
 def check(instance: Instance, plans: Sequence[Plan], most: int | None = MOST_LISTED) -> tuple[Violation, ...]:
-    """The violations of plans of the instance's robots: rule by rule, each in the order of the plans or of time.
+    """The violations of plans, at most the first `most` of each rule (`None`: all).
 
-    At most the first `most` of each rule are returned (`None`: all). The instance must have no faults and know every
-    plan's robot.
+    The instance must have no faults and know every plan's robot.
     """
     violations: list[Violation] = []
     for each in PLAN_RULES:
@@ -53,10 +52,7 @@ def judge(instance: Instance, solution: Solution, most: int | None = MOST_LISTED
 
 
 def check_update(before: Sequence[Plan], after: Sequence[Plan], now: int) -> tuple[Violation, ...]:
-    """All violations of `fleet/history` by plans that were made again at the tick now.
-
-    A robot without a plan after it counts as not replanned, and breaks nothing.
-    """
+    """All violations of `fleet/history` by plans made again at the tick now; a robot without one breaks nothing."""
     again = {plan.robot: plan for plan in after}
     return tuple(
         violation

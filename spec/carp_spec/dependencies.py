@@ -1,8 +1,7 @@
 """The action dependency graph of a solution: which visits wait for which others if robots keep the planned order.
 
-In each resource, one visit comes *before* another if its robot is planned to have left when the other visit begins (a
-tick earlier where following is forbidden). An edge leads to a visit that waits from the visit whose *entry* it waits
-for, with the least ticks between the two entries. Source: Hönig et al. 2019.
+An edge leads to a visit that waits from the visit whose *entry* it waits for, with the least ticks between the two
+entries. Source: Hönig et al. 2019.
 """
 
 from bisect import bisect_right
@@ -19,7 +18,7 @@ Node: TypeAlias = tuple[RobotId, int]
 
 @dataclass(frozen=True, slots=True)
 class Stay:
-    """A visit of a lawful plan with its position in the plan, and the resources before and after it (`None`: none)."""
+    """A visit of a lawful plan, and the resources before and after it."""
 
     node: Node
     visit: Visit
@@ -57,11 +56,6 @@ def is_before(instance: Instance, one: Visit, other: Visit) -> bool:
     return one.leave is not None and one.leave + instance.gap <= other.enter
 
 
-def is_opposite(one: Stay, other: Stay) -> bool:
-    """Whether the first robot leaves the resource to where the second comes from."""
-    return one.target is not None and one.target == other.source
-
-
 def dependencies(instance: Instance, plans: Sequence[Plan]) -> Iterator[Dependency]:
     """The edges of the dependency graph of lawful plans, without those that follow from others."""
     for plan in plans:
@@ -70,7 +64,8 @@ def dependencies(instance: Instance, plans: Sequence[Plan]) -> Iterator[Dependen
             yield Dependency("travel", (plan.robot, place), (plan.robot, place + 1), ticks, visit.resource)
     for resource, stays in stays_by_resource(plans).items():
         for one, other in _direct(instance, stays):
-            ticks = max(instance.gap, int(is_opposite(one, other)))
+            is_opposite = one.target is not None and one.target == other.source
+            ticks = max(instance.gap, int(is_opposite))
             robot, place = one.node
             if one.target is None:
                 duration = instance.duration(robot, resource)
@@ -96,10 +91,7 @@ def _direct(instance: Instance, stays: Sequence[Stay]) -> Iterator[tuple[Stay, S
 
 
 def shortest_cycle(edges: Sequence[Dependency]) -> tuple[Dependency, ...]:
-    """The edges of a shortest cycle, the first by the order of the edges; none if the graph has no cycle.
-
-    The only cycles of a lawful solution are robots that enter each other's places at one tick: edges of no ticks.
-    """
+    """The edges of the first shortest cycle, if there is one; the cycles of lawful plans have edges of no ticks."""
     following: dict[Node, list[Dependency]] = defaultdict(list)
     for edge in edges:
         if edge.ticks == 0:

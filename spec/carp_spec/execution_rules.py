@@ -112,7 +112,7 @@ def _too_early(
 ) -> Iterator[Breach]:
     """The robots that entered too early: another, planned to be `planned` ticks ahead, was less than `least` ahead.
 
-    Both are swept in the planned order; the violation names the robot that left last of those that should have left.
+    Of the robots that should have left, the violation names the one that left last.
     """
     left = sorted(((stay.visit.leave, stay) for stay in leaving if stay.visit.leave is not None), key=itemgetter(0))
     last: Stay | None = None
@@ -178,7 +178,7 @@ def require_followed(instance: Instance, solution: Solution, trace: Trace) -> No
 
 
 def require_lawful_ends(instance: Instance, after: Solution, trace: Trace) -> None:
-    """Raise `Refusal` where a plan that keeps the trace appears late, or stays at its goal for longer than it may."""
+    """Raise `Refusal` where a plan that keeps the trace appears late, or stays too long at its goal."""
     happened = trace.happened
     for plan in after.plans:
         for violation in (*plan_starts_at_release(instance, plan), *plan_ends_at_goal(instance, plan)):

@@ -6,7 +6,7 @@ from itertools import groupby, pairwise
 from operator import itemgetter
 from typing import TypeAlias
 
-from carp_spec.model import Instance, Move, Plan, Resource, ResourceId, RobotId, Solution
+from carp_spec.model import Instance, Move, Plan, ResourceId, RobotId, Solution
 from carp_spec.rule import DESIGN, MORS, Breach, Rule, Violation, of_robots, violation_rule
 
 Change: TypeAlias = tuple[int, int, RobotId]
@@ -20,8 +20,7 @@ Change: TypeAlias = tuple[int, int, RobotId]
     f"paper, section II; {MORS}",
 )
 def capacity_is_kept(instance: Instance, plans: Sequence[Plan]) -> Iterator[Breach]:
-    for resource, robots, start, end in _crowded(instance, plans, 0):
-        yield robots, resource.id, start, end, f"capacity {resource.capacity}"
+    return _crowded(instance, plans)
 
 
 @violation_rule(
@@ -32,14 +31,10 @@ def capacity_is_kept(instance: Instance, plans: Sequence[Plan]) -> Iterator[Brea
 )
 def following_is_avoided(instance: Instance, plans: Sequence[Plan]) -> Iterator[Breach]:
     if instance.following == "forbidden":
-        for resource, robots, start, end in _crowded(instance, plans, instance.gap):
-            reason = f"capacity {resource.capacity}, with a free tick after each robot"
-            yield robots, resource.id, start, end, reason
+        yield from _crowded(instance, plans, instance.gap, ", with a free tick after each robot")
 
 
-def _crowded(
-    instance: Instance, plans: Sequence[Plan], gap: int
-) -> Iterator[tuple[Resource, tuple[RobotId, ...], int, int | None]]:
+def _crowded(instance: Instance, plans: Sequence[Plan], gap: int = 0, more: str = "") -> Iterator[Breach]:
     """The resources that are too full if each stay lasts `gap` ticks longer."""
     changes: dict[ResourceId, list[Change]] = defaultdict(list)
     for plan in plans:
@@ -51,7 +46,8 @@ def _crowded(
     arrival = {robot: position for position, robot in enumerate(instance.robot)}
     for resource in instance.graph.resources:
         for start, end, crowd in _crowds(resource.capacity, changes[resource.id]):
-            yield resource, tuple(sorted(crowd, key=arrival.__getitem__)), start, end
+            robots = tuple(sorted(crowd, key=arrival.__getitem__))
+            yield robots, resource.id, start, end, f"capacity {resource.capacity}{more}"
 
 
 def _crowds(capacity: int, changes: list[Change]) -> Iterator[tuple[int, int | None, set[RobotId]]]:
@@ -127,11 +123,11 @@ def solution_covers_robots(instance: Instance, solution: Solution) -> Iterator[B
 )
 def solution_orders_plans(instance: Instance, solution: Solution) -> Iterator[Breach]:
     del instance
-    yield from misnamed("order", solution.order, solution)
+    return misnamed("order", solution.order, solution)
 
 
 def misnamed(what: str, names: Iterable[RobotId], solution: Solution) -> Iterator[Breach]:
-    """The robots that have a plan and are not named once, and those that have none and are named."""
+    """The robots with a plan that are not named once, and those without that are named."""
     planned = dict.fromkeys((plan.robot for plan in solution.plans), 1)
     named = Counter(names)
     for robot in planned | named:

@@ -1,9 +1,9 @@
 """The model: resources, robots, visits, plans, instances and solutions.
 
-Time is counted in `int` ticks from 0. Every interval is half-open, `[enter, leave)`: a robot that leaves at t and a
-robot that enters at t never share the resource. An end of `None` means for ever.
+Time is counted in `int` ticks from 0. Intervals are half-open: a robot that leaves at t and one that enters at t never
+share the resource. An end of `None` means for ever.
 
-The classes are plain, frozen data and may hold nonsense, which `instance_rules` and `check` find. Source: the paper,
+The classes may hold nonsense, which `instance_rules` and `check` find. Source: the paper,
 section II; ter Mors 2010 for capacities and durations.
 """
 
@@ -39,8 +39,8 @@ class ResourceGraph:
     """The resources and the edges between them.
 
     An edge (r, s) of a directed graph is the move from r to s; of an undirected one, also the move back. The order of
-    `resources` breaks ties. The last four fields are look-ups: each resource by its id, its index in the order, the
-    resources that one move leads to (in that order), and all moves.
+    `resources` breaks ties. The last four fields are look-ups: resources by id, their indices, the resources that one
+    move leads to in that order, and all moves.
     """
 
     resources: tuple[Resource, ...]
@@ -66,7 +66,7 @@ class ResourceGraph:
         object.__setattr__(self, "moves", frozenset(moves))
 
     def __reduce__(self) -> tuple[type["ResourceGraph"], tuple[object, ...]]:
-        """Copy and pickle the fields alone; the look-ups are made again."""
+        """Pickle the fields alone."""
         return type(self), (self.resources, self.edges, self.directed)
 
     def has_move(self, source: ResourceId, target: ResourceId) -> bool:
@@ -104,7 +104,7 @@ class Instance:
         object.__setattr__(self, "robot", MappingProxyType({each.id: each for each in self.robots}))
 
     def __reduce__(self) -> tuple[type["Instance"], tuple[object, ...]]:
-        """Copy and pickle the fields alone; the look-up is made again."""
+        """Pickle the fields alone."""
         return type(self), (self.graph, self.robots, self.after_goal, self.following)
 
     def duration(self, robot: RobotId, resource: ResourceId) -> int:
@@ -113,7 +113,7 @@ class Instance:
 
     @property
     def gap(self) -> int:
-        """The ticks for which a resource stays free after a robot: 1 where following is forbidden, else 0."""
+        """The ticks for which a resource stays free after a robot: 1 where following is forbidden."""
         return int(self.following == "forbidden")
 
 

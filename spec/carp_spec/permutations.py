@@ -36,7 +36,7 @@ def shuffle(items: Sequence[T], stream: Iterator[int]) -> tuple[T, ...]:
 def orders(size: int, sample: int | None, stream: Iterator[int]) -> Iterator[Order]:
     """Permutations of the positions 0 .. size - 1, in lexicographic order.
 
-    All of them if no sample is asked or they are no more than the sample; else that many distinct shuffles.
+    All of them, or a smaller sample of distinct shuffles.
     """
     if sample is None or factorial(size) <= sample:
         return permutations(range(size))

@@ -21,8 +21,8 @@ class Carp:
 class Shuffled:
     """The best of `attempts` passes of CARP (the paper's CARP10 and CARP100).
 
-    The first pass is in the order given, each later one in a Fisher-Yates shuffle of the order before, from the
-    SplitMix64 stream of `seed`. Fewer unplanned robots are better, then a smaller total cost, then the earlier pass.
+    The first pass is in the order given, each later one in a shuffle of the order before, from the stream of `seed`.
+    Fewer unplanned robots are better, then a smaller total cost, then the earlier pass.
     """
 
     name: ClassVar = "shuffled"

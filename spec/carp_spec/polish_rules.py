@@ -1,8 +1,7 @@
 """The rules of polishing, large neighbourhood search (LNS): `polish/...`.
 
-A round removes a few robots from a solution and replans them in a drawn order. It draws, one after the other: its kind,
-its pivot, what its candidates need, its members, and their order. Robots are planned from their release on: none is
-under way.
+A round removes a few robots from a solution and replans them. It draws, one after the other: its kind, its pivot, its
+candidates, its members, and their order. No robot is under way.
 """
 
 from bisect import bisect_right

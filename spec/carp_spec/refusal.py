@@ -8,8 +8,7 @@ RefusalKind: TypeAlias = Literal["document", "request", "option", "limit"]
 class Refusal(Exception):  # noqa: N818 - the input is refused; nothing went wrong here
     """Input that is refused: its kind, the path in the document, the broken rule, and what would be right.
 
-    The kind is `document` for a malformed document, `request` for one that makes no sense, `option` for a planner's or
-    a command's option, `limit` for a size that would exhaust memory.
+    The kind `limit` is for a size that would exhaust memory.
     """
 
     def __init__(self, kind: RefusalKind, path: str, rule: str, message: str) -> None:

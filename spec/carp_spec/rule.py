@@ -1,7 +1,6 @@
 """Rules, and the reports of broken ones.
 
-A rule has a stable id, one statement, a source and one predicate, the function that decides it. `carp_spec.registry`
-lists all rules.
+A rule has a stable id, one statement, a source and one predicate, the function that decides it.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -42,9 +41,9 @@ def rule(id: str, statement: str, source: str) -> Callable[[Callable[P, R]], Rul
 class Violation:
     """A broken rule of plans.
 
-    It happened at `resource` in the ticks [start, end); an end of `None` means for ever, a start of `None` that no
-    resource or tick is to blame. A resource that is too full is one violation for as long as it stays too full, with
-    all `robots` in it at any of these ticks.
+    It happened at `resource` in the ticks [start, end); a start of `None` means that no resource or tick is to blame. A
+    resource that is too full is one violation for as long as it stays too full, with all `robots` in it at any of these
+    ticks.
     """
 
     rule: str

@@ -10,7 +10,7 @@ from carp_spec.model import Plan, RobotId, Visit
 class Trace:
     """The visits that robots have entered by the tick `now`, that tick included.
 
-    A visit that is not left yet has a leave of `None`. A robot that has not appeared yet has no visits.
+    A visit not left yet has a leave of `None`, and a robot that has not appeared yet no visits.
     """
 
     now: int
