@@ -126,7 +126,7 @@ def robot_goes_against_another(instance: Instance, solution: Solution) -> Iterat
         visit = plan.visits[position]
         for mover, tick, source, target in moves:
             ready = visit.enter + instance.duration(plan.robot, visit.resource) <= tick
-            possible = visit.resource == target and instance.graph.has_move(target, source)
+            possible = visit.resource == target and (target, source) in instance.graph.moves
             if mover is not plan and ready and possible:
                 detour = _detour(instance, plan, position, tick, source)
                 yield _with_visits(instance, solution, plan, detour, "joint/exchange")

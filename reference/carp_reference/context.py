@@ -1,4 +1,4 @@
-"""The context of a query: the free time windows and the moves of the committed plans."""
+"""The context of a query: free time windows, and moves of the committed plans."""
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence

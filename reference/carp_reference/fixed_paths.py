@@ -1,4 +1,4 @@
-"""Fixed-path scheduling: each robot takes the best of a few paths chosen on the empty graph beforehand."""
+"""Fixed-path scheduling: each robot takes the best of a few paths."""
 
 from collections.abc import Sequence
 from itertools import islice, pairwise
@@ -17,8 +17,8 @@ def fixed_paths(problem: Problem, options: FixedPaths) -> Plans:
     paths_of = shortest_paths if options.paths == "shortest" else disjoint_paths
     plans: list[Plan] = []
     for robot in problem.instance.robots:
-        scheduled = [find_on_path(problem, plans, robot, path) for path in paths_of(problem, robot, options.k)]
-        found = [plan for plan in scheduled if plan is not None]
+        paths = paths_of(problem, robot, options.k)
+        found = [plan for path in paths if (plan := find_on_path(problem, plans, robot, path)) is not None]
         if found:
             plans.append(min(found, key=lambda plan: plan_cost(problem.instance, plan)))
     return tuple(plans)
@@ -47,10 +47,7 @@ def shortest_paths(problem: Problem, robot: Robot, k: int) -> list[Path]:
 
 
 def disjoint_paths(problem: Problem, robot: Robot, k: int) -> list[Path]:
-    """At most k paths that share no resource but start and goal, of the least total length (as Suurballe 1974).
-
-    They are a flow of least cost in the graph with each resource split into an entrance and an exit.
-    """
+    """At most k disjoint paths: a flow of least cost with each resource split in two (as Suurballe 1974)."""
     import networkx as nx  # noqa: PLC0415 - loaded only where used
 
     if robot.start == robot.goal:

@@ -20,9 +20,8 @@ def add_robot(problem: Problem, committed: Plans, new: RobotId, options: Neighbo
     problem = replace(problem, before={plan.robot: plan for plan in committed})
     plans = _best_candidate(problem, committed, new, options)
     if plans is None and options.fallback is not None:
-        order = [*problem.before, new]
-        plans = shuffled(problem, order, options.fallback, options.seed)
-        return plans if len(plans) == len(order) else None
+        plans = shuffled(problem, [*problem.before, new], options.fallback, options.seed)
+        return plans if len(plans) > len(committed) else None
     return plans
 
 

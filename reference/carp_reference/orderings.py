@@ -38,9 +38,9 @@ def _worth(problem: Problem, plans: Plans) -> tuple[int, int]:
 
 
 def longest_first(problem: Problem) -> Plans:
-    """CARP with the longest shortest path first; a robot without a path finds no plan anyway."""
+    """CARP with the longest shortest path first."""
     shortest = {robot.id: problem.ticks_to_goal[robot.id].get(robot.start, 0) for robot in problem.instance.robots}
-    return carp(problem, sorted(shortest, key=lambda robot: -shortest[robot]))
+    return carp(problem, sorted(shortest, key=shortest.__getitem__, reverse=True))
 
 
 def greedy(problem: Problem) -> Plans:

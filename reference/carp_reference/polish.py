@@ -19,7 +19,7 @@ Plans = Mapping[RobotId, Plan]
 
 @dataclass(frozen=True, slots=True)
 class Polish:
-    """The data of all rounds; `alone` has the plan of each robot on the empty graph, if it has a path."""
+    """The data of all rounds; `alone` has the plans on the empty graph."""
 
     problem: Problem
     alone: Plans
@@ -38,7 +38,7 @@ def polish(
     """Improve a solution for that many rounds or seconds; `advance` gets rounds, unplanned robots and total.
 
     The polish ends earlier if no plan can be shorter. Equal iterations and seed give an equal solution. Raises
-    `Refusal` for wrong options, and for a solution that breaks a rule.
+    `Refusal` for wrong options or a broken rule.
     """
     rules.require_polish_options(iterations, seconds, seed)
     whole = rules.polishable(instance, solution)

@@ -1,4 +1,4 @@
-"""The data that a planner has before it looks at any committed plan."""
+"""The data that a planner has before any committed plan."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -1,7 +1,7 @@
 """The CARP query: A* over free time windows (ter Mors 2010), a close relative of SIPP (Phillips and Likhachev 2011).
 
 A node is a free window of a resource (a safe interval in SIPP), entered as early as possible. A robot can wait in a
-window at no cost, so an earlier entry is never worse, and each window needs only one entry.
+window at no cost, so each window needs only one entry.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -34,7 +34,7 @@ def find_plan(
     successors: Mapping[ResourceId, Sequence[ResourceId]] | None = None,
     expanded: list[Node] | None = None,
 ) -> Plan | None:
-    """The plan with the earliest arrival against the committed plans, or `None` if none exists.
+    """The plan with the earliest arrival against the committed plans, or `None`.
 
     `successors` restricts the moves; the nodes that the search expands are added to `expanded`.
     """

@@ -114,7 +114,7 @@ def _next_moments(table: Table, robot: RobotId, moment: Moment) -> Iterator[Mome
 
 
 def _hops_to_goal(instance: Instance, robot: RobotId) -> Mapping[ResourceId, int]:
-    """The least number of moves from each resource to the goal: no plan needs fewer ticks."""
+    """The least number of moves, and so of ticks, from each resource to the goal."""
     import networkx as nx  # noqa: PLC0415 - loaded only where used
 
     backward = nx.DiGraph((target, source) for source, target in instance.graph.moves)

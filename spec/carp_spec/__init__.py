@@ -1,7 +1,4 @@
-"""The specification of context-aware route planning: model, rules, checker.
-
-It exports the names that planners need most.
-"""
+"""The specification of context-aware route planning: model, rules, checker."""
 
 from carp_spec.check import Verdict, check, check_update, judge
 from carp_spec.model import (

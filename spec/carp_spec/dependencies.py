@@ -51,11 +51,6 @@ def stays_by_resource(plans: Sequence[Plan]) -> dict[ResourceId, list[Stay]]:
     return stays
 
 
-def is_before(instance: Instance, one: Visit, other: Visit) -> bool:
-    """Whether the first robot is planned to have left the resource when the second enters it."""
-    return one.leave is not None and one.leave + instance.gap <= other.enter
-
-
 def dependencies(instance: Instance, plans: Sequence[Plan]) -> Iterator[Dependency]:
     """The edges of the dependency graph of lawful plans, without those that follow from others."""
     for plan in plans:
@@ -75,7 +70,7 @@ def dependencies(instance: Instance, plans: Sequence[Plan]) -> Iterator[Dependen
 
 
 def _direct(instance: Instance, stays: Sequence[Stay]) -> Iterator[tuple[Stay, Stay]]:
-    """The pairs of stays, the first before the second, with none between the two."""
+    """The pairs of stays, the first before the second, with none between."""
     left = sorted(
         ((stay.visit.leave + instance.gap, place) for place, stay in enumerate(stays) if stay.visit.leave is not None),
     )

@@ -163,7 +163,7 @@ EXECUTION_RULES: tuple[Rule[[Instance, Solution, Trace], Iterator[Violation]], .
 def trace_violations(
     instance: Instance, solution: Solution, trace: Trace, most: int | None = MOST_LISTED
 ) -> tuple[Violation, ...]:
-    """Where the trace does not follow the lawful solution, rule by rule, with at most the first `most` of each."""
+    """Where the trace does not follow the solution, at most the first `most` of each rule."""
     for rules in (TRACE_RULES, EXECUTION_RULES):
         violations = [violation for each in rules for violation in islice(each(instance, solution, trace), most)]
         if violations:

@@ -69,10 +69,6 @@ class ResourceGraph:
         """Pickle the fields alone."""
         return type(self), (self.resources, self.edges, self.directed)
 
-    def has_move(self, source: ResourceId, target: ResourceId) -> bool:
-        """Whether a robot can move from one resource to the other."""
-        return (source, target) in self.moves
-
 
 @dataclass(frozen=True, slots=True)
 class Robot:

@@ -23,7 +23,7 @@ def baseline_is_tried(baseline: bool, rounds: int) -> bool:
 
 
 def _position(instance: Instance, plan: Plan, tick: int) -> tuple[int, int]:
-    """The robot's resource at a tick: its start before its release, its goal after its arrival."""
+    """The robot's position at a tick."""
     robot = instance.robot[plan.robot]
     entered = [visit.resource for visit in plan.visits if visit.enter <= tick]
     resource = instance.graph.resource[entered[-1] if entered else robot.start]

@@ -1,4 +1,4 @@
-"""Random numbers that every program can repeat: SplitMix64, shuffles, and the orders of a neighbourhood."""
+"""Random numbers and orders that every program can repeat."""
 
 from collections.abc import Iterator, Sequence
 from itertools import permutations
@@ -14,7 +14,7 @@ _WORD = (1 << 64) - 1
 def splitmix64(seed: int) -> Iterator[int]:
     """Yield the 64-bit numbers of the SplitMix64 stream of a seed, without end.
 
-    Source: Steele, Lea and Flood 2014, "Fast splittable pseudorandom number generators", and its implementation.
+    Source: Steele, Lea and Flood 2014, "Fast splittable pseudorandom number generators".
     """
     state = seed & _WORD
     while True:

@@ -54,7 +54,7 @@ def plan_visits_resources(instance: Instance, plan: Plan) -> Iterator[Breach]:
 def plan_follows_moves(instance: Instance, plan: Plan) -> Iterator[Breach]:
     for visit, following in pairwise(plan.visits):
         known = visit.resource in instance.graph.index and following.resource in instance.graph.index
-        if known and not instance.graph.has_move(visit.resource, following.resource):
+        if known and (visit.resource, following.resource) not in instance.graph.moves:
             yield at_visit(plan.robot, following, f"the graph has no move to it from {visit.resource}")
 
 

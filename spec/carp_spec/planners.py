@@ -68,8 +68,8 @@ BY_DEFAULT = Neighbourhood()
 class FixedPaths:
     """Each robot takes, of its k shortest or at most k disjoint paths, the first on which it arrives earliest.
 
-    The paths are those of the empty graph. Disjoint paths share no resource but start and goal; they are as many as
-    possible, of the least total length. Source: ter Mors' comparison, as the paper cites it.
+    Disjoint paths share no resource but start and goal; they are as many as possible, of the least total length on the
+    empty graph. Source: ter Mors' comparison, as the paper cites it.
     """
 
     name: ClassVar = "fixed-paths"

@@ -179,7 +179,7 @@ def options_are_right(iterations: object, seconds: object, seed: object) -> Foun
 
 
 def last_round(iterations: int | None, seconds: float | None) -> int | None:
-    """The rounds after which a polish ends; `None`: the time decides."""
+    """The rounds of a polish; `None`: the time decides."""
     return ITERATIONS if iterations is None and seconds is None else iterations
 
 
@@ -190,7 +190,7 @@ def require_polish_options(iterations: object, seconds: object, seed: object) ->
 
 
 def polishable(instance: Instance, solution: Solution) -> Solution:
-    """The solution, robots that it does not name unplanned; raises `Refusal` with the first rule that it breaks."""
+    """The solution, robots not named unplanned; raises `Refusal` with the first rule that it breaks."""
     named = {*solution.unplanned, *(plan.robot for plan in solution.plans)}
     missing = (robot for robot in instance.robot if robot not in named)
     whole = replace(solution, unplanned=(*solution.unplanned, *missing))

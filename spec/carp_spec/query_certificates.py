@@ -1,7 +1,4 @@
-"""The document that proves how early one robot can arrive beside the plans of the others: `carproof-query/1`.
-
-Planners make it, `carp_verify` reads and checks it.
-"""
+"""The document that proves how early one robot can arrive beside the plans of the others: `carproof-query/1`."""
 
 from typing import Annotated, Final, Literal
 

@@ -1,6 +1,6 @@
 """The rules of a query, the search for one robot's plan against committed plans: `query/...`.
 
-`query/optimal` and `query/complete` take rival plans to compare with: all rivals decide the rule, some are evidence.
+Rival plans are given to compare with: all rivals decide the rule, some are evidence.
 """
 
 from collections.abc import Iterable, Sequence

@@ -68,7 +68,7 @@ class Violation:
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """A broken rule of an instance or of a planner's options, at a path in the document."""
+    """A broken rule of an instance or of options, at a path in the document."""
 
     rule: str
     path: str

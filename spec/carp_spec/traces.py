@@ -1,4 +1,4 @@
-"""Traces: what robots have done by a tick. The rules are in `carp_spec.execution_rules`."""
+"""Traces: what robots have done by a tick."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

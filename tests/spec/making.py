@@ -94,3 +94,8 @@ TURNING = (
     (Robot("r1", "a", "b"), Robot("r2", "b", "c"), Robot("r3", "c", "a")),
     tuple(plan_of(robot, (at, 0, 1), (to, 1, 2)) for robot, at, to in (("r1", *"ab"), ("r2", *"bc"), ("r3", *"ca"))),
 )
+
+
+def is_before(instance: Instance, one: Visit, other: Visit) -> bool:
+    """Whether the first robot is planned to have left the resource when the second enters it."""
+    return one.leave is not None and one.leave + instance.gap <= other.enter

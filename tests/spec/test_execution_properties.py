@@ -7,10 +7,11 @@ from itertools import product
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.profiles import draws
+from tests.spec.making import is_before
 
 import carp_reference
 from carp_spec import Carp, Instance, Plan, Solution, Visit, check
-from carp_spec.dependencies import Stay, dependencies, is_before, shortest_cycle, stays_by_resource
+from carp_spec.dependencies import Stay, dependencies, shortest_cycle, stays_by_resource
 from carp_spec.execution_rules import is_acyclic, trace_violations
 from carp_spec.joint_rules import following_is_avoided
 from carp_spec.traces import Trace

@@ -4,10 +4,22 @@ import random
 from dataclasses import replace
 
 import pytest
-from tests.spec.making import CROSSED, RING, ROW, SOLVED, STEP, TURNING, VANISHING, WALK, plan_of, solution_of
+from tests.spec.making import (
+    CROSSED,
+    RING,
+    ROW,
+    SOLVED,
+    STEP,
+    TURNING,
+    VANISHING,
+    WALK,
+    is_before,
+    plan_of,
+    solution_of,
+)
 
 from carp_spec import Instance, Plan, Refusal, Solution, Visit, check
-from carp_spec.dependencies import Dependency, Node, dependencies, is_before, shortest_cycle
+from carp_spec.dependencies import Dependency, Node, dependencies, shortest_cycle
 from carp_spec.execution_rules import is_acyclic, trace_violations
 from carp_spec.traces import Trace
 from carp_verify.documents import read_trace, trace_document, write_trace

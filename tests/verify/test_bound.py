@@ -80,7 +80,7 @@ def certificates(draw: st.DrawFn, instance: Instance) -> BoundDocument:
     ticks, prices = st.integers(0, HORIZON - 1), st.integers(1, 3 * SCALE)
     places = st.sampled_from([resource.id for resource in graph.resources])
     moves = [(source, target) for source in graph.index for target in graph.successors[source]]
-    both = [move for move in moves if graph.has_move(*reversed(move))]
+    both = [move for move in moves if (*reversed(move),) in graph.moves]
     resources = draw(st.dictionaries(st.tuples(places, ticks), prices, max_size=8))
     exchanges = draw(st.dictionaries(st.tuples(st.sampled_from(both), ticks), prices, max_size=8)) if both else {}
     certificate = BoundDocument(

@@ -223,7 +223,7 @@ class Tariff:
 
 def is_both_ways(graph: ResourceGraph, source: ResourceId, target: ResourceId) -> bool:
     """Whether moves lead from one to the other and back."""
-    return graph.has_move(source, target) and graph.has_move(target, source)
+    return {(source, target), (target, source)} <= graph.moves
 
 
 class Budget:
