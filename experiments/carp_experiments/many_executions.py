@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from carp_reference.execution import Order
 from carp_spec.dependencies import Node, stays_by_resource
-from carproof.delays import Delay, waits_for_leaving
+from carproof.delays import Delay, is_last, waits_for_leaving
 
 Longs: TypeAlias = npt.NDArray[np.int64]
 Flags: TypeAlias = npt.NDArray[np.bool_]
@@ -34,7 +34,7 @@ def random_delays(order: Order, seed: int, count: int, always: Node | None = Non
     """The ticks by which each visit but the last of a robot is longer; one visit is longer in any case, or `always`."""
     numbers = random_numbers(seed, (2 * len(order.nodes) + 1) * count).reshape(-1, count)
     chances, ticks, chosen = np.split(numbers % np.uint64(2**62), [len(order.nodes), -1])
-    visits = np.flatnonzero([not order.is_last(node) for node in order.nodes])
+    visits = np.flatnonzero([not is_last(order, node) for node in order.nodes])
     sure = np.full(count, order.nodes.index(always)) if always else visits[chosen[0] % np.uint64(visits.size)]
     delayed = np.zeros(chances.shape, np.bool_)
     delayed[visits] = chances[visits] % np.uint64(ONE_IN) == 0
@@ -104,7 +104,7 @@ def breaches(order: Order, enters: Longs) -> tuple[Flags, Flags]:
 
 def left(order: Order, node: Node, enters: Mapping[Node, Longs]) -> Longs:
     """The ticks at which a visit is left; a last visit lasts for its duration, or for ever."""
-    if not order.is_last(node):
+    if not is_last(order, node):
         return enters[node[0], node[1] + 1]
     stays = order.visit(node).leave is None
     return enters[node] + (FOR_EVER if stays else order.duration(node))

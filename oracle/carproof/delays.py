@@ -40,6 +40,11 @@ def delayed(order: Order, delays: Iterable[Delay]) -> Order:
     return order_with(order.instance, order.solution, tuple(edges))
 
 
+def is_last(order: Order, node: Node) -> bool:
+    """Whether the plan ends with the visit."""
+    return node[1] == len(order.plans[node[0]].visits) - 1
+
+
 def waits_for_leaving(order: Order, edge: Dependency) -> bool:
     """Whether the edge holds the duration of the visit that it leads from."""
     return edge.kind == "travel" or edge.resource == order.visit(edge.before).resource
@@ -57,7 +62,7 @@ def slack(order: Order) -> dict[Node, int | None]:
     """
     ticks = planned(order)
     horizon = max(ticks.values(), default=0)
-    latest = {node: tick if order.is_last(node) else horizon for node, tick in ticks.items()}
+    latest = {node: tick if is_last(order, node) else horizon for node, tick in ticks.items()}
     into: dict[Node, list[Dependency]] = defaultdict(list)
     for edge in order.edges:
         into[edge.after].append(edge)
@@ -213,7 +218,7 @@ def executed(order: Order, enters: Mapping[Node, int], delays: Iterable[Delay] =
             if node not in enters:
                 break
             leave = enters.get((plan.robot, place + 1))
-            if order.is_last(node) and visit.leave is not None:
+            if is_last(order, node) and visit.leave is not None:
                 leave = enters[node] + order.duration(node) + more.get(node, 0)
             visits.append(Visit(visit.resource, enters[node], leave))
         plans.append(Plan(plan.robot, tuple(visits)))

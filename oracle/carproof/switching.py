@@ -13,7 +13,7 @@ from itertools import pairwise
 from carp_reference.execution import Order, order_of, order_with, solution_at
 from carp_spec import Instance, ResourceId, Solution
 from carp_spec.dependencies import Dependency, Node
-from carproof.delays import Delay, delayed, reached, stuck
+from carproof.delays import Delay, delayed, is_last, reached, stuck
 
 MOST_TRIED = 20
 
@@ -122,7 +122,7 @@ def _switched(order: Order, pairs: Collection[tuple[Node, Node]]) -> tuple[Depen
     for resource in changed:
         for first, second in pairwise(sequences[resource]):
             ticks = order.instance.gap
-            if order.is_last(first):
+            if is_last(order, first):
                 edges.append(Dependency("order", first, second, order.duration(first) + ticks, resource))
             else:
                 following = (first[0], first[1] + 1)

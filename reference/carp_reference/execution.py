@@ -26,10 +26,6 @@ class Order:
         """The visit of the plan."""
         return self.plans[node[0]].visits[node[1]]
 
-    def is_last(self, node: Node) -> bool:
-        """Whether the plan ends with the visit."""
-        return node[1] == len(self.plans[node[0]].visits) - 1
-
     def duration(self, node: Node) -> int:
         """Ticks that the visit takes at least."""
         return self.instance.duration(node[0], self.visit(node).resource)
@@ -71,7 +67,7 @@ def earliest(order: Order, least: Mapping[Node, int]) -> dict[Node, int]:
 
 
 def retime(instance: Instance, solution: Solution, trace: Trace) -> Solution:
-    """The visits of the trace are kept; every other entry is later than the tick `trace.now`.
+    """Plan the rest of the way: the visits of the trace are kept, and all others entered after the tick `trace.now`.
 
     Raises `Refusal` if the trace does not follow the solution, and where no lawful plan has the history.
     """

@@ -15,7 +15,7 @@ ALGORITHM = "paper, Algorithm 1"
 @rule(
     "neighbourhood/baseline",
     "The first candidate keeps the committed plans and adds the result of a CARP query for the new robot. In paper "
-    "mode it is left out, unless the neighbourhood can take in no robot, so that there is no other candidate.",
+    "mode it is left out, unless the neighbourhood can take in no robot.",
     DESIGN,
 )
 def baseline_is_tried(baseline: bool, rounds: int) -> bool:
@@ -53,8 +53,8 @@ def distance(instance: Instance, one: Plan, other: Plan) -> Fraction:
 
 @rule(
     "neighbourhood/nearest",
-    "The robot taken in is the one least distant from the neighbourhood; a tie goes to the earlier in planning "
-    "order. The distance of a robot to the neighbourhood is the least over its members.",
+    "The robot taken in is the one least distant from a member of the neighbourhood; a tie goes to the earlier in "
+    "planning order.",
     f"{ALGORITHM}, line 7; {DESIGN}",
 )
 def nearest(distances_to_members: Sequence[Sequence[Fraction]]) -> int:

@@ -89,8 +89,8 @@ Planner: TypeAlias = Carp | Shuffled | LongestFirst | Greedy | Neighbourhood | F
 
 @rule(
     "limit/ticks",
-    "A planner that keeps ticks in tables may refuse an instance that its tables cannot hold: the compiled engine "
-    f"ticks, durations and positions beyond {2**30}, the time-expanded planner more than {LARGEST_TABLE} ticks.",
+    "A planner may refuse an instance that its tables cannot hold: the compiled engine ticks, durations and positions "
+    f"beyond {2**30}, the time-expanded planner more than {LARGEST_TABLE} ticks.",
     DESIGN,
 )
 def ticks_are_held(ticks: int, most: int) -> bool:

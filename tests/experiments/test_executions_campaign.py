@@ -11,7 +11,7 @@ from carp_experiments.many_executions import Flags, Longs, breaches, entered_in_
 from carp_reference.execution import Order, earliest
 from carp_spec.dependencies import Dependency, Node
 from carp_spec.permutations import splitmix64
-from carproof.delays import Delay, delayed, in_order, on_the_clock
+from carproof.delays import Delay, delayed, in_order, is_last, on_the_clock
 
 
 def wrong_ends(count: int = 2000) -> set[str]:
@@ -92,7 +92,7 @@ def test_a_rotation_that_turns_is_found(monkeypatch: pytest.MonkeyPatch) -> None
 
 def test_a_robot_that_stops_without_a_reason_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     def stopping(order: Order, delays: Iterable[Delay]) -> dict[Node, int]:
-        return {node: tick for node, tick in in_order(order, delays).items() if not order.is_last(node)}
+        return {node: tick for node, tick in in_order(order, delays).items() if not is_last(order, node)}
 
     monkeypatch.setattr(executions, "in_order", stopping)
     assert any("without a reason" in each for each in wrong_ends(20_000))
