@@ -1,6 +1,7 @@
 """The layout of the house: which package may import which, and what an import may load."""
 
 import ast
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -18,6 +19,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "carproof": {"carp_spec", "carp_reference", "carp_optimized", "carp_verify", "carp_optimum"},
     "carp_experiments": {"carp_spec", "carp_reference", "carp_optimized", "carp_verify", "carp_optimum", "carproof"},
 }
+READ_IN_A_MINUTE = 238  # words of English non-fiction: Brysbaert 2019, https://doi.org/10.1016/j.jml.2019.104047
 SLOW_TO_LOAD = {"z3", "numba", "numpy", "pysat", "matplotlib", "hypothesis", "networkx"}
 
 
@@ -58,3 +60,21 @@ def test_importing_a_package_loads_nothing_slow(package: str) -> None:
     loaded = f"import sys, {package}; print(' '.join(sys.modules))"
     modules = subprocess.run([sys.executable, "-c", loaded], check=True, capture_output=True, text=True).stdout.split()
     assert not SLOW_TO_LOAD & set(modules)
+
+
+def words(package: str) -> int:
+    """The words of a package's Python, names and operators included."""
+    return sum(len(file.read_text().split()) for file in packages()[package].rglob("*.py"))
+
+
+def test_the_law_and_the_planners_to_read_take_an_hour() -> None:
+    assert words("carp_spec") + words("carp_reference") <= 60 * READ_IN_A_MINUTE
+
+
+@pytest.mark.parametrize("package", ["carp_spec", "carp_reference"])
+def test_a_readme_names_every_module_and_the_minutes_to_read_them(package: str) -> None:
+    page = (packages()[package].parent / "README.md").read_text()
+    (minutes,) = re.findall(r"takes? about (\d+) minutes to read", page)
+    assert words(package) <= int(minutes) * READ_IN_A_MINUTE + READ_IN_A_MINUTE / 2
+    for module in packages()[package].glob("*.py"):
+        assert re.search(rf"`{module.stem}(\.py)?`", page), module
