@@ -11,7 +11,18 @@ import carp_reference
 from carp_reference import neighbourhood
 from carp_reference.problem import prepare
 from carp_reference.query import find_plan
-from carp_spec import Carp, Instance, Neighbourhood, Plan, check, check_update, has_ended, judge, total_cost
+from carp_spec import (
+    Carp,
+    Instance,
+    Neighbourhood,
+    Plan,
+    check,
+    check_update,
+    has_ended,
+    judge,
+    neighbourhood_rules,
+    total_cost,
+)
 from carproof.strategies import FleetUnderWay, Sizes, fleets_under_way, instances
 
 CROWDED = Sizes(resources=6, robots=5, duration=2)
@@ -45,7 +56,7 @@ def test_adding_a_robot_breaks_no_rule_and_keeps_history(fleet: FleetUnderWay, o
 @given(instances(CROWDED), st.integers(2, 4))
 def test_replanning_from_scratch_equals_keeping_the_prefix_in_paper_mode(instance: Instance, m: int) -> None:
     paper = Neighbourhood(m=m, baseline=False)
-    with patch.object(neighbourhood, "replanned_from", lambda taken, planned: 0 * (taken + planned)):
+    with patch.object(neighbourhood_rules, "replanned_from", lambda taken, planned: 0 * (taken + planned)):
         from_scratch = carp_reference.plan(instance, paper)
     assert carp_reference.plan(instance, paper) == from_scratch
 
