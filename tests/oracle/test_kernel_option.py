@@ -9,7 +9,7 @@ import pytest
 from tests.oracle.running import EAST, TWO, TWO_PLANNED, Outcome, Run, corridor, line, save, solution
 from tests.oracle.test_optimum import UNSOLVABLE
 from tests.verify.kernel_program import program
-from tests.verify.test_bound import crossing, cut_certificate
+from tests.verify.test_bound import crossing, cut_certificate, deadline_certificate
 
 import carp_verify.kernel
 from carp_verify.documents import write, write_instance
@@ -217,3 +217,26 @@ def test_a_bound_with_cuts_is_verified_by_the_kernel_and_the_assumptions_are_nam
     outcome = carproof(COMMANDS[-1])
     assert (outcome.code, outcome.stdout) == (3, "")
     assert "the refutation of cut 0 does not hold" in outcome.stderr
+
+
+def test_a_bound_with_deadlines_is_verified_by_the_kernel_and_the_assumptions_are_named(
+    carproof: Run, folder: Path
+) -> None:
+    program()
+    certificate = deadline_certificate()
+    (folder / "town.json").write_bytes(write_instance(crossing()))
+    (folder / "bound.json").write_bytes(write(certificate))
+    document = json.loads(carproof(COMMANDS[-1], "--json").stdout)
+    assert document["bound"] == 7
+    assert document["assumed"] == ["the formula given says that the robots of deadline 0 keep all of theirs"]
+    (group,) = certificate.deadlines
+    for fields, code, message in (
+        ({"price": 2 * group.price}, 1, "the bound must be the sum of all parts"),
+        ({"refutation": ""}, 3, "the refutation of deadline 0 does not hold"),
+        ({"ticks": (1, 2)}, 1, "robot r0 can be at its goal at 2, not at 1"),
+        ({"price": -1}, 1, "the price of deadlines must be at least 0"),
+    ):
+        changed = msgspec.structs.replace(certificate, deadlines=(msgspec.structs.replace(group, **fields),))
+        (folder / "bound.json").write_bytes(write(changed))
+        outcome = carproof(COMMANDS[-1])
+        assert (outcome.code, message in outcome.stdout + outcome.stderr) == (code, True)

@@ -89,9 +89,9 @@ def test_the_version_is_asked_of_the_program_itself(folder: Path) -> None:
     assert version() == "carproof-kernel 7"
 
 
-def test_a_bound_is_verified_with_the_formulas_of_its_cuts(folder: Path) -> None:
+def test_a_bound_is_verified_with_the_formulas_of_its_cuts_and_deadlines(folder: Path) -> None:
     answers(folder, REFUSED)
-    verdict = verify_bound(INSTANCE, CERTIFICATE, {0: "p cnf 1 0\n", 3: "p cnf 2 0\n"})
+    verdict = verify_bound(INSTANCE, CERTIFICATE, {("cut", 0): "p cnf 1 0\n", ("deadline", 3): "p cnf 2 0\n"})
     assert (verdict.accepted, verdict.path, verdict.rule, verdict.message) == (
         False,
         "$.bound",
@@ -99,7 +99,7 @@ def test_a_bound_is_verified_with_the_formulas_of_its_cuts(folder: Path) -> None
         "too much",
     )
     arguments = [Path(each).name for each in (folder / "arguments").read_text().splitlines()]
-    cuts = ["--cut-formula", "0", "0.cnf", "--cut-formula", "3", "3.cnf"]
+    cuts = ["--cut-formula", "0", "cut-0.cnf", "--deadline-formula", "3", "deadline-3.cnf"]
     assert arguments == ["verify-bound", "instance.json", "certificate.json", *cuts]
     files = write_instance(INSTANCE) + write(CERTIFICATE) + b"p cnf 1 0\np cnf 2 0\n"
     assert (folder / "files").read_bytes() == files

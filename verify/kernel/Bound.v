@@ -1,5 +1,5 @@
 (** Certificates of a lower bound on the total cost: the rules bound/... but for the digest of the instance, which the
-    driver compares. Cuts are claims that are proved elsewhere. *)
+    driver compares. Cuts and deadlines are claims that are proved elsewhere. *)
 Require Import ZArith List Bool Lia.
 From Carproof Require Import Law Collections Checker Ways Prices Labels Tables.
 Import ListNotations.
@@ -7,6 +7,9 @@ Open Scope Z_scope.
 
 (** A group of robots that cost at least [least_total] together, and how much it counts, in parts of a tick. *)
 Record cut := Cut { members : list Z; least_total : Z; multiplier : Z }.
+
+(** Deadlines (robot, tick) that cannot all be kept, and what each robot pays that keeps its own, in parts of a tick. *)
+Record group := Group { deadlines : list (Z * Z); fee : Z }.
 
 (** The certificate as its document has it: [claims] are the robots with their least priced costs, in parts of a tick,
     or with none where no way leads to the goal. *)
@@ -16,7 +19,8 @@ Record certificate := Certificate {
   price_horizon : Z;
   prices : list price;
   cuts : list cut;
-  claims : list (Z * option Z)
+  claims : list (Z * option Z);
+  groups : list group
 }.
 
 (** What shows a robot's claim: for resources that lead to its goal, the least ticks from leaving them to entering it;
@@ -56,6 +60,17 @@ Definition cuts_accepted (i : instance) (c : certificate) : bool :=
     (0 <=? multiplier k) && Ids.distinct (members k) && forallb (Ids.contains ids) (members k)) (cuts c) &&
   forallb (fun id => 0 <=? weight_of c id) (robot_ids i).
 
+(** bound/deadline: what a robot pays that arrives at the tick. *)
+Definition keeps (id t : Z) (deadline : Z * Z) : bool := (fst deadline =? id) && (t <=? snd deadline).
+
+Definition fees_of (c : certificate) (id t : Z) : Z :=
+  sum (fun g => fee g * sum (fun d => Z.b2z (keeps id t d)) (deadlines g)) (groups c).
+
+(** The most that the robots of a group pay: all but one. *)
+Definition group_worth (g : group) : Z := fee g * (Z.of_nat (length (deadlines g)) - 1).
+
+Definition groups_accepted (c : certificate) : bool := forallb (fun g => 0 <=? fee g) (groups c).
+
 (** The resources lead from one to the next and to the goal. *)
 Fixpoint leads_on (successors : Z -> list Z) (r : Z) (later : list Z) (to : Z) : bool :=
   match later with
@@ -65,12 +80,12 @@ Fixpoint leads_on (successors : Z -> list Z) (r : Z) (later : list Z) (to : Z) :
 
 (** bound/robots, for one robot. *)
 Definition claim_accepted (i : instance) (tf : tariff) (successors : Z -> list Z) (takes : Z -> Z) (own : Z) (a : robot)
-    (claimed_least : option Z) (e : evidence) : bool :=
+    (early : Z -> Z) (claimed_least : option Z) (e : evidence) : bool :=
   let rests := index fst (ticks_after e) in
   let rest_at r := match Map.find r rests with Some x => Some (snd x) | None => None end in
   let label_table := pairs_of (labels e) in
   let label_in r t := Pair_map.find (r, t) label_table in
-  let c := Claim match claimed_least with Some n => n | None => 0 end own rest_at label_in in
+  let c := Claim match claimed_least with Some n => n | None => 0 end own rest_at label_in early in
   forallb (rests_are_least successors takes a c) (resource_ids i) &&
   match claimed_least with
   | Some _ =>
@@ -87,7 +102,7 @@ Fixpoint refused_claims (i : instance) (tf : tariff) (successors : Z -> list Z) 
   | [], [], _ => None
   | a :: robots', (id, claimed_least) :: claims', e :: all' =>
       if (id =? robot_id a) &&
-        claim_accepted i tf successors (takes_in table a) (weight_of c id) a claimed_least e
+        claim_accepted i tf successors (takes_in table a) (weight_of c id) a (fees_of c id) claimed_least e
       then refused_claims i tf successors table c robots' claims' all'
       else Some robots
   | _, _, _ => Some robots
@@ -97,13 +112,14 @@ Fixpoint refused_claims (i : instance) (tf : tariff) (successors : Z -> list Z) 
 Definition parts (table : Map.t resource) (c : certificate) : Z :=
   total_of (fun k => match snd k with Some n => n | None => 0 end) (claims c) +
   total_of (fun k => multiplier k * least_total k) (cuts c) -
+  total_of group_worth (groups c) -
   total_of (fun x => amount x * room_in table (place x)) (prices c).
 
 Definition total_accepted (table : Map.t resource) (c : certificate) : bool :=
   bound c =? - ((- parts table c) / scale c).
 
 (** The rules, one after the other: the first that is broken, or none. *)
-Inductive bound_rule := Scale | Price_rule | Once | Size | Cut_rule | Robots (refused : list robot) | Total.
+Inductive bound_rule := Scale | Price_rule | Once | Size | Cut_rule | Deadline_rule | Robots (refused : list robot) | Total.
 
 Definition broken_rule (i : instance) (c : certificate) (all : list evidence) : option bound_rule :=
   let table := resource_table i in
@@ -115,6 +131,7 @@ Definition broken_rule (i : instance) (c : certificate) (all : list evidence) : 
   else if negb (prices_are_different c) then Some Once
   else if negb (size_accepted c) then Some Size
   else if negb (cuts_accepted i c) then Some Cut_rule
+  else if negb (groups_accepted c) then Some Deadline_rule
   else match refused_claims i (tariff_of (prices c)) successors table c (robots i) (claims c) all with
        | Some refused => Some (Robots refused)
        | None => if total_accepted table c then None else Some Total
@@ -132,6 +149,11 @@ Definition cost_of_robot (i : instance) (s : solution) (id : Z) : Z :=
 (** The robots of the cut cost at least its least total together. *)
 Definition Cut_holds (i : instance) (s : solution) (k : cut) : Prop :=
   least_total k <= sum (cost_of_robot i s) (members k).
+
+(** Not all robots of the group arrive by their deadlines. *)
+Definition Group_holds (s : solution) (g : group) : Prop :=
+  sum (fun p => sum (fun d => Z.b2z (keeps (plan_robot p) (arrives (visits p)) d)) (deadlines g)) (plans s) <=
+  Z.of_nat (length (deadlines g)) - 1.
 
 (** Each robot has a plan if a way leads to its goal. *)
 Definition Plans_every_plannable_robot (i : instance) (s : solution) : Prop :=
@@ -176,19 +198,36 @@ Hypothesis right : Well_formed i.
 Hypothesis lawful : Lawful i s.
 Hypothesis complete : Plans_every_plannable_robot i s.
 Hypothesis cuts_hold : forall k, In k (cuts c) -> Cut_holds i s k.
+Hypothesis groups_hold : forall g, In g (groups c) -> Group_holds s g.
 
 Let successors := listed (successor_table i).
 Let table := resource_table i.
 Let tf := tariff_of (prices c).
 
-(** What a plan costs, weighted, together with its prices. *)
-Let priced_plan (p : plan) : Z := paid (prices c) (visits p) + weight_of c (plan_robot p) * cost_of_plan i p.
+(** What a plan costs, weighted, together with its prices and those of the deadlines that it keeps. *)
+Let own_plan (p : plan) : Z := paid (prices c) (visits p) + weight_of c (plan_robot p) * cost_of_plan i p.
+Let priced_plan (p : plan) : Z := own_plan p + fees_of c (plan_robot p) (arrives (visits p)).
 
 Hypothesis scaled : 0 < scale c.
 Hypothesis prices_right : forall x, In x (prices c) -> 0 <= amount x /\ In (place x) (resource_ids i) /\
   match other x with Some o => In o (resource_ids i) | None => True end.
 Hypothesis weights_right : forall id, In id (robot_ids i) -> 0 <= weight_of c id.
 Hypothesis multipliers_right : forall k, In k (cuts c) -> 0 <= multiplier k.
+Hypothesis fees_right : forall g, In g (groups c) -> 0 <= fee g.
+
+Lemma no_fees_are_below_0 id t : 0 <= fees_of c id t.
+Proof.
+  apply sum_is_not_negative. intros g Hg. apply Z.mul_nonneg_nonneg; [apply fees_right, Hg |].
+  apply sum_is_not_negative. intros d _. destruct (keeps id t d); simpl Z.b2z; lia.
+Qed.
+
+(** All robots together pay no more for deadlines than those of each group but one. *)
+Lemma fees_are_no_more_than_their_worth :
+  sum (fun p => fees_of c (plan_robot p) (arrives (visits p))) (plans s) <= sum group_worth (groups c).
+Proof.
+  unfold fees_of. rewrite sums_are_exchanged. apply sum_is_monotone. intros g Hg. rewrite sum_of_multiples.
+  apply Z.mul_le_mono_nonneg_l; [apply fees_right, Hg | apply groups_hold, Hg].
+Qed.
 
 Lemma prices_are_held : Holds_prices tf (prices c).
 Proof. apply tariff_holds_prices. intros x Hx. apply (prices_right x Hx). Qed.
@@ -218,14 +257,16 @@ Proof.
   pose proof (plans_lawful i s lawful p a Hp Ha E) as L.
   destruct (starts_at_release i a p L) as (v & rest & V & _ & T).
   pose proof (way_does_not_arrive_before_it_starts a (visits p) Ha W v rest V) as A.
-  unfold priced_plan. rewrite (cost_is_of_robot a p) by auto. unfold cost, arrival. rewrite V in *.
+  pose proof (no_fees_are_below_0 (plan_robot p) (arrives (visits p))) as Fees.
+  unfold priced_plan, own_plan. rewrite (cost_is_of_robot a p) by auto. unfold cost, arrival. rewrite V in *.
   change (fold_left (fun _ v => enter v) (v :: rest) (release a)) with (arrives (v :: rest)).
   assert (0 <= weight_of c (plan_robot p)) by (apply weights_right; rewrite <- E; apply in_map, Ha). nia.
 Qed.
 
 (** What an accepted claim says of the robot's plans, if there are any. *)
 Lemma accepted_claim_is_below_plans a claimed_least e : In a (robots i) ->
-  claim_accepted i tf successors (takes_in table a) (weight_of c (robot_id a)) a claimed_least e = true ->
+  claim_accepted i tf successors (takes_in table a) (weight_of c (robot_id a)) a (fees_of c (robot_id a))
+    claimed_least e = true ->
   match claimed_least with Some n => n | None => 0 end <=
   sum (fun p => Z.b2z (robot_id a =? plan_robot p) * priced_plan p) (plans s).
 Proof.
@@ -241,8 +282,9 @@ Proof.
   apply in_map_iff in P as (p & E & Hp).
   apply Z.le_trans with (Z.b2z (robot_id a =? plan_robot p) * priced_plan p);
     [| apply (sum_is_above_each _ _ p Positive Hp)].
-  rewrite E, Z.eqb_refl. simpl Z.b2z. rewrite Z.mul_1_l. unfold priced_plan. rewrite (cost_is_of_robot a p), E by auto.
-  eapply (claim_is_below_every_plan i tf successors (takes_in table a) a (Claim n _ _ _) (prices c) p right Ha
+  rewrite E, Z.eqb_refl. simpl Z.b2z. rewrite Z.mul_1_l. unfold priced_plan, own_plan. rewrite (cost_is_of_robot a p), E by auto.
+  eapply (claim_is_below_every_plan i tf successors (takes_in table a) a
+    (Claim n (weight_of c (robot_id a)) _ _ (fees_of c (robot_id a))) (prices c) p right Ha
     prices_are_held).
   - intros r t. apply successors_are_moves, right.
   - intros r. apply takes_what_is_needed, right.
@@ -252,6 +294,7 @@ Proof.
       apply (proj1 (forallb_forall _ _) Closed _ L).
     + apply forallb_forall, Rests.
     + apply weights_right, in_map, Ha.
+    + apply no_fees_are_below_0.
   - apply (plans_lawful i s lawful p a); auto.
 Qed.
 
@@ -263,7 +306,7 @@ Proof.
   induction robots' as [| a robots' IH]; intros [| [id claimed_least] claims'] [| e all'] K H;
     try discriminate; try (simpl; lia). simpl in H.
   destruct (Z.eqb_spec id (robot_id a)) as [-> |]; [| discriminate].
-  destruct (claim_accepted i tf successors _ _ a claimed_least e) eqn:C; [| discriminate].
+  destruct (claim_accepted i tf successors _ _ a _ claimed_least e) eqn:C; [| discriminate].
   apply accepted_claim_is_below_plans in C; [| apply K; left; auto].
   assert (IHr := IH claims' all' (fun b Hb => K b (or_intror Hb)) H). simpl in *. lia.
 Qed.
@@ -307,7 +350,8 @@ Lemma all_parts_are_below_the_total : refused_claims i tf successors table c (ro
   parts table c <= scale c * total_cost i s.
 Proof.
   intros H. apply accepted_claims_are_below_plans in H; auto. rewrite each_plan_counts_once in H.
-  unfold priced_plan in H. rewrite sum_of_sums, cuts_count_the_rest in H.
+  unfold priced_plan in H. rewrite sum_of_sums in H. unfold own_plan in H. rewrite sum_of_sums, cuts_count_the_rest in H.
+  pose proof fees_are_no_more_than_their_worth as Fees.
   pose proof (all_pay_no_more_than_prices_times_capacities i s right lawful (prices c) prices_right) as Paid.
   unfold parts. rewrite !total_of_is_the_sum.
   rewrite (sum_of_equal (fun x => amount x * room_in table (place x)) (fun x => amount x * room i (place x)))
@@ -321,8 +365,8 @@ Qed.
 End Instance.
 
 (** bound/robots: a robot has no claim only where no way leads to its goal. *)
-Theorem robot_without_a_claim_has_no_way i tf own a e : Well_formed i -> In a (robots i) ->
-  claim_accepted i tf (listed (successor_table i)) (takes_in (resource_table i) a) own a None e = true ->
+Theorem robot_without_a_claim_has_no_way i tf own a early e : Well_formed i -> In a (robots i) ->
+  claim_accepted i tf (listed (successor_table i)) (takes_in (resource_table i) a) own a early None e = true ->
     ~ Plannable i a.
 Proof.
   intros right Ha H. unfold claim_accepted in H. apply andb_true_iff in H as [Least H].
@@ -336,18 +380,19 @@ Proof.
   apply negb_true_iff, Z.eqb_neq in K1. apply IH; auto.
 Qed.
 
-(** No lawful solution that plans every robot with a way to its goal costs less than an accepted bound, if its cuts
-    hold. *)
+(** No lawful solution that plans every robot with a way to its goal costs less than an accepted bound, if its cuts and
+    its groups with deadlines hold. *)
 Theorem accepted_bound_is_below_every_solution i s c all : Well_formed i -> bound_accepted i c all = true ->
   Lawful i s -> Plans_every_plannable_robot i s -> (forall k, In k (cuts c) -> Cut_holds i s k) ->
-  bound c <= total_cost i s.
+  (forall g, In g (groups c) -> Group_holds s g) -> bound c <= total_cost i s.
 Proof.
-  intros right H lawful complete cuts_hold. unfold bound_accepted, broken_rule in H.
+  intros right H lawful complete cuts_hold groups_hold. unfold bound_accepted, broken_rule in H.
   destruct (scale_accepted c) eqn:Scaled; [| discriminate]. cbn [negb] in H.
   destruct (forallb (price_accepted _ _ _ c) (prices c)) eqn:Priced; [| discriminate]. cbn [negb] in H.
   destruct (prices_are_different c); [| discriminate]. cbn [negb] in H.
   destruct (size_accepted c); [| discriminate]. cbn [negb] in H.
   destruct (cuts_accepted i c) eqn:Cutted; [| discriminate]. cbn [negb] in H.
+  destruct (groups_accepted c) eqn:Grouped; [| discriminate]. cbn [negb] in H.
   destruct (refused_claims _ _ _ _ c _ _ all) eqn:Claimed; [discriminate |].
   destruct (total_accepted _ c) eqn:Totalled; [| discriminate].
   apply andb_true_iff in Scaled as [Scaled _]. apply Z.ltb_lt in Scaled. apply Z.eqb_eq in Totalled.
@@ -360,7 +405,8 @@ Proof.
       apply Ids.contains_of_list in O. exact O.
     - intros id Hid. apply Z.leb_le, Weights, Hid.
     - intros k Hk. specialize (Multipliers k Hk). rewrite !andb_true_iff in Multipliers.
-      destruct Multipliers as ((M & _) & _). apply Z.leb_le in M. exact M. }
+      destruct Multipliers as ((M & _) & _). apply Z.leb_le in M. exact M.
+    - intros g Hg. apply Z.leb_le, (proj1 (forallb_forall _ _) Grouped g Hg). }
   rewrite Totalled. pose proof (Z.mul_div_le (- parts (resource_table i) c) (scale c) Scaled).
   pose proof (Z.mod_pos_bound (- parts (resource_table i) c) (scale c) Scaled).
   pose proof (Z.div_mod (- parts (resource_table i) c) (scale c)). nia.

@@ -194,12 +194,14 @@ End Tables.
 (** * The claim of one robot *)
 
 (** The evidence that a robot has no way of less weighted cost and prices than [claimed]: for resources that lead to its
-    goal, least ticks from leaving them to entering it; labels; and a way through the graph. *)
+    goal, least ticks from leaving them to entering it; labels; and a way through the graph. Who arrives at a tick pays [early]
+    for the deadlines that it keeps. *)
 Record claim := Claim {
   claimed : Z;
   weight : Z;
   rest_of : Z -> option Z;
-  label_at : Z -> Z -> option Z
+  label_at : Z -> Z -> option Z;
+  early : Z -> Z
 }.
 
 Section Claim.
@@ -218,7 +220,7 @@ Definition covered (amount r t : Z) : bool :=
 (** Who enters the goal for the last time at the tick, and has paid the amount, comes to the claim. *)
 Definition arrives_covered (amount t : Z) : bool :=
   let end_ := match after_goal i with Vanish => t + takes (goal a) | Park => horizon tf end in
-  claimed c <=? amount + stay_price tf (goal a) t end_ + weight c * (t - release a).
+  claimed c <=? amount + stay_price tf (goal a) t end_ + weight c * (t - release a) + early c t.
 
 (** Who enters the resource at the tick, and has paid the amount: it may be there for the last time, or go on. *)
 Definition entry_covered (amount r t : Z) : bool :=
@@ -244,7 +246,8 @@ Record Claim_holds : Prop := {
   start_is_covered : entry_covered 0 (start a) (release a) = true;
   labels_are_closed : forall r t label, label_at c r t = Some label -> label_is_closed r t label = true;
   all_rests_are_least : forall r, In r (resource_ids i) -> rests_are_least r = true;
-  weight_is_not_negative : 0 <= weight c
+  weight_is_not_negative : 0 <= weight c;
+  early_is_not_negative : forall t, 0 <= early c t
 }.
 
 Variable xs : list price.
@@ -275,6 +278,7 @@ Qed.
 
 Hypothesis closed : forall r t label, label_at c r t = Some label -> label_is_closed r t label = true.
 Hypothesis weighted : 0 <= weight c.
+Hypothesis charged : forall t, 0 <= early c t.
 
 Lemma who_pays_more_is_covered amount more r t : amount <= more -> covered amount r t = true -> covered more r t = true.
 Proof.
@@ -283,7 +287,8 @@ Proof.
 Qed.
 
 (** What a way costs from its first visit on, after the amount was paid before it. *)
-Definition priced_cost (vs : list visit) : Z := paid xs vs + weight c * (arrives vs - release a).
+Definition priced_cost (vs : list visit) : Z :=
+  paid xs vs + weight c * (arrives vs - release a) + early c (arrives vs).
 
 Lemma paid_from_the_second_visit_on v w rest :
   paid xs (v :: w :: rest) = visit_paid xs v + move_paid xs v w + paid xs (w :: rest).
@@ -316,7 +321,8 @@ Proof.
     apply orb_true_iff in C as [C | C].
     { split_bools. unfold priced_cost. rewrite paid_from_the_second_visit_on.
       pose proof (nothing_is_paid_below_0 tf xs tables (w :: later)).
-      pose proof (no_move_pays_below_0 tf xs tables (Visit r first (Some (enter w))) w). nia. }
+      pose proof (no_move_pays_below_0 tf xs tables (Visit r first (Some (enter w))) w).
+      match goal with |- context [early c ?at_] => pose proof (charged at_) end. nia. }
     destruct (label_at c r (enter w)) as [label |] eqn:Label; [| discriminate]. split_bools.
     pose proof (closed _ _ _ Label) as K. apply andb_true_iff in K as [_ K].
     pose proof (proj1 (forallb_forall _ _) K _ (all_moves _ _ Hm)) as M. cbv beta in M.
@@ -340,7 +346,8 @@ Proof.
     { split_bools. unfold priced_cost. rewrite paid_from_the_second_visit_on.
       pose proof (nothing_is_paid_below_0 tf xs tables (w :: later)).
       pose proof (no_move_pays_below_0 tf xs tables (Visit r first (Some (enter w))) w).
-      pose proof (longer_stay_pays_more tf xs tables r first t (enter w)). nia. }
+      pose proof (longer_stay_pays_more tf xs tables r first t (enter w)).
+      match goal with |- context [early c ?at_] => pose proof (charged at_) end. nia. }
     destruct (label_at c r t) as [label |] eqn:Label; [| discriminate]. split_bools.
     pose proof (closed _ _ _ Label) as K. apply andb_true_iff in K as [K _].
     apply (IHn (t + 1)); [lia | lia |]. eapply who_pays_more_is_covered; [| exact K].
@@ -353,20 +360,20 @@ End Claim.
 Theorem claim_is_below_every_plan i tf successors takes a c xs p : Well_formed i -> In a (robots i) ->
   Holds_prices tf xs -> (forall r s, Move i r s -> In s (successors r)) -> (forall r, takes r = need i a r) ->
   Claim_holds i tf successors takes a c -> Plan_lawful i a p ->
-  claimed c <= paid xs (visits p) + weight c * cost a p.
+  claimed c <= paid xs (visits p) + weight c * cost a p + early c (arrives (visits p)).
 Proof.
-  intros right known tables moves durations [Start Closed Least Weight] lawful.
+  intros right known tables moves durations [Start Closed Least Weight Early] lawful.
   pose proof (lawful_plan_is_a_way i a right known p lawful) as W.
   destruct (starts_at_release i a p lawful) as (v & rest & E & R & T). unfold cost, arrival. rewrite E in *.
   change (fold_left (fun _ v => enter v) (v :: rest) (release a)) with (arrives (v :: rest)).
   apply andb_true_iff in Start as [Last On]. rewrite <- R, <- T in *.
   destruct rest as [| w later].
   - inversion W as [v' Hg |]; subst. rewrite Hg, Z.eqb_refl in Last. simpl in Last.
-    rewrite <- (Z.add_0_l (paid _ _)), <- Z.add_assoc.
-    rewrite T. eapply covered_entry_is_claimed; eauto. 
+    rewrite T. pose proof (covered_entry_is_claimed i tf takes a c xs tables durations v 0 W) as P.
+    unfold priced_cost in P. apply P in Last. lia.
   - inversion W; subst.
     pose proof (covered_way_is_claimed i tf successors takes a c xs right known tables moves durations Least Closed
-      Weight      (v :: w :: later) W v w later eq_refl 0 (enter v + need i a (visit_resource v))) as P.
+      Weight Early (v :: w :: later) W v w later eq_refl 0 (enter v + need i a (visit_resource v))) as P.
     unfold priced_cost in P. rewrite T in *. apply P; [lia |].
     rewrite stay_price_is_paid with (tf := tf), <- durations by auto. exact On.
 Qed.

@@ -6,7 +6,7 @@ let version = "1"
 
 let usage =
   "usage: carproof-kernel check INSTANCE SOLUTION\n\
-  \       carproof-kernel verify-bound INSTANCE CERTIFICATE [--cut-formula NUMBER FILE]...\n\
+  \       carproof-kernel verify-bound INSTANCE CERTIFICATE [--cut-formula|--deadline-formula NUMBER FILE]...\n\
   \       carproof-kernel verify-query INSTANCE SOLUTION CERTIFICATE\n\
   \       carproof-kernel audit INSTANCE SOLUTION CERTIFICATES\n\
   \       carproof-kernel verify-proof DIRECTORY\n\
@@ -60,10 +60,12 @@ let print_formula ((blueprint : Formula.blueprint), variables) =
   let print_clause literals = print_string (String.concat " " (List.map Z.to_string literals @ [ "0\n" ])) in
   List.iter print_clause blueprint.formula
 
-(* The formulas of cuts, by their numbers. *)
-let rec cut_formulas = function
-  | "--cut-formula" :: number :: file :: rest when int_of_string_opt number <> None ->
-      (int_of_string number, Reading.formula_of_text (contents file)) :: cut_formulas rest
+(* The formulas of cuts and deadlines, by their numbers. *)
+let rec formulas_of = function
+  | (("--cut-formula" | "--deadline-formula") as option) :: number :: file :: rest
+    when int_of_string_opt number <> None ->
+      let kind = if option = "--cut-formula" then "cut" else "deadline" in
+      ((kind, int_of_string number), Reading.formula_of_text (contents file)) :: formulas_of rest
   | [] -> []
   | _ -> prerr_string usage; exit 2
 
@@ -118,7 +120,7 @@ let () =
           Verdicts.audit instance solution (Reading.elements query "$" (json_of_file certificates))))
   | "verify-bound" :: instance :: certificate :: options ->
       print (answered (fun () ->
-          let formulas = cut_formulas options in
+          let formulas = formulas_of options in
           let instance = instance_of_file instance in
           Verdicts.verify_bound formulas instance (Reading.bound_of_json instance "$" (json_of_file certificate))))
   | [ "verify-proof"; directory ] ->

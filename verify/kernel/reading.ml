@@ -311,7 +311,13 @@ let solution_of_json { resource_numbers; robot_numbers; _ } path json =
 
 (* ---- Bounds ---- *)
 
-type bound = { certificate : Bound.certificate; named_instance : string; refutations : string list }
+(* The refutations of cuts and those of deadlines, in the document's order. *)
+type bound = {
+  certificate : Bound.certificate;
+  named_instance : string;
+  of_cuts : string list;
+  of_deadlines : string list;
+}
 
 let bound_of_json { resource_numbers; robot_numbers; _ } path json =
   require_format path "carproof-bound/1" json;
@@ -341,14 +347,21 @@ let bound_of_json { resource_numbers; robot_numbers; _ } path json =
         multiplier = required field "multiplier" whole },
       required field "refutation" text )
   in
+  let group path json =
+    let field = fields path ~required:[ "robots"; "ticks"; "price"; "refutation" ] ~optional:[] json in
+    let robots = required field "robots" (elements robot) and ticks = required field "ticks" (elements whole) in
+    if List.compare_lengths robots ticks <> 0 then shape path "a tick for each robot";
+    ({ Bound.deadlines = List.combine robots ticks; fee = required field "price" whole }, required field "refutation" text)
+  in
   let claim path (json : Yojson.Safe.t) =
     match json with
     | `List [ named; least ] -> (robot (path ^ "[0]") named, whole_or_null (path ^ "[1]") least)
     | _ -> shape path "an array of a robot and a whole number or null"
   in
   let names = [ "format"; "instance"; "bound"; "scale"; "horizon"; "resources"; "exchanges"; "cuts"; "robots" ] in
-  let field = fields path ~required:names ~optional:[] json in
+  let field = fields path ~required:names ~optional:[ "deadlines" ] json in
   let cuts = required field "cuts" (elements cut) in
+  let groups = optional [] field "deadlines" (elements group) in
   let resource_prices = required field "resources" (elements resource_price) in
   let exchange_prices = required field "exchanges" (elements exchange_price) in
   { certificate =
@@ -357,9 +370,11 @@ let bound_of_json { resource_numbers; robot_numbers; _ } path json =
         price_horizon = required field "horizon" natural;
         prices = List.rev_append (List.rev resource_prices) exchange_prices;
         cuts = List.map fst cuts;
-        claims = required field "robots" (elements claim) };
+        claims = required field "robots" (elements claim);
+        groups = List.map fst groups };
     named_instance = required field "instance" text;
-    refutations = List.map snd cuts }
+    of_cuts = List.map snd cuts;
+    of_deadlines = List.map snd groups }
 
 (* ---- Queries ---- *)
 

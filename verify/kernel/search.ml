@@ -47,14 +47,14 @@ let rec way_on takes onwards ticks goal r =
     match List.find_opt is_shortest next with None -> [] | Some s -> s :: way_on takes onwards ticks goal s
 
 (* Labels for all that costs less than is claimed, tick by tick; none once the claim is seen to be too high. *)
-let labels_below claimed weight (tariff : Labels.tariff) takes onwards ticks (a : Law.robot) =
+let labels_below claimed weight (tariff : Labels.tariff) horizon takes onwards ticks (a : Law.robot) =
   let amounts = Hashtbl.create 1024 and queue = ref Queue.empty and too_high = ref false in
   let reach amount r t =
     match Hashtbl.find_opt ticks r with
     | None -> ()
     | Some rest ->
         if Z.lt (Z.add amount (Z.mul weight (Z.sub (Z.add t rest) a.release))) claimed then
-          if Z.geq t tariff.horizon then too_high := true
+          if Z.geq t horizon then too_high := true
           else (
             queue := Queue.add (t, r) !queue;
             match Hashtbl.find_opt amounts (r, t) with
@@ -84,6 +84,10 @@ let evidence (instance : Law.instance) (certificate : Bound.certificate) =
   let onwards, backwards = moves_of instance in
   let tariff = Tables.tariff_of certificate.prices and table = Tables.resource_table instance in
   let claims = Hashtbl.of_seq (List.to_seq certificate.claims) in
+  (* Nothing is paid after the last price and the last deadline. *)
+  let after last (_, tick) = Z.max last (Z.succ tick) in
+  let deadlines = List.concat_map (fun (g : Bound.group) -> g.deadlines) certificate.groups in
+  let horizon = List.fold_left after tariff.horizon deadlines in
   let known = Hashtbl.create 64 in
   let of_robot (a : Law.robot) =
     let takes = Tables.takes_in table a in
@@ -95,7 +99,7 @@ let evidence (instance : Law.instance) (certificate : Bound.certificate) =
     let labels =
       match Hashtbl.find_opt claims a.robot_id with
       | Some (Some claimed) ->
-          labels_below claimed (Bound.weight_of certificate a.robot_id) tariff takes onwards ticks a
+          labels_below claimed (Bound.weight_of certificate a.robot_id) tariff horizon takes onwards ticks a
       | _ -> []
     in
     { Bound.ticks_after = Hashtbl.fold (fun r rest all -> (r, rest) :: all) ticks []; labels;

@@ -127,17 +127,18 @@ let verify_proof (read : Reading.instance) (claim : Reading.claim) proof =
 
 (* ---- verify-bound ---- *)
 
-(* A cut is decided by a formula of the caller's, which must say that its robots cost less: the kernel checks the
-   refutation of it. Without a formula, or with a refutation that does not hold, the bound is undecided. *)
-let why_undecided formulas number refutation =
-  match List.assoc_opt number formulas with
-  | None -> Some (Printf.sprintf "cut %d needs its formula: --cut-formula %d FILE" number number)
+(* A cut is decided by a formula of the caller's, which must say that its robots cost less, and deadlines by one that must
+   say that all are kept: the kernel checks the refutation of it. Without a formula, or with a refutation that does not
+   hold, the bound is undecided. *)
+let why_undecided formulas kind number refutation =
+  match List.assoc_opt (kind, number) formulas with
+  | None -> Some (Printf.sprintf "%s %d needs its formula: --%s-formula %d FILE" kind number kind number)
   | Some formula ->
       if Refutation.refutes formula (Reading.proof_of_text refutation) then None
-      else Some (Printf.sprintf "the refutation of cut %d does not hold" number)
+      else Some (Printf.sprintf "the refutation of %s %d does not hold" kind number)
 
 let verify_bound formulas (read : Reading.instance) (bound : Reading.bound) =
-  let { Reading.certificate; refutations; _ } = bound in
+  let { Reading.certificate; of_cuts; of_deadlines; _ } = bound in
   match Bound.broken_rule read.instance certificate (Search.evidence read.instance certificate) with
   | Some Bound.Scale -> Refused ("bound/scale", "the scale must be a power of two")
   | Some Bound.Price_rule ->
@@ -146,17 +147,23 @@ let verify_bound formulas (read : Reading.instance) (bound : Reading.bound) =
   | Some Bound.Size -> Refused ("bound/size", "the prices would not fit into a table")
   | Some Bound.Cut_rule ->
       Refused ("bound/cut", "multipliers must be at least 0 and a robot's no more than the scale together")
+  | Some Bound.Deadline_rule -> Refused ("bound/deadline", "the price of deadlines must be at least 0")
   | Some (Bound.Robots (a :: _)) ->
       let claim = "the claim of robot " ^ named read a.robot_id in
       Refused ("bound/robots", claim ^ " must be no more than its least priced cost")
   | Some (Bound.Robots []) -> Refused ("bound/robots", "each robot must be named once, in the instance's order")
   | Some Bound.Total -> Refused ("bound/total", "the bound must be the sum of all parts, rounded up")
   | None -> (
-      match List.find_map Fun.id (List.mapi (why_undecided formulas) refutations) with
+      let whys kind = List.mapi (why_undecided formulas kind) in
+      match List.find_map Fun.id (whys "cut" of_cuts @ whys "deadline" of_deadlines) with
       | Some why -> Undecided why
       | None ->
           let cut number (k : Bound.cut) : Yojson.Safe.t =
             `String (Printf.sprintf "the formula given says that the robots of cut %d cost less than %s together" number
                 (Z.to_string k.least_total))
           in
-          Accepted [ ("bound", whole certificate.bound); ("assumed", `List (List.mapi cut certificate.cuts)) ])
+          let group number _ : Yojson.Safe.t =
+            `String (Printf.sprintf "the formula given says that the robots of deadline %d keep all of theirs" number)
+          in
+          let assumed = List.mapi cut certificate.cuts @ List.mapi group certificate.groups in
+          Accepted [ ("bound", whole certificate.bound); ("assumed", `List assumed) ])
