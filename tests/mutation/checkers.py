@@ -32,6 +32,9 @@ REPORT = ("oracle/test_conform_report", *ANSWERS)
 OUTCOMES = ("oracle/test_conform_outcome",)
 LEMMAS = ("verify/test_lemmas", "verify/test_formulas")
 TESTS: Mapping[str, Sequence[str]] = {
+    "carp_spec.polish_rules": ("spec/test_polish_rules",),
+    "carp_spec.windows": ("spec/test_windows",),
+    "carp_verify.documents": ("verify/test_documents",),
     "carp_verify.verify_bound": ("verify/test_bound", "verify/test_forgery"),
     "carp_verify.bound_rules": ("verify/test_bound", "verify/test_forgery", "verify/test_gap", "oracle/test_bound"),
     "carp_verify.bound_cuts": ("verify/test_bound", "verify/test_forgery"),

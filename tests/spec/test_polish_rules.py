@@ -6,7 +6,7 @@ from itertools import count, islice
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from tests.spec.making import SOLVED, VANISHING, instance_on, line, plan_of
 from tests.spec.strategies import FEWER
@@ -123,6 +123,16 @@ def test_in_the_way_is_who_is_near_between_the_first_tick_and_the_last(plan: Pla
     assert is_in_way(spans(ROW.successors, plan), other) == met
 
 
+@pytest.mark.parametrize(
+    ("enter", "leave", "is_met"), [(2, 4, False), (2, 5, True), (2, None, True), (8, 9, True), (9, 10, False)]
+)
+def test_a_stay_is_in_the_way_from_the_first_tick_of_a_span_to_the_last(
+    enter: int, leave: int | None, is_met: bool
+) -> None:
+    plan, other = Plan("r1", (Visit("c", 5, 8),)), Plan("r2", (Visit("b", enter, leave),))
+    assert is_in_way(spans(ROW.successors, plan), other) == is_met
+
+
 @FEWER
 @given(walks("r1"), walks("r2"))
 def test_robots_that_cross_a_resource_are_apart_by_ticks(plan: Plan, other: Plan) -> None:
@@ -170,6 +180,9 @@ def test_what_is_kept_leaves_fewer_unplanned_or_as_many_at_no_larger_total(
 
 @FEWER
 @given(st.integers(-3, LARGEST_SEED + 3) | st.sampled_from([True, 1.5, float("nan"), float("inf"), "1"]))
+@example(-1)
+@example(1)
+@example(LARGEST_SEED + 1)
 def test_options_are_numbers_within_their_bounds(value: Any) -> None:  # noqa: ANN401 - nonsense too
     whole = type(value) is int
     assert (not [*options_are_right(value, None, 0)]) == (whole and value >= 0)

@@ -89,6 +89,7 @@ def test_every_small_change_to_the_free_windows_is_refused(
     stays=st.integers(0, 6) | st.none(),
     duration=st.integers(1, 5),
 )
+@example(start=0, lasts=5, enter=1, stays=2, duration=2)
 def test_a_stay_fits_if_all_its_ticks_are_in_the_window_and_enough(
     start: int, lasts: int | None, enter: int, stays: int | None, duration: int
 ) -> None:
@@ -108,6 +109,7 @@ def test_a_window_lasts_until_its_end(end: int | None, tick: int | None, expecte
 
 
 def test_a_window_of_no_ticks_is_no_free_window() -> None:
-    occupations: list[Occupation] = [(2, 4), (3, 6), (8, None)]
+    occupations: list[Occupation] = [(2, 3), (3, 6), (8, None)]
     assert windows_are_free([Window(0, 2), Window(6, 8)], occupations, 1)
-    assert not windows_are_free([Window(0, 2), Window(4, 4), Window(6, 8)], occupations, 1)
+    for empty in (Window(4, 4), Window(4, 3)):
+        assert not windows_are_free([Window(0, 2), empty, Window(6, 8)], occupations, 1)

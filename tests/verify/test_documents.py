@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import Any, cast
 from unittest.mock import Mock
 
@@ -13,8 +14,11 @@ from tests.spec.making import PARKED, PARKING, SOLVED, VANISHING, plan_of, solut
 from tests.spec.strategies import FEWER, SIZES, solutions
 
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, Solution, judge
+from carp_spec.model import Following
+from carp_spec.traces import Trace
 from carp_verify.documents import (
     INSTANCE_FORMAT,
+    MOST_DIGITS,
     SOLUTION_FORMAT,
     Document,
     InstanceDocument,
@@ -24,8 +28,11 @@ from carp_verify.documents import (
     is_json,
     read_instance,
     read_solution,
+    read_trace,
+    uncapitalized,
     write_instance,
     write_solution,
+    write_trace,
     write_verdict,
 )
 from carproof.strategies import instances, resource_graphs
@@ -64,6 +71,21 @@ def test_an_instance_is_read_as_it_was_written(instance: Instance) -> None:
 @given(solution=solutions())
 def test_a_solution_is_read_as_it_was_written(solution: Solution) -> None:
     assert read_solution(write_solution(solution)) == solution
+
+
+@pytest.mark.parametrize("following", ["allowed", "forbidden"])
+def test_following_is_written_where_it_is_forbidden(following: Following) -> None:
+    instance = replace(VANISHING, following=following)
+    data = write_instance(instance)
+    assert read_instance(data) == instance
+    assert (b'"following"' in data) == (following == "forbidden")
+
+
+@pytest.mark.parametrize("now", [0, 3])
+def test_a_trace_is_read_as_it_was_written(now: int) -> None:
+    trace = Trace(now, PARKED)
+    assert read_trace(write_trace(trace)) == trace
+    assert refusal(read_trace, write_trace(Trace(-1, PARKED))) == ("$.now", "document/shape")
 
 
 def test_defaults_may_be_left_out() -> None:
@@ -328,6 +350,36 @@ def test_a_solution_followed_by_anything_is_refused() -> None:
     data = write_solution(solution_of(SOLVED))
     assert read_solution(data + b" \r\n\t") == solution_of(SOLVED)
     assert refusal(read_solution, data + b"x") == ("$", "document/json")
+
+
+def test_a_name_that_stands_several_times_is_named() -> None:
+    with pytest.raises(Refusal, match="an object has the name 'b' 3 times"):
+        read_solution(b'{"a": 0, "b": 1, "b": 2, "c": 3, "b": 4}')
+
+
+@pytest.mark.parametrize(
+    ("name", "is_shown"),
+    [
+        ("trace/1", True),
+        ("a" * MOST_DIGITS, True),
+        ("", False),
+        ("two\nlines", False),
+        ("a" * (MOST_DIGITS + 1), False),
+    ],
+)
+def test_another_format_is_shown_if_it_fits_into_a_sentence(name: str, is_shown: bool) -> None:
+    with pytest.raises(Refusal) as caught:
+        read_instance(encode({"format": name}))
+    instead = f", and is {name}" if is_shown else ""
+    assert caught.value.message == f"the format must be carproof-instance/1{instead}"
+
+
+@pytest.mark.parametrize(
+    ("sentence", "part"),
+    [("Object missing", "object missing"), ("A b", "a b"), ("JSON is", "JSON is"), ("IDs are", "IDs are"), ("", "")],
+)
+def test_a_sentence_becomes_part_of_another(sentence: str, part: str) -> None:
+    assert uncapitalized(sentence) == part
 
 
 def test_the_deepest_nesting_that_is_json_is_no_document_either() -> None:
