@@ -142,7 +142,7 @@ THEOREMS = (
     Theorem(
         "Bound",
         "accepted_bound_is_below_every_solution",
-        "no lawful solution that plans every plannable robot costs less than an accepted bound, if its cuts hold",
+        "no lawful solution that plans every plannable robot costs less than an accepted bound, if its groups hold",
         ("cost/total",),
     ),
     Theorem(
