@@ -159,6 +159,25 @@ def test_who_keeps_a_deadline_pays_for_it_and_may_drive_on_through_the_goal_to_m
     assert search.least_cost() == min(costs, default=None)
 
 
+@pytest.mark.parametrize(
+    ("prices", "fees", "least"),
+    [
+        ((), [(3, 10)], 4),  # comes after the deadline, although nothing else is priced
+        ((), [(3, 2)], 3),  # pays
+        ((), [(1, 1), (3, 1)], 3),  # pays both
+        ((("a", 1, 10 * SCALE),), [(2, 10)], 3),  # drives through the goal, as to wait is dear
+    ],
+)
+def test_a_robot_is_late_where_that_is_cheaper(
+    prices: tuple[tuple[str, int, int], ...], fees: list[tuple[int, int]], least: int
+) -> None:
+    lane = Instance(ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),)), (Robot("r", "a", "b"),))
+    certificate = BoundDocument(BOUND_FORMAT, digest(lane), 0, SCALE, HORIZON, prices, (), (), ())
+    paid = [(tick, SCALE * price) for tick, price in fees]
+    search = RobotSearch(Tariff(lane, certificate), lane.robots[0], SCALE, predecessors(lane), Budget(), paid)
+    assert search.least_cost() == SCALE * least
+
+
 @settings(max_examples=draws(300))
 @given(st.data(), planned_instances(Sizes(resources=4, robots=4, release=2, wait=1)))
 def test_whatever_the_prices_sound_plans_pay_no_more_than_they_are_worth_and_cost_no_less_than_the_least(
