@@ -18,7 +18,6 @@ from carproof.registry import RULES
 
 FOLDER: Final = Path(carp_spec.__file__).with_name("vectors")
 DIGESTS: Final = FOLDER / "digests.txt"
-VECTORS_FORMAT: Final = "carproof-vectors/1"
 
 Flag: TypeAlias = Literal["edge-case", "known-bug-elsewhere", "free-choice"]
 Expected: TypeAlias = Literal["valid", "invalid"]

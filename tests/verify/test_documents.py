@@ -81,6 +81,11 @@ def test_following_is_written_where_it_is_forbidden(following: Following) -> Non
     assert (b'"following"' in data) == (following == "forbidden")
 
 
+def test_the_schema_that_editors_read_is_not_kept() -> None:
+    for read, document in ((read_instance, instance_json()), (read_solution, solution_json())):
+        assert read(encode({**document, "$schema": "a.schema.json"})) == read(encode(document))
+
+
 @pytest.mark.parametrize("now", [0, 3])
 def test_a_trace_is_read_as_it_was_written(now: int) -> None:
     trace = Trace(now, PARKED)
