@@ -17,7 +17,7 @@ from carproof.options import examples, instance_argument, json_option, kernel_op
 from carproof.tables import print_line, print_table
 from carproof.verdicts import verify_bound
 
-COLUMNS = ("lower bound", "robots", "prices", "cuts", "horizon", "decided by")
+COLUMNS = ("lower bound", "robots", "prices", "cuts", "deadlines", "horizon", "decided by")
 
 
 @click.command(
@@ -50,7 +50,8 @@ def command(*, instance: str, certificate: str, kernel: bool, as_json: bool) -> 
         print_line(f"not proved: {verdict.path}: {verdict.reason} [{verdict.rule}]")
     else:
         prices = len(document.resources) + len(document.exchanges)
-        row = [verdict.bound, len(document.robots), prices, len(document.cuts), document.horizon, verdict.by]
+        groups = [len(document.cuts), len(document.deadlines)]
+        row = [verdict.bound, len(document.robots), prices, *groups, document.horizon, verdict.by]
         print_table(COLUMNS, [row], numbers=COLUMNS[:-1])
         for robot, least in document.robots:
             if least is None:
