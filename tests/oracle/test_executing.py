@@ -183,6 +183,13 @@ def test_what_happened_on_the_clock_is_no_history_in_order(late_town: Path, carp
     assert not (late_town / "other.json").exists()
 
 
+def test_wrong_delays_in_a_file_are_named_with_it(carproof: Run) -> None:
+    save(delays=[["r0", 0, 1], ["r1", 0, -2]])
+    outcome = carproof("execute train.json plans.json --delays delays.json")
+    sentence = "the delay must be of a visit that is planned, for at least a tick, not ['r1', 0, -2] [request/delays]"
+    assert (outcome.code, outcome.stderr) == (2, f"Error: delays.json: $[1]: {sentence}\n")
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [

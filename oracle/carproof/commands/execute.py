@@ -8,7 +8,7 @@ from carp_verify.documents import write, write_solution, write_trace
 from carproof.answer import Answer
 from carproof.delays import until
 from carproof.executing import DRIVERS, Driver, Execution, delays_named, execute, execution_document
-from carproof.files import OutputFile, print_document, read_sound, write_whole
+from carproof.files import OutputFile, naming, print_document, read_sound, write_whole
 from carproof.options import examples, instance_argument, json_option, solution_argument
 from carproof.requests import require_tick
 from carproof.tables import print_line, print_table
@@ -65,7 +65,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     if now is not None:
         require_tick(now, "$.now")
     problem, sound = read_sound(instance, solution)
-    chosen = delays_named(delays, sound, seed)
+    with naming(delays):
+        chosen = delays_named(delays, sound, seed)
     executions = [execute(problem, sound, each, chosen) for each in ([driver] if driver else DRIVERS)]
     if trace is not None:
         whole = executions[0].trace
