@@ -4,7 +4,7 @@
 Importing this page loads neither numpy nor numba.
 """
 
-from carp_optimized.planners import PLANNERS, add, certifier, plan, polish, query, retime, steps, sum_of_shortest_paths
+from carp_optimized.planners import PLANNERS, add, certifier, plan, polish, query, retime, steps
 from carp_optimized.reuse import Queries, Reuse
 
 __all__ = [
@@ -18,5 +18,4 @@ __all__ = [
     "query",
     "retime",
     "steps",
-    "sum_of_shortest_paths",
 ]

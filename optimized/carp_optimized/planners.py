@@ -3,7 +3,7 @@
 Importing it loads neither numpy nor numba; planning does.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from time import perf_counter
 from typing import TYPE_CHECKING
 
@@ -76,6 +76,13 @@ def plan(
 
     Raises `Refusal` for a planner that only the reference has, and for numbers that are too large.
     """
+    return plan_with_fleet(instance, planner, advance, reuse)[0]
+
+
+def plan_with_fleet(
+    instance: Instance, planner: Planner, advance: Callable[[], None], reuse: Reuse | None = None
+) -> tuple[Solution, "PlannedFleet"]:
+    """The same solution, and the fleet that made it, which answers further questions."""
     if not isinstance(planner, PLANNERS):
         names = ", ".join(each.name for each in PLANNERS)
         message = f"the optimised engine has the planners {names}; ask the reference engine for {planner.name}"
@@ -95,16 +102,7 @@ def plan(
             for robot in everyone:
                 fleet.add(robot, 0, planner)
                 advance()
-    return _solution(instance, fleet.plans, set(fleet.instance.robot))
-
-
-def sum_of_shortest_paths(instance: Instance, robots: Iterable[RobotId]) -> int:
-    """The sum of the robots' costs if each were alone; a robot without a path adds nothing.
-
-    Raises `Refusal` for numbers that are too large.
-    """
-    fleet = _fleet(instance)
-    return sum(fleet.ticks_to_goal(fleet.index(robot)) for robot in robots)
+    return _solution(instance, fleet.plans, set(fleet.instance.robot)), fleet
 
 
 def steps(instance: Instance, planner: Planner) -> int:

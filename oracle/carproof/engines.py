@@ -3,12 +3,15 @@
 from collections.abc import Callable, Iterable, Sequence
 from importlib import import_module
 from importlib.util import find_spec
-from typing import Any, Protocol, cast
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 from carp_spec import Instance, Neighbourhood, Plan, Planner, Refusal, RobotId, Solution, total_cost
 from carp_spec.query_certificates import QueryCertificateDocument
 from carp_spec.traces import Trace
 from carproof.progress import progress
+
+if TYPE_CHECKING:
+    from carp_optimized.fleet import PlannedFleet
 
 ENGINES = ("optimized", "reference")
 
@@ -88,14 +91,16 @@ def warm() -> bool:
     return True
 
 
-def plan_showing(label: str, engine: str | None, instance: Instance, planner: Planner) -> Solution:
-    """Plans of all robots; if the optimised planner makes them, a terminal shows its progress."""
+def plan_showing(
+    label: str, engine: str | None, instance: Instance, planner: Planner
+) -> tuple[Solution, "PlannedFleet | None"]:
+    """Plans of all robots; if the optimised planner makes them, with its fleet, and a terminal shows its progress."""
     if (engine or _fastest_with(planner)) == "reference":
-        return engine_named("reference").plan(instance, planner)
-    from carp_optimized import plan, steps  # noqa: PLC0415 - loaded when it is first used
+        return engine_named("reference").plan(instance, planner), None
+    from carp_optimized.planners import plan_with_fleet, steps  # noqa: PLC0415 - loaded when it is first used
 
     with progress(label, steps(instance, planner)) as advance:
-        return plan(instance, planner, advance)
+        return plan_with_fleet(instance, planner, advance)
 
 
 def _fastest_with(planner: Planner) -> str:
@@ -104,26 +109,42 @@ def _fastest_with(planner: Planner) -> str:
     return "optimized" if isinstance(planner, COMPILED) else "reference"
 
 
-def sum_of_shortest_paths(instance: Instance, robots: Iterable[RobotId]) -> int:
-    """The sum of the robots' costs if each were alone; a robot without a path adds nothing."""
-    from carp_optimized import sum_of_shortest_paths as fast  # noqa: PLC0415 - loaded when it is first used
+def sum_of_shortest_paths(instance: Instance, robots: Iterable[RobotId], fleet: "PlannedFleet | None" = None) -> int:
+    """The sum of the robots' costs if each were alone; a robot without a path adds nothing.
 
+    A compiled fleet of the instance, if there is one, knows most of them.
+    """
     asked = tuple(robots)
     try:
-        return fast(instance, asked)
+        known = fleet or _fleet(instance)
+        return sum(known.ticks_to_goal(known.index(robot)) for robot in asked)
     except Refusal:  # numbers that only the reference holds
         alone = (engine_named("reference").query(instance, (), robot) for robot in asked)
         return total_cost(instance, [plan for plan in alone if plan is not None])
 
 
 def have_plans_beside(
-    instance: Instance, committed: Sequence[Plan], robots: Sequence[RobotId], now: int
+    instance: Instance,
+    committed: Sequence[Plan],
+    robots: Sequence[RobotId],
+    now: int,
+    fleet: "PlannedFleet | None" = None,
 ) -> Sequence[bool]:
-    """Whether each of some robots has a plan against committed plans of others, whatever the size of the numbers."""
+    """Whether each of some robots has a plan against committed plans of others, which the fleet holds if one is given.
+
+    The numbers may have any size.
+    """
     try:
-        certifier = engine_named("optimized").certifier(instance)
-        certifier.commit(committed)
+        beside = fleet or _fleet(instance, committed)
+        return [beside.find(beside.index(robot), None, now) is not None for robot in robots]
     except Refusal:  # numbers that only the reference holds
-        certifier = engine_named("reference").certifier(instance)
-        certifier.commit(committed)
-    return [certifier.certify(robot, None, now)[0] is not None for robot in robots]
+        query = engine_named("reference").query
+        return [query(instance, committed, robot, now) is not None for robot in robots]
+
+
+def _fleet(instance: Instance, committed: Sequence[Plan] = ()) -> "PlannedFleet":
+    from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415 - numba is slow to load
+
+    fleet = PlannedFleet(instance)
+    fleet.commit(committed)
+    return fleet

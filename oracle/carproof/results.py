@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import msgspec
 
@@ -14,6 +15,9 @@ from carproof.engines import have_plans_beside, sum_of_shortest_paths
 from carproof.files import print_document, write_whole
 from carproof.reasons import why_unplanned
 from carproof.tables import print_line, print_table
+
+if TYPE_CHECKING:
+    from carp_optimized.fleet import PlannedFleet
 
 COLUMNS = ("planner", "robots", "unplanned", "total cost", "shortest paths", "ratio", "time")
 NOT_FOUND = "the planner found no plan for it, though there is one beside the plans of the others"
@@ -41,26 +45,30 @@ def write_result(document: bytes, output: Path | None, as_json: bool) -> None:
         print_document(document)
 
 
-def show_solution(instance: Instance, solution: Solution, planner: str, seconds: float) -> None:
-    """Print a table of the result, and the reasons why robots are unplanned."""
-    print_table(COLUMNS, [result_row(instance, solution, planner, seconds)], numbers=COLUMNS[1:])
-    show_unplanned(instance, solution, solution.unplanned)
-
-
-def result_row(instance: Instance, solution: Solution, planner: str, seconds: float) -> Sequence[object]:
-    """A row of the columns: the shortest paths are the sum over the robots that have a plan."""
+def show_solution(
+    instance: Instance, solution: Solution, planner: str, seconds: float, fleet: "PlannedFleet | None"
+) -> None:
+    """Print a table of the result, and the reasons why robots are unplanned; a fleet holds the plans."""
     total = total_cost(instance, solution.plans)
-    shortest = sum_of_shortest_paths(instance, (plan.robot for plan in solution.plans))
+    shortest = sum_of_shortest_paths(instance, (plan.robot for plan in solution.plans), fleet)
     ratio = f"{total / shortest:.4f}" if shortest else "-"
     unplanned = len(instance.robots) - len(solution.plans)
-    return (planner, len(instance.robots), unplanned, total, shortest, ratio, f"{seconds:.2f} s")
+    row = (planner, len(instance.robots), unplanned, total, shortest, ratio, f"{seconds:.2f} s")
+    print_table(COLUMNS, [row], numbers=COLUMNS[1:])
+    show_unplanned(instance, solution, solution.unplanned, fleet=fleet)
 
 
-def show_unplanned(instance: Instance, solution: Solution, robots: Sequence[RobotId], now: int = 0) -> None:
-    """Print the reasons why robots have no plan, one a line."""
+def show_unplanned(
+    instance: Instance,
+    solution: Solution,
+    robots: Sequence[RobotId],
+    now: int = 0,
+    fleet: "PlannedFleet | None" = None,
+) -> None:
+    """Print the reasons why robots have no plan, one a line; a fleet, if one is given, holds the plans."""
     if not robots:
         return
-    plannable = have_plans_beside(instance, solution.plans, robots, now)
+    plannable = have_plans_beside(instance, solution.plans, robots, now, fleet)
     for robot, is_plannable in zip(robots, plannable, strict=True):
         reason = NOT_FOUND if is_plannable else why_unplanned(instance, solution.plans, robot, now)
         print_line(f"unplanned: robot {robot}: {reason}")

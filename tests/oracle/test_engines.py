@@ -1,13 +1,16 @@
-"""Sums of shortest paths come from the compiled planner, and are those of the reference."""
+"""Sums of shortest paths, and who has a plan beside others: the compiled planner answers as the reference does."""
 
 import pytest
 from hypothesis import given, settings
 from tests.profiles import draws
 
 from carp_reference import query
-from carp_spec import Instance, Resource, ResourceGraph, Robot, plan_cost
-from carproof.engines import sum_of_shortest_paths
+from carp_spec import Carp, Instance, Resource, ResourceGraph, Robot, plan_cost
+from carproof.engines import have_plans_beside, plan_showing, sum_of_shortest_paths
 from carproof.strategies import instances
+
+ROAD = ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),))
+LONG = ResourceGraph((Resource("a", 1, 10**30), Resource("b")), (("a", "b"),))
 
 
 @settings(max_examples=draws(200))
@@ -15,17 +18,33 @@ from carproof.strategies import instances
 def test_the_sum_of_shortest_paths_is_that_of_robots_alone(instance: Instance) -> None:
     alone = {robot: query(instance, (), robot) for robot in instance.robot}
     costs = {robot: 0 if plan is None else plan_cost(instance, plan) for robot, plan in alone.items()}
-    assert sum_of_shortest_paths(instance, instance.robot) == sum(costs.values())
-    assert sum_of_shortest_paths(instance, [*instance.robot][:1]) == sum([*costs.values()][:1])
+    _, fleet = plan_showing("", None, instance, Carp())
+    for known in (None, fleet):
+        assert sum_of_shortest_paths(instance, instance.robot, known) == sum(costs.values())
+        assert sum_of_shortest_paths(instance, [*instance.robot][:1], known) == sum([*costs.values()][:1])
+
+
+@settings(max_examples=draws(200))
+@given(instance=instances())
+def test_robots_with_a_plan_beside_others_are_those_of_the_reference(instance: Instance) -> None:
+    solution, fleet = plan_showing("", None, instance, Carp())
+    expected = [query(instance, solution.plans, robot) is not None for robot in solution.unplanned]
+    for known in (None, fleet):
+        assert have_plans_beside(instance, solution.plans, solution.unplanned, 0, known) == expected
 
 
 def test_numbers_too_large_for_the_compiled_planner_are_added_up_too() -> None:
-    graph = ResourceGraph((Resource("a", 1, 10**30), Resource("b")), (("a", "b"),))
-    instance = Instance(graph, (Robot("r", "a", "b"), Robot("s", "b", "a")))
+    instance = Instance(LONG, (Robot("r", "a", "b"), Robot("s", "b", "a")))
     assert sum_of_shortest_paths(instance, instance.robot) == 10**30 + 1
+    assert have_plans_beside(instance, (), ["r", "s"], 0) == [True, True]
 
 
-def test_the_reference_is_not_asked_robot_by_robot(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("carproof.engines.engine_named", lambda _: pytest.fail("asked"))
-    instance = Instance(ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),)), (Robot("r", "a", "b"),))
-    assert sum_of_shortest_paths(instance, instance.robot) == 1
+def test_neither_the_reference_nor_another_fleet_is_asked_where_one_has_planned(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    instance = Instance(ROAD, (Robot("r", "a", "b"), Robot("s", "a", "b")))
+    solution, fleet = plan_showing("", None, instance, Carp())
+    for name in ("carproof.engines.engine_named", "carp_optimized.fleet.PlannedFleet"):
+        monkeypatch.setattr(name, lambda *_: pytest.fail("asked"))
+    assert sum_of_shortest_paths(instance, ["r"], fleet) == 1
+    assert have_plans_beside(instance, solution.plans, solution.unplanned, 0, fleet) == [False]

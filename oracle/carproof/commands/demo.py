@@ -73,12 +73,12 @@ def depot(folder: Path) -> Instance:
 def planned(folder: Path, name: str, instance: Instance, planner: str) -> Result:
     """Plan an instance, check the plans and write them."""
     started = perf_counter()
-    solution = plan_showing(f"{name}, {planner}", None, instance, PLANNERS[planner])
+    solution, fleet = plan_showing(f"{name}, {planner}", None, instance, PLANNERS[planner])
     seconds = perf_counter() - started
     write_whole(_file(folder / f"{name}-{planner.split(maxsplit=1)[0]}.json"), write_solution(solution))
     verdict = judge(instance, solution)
     counts = (len(instance.robots), verdict.unplanned, total_cost(instance, solution.plans))
-    shortest = sum_of_shortest_paths(instance, (plan.robot for plan in solution.plans))
+    shortest = sum_of_shortest_paths(instance, (plan.robot for plan in solution.plans), fleet)
     return Result((name, planner, *counts, shortest, len(verdict.violations), f"{seconds:.2f} s"), verdict.valid)
 
 

@@ -68,20 +68,20 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     problem = read_instance_file(instance)
     started = perf_counter()
     with naming(instance):
-        solution = plan_showing("planning", engine, problem, chosen)
+        solution, fleet = plan_showing("planning", engine, problem, chosen)
         name = chosen.name
         if solution.unplanned and (repairs_unasked(context, options) if repair is None else repair):
             from carp_optimum.joint_repair import repair as repaired  # noqa: PLC0415 - numba is slow to load
 
             with suppress(Refusal):  # numbers that only the reference holds
-                solution = repaired(problem, solution)
+                solution, fleet = repaired(problem, solution), None
                 name += ", repaired"
             for violation in check(problem, solution.plans):
                 raise AssertionError(violation)
     seconds = perf_counter() - started
     write_result(write_solution(solution), output, as_json)
     if not as_json:
-        show_solution(problem, solution, name, seconds)
+        show_solution(problem, solution, name, seconds, fleet)
     return Answer.of(not solution.unplanned)
 
 
