@@ -10,8 +10,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import combinations, count
 
-import numpy as np
-
 from carp_optimum.optimum import optimum
 from carp_optimum.price_search import PriceSearch
 from carp_optimum.proving import refutation
@@ -67,7 +65,7 @@ class CutSearch:
 
         delays = self.search.wander(STEPS, self.search.scale // 4, look)
         requests = self.search.market.requests
-        costs = (requests.earliest - requests.release) * STEPS + delays @ np.arange(delays.shape[1])
+        costs = (requests.earliest - requests.release) * STEPS + delays.sum(axis=0)
         broken: list[tuple[int, Cut]] = []
         for members in self._groups(meetings):
             cut = self._cut(members, check)

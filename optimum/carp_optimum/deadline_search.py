@@ -14,6 +14,8 @@ from dataclasses import dataclass
 from itertools import count
 from typing import TypeAlias
 
+import numpy as np
+
 from carp_optimized.arrays import Longs
 from carp_optimum.price_search import PriceSearch
 from carp_optimum.proving import refutation
@@ -31,7 +33,7 @@ SHARES = (0, 18, 36, 54, 72)
 ENOUGH = 110
 """The most steps in which robots of a group are late: one of them would have to be in each of `STEPS`."""
 LARGEST_ENCODING = 2_000_000
-"""Robots times resources, beyond which no deadlines are searched for: each robot is encoded on its own."""
+"""Robots times resources, or times delays, beyond which no deadlines are searched for, as tables would be large."""
 CONFLICTS_TO_FIND = 3000
 CONFLICTS_TO_SHRINK = 900
 CONFLICTS_TO_RAISE = 300
@@ -67,10 +69,12 @@ class DeadlineSearch:
 
         `check` may raise `TimeOver`; the deadlines found until then are added first.
         """
-        if len(self.instance.robots) * len(self.instance.graph.resources) > LARGEST_ENCODING:
+        wide = max(len(self.instance.graph.resources), self.search.market.delays)
+        if len(self.instance.robots) * wide > LARGEST_ENCODING:
             return 0
-        counts = self.search.wander(STEPS, self.search.scale // 4, check)
-        later = counts.sum(axis=1, keepdims=True) - counts.cumsum(axis=1)  # steps in which the robot exceeds the delay
+        delays = self.search.wander(STEPS, self.search.scale // 4, check)
+        allowed = range(int(delays.max(initial=0)) + 1)
+        later = np.stack([(delays > each).sum(axis=0) for each in allowed], axis=1)  # steps, by robot and delay
         chosen: list[Deadlines] = []
         gain = 0
         try:

@@ -91,8 +91,7 @@ class PriceSearch:
         self.deadlines: list[tuple[Ints, Ints]] = []
         self.fees = np.zeros(0, np.int64)
         self._course_of_fees = np.zeros(0, np.int64)
-        self._arrivals = Arrivals(*np.zeros((2, robots, self.market.delays + 1), np.int64))
-        self._native_arrivals = Native(self._arrivals)
+        self._arrivals = Native(Arrivals(*np.zeros((2, 0, 0), np.int64)))
         self.best = find_ways(self.native)
         self._kept = self._point()
         self.count = 0
@@ -114,19 +113,19 @@ class PriceSearch:
         worth = sum(
             fee * (len(members) - 1) for fee, (members, _) in zip(self.fees.tolist(), self.deadlines, strict=True)
         )
-        return proved - worth + find_late_ways(self.native, self._native_arrivals)
+        return proved - worth + find_late_ways(self.native, self._arrivals)
 
     def _charge(self) -> None:
         """Fill the tables of what an arrival costs each robot, by its delay."""
         requests = self.market.requests
-        cost = self._arrivals.cost
+        cost, least = self._arrivals.fields
         cost[:] = 0
         for fee, (members, delays) in zip(self.fees, self.deadlines, strict=True):
             cost[members, delays] += fee
         cost[:] = np.cumsum(cost[:, ::-1], axis=1)[:, ::-1]
         ticks = np.arange(cost.shape[1]) + (requests.earliest - requests.release)[:, None]
         cost += requests.weight[:, None] * ticks
-        self._arrivals.least[:] = np.minimum.accumulate(cost[:, ::-1], axis=1)[:, ::-1]
+        least[:] = np.minimum.accumulate(cost[:, ::-1], axis=1)[:, ::-1]
 
     def _restore(self) -> int:
         """Go back to the best prices, without a course: their bound."""
@@ -149,6 +148,10 @@ class PriceSearch:
 
     def add_deadlines(self, deadlines: Sequence[Mapping[int, int]]) -> None:
         """Add deadlines, each the delays that it allows its members, with prices of 0."""
+        if not self.deadlines:
+            self._arrivals = Native(
+                Arrivals(*np.zeros((2, len(self.instance.robots), self.market.delays + 1), np.int64))
+            )
         self.deadlines.extend(
             (np.array([*allowed], np.int32), np.array([*allowed.values()], np.int32)) for allowed in deadlines
         )
@@ -229,15 +232,15 @@ class PriceSearch:
         self._restore()
 
     def wander(self, steps: int, aim: int, on_step: Callable[[], None]) -> LongTable:
-        """Take this many steps near the best prices: for each robot, how many of its ways have which delay."""
+        """Take this many steps near the best prices: the robots' delays, by step and robot."""
         bound = self._restore()
-        counts = np.zeros((len(self.instance.robots), self.market.delays), np.int64)
-        for _ in range(steps):
+        delays = np.zeros((steps, len(self.instance.robots)), np.int64)
+        for number in range(steps):
             self._step(min(max(self.best + aim - bound, 0), LARGEST_GAIN))
             bound = self._bound()
-            counts[np.arange(len(counts)), np.minimum(self.delays(), self.market.delays - 1)] += 1
+            delays[number] = self.delays()
             on_step()
-        return counts
+        return delays
 
     def prices(self) -> PriceLists:
         """The prices that are not 0."""
@@ -268,7 +271,7 @@ class PriceSearch:
     def _least_cost(self, position: int) -> int:
         if not self.deadlines:
             return least_cost(self.native, position)
-        return least_late_cost(self.native, self._native_arrivals, position)
+        return least_late_cost(self.native, self._arrivals, position)
 
 
 def _requests(instance: Instance, scale: int) -> Requests:

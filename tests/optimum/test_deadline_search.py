@@ -71,7 +71,7 @@ def test_the_same_deadlines_are_not_found_twice() -> None:
 
 
 def test_no_deadlines_are_searched_for_where_the_formula_would_be_large(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("carp_optimum.deadline_search.LARGEST_ENCODING", 14)
+    monkeypatch.setattr("carp_optimum.deadline_search.LARGEST_ENCODING", 3 * 64 - 1)
     assert DeadlineSearch(PriceSearch(dead_end(), SCALE)).round(lambda: None) == 0
-    monkeypatch.setattr("carp_optimum.deadline_search.LARGEST_ENCODING", 15)
+    monkeypatch.setattr("carp_optimum.deadline_search.LARGEST_ENCODING", 3 * 64)
     assert DeadlineSearch(PriceSearch(dead_end(), SCALE)).round(lambda: None) > 0
