@@ -82,7 +82,7 @@ class _Derivation:
         conflict = self._propagate(mark)
         if conflict is None:
             raise NoHintsError(f"the clause {clause} does not follow by unit propagation")
-        self._learn(self._step(clause, self._hints(conflict, mark)), clause)
+        self._learn(self._step(clause, self._hints(clause, conflict, mark)), clause)
 
     def forget(self, clause: Clause) -> None:
         """Forget a clause; the literals that it implied without assumptions have clauses of their own."""
@@ -129,8 +129,11 @@ class _Derivation:
         """The hints with which a clause implies a literal (0: none), all its other literals being known to be false."""
         return [*(self._reason[-each] for each in self._clauses[number] if each != implied), number]
 
-    def _hints(self, conflict: int, mark: int) -> list[int]:
-        """The clauses that a conflict rests on, in the order of propagation; takes assumptions since the mark back."""
+    def _hints(self, clause: Clause, conflict: int, mark: int) -> list[int]:
+        """The clauses that a conflict rests on, in the order of propagation; takes assumptions since the mark back.
+
+        No hint repeats that a literal of the clause is false, which is assumed: other checkers refuse such hints.
+        """
         false = dict.fromkeys(self._clauses[conflict])
         hints = [conflict]
         while len(self._trail) > mark:
@@ -139,7 +142,7 @@ class _Derivation:
             if number and -literal in false:
                 hints.append(number)
                 false.update(dict.fromkeys(each for each in self._clauses[number] if each != literal))
-        units = [self._reason[-literal] for literal in false if -literal in self._reason]
+        units = [self._reason[-each] for each in false if -each in self._reason and each not in clause]
         return units + hints[::-1]
 
     def _assign(self, literal: Literal, reason: int) -> None:

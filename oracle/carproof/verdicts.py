@@ -1,7 +1,7 @@
 """Verdicts on certificates and proofs, by the checkers in Python or by the proved kernel."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from carp_spec import Instance, Refusal, Solution
 from carp_spec.query_certificates import QueryCertificateDocument
@@ -49,24 +49,19 @@ def verify_bound(instance: Instance, certificate: BoundDocument, kernel: bool) -
 
 
 def _bound_by_kernel(instance: Instance, certificate: BoundDocument) -> VerifiedBoundDocument:
-    """The verdict of the kernel; it assumes that the formulas, which `carp_verify` makes, are right."""
-    formulas: dict[tuple[Literal["cut", "deadline"], int], str] = {}
-    if certificate.cuts or certificate.deadlines:
-        from carp_verify.bound_cuts import formula_of, formula_of_deadlines  # noqa: PLC0415 - only they need the encoder
-        from carp_verify.bound_rules import LARGEST_FORMULA, is_deadline, is_weight  # noqa: PLC0415
+    """The verdict of the kernel; it assumes that the formulas of deadlines, which `carp_verify` makes, are right."""
+    formulas: dict[int, str] = {}
+    if certificate.deadlines:
+        from carp_verify.bound_cuts import formula_of_deadlines  # noqa: PLC0415 - only they need the encoder
+        from carp_verify.bound_rules import LARGEST_FORMULA, is_deadline  # noqa: PLC0415
         from carp_verify.clauses import dimacs  # noqa: PLC0415
         from carp_verify.refutation import NotRefutedError  # noqa: PLC0415
 
-        path, rule = "$", is_weight.id
-        try:
-            for number, cut in enumerate(certificate.cuts):
-                path, rule = f"$.cuts[{number}]", is_weight.id
-                formulas["cut", number] = dimacs(formula_of(instance, cut, LARGEST_FORMULA))
-            for number, deadlines in enumerate(certificate.deadlines):
-                path, rule = f"$.deadlines[{number}]", is_deadline.id
-                formulas["deadline", number] = dimacs(formula_of_deadlines(instance, deadlines, LARGEST_FORMULA))
-        except NotRefutedError as error:
-            return VerifiedBoundDocument(None, path, rule, str(error), CHECKER)
+        for number, deadlines in enumerate(certificate.deadlines):
+            try:
+                formulas[number] = dimacs(formula_of_deadlines(instance, deadlines, LARGEST_FORMULA))
+            except NotRefutedError as error:
+                return VerifiedBoundDocument(None, f"$.deadlines[{number}]", is_deadline.id, str(error), CHECKER)
     answer = ask_about_bound(instance, certificate, formulas)
     if answer.accepted:
         return VerifiedBoundDocument(certificate.bound, None, None, None, answer.by, answer.assumed)

@@ -202,21 +202,20 @@ def test_the_op_verify_query_is_served(carproof: Run) -> None:
     assert answers[3]["error"]["path"] == "$.certificate"
 
 
-def test_a_bound_with_cuts_is_verified_by_the_kernel_and_the_assumptions_are_named(carproof: Run, folder: Path) -> None:
+def test_a_bound_with_cuts_is_verified_by_the_kernel(carproof: Run, folder: Path) -> None:
     program()
     certificate = cut_certificate()
     (folder / "town.json").write_bytes(write_instance(crossing()))
     (folder / "bound.json").write_bytes(write(certificate))
     outcome = carproof(COMMANDS[-1])
     assert (outcome.code, outcome.stderr) == (0, "")
-    assert outcome.stdout.count("assumed: the formula given says") == len(certificate.cuts) > 0
     document = json.loads(carproof(COMMANDS[-1], "--json").stdout)
-    assert (document["bound"], len(document["assumed"])) == (certificate.bound, len(certificate.cuts))
+    assert (document["bound"], document["assumed"]) == (certificate.bound, [])
     cuts = (msgspec.structs.replace(certificate.cuts[0], refutation=""), *certificate.cuts[1:])
     (folder / "bound.json").write_bytes(write(msgspec.structs.replace(certificate, cuts=cuts)))
     outcome = carproof(COMMANDS[-1])
-    assert (outcome.code, outcome.stdout) == (3, "")
-    assert "the refutation of cut 0 does not hold" in outcome.stderr
+    assert (outcome.code, outcome.stderr) == (1, "")
+    assert outcome.stdout.startswith("not proved: $: the proof of cut 0 does not hold: the refutation does not derive")
 
 
 def test_a_bound_with_deadlines_is_verified_by_the_kernel_and_the_assumptions_are_named(

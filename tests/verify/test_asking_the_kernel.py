@@ -21,6 +21,7 @@ from carp_verify.kernel import (
     program_is_there,
     request,
     verify_bound,
+    verify_proof,
     version,
 )
 
@@ -71,10 +72,8 @@ def test_a_request_without_an_answer_is_refused(folder: Path, lines: tuple[str, 
 
 
 def test_an_answer_may_say_more_of_a_solution_or_a_bound(folder: Path) -> None:
-    answers(
-        folder, '{"kernel": "7", "verdict": "accepted", "cost": 3, "unplanned": 1, "bound": 2, "assumed": ["a", "b"]}'
-    )
-    assert ask([b"{}\n"]) == [KernelVerdict("7", "accepted", cost=3, unplanned=1, bound=2, assumed=("a", "b"))]
+    answers(folder, '{"kernel": "7", "verdict": "accepted", "cost": 3, "unplanned": 1, "bound": 2}')
+    assert ask([b"{}\n"]) == [KernelVerdict("7", "accepted", cost=3, unplanned=1, bound=2)]
 
 
 def test_a_request_behind_a_line_without_an_end_has_no_answer(folder: Path) -> None:
@@ -89,9 +88,9 @@ def test_the_version_is_asked_of_the_program_itself(folder: Path) -> None:
     assert version() == "carproof-kernel 7"
 
 
-def test_a_bound_is_verified_with_the_formulas_of_its_cuts_and_deadlines(folder: Path) -> None:
+def test_a_bound_is_verified_with_the_formulas_of_its_deadlines(folder: Path) -> None:
     answers(folder, REFUSED)
-    verdict = verify_bound(INSTANCE, CERTIFICATE, {("cut", 0): "p cnf 1 0\n", ("deadline", 3): "p cnf 2 0\n"})
+    verdict = verify_bound(INSTANCE, CERTIFICATE, {0: "p cnf 1 0\n", 3: "p cnf 2 0\n"})
     assert (verdict.accepted, verdict.path, verdict.rule, verdict.message) == (
         False,
         "$.bound",
@@ -99,18 +98,25 @@ def test_a_bound_is_verified_with_the_formulas_of_its_cuts_and_deadlines(folder:
         "too much",
     )
     arguments = [Path(each).name for each in (folder / "arguments").read_text().splitlines()]
-    cuts = ["--cut-formula", "0", "cut-0.cnf", "--deadline-formula", "3", "deadline-3.cnf"]
-    assert arguments == ["verify-bound", "instance.json", "certificate.json", *cuts]
+    formulas = ["--deadline-formula", "0", "0.cnf", "--deadline-formula", "3", "3.cnf"]
+    assert arguments == ["verify-bound", "instance.json", "certificate.json", *formulas]
     files = write_instance(INSTANCE) + write(CERTIFICATE) + b"p cnf 1 0\np cnf 2 0\n"
     assert (folder / "files").read_bytes() == files
+
+
+def test_a_proof_is_verified_from_its_files(folder: Path) -> None:
+    answers(folder, REFUSED)
+    verdict = verify_proof({"manifest.json": b"claim", "beat.lrat": b"steps"})
+    assert (verdict.accepted, verdict.rule, verdict.message) == (False, "bound/total", "too much")
+    command, directory = (folder / "arguments").read_text().splitlines()
+    assert (command, Path(directory).exists()) == ("verify-proof", False)
 
 
 def test_where_following_is_forbidden_nothing_is_asked(folder: Path) -> None:
     answers(folder, ACCEPTED)
     forbidding = replace(INSTANCE, following="forbidden")
-    for asks in (lambda: request("check", forbidding), lambda: verify_bound(forbidding, CERTIFICATE, {})):
-        with pytest.raises(Refusal, match="limit/following"):
-            asks()
+    with pytest.raises(Refusal, match="limit/following"):
+        request("check", forbidding)
     assert not (folder / "arguments").exists()
 
 

@@ -32,11 +32,8 @@ from carp_spec import (
     has_ended,
     judge,
 )
-from carp_verify.bound_cuts import group_of
 from carp_verify.bounds import BOUND_FORMAT, BoundDocument, digest
-from carp_verify.clauses import dimacs
 from carp_verify.documents import instance_document, read_instance, read_solution, solution_document, write
-from carp_verify.encoding import Evidence, beat_formula
 from carp_verify.verify_bound import verify_bound
 from carproof.mutations import BrokenSolution
 from carproof.strategies import (
@@ -155,8 +152,6 @@ def test_the_kernel_answers_every_vector_of_verify_bound_rightly(case: Vector) -
     verdict = ask(encoded(**case.request))
     if case.expected == "valid" or case.violated == ("bound/instance",):
         assert (verdict["verdict"], verdict["bound"]) == ("accepted", case.request["certificate"]["bound"])
-    elif case.violated == ("bound/cut",):
-        assert verdict["verdict"] == "undecided"
     else:
         assert verdict["verdict"] in ("refused", "bad input")
         assert [verdict["rule"]] == list(case.violated)
@@ -553,22 +548,32 @@ def test_long_stays_and_late_releases_cost_no_time() -> None:
     assert check_bound(instance, certificate)["verdict"] == "accepted"
 
 
-def test_a_bound_with_cuts_is_decided_by_formulas_that_are_refuted(tmp_path: Path) -> None:
+def test_a_bound_with_cuts_is_decided(tmp_path: Path) -> None:
     certificate = cut_certificate()
     (tmp_path / "instance.json").write_bytes(write(instance_document(crossing())))
     (tmp_path / "bound.json").write_bytes(write(certificate))
-    files = (tmp_path / "instance.json", tmp_path / "bound.json")
-    code, verdict, sentence = run("verify-bound", *files)
-    assert (code, verdict["verdict"]) == (3, "undecided")
-    assert "--cut-formula 0 FILE" in sentence
-    options: list[str | Path] = []
-    for number, cut in enumerate(certificate.cuts):
-        group = group_of(crossing(), cut.robots)
-        formula = beat_formula(group, cut.least, Evidence(cut.horizons, cut.order)).formula
-        (tmp_path / f"{number}.cnf").write_text(dimacs(formula))
-        options += ["--cut-formula", str(number), tmp_path / f"{number}.cnf"]
-    code, verdict, _ = run("verify-bound", *files, *options)
-    assert (code, verdict["bound"], len(verdict["assumed"])) == (0, certificate.bound, len(certificate.cuts))
-    (tmp_path / "0.cnf").write_text("p cnf 1 1\n1 0\n")
-    code, verdict, _ = run("verify-bound", *files, *options)
-    assert (code, verdict["verdict"]) == (3, "undecided")
+    code, verdict, _ = run("verify-bound", tmp_path / "instance.json", tmp_path / "bound.json")
+    assert (code, verdict) == (0, {"kernel": "1", "verdict": "accepted", "bound": certificate.bound, "assumed": []})
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"refutation": ""},
+        {"refutation": "nonsense\n"},
+        {"least": 8},
+        {"horizons": (0, 0)},
+        {"horizons": (1,)},
+        {"horizons": (-1, 3)},
+        {"order": (0, 0)},
+        {"order": (0, 10**40)},
+        {"robots": ("r0", "r1")},
+        {"robots": ("r0", "r0")},
+        {"robots": ("r0", "r9")},
+    ],
+)
+def test_a_cut_whose_proof_is_changed_is_refused(change: dict[str, Any]) -> None:
+    (cut,) = cut_certificate().cuts
+    certificate = msgspec.structs.replace(cut_certificate(), cuts=(msgspec.structs.replace(cut, **change),))
+    verdict = check_bound(crossing(), certificate)
+    assert (verdict["verdict"], verdict["rule"]) == ("refused", "bound/cut")

@@ -16,14 +16,18 @@ from tests.verify.tiny import case
 from carp_optimum.optimum import optimum
 from carp_optimum.proving import refutation, write_proof
 from carp_optimum.solver import Deadline, Solver
-from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot
+from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot, RobotId
 from carp_spec.permutations import shuffle
-from carp_verify.clauses import Formula, dimacs
-from carp_verify.documents import read_instance, write_instance
+from carp_verify.bound_cuts import group_of
+from carp_verify.bounds import BOUND_FORMAT, BoundDocument, CutDocument, digest
+from carp_verify.clauses import Clause, Formula, dimacs
+from carp_verify.documents import read_instance, write, write_instance
 from carp_verify.encoding import Encoding, Evidence, beat_formula
 from carp_verify.joint_search import least_total_cost
 from carp_verify.proof import PROOF_FORMAT
+from carp_verify.refutation import read_steps
 from carp_verify.unsolvable import Clauses
+from carp_verify.verify_bound import verify_bound
 
 SECONDS = 60
 CASES = 400
@@ -243,3 +247,56 @@ def test_a_large_duration_or_capacity_is_no_obstacle(after_goal: AfterGoal, tmp_
     lrat = refutation(beat_formula(instance, least, evidence).formula, Deadline(SECONDS))
     claim(tmp_path, instance, least, evidence, lrat)
     assert verdict(tmp_path) == {"kernel": "1", "verdict": "accepted", "bound": least}
+
+
+def cut_of(instance: Instance, robots: Sequence[RobotId], least: int) -> CutDocument:
+    """The claim that robots cost at least so much together, with its refutation."""
+    group = group_of(instance, robots)
+    evidence = Evidence(tuple(least for _ in robots), tuple(range(len(robots))))
+    lrat = refutation(beat_formula(group, least, evidence).formula, Deadline(SECONDS))
+    return CutDocument(tuple(robots), least, 1, evidence.horizons, evidence.order, lrat)
+
+
+@pytest.mark.parametrize("first", range(0, 120, 40))
+def test_cuts_of_some_robots_in_any_order_are_accepted(tmp_path: Path, first: int) -> None:
+    accepted = 0
+    for number in range(first, first + 40):
+        instance, draw = case(number)
+        chosen = shuffle(list(instance.robot), draw.stream)[: draw.between(2, 3)]
+        least = None if Encoding(instance).wayless else least_total_cost(group_of(instance, chosen))
+        if least is not None:
+            shortest = {each.robot.id: each.shortest or 0 for each in Encoding(instance).robots}
+            claims = tuple((id, 0 if id in chosen else cost) for id, cost in shortest.items())
+            bound = least + sum(cost for _, cost in claims)
+            cut = cut_of(instance, chosen, least)
+            document = BoundDocument(BOUND_FORMAT, digest(instance), bound, 1, 0, (), (), (cut,), claims)
+            assert verify_bound(instance, document) == bound
+            (tmp_path / "instance.json").write_bytes(write_instance(instance))
+            (tmp_path / "bound.json").write_bytes(write(document))
+            command = f"{program()} verify-bound {tmp_path}/instance.json {tmp_path}/bound.json"
+            done = subprocess.run(command.split(), capture_output=True, text=True, check=False)
+            assert json.loads(done.stdout) == {"kernel": "1", "verdict": "accepted", "bound": bound, "assumed": []}
+            accepted += 1
+    assert accepted > 10
+
+
+def idle_hints(clauses: Sequence[Clause], text: str) -> list[tuple[int, int]]:
+    """The steps with hints that make no new literal true, which other checkers of LRAT refuse."""
+    known = dict(enumerate(clauses, start=1))
+    idle = []
+    for step in read_steps(text):
+        true = {-literal for literal in step.clause or ()}
+        for hint in step.hints if step.clause is not None else ():
+            open_literals = [literal for literal in known[hint] if -literal not in true]
+            idle += [(step.number, hint) for literal in open_literals if literal in true]
+            true.update(open_literals)
+        known[step.number] = step.clause or ()
+    return idle
+
+
+@pytest.mark.parametrize("name", CORNERS)
+def test_every_hint_makes_a_literal_true(name: str, tmp_path: Path) -> None:
+    prove(CORNERS[name], tmp_path)
+    lines = (tmp_path / "beat.cnf").read_text().splitlines()[1:]
+    clauses = [tuple(map(int, line.split()[:-1])) for line in lines]
+    assert idle_hints(clauses, (tmp_path / "beat.lrat").read_text()) == []

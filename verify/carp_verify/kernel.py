@@ -114,20 +114,17 @@ def version() -> str:
     return ask([b"{}\n"])[0].by
 
 
-def verify_bound(
-    instance: Instance, certificate: BoundDocument, formulas: Mapping[tuple[Literal["cut", "deadline"], int], str]
-) -> KernelVerdict:
-    """The kernel's answer about a lower bound; `formulas` are those of its cuts and deadlines, in DIMACS, by number."""
+def verify_bound(instance: Instance, certificate: BoundDocument, formulas: Mapping[int, str]) -> KernelVerdict:
+    """The kernel's answer about a lower bound; `formulas` are those of its deadlines, in DIMACS, by number."""
     require_following(instance)
     with TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "instance.json").write_bytes(write_instance(instance))
         (folder / "certificate.json").write_bytes(write(certificate))
         options: list[str] = []
-        for (kind, number), formula in formulas.items():
-            file = folder / f"{kind}-{number}.cnf"
-            file.write_text(formula)
-            options += [f"--{kind}-formula", str(number), str(file)]
+        for number, formula in formulas.items():
+            (folder / f"{number}.cnf").write_text(formula)
+            options += ["--deadline-formula", str(number), str(folder / f"{number}.cnf")]
         return _run(["verify-bound", str(folder / "instance.json"), str(folder / "certificate.json"), *options])
 
 

@@ -153,7 +153,7 @@ THEOREMS = (
     Theorem(
         "Total",
         "justified_clause_is_kept",
-        "a lawful solution that costs less than a total keeps each clause of its formula",
+        "a lawful solution in which some robots cost less than a total keeps each clause of its formula",
         ("cost/total", "joint/capacity", "joint/exchange"),
     ),
     Theorem(
@@ -166,6 +166,13 @@ THEOREMS = (
         "Total",
         "refuted_instance_has_no_solution",
         "no lawful solution plans every plannable robot if the formula of any total is refuted",
+        ("cost/total",),
+    ),
+    Theorem(
+        "Total",
+        "bound_with_refuted_cuts_is_below_every_solution",
+        "no lawful solution of all plannable robots costs less than an accepted bound whose cuts are refuted, if its "
+        "groups with deadlines hold",
         ("cost/total",),
     ),
     Theorem(

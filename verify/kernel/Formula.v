@@ -1,5 +1,6 @@
-(** The formula of plans that cost less than a total: each clause comes with a reason, and a clause whose reason holds
-    is kept by every lawful solution that costs less. So if the formula has no model, no solution does.
+(** The formula of plans of a group of robots that cost less than a total together: each clause comes with a reason, and
+    a clause whose reason holds is kept by every lawful solution in which the group costs less. So if the formula has no
+    model, no solution does.
 
     Who wrote the clauses, and in which order, does not matter. *)
 Require Import ZArith List Bool Lia.
@@ -19,7 +20,7 @@ Inductive meaning :=
 | Stands (id : Z)
 (** The robots with ranks in [first, end_) are at least [least] ticks late together. *)
 | Delayed (first end_ least : Z)
-(** At least [least] robots with ids in [first, end_) are in the resource at the tick. *)
+(** At least [least] robots with seats in [first, end_) are in the resource at the tick. *)
 | Crowded (first end_ place tick least : Z).
 
 (** Why a clause holds. *)
@@ -39,12 +40,12 @@ Inductive reason :=
 | Exchange (one other source target tick : Z)
 | Is_cheaper.
 
-(** What the clauses of a robot rest on: its rank among the delays that are added up, its least cost, the least ticks
-    from leaving a resource to entering the goal, the least tick at which it is free to leave a resource, and resources
-    that lead from its start to its goal. *)
-Record guide := Guide { rank : Z; shortest : Z; rests : Map.t Z; firsts : Map.t Z; leads : list Z }.
+(** What the clauses of a robot rest on: its rank among the delays that are added up, its seat among the robots that are
+    counted, its least cost, the least ticks from leaving a resource to entering the goal, the least tick at which it is
+    free to leave a resource, and resources that lead from its start to its goal. *)
+Record guide := Guide { rank : Z; seat : Z; shortest : Z; rests : Map.t Z; firsts : Map.t Z; leads : list Z }.
 
-(** A formula with the guides of the robots in the instance's order, the meanings of its variables and the reasons of
+(** A formula with the guides of the robots in the group's order, the meanings of its variables and the reasons of
     its clauses. *)
 Record blueprint := Blueprint {
   guides : list guide;
@@ -70,8 +71,8 @@ Record tables := Tables {
 Definition predecessor_table (i : instance) : Map.t (list Z) :=
   fold_left (fun m e => enlist (snd e) (fst e) m) (moves_of_graph i) (Map.empty (list Z)).
 
-Definition tables_of (i : instance) (b : blueprint) : tables :=
-  let all := combine (robots i) (guides b) in
+Definition tables_of (i : instance) (group : list robot) (b : blueprint) : tables :=
+  let all := combine group (guides b) in
   let moves := successor_table i in
   let back := predecessor_table i in
   Tables (after_goal i) (resource_table i) (listed moves) (listed back) all (index (fun m => robot_id (fst m)) all).
@@ -180,7 +181,11 @@ Definition robots_if_false (r t : Z) (l : signed) : option (Z * Z * Z) :=
   let id := robot_of_meaning (snd l) in
   match l with
   | (false, Crowded first end_ r' t' least) => if (r' =? r) && (t' =? t) then Some (first, end_, least) else None
-  | _ => if unless_present [l] id r t then Some (id, id + 1, 1) else None
+  | _ =>
+      match Map.find id (member_of w) with
+      | Some (_, g) => if unless_present [l] id r t then Some (seat g, seat g + 1, 1) else None
+      | None => None
+      end
   end.
 
 Definition true_if_robots (r t : Z) (l : signed) : option (Z * Z * Z) :=
@@ -209,7 +214,7 @@ Definition adds (if_false true_if : signed -> option (Z * Z * Z)) (c : list sign
 Definition room_below (r n : Z) : bool :=
   match Map.find r (places w) with Some x => capacity x <? n | None => false end.
 
-(** The delays of all robots together are below this, if the solution costs less than the total. *)
+(** The delays of the group's robots together are below this, if the solution costs less than the total. *)
 Definition delays_below (total : Z) : Z := total - sum (fun m : member => shortest (snd m)) (crew w).
 
 Definition too_late (total : option Z) (c : list signed) : bool :=
@@ -287,13 +292,31 @@ Fixpoint all_justified (total : option Z) (known : Numbered.t meaning) (f : list
 
 End Checker.
 
-(** Every clause of the formula is kept by every lawful solution that plans every robot and costs less than the total,
-    or by every one, if no total is given. *)
-Definition blueprint_accepted (i : instance) (total : option Z) (b : blueprint) : bool :=
-  let w := tables_of i b in
-  (length (guides b) =? length (robots i))%nat &&
+(** Every clause of the formula is kept by every lawful solution that plans every robot and in which the group costs
+    less than the total, or by every one, if no total is given. *)
+Definition blueprint_accepted (i : instance) (group : list robot) (total : option Z) (b : blueprint) : bool :=
+  let w := tables_of i group b in
+  (length (guides b) =? length group)%nat &&
   forallb (guide_accepted w (resource_ids i)) (crew w) &&
   all_justified w total (meanings b) (formula b) (reasons b).
 
 Definition total_refuted (i : instance) (total : option Z) (b : blueprint) (lines : list (list word)) : bool :=
-  blueprint_accepted i total b && refutes (formula b) lines.
+  blueprint_accepted i (robots i) total b && refutes (formula b) lines.
+
+(** The robots with these ids. *)
+Definition group_of (i : instance) (ids : list Z) : list robot :=
+  let known := index robot_id (robots i) in
+  flat_map (fun id : Z => match Map.find id known with Some a => [a] | None => [] end) ids.
+
+(** The same for a cut. *)
+Definition cut_refuted (i : instance) (k : cut) (b : blueprint) (lines : list (list word)) : bool :=
+  let group := group_of i (members k) in
+  Ids.distinct (members k) && (length group =? length (members k))%nat &&
+  blueprint_accepted i group (Some (least_total k)) b && refutes (formula b) lines.
+
+Fixpoint cuts_refuted (i : instance) (ks : list cut) (proofs : list (blueprint * list (list word))) : bool :=
+  match ks, proofs with
+  | [], _ => true
+  | k :: ks', (b, lines) :: proofs' => if cut_refuted i k b lines then cuts_refuted i ks' proofs' else false
+  | _ :: _, [] => false
+  end.

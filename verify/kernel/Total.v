@@ -1,5 +1,5 @@
 (** A refuted total is impossible: the clauses of an accepted blueprint are kept by every lawful solution that plans
-    every robot and costs less than the total. *)
+    every robot and in which those of the group cost less than the total. *)
 Require Import ZArith List Bool Lia.
 From Carproof Require Import Law Collections Checker Ways Prices Labels Tables Bound Refutation Routes Formula.
 Import ListNotations.
@@ -12,7 +12,8 @@ Record Right_tables (i : instance) (w : tables) : Prop := {
   places_are_right : forall r x, Map.find r (places w) = Some x -> In x (resources i) /\ resource_id x = r;
   onwards_are_moves : forall r s, In s (onwards w r) <-> Move i r s;
   backwards_are_moves : forall r s, In s (backwards w r) <-> Move i s r;
-  crew_is_all : map fst (crew w) = robots i;
+  crew_is_known : forall m, In m (crew w) -> In (fst m) (robots i);
+  crew_is_distinct : NoDup (map (fun m : member => robot_id (fst m)) (crew w));
   members_are_found : forall id m, Map.find id (member_of w) = Some m <-> In m (crew w) /\ robot_id (fst m) = id;
   guides_are_accepted : forall m, In m (crew w) -> guide_accepted w (resource_ids i) m = true
 }.
@@ -31,19 +32,22 @@ Qed.
 Lemma combined_with_as_many {A B} (l : list A) (m : list B) : length m = length l -> map fst (combine l m) = l.
 Proof. revert m. induction l as [| x l IH]; intros [| y m] E; try discriminate; auto. simpl. rewrite IH; auto. Qed.
 
-Lemma tables_are_right i b : Well_formed i -> (length (guides b) =? length (robots i))%nat = true ->
-  forallb (guide_accepted (tables_of i b) (resource_ids i)) (crew (tables_of i b)) = true ->
-  Right_tables i (tables_of i b).
+Lemma tables_are_right i group b : Well_formed i -> (forall a, In a group -> In a (robots i)) ->
+  NoDup (map robot_id group) -> (length (guides b) =? length group)%nat = true ->
+  forallb (guide_accepted (tables_of i group b) (resource_ids i)) (crew (tables_of i group b)) = true ->
+  Right_tables i (tables_of i group b).
 Proof.
-  intros right Length Guides. apply Nat.eqb_eq in Length.
-  assert (All : map fst (crew (tables_of i b)) = robots i) by (apply combined_with_as_many, Length).
+  intros right Known Distinct Length Guides. apply Nat.eqb_eq in Length.
+  assert (All : map fst (crew (tables_of i group b)) = group) by (apply combined_with_as_many, Length).
+  assert (N : NoDup (map (fun m : member => robot_id (fst m)) (crew (tables_of i group b)))).
+  { rewrite <- All, map_map in Distinct. exact Distinct. }
   constructor; auto.
   - intros a r. apply takes_what_is_needed, right.
   - intros r x H. apply find_in_index in H; auto. apply (resource_ids_are_unique i right).
   - intros r s. apply successors_are_moves, right.
   - intros r s. apply predecessors_are_moves, right.
-  - intros id m. apply (find_in_index (fun m : member => robot_id (fst m))).
-    pose proof (robot_ids_are_unique i right) as N. unfold robot_ids in N. rewrite <- All, map_map in N. exact N.
+  - intros m H. apply Known. rewrite <- All. apply in_map, H.
+  - intros id m. apply (find_in_index (fun m : member => robot_id (fst m))), N.
   - apply forallb_forall, Guides.
 Qed.
 
@@ -68,7 +72,10 @@ Definition presence (r t : Z) (m : member) : Z := Z.b2z (is_in i (fst m) (route 
 Definition ranged (key f : member -> Z) (first end_ : Z) : Z :=
   sum (fun m => if (first <=? key m) && (key m <? end_) then f m else 0) (crew w).
 Definition delays := ranged (fun m => rank (snd m)) delay.
-Definition presences (r t : Z) := ranged (fun m => robot_id (fst m)) (presence r t).
+Definition presences (r t : Z) := ranged (fun m => seat (snd m)) (presence r t).
+
+(** The robots of the group cost this together. *)
+Definition group_cost : Z := sum (fun m : member => cost_of_robot i s (robot_id (fst m))) (crew w).
 
 Definition is_true (m : meaning) : bool :=
   match m with
@@ -86,7 +93,7 @@ Definition Kept (c : list signed) : Prop := exists l, In l c /\ is_true (snd l) 
 (** * Members *)
 
 Lemma member_is_a_robot m : In m (crew w) -> In (fst m) (robots i).
-Proof. intros H. rewrite <- (crew_is_all i w tabled). apply in_map, H. Qed.
+Proof. apply (crew_is_known i w tabled). Qed.
 
 Lemma member_has_a_plan m : In m (crew w) -> exists p v rest, In p (plans s) /\ plan_robot p = robot_id (fst m) /\
   Way i (fst m) (visits p) /\ route (fst m) = counted i (fst m) (visits p) /\
@@ -425,21 +432,25 @@ Qed.
 
 Lemma kept_by_adding_robots c r t : adds (robots_if_false w r t) (true_if_robots r t) c = true -> Kept c.
 Proof.
-  apply (kept_by_adding _ _ (presences r t) c (fun m => robot_id (fst m)) (presence r t));
+  apply (kept_by_adding _ _ (presences r t) c (fun m => seat (snd m)) (presence r t));
     auto using presences_are_not_negative.
   - intros l from upto n E.
-    assert (One : unless_present w [l] (robot_of_meaning (snd l)) r t = true ->
-      Some (robot_of_meaning (snd l), robot_of_meaning (snd l) + 1, 1) = Some (from, upto, n) ->
-      is_true (snd l) = fst l \/ n <= presences r t from upto).
-    { intros H K. injection K as <- <- <-. destruct (presence_is_of_a_robot _ _ _ _ H) as (a & g & Found & K).
+    assert (One : match Map.find (robot_of_meaning (snd l)) (member_of w) with
+      | Some (_, g) =>
+          if unless_present w [l] (robot_of_meaning (snd l)) r t then Some (seat g, seat g + 1, 1) else None
+      | None => None
+      end = Some (from, upto, n) -> is_true (snd l) = fst l \/ n <= presences r t from upto).
+    { intros H. destruct (unless_present w [l] (robot_of_meaning (snd l)) r t) eqn:U;
+        [| destruct (Map.find _ _) as [[? ?] |]; discriminate].
+      destruct (presence_is_of_a_robot _ _ _ _ U) as (a & g & Found & K). rewrite Found in H. injection H as <- <- <-.
       destruct (is_in i a (route a) r t) eqn:In_it.
       - right. pose proof (found_member a g _ Found) as [M E'].
-        pose proof (one_is_in_its_range (fun m => robot_id (fst m)) (presence r t) (a, g)
+        pose proof (one_is_in_its_range (fun m => seat (snd m)) (presence r t) (a, g)
           (fun m _ => presences_are_not_negative r t m) M) as L.
-        cbn [fst] in L. rewrite E' in L. unfold presence at 1 in L. cbn [fst] in L. rewrite In_it in L. exact L.
+        unfold presence at 1 in L. cbn [fst snd] in L. rewrite In_it in L. exact L.
       - left. destruct (K eq_refl) as (l' & [<- | []] & T). exact T. }
     unfold robots_if_false in E. destruct l as [[|] []];
-      try (destruct (unless_present w _ _ _ _) eqn:U in E; [apply One; auto | discriminate]).
+      try (apply One, E).
     destruct ((place =? r) && (tick =? t)) eqn:Same; [| discriminate]. decided. subst. injection E as <- <- <-.
     cbn [is_true fst snd]. destruct (least <=? presences r t first end_) eqn:L; auto. decided. auto.
   - intros [[|] []] from upto n E L; try discriminate; simpl in E.
@@ -464,8 +475,7 @@ Proof.
     unfold presence at 1. destruct (_ && _), (is_in _ _ _ _ _); simpl length; simpl Z.b2z; lia. }
   rewrite <- (map_length (fun m => robot_id (fst m))) in L. etransitivity; [exact L |].
   apply (room_is_not_exceeded x r t); auto.
-  - pose proof (robot_ids_are_unique i right) as N. unfold robot_ids in N.
-    rewrite <- (crew_is_all i w tabled), map_map in N. unfold here. clear - N.
+  - pose proof (crew_is_distinct i w tabled) as N. unfold here. clear - N.
     induction (crew w) as [| m l IH]; simpl in *; auto. inversion N as [| ? ? Hn Hd]; subst.
     destruct (is_in _ _ _ _ _); simpl; auto. constructor; auto. intros H. apply Hn.
     apply in_map_iff in H as (x & E & H). apply filter_In in H as [H _]. apply in_map_iff. eauto.
@@ -524,21 +534,9 @@ Qed.
 
 (** ** The total *)
 
-Lemma costs_add_up : sum (fun m : member => cost_of_robot i s (robot_id (fst m))) (crew w) = total_cost i s.
+Lemma all_delays_are_below total first end_ : group_cost < total -> delays first end_ < delays_below w total.
 Proof.
-  assert (E : sum (fun m : member => cost_of_robot i s (robot_id (fst m))) (crew w) =
-    sum (fun a => cost_of_robot i s (robot_id a)) (robots i)).
-  { rewrite <- (crew_is_all i w tabled). induction (crew w) as [| m l IH]; simpl; auto. rewrite IH. reflexivity. }
-  rewrite E, total_is_the_sum. unfold cost_of_robot. rewrite sums_are_exchanged. apply sum_of_equal. intros p Hp.
-  rewrite (sum_of_equal _ (fun a => cost_of_plan i p * Z.b2z (robot_id a =? plan_robot p))).
-  - rewrite sum_of_multiples, one_of_different_ids; [lia | apply (robot_ids_are_unique i right) |].
-    apply (covers_robots i s lawful), in_or_app. left. apply in_map, Hp.
-  - intros a _. rewrite Z.eqb_sym. destruct (_ =? _); simpl; lia.
-Qed.
-
-Lemma all_delays_are_below total first end_ : total_cost i s < total -> delays first end_ < delays_below w total.
-Proof.
-  intros H. rewrite <- costs_add_up in H. unfold delays, ranged, delays_below.
+  intros H. unfold group_cost in H. unfold delays, ranged, delays_below.
   assert (L : forall l, (forall m, In m l -> In m (crew w)) ->
     sum (fun m : member => if (first <=? rank (snd m)) && (rank (snd m) <? end_) then delay m else 0) l +
     sum (fun m : member => shortest (snd m)) l <= sum (fun m : member => cost_of_robot i s (robot_id (fst m))) l).
@@ -550,7 +548,7 @@ Proof.
   specialize (L (crew w) (fun _ H => H)). lia.
 Qed.
 
-Lemma kept_by_costing_less total c : match total with Some k => total_cost i s < k | None => True end ->
+Lemma kept_by_costing_less total c : match total with Some k => group_cost < k | None => True end ->
   too_late w total c = true -> Kept c.
 Proof.
   unfold too_late. destruct total as [k |]; [| discriminate]. intros L H. apply orb_true_iff in H as [H | H].
@@ -571,7 +569,7 @@ Qed.
 (** * All clauses *)
 
 Theorem justified_clause_is_kept total c why :
-  match total with Some k => total_cost i s < k | None => True end -> justified w total c why = true -> Kept c.
+  match total with Some k => group_cost < k | None => True end -> justified w total c why = true -> Kept c.
 Proof.
   intros L H. destruct why; cbn [justified] in H.
   - apply some_robot in H as (a & g & Found & H). rewrite (takes_are_right i w tabled) in H. decided.
@@ -644,7 +642,7 @@ Proof.
 Qed.
 
 Lemma justified_clauses_are_satisfied total known f : forall why,
-  match total with Some k => total_cost i s < k | None => True end -> all_justified w total known f why = true ->
+  match total with Some k => group_cost < k | None => True end -> all_justified w total known f why = true ->
   forall c, In c f -> Satisfies (valuation known) c.
 Proof.
   induction f as [| c f IH]; simpl; intros why L H d Hd; [destruct Hd |].
@@ -655,15 +653,35 @@ Proof.
 Qed.
 End Solution.
 
-Lemma refuted_blueprint_has_no_solution i total b lines s : Well_formed i -> total_refuted i total b lines = true ->
+Lemma refuted_blueprint_has_no_solution i group total b lines s : Well_formed i ->
+  (forall a, In a group -> In a (robots i)) -> NoDup (map robot_id group) ->
+  blueprint_accepted i group total b && refutes (formula b) lines = true ->
   Lawful i s -> Plans_every_plannable_robot i s ->
-  ~ match total with Some k => total_cost i s < k | None => True end.
+  ~ match total with Some k => sum (fun a => cost_of_robot i s (robot_id a)) group < k | None => True end.
 Proof.
-  intros right H lawful complete L. unfold total_refuted, blueprint_accepted in H.
+  intros right Known Distinct H lawful complete L. unfold blueprint_accepted in H.
   apply andb_true_iff in H as [H R]. apply andb_true_iff in H as [H J]. apply andb_true_iff in H as [N G].
-  apply (accepted_refutation_means_unsatisfiable _ _ R (valuation i (tables_of i b) s (meanings b))).
-  apply (justified_clauses_are_satisfied i (tables_of i b) s right (tables_are_right i b right N G) lawful complete
-    total (meanings b) (formula b) (reasons b) L J).
+  assert (All : sum (fun a => cost_of_robot i s (robot_id a)) group = group_cost i (tables_of i group b) s).
+  { assert (Firsts : forall l : list member, sum (fun a => cost_of_robot i s (robot_id a)) (map fst l) =
+      sum (fun m => cost_of_robot i s (robot_id (fst m))) l).
+    { induction l as [| m l IH]; simpl; auto. rewrite IH. reflexivity. }
+    apply Nat.eqb_eq, combined_with_as_many in N. unfold group_cost. rewrite <- Firsts. cbn [tables_of crew].
+    rewrite N. reflexivity. }
+  rewrite All in L.
+  apply (accepted_refutation_means_unsatisfiable _ _ R (valuation i (tables_of i group b) s (meanings b))).
+  apply (justified_clauses_are_satisfied i (tables_of i group b) s right
+    (tables_are_right i group b right Known Distinct N G) lawful complete total (meanings b) _ (reasons b) L J).
+Qed.
+
+Lemma costs_add_up i s : Well_formed i -> Lawful i s ->
+  sum (fun a => cost_of_robot i s (robot_id a)) (robots i) = total_cost i s.
+Proof.
+  intros right lawful. rewrite total_is_the_sum. unfold cost_of_robot. rewrite sums_are_exchanged.
+  apply sum_of_equal. intros p Hp.
+  rewrite (sum_of_equal _ (fun a => cost_of_plan i p * Z.b2z (robot_id a =? plan_robot p))).
+  - rewrite sum_of_multiples, one_of_different_ids; [lia | apply (robot_ids_are_unique i right) |].
+    apply (covers_robots i s lawful), in_or_app. left. apply in_map, Hp.
+  - intros a _. rewrite Z.eqb_sym. destruct (_ =? _); simpl; lia.
 Qed.
 
 (** If the formula of an accepted blueprint of a total is refuted, no lawful solution that plans every robot with a way
@@ -671,8 +689,9 @@ Qed.
 Theorem refuted_total_is_impossible i total b lines s : Well_formed i -> total_refuted i (Some total) b lines = true ->
   Lawful i s -> Plans_every_plannable_robot i s -> total <= total_cost i s.
 Proof.
-  intros right H lawful complete. apply Z.le_ngt.
-  apply (refuted_blueprint_has_no_solution i (Some total) b lines s right H lawful complete).
+  intros right H lawful complete. apply Z.le_ngt. rewrite <- costs_add_up by auto.
+  apply (refuted_blueprint_has_no_solution i (robots i) (Some total) b lines s right); auto.
+  apply (robot_ids_are_unique i right).
 Qed.
 
 (** If the formula of an accepted blueprint without a total is refuted, no lawful solution plans every robot with a way
@@ -680,5 +699,59 @@ Qed.
 Theorem refuted_instance_has_no_solution i b lines s : Well_formed i -> total_refuted i None b lines = true ->
   Lawful i s -> ~ Plans_every_plannable_robot i s.
 Proof.
-  intros right H lawful complete. apply (refuted_blueprint_has_no_solution i None b lines s right H lawful complete I).
+  intros right H lawful complete.
+  apply (refuted_blueprint_has_no_solution i (robots i) None b lines s right); auto.
+  apply (robot_ids_are_unique i right).
+Qed.
+
+(** * Cuts *)
+
+Lemma group_is_known i ids a : Well_formed i -> In a (group_of i ids) -> In a (robots i).
+Proof.
+  intros right H. unfold group_of in H. apply in_flat_map in H as (id & Hid & H).
+  destruct (Map.find id (index robot_id (robots i))) as [b |] eqn:F; [| destruct H].
+  destruct H as [<- | []]. apply find_in_index in F as [F <-]; auto. apply (robot_ids_are_unique i right).
+Qed.
+
+Lemma group_has_the_ids i ids : Well_formed i -> length (group_of i ids) = length ids ->
+  map robot_id (group_of i ids) = ids.
+Proof.
+  intros right. unfold group_of.
+  assert (Short : forall l, (length (flat_map (fun id : Z => match Map.find id (index robot_id (robots i)) with
+    | Some a => [a] | None => [] end) l) <= length l)%nat).
+  { induction l as [| id l IH]; simpl; auto. rewrite app_length.
+    destruct (Map.find id (index robot_id (robots i))); simpl; lia. }
+  induction ids as [| id ids IH]; simpl; auto. intros L. rewrite app_length in L. specialize (Short ids).
+  destruct (Map.find id (index robot_id (robots i))) as [a |] eqn:F; cbn [app map length] in *; [| lia].
+  apply find_in_index in F as [_ E]; [| apply (robot_ids_are_unique i right)]. rewrite IH by lia. congruence.
+Qed.
+
+(** The robots of a refuted cut cost at least its least total together. *)
+Theorem refuted_cut_holds i k b lines s : Well_formed i -> cut_refuted i k b lines = true -> Lawful i s ->
+  Plans_every_plannable_robot i s -> Cut_holds i s k.
+Proof.
+  intros right H lawful complete. unfold cut_refuted in H. rewrite <- andb_assoc in H.
+  apply andb_true_iff in H as [H R]. apply andb_true_iff in H as [D L].
+  apply Ids.distinct_iff in D. apply Nat.eqb_eq in L. apply (group_has_the_ids i _ right) in L.
+  unfold Cut_holds. apply Z.le_ngt. rewrite <- L.
+  assert (E : forall l, sum (cost_of_robot i s) (map robot_id l) = sum (fun a => cost_of_robot i s (robot_id a)) l).
+  { induction l as [| a l IH]; simpl; auto. rewrite IH. reflexivity. }
+  rewrite E. apply (refuted_blueprint_has_no_solution i _ (Some (least_total k)) b lines s right); auto.
+  - intros a Ha. apply (group_is_known i (members k)); auto.
+  - rewrite L. exact D.
+Qed.
+
+(** No lawful solution that plans every robot with a way to its goal costs less than an accepted bound whose cuts are
+    refuted, if its groups with deadlines hold. *)
+Theorem bound_with_refuted_cuts_is_below_every_solution i s c all proofs : Well_formed i ->
+  bound_accepted i c all = true -> cuts_refuted i (cuts c) proofs = true ->
+  Lawful i s -> Plans_every_plannable_robot i s -> (forall g, In g (groups c) -> Group_holds s g) ->
+  bound c <= total_cost i s.
+Proof.
+  intros right H R lawful complete groups_hold. apply (accepted_bound_is_below_every_solution i s c all); auto.
+  revert proofs R. induction (cuts c) as [| k ks IH]; intros proofs R j Hj; [destruct Hj |].
+  destruct proofs as [| [b lines] proofs]; [discriminate |]. simpl in R.
+  destruct (cut_refuted i k b lines) eqn:K; [| discriminate].
+  destruct Hj as [<- | Hj]; [| apply (IH proofs R j Hj)].
+  apply (refuted_cut_holds i k b lines s right K lawful complete).
 Qed.

@@ -1,9 +1,10 @@
-(* Builds the formula of plans that cost less than a total, clause for clause as carp_verify.encoding does, with the
-   meaning of each variable and the reason of each clause. Nothing here is trusted: the kernel checks every reason. *)
+(* Builds the formula of plans of some robots that cost less than a total, clause for clause as carp_verify.encoding
+   does, with the meaning of each variable and the reason of each clause. Nothing here is trusted: the kernel checks
+   every reason. *)
 
 open Formula
 
-(* The horizon of each robot and the order in which delays are added up; the robots' positions are their ids. *)
+(* The horizon of each robot, and the order of the robots' positions in which delays are added up. *)
 type evidence = { horizons : int list; order : int list }
 
 exception Too_large
@@ -205,10 +206,13 @@ let at_least draft reason meaning addends most =
 
 (* ---- All robots ---- *)
 
+(* Robots by their positions, which are their seats. *)
 type encoding = { draft : draft; clerks : clerk array; presences : (int * Z.t * Z.t, int) Hashtbl.t }
 
+let id_of { clerks; _ } position = clerks.(position).robot.robot_id
+
 (* A literal that holds if the robot is in the resource at the tick, if it can be there. *)
-let presence { draft; clerks; presences } position place tick =
+let presence ({ draft; clerks; presences } as encoding) position place tick =
   match stays clerks.(position) place tick with
   | [] -> None
   | [ [ literal ] ] -> Some literal
@@ -217,9 +221,10 @@ let presence { draft; clerks; presences } position place tick =
       match Hashtbl.find_opt presences key with
       | Some literal -> Some literal
       | None ->
-          let literal = variable draft (Present (Z.of_int position, place, tick)) in
+          let id = id_of encoding position in
+          let literal = variable draft (Present (id, place, tick)) in
           Hashtbl.add presences key literal;
-          let imply stay = add draft (Is_there (Z.of_int position, place, tick)) (List.map ( ~- ) stay @ [ literal ]) in
+          let imply stay = add draft (Is_there (id, place, tick)) (List.map ( ~- ) stay @ [ literal ]) in
           List.iter imply alternatives;
           Some literal)
 
@@ -237,7 +242,7 @@ let forbid_crowd ({ draft; _ } as encoding) capacity (place, tick) =
       | [] -> ()
       | (position, literal) :: rest ->
           let pair (other, known) =
-            add draft (Are_two (Z.of_int other, Z.of_int position, place, tick)) [ -known; -literal ]
+            add draft (Are_two (id_of encoding other, id_of encoding position, place, tick)) [ -known; -literal ]
           in
           List.iter pair (List.rev before);
           pairs ((position, literal) :: before) rest
@@ -262,7 +267,7 @@ let forbid_exchange ({ draft; clerks; _ } as encoding) source target tick =
   let clash (one, first) (other, second) =
     if one <> other then
       add draft
-        (Exchange (Z.of_int one, Z.of_int other, source, target, tick))
+        (Exchange (id_of encoding one, id_of encoding other, source, target, tick))
         (List.map ( ~- ) (first @ second))
   in
   List.iter (fun mover -> List.iter (clash mover) back) there
@@ -333,7 +338,7 @@ let first_ticks (a : Law.robot) takes onwards is_open =
   in
   settle Collections.Map.empty (Search.Queue.singleton (Z.add a.release (takes a.start), a.start))
 
-let clerk_of (instance : Law.instance) table (onward, backward) ranks (a : Law.robot) =
+let clerk_of (instance : Law.instance) table (onward, backward) ranks position (a : Law.robot) =
   let takes = Tables.takes_in table a and parks = instance.after_goal = Law.Park in
   let onwards place = List.sort Z.compare (Search.resources_to onward place) in
   let backwards place = List.sort Z.compare (Search.resources_to backward place) in
@@ -344,7 +349,7 @@ let clerk_of (instance : Law.instance) table (onward, backward) ranks (a : Law.r
     else match Hashtbl.find_opt rests a.start with Some rest -> Z.add (takes a.start) rest | None -> raise (No_way a)
   in
   let guide =
-    { rank = Option.value ~default:Z.zero (Hashtbl.find_opt ranks a.robot_id); shortest;
+    { rank = Z.of_int (Option.value ~default:0 (Hashtbl.find_opt ranks position)); seat = Z.of_int position; shortest;
       rests = Hashtbl.fold Collections.Map.add rests Collections.Map.empty;
       firsts = first_ticks a takes onwards is_open;
       leads = Search.way_on takes onward rests a.goal a.start }
@@ -353,13 +358,13 @@ let clerk_of (instance : Law.instance) table (onward, backward) ranks (a : Law.r
     ticks = Hashtbl.create 64; late = Hashtbl.create 64; horizon = -1; unfinished = [] }
 
 (* The blueprint and the number of its variables. Raises [No_way] where no way leads to a goal, and [Too_large]. *)
-let blueprint (instance : Law.instance) total { horizons; order } =
+let blueprint (instance : Law.instance) group total { horizons; order } =
   let draft =
     { clauses = []; reasons = []; count = 0; meanings = Refutation.Numbered.empty; variables = 0 }
   in
   let table = Tables.resource_table instance and moves = Search.moves_of instance and ranks = Hashtbl.create 64 in
-  List.iteri (fun rank position -> Hashtbl.replace ranks (Z.of_int position) (Z.of_int rank)) order;
-  let clerks = Array.of_list (List.map (clerk_of instance table moves ranks) instance.robots) in
+  List.iteri (fun rank position -> Hashtbl.replace ranks position rank) order;
+  let clerks = Array.of_list (List.mapi (clerk_of instance table moves ranks) group) in
   let grow_to clerk horizon = while clerk.horizon < horizon do grow draft clerk done in
   List.iteri (fun position horizon -> grow_to clerks.(position) horizon) horizons;
   let encoding = { draft; clerks; presences = Hashtbl.create 1024 } in

@@ -6,7 +6,7 @@ let version = "1"
 
 let usage =
   "usage: carproof-kernel check INSTANCE SOLUTION\n\
-  \       carproof-kernel verify-bound INSTANCE CERTIFICATE [--cut-formula|--deadline-formula NUMBER FILE]...\n\
+  \       carproof-kernel verify-bound INSTANCE CERTIFICATE [--deadline-formula NUMBER FILE]...\n\
   \       carproof-kernel verify-query INSTANCE SOLUTION CERTIFICATE\n\
   \       carproof-kernel audit INSTANCE SOLUTION CERTIFICATES\n\
   \       carproof-kernel verify-proof DIRECTORY\n\
@@ -60,12 +60,10 @@ let print_formula ((blueprint : Formula.blueprint), variables) =
   let print_clause literals = print_string (String.concat " " (List.map Z.to_string literals @ [ "0\n" ])) in
   List.iter print_clause blueprint.formula
 
-(* The formulas of cuts and deadlines, by their numbers. *)
-let rec formulas_of = function
-  | (("--cut-formula" | "--deadline-formula") as option) :: number :: file :: rest
-    when int_of_string_opt number <> None ->
-      let kind = if option = "--cut-formula" then "cut" else "deadline" in
-      ((kind, int_of_string number), Reading.formula_of_text (contents file)) :: formulas_of rest
+(* The formulas of deadlines, by their numbers. *)
+let rec deadline_formulas = function
+  | "--deadline-formula" :: number :: file :: rest when int_of_string_opt number <> None ->
+      (int_of_string number, Reading.formula_of_text (contents file)) :: deadline_formulas rest
   | [] -> []
   | _ -> prerr_string usage; exit 2
 
@@ -120,7 +118,7 @@ let () =
           Verdicts.audit instance solution (Reading.elements query "$" (json_of_file certificates))))
   | "verify-bound" :: instance :: certificate :: options ->
       print (answered (fun () ->
-          let formulas = formulas_of options in
+          let formulas = deadline_formulas options in
           let instance = instance_of_file instance in
           Verdicts.verify_bound formulas instance (Reading.bound_of_json instance "$" (json_of_file certificate))))
   | [ "verify-proof"; directory ] ->
@@ -132,7 +130,7 @@ let () =
       let made = ref None in
       let ask () =
         let instance, claim = claim_of_directory directory in
-        match Verdicts.blueprint instance claim with
+        match Verdicts.blueprint_of_claim instance claim with
         | Error verdict -> verdict
         | Ok formula -> made := Some formula; Verdicts.Accepted []
       in

@@ -311,11 +311,12 @@ let solution_of_json { resource_numbers; robot_numbers; _ } path json =
 
 (* ---- Bounds ---- *)
 
-(* The refutations of cuts and those of deadlines, in the document's order. *)
+(* The proofs of cuts, which are horizons and an order that need not fit the cut and a refutation, and the refutations of
+   deadlines, in the document's order. *)
 type bound = {
   certificate : Bound.certificate;
   named_instance : string;
-  of_cuts : string list;
+  of_cuts : (Z.t list * Z.t list * string) list;
   of_deadlines : string list;
 }
 
@@ -340,12 +341,11 @@ let bound_of_json { resource_numbers; robot_numbers; _ } path json =
   let cut path json =
     let names = [ "robots"; "least"; "multiplier"; "horizons"; "order"; "refutation" ] in
     let field = fields path ~required:names ~optional:[] json in
-    ignore (required field "horizons" (elements whole));
-    ignore (required field "order" (elements whole));
     ( { Bound.members = required field "robots" (elements robot);
         least_total = required field "least" whole;
         multiplier = required field "multiplier" whole },
-      required field "refutation" text )
+      (required field "horizons" (elements whole), required field "order" (elements whole),
+        required field "refutation" text) )
   in
   let group path json =
     let field = fields path ~required:[ "robots"; "ticks"; "price"; "refutation" ] ~optional:[] json in

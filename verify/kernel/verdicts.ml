@@ -107,35 +107,63 @@ let refute formula proof =
 
 (* ---- verify-proof ---- *)
 
-(* The formula that the claim is about, with the number of its variables, or why none is made. *)
-let blueprint (read : Reading.instance) { Reading.cost; evidence } =
-  match Encoder.blueprint read.instance cost evidence with
+(* The formula of plans of the robots below the total, with the number of its variables, or why none is made. *)
+let blueprint (read : Reading.instance) group total evidence =
+  match Encoder.blueprint read.instance group total evidence with
   | made -> Ok made
   | exception Encoder.No_way a ->
       Error (Refused ("proof/way", "no way leads to the goal of robot " ^ named read a.robot_id))
   | exception Encoder.Too_large ->
       Error (Undecided (Printf.sprintf "the formula would have more than %d clauses, the limit" Encoder.most_clauses))
 
+let blueprint_of_claim (read : Reading.instance) { Reading.cost; evidence } =
+  blueprint read read.instance.robots cost evidence
+
 let verify_proof (read : Reading.instance) (claim : Reading.claim) proof =
-  match blueprint read claim with
+  match blueprint_of_claim read claim with
   | Error verdict -> verdict
   | Ok (blueprint, _) ->
       if Formula.total_refuted read.instance claim.cost blueprint proof then
         Accepted [ ("bound", Option.fold ~none:`Null ~some:whole claim.cost) ]
-      else if Formula.blueprint_accepted read.instance claim.cost blueprint then refute blueprint.formula proof
+      else if Formula.blueprint_accepted read.instance read.instance.robots claim.cost blueprint then
+        refute blueprint.formula proof
       else Undecided "the kernel has made a clause for which it has no reason"
 
 (* ---- verify-bound ---- *)
 
-(* A cut is decided by a formula of the caller's, which must say that its robots cost less, and deadlines by one that must
-   say that all are kept: the kernel checks the refutation of it. Without a formula, or with a refutation that does not
-   hold, the bound is undecided. *)
-let why_undecided formulas kind number refutation =
-  match List.assoc_opt (kind, number) formulas with
-  | None -> Some (Printf.sprintf "%s %d needs its formula: --%s-formula %d FILE" kind number kind number)
+(* Deadlines are decided by a formula of the caller's, which must say that all are kept: the kernel checks the refutation of
+   it. Without a formula, or with a refutation that does not hold, the bound is undecided. *)
+let why_undecided formulas number refutation =
+  match List.assoc_opt number formulas with
+  | None -> Some (Printf.sprintf "deadline %d needs its formula: --deadline-formula %d FILE" number number)
   | Some formula ->
       if Refutation.refutes formula (Reading.proof_of_text refutation) then None
-      else Some (Printf.sprintf "the refutation of %s %d does not hold" kind number)
+      else Some (Printf.sprintf "the refutation of deadline %d does not hold" number)
+
+(* The formula of a cut and its refutation, or why the cut is not accepted. *)
+let proof_of_cut (read : Reading.instance) number (k : Bound.cut) (horizons, order, refutation) =
+  let refused why = Error (Refused ("bound/cut", Printf.sprintf "the proof of cut %d does not hold: %s" number why)) in
+  let group = Formula.group_of read.instance k.members in
+  let is_natural n = Z.sign n >= 0 && Z.fits_int n in
+  if List.length group <> List.length k.members || List.length horizons <> List.length group
+     || not (List.for_all is_natural horizons)
+     || List.sort Z.compare order <> List.init (List.length group) Z.of_int then
+    refused "it must have a horizon of each of its robots, and an order of them"
+  else
+    let evidence = { Encoder.horizons = List.map Z.to_int horizons; order = List.map Z.to_int order } in
+    match (blueprint read group (Some k.least_total) evidence, Reading.proof_of_text refutation) with
+    | Error (Refused (_, why)), _ -> refused why
+    | Error verdict, _ -> Error verdict
+    | Ok (blueprint, _), lines when Formula.cut_refuted read.instance k blueprint lines -> Ok (blueprint, lines)
+    | Ok _, _ -> refused "the refutation does not derive the empty clause by its hints"
+    | exception Reading.Refused { message; _ } -> refused message
+
+let rec proofs_of_cuts read number cuts proofs =
+  match (cuts, proofs) with
+  | k :: cuts, proof :: proofs ->
+      Result.bind (proof_of_cut read number k proof) (fun first ->
+          Result.map (fun rest -> first :: rest) (proofs_of_cuts read (number + 1) cuts proofs))
+  | _ -> Ok []
 
 let verify_bound formulas (read : Reading.instance) (bound : Reading.bound) =
   let { Reading.certificate; of_cuts; of_deadlines; _ } = bound in
@@ -154,16 +182,14 @@ let verify_bound formulas (read : Reading.instance) (bound : Reading.bound) =
   | Some (Bound.Robots []) -> Refused ("bound/robots", "each robot must be named once, in the instance's order")
   | Some Bound.Total -> Refused ("bound/total", "the bound must be the sum of all parts, rounded up")
   | None -> (
-      let whys kind = List.mapi (why_undecided formulas kind) in
-      match List.find_map Fun.id (whys "cut" of_cuts @ whys "deadline" of_deadlines) with
-      | Some why -> Undecided why
-      | None ->
-          let cut number (k : Bound.cut) : Yojson.Safe.t =
-            `String (Printf.sprintf "the formula given says that the robots of cut %d cost less than %s together" number
-                (Z.to_string k.least_total))
-          in
-          let group number _ : Yojson.Safe.t =
-            `String (Printf.sprintf "the formula given says that the robots of deadline %d keep all of theirs" number)
-          in
-          let assumed = List.mapi cut certificate.cuts @ List.mapi group certificate.groups in
-          Accepted [ ("bound", whole certificate.bound); ("assumed", `List assumed) ])
+      match proofs_of_cuts read 0 certificate.cuts of_cuts with
+      | Error verdict -> verdict
+      | Ok proofs when Formula.cuts_refuted read.instance certificate.cuts proofs -> (
+          match List.find_map Fun.id (List.mapi (why_undecided formulas) of_deadlines) with
+          | Some why -> Undecided why
+          | None ->
+              let group number _ : Yojson.Safe.t =
+                `String (Printf.sprintf "the formula given says that the robots of deadline %d keep all of theirs" number)
+              in
+              Accepted [ ("bound", whole certificate.bound); ("assumed", `List (List.mapi group certificate.groups)) ])
+      | Ok _ -> Undecided "the kernel has lost the proof of a cut")
