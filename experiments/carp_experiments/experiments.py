@@ -144,7 +144,7 @@ EXPERIMENTS = (
     Experiment(
         "execution",
         "Late robots on the clock, in order and switching: lateness, arrivals and collisions.",
-        Profile(6, 40, (10, 15, FULL_MAP, WAREHOUSE)),
+        Profile(4, 40, (10, 15, FULL_MAP, WAREHOUSE)),
         Profile(2, 10, (10, 20)),
         execution_row,
         lambda rows, _: execution_report(rows),
