@@ -34,7 +34,17 @@ from carp_spec import Instance, Neighbourhood, Planner, Solution
 from carproof.questions import question
 
 FOLDER = ROOT / "optimized" / "carp_optimized"
-MODULES = ("replanning", "order_search", "answers", "neighbourhood", "orders", "distances", "passes", "windows")
+MODULES = (
+    "replanning",
+    "order_search",
+    "answers",
+    "neighbourhood",
+    "orders",
+    "distances",
+    "passes",
+    "windows",
+    "guides",
+)
 QUESTIONS = 150
 FLEETS = 300  # of each kind
 CONVOYS = 10
