@@ -81,7 +81,7 @@ bench: install
 gap: install
 	$(BIN)/carproof gap --size 3..8 --map 0 --map 5 --map 10 --map 20 --limit 1
 
-# Measure how long the search for an optimum takes, and put the table into docs/results/gaps.md; takes up to five minutes.
+# Measure how long the search for an optimum takes, and put the table into docs/results/gaps.md; takes up to half an hour.
 optimum-figures: install
 	$(BIN)/python -m carproof.optimum_table
 

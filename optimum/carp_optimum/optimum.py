@@ -6,6 +6,9 @@ horizon, and the next assumption is that no other one of the core is given up. O
 model's plans have a total of just the lower bound; the conflicts among them are forbidden and the search
 continues, until none is left. Source: the OLL algorithm of Andres, Kaufmann, Matheis and Schaub 2012, over delays.
 
+After many conflicts a lower bound with prices takes over (`carp_optimum.bound`). From there up, total by total, the
+formula of all plans of at most this total (`carp_optimum.priced_formula`) either has no model or holds the optimum.
+
 Where no plan set exists, the search finds one of these obstacles (`carp_verify.unsolvable` says why each is one):
 
 - `no-way`: a robot has no way to its goal;
@@ -22,6 +25,8 @@ from dataclasses import dataclass
 from time import monotonic_ns
 
 from carp_optimum.heuristics import plans_of_all
+from carp_optimum.priced_formula import priced_formula
+from carp_optimum.reduced_costs import PricedBound
 from carp_optimum.solver import Deadline, Solver, TimeOver
 from carp_spec import Instance, Plan, Refusal, Solution, total_cost
 from carp_verify.bound_rules import require_kept
@@ -32,6 +37,9 @@ from carp_verify.limits import require_following
 from carp_verify.unsolvable import Clauses, FullGoal, NoWay, Obstacle, States, is_searched
 
 CONFLICTS_TO_SHRINK = 900
+CONFLICTS_BEFORE_PRICES = 20_000
+PRICE_STEPS = 1000
+LARGEST_GAP = 12  # ticks
 DELAY_OF_DOUBT = 20
 PARTS = 5
 PARTS_BEFORE_HEURISTICS = (1, 3)
@@ -56,8 +64,10 @@ class Optimum:
     obstacle: Obstacle | None = None
 
 
-def optimum(instance: Instance, limit: float, clock: Callable[[], int] = monotonic_ns) -> Optimum:
+def optimum(instance: Instance, limit: float, clock: Callable[[], int] = monotonic_ns, priced: bool = True) -> Optimum:
     """Search for the optimum for at most `limit` seconds. Raises `Refusal` if the formula outgrows the memory.
+
+    A long search continues with prices if `priced`, where the compiled search for them is at hand.
 
     The result does not depend on the clock, which gives nanoseconds: the same instance gives the same solution.
     """
@@ -67,7 +77,7 @@ def optimum(instance: Instance, limit: float, clock: Callable[[], int] = monoton
         encoding = Encoding(instance, deadline.check)
     except TimeOver:
         return Optimum(None, None, 0, decided=False, solution=None, evidence=Evidence((), ()))
-    search = _Search(encoding, deadline)
+    search = _Search(encoding, deadline, priced)
     try:
         return search.run()
     finally:
@@ -75,12 +85,15 @@ def optimum(instance: Instance, limit: float, clock: Callable[[], int] = monoton
 
 
 class _Search:
-    def __init__(self, encoding: Encoding, deadline: Deadline) -> None:
+    def __init__(self, encoding: Encoding, deadline: Deadline, priced: bool) -> None:
         self.instance = encoding.instance
+        self.priced = priced
         self.deadline = deadline
         self.encoding = encoding
         self.solver = Solver(encoding.formula, self.look)
         self.delay = 0
+        self.horizon = 0
+        self.proved = 0
         self.best: Sequence[Plan] | None = None
         self.tries_of_heuristics = 0
         self.order: dict[int, None] = {}
@@ -126,8 +139,50 @@ class _Search:
                 if not core:
                     return self.unsolvable(Clauses(self.evidence.horizons))
                 self.relax(core)
+                if self.priced and self.solver.conflicts > CONFLICTS_BEFORE_PRICES:
+                    self.priced = False
+                    found = self.search_with_prices()
+                    if found is not None:
+                        return self.optimal(found)
                 if self.delay == DELAY_OF_DOUBT and self.has_no_end():
                     return self.unsolvable(States())
+
+    def search_with_prices(self) -> Sequence[Plan] | None:
+        """The plans of an optimum, searched for from the bound up; `None` if it is too far from that for prices."""
+        try:
+            bound = self.priced_bound()
+            while bound is not None and bound.gap(self.lower) <= LARGEST_GAP * bound.scale:
+                plans = self.plans_in(priced_formula(self.instance, bound, self.lower, self.look))
+                if plans is not None:
+                    self.horizon = self.lower - self.encoding.shortest
+                    return plans
+                self.proved = self.lower + 1
+        except Refusal:
+            pass
+        return None
+
+    def priced_bound(self) -> PricedBound | None:
+        """A lower bound with prices, if the search for them is compiled and takes the instance's numbers."""
+        from carp_optimized.compiling import is_cached  # noqa: PLC0415 - slow to load
+        from carp_optimum.bound import lower_bound  # noqa: PLC0415
+        from carp_optimum.priced_ways import find_ways  # noqa: PLC0415
+
+        if not is_cached(find_ways):
+            return None
+        certificate = lower_bound(self.instance, steps=PRICE_STEPS, on_step=lambda _: self.look())
+        self.proved = certificate.bound
+        self.look()
+        return PricedBound(self.instance, certificate)
+
+    def plans_in(self, encoding: Encoding) -> Sequence[Plan] | None:
+        """The plans in a model of the encoding, if there is one."""
+        solver = Solver(encoding.formula, self.look)
+        try:
+            if not solver.satisfiable([]):
+                return None
+            return [plan for plan in encoding.plans(solver.model()) if plan is not None]
+        finally:
+            solver.close()
 
     def has_no_end(self) -> bool:
         """Whether the states of all robots together are few, and none is the end of a plan set."""
@@ -189,17 +244,20 @@ class _Search:
     @property
     def evidence(self) -> Evidence:
         rest = [position for position in range(len(self.encoding.robots)) if position not in self.order]
-        return Evidence(tuple(robot.horizon for robot in self.encoding.robots), (*self.order, *rest))
+        horizons = tuple(max(robot.horizon, self.horizon) for robot in self.encoding.robots)
+        return Evidence(horizons, (*self.order, *rest))
 
     @property
     def lower(self) -> int:
-        return self.encoding.shortest + self.delay
+        return max(self.encoding.shortest + self.delay, self.proved)
 
     def optimal(self, plans: Sequence[Plan]) -> Optimum:
+        cost = total_cost(self.instance, plans)
+        require_kept(self.lower, cost)
         return Optimum(
             self.encoding.shortest,
-            self.lower,
-            self.lower,
+            cost,
+            cost,
             decided=True,
             solution=_solution(plans),
             evidence=self.evidence,

@@ -66,6 +66,11 @@ class Solver:
             spent += CONFLICTS_BETWEEN_LOOKS
         return answer
 
+    @property
+    def conflicts(self) -> int:
+        """The conflicts of all searches so far."""
+        return int(self._solver.accum_stats()["conflicts"])
+
     def model(self) -> list[bool]:
         """The truth of each variable, from index 1, in the model found last."""
         model = [False] * (self.formula.variables + 1)

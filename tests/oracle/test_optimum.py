@@ -184,7 +184,7 @@ def test_means_of_a_family_leave_out_what_is_not_known() -> None:
 def test_a_row_of_the_optimum_table_counts_what_is_undecided_as_over_the_limit() -> None:
     family = optimum_table.Family(3, 20, 2, "park", Range(1, 3))
     head = ("3 x 3, full grid, durations 1..3", "2", "park")
-    assert optimum_table.row(family, [2, inf, 0.25]) == (*head, "2/3", "2.00", "over 30")
+    assert optimum_table.row(family, [2, inf, 0.25]) == (*head, "2/3", "2.00", "over 60")
     assert optimum_table.row(family, [2, 0.25]) == (*head, "2/2", "1.12", "2.00")
 
 

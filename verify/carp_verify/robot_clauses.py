@@ -13,7 +13,7 @@ relaxation), and every model with a delay within the horizon holds a plan of at 
 
 from bisect import bisect_right, insort
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from heapq import heappop, heappush
 from itertools import count
 from typing import TypeAlias
@@ -73,6 +73,7 @@ class RobotClauses:
         self._rest = least_rests(instance, robot, before)
         self._ticks: dict[ResourceId, list[int]] = defaultdict(list)
         self._open: list[Node] = []
+        self._kept: Container[Node] | None = None
         self._start: Node = (robot.start, robot.release + self._duration[robot.start])
         self.shortest: int | None = None
         if robot.start == robot.goal:
@@ -109,7 +110,12 @@ class RobotClauses:
             for target in self._successors[resource]
             if target in self._rest and (self._parks or target != self.robot.goal)
         ]
-        return [(resource, tick + 1), *moves]
+        following = [(resource, tick + 1), *moves]
+        return following if self._kept is None else [each for each in following if each in self._kept]
+
+    def keep_only(self, nodes: Container[Node]) -> None:
+        """Describe no plans through other nodes; before the first growth."""
+        self._kept = nodes
 
     def nodes_within(self, horizon: int) -> int:
         """How many nodes the robot has at a horizon."""

@@ -1,0 +1,92 @@
+"""The formula of all plans whose total is at most K, made small by a lower bound (`carp_optimum.reduced_costs`).
+
+It has only nodes whose reduced cost is within the gap, and all conflicts. The costs that share the gap are counted in
+`LEVELS` parts of it, rounded down: the reduced cost of each robot, the price of each resource that nobody is in.
+"""
+
+from collections.abc import Callable
+from itertools import pairwise
+
+from carp_optimum.reduced_costs import PricedBound, Reduced
+from carp_spec import Instance
+from carp_verify.clauses import Formula, Literal
+from carp_verify.encoding import Encoding
+from carp_verify.robot_clauses import RobotClauses
+
+LEVELS = 24
+MOST_CLAUSES = 4_000_000
+
+
+def priced_formula(instance: Instance, bound: PricedBound, cost: int, look: Callable[[], None]) -> Encoding:
+    """The encoding of all plans of at most this total; `look` is called now and then, and may end it by an exception.
+
+    Raises `Refusal` beyond `MOST_CLAUSES`.
+    """
+    encoding = Encoding(instance, look, MOST_CLAUSES)
+    shortest = {robot.robot.id: robot.shortest or 0 for robot in encoding.robots}
+    described: list[tuple[RobotClauses, Reduced]] = []
+    for robot in encoding.robots:
+        look()
+        horizon = 0
+        if instance.after_goal == "park" or robot.robot.start != robot.robot.goal:
+            reduced = bound.reduced(robot, shortest, cost)
+            described.append((robot, reduced))
+            robot.keep_only(reduced.nodes)
+            horizon = max(reduced.delays, default=0)
+        while robot.horizon < horizon:
+            robot.grow()
+    encoding.close()
+    for conflict in list(encoding.conflicts()):
+        look()
+        encoding.forbid(conflict)
+    encoding.bound_delays(cost + 1 - encoding.shortest, range(len(encoding.robots)))
+    unit = max(1, bound.gap(cost))
+    numbers = [_reduced_cost(encoding.formula, robot, reduced, unit) for robot, reduced in described]
+    numbers += _prices_of_empty_places(encoding, bound, unit)
+    total = encoding.formula.at_least(numbers, LEVELS + 1)
+    if len(total) > LEVELS:
+        encoding.formula.add(-total[LEVELS])
+    return encoding
+
+
+def _level(parts: int, unit: int) -> int:
+    return min(parts * LEVELS // unit, LEVELS + 1)
+
+
+def _number(formula: Formula, most: int) -> list[Literal]:
+    """A new unary number."""
+    number = [formula.variable() for _ in range(most)]
+    for smaller, larger in pairwise(number):
+        formula.add(-larger, smaller)
+    return number
+
+
+def _reduced_cost(formula: Formula, robot: RobotClauses, reduced: Reduced, unit: int) -> list[Literal]:
+    """A number that is at least the level of each node that the robot passes, and of its delay."""
+    nodes = {node: _level(reduced.nodes.get(node, 0), unit) for node in robot.node}
+    delays = {delay: _level(cost, unit) for delay, cost in reduced.delays.items()}
+    number = _number(formula, max([*nodes.values(), *delays.values()], default=0))
+    for node, level in nodes.items():
+        if level > 0:
+            formula.add(-robot.node[node], number[level - 1])
+    for delay in range(robot.horizon + 1):
+        exactly = [*([-robot.late[delay - 1]] if delay > 0 else []), robot.late[delay]]
+        if delay not in delays:
+            formula.add(*exactly)
+        elif delays[delay] > 0:
+            formula.add(*exactly, number[delays[delay] - 1])
+    return number
+
+
+def _prices_of_empty_places(encoding: Encoding, bound: PricedBound, unit: int) -> list[list[Literal]]:
+    """For each price of a resource at a tick, a number that is at least its level if nobody is there."""
+    numbers = []
+    for resource, tick, price in bound.certificate.resources:
+        level = _level(price, unit)
+        if level > 0:
+            number = _number(encoding.formula, level)
+            robots = range(len(encoding.robots))
+            present = [encoding.presence(position, resource, tick) for position in robots]
+            encoding.formula.add(*(literal for literal in present if literal is not None), number[-1])
+            numbers.append(number)
+    return numbers

@@ -1,0 +1,191 @@
+"""Formulas made small by a lower bound hold an optimum, and nothing cheaper."""
+
+from itertools import combinations
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from msgspec.structs import replace
+from tests.profiles import draws
+from tests.spec.making import grid
+from tests.verify.tiny import TINY
+
+from carp_optimum.bound import lower_bound
+from carp_optimum.cut_search import prove
+from carp_optimum.optimum import optimum
+from carp_optimum.priced_formula import priced_formula
+from carp_optimum.proving import write_proof
+from carp_optimum.reduced_costs import PricedBound
+from carp_optimum.solver import Deadline, Solver
+from carp_spec import AfterGoal, Instance, Robot, RobotId, judge
+from carp_verify.bounds import BOUND_FORMAT, BoundDocument, CutDocument, digest
+from carp_verify.encoding import Encoding
+from carp_verify.joint_search import least_total_cost
+from carp_verify.proof import solution_of, verify_proof
+from carp_verify.verify_bound import Budget, RobotSearch, Tariff, predecessors, verify_bound
+from carproof.generate import Fleet, Grid, grid_instance
+from carproof.strategies import instances
+
+SECONDS = 60
+SCALE = 64
+
+
+def cheapest(instance: Instance, bound: PricedBound, cost: int) -> int | None:
+    """The total of the plans in a model of the formula, which must be lawful; `None` if it has no model."""
+    encoding = priced_formula(instance, bound, cost, lambda: None)
+    solver = Solver(encoding.formula, Deadline(SECONDS).check)
+    try:
+        if not solver.satisfiable([]):
+            return None
+        plans = [plan for plan in encoding.plans(solver.model()) if plan is not None]
+    finally:
+        solver.close()
+    verdict = judge(instance, solution_of(plans))
+    assert (verdict.violations, verdict.unplanned) == ((), 0)
+    return verdict.cost
+
+
+@settings(max_examples=draws(300))
+@given(instances(TINY, least_robots=1), st.sampled_from([0, 5, 60]))
+def test_the_formula_holds_plans_from_the_optimum_on(instance: Instance, steps: int) -> None:
+    least = least_total_cost(instance)
+    if least is not None:
+        bound = PricedBound(instance, lower_bound(instance, steps=steps))
+        assert cheapest(instance, bound, least) == least
+        assert cheapest(instance, bound, least - 1) is None
+        later = cheapest(instance, bound, least + 2)
+        assert later is not None
+        assert least <= later <= least + 2
+
+
+def town(seed: int, after_goal: AfterGoal) -> Instance:
+    """Nine robots that are in each other's way."""
+    return grid_instance(Grid(5, 5, 10, map_seed=seed), Fleet(9, seed, after_goal))
+
+
+def first_cut(instance: Instance, multiplier: int) -> tuple[CutDocument, ...]:
+    """A cut of the first two robots that cost more together, if there are such."""
+    for pair in combinations(range(len(instance.robots)), 2):
+        cut = prove(instance, pair, lambda: None)
+        if cut is not None:
+            return (replace(cut.document, multiplier=multiplier),)
+    return ()
+
+
+def completed(instance: Instance, certificate: BoundDocument) -> BoundDocument:
+    """The certificate with the least costs and the bound that its prices prove."""
+    tariff, before, budget = Tariff(instance, certificate), predecessors(instance), Budget()
+    weight = dict.fromkeys(instance.robot, certificate.scale)
+    fees: dict[RobotId, list[tuple[int, int]]] = {robot: [] for robot in instance.robot}
+    for cut in certificate.cuts:
+        for robot in cut.robots:
+            weight[robot] -= cut.multiplier
+    for deadlines in certificate.deadlines:
+        for robot, tick in zip(deadlines.robots, deadlines.ticks, strict=True):
+            fees[robot].append((tick, deadlines.price))
+    robots = tuple(
+        (each.id, RobotSearch(tariff, each, weight[each.id], before, budget, fees[each.id]).least_cost())
+        for each in instance.robots
+    )
+    certificate = replace(certificate, robots=robots)
+    return replace(certificate, bound=-(-PricedBound(instance, certificate).parts // certificate.scale))
+
+
+@settings(max_examples=draws(1000))
+@given(instances(TINY, least_robots=2), st.data())
+def test_any_prices_leave_the_optimum_and_nothing_cheaper(instance: Instance, data: st.DataObject) -> None:
+    least = least_total_cost(instance)
+    if least is None:
+        return
+    resources = [resource.id for resource in instance.graph.resources]
+    places = st.tuples(st.sampled_from(resources), st.integers(0, 5))
+    prices = data.draw(st.dictionaries(places, st.integers(1, 2 * SCALE), max_size=6))
+    certificate = completed(
+        instance,
+        BoundDocument(
+            format=BOUND_FORMAT,
+            instance=digest(instance),
+            bound=0,
+            scale=SCALE,
+            horizon=6,
+            resources=tuple((resource, tick, price) for (resource, tick), price in prices.items()),
+            exchanges=(),
+            cuts=first_cut(instance, data.draw(st.integers(0, SCALE))),
+            robots=(),
+        ),
+    )
+    assert verify_bound(instance, certificate) <= least
+    bound = PricedBound(instance, certificate)
+    assert cheapest(instance, bound, least) == least
+    assert cheapest(instance, bound, least - 1) is None
+
+
+@pytest.mark.parametrize("cuts", [False, True], ids=["deadlines", "deadlines and a cut"])
+@pytest.mark.parametrize(("seed", "after_goal"), [(7, "park"), (10, "vanish")])
+def test_the_certificate_s_cuts_and_deadlines_count(seed: int, after_goal: AfterGoal, cuts: bool) -> None:
+    instance = town(seed, after_goal)
+    least = optimum(instance, SECONDS, priced=False).cost
+    assert least is not None
+    certificate = lower_bound(instance, steps=1000)
+    assert len(certificate.deadlines) > 2
+    if cuts:
+        cut = first_cut(instance, certificate.scale // 2)
+        certificate = completed(instance, replace(certificate, cuts=cut))
+        assert certificate.cuts
+    assert verify_bound(instance, certificate) <= least
+    bound = PricedBound(instance, certificate)
+    assert -(-bound.parts // bound.scale) == certificate.bound
+    encoding = Encoding(instance)
+    shortest = {robot.robot.id: robot.shortest or 0 for robot in encoding.robots}
+    members = {robot for cut in certificate.cuts for robot in cut.robots}
+    for robot in encoding.robots:
+        above = min(bound.reduced(robot, shortest, least + 6).delays.values())
+        assert above >= 0 if robot.robot.id in members else above == 0
+    assert cheapest(instance, bound, least) == least
+    assert cheapest(instance, bound, least - 1) is None
+
+
+def test_nodes_beyond_the_gap_are_left_out() -> None:
+    instance = town(7, "park")
+    bound = PricedBound(instance, lower_bound(instance, steps=100))
+    for cost in (bound.certificate.bound, bound.certificate.bound + 3):
+        encoding = priced_formula(instance, bound, cost, lambda: None)
+        shortest = {robot.robot.id: robot.shortest or 0 for robot in encoding.robots}
+        for robot in encoding.robots:
+            assert robot.node.keys() <= bound.reduced(robot, shortest, cost).nodes.keys()
+
+
+@pytest.fixture
+def prices_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("carp_optimum.optimum.CONFLICTS_BEFORE_PRICES", -1)
+    monkeypatch.setattr("carp_optimum.optimum.PRICE_STEPS", 5)
+    monkeypatch.setattr("carp_optimized.compiling.is_cached", lambda _: True)
+
+
+@pytest.mark.usefixtures("prices_at_once")
+@settings(max_examples=draws(100), suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(instances(TINY, least_robots=2))
+def test_a_search_with_prices_from_the_first_core_on_finds_the_optimum(instance: Instance) -> None:
+    best = optimum(instance, SECONDS)
+    assert best.decided
+    assert best.cost == least_total_cost(instance)
+
+
+@pytest.mark.usefixtures("prices_at_once")
+@pytest.mark.parametrize(("seed", "after_goal"), [(7, "park"), (10, "vanish")])
+def test_the_search_goes_up_from_a_weak_bound_total_by_total(seed: int, after_goal: AfterGoal) -> None:
+    instance = town(seed, after_goal)
+    assert optimum(instance, SECONDS).cost == optimum(instance, SECONDS, priced=False).cost
+
+
+@pytest.mark.usefixtures("prices_at_once")
+def test_robots_on_every_cell_are_proved_to_need_their_total(tmp_path: Path) -> None:
+    """The opposite corners of a full grid change places; the proof does without prices."""
+    cells = [(x, y) for y in range(3) for x in range(3)]
+    robots = (Robot(i, f"{x},{y}", f"{2 - x},{2 - y}") for i, (x, y) in enumerate(cells) if (x, y) != (1, 1))
+    instance = Instance(grid(3, 3), tuple(robots), "vanish")
+    best = optimum(instance, SECONDS)
+    assert (best.decided, best.cost) == (True, optimum(instance, SECONDS, priced=False).cost)
+    write_proof(instance, best, tmp_path, SECONDS)
+    assert verify_proof(tmp_path).cost == best.cost
