@@ -12,19 +12,22 @@ from carproof.markdown import markdown_table
 ROOT = Path(__file__).parents[1]
 KERNEL = ROOT / "verify" / "kernel"
 LAW = ("check", "joint_rules", "plan_rules", "instance_rules", "model", "rule", "refusal")
-BOUND = ("verify_bound", "bound_rules", "bounds")
-ENCODER = ("encoding", "robot_clauses", "clauses", "optimum_rules")
+BOUND = ("verify_bound", "bound_rules", "bounds", "limits")
+ENCODER = ("encoding", "robot_clauses", "clauses", "optimum_rules", "limits")
 CHECK = "`check`: no rule is broken"
 VERDICTS: dict[str, tuple[tuple[str, ...], str]] = {
     CHECK: (("documents",), ""),
     "`verify-bound`, without cuts": (BOUND, ""),
-    "`verify-bound`, with cuts": ((*BOUND, "bound_cuts", *ENCODER, "refutation"), ""),
-    "`verify-query` and `audit`": (("verify_query", "query_certificate_rules"), ""),
-    "with `--kernel`": (("kernel",), "[the proved kernel](#the-proved-kernel), and not the law in Python"),
+    "`verify-bound`, with cuts": ((*BOUND, "bound_cuts", *ENCODER[:-1], "refutation"), ""),
+    "`verify-query` and `audit`": (("verify_query", "query_certificate_rules", "limits"), ""),
+    "with `--kernel`": (
+        ("kernel", "bounds", "limits"),
+        "[the proved kernel](#the-proved-kernel), and not the law in Python",
+    ),
     "`verify-proof`, an optimum": (("proof", *ENCODER, "refutation"), ""),
     "`verify-proof`, unsolvable by clauses": (("proof", "unsolvable", *ENCODER, "refutation"), ""),
-    "`verify-proof`, unsolvable otherwise": (("proof", "unsolvable", "joint_search", "optimum_rules"), ""),
-    "`certify`: z3 agrees on capacity and exchange": (("certificate", "smt"), "z3"),
+    "`verify-proof`, unsolvable otherwise": (("proof", "unsolvable", "joint_search", "optimum_rules", "limits"), ""),
+    "`certify`: z3 agrees on capacity and exchange": (("certificate", "smt", "limits"), "z3"),
     "`theorems`: a lemma holds": (
         ("engine", "smt", "vocabulary", "derivation"),
         "z3, the argument by hand in the docstring",

@@ -1,6 +1,6 @@
 """The document of a lower bound on the total cost, with everything needed to check it: `carproof-bound/1`.
 
-`carp_optimum` makes it and `carp_verify` checks it. Its rules are `bound/...`.
+`carp_verify` checks it, whatever made it. Its rules are `bound/...`.
 """
 
 from hashlib import sha256
