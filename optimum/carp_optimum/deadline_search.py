@@ -34,8 +34,8 @@ ENOUGH = 110
 """The most steps in which robots of a group are late: one of them would have to be in each of `STEPS`."""
 LARGEST_ENCODING = 2_000_000
 """Robots times resources, or times delays, beyond which no deadlines are searched for, as tables would be large."""
-LARGEST_DELAY = 3
-"""The robots' largest delays near the best prices, on average, beyond which no deadlines are searched for.
+LARGEST_DELAYS = 300
+"""The sum of the robots' largest delays near the best prices, beyond which no deadlines are searched for.
 
 On a spanning tree they are larger, and the formulas so much so that cuts gain more in the same time.
 """
@@ -78,7 +78,7 @@ class DeadlineSearch:
         if len(self.instance.robots) * wide > LARGEST_ENCODING:
             return 0
         delays = self.search.wander(STEPS, self.search.scale // 4, check)
-        if delays.max(axis=0).sum() > LARGEST_DELAY * delays.shape[1]:
+        if delays.max(axis=0).sum() > LARGEST_DELAYS:
             return 0
         allowed = range(int(delays.max(initial=0)) + 1)
         later = np.stack([(delays > each).sum(axis=0) for each in allowed], axis=1)  # steps, by robot and delay

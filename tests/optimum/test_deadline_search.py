@@ -79,7 +79,7 @@ def test_no_deadlines_are_searched_for_where_the_formula_would_be_large(monkeypa
 
 def test_no_deadlines_are_searched_for_where_robots_wait_for_long(monkeypatch: pytest.MonkeyPatch) -> None:
     search = DeadlineSearch(PriceSearch(dead_end(), SCALE))
-    monkeypatch.setattr("carp_optimum.deadline_search.LARGEST_DELAY", -1)
+    monkeypatch.setattr("carp_optimum.deadline_search.LARGEST_DELAYS", -1)
     assert search.round(lambda: None) == 0
-    monkeypatch.setattr("carp_optimum.deadline_search.LARGEST_DELAY", 3)
+    monkeypatch.setattr("carp_optimum.deadline_search.LARGEST_DELAYS", 300)
     assert search.round(lambda: None) > 0
