@@ -31,7 +31,7 @@ def of(claims: Claims, examples: int = 24) -> Options:
 
 
 def whole(claims: Claims) -> Options:
-    return Options(Level.SOUND, 20, shrink_seconds=1, whole=True, claims=claims)
+    return Options(Level.SOUND, 60, shrink_seconds=1, whole=True, claims=claims)
 
 
 def fails_where(is_hard: Callable[[Instance], bool]) -> Function:
