@@ -163,7 +163,8 @@ class _Cores:
             if not answer:
                 named = {literals[literal] for literal in self.solver.core()}
                 return {position: delay for position, delay in allowed.items() if position in named}
-            plans = [self.encoding.robots[position].plan(self.solver.model()) for position in allowed]
+            model = self.solver.model()
+            plans = [self.encoding.robots[position].plan(model) for position in allowed]
             meetings = violated(self.instance, [plan for plan in plans if plan is not None])
             if not meetings:
                 return None

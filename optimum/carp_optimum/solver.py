@@ -73,11 +73,8 @@ class Solver:
 
     def model(self) -> list[bool]:
         """The truth of each variable, from index 1, in the model found last."""
-        model = [False] * (self.formula.variables + 1)
-        for literal in self._solver.get_model() or []:
-            if 0 < literal < len(model):
-                model[literal] = True
-        return model
+        model = [False, *(literal > 0 for literal in self._solver.get_model() or [])]
+        return model + [False] * (self.formula.variables + 1 - len(model))
 
     def core(self) -> list[Literal]:
         """Assumptions found last that cannot hold together; none at all if the formula has no model."""
