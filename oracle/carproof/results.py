@@ -94,7 +94,7 @@ def shown_plan(plan: Plan) -> str:
 class VerifiedBoundDocument(msgspec.Struct, frozen=True):
     """The bound that a certificate proves, or null with the path, the rule and the reason why it proves none.
 
-    `by` is the checker that decided; `assumed` lists the facts that it did not check.
+    `by` is the checker that decided; `assumed` lists the facts that it did not check: none.
     """
 
     bound: int | None

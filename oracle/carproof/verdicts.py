@@ -9,7 +9,6 @@ from carp_verify.bound_rules import ContradictionError
 from carp_verify.bounds import BoundDocument
 from carp_verify.documents import read_instance, solution_document
 from carp_verify.kernel import UndecidedError, ask, find_program, request
-from carp_verify.kernel import verify_bound as ask_about_bound
 from carp_verify.kernel import verify_proof as ask_about_proof
 from carproof.audit import CHECKER
 from carproof.results import VerifiedBoundDocument, VerifiedQueryDocument
@@ -39,33 +38,16 @@ def verify_query(
 def verify_bound(instance: Instance, certificate: BoundDocument, kernel: bool) -> VerifiedBoundDocument:
     """Whether a certificate proves its lower bound."""
     if kernel:
-        return _bound_by_kernel(instance, certificate)
+        (answer,) = ask([request("verify-bound", instance, certificate=certificate)])
+        if answer.accepted:
+            return VerifiedBoundDocument(certificate.bound, None, None, None, answer.by)
+        return VerifiedBoundDocument(None, answer.path, answer.rule, answer.message, answer.by)
     from carp_verify.verify_bound import verify_bound as verify  # noqa: PLC0415 - only for those who ask
 
     try:
         return VerifiedBoundDocument(verify(instance, certificate), None, None, None, CHECKER)
     except Refusal as refusal:
         return VerifiedBoundDocument(None, refusal.path, refusal.rule, refusal.message, CHECKER)
-
-
-def _bound_by_kernel(instance: Instance, certificate: BoundDocument) -> VerifiedBoundDocument:
-    """The verdict of the kernel; it assumes that the formulas of deadlines, which `carp_verify` makes, are right."""
-    formulas: dict[int, str] = {}
-    if certificate.deadlines:
-        from carp_verify.bound_cuts import formula_of_deadlines  # noqa: PLC0415 - only they need the encoder
-        from carp_verify.bound_rules import LARGEST_FORMULA, is_deadline  # noqa: PLC0415
-        from carp_verify.clauses import dimacs  # noqa: PLC0415
-        from carp_verify.refutation import NotRefutedError  # noqa: PLC0415
-
-        for number, deadlines in enumerate(certificate.deadlines):
-            try:
-                formulas[number] = dimacs(formula_of_deadlines(instance, deadlines, LARGEST_FORMULA))
-            except NotRefutedError as error:
-                return VerifiedBoundDocument(None, f"$.deadlines[{number}]", is_deadline.id, str(error), CHECKER)
-    answer = ask_about_bound(instance, certificate, formulas)
-    if answer.accepted:
-        return VerifiedBoundDocument(certificate.bound, None, None, None, answer.by, answer.assumed)
-    return VerifiedBoundDocument(None, answer.path, answer.rule, answer.message, answer.by)
 
 
 def verify_proof(folder: Path, instance: Instance | None, kernel: bool) -> "tuple[Verified, str | None]":

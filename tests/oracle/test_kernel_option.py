@@ -218,21 +218,18 @@ def test_a_bound_with_cuts_is_verified_by_the_kernel(carproof: Run, folder: Path
     assert outcome.stdout.startswith("not proved: $: the proof of cut 0 does not hold: the refutation does not derive")
 
 
-def test_a_bound_with_deadlines_is_verified_by_the_kernel_and_the_assumptions_are_named(
-    carproof: Run, folder: Path
-) -> None:
+def test_a_bound_with_deadlines_is_verified_by_the_kernel_alone(carproof: Run, folder: Path) -> None:
     program()
     certificate = deadline_certificate()
     (folder / "town.json").write_bytes(write_instance(crossing()))
     (folder / "bound.json").write_bytes(write(certificate))
     document = json.loads(carproof(COMMANDS[-1], "--json").stdout)
-    assert document["bound"] == 7
-    assert document["assumed"] == ["the formula given says that the robots of deadline 0 keep all of theirs"]
+    assert (document["bound"], document["assumed"]) == (7, [])
     (group,) = certificate.deadlines
     for fields, code, message in (
         ({"price": 2 * group.price}, 1, "the bound must be the sum of all parts"),
-        ({"refutation": ""}, 3, "the refutation of deadline 0 does not hold"),
-        ({"ticks": (1, 2)}, 1, "robot r0 can be at its goal at 2, not at 1"),
+        ({"refutation": ""}, 1, "the proof of deadlines 0 does not hold: the refutation does not derive"),
+        ({"ticks": (1, 2)}, 1, "the claim of robot r0 must be no more than its least priced cost"),
         ({"price": -1}, 1, "the price of deadlines must be at least 0"),
     ):
         changed = msgspec.structs.replace(certificate, deadlines=(msgspec.structs.replace(group, **fields),))

@@ -8,8 +8,7 @@ import pytest
 
 import carp_verify.kernel
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
-from carp_verify.bounds import BOUND_FORMAT, BoundDocument, digest
-from carp_verify.documents import instance_document, write, write_instance
+from carp_verify.documents import instance_document, write
 from carp_verify.kernel import (
     PROGRAM,
     VARIABLE,
@@ -20,13 +19,11 @@ from carp_verify.kernel import (
     program,
     program_is_there,
     request,
-    verify_bound,
     verify_proof,
     version,
 )
 
 INSTANCE = Instance(ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),)), (Robot("r1", "a", "b"),))
-CERTIFICATE = BoundDocument(BOUND_FORMAT, digest(INSTANCE), 0, 1, 0, (), (), (), ())
 ACCEPTED = '{"kernel": "7", "verdict": "accepted"}'
 REFUSED = '{"kernel": "7", "verdict": "refused", "path": "$.bound", "rule": "bound/total", "message": "too much"}'
 
@@ -86,22 +83,6 @@ def test_a_request_behind_a_line_without_an_end_has_no_answer(folder: Path) -> N
 def test_the_version_is_asked_of_the_program_itself(folder: Path) -> None:
     answers(folder, '{"kernel": "7", "verdict": "bad input"}')
     assert version() == "carproof-kernel 7"
-
-
-def test_a_bound_is_verified_with_the_formulas_of_its_deadlines(folder: Path) -> None:
-    answers(folder, REFUSED)
-    verdict = verify_bound(INSTANCE, CERTIFICATE, {0: "p cnf 1 0\n", 3: "p cnf 2 0\n"})
-    assert (verdict.accepted, verdict.path, verdict.rule, verdict.message) == (
-        False,
-        "$.bound",
-        "bound/total",
-        "too much",
-    )
-    arguments = [Path(each).name for each in (folder / "arguments").read_text().splitlines()]
-    formulas = ["--deadline-formula", "0", "0.cnf", "--deadline-formula", "3", "3.cnf"]
-    assert arguments == ["verify-bound", "instance.json", "certificate.json", *formulas]
-    files = write_instance(INSTANCE) + write(CERTIFICATE) + b"p cnf 1 0\np cnf 2 0\n"
-    assert (folder / "files").read_bytes() == files
 
 
 def test_a_proof_is_verified_from_its_files(folder: Path) -> None:

@@ -7,8 +7,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import pytest
 from tests.verify.kernel_program import program
+from tests.verify.test_bound import completed, deadline_certificate
+from tests.verify.test_bound import crossing as head_on
 from tests.verify.test_proof import crossing, drop_last_line, prove
 from tests.verify.test_unsolvable import BORN_TOGETHER
 from tests.verify.tiny import case
@@ -18,8 +21,9 @@ from carp_optimum.proving import refutation, write_proof
 from carp_optimum.solver import Deadline, Solver
 from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot, RobotId
 from carp_spec.permutations import shuffle
-from carp_verify.bound_cuts import group_of
-from carp_verify.bounds import BOUND_FORMAT, BoundDocument, CutDocument, digest
+from carp_verify.bound_cuts import formula_of_deadlines, group_of
+from carp_verify.bound_rules import LARGEST_FORMULA
+from carp_verify.bounds import BOUND_FORMAT, BoundDocument, CutDocument, DeadlinesDocument, digest
 from carp_verify.clauses import Clause, Formula, dimacs
 from carp_verify.documents import read_instance, write, write_instance
 from carp_verify.encoding import Encoding, Evidence, beat_formula
@@ -257,6 +261,14 @@ def cut_of(instance: Instance, robots: Sequence[RobotId], least: int) -> CutDocu
     return CutDocument(tuple(robots), least, 1, evidence.horizons, evidence.order, lrat)
 
 
+def bound_verdict(instance: Instance, document: BoundDocument, folder: Path) -> Any:  # noqa: ANN401 - as above
+    """The kernel's answer about a bound."""
+    (folder / "instance.json").write_bytes(write_instance(instance))
+    (folder / "bound.json").write_bytes(write(document))
+    command = f"{program()} verify-bound {folder}/instance.json {folder}/bound.json".split()
+    return json.loads(subprocess.run(command, capture_output=True, text=True, check=False).stdout)
+
+
 @pytest.mark.parametrize("first", range(0, 120, 40))
 def test_cuts_of_some_robots_in_any_order_are_accepted(tmp_path: Path, first: int) -> None:
     accepted = 0
@@ -271,13 +283,78 @@ def test_cuts_of_some_robots_in_any_order_are_accepted(tmp_path: Path, first: in
             cut = cut_of(instance, chosen, least)
             document = BoundDocument(BOUND_FORMAT, digest(instance), bound, 1, 0, (), (), (cut,), claims)
             assert verify_bound(instance, document) == bound
-            (tmp_path / "instance.json").write_bytes(write_instance(instance))
-            (tmp_path / "bound.json").write_bytes(write(document))
-            command = f"{program()} verify-bound {tmp_path}/instance.json {tmp_path}/bound.json"
-            done = subprocess.run(command.split(), capture_output=True, text=True, check=False)
-            assert json.loads(done.stdout) == {"kernel": "1", "verdict": "accepted", "bound": bound, "assumed": []}
+            assert bound_verdict(instance, document, tmp_path) == {"kernel": "1", "verdict": "accepted", "bound": bound}
             accepted += 1
     assert accepted > 10
+
+
+def late_bound(instance: Instance, deadlines: DeadlinesDocument) -> BoundDocument:
+    """The bound that one robot more than each on its own is late, by deadlines whose price is a tick."""
+    shortest = {each.robot.id: each.shortest or 0 for each in Encoding(instance).robots}
+    claims = tuple((id, cost + (id in deadlines.robots)) for id, cost in shortest.items())
+    bound = 1 + sum(shortest.values())
+    return BoundDocument(BOUND_FORMAT, digest(instance), bound, 1, 0, (), (), (), claims, (deadlines,))
+
+
+@pytest.mark.parametrize("first", range(0, 120, 40))
+def test_deadlines_of_some_robots_in_any_order_are_accepted_if_refuted(tmp_path: Path, first: int) -> None:
+    decided = {"accepted": 0, "refused": 0}
+    for number in range(first, first + 40):
+        instance, draw = case(number)
+        chosen = tuple(shuffle(list(instance.robot), draw.stream)[: draw.between(2, 3)])
+        encoding = Encoding(group_of(instance, chosen))
+        late = draw.between(0, 2)
+        if not Encoding(instance).wayless:
+            refuted = "2 0 1 0\n"  # the first clause is empty: of no formula here
+            for ticks in (
+                tuple(robot.earliest for robot in encoding.robots),
+                tuple(robot.earliest + draw.between(0, late) for robot in encoding.robots),
+            ):
+                unproved = DeadlinesDocument(chosen, ticks, 1, refuted)
+                formula = formula_of_deadlines(instance, unproved, LARGEST_FORMULA)
+                is_kept = is_satisfiable(dimacs(formula))
+                if not is_kept:
+                    refuted = refutation(formula, Deadline(SECONDS))
+                document = late_bound(instance, msgspec.structs.replace(unproved, refutation=refuted))
+                answer = bound_verdict(instance, document, tmp_path)
+                assert answer["verdict"] == ("refused" if is_kept else "accepted")
+                decided[answer["verdict"]] += 1
+                if is_kept:
+                    assert answer["rule"] == "bound/deadline"
+                else:
+                    assert verify_bound(instance, document) == answer["bound"] == document.bound
+    assert min(decided.values()) > 5, decided
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        ({"refutation": ""}, "the refutation does not derive the empty clause"),
+        ({"refutation": "nonsense\n"}, "expected a whole number, not"),
+        ({"ticks": (2, 3)}, "the refutation does not derive"),
+        ({"ticks": (1, 2)}, "robot r0 can be at its goal at 2, not earlier"),
+        ({"robots": ("r1",), "ticks": (2,)}, "the refutation does not derive"),
+        ({"robots": ("r0", "r0")}, "it must name one or more robots of the instance once"),
+        ({"robots": ("r0", "r9")}, "it must name one or more robots of the instance once"),
+        ({"robots": (), "ticks": ()}, "it must name one or more robots of the instance once"),
+    ],
+)
+def test_deadlines_whose_proof_is_changed_are_refused(change: Mapping[str, Any], why: str, tmp_path: Path) -> None:
+    certificate = deadline_certificate()
+    assert bound_verdict(head_on(), certificate, tmp_path)["verdict"] == "accepted"
+    changed = msgspec.structs.replace(certificate.deadlines[0], **change)
+    document = completed(head_on(), msgspec.structs.replace(certificate, deadlines=(changed,)))
+    answer = bound_verdict(head_on(), document, tmp_path)
+    assert (answer["verdict"], answer["rule"]) == ("refused", "bound/deadline")
+    assert answer["message"].startswith(f"the proof of deadlines 0 does not hold: {why}")
+
+
+def test_a_deadline_too_late_for_a_formula_is_undecided(tmp_path: Path) -> None:
+    (deadlines,) = deadline_certificate().deadlines
+    for tick in (10**7, 10**40):
+        document = late_bound(head_on(), msgspec.structs.replace(deadlines, ticks=(2, tick), price=1))
+        answer = bound_verdict(head_on(), document, tmp_path)
+        assert answer["message"] == "the formula would have more than 5000000 clauses, the limit"
 
 
 def idle_hints(clauses: Sequence[Clause], text: str) -> list[tuple[int, int]]:

@@ -12,8 +12,7 @@ import msgspec
 
 from carp_spec import Instance, Refusal, Rule
 from carp_spec.rule import DESIGN, rule
-from carp_verify.bounds import BoundDocument
-from carp_verify.documents import instance_document, write, write_instance
+from carp_verify.documents import instance_document
 from carp_verify.limits import require_following
 
 PROGRAM: Final = "carproof-kernel"
@@ -60,7 +59,6 @@ class KernelVerdict(msgspec.Struct, frozen=True):
     cost: int | None = None
     unplanned: int | None = None
     bound: int | None = None
-    assumed: tuple[str, ...] = ()
 
     @property
     def by(self) -> str:
@@ -114,31 +112,14 @@ def version() -> str:
     return ask([b"{}\n"])[0].by
 
 
-def verify_bound(instance: Instance, certificate: BoundDocument, formulas: Mapping[int, str]) -> KernelVerdict:
-    """The kernel's answer about a lower bound; `formulas` are those of its deadlines, in DIMACS, by number."""
-    require_following(instance)
-    with TemporaryDirectory() as name:
-        folder = Path(name)
-        (folder / "instance.json").write_bytes(write_instance(instance))
-        (folder / "certificate.json").write_bytes(write(certificate))
-        options: list[str] = []
-        for number, formula in formulas.items():
-            (folder / f"{number}.cnf").write_text(formula)
-            options += ["--deadline-formula", str(number), str(folder / f"{number}.cnf")]
-        return _run(["verify-bound", str(folder / "instance.json"), str(folder / "certificate.json"), *options])
-
-
 def verify_proof(files: Mapping[str, bytes]) -> KernelVerdict:
     """The kernel's answer about a proof directory's instance, manifest and refutation: that no plans cost less."""
     with TemporaryDirectory() as name:
         for file, content in files.items():
             (Path(name) / file).write_bytes(content)
-        return _run(["verify-proof", name])
-
-
-def _run(arguments: Sequence[str]) -> KernelVerdict:
-    done = subprocess.run([program(), *arguments], capture_output=True, text=True, check=False)  # noqa: S603 - ours
-    return _verdict(done.stdout)
+        command = [program(), "verify-proof", name]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - ours
+        return _verdict(done.stdout)
 
 
 def _verdict(line: str) -> KernelVerdict:

@@ -153,7 +153,7 @@ THEOREMS = (
     Theorem(
         "Total",
         "justified_clause_is_kept",
-        "a lawful solution in which some robots cost less than a total keeps each clause of its formula",
+        "a lawful solution in which robots cost less than a total, or keep deadlines, keeps each clause of the formula",
         ("cost/total", "joint/capacity", "joint/exchange"),
     ),
     Theorem(
@@ -170,9 +170,13 @@ THEOREMS = (
     ),
     Theorem(
         "Total",
-        "bound_with_refuted_cuts_is_below_every_solution",
-        "no lawful solution of all plannable robots costs less than an accepted bound whose cuts are refuted, if its "
-        "groups with deadlines hold",
+        "refuted_deadlines_are_not_all_kept",
+        "in each lawful solution that plans every plannable robot, one of the robots with refuted deadlines is later",
+    ),
+    Theorem(
+        "Total",
+        "bound_with_refuted_groups_is_below_every_solution",
+        "no lawful solution of all plannable robots costs less than an accepted bound whose groups are refuted",
         ("cost/total",),
     ),
     Theorem(

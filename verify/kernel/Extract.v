@@ -12,4 +12,4 @@ Separate Extraction instance_accepted accepted lookup_of total_cost covers_accep
   moves_of_graph plan_of_robot_accepted stay_accepted end_accepted same_end has_move
   capacity_accepted exchanges_accepted plans_accepted query_accepted others own certificate_fault audit world_of
   refutes Map.find broken_rule stay_price wait_price move_price tariff_of resource_table takes_in room_in weight_of
-  total_refuted cuts_refuted blueprint_accepted Numbered.add Map.mem Map.add.
+  refuted groups_refuted cut_refuted deadlines_refuted blueprint_accepted Numbered.add Map.mem Map.add.

@@ -1,6 +1,6 @@
-(** The formula of plans of a group of robots that cost less than a total together: each clause comes with a reason, and
-    a clause whose reason holds is kept by every lawful solution in which the group costs less. So if the formula has no
-    model, no solution does.
+(** The formula of plans of a group of robots that cost less than a total together, or that all keep their deadlines:
+    each clause comes with a reason, and a clause whose reason holds is kept by every lawful solution with such plans of
+    the group. So if the formula has no model, no solution has them.
 
     Who wrote the clauses, and in which order, does not matter. *)
 Require Import ZArith List Bool Lia.
@@ -23,6 +23,13 @@ Inductive meaning :=
 (** At least [least] robots with seats in [first, end_) are in the resource at the tick. *)
 | Crowded (first end_ place tick least : Z).
 
+(** The plans of the group that a formula asks for: any lawful ones, those that cost less than a total together, or
+    those that enter their goals by deadlines (robot, tick). *)
+Inductive demand :=
+| Lawful_plans
+| Cheaper_than (total : Z)
+| In_time (due : list (Z * Z)).
+
 (** Why a clause holds. *)
 Inductive reason :=
 | Starts (id : Z)
@@ -38,7 +45,8 @@ Inductive reason :=
 | Is_full
 | Are_two (one other place tick : Z)
 | Exchange (one other source target tick : Z)
-| Is_cheaper.
+| Is_cheaper
+| Is_in_time (id : Z).
 
 (** What the clauses of a robot rest on: its rank among the delays that are added up, its seat among the robots that are
     counted, its least cost, the least ticks from leaving a resource to entering the goal, the least tick at which it is
@@ -214,20 +222,31 @@ Definition adds (if_false true_if : signed -> option (Z * Z * Z)) (c : list sign
 Definition room_below (r n : Z) : bool :=
   match Map.find r (places w) with Some x => capacity x <? n | None => false end.
 
+(** ** What is demanded *)
+
 (** The delays of the group's robots together are below this, if the solution costs less than the total. *)
 Definition delays_below (total : Z) : Z := total - sum (fun m : member => shortest (snd m)) (crew w).
 
-Definition too_late (total : option Z) (c : list signed) : bool :=
-  match total with
-  | None => false
-  | Some k =>
-      let most := delays_below k in
+Definition too_late (asked : demand) (c : list signed) : bool :=
+  match asked with
+  | Cheaper_than total =>
+      let most := delays_below total in
       (most <=? 0) ||
       existsb (fun l => match delays_if_false l with Some (_, _, n) => most <=? n | None => false end) c
+  | _ => false
+  end.
+
+(** The clause holds if the robot enters its goal by its deadline. *)
+Definition if_in_time (asked : demand) (c : list signed) (id : Z) : bool :=
+  match asked with
+  | In_time due =>
+      of_robot id (fun a _ =>
+        existsb (fun d => (fst d =? id) && if_cheaper c id (snd d + 1 - release a)) due)
+  | _ => false
   end.
 
 (** The reason holds for the clause. *)
-Definition justified (total : option Z) (c : list signed) (why : reason) : bool :=
+Definition justified (asked : demand) (c : list signed) (why : reason) : bool :=
   match why with
   | Starts id =>
       of_robot id (fun a _ =>
@@ -265,7 +284,8 @@ Definition justified (total : option Z) (c : list signed) (why : reason) : bool 
   | Exchange one other r s t =>
       negb (one =? other) && negb (r =? s) && unless_free c one r t && unless_free c other s t &&
       unless_present c one s t && unless_present c other r t
-  | Is_cheaper => too_late total c
+  | Is_cheaper => too_late asked c
+  | Is_in_time id => if_in_time asked c id
   end.
 
 (** A literal as its variable's meaning has it; one without a meaning is left out. *)
@@ -282,41 +302,56 @@ Fixpoint read_clause (known : Numbered.t meaning) (c : clause) : list signed :=
       match read_literal known l with Some s => s :: read_clause known rest | None => read_clause known rest end
   end.
 
-Fixpoint all_justified (total : option Z) (known : Numbered.t meaning) (f : list clause) (why : list reason) : bool :=
+Fixpoint all_justified (asked : demand) (known : Numbered.t meaning) (f : list clause) (why : list reason) : bool :=
   match f, why with
   | [], _ => true
   | c :: f', r :: why' =>
-      if justified total (read_clause known c) r then all_justified total known f' why' else false
+      if justified asked (read_clause known c) r then all_justified asked known f' why' else false
   | _ :: _, [] => false
   end.
 
 End Checker.
 
-(** Every clause of the formula is kept by every lawful solution that plans every robot and in which the group costs
-    less than the total, or by every one, if no total is given. *)
-Definition blueprint_accepted (i : instance) (group : list robot) (total : option Z) (b : blueprint) : bool :=
+(** Every clause of the formula is kept by every lawful solution that plans every robot and in which the group does what
+    is demanded. *)
+Definition blueprint_accepted (i : instance) (group : list robot) (asked : demand) (b : blueprint) : bool :=
   let w := tables_of i group b in
   (length (guides b) =? length group)%nat &&
   forallb (guide_accepted w (resource_ids i)) (crew w) &&
-  all_justified w total (meanings b) (formula b) (reasons b).
+  all_justified w asked (meanings b) (formula b) (reasons b).
 
-Definition total_refuted (i : instance) (total : option Z) (b : blueprint) (lines : list (list word)) : bool :=
-  blueprint_accepted i (robots i) total b && refutes (formula b) lines.
+Definition refuted (i : instance) (asked : demand) (b : blueprint) (lines : list (list word)) : bool :=
+  blueprint_accepted i (robots i) asked b && refutes (formula b) lines.
 
 (** The robots with these ids. *)
 Definition group_of (i : instance) (ids : list Z) : list robot :=
   let known := index robot_id (robots i) in
   flat_map (fun id : Z => match Map.find id known with Some a => [a] | None => [] end) ids.
 
-(** The same for a cut. *)
-Definition cut_refuted (i : instance) (k : cut) (b : blueprint) (lines : list (list word)) : bool :=
-  let group := group_of i (members k) in
-  Ids.distinct (members k) && (length group =? length (members k))%nat &&
-  blueprint_accepted i group (Some (least_total k)) b && refutes (formula b) lines.
+(** The same for the robots with these ids. *)
+Definition group_refuted (i : instance) (ids : list Z) (asked : demand) (b : blueprint)
+    (lines : list (list word)) : bool :=
+  let group := group_of i ids in
+  Ids.distinct ids && (length group =? length ids)%nat &&
+  blueprint_accepted i group asked b && refutes (formula b) lines.
 
-Fixpoint cuts_refuted (i : instance) (ks : list cut) (proofs : list (blueprint * list (list word))) : bool :=
-  match ks, proofs with
+Definition cut_refuted (i : instance) (k : cut) : blueprint -> list (list word) -> bool :=
+  group_refuted i (members k) (Cheaper_than (least_total k)).
+
+Definition deadlines_refuted (i : instance) (g : group) : blueprint -> list (list word) -> bool :=
+  group_refuted i (map fst (deadlines g)) (In_time (deadlines g)).
+
+(** Each claim has a proof. *)
+Fixpoint all_refuted {A} (claim_refuted : A -> blueprint -> list (list word) -> bool) (claimed : list A)
+    (proofs : list (blueprint * list (list word))) : bool :=
+  match claimed, proofs with
   | [], _ => true
-  | k :: ks', (b, lines) :: proofs' => if cut_refuted i k b lines then cuts_refuted i ks' proofs' else false
+  | k :: claimed', (b, lines) :: proofs' =>
+      if claim_refuted k b lines then all_refuted claim_refuted claimed' proofs' else false
   | _ :: _, [] => false
   end.
+
+(** All cuts and deadlines of the certificate. *)
+Definition groups_refuted (i : instance) (c : certificate)
+    (of_cuts of_deadlines : list (blueprint * list (list word))) : bool :=
+  all_refuted (cut_refuted i) (cuts c) of_cuts && all_refuted (deadlines_refuted i) (groups c) of_deadlines.

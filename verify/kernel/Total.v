@@ -1,5 +1,5 @@
-(** A refuted total is impossible: the clauses of an accepted blueprint are kept by every lawful solution that plans
-    every robot and in which those of the group cost less than the total. *)
+(** A refuted total is impossible, and refuted deadlines are not all kept: the clauses of an accepted blueprint are kept
+    by every lawful solution that plans every robot and in which those of the group do what is demanded. *)
 Require Import ZArith List Bool Lia.
 From Carproof Require Import Law Collections Checker Ways Prices Labels Tables Bound Refutation Routes Formula.
 Import ListNotations.
@@ -51,6 +51,21 @@ Proof.
   - apply forallb_forall, Guides.
 Qed.
 
+(** The robot enters its goal for the last time by its deadline (robot, tick), if it has a plan. *)
+Definition Keeps_deadline (s : solution) (d : Z * Z) : Prop :=
+  forall p, In p (plans s) -> plan_robot p = fst d -> arrives (visits p) <= snd d.
+
+(** The robots of the group do what is demanded. *)
+Definition Meets (i : instance) (s : solution) (group : list robot) (asked : demand) : Prop :=
+  match asked with
+  | Lawful_plans => True
+  | Cheaper_than total => sum (fun a => cost_of_robot i s (robot_id a)) group < total
+  | In_time due => forall d, In d due -> Keeps_deadline s d
+  end.
+
+Lemma sum_over_images {A B} (f : B -> Z) (g : A -> B) l : sum f (map g l) = sum (fun x => f (g x)) l.
+Proof. induction l as [| x l IH]; simpl; auto. rewrite IH. reflexivity. Qed.
+
 Section Solution.
 Variables (i : instance) (w : tables) (s : solution).
 Hypothesis right : Well_formed i.
@@ -73,9 +88,6 @@ Definition ranged (key f : member -> Z) (first end_ : Z) : Z :=
   sum (fun m => if (first <=? key m) && (key m <? end_) then f m else 0) (crew w).
 Definition delays := ranged (fun m => rank (snd m)) delay.
 Definition presences (r t : Z) := ranged (fun m => seat (snd m)) (presence r t).
-
-(** The robots of the group cost this together. *)
-Definition group_cost : Z := sum (fun m : member => cost_of_robot i s (robot_id (fst m))) (crew w).
 
 Definition is_true (m : meaning) : bool :=
   match m with
@@ -532,11 +544,13 @@ Proof.
   - apply (robot_free_elsewhere_makes_the_move (b, h)); auto.
 Qed.
 
-(** ** The total *)
+(** ** What is demanded *)
 
-Lemma all_delays_are_below total first end_ : group_cost < total -> delays first end_ < delays_below w total.
+Let met := Meets i s (map fst (crew w)).
+
+Lemma all_delays_are_below total first end_ : met (Cheaper_than total) -> delays first end_ < delays_below w total.
 Proof.
-  intros H. unfold group_cost in H. unfold delays, ranged, delays_below.
+  unfold met, Meets. rewrite (sum_over_images (A := member)). intros H. unfold delays, ranged, delays_below.
   assert (L : forall l, (forall m, In m l -> In m (crew w)) ->
     sum (fun m : member => if (first <=? rank (snd m)) && (rank (snd m) <? end_) then delay m else 0) l +
     sum (fun m : member => shortest (snd m)) l <= sum (fun m : member => cost_of_robot i s (robot_id (fst m))) l).
@@ -548,10 +562,9 @@ Proof.
   specialize (L (crew w) (fun _ H => H)). lia.
 Qed.
 
-Lemma kept_by_costing_less total c : match total with Some k => group_cost < k | None => True end ->
-  too_late w total c = true -> Kept c.
+Lemma kept_by_costing_less asked c : met asked -> too_late w asked c = true -> Kept c.
 Proof.
-  unfold too_late. destruct total as [k |]; [| discriminate]. intros L H. apply orb_true_iff in H as [H | H].
+  unfold too_late. destruct asked as [| k |]; try discriminate. intros L H. apply orb_true_iff in H as [H | H].
   - decided. pose proof (all_delays_are_below k 0 0 L) as D. unfold delays in D.
     assert (0 <= ranged (fun m => rank (snd m)) delay 0 0); [| lia].
     apply sum_is_not_negative. intros m Hm. pose proof (delays_are_not_negative m Hm). destruct (_ && _); lia.
@@ -566,10 +579,20 @@ Proof.
     + decided. cbn [is_true fst snd]. apply Z.leb_gt. pose proof (all_delays_are_below k first end_ L). lia.
 Qed.
 
+Lemma kept_by_keeping_the_deadline asked c id : met asked -> if_in_time w asked c id = true -> Kept c.
+Proof.
+  unfold if_in_time. destruct asked as [| | due]; try discriminate. intros L H.
+  apply some_robot in H as (a & g & Found & H). apply existsb_exists in H as (d & Hd & H). decided.
+  apply (kept_if_cheaper a g id Found c (snd d + 1 - release a)); auto. destruct (found_member a g id Found) as [M E].
+  destruct (member_has_a_plan (a, g) M) as (p & _ & _ & Hp & Ep & W & R & _). cbn [fst] in *.
+  pose proof (L d Hd p Hp ltac:(congruence)).
+  pose proof (counted_arrives_no_later i a right (member_is_a_robot (a, g) M) _ W).
+  unfold route_cost. rewrite R. lia.
+Qed.
+
 (** * All clauses *)
 
-Theorem justified_clause_is_kept total c why :
-  match total with Some k => group_cost < k | None => True end -> justified w total c why = true -> Kept c.
+Theorem justified_clause_is_kept asked c why : met asked -> justified w asked c why = true -> Kept c.
 Proof.
   intros L H. destruct why; cbn [justified] in H.
   - apply some_robot in H as (a & g & Found & H). rewrite (takes_are_right i w tabled) in H. decided.
@@ -614,6 +637,7 @@ Proof.
   - decided. apply (kept_by_room_for_one c one other place tick); auto.
   - decided. apply (kept_by_exchange c one other source target tick); auto.
   - eapply kept_by_costing_less; eauto.
+  - eapply kept_by_keeping_the_deadline; eauto.
 Qed.
 
 (** The valuation that a solution gives the variables. *)
@@ -641,36 +665,29 @@ Proof.
   - destruct (IH H) as (k & Hk & K). exists k. simpl. auto.
 Qed.
 
-Lemma justified_clauses_are_satisfied total known f : forall why,
-  match total with Some k => group_cost < k | None => True end -> all_justified w total known f why = true ->
-  forall c, In c f -> Satisfies (valuation known) c.
+Lemma justified_clauses_are_satisfied asked known f : forall why, met asked ->
+  all_justified w asked known f why = true -> forall c, In c f -> Satisfies (valuation known) c.
 Proof.
   induction f as [| c f IH]; simpl; intros why L H d Hd; [destruct Hd |].
   destruct why as [| r why]; [discriminate |].
-  destruct (justified w total (read_clause known c) r) eqn:J; [| discriminate].
+  destruct (justified w asked (read_clause known c) r) eqn:J; [| discriminate].
   destruct Hd as [<- | Hd]; [| apply (IH why L H d Hd)].
-  apply kept_clause_is_satisfied, (justified_clause_is_kept total _ r L J).
+  apply kept_clause_is_satisfied, (justified_clause_is_kept asked _ r L J).
 Qed.
 End Solution.
 
-Lemma refuted_blueprint_has_no_solution i group total b lines s : Well_formed i ->
+Lemma refuted_blueprint_has_no_solution i group asked b lines s : Well_formed i ->
   (forall a, In a group -> In a (robots i)) -> NoDup (map robot_id group) ->
-  blueprint_accepted i group total b && refutes (formula b) lines = true ->
-  Lawful i s -> Plans_every_plannable_robot i s ->
-  ~ match total with Some k => sum (fun a => cost_of_robot i s (robot_id a)) group < k | None => True end.
+  blueprint_accepted i group asked b && refutes (formula b) lines = true ->
+  Lawful i s -> Plans_every_plannable_robot i s -> ~ Meets i s group asked.
 Proof.
   intros right Known Distinct H lawful complete L. unfold blueprint_accepted in H.
   apply andb_true_iff in H as [H R]. apply andb_true_iff in H as [H J]. apply andb_true_iff in H as [N G].
-  assert (All : sum (fun a => cost_of_robot i s (robot_id a)) group = group_cost i (tables_of i group b) s).
-  { assert (Firsts : forall l : list member, sum (fun a => cost_of_robot i s (robot_id a)) (map fst l) =
-      sum (fun m => cost_of_robot i s (robot_id (fst m))) l).
-    { induction l as [| m l IH]; simpl; auto. rewrite IH. reflexivity. }
-    apply Nat.eqb_eq, combined_with_as_many in N. unfold group_cost. rewrite <- Firsts. cbn [tables_of crew].
-    rewrite N. reflexivity. }
-  rewrite All in L.
+  assert (All : map fst (crew (tables_of i group b)) = group) by (apply combined_with_as_many, Nat.eqb_eq, N).
   apply (accepted_refutation_means_unsatisfiable _ _ R (valuation i (tables_of i group b) s (meanings b))).
   apply (justified_clauses_are_satisfied i (tables_of i group b) s right
-    (tables_are_right i group b right Known Distinct N G) lawful complete total (meanings b) _ (reasons b) L J).
+    (tables_are_right i group b right Known Distinct N G) lawful complete asked (meanings b) _ (reasons b)); auto.
+  rewrite All. exact L.
 Qed.
 
 Lemma costs_add_up i s : Well_formed i -> Lawful i s ->
@@ -686,25 +703,25 @@ Qed.
 
 (** If the formula of an accepted blueprint of a total is refuted, no lawful solution that plans every robot with a way
     to its goal costs less. *)
-Theorem refuted_total_is_impossible i total b lines s : Well_formed i -> total_refuted i (Some total) b lines = true ->
-  Lawful i s -> Plans_every_plannable_robot i s -> total <= total_cost i s.
+Theorem refuted_total_is_impossible i total b lines s : Well_formed i ->
+  refuted i (Cheaper_than total) b lines = true -> Lawful i s -> Plans_every_plannable_robot i s -> total <= total_cost i s.
 Proof.
   intros right H lawful complete. apply Z.le_ngt. rewrite <- costs_add_up by auto.
-  apply (refuted_blueprint_has_no_solution i (robots i) (Some total) b lines s right); auto.
+  apply (refuted_blueprint_has_no_solution i (robots i) (Cheaper_than total) b lines s right); auto.
   apply (robot_ids_are_unique i right).
 Qed.
 
 (** If the formula of an accepted blueprint without a total is refuted, no lawful solution plans every robot with a way
     to its goal. *)
-Theorem refuted_instance_has_no_solution i b lines s : Well_formed i -> total_refuted i None b lines = true ->
+Theorem refuted_instance_has_no_solution i b lines s : Well_formed i -> refuted i Lawful_plans b lines = true ->
   Lawful i s -> ~ Plans_every_plannable_robot i s.
 Proof.
   intros right H lawful complete.
-  apply (refuted_blueprint_has_no_solution i (robots i) None b lines s right); auto.
+  apply (refuted_blueprint_has_no_solution i (robots i) Lawful_plans b lines s right); simpl; auto.
   apply (robot_ids_are_unique i right).
 Qed.
 
-(** * Cuts *)
+(** * Cuts and deadlines *)
 
 Lemma group_is_known i ids a : Well_formed i -> In a (group_of i ids) -> In a (robots i).
 Proof.
@@ -726,32 +743,98 @@ Proof.
   apply find_in_index in F as [_ E]; [| apply (robot_ids_are_unique i right)]. rewrite IH by lia. congruence.
 Qed.
 
+Lemma refuted_group_does_not_meet i ids asked b lines s : Well_formed i -> group_refuted i ids asked b lines = true ->
+  Lawful i s -> Plans_every_plannable_robot i s ->
+  map robot_id (group_of i ids) = ids /\ ~ Meets i s (group_of i ids) asked.
+Proof.
+  intros right H lawful complete. unfold group_refuted in H. rewrite <- andb_assoc in H.
+  apply andb_true_iff in H as [H R]. apply andb_true_iff in H as [D L].
+  apply Ids.distinct_iff in D. apply Nat.eqb_eq in L. apply (group_has_the_ids i _ right) in L. split; auto.
+  apply (refuted_blueprint_has_no_solution i _ asked b lines s right); auto.
+  - intros a Ha. apply (group_is_known i ids); auto.
+  - rewrite L. exact D.
+Qed.
+
 (** The robots of a refuted cut cost at least its least total together. *)
 Theorem refuted_cut_holds i k b lines s : Well_formed i -> cut_refuted i k b lines = true -> Lawful i s ->
   Plans_every_plannable_robot i s -> Cut_holds i s k.
 Proof.
-  intros right H lawful complete. unfold cut_refuted in H. rewrite <- andb_assoc in H.
-  apply andb_true_iff in H as [H R]. apply andb_true_iff in H as [D L].
-  apply Ids.distinct_iff in D. apply Nat.eqb_eq in L. apply (group_has_the_ids i _ right) in L.
-  unfold Cut_holds. apply Z.le_ngt. rewrite <- L.
-  assert (E : forall l, sum (cost_of_robot i s) (map robot_id l) = sum (fun a => cost_of_robot i s (robot_id a)) l).
-  { induction l as [| a l IH]; simpl; auto. rewrite IH. reflexivity. }
-  rewrite E. apply (refuted_blueprint_has_no_solution i _ (Some (least_total k)) b lines s right); auto.
-  - intros a Ha. apply (group_is_known i (members k)); auto.
-  - rewrite L. exact D.
+  intros right H lawful complete.
+  destruct (refuted_group_does_not_meet i _ _ b lines s right H lawful complete) as [E N].
+  unfold Cut_holds. apply Z.le_ngt. rewrite <- E, sum_over_images. exact N.
 Qed.
 
-(** No lawful solution that plans every robot with a way to its goal costs less than an accepted bound whose cuts are
-    refuted, if its groups with deadlines hold. *)
-Theorem bound_with_refuted_cuts_is_below_every_solution i s c all proofs : Well_formed i ->
-  bound_accepted i c all = true -> cuts_refuted i (cuts c) proofs = true ->
-  Lawful i s -> Plans_every_plannable_robot i s -> (forall g, In g (groups c) -> Group_holds s g) ->
-  bound c <= total_cost i s.
+(** In every lawful solution that plans every robot with a way to its goal, one of the robots with refuted deadlines
+    enters its goal for the last time after its own. *)
+Theorem refuted_deadlines_are_not_all_kept i g b lines s : Well_formed i -> deadlines_refuted i g b lines = true ->
+  Lawful i s -> Plans_every_plannable_robot i s ->
+  exists id tick p, In (id, tick) (deadlines g) /\ In p (plans s) /\ plan_robot p = id /\ tick < arrives (visits p).
 Proof.
-  intros right H R lawful complete groups_hold. apply (accepted_bound_is_below_every_solution i s c all); auto.
-  revert proofs R. induction (cuts c) as [| k ks IH]; intros proofs R j Hj; [destruct Hj |].
-  destruct proofs as [| [b lines] proofs]; [discriminate |]. simpl in R.
-  destruct (cut_refuted i k b lines) eqn:K; [| discriminate].
-  destruct Hj as [<- | Hj]; [| apply (IH proofs R j Hj)].
-  apply (refuted_cut_holds i k b lines s right K lawful complete).
+  intros right H lawful complete.
+  destruct (refuted_group_does_not_meet i _ _ b lines s right H lawful complete) as [_ N].
+  set (late := fun d p => (plan_robot p =? fst d) && (snd d <? arrives (visits p))).
+  destruct (existsb (fun d => existsb (late d) (plans s)) (deadlines g)) eqn:Late.
+  - apply existsb_exists in Late as ([id tick] & Hd & Late). apply existsb_exists in Late as (p & Hp & Late).
+    unfold late in Late. decided. exists id, tick, p. auto.
+  - destruct N. intros d Hd p Hp E. apply Z.le_ngt. intros L. apply not_true_iff_false in Late. apply Late.
+    apply existsb_exists. exists d. split; auto. apply existsb_exists. exists p. split; auto.
+    unfold late. apply andb_true_iff. split; [apply Z.eqb_eq, E | apply Z.ltb_lt, L].
+Qed.
+
+Lemma robot_has_one_plan_at_most i s id : Lawful i s -> sum (fun p => Z.b2z (plan_robot p =? id)) (plans s) <= 1.
+Proof.
+  intros lawful. destruct (in_dec Z.eq_dec id (planned s)) as [H | H].
+  - rewrite one_of_different_ids; [lia | | exact H]. apply (robots_have_one_plan i s lawful).
+  - rewrite (sum_of_equal _ (fun _ => 0)), sum_of_zeros; [lia |]. intros p Hp.
+    destruct (Z.eqb_spec (plan_robot p) id) as [<- |]; auto. destruct H. apply in_map, Hp.
+Qed.
+
+Lemma refuted_deadlines_hold i g b lines s : Well_formed i -> deadlines_refuted i g b lines = true -> Lawful i s ->
+  Plans_every_plannable_robot i s -> Group_holds s g.
+Proof.
+  intros right H lawful complete.
+  destruct (refuted_deadlines_are_not_all_kept i g b lines s right H lawful complete)
+    as (id & tick & p & Hd & Hp & E & L).
+  set (late := fun q d => Z.b2z ((plan_robot q =? fst d) && (snd d <? arrives (visits q)))).
+  set (all := sum (fun q => sum (late q) (deadlines g)) (plans s)).
+  assert (One : 1 <= all).
+  { assert (P : forall q d, 0 <= late q d) by (intros; unfold late; destruct (_ && _); simpl; lia).
+    assert (S : late p (id, tick) = 1).
+    { unfold late. simpl. rewrite (proj2 (Z.eqb_eq _ _) E), (proj2 (Z.ltb_lt _ _) L). reflexivity. }
+    rewrite <- S. etransitivity; [apply (sum_is_above_each (late p) (deadlines g)); auto |].
+    apply (sum_is_above_each (fun q => sum (late q) (deadlines g)) (plans s)); auto.
+    intros q _. apply sum_is_not_negative. auto. }
+  unfold Group_holds. set (kept := fun q d => Z.b2z (keeps (plan_robot q) (arrives (visits q)) d)).
+  assert (All : sum (fun q => sum (kept q) (deadlines g)) (plans s) + all <= Z.of_nat (length (deadlines g)));
+    [| unfold kept in All; lia].
+  unfold all. rewrite <- sum_of_sums.
+  rewrite (sum_of_equal _ (fun q => sum (fun d => Z.b2z (plan_robot q =? fst d)) (deadlines g))).
+  - rewrite sums_are_exchanged. clear - lawful. induction (deadlines g) as [| d l IH]; simpl; [lia |].
+    pose proof (robot_has_one_plan_at_most i s (fst d) lawful). lia.
+  - intros q _. rewrite <- sum_of_sums. apply sum_of_equal. intros d _. unfold late, kept, keeps. rewrite Z.eqb_sym.
+    rewrite Z.ltb_antisym. destruct (_ =? _), (_ <=? _); reflexivity.
+Qed.
+
+Lemma all_refuted_claims_hold {A} refuted (Holds : A -> Prop) claimed :
+  (forall k b lines, refuted k b lines = true -> Holds k) ->
+  forall proofs, all_refuted refuted claimed proofs = true -> forall k, In k claimed -> Holds k.
+Proof.
+  intros R. induction claimed as [| k claimed IH]; intros proofs H j Hj; [destruct Hj |].
+  destruct proofs as [| [b lines] proofs]; [discriminate |]. simpl in H.
+  destruct (refuted k b lines) eqn:K; [| discriminate].
+  destruct Hj as [<- | Hj]; [apply (R _ _ _ K) | apply (IH proofs H j Hj)].
+Qed.
+
+(** No lawful solution that plans every robot with a way to its goal costs less than an accepted bound whose cuts and
+    deadlines are refuted. *)
+Theorem bound_with_refuted_groups_is_below_every_solution i s c all of_cuts of_deadlines : Well_formed i ->
+  bound_accepted i c all = true -> groups_refuted i c of_cuts of_deadlines = true ->
+  Lawful i s -> Plans_every_plannable_robot i s -> bound c <= total_cost i s.
+Proof.
+  intros right H R lawful complete. apply andb_true_iff in R as [Cuts Deadlines].
+  apply (accepted_bound_is_below_every_solution i s c all); auto.
+  - apply (all_refuted_claims_hold (cut_refuted i) _ _ (fun k b lines K =>
+      refuted_cut_holds i k b lines s right K lawful complete) _ Cuts).
+  - apply (all_refuted_claims_hold (deadlines_refuted i) _ _ (fun g b lines K =>
+      refuted_deadlines_hold i g b lines s right K lawful complete) _ Deadlines).
 Qed.

@@ -1,6 +1,6 @@
-(* Builds the formula of plans of some robots that cost less than a total, clause for clause as carp_verify.encoding
-   does, with the meaning of each variable and the reason of each clause. Nothing here is trusted: the kernel checks
-   every reason. *)
+(* Builds the formula of plans of some robots that cost less than a total, or keep deadlines, clause for clause as
+   carp_verify.encoding does, with the meaning of each variable and the reason of each clause. Nothing here is trusted:
+   the kernel checks every reason. *)
 
 open Formula
 
@@ -9,6 +9,7 @@ type evidence = { horizons : int list; order : int list }
 
 exception Too_large
 exception No_way of Law.robot
+exception Too_early of Law.robot * Z.t
 
 let most_clauses = 5_000_000
 
@@ -322,6 +323,16 @@ let bound_delays { draft; clerks; _ } total order =
     let delays = at_least draft Adds_delays meaning (List.map late order) most in
     if List.length delays >= most then add draft Is_cheaper [ -List.nth delays (most - 1) ]
 
+(* ---- Deadlines ---- *)
+
+(* The delay with which the robot just keeps its deadline. *)
+let horizon_by clerk (_, tick) =
+  let delay = Z.sub tick (earliest clerk) in
+  if Z.sign delay < 0 then raise (Too_early (clerk.robot, earliest clerk));
+  if Z.fits_int delay then Z.to_int delay else raise Too_large
+
+let close draft clerk = add draft (Is_in_time clerk.robot.robot_id) [ -Hashtbl.find clerk.late clerk.horizon ]
+
 (* ---- Guides ---- *)
 
 (* The least tick at which the robot is free to leave a resource from which it can get to its goal: Dijkstra. *)
@@ -357,8 +368,9 @@ let clerk_of (instance : Law.instance) table (onward, backward) ranks position (
   { robot = a; guide; takes; parks; onwards; backwards; node = Hashtbl.create 1024; nodes = [];
     ticks = Hashtbl.create 64; late = Hashtbl.create 64; horizon = -1; unfinished = [] }
 
-(* The blueprint and the number of its variables. Raises [No_way] where no way leads to a goal, and [Too_large]. *)
-let blueprint (instance : Law.instance) group total { horizons; order } =
+(* The blueprint and the number of its variables; deadlines, in the group's order, need no horizons. Raises [No_way]
+   where no way leads to a goal, [Too_early] if a robot cannot be at its goal so early, and [Too_large]. *)
+let blueprint (instance : Law.instance) group asked { horizons; order } =
   let draft =
     { clauses = []; reasons = []; count = 0; meanings = Refutation.Numbered.empty; variables = 0 }
   in
@@ -366,10 +378,14 @@ let blueprint (instance : Law.instance) group total { horizons; order } =
   List.iteri (fun rank position -> Hashtbl.replace ranks position rank) order;
   let clerks = Array.of_list (List.mapi (clerk_of instance table moves ranks) group) in
   let grow_to clerk horizon = while clerk.horizon < horizon do grow draft clerk done in
-  List.iteri (fun position horizon -> grow_to clerks.(position) horizon) horizons;
+  let all = Array.to_list clerks in
+  List.iter2 grow_to all (match asked with In_time due -> List.map2 horizon_by all due | _ -> horizons);
   let encoding = { draft; clerks; presences = Hashtbl.create 1024 } in
   forbid_all encoding (Tables.room_in table);
-  Option.iter (fun total -> bound_delays encoding total order) total;
-  ( { guides = Array.to_list (Array.map (fun clerk -> clerk.guide) clerks); meanings = draft.meanings;
+  (match asked with
+  | Lawful_plans -> ()
+  | Cheaper_than total -> bound_delays encoding total order
+  | In_time _ -> List.iter (close draft) all);
+  ( { guides = List.map (fun clerk -> clerk.guide) all; meanings = draft.meanings;
       reasons = List.rev draft.reasons; formula = List.rev draft.clauses },
     draft.variables )

@@ -6,7 +6,7 @@ let version = "1"
 
 let usage =
   "usage: carproof-kernel check INSTANCE SOLUTION\n\
-  \       carproof-kernel verify-bound INSTANCE CERTIFICATE [--deadline-formula NUMBER FILE]...\n\
+  \       carproof-kernel verify-bound INSTANCE CERTIFICATE\n\
   \       carproof-kernel verify-query INSTANCE SOLUTION CERTIFICATE\n\
   \       carproof-kernel audit INSTANCE SOLUTION CERTIFICATES\n\
   \       carproof-kernel verify-proof DIRECTORY\n\
@@ -60,13 +60,6 @@ let print_formula ((blueprint : Formula.blueprint), variables) =
   let print_clause literals = print_string (String.concat " " (List.map Z.to_string literals @ [ "0\n" ])) in
   List.iter print_clause blueprint.formula
 
-(* The formulas of deadlines, by their numbers. *)
-let rec deadline_formulas = function
-  | "--deadline-formula" :: number :: file :: rest when int_of_string_opt number <> None ->
-      (int_of_string number, Reading.formula_of_text (contents file)) :: deadline_formulas rest
-  | [] -> []
-  | _ -> prerr_string usage; exit 2
-
 (* One request a line: the op, and its documents by their names. *)
 let requested line () =
   let json = Reading.json_of_text line in
@@ -78,7 +71,7 @@ let requested line () =
   match (Reading.required field "op" Reading.text, solution, field "certificate", certificates) with
   | "check", Some solution, None, None -> Verdicts.check instance solution
   | "verify-bound", None, Some (path, json), None ->
-      Verdicts.verify_bound [] instance (Reading.bound_of_json instance path json)
+      Verdicts.verify_bound instance (Reading.bound_of_json instance path json)
   | "verify-query", Some solution, Some (path, json), None ->
       Verdicts.verify_query instance solution (Reading.query_of_json instance path json)
   | "audit", Some solution, None, Some certificates -> Verdicts.audit instance solution certificates
@@ -116,11 +109,10 @@ let () =
           let solution = Reading.solution_of_json instance "$" (json_of_file solution) in
           let query = Reading.query_of_json instance in
           Verdicts.audit instance solution (Reading.elements query "$" (json_of_file certificates))))
-  | "verify-bound" :: instance :: certificate :: options ->
+  | [ "verify-bound"; instance; certificate ] ->
       print (answered (fun () ->
-          let formulas = deadline_formulas options in
           let instance = instance_of_file instance in
-          Verdicts.verify_bound formulas instance (Reading.bound_of_json instance "$" (json_of_file certificate))))
+          Verdicts.verify_bound instance (Reading.bound_of_json instance "$" (json_of_file certificate))))
   | [ "verify-proof"; directory ] ->
       print (answered (fun () ->
           let instance, claim = claim_of_directory directory in

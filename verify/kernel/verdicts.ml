@@ -107,65 +107,108 @@ let refute formula proof =
 
 (* ---- verify-proof ---- *)
 
-(* The formula of plans of the robots below the total, with the number of its variables, or why none is made. *)
-let blueprint (read : Reading.instance) group total evidence =
-  match Encoder.blueprint read.instance group total evidence with
+(* The formula of plans of the robots that do what is demanded, with the number of its variables, or why none is made. *)
+let blueprint (read : Reading.instance) group asked evidence =
+  match Encoder.blueprint read.instance group asked evidence with
   | made -> Ok made
   | exception Encoder.No_way a ->
       Error (Refused ("proof/way", "no way leads to the goal of robot " ^ named read a.robot_id))
+  | exception Encoder.Too_early (a, earliest) ->
+      let robot = named read a.robot_id and tick = Z.to_string earliest in
+      Error (Refused ("bound/deadline", Printf.sprintf "robot %s can be at its goal at %s, not earlier" robot tick))
   | exception Encoder.Too_large ->
       Error (Undecided (Printf.sprintf "the formula would have more than %d clauses, the limit" Encoder.most_clauses))
 
-let blueprint_of_claim (read : Reading.instance) { Reading.cost; evidence } =
-  blueprint read read.instance.robots cost evidence
+let demand_of_claim { Reading.cost; _ } =
+  Option.fold ~none:Formula.Lawful_plans ~some:(fun cost -> Formula.Cheaper_than cost) cost
+
+let blueprint_of_claim (read : Reading.instance) (claim : Reading.claim) =
+  blueprint read read.instance.robots (demand_of_claim claim) claim.evidence
 
 let verify_proof (read : Reading.instance) (claim : Reading.claim) proof =
   match blueprint_of_claim read claim with
   | Error verdict -> verdict
   | Ok (blueprint, _) ->
-      if Formula.total_refuted read.instance claim.cost blueprint proof then
+      let asked = demand_of_claim claim in
+      if Formula.refuted read.instance asked blueprint proof then
         Accepted [ ("bound", Option.fold ~none:`Null ~some:whole claim.cost) ]
-      else if Formula.blueprint_accepted read.instance read.instance.robots claim.cost blueprint then
+      else if Formula.blueprint_accepted read.instance read.instance.robots asked blueprint then
         refute blueprint.formula proof
       else Undecided "the kernel has made a clause for which it has no reason"
 
 (* ---- verify-bound ---- *)
 
-(* Deadlines are decided by a formula of the caller's, which must say that all are kept: the kernel checks the refutation of
-   it. Without a formula, or with a refutation that does not hold, the bound is undecided. *)
-let why_undecided formulas number refutation =
-  match List.assoc_opt number formulas with
-  | None -> Some (Printf.sprintf "deadline %d needs its formula: --deadline-formula %d FILE" number number)
-  | Some formula ->
-      if Refutation.refutes formula (Reading.proof_of_text refutation) then None
-      else Some (Printf.sprintf "the refutation of deadline %d does not hold" number)
+let no_refutation = Refused ("refutation", "the refutation does not derive the empty clause by its hints")
 
-(* The formula of a cut and its refutation, or why the cut is not accepted. *)
-let proof_of_cut (read : Reading.instance) number (k : Bound.cut) (horizons, order, refutation) =
-  let refused why = Error (Refused ("bound/cut", Printf.sprintf "the proof of cut %d does not hold: %s" number why)) in
+let in_proof rule group number = function
+  | Refused (_, why) -> Refused (rule, Printf.sprintf "the proof of %s %d does not hold: %s" group number why)
+  | other -> other
+
+let in_proof_of_cut = in_proof "bound/cut" "cut"
+let in_proof_of_deadlines = in_proof "bound/deadline" "deadlines"
+
+(* The formula of a group and its refutation, which is not checked yet. *)
+let proof_of_group read group asked evidence refutation =
+  match Reading.proof_of_text refutation with
+  | lines -> Result.map (fun (blueprint, _) -> (blueprint, lines)) (blueprint read group asked evidence)
+  | exception Reading.Refused { rule; message; _ } -> Error (Refused (rule, message))
+
+let proof_of_cut (read : Reading.instance) (k : Bound.cut) (horizons, order, refutation) =
   let group = Formula.group_of read.instance k.members in
   let is_natural n = Z.sign n >= 0 && Z.fits_int n in
   if List.length group <> List.length k.members || List.length horizons <> List.length group
      || not (List.for_all is_natural horizons)
      || List.sort Z.compare order <> List.init (List.length group) Z.of_int then
-    refused "it must have a horizon of each of its robots, and an order of them"
+    Error (Refused ("bound/cut", "it must have a horizon of each of its robots, and an order of them"))
   else
     let evidence = { Encoder.horizons = List.map Z.to_int horizons; order = List.map Z.to_int order } in
-    match (blueprint read group (Some k.least_total) evidence, Reading.proof_of_text refutation) with
-    | Error (Refused (_, why)), _ -> refused why
-    | Error verdict, _ -> Error verdict
-    | Ok (blueprint, _), lines when Formula.cut_refuted read.instance k blueprint lines -> Ok (blueprint, lines)
-    | Ok _, _ -> refused "the refutation does not derive the empty clause by its hints"
-    | exception Reading.Refused { message; _ } -> refused message
+    proof_of_group read group (Formula.Cheaper_than k.least_total) evidence refutation
 
-let rec proofs_of_cuts read number cuts proofs =
-  match (cuts, proofs) with
-  | k :: cuts, proof :: proofs ->
-      Result.bind (proof_of_cut read number k proof) (fun first ->
-          Result.map (fun rest -> first :: rest) (proofs_of_cuts read (number + 1) cuts proofs))
+let proof_of_deadlines (read : Reading.instance) (g : Bound.group) refutation =
+  let ids = List.map fst g.deadlines in
+  let group = Formula.group_of read.instance ids in
+  if group = [] || List.length group <> List.length (List.sort_uniq Z.compare ids)
+     || List.length group <> List.length ids then
+    Error (Refused ("bound/deadline", "it must name one or more robots of the instance once"))
+  else proof_of_group read group (Formula.In_time g.deadlines) { horizons = []; order = [] } refutation
+
+(* The proofs of all claims, or what is wrong with the first one that cannot be made. *)
+let rec proofs_of proof_of in_proof number claimed proofs =
+  match (claimed, proofs) with
+  | claim :: claimed, proof :: proofs -> (
+      match proof_of claim proof with
+      | Error verdict -> Error (in_proof number verdict)
+      | Ok first -> Result.map (List.cons first) (proofs_of proof_of in_proof (number + 1) claimed proofs))
   | _ -> Ok []
 
-let verify_bound formulas (read : Reading.instance) (bound : Reading.bound) =
+(* The number of the first claim that its proof does not refute. *)
+let rec first_unrefuted refuted number claimed proofs =
+  match (claimed, proofs) with
+  | claim :: claimed, (blueprint, lines) :: proofs when refuted claim blueprint lines ->
+      first_unrefuted refuted (number + 1) claimed proofs
+  | [], _ -> None
+  | _ -> Some number
+
+let verify_groups (read : Reading.instance) (certificate : Bound.certificate) of_cuts of_deadlines =
+  let ( let* ) = Result.bind in
+  let made =
+    let* of_cuts = proofs_of (proof_of_cut read) in_proof_of_cut 0 certificate.cuts of_cuts in
+    let* of_deadlines = proofs_of (proof_of_deadlines read) in_proof_of_deadlines 0 certificate.groups of_deadlines in
+    Ok (of_cuts, of_deadlines)
+  in
+  match made with
+  | Error verdict -> verdict
+  | Ok (of_cuts, of_deadlines) when Formula.groups_refuted read.instance certificate of_cuts of_deadlines ->
+      Accepted [ ("bound", whole certificate.bound) ]
+  | Ok (of_cuts, of_deadlines) -> (
+      let cut = first_unrefuted (Formula.cut_refuted read.instance) 0 certificate.cuts of_cuts in
+      let deadlines = first_unrefuted (Formula.deadlines_refuted read.instance) 0 certificate.groups of_deadlines in
+      match (cut, deadlines) with
+      | Some number, _ -> in_proof_of_cut number no_refutation
+      | None, Some number -> in_proof_of_deadlines number no_refutation
+      | None, None -> Undecided "the kernel has lost the proof of a group")
+
+let verify_bound (read : Reading.instance) (bound : Reading.bound) =
   let { Reading.certificate; of_cuts; of_deadlines; _ } = bound in
   match Bound.broken_rule read.instance certificate (Search.evidence read.instance certificate) with
   | Some Bound.Scale -> Refused ("bound/scale", "the scale must be a power of two")
@@ -181,15 +224,4 @@ let verify_bound formulas (read : Reading.instance) (bound : Reading.bound) =
       Refused ("bound/robots", claim ^ " must be no more than its least priced cost")
   | Some (Bound.Robots []) -> Refused ("bound/robots", "each robot must be named once, in the instance's order")
   | Some Bound.Total -> Refused ("bound/total", "the bound must be the sum of all parts, rounded up")
-  | None -> (
-      match proofs_of_cuts read 0 certificate.cuts of_cuts with
-      | Error verdict -> verdict
-      | Ok proofs when Formula.cuts_refuted read.instance certificate.cuts proofs -> (
-          match List.find_map Fun.id (List.mapi (why_undecided formulas) of_deadlines) with
-          | Some why -> Undecided why
-          | None ->
-              let group number _ : Yojson.Safe.t =
-                `String (Printf.sprintf "the formula given says that the robots of deadline %d keep all of theirs" number)
-              in
-              Accepted [ ("bound", whole certificate.bound); ("assumed", `List (List.mapi group certificate.groups)) ])
-      | Ok _ -> Undecided "the kernel has lost the proof of a cut")
+  | None -> verify_groups read certificate of_cuts of_deadlines
