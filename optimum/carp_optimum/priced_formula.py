@@ -1,7 +1,8 @@
 """The formula of all plans whose total is at most K, made small by a lower bound (`carp_optimum.reduced_costs`).
 
 It has only nodes whose reduced cost is within the gap, and all conflicts. The costs that share the gap are counted in
-`LEVELS` parts of it, rounded down: the reduced cost of each robot, the price of each resource that nobody is in.
+`LEVELS` parts of it, rounded down: the reduced cost of each robot, the price of each resource that nobody is in, and
+the price of deadlines for each robot that is late, but one: the bound takes it that all the others pay it.
 """
 
 from collections.abc import Callable
@@ -43,6 +44,7 @@ def priced_formula(instance: Instance, bound: PricedBound, cost: int, look: Call
     unit = max(1, bound.gap(cost))
     numbers = [_reduced_cost(encoding.formula, robot, reduced, unit) for robot, reduced in described]
     numbers += _prices_of_empty_places(encoding, bound, unit)
+    numbers += _prices_of_late_robots(encoding, bound, unit)
     total = encoding.formula.at_least(numbers, LEVELS + 1)
     if len(total) > LEVELS:
         encoding.formula.add(-total[LEVELS])
@@ -89,4 +91,24 @@ def _prices_of_empty_places(encoding: Encoding, bound: PricedBound, unit: int) -
             present = [encoding.presence(position, resource, tick) for position in robots]
             encoding.formula.add(*(literal for literal in present if literal is not None), number[-1])
             numbers.append(number)
+    return numbers
+
+
+def _prices_of_late_robots(encoding: Encoding, bound: PricedBound, unit: int) -> list[list[Literal]]:
+    """For each group with deadlines, which one robot must miss, a number: the level of the price for each other."""
+    formula = encoding.formula
+    clauses = {robot.robot.id: robot for robot in encoding.robots}
+    numbers = []
+    for deadlines in bound.certificate.deadlines:
+        entries = [(clauses[name], tick) for name, tick in zip(deadlines.robots, deadlines.ticks, strict=True)]
+        if any(tick < robot.earliest for robot, tick in entries):
+            continue  # a robot that is late anyhow has no literal for it
+        late = [robot.later_than(tick - robot.earliest) for robot, tick in entries]
+        formula.add(*late)
+        number = _number(formula, _level(deadlines.price * (len(late) - 1), unit))
+        for others, literal in enumerate(formula.at_least([[each] for each in late], len(late))):
+            level = _level(deadlines.price * others, unit)
+            if level > 0:
+                formula.add(-literal, number[level - 1])
+        numbers.append(number)
     return numbers

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
+from pysat.solvers import Cadical195
 from tests.profiles import draws
 from tests.spec.making import grid
 from tests.verify.tiny import TINY
@@ -154,6 +155,24 @@ def test_nodes_beyond_the_gap_are_left_out() -> None:
         shortest = {robot.robot.id: robot.shortest or 0 for robot in encoding.robots}
         for robot in encoding.robots:
             assert robot.node.keys() <= bound.reduced(robot, shortest, cost).nodes.keys()
+
+
+def test_at_the_bound_one_robot_of_each_group_with_deadlines_is_late_and_no_second_one_if_that_is_too_dear() -> None:
+    instance = town(7, "park")
+    bound = PricedBound(instance, lower_bound(instance, steps=1000))
+    encoding = priced_formula(instance, bound, bound.certificate.bound, lambda: None)
+    clauses = {robot.robot.id: robot for robot in encoding.robots}
+    solver = Cadical195(bootstrap_with=encoding.formula.clauses)
+    dear = 0
+    for group in bound.certificate.deadlines:
+        entries = [(clauses[name], tick) for name, tick in zip(group.robots, group.ticks, strict=True)]
+        late = [robot.later_than(tick - robot.earliest) for robot, tick in entries]
+        assert not solver.propagate([-literal for literal in late])[0]
+        if group.price > bound.gap(bound.certificate.bound):
+            dear += 1
+            assert not solver.propagate(late[:2])[0]
+    solver.delete()
+    assert dear > 0
 
 
 @pytest.fixture
