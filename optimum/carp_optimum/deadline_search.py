@@ -28,10 +28,12 @@ from carp_verify.encoding import Encoding, violated
 from carp_verify.optimum_rules import LARGEST_FORMULA
 
 STEPS = 120
-SHARES = (0, 18, 36, 54, 72)
+SHARES = (0, 12, 24, 36, 48, 60, 80)
 """The largest numbers of steps, of all `STEPS`, in which a robot is later than it is allowed."""
 ENOUGH = 110
 """The most steps in which robots of a group are late: one of them would have to be in each of `STEPS`."""
+LARGEST_TO_RAISE = 2 * STEPS
+"""The most steps in which robots of a core are late whose delays are made larger, so that they are late in fewer."""
 LARGEST_ENCODING = 2_000_000
 """Robots times resources, or times delays, beyond which no deadlines are searched for, as tables would be large."""
 LARGEST_DELAYS = 300
@@ -80,7 +82,7 @@ class DeadlineSearch:
         delays = self.search.wander(STEPS, self.search.scale // 4, check)
         if delays.max(axis=0).sum() > LARGEST_DELAYS:
             return 0
-        allowed = range(int(delays.max(initial=0)) + 1)
+        allowed = range(int(delays.max(initial=0)) + MARGIN + 1)
         later = np.stack([(delays > each).sum(axis=0) for each in allowed], axis=1)  # steps, by robot and delay
         chosen: list[Deadlines] = []
         gain = 0
@@ -89,13 +91,15 @@ class DeadlineSearch:
             self.cores.check = check
             for share in SHARES:
                 for core in self.cores.disjoint((later <= share).argmax(axis=1).tolist()):
-                    steps = sum(int(later[robot, delay]) for robot, delay in core.items())
-                    if steps <= ENOUGH and len(core) <= LARGEST_GROUP:
-                        raised = self.cores.raised(core, (later == 0).argmax(axis=1) + MARGIN)
+                    if len(core) > LARGEST_GROUP or _steps(later, core) > LARGEST_TO_RAISE:
+                        continue
+                    oftenest_first = dict(sorted(core.items(), key=lambda each: -later[each]))
+                    raised = self.cores.raised(oftenest_first, (later == 0).argmax(axis=1) + MARGIN)
+                    if _steps(later, raised) <= ENOUGH:
                         deadlines = self._prove(raised, check)
                         if deadlines is not None:
                             chosen.append(deadlines)
-                            gain += STEPS - steps
+                            gain += STEPS - _steps(later, raised)
         finally:
             self.found += chosen
             self.search.add_deadlines([deadlines.allowed for deadlines in chosen])
@@ -125,6 +129,11 @@ class DeadlineSearch:
         if len(lines) > LONGEST_REFUTATION:
             return None
         return Deadlines(allowed, DeadlinesDocument(robots, ticks, 0, lines))
+
+
+def _steps(later: Longs, allowed: Allowed) -> int:
+    """The steps in which the robots are later than they are allowed, robot by robot."""
+    return sum(int(later[each]) for each in allowed.items())
 
 
 class _Cores:
