@@ -86,7 +86,7 @@ optimum-figures: install
 	$(BIN)/python -m carproof.optimum_table
 
 # Measure how far polished plans are above the bound on the paper's maps, and put the tables into docs/results/gaps.md: four
-# hours. `python -m carproof.gap_table --quick` prints the tables of a few seconds.
+# hours. `python -m carproof.gap_table --seeds 2` measures two assignments a map, `--quick` prints the tables of a few seconds.
 gap-figures: install
 	$(BIN)/python -m carproof.gap_table
 

@@ -361,7 +361,7 @@ def no_polish(wishes: Records, alone: Ints, least: Longs, resources: int) -> Pol
     return Polish(
         queue=ints(alone.size),
         plans=ints(alone.size),
-        counts=longs(3),
+        counts=longs(4),
         stream=np.zeros(1, np.uint64),
         wishes=wishes,
         alone=alone,

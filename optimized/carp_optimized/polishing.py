@@ -3,6 +3,8 @@
 A neighbourhood is planned in place: its plans are withdrawn, and those that are not kept are reserved again. An order
 is cut as soon as it leaves more robots unplanned than before, or as many and its cost with the least costs of the
 robots still to come is above that of the plans before: it could not be kept.
+
+`carp_optimum.annealing` lets rounds raise the total. In a polish by the rules none may: then nothing is drawn for it.
 """
 
 import numpy as np
@@ -17,7 +19,8 @@ from carp_optimized.references import Native
 from carp_optimized.search import find_plan_by
 from carp_optimized.windows import reserve, withdraw
 
-QUEUED, TURN, MARKS = range(3)  # the counts
+QUEUED, TURN, MARKS, CHANCE = range(4)  # the counts
+SURE = 1 << 16  # a chance is in parts of this
 REPAIR, DELAYED, CONTESTED, NEAR = range(4)
 LEAST_MEMBERS = 4
 SIZES = MOST_MEMBERS - LEAST_MEMBERS + 1
@@ -295,7 +298,7 @@ def replan_members(state: State, polish: Polish, size: int) -> None:
         else:
             limit += cost_of(state, record)
             withdraw(state, record)
-    planned = plan_members(state, polish, size, missing, limit)
+    planned = plan_members(state, polish, size, missing, limit + draw_raise(polish))
     if planned == size:
         keep_members(polish, size)
         return
@@ -308,6 +311,15 @@ def replan_members(state: State, polish: Polish, size: int) -> None:
     records.used[0] = used
     records.used[1] = used_visits
     records.used[2] = used_expansions
+
+
+@compiled
+def draw_raise(polish: Polish) -> int:
+    """Draw by how much the round may raise the total: each further tick by the chance, which is below `SURE`."""
+    ticks = 0
+    while polish.counts[CHANCE] > 0 and choice(polish.stream, SURE) < polish.counts[CHANCE]:
+        ticks += 1
+    return ticks
 
 
 @compiled

@@ -11,6 +11,7 @@ together.
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
+from time import monotonic_ns
 from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
@@ -45,19 +46,20 @@ def lower_bound(
     seconds: float | None = None,
     steps: int | None = None,
     on_step: Callable[[Progress], None] = lambda _: None,
+    clock: Callable[[], int] = monotonic_ns,
 ) -> BoundDocument:
     """Search for this many seconds or steps, whichever is over first, or until nothing is gained any more.
 
     With steps alone, the same instance gives the same certificate. `on_step` is called after each step, and now and
-    then while cuts are searched for. Raises `Refusal` for numbers that are too large.
+    then while cuts are searched for; `clock` gives nanoseconds. Raises `Refusal` for numbers that are too large.
     """
     require_following(instance)
     from carp_optimum.cut_search import CutSearch  # noqa: PLC0415 - numba is slow to load
     from carp_optimum.deadline_search import DeadlineSearch  # noqa: PLC0415
     from carp_optimum.price_search import PriceSearch  # noqa: PLC0415
 
-    rough = _limit(seconds, steps, ROUGH_PARTS)
-    end = _limit(seconds, steps, PARTS)
+    rough = _limit(seconds, steps, ROUGH_PARTS, clock)
+    end = _limit(seconds, steps, PARTS, clock)
     search = PriceSearch(instance, SCALE)
     cuts = CutSearch(search)
     deadlines = DeadlineSearch(search)
@@ -81,9 +83,9 @@ def lower_bound(
     return _certificate(search, cuts, deadlines)
 
 
-def _limit(seconds: float | None, steps: int | None, parts: int) -> Callable[[int], None]:
+def _limit(seconds: float | None, steps: int | None, parts: int, clock: Callable[[], int]) -> Callable[[int], None]:
     """A function of the steps taken that raises `TimeOver` once this part of the time, or of the steps, is over."""
-    deadline = None if seconds is None else Deadline(seconds * parts / PARTS)
+    deadline = None if seconds is None else Deadline(seconds * parts / PARTS, clock)
 
     def check(count: int) -> None:
         if deadline is not None:

@@ -1,5 +1,12 @@
 """The tables of certified gaps: what is counted, and what is left out."""
 
+from time import process_time, process_time_ns
+
+import pytest
+
+from carp_optimum.bound import lower_bound
+from carp_spec import Instance, Solution
+from carp_verify.bounds import BoundDocument
 from carproof import gap_table
 from carproof.gap_table import Found, Task
 
@@ -27,3 +34,25 @@ def test_a_measurement_of_a_few_robots_is_bracketed_by_bound_and_plans() -> None
 
 def test_the_quick_size_has_one_assignment_of_each_map() -> None:
     assert {task.seeds for task in map(gap_table.quick, (*gap_table.GAPS, *gap_table.SPLITS))} == {1}
+
+
+def test_a_part_of_the_seeds_can_be_measured() -> None:
+    assert {task.seeds for task in gap_table.first_seeds(gap_table.GAPS, 2)} == {2}
+    assert gap_table.first_seeds(gap_table.SPLITS, None) == [*gap_table.SPLITS]
+
+
+def test_other_work_on_the_machine_takes_no_time_from_a_measurement(monkeypatch: pytest.MonkeyPatch) -> None:
+    clocks: list[object] = []
+
+    def plans(_: Instance, solution: Solution, __: float, **options: object) -> Solution:
+        clocks.append(options["clock"])
+        return solution
+
+    def bound(instance: Instance, **options: object) -> BoundDocument:
+        clocks.append(options.get("clock"))
+        return lower_bound(instance, steps=0)
+
+    monkeypatch.setattr(gap_table, "polish_for", plans)
+    monkeypatch.setattr(gap_table, "lower_bound", bound)
+    gap_table.measure(Task(20, 6, 1, 60), 1)
+    assert clocks[:2] == [process_time, process_time_ns]

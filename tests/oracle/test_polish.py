@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 from tests.oracle.running import HEAD_ON, TWO, TWO_PLANNED, Run, corridor, save, solution
 
+from carp_spec import Instance, Solution
+
 LATE = solution({"r1": [["a", 0, 2], ["b", 2, 4], ["c", 4, 5]], "r2": TWO_PLANNED["plans"][1]["visits"]})
 
 
@@ -49,3 +51,23 @@ def test_the_gap_is_that_of_a_certificate_which_is_verified(carproof: Run) -> No
     refused = carproof("polish town.json late.json --iterations 0 --bound bound.json")
     assert refused.code == 2
     assert "$.bound" in refused.stderr
+
+
+def test_for_a_time_robots_without_a_plan_are_planned_first(carproof: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    given: list[Solution] = []
+
+    def anneal(_: Instance, solution: Solution, **__: object) -> Solution:
+        given.append(solution)
+        return solution
+
+    monkeypatch.setattr("carp_optimum.annealing.anneal", anneal)
+    assert carproof("polish town.json one.json --seconds 0.1").code == 0
+    assert [each.unplanned for each in given] == [()]
+
+
+@pytest.mark.parametrize("option", ["--engine optimized", "--starts 2"])
+def test_engine_and_starts_keep_to_rounds_that_never_raise_the_total(
+    carproof: Run, monkeypatch: pytest.MonkeyPatch, option: str
+) -> None:
+    monkeypatch.setattr("carp_optimum.annealing.anneal", None)
+    assert carproof(f"polish town.json late.json --seconds 0.1 {option}").code == 0

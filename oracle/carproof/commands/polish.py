@@ -62,11 +62,13 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     """Improve SOLUTION, plans for INSTANCE, round by round; robots without a plan get one, if it can be found.
 
     SOLUTION is in any format that check reads (--from); the result is carproof's document. This is large neighbourhood
-    search: a round removes a few robots, replans them, and keeps the new plans if they are not worse. With --starts,
-    copies of SOLUTION share the rounds: the worse half of them ends early, again and again. Equal --iterations,
-    --starts and --seed give equal plans. Without --seconds, robots that are still left out in the end are planned
-    with others, in small groups or in another order. All robots are planned from their release on: none is under way.
-    The lower bound is the sum of the shortest paths, or that of --bound, which is verified first.
+    search: a round removes a few robots, replans them, and keeps the new plans if they are not worse. With --seconds
+    and neither --starts nor --engine, a round may also make the total larger, by ever fewer ticks (simulated
+    annealing), and the best plans seen are the result. With --starts, copies of SOLUTION share the rounds: the worse
+    half of them ends early, again and again. Equal --iterations, --starts and --seed give equal plans. Robots that
+    are left out are planned with others, in small groups or in another order: first if the search is simulated
+    annealing, last without --seconds. All robots are planned from their release on: none is under way. The lower
+    bound is the sum of the shortest paths, or that of --bound, which is verified first.
 
     Exit codes: 0 every robot has a plan, 1 some robot has none, 2 bad input.
     """
@@ -87,10 +89,15 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
             played = rounds
             show(rounds, found_so_far(total, least, unplanned))
 
-        improve = engine_named(engine).polish
-        if starts > 1:
-            improve = partial(polish_many, improve, starts)
-        after = improve(instance, before, iterations=iterations, seconds=seconds, seed=seed, advance=advance)
+        if seconds is not None and engine is None and starts == 1:
+            from carp_optimum.annealing import polish_for  # noqa: PLC0415 - numba is slow to load
+
+            after = polish_for(instance, before, seconds, seed=seed, advance=advance)
+        else:
+            improve = engine_named(engine).polish
+            if starts > 1:
+                improve = partial(polish_many, improve, starts)
+            after = improve(instance, before, iterations=iterations, seconds=seconds, seed=seed, advance=advance)
         if after.unplanned and seconds is None:
             from carp_optimum.joint_repair import repair  # noqa: PLC0415 - numba is slow to load
 

@@ -1,0 +1,98 @@
+"""A polish that may raise the total for a while: simulated annealing (Kirkpatrick et al. 1983) of `polish/...`.
+
+A polish ends where no small change helps any more. So each round draws by how many ticks it may raise the total: on
+average a share of the mean delay of a robot, which falls to 0 as the cube of the time that is left. The best plans seen
+are the result. Nothing here is trusted: the law judges the plans.
+"""
+
+from collections.abc import Callable
+from contextlib import suppress
+from time import perf_counter
+
+from carp_optimized.fleet import PlannedFleet
+from carp_optimized.polishing import CHANCE, SURE
+from carp_optimum.joint_repair import repair
+from carp_spec import Instance, Refusal, Solution
+from carp_spec.polish_rules import last_round, polishable, require_polish_options
+
+ROUNDS = 50
+"""The rounds of one compiled call."""
+HEAT = 64
+"""The mean raise of the first rounds, in 16ths of the mean delay of a robot."""
+PARTS = 1 << 10
+"""The time left is counted in parts of this."""
+BRIEF = 0.01
+"""The seconds of an annealing if a repair took the time."""
+
+
+def anneal(  # noqa: PLR0913 - what a polish has, and the clock
+    instance: Instance,
+    solution: Solution,
+    *,
+    iterations: int | None = None,
+    seconds: float | None = None,
+    seed: int = 0,
+    advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
+    clock: Callable[[], float] = perf_counter,
+) -> Solution:
+    """Improve a solution for that many rounds or seconds; `advance` gets the rounds and the best so far.
+
+    Equal iterations and seed give an equal solution. Raises what `polish` raises.
+    """
+    require_polish_options(iterations, seconds, seed)
+    whole = polishable(instance, solution)
+    last = last_round(iterations, seconds)
+    by_robot = {each.robot: each for each in whole.plans}
+    fleet = PlannedFleet(instance)
+    fleet.commit([by_robot[each] for each in whole.order])
+    polishing = fleet.polishing(seed)
+    least = int(polishing.fields.least.sum())
+    played = fleet.polish(polishing, 0)
+    best, plans = fleet.worth, fleet.plans
+    started = clock()
+    while played != last:
+        left = (
+            PARTS * (last - played) // last if last else PARTS - int(PARTS * (clock() - started) / (seconds or BRIEF))
+        )
+        if left <= 0:
+            break
+        rounds = ROUNDS if last is None else min(ROUNDS, last - played)
+        polishing.fields.counts[CHANCE] = _chance(max(best[1] - least, 0), len(instance.robots), left)
+        batch = fleet.polish(polishing, rounds)
+        played += batch
+        if fleet.worth < best:
+            best, plans = fleet.worth, fleet.plans
+        advance(played, *best)
+        if batch < rounds:
+            break
+    return Solution.of(instance, plans)
+
+
+def _chance(delay: int, robots: int, left: int) -> int:
+    """The chance of each further tick of a raise, in parts of `SURE`; it makes the mean raise what it is to be."""
+    mean = HEAT * delay * left**3
+    return SURE * mean // (mean + 16 * max(robots, 1) * PARTS**3)
+
+
+def polish_for(
+    instance: Instance,
+    solution: Solution,
+    seconds: float,
+    *,
+    seed: int = 0,
+    advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
+    clock: Callable[[], float] = perf_counter,
+) -> Solution:
+    """Improve a solution for that many seconds, the repair of robots left out included."""
+    started = clock()
+    if len(solution.plans) < len(instance.robots):
+        with suppress(Refusal):
+            solution = repair(instance, solution)
+    return anneal(
+        instance,
+        solution,
+        seconds=max(seconds - (clock() - started), BRIEF),
+        seed=seed,
+        advance=advance,
+        clock=clock,
+    )

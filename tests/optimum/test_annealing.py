@@ -1,0 +1,64 @@
+"""Simulated annealing of a polish: lawful and reproducible plans, never worse than those given, and no dead ends."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from carp_optimized import plan, polish
+from carp_optimum import annealing
+from carp_optimum.annealing import anneal, polish_for
+from carp_spec import Carp, Instance, Solution, judge, total_cost
+from carproof.generate import Fleet, Grid, grid_instance
+from carproof.strategies import PlannedInstance, Sizes, planned_instances
+
+ROUNDS = 4000
+
+
+def worth(solution: Solution, instance: Instance) -> tuple[int, int]:
+    return (len(instance.robots) - len(solution.plans), total_cost(instance, solution.plans))
+
+
+@given(planned_instances(Sizes(resources=8, robots=12)), st.integers(0, 99), st.integers(0, 2**64 - 1))
+def test_annealed_plans_are_lawful_and_never_worse(planned: PlannedInstance, iterations: int, seed: int) -> None:
+    instance = planned.instance
+    annealed = anneal(instance, planned.solution, iterations=iterations, seed=seed)
+    assert judge(instance, annealed).valid
+    assert worth(annealed, instance) <= worth(planned.solution, instance)
+    assert annealed == anneal(instance, planned.solution, iterations=iterations, seed=seed)
+
+
+def test_rounds_that_raise_the_total_lead_out_of_where_a_polish_ends() -> None:
+    instance = grid_instance(Grid(12, 12, map=4), Fleet(robots=50, seed=1))
+    start = plan(instance, Carp())
+    polished = {total_cost(instance, polish(instance, start, iterations=ROUNDS, seed=seed).plans) for seed in range(3)}
+    annealed = {total_cost(instance, anneal(instance, start, iterations=ROUNDS, seed=seed).plans) for seed in range(3)}
+    assert max(annealed) < min(polished)
+
+
+def test_the_best_plans_seen_are_the_result(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(annealing, "HEAT", 10_000)
+    instance = grid_instance(Grid(8, 8, map=8), Fleet(robots=24, seed=1))
+    given = polish(instance, plan(instance, Carp()), iterations=ROUNDS)
+    seen: list[tuple[int, int, int]] = []
+    annealed = anneal(instance, given, iterations=200, advance=lambda *at: seen.append(at))
+    assert worth(annealed, instance) == seen[-1][1:] <= worth(given, instance)
+    assert [rounds for rounds, _, _ in seen] == [50, 100, 150, 200]
+
+
+def test_no_heat_gives_the_plans_of_a_polish(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(annealing, "HEAT", 0)
+    instance = grid_instance(Grid(8, 8, map=8), Fleet(robots=24, seed=1))
+    given = plan(instance, Carp())
+    assert anneal(instance, given, iterations=130, seed=5) == polish(instance, given, iterations=130, seed=5)
+
+
+def test_a_time_ends_by_the_clock_and_robots_left_out_are_planned_first() -> None:
+    instance = grid_instance(Grid(map=5), Fleet(robots=100, seed=1))
+    given = plan(instance, Carp())
+    assert given.unplanned
+    ticks = iter(range(1000))
+    played: list[int] = []
+    after = polish_for(instance, given, 20, clock=lambda: next(ticks), advance=lambda *at: played.append(at[0]))
+    assert not after.unplanned
+    assert played[0] == 50
+    assert len(played) < 20
