@@ -147,8 +147,7 @@ class Tests:
             if outcome(partial(replace, module, path.read_text(encoding="utf-8")), kept).status:
                 sys.exit(f"the tests of {name} fail in a forked process without any mutation")
             print(f"{name}: {len(kept)} tests, {sum(case.seconds for case in ordered):.0f} s", flush=True)  # noqa: T201
-            of_module = mutants(path, planted=PLANTED.get(name, ()))
-            run_mutants(name, (each for each in of_module if not lines or each.line in lines), kept, load, 0)
+            run_mutants(name, mutants(path, planted=PLANTED.get(name, ())), lines, kept, load, 0)
         return True
 
 
@@ -225,13 +224,12 @@ def classes(tree: ast.Module) -> Sequence[ast.ClassDef]:
 
 
 def main(arguments: Sequence[str]) -> int:
-    lines = {name: [int(line) for line in of_name] for name, *of_name in (each.split(":") for each in arguments)}
-    modules = chosen(list(lines), list(TESTS))
+    modules = chosen(arguments, list(TESTS))
     files = sorted({f"tests/{file}.py" for name in modules for file in TESTS[name]})
     plugins = ("cacheprovider", "xdist", "cov")
     left_out = " and ".join(f"not {name}" for name in LEFT_OUT)
     options = ["-qqs", "-k", left_out, *(f"-pno:{name}" for name in plugins)]
-    return pytest.main([*options, *files], plugins=[Tests({name: lines.get(name, []) for name in modules})])
+    return pytest.main([*options, *files], plugins=[Tests(modules)])
 
 
 if __name__ == "__main__":

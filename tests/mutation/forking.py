@@ -9,7 +9,7 @@ import resource
 import signal
 import struct
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from mmap import mmap
 from pathlib import Path
@@ -52,11 +52,16 @@ class Outcome:
 
 
 def run_mutants(
-    name: str, mutants: Iterator[Mutant], cases: list[Case], load: Callable[[Mutant], None], usual: int
+    name: str,
+    mutants: Iterator[Mutant],
+    lines: Sequence[int],
+    cases: list[Case],
+    load: Callable[[Mutant], None],
+    usual: int,
 ) -> Score:
-    """Print the mutants of a module that no case notices, with the work that they do more or less than usual."""
+    """Print the mutants of a module, or of some lines, that no case notices, with the work beyond the usual."""
     score = Score()
-    for mutant in mutants:
+    for mutant in (each for each in mutants if not lines or each.line in lines):
         score.mutants += 1
         found = outcome(lambda mutant=mutant: load(mutant), cases)  # type: ignore[misc]
         is_pinned = found.status != 0 and found.case.is_pin
@@ -99,8 +104,9 @@ def outcome(load: Callable[[], None], cases: list[Case]) -> Outcome:
         os._exit(1)
 
 
-def chosen(names: Sequence[str], known: Sequence[str]) -> Sequence[str]:
-    """The modules that are named, or all."""
-    if unknown := set(names) - set(known):
+def chosen(arguments: Sequence[str], known: Sequence[str]) -> Mapping[str, Sequence[int]]:
+    """The modules that are named, or all, with the lines that are named behind each, `module:89:91`, if any."""
+    named = {name: [int(line) for line in lines] for name, *lines in (each.split(":") for each in arguments)}
+    if unknown := named.keys() - set(known):
         sys.exit(f"no such modules: {', '.join(sorted(unknown))}")
-    return names or known
+    return named or {name: [] for name in known}

@@ -1,10 +1,11 @@
 """Mutants of the compiled planner, run uncompiled, each in a process forked from one that has loaded all but it.
 
-`python -m tests.mutation.planner` lists the mutants that no check notices; with names of modules, of these alone. The
-checks are those of tests/optimized that fit into a few seconds: random small questions and fleets to which robots are
-added, whose answers by the reference are known before the first fork; test_replanning.py and test_reuse.py. Beside a
-mutant that survives stands how many queries it asks of the fleets, where it asks other ones: more cost time alone,
-fewer want a reason. Starting pytest and numba for each mutant would take ten times as long.
+`python -m tests.mutation.planner` lists the mutants that no check notices; with names of modules, of these alone, and
+with a name and lines, `windows:89:91`, of these lines alone. The checks are those of tests/optimized that fit into a
+few seconds: random small questions and fleets to which robots are added, whose answers by the reference are known
+before the first fork; test_replanning.py and test_reuse.py. Beside a mutant that survives stands how many queries it
+asks of the fleets, where it asks other ones: more cost time alone, fewer want a reason. Starting pytest and numba for
+each mutant would take ten times as long.
 """
 
 import os
@@ -139,19 +140,19 @@ def load(module: str, source: str) -> None:
         sys.meta_path.insert(0, Changed(f"carp_optimized.{module}", source))
 
 
-def main(names: Sequence[str]) -> int:
+def main(arguments: Sequence[str]) -> int:
     warnings.simplefilter("ignore")
     np.seterr(all="ignore")
     all_cases = cases()
     unchanged = outcome(lambda: load("", ""), all_cases)
     if unchanged.status:
         sys.exit("the planner fails the checks without any mutation")
-    for module in chosen(names, MODULES):
+    for module, lines in chosen(arguments, MODULES).items():
 
         def changed(mutant: Mutant, module: str = module) -> None:
             load(module, mutant.source)
 
-        run_mutants(module, mutants(FOLDER / f"{module}.py", omit=False), all_cases, changed, unchanged.work)
+        run_mutants(module, mutants(FOLDER / f"{module}.py", omit=False), lines, all_cases, changed, unchanged.work)
     return 0
 
 
