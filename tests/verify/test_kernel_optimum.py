@@ -265,6 +265,11 @@ def bound_verdict(instance: Instance, document: BoundDocument, folder: Path) -> 
     """The kernel's answer about a bound."""
     (folder / "instance.json").write_bytes(write_instance(instance))
     (folder / "bound.json").write_bytes(write(document))
+    return decided(folder)
+
+
+def decided(folder: Path) -> Any:  # noqa: ANN401 - as above
+    """The kernel's answer about the bound on file."""
     command = f"{program()} verify-bound {folder}/instance.json {folder}/bound.json".split()
     return json.loads(subprocess.run(command, capture_output=True, text=True, check=False).stdout)
 
@@ -347,6 +352,16 @@ def test_deadlines_whose_proof_is_changed_are_refused(change: Mapping[str, Any],
     answer = bound_verdict(head_on(), document, tmp_path)
     assert (answer["verdict"], answer["rule"]) == ("refused", "bound/deadline")
     assert answer["message"].startswith(f"the proof of deadlines 0 does not hold: {why}")
+
+
+def test_deadlines_of_robots_that_are_seen_on_their_way_are_bad_input(tmp_path: Path) -> None:
+    assert bound_verdict(head_on(), deadline_certificate(), tmp_path)["verdict"] == "accepted"
+    document = json.loads((tmp_path / "bound.json").read_text())
+    document["deadlines"][0]["seen"] = [[1, ["middle"]], [1, ["north"]]]
+    (tmp_path / "bound.json").write_text(json.dumps(document))
+    answer = decided(tmp_path)
+    assert (answer["verdict"], answer["path"], answer["rule"]) == ("bad input", "$.deadlines[0].seen", "limit/seen")
+    assert answer["message"] == "no robot may be seen on its way: the kernel decides deadlines of arrivals alone"
 
 
 def test_a_deadline_too_late_for_a_formula_is_undecided(tmp_path: Path) -> None:

@@ -348,7 +348,12 @@ let bound_of_json { resource_numbers; robot_numbers; _ } path json =
         required field "refutation" text) )
   in
   let group path json =
-    let field = fields path ~required:[ "robots"; "ticks"; "price"; "refutation" ] ~optional:[] json in
+    let field = fields path ~required:[ "robots"; "ticks"; "price"; "refutation" ] ~optional:[ "seen" ] json in
+    let seen path json =
+      if json <> `List [] then
+        refuse path "limit/seen" "no robot may be seen on its way: the kernel decides deadlines of arrivals alone"
+    in
+    ignore (present field "seen" seen);
     let robots = required field "robots" (elements robot) and ticks = required field "ticks" (elements whole) in
     if List.compare_lengths robots ticks <> 0 then shape path "a tick for each robot";
     ({ Bound.deadlines = List.combine robots ticks; fee = required field "price" whole }, required field "refutation" text)
