@@ -41,11 +41,20 @@ class TicksExhausted(Exception):  # noqa: N818 - the caller refuses the input
 
 def compiled(function: F) -> F:
     """Compile a function that other compiled functions call, once for all whole numbers, whatever their types there."""
-    dispatcher: Any = numba.njit(**INNER)(function)
+    return cast("F", _with_whole_numbers(numba.njit(**INNER)(function)))
+
+
+def inlined(function: F) -> F:
+    """The same for a function called often, and in few places: it becomes a part of those that call it."""
+    return cast("F", _with_whole_numbers(numba.njit(forceinline=True, **INNER)(function)))
+
+
+def _with_whole_numbers(dispatcher: Any) -> Any:  # noqa: ANN401 - numba is untyped
+    """The dispatcher, made to take any whole number for one of 64 bits."""
     if hasattr(dispatcher, "get_call_template"):  # compilation is switched on
         template = dispatcher.get_call_template
         dispatcher.get_call_template = lambda types, names: template([_widest(each) for each in types], names)
-    return cast("F", dispatcher)
+    return dispatcher
 
 
 def _widest(type: Any) -> Any:  # noqa: ANN401 - numba is untyped

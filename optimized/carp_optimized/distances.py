@@ -8,7 +8,7 @@ import math
 from typing import NamedTuple
 
 from carp_optimized.arrays import NEVER, NONE, State, Work
-from carp_optimized.compiling import compiled
+from carp_optimized.compiling import compiled, inlined
 
 
 class Mean(NamedTuple):
@@ -41,6 +41,19 @@ def term(dx: int, dy: int) -> int:
 
 
 @compiled
+def difference(state: State, one: int, other: int, first: int, end: int) -> tuple[int, int]:
+    """The sum of the differences of two plans' places, in x and in y, at all ticks from `first` to before `end`.
+
+    Neither plan begins before the first, nor arrives at the end or later.
+    """
+    a = state.records.spots[one]
+    b = state.records.spots[other]
+    x = int(a[2]) - int(b[2]) + (int(a[6]) - int(b[6])) * end - (int(a[4]) - int(b[4])) * first
+    y = int(a[3]) - int(b[3]) + (int(a[7]) - int(b[7])) * end - (int(a[5]) - int(b[5])) * first
+    return x, y
+
+
+@compiled
 def is_apart(state: State, one: int, other: int, whole: int) -> bool:
     """Whether the mean positions of two plans alone show that their distance is at least whole + 1.
 
@@ -53,8 +66,7 @@ def is_apart(state: State, one: int, other: int, whole: int) -> bool:
     b = state.records.spots[other]
     first = min(int(a[0]), int(b[0]))
     end = max(int(a[1]), int(b[1])) + 1
-    x = int(a[2]) - int(b[2]) + (int(a[6]) - int(b[6])) * end - (int(a[4]) - int(b[4])) * first
-    y = int(a[3]) - int(b[3]) + (int(a[7]) - int(b[7])) * end - (int(a[5]) - int(b[5])) * first
+    x, y = difference(state, one, other, first, end)
     limit = ((whole + 2) * (end - first) >> 16) + 1
     if max(abs(x), abs(y), limit) >= 1 << 31:
         return False
@@ -62,10 +74,23 @@ def is_apart(state: State, one: int, other: int, whole: int) -> bool:
 
 
 @compiled
-def distance_below(state: State, one: int, other: int, best: Mean) -> Mean:
-    """The distance of two plans if it is less than the best, else the best.
+def least_sum(x: int, y: int, ticks: int) -> int:
+    """The least sum of the terms of that many ticks whose differences have the sum (x, y).
 
-    Walks over both plans' visits, not over ticks, and stops as soon as the sum of the first terms is too large.
+    By the triangle inequality 2^16 times the length of (x, y) is no more than the sum of what the terms round, and each
+    is less than 1 below that. The length is at least |x|, |y|, and (|x| + |y|) * 181 / 256, as that is below the root
+    of 1/2. Where terms are not split, |x| and |y| together are below 2^45.
+    """
+    length = max(abs(x), abs(y), (abs(x) + abs(y)) * 181 >> 8)
+    return max((length << 16) - ticks, 0)
+
+
+@compiled
+def distance_below(state: State, one: int, other: int, best: Mean) -> Mean:
+    """The distance of two plans, or any larger one than the best if theirs is.
+
+    Walks over both plans' visits, not over ticks, and stops as soon as the sum of the first terms, with the least sum
+    of the others, is too large.
     """
     records = state.records
     split = state.split
@@ -83,6 +108,7 @@ def distance_below(state: State, one: int, other: int, best: Mean) -> Mean:
     j += 1
     high = 0
     low = 0
+    x, y = difference(state, one, other, first, end)  # from the tick on
     tick = first
     while tick < end:
         until = end
@@ -96,8 +122,10 @@ def distance_below(state: State, one: int, other: int, best: Mean) -> Mean:
         each = int(state.roots[dx * dx + dy * dy]) if is_small else term(dx, dy)
         high += (until - tick) * (each >> split)
         low += (until - tick) * (each & ((1 << split) - 1))
-        if high >= limit:
-            return best
+        x -= (until - tick) * dx
+        y -= (until - tick) * dy
+        if high + (least_sum(x, y, end - until) if split == 0 else 0) >= limit:
+            return Mean(best.whole + 1, 0, 1)
         tick = until
         if i < i_end and records.enter[i] == tick:
             here = int(records.resource[i])
@@ -106,41 +134,48 @@ def distance_below(state: State, one: int, other: int, best: Mean) -> Mean:
             there = int(records.resource[j])
             j += 1
     remainder = ((high % ticks) << split) + low
-    mean = Mean(((high // ticks) << split) + remainder // ticks, remainder % ticks, ticks)
-    return mean if is_less(mean, best) else best
+    return Mean(((high // ticks) << split) + remainder // ticks, remainder % ticks, ticks)
 
 
 @compiled
 def nearest(state: State, work: Work, size: int, count: int) -> int:
     """The position in `outside` of the robot least distant from the members, the first of such; `NONE`: none is left.
 
-    A robot whose plan had ended by now before any was replanned is left alone.
+    A robot whose plan had ended by now before any was replanned is left alone. The distance of one that is likely to be
+    near comes first, which saves most walks.
     """
-    best = guess(state, work, size, count)
-    chosen = NONE
+    likely = likely_nearest(state, work, size, count)
+    if likely == NONE:
+        return NONE
+    best = distance_to_members(state, work, likely, count, Mean(1 << (31 + state.split), 0, 1))
+    chosen = likely
     for position in range(size):
-        robot = int(work.outside[position])
-        if work.ended[robot]:
+        if position == likely or work.ended[work.outside[position]]:
             continue
-        own = int(work.trajectories[robot])
-        for member in range(count):
-            other = int(work.trajectories[work.members[member]])
-            if is_apart(state, own, other, best.whole):
-                continue
-            mean = distance_below(state, own, other, best)
-            if is_less(mean, best):
-                best = mean
-                chosen = position
+        mean = distance_to_members(state, work, position, count, best)
+        if is_less(mean, best) or (position < chosen and not is_less(best, mean)):
+            best = mean
+            chosen = position
     return chosen
 
 
-@compiled
-def guess(state: State, work: Work, size: int, count: int) -> Mean:
-    """A little more than the distance of a robot that is likely to be near the newest member, by start and goal.
+@inlined
+def distance_to_members(state: State, work: Work, position: int, count: int, best: Mean) -> Mean:
+    """The distance of the robot at that position outside from the nearest member, or a larger one than the best."""
+    own = int(work.trajectories[work.outside[position]])
+    least = Mean(best.whole + 1, 0, 1)
+    for member in range(count):
+        other = int(work.trajectories[work.members[member]])
+        if not is_apart(state, own, other, best.whole):
+            mean = distance_below(state, own, other, best)
+            if is_less(mean, least):
+                least = mean
+    return least
 
-    Starting with it saves most walks. The robot itself is nearer than that, so it is found if no other is.
-    """
-    most = Mean(1 << (31 + state.split), 0, 1)  # more than any term
+
+@compiled
+def likely_nearest(state: State, work: Work, size: int, count: int) -> int:
+    """The position of the robot that is nearest to the newest member by start, goal and first tick; `NONE`: none."""
     likely = NONE
     least = NEVER << 3
     b = state.records.spots[int(work.trajectories[work.members[count - 1]])]
@@ -148,16 +183,10 @@ def guess(state: State, work: Work, size: int, count: int) -> Mean:
         robot = int(work.outside[position])
         if work.ended[robot]:
             continue
-        own = int(work.trajectories[robot])
-        a = state.records.spots[own]
+        a = state.records.spots[int(work.trajectories[robot])]
         away = abs(int(a[4]) - int(b[4])) + abs(int(a[5]) - int(b[5]))
         away += abs(int(a[6]) - int(b[6])) + abs(int(a[7]) - int(b[7])) + abs(int(a[0]) - int(b[0]))
         if away < least:
             least = away
-            likely = own
-    if likely == NONE:
-        return most
-    best = most
-    for member in range(count):
-        best = distance_below(state, likely, int(work.trajectories[work.members[member]]), best)
-    return Mean(best.whole + 1, 0, 1)
+            likely = position
+    return likely

@@ -230,11 +230,10 @@ def nothing_freed(resources: int) -> Freed:
     return Freed(
         now=np.ones(1, np.int64),
         mark=np.zeros(resources, np.int64),
-        near=np.zeros(resources, np.int64),
         earliest=np.zeros(resources, np.int32),
         latest=np.zeros(resources, np.int32),
         source=np.zeros(resources, np.int32),
-        near_earliest=np.zeros(resources, np.int32),
+        near_earliest=np.full(resources, NEVER, np.int32),
         near_latest=np.zeros(resources, np.int32),
         regions=np.zeros(1, np.int64),
     )

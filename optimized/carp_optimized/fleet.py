@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import NamedTuple, TypeAlias, TypeVar
+from typing import TypeAlias, TypeVar
 
 import numpy as np
 
@@ -18,13 +18,12 @@ from carp_optimized.arrays import (
     TOO_FAR,
     UNCHANGED,
     UNREACHABLE,
-    Answers,
+    Adding,
     Ints,
     Options,
     Polish,
     Records,
     State,
-    Work,
 )
 from carp_optimized.compiling import RecordsExhausted, RoomExhausted, TicksExhausted
 from carp_optimized.neighbourhood import add_robot
@@ -43,14 +42,6 @@ PART = 512  # robots of a pass
 MANY = 1 << 16  # visits and expansions of records that are no longer held
 
 
-class Scratch(NamedTuple):
-    """The arrays of the neighbourhood planner, kept as long as its options stay the same."""
-
-    options: Native[Options]
-    work: Native[Work]
-    answers: Native[Answers]
-
-
 class PlannedFleet:
     """An instance with the plans that some of its robots have, in planning order.
 
@@ -63,13 +54,13 @@ class PlannedFleet:
         encoding.refuse_what_is_too_large(instance)
         self.instance = instance
         self.reuse = reuse or Reuse()
+        self._adding: Native[Adding] | None = None
         self._take(encoding.encode(instance))
         self._index = {robot.id: position for position, robot in enumerate(instance.robots)}
         self._order = np.zeros(0, np.int32)
         self._records = np.full(len(instance.robots), NONE, np.int32)
         self._plans: dict[int, Plan] = {}
         self._many = MANY
-        self._scratch: Scratch | None = None
         self._options: Neighbourhood | None = None
         self._reuse: Reuse | None = None
 
@@ -223,18 +214,16 @@ class PlannedFleet:
         """Add a robot by the neighbourhood planner; if it stays unplanned, all plans stay as they are."""
         encoding.refuse_tick("$.now", now)
         self._forget_old_records()
-        scratch = self._scratch_for(options)
-        work = scratch.work.fields
-        size = self._order.size
+        order = np.empty(self._order.size + 1, np.int32)
 
         def attempt() -> bool:
-            work.queue[:size] = self._order
-            work.queue[size] = robot
-            work.stream[0] = (options.seed + robot) % 2**64
-            return add_robot(self._native, self._empty, scratch.work, scratch.answers, scratch.options, size, now)
+            adding = self._adding_with(options)
+            if options.sample is not None:  # orders are drawn
+                adding.fields.work.stream[0] = (options.seed + robot) % 2**64
+            return add_robot(adding, self._order, robot, now, order)
 
         if self._call(attempt):
-            self._order = work.queue[: size + 1].copy()
+            self._order = order
             self._records = self._state.reserved.copy()
             return True
         return options.fallback is not None and self._fall_back(robot, now, Shuffled(options.fallback, options.seed))
@@ -276,19 +265,20 @@ class PlannedFleet:
         """The number of unplanned robots, and the total cost of the others."""
         return (self._records.size - self._order.size, self._cost(self._records[self._order]))
 
-    def _scratch_for(self, options: Neighbourhood) -> Scratch:
-        """The scratch for adding a robot with these options."""
+    def _adding_with(self, options: Neighbourhood) -> Native[Adding]:
+        """What adding a robot with these options takes, kept as long as they and the arrays stay the same."""
         reuse = self.reuse
-        if self._scratch is not None and self._options is options and self._reuse is reuse:
-            return self._scratch
+        if self._adding is not None and self._options is options and self._reuse is reuse:
+            return self._adding
         self._options, self._reuse = options, reuse
         kinds = (reuse.kept, reuse.unchanged, reuse.prefixes, reuse.shared, reuse.bounds)
         members, sample = min(options.m, len(self._records) + 1), options.sample or 0
         encoded = Options(members, sample, options.baseline, *kinds)
-        if self._scratch is None or self._scratch.options.fields != encoded:
+        if self._adding is None or self._adding.fields.options != encoded:
             work = encoding.no_work(len(self._records), members, sample)
-            self._scratch = Scratch(Native(encoded), Native(work), Native(encoding.no_answers(members)))
-        return self._scratch
+            answers = encoding.no_answers(members)
+            self._adding = Native(Adding(self._state, self._empty.fields, encoded, work, answers))
+        return self._adding
 
     def clear(self) -> None:
         """Forget all plans."""
@@ -301,6 +291,7 @@ class PlannedFleet:
         self._state = state
         self._native = Native(state)
         self._empty = Native(encoding.without_reservations(state))
+        self._adding = None
 
     def _withdraw(self, records: Ints) -> None:
         self._call(lambda: passes.withdraw_all(self._native, records))
@@ -349,23 +340,22 @@ class PlannedFleet:
         while True:
             used = self._state.records.used.tolist()
             counters = self._state.counters.tolist()
-            records, places = self._state.records, self._state.windows.start.size
             try:
                 return function()
             except RecordsExhausted:
-                self._rebuild(used, counters, enlarged(records), places)
+                self._rebuild(used, counters, enlarged(self._state.records), 1)
             except RoomExhausted:
-                self._rebuild(used, counters, records, 2 * places)
+                self._rebuild(used, counters, self._state.records, 2)
             except TicksExhausted:
-                self._rebuild(used, counters, records, places)
+                self._rebuild(used, counters, self._state.records, 1)
                 message = f"a plan would need ticks beyond {LARGEST}; {encoding.NO_LIMIT_THERE}"
                 raise Refusal("limit", "$.robots", "limit/ticks", message) from None
 
-    def _rebuild(self, used: Sequence[int], counters: Sequence[int], records: Records, places: int) -> None:
-        """Go back to the plans held before a call that was broken off, with that room."""
+    def _rebuild(self, used: Sequence[int], counters: Sequence[int], records: Records, times: int) -> None:
+        """Go back to the plans held before a call that was broken off, with these records and `times` the places."""
         self._state.counters[:] = counters
         records.used[:] = used
-        self._take(encoding.with_room(self._state, places, records))
+        self._take(encoding.with_room(self._state, times * self._state.windows.start.size, records))
         held = self._records[self._order]
         self._call(lambda: passes.reserve_all(self._native, held))
 

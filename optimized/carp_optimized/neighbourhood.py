@@ -7,6 +7,7 @@ from carp_optimized.arrays import (
     NONE,
     UNCHANGED,
     UNKNOWN,
+    Adding,
     Answers,
     Ints,
     Options,
@@ -16,41 +17,36 @@ from carp_optimized.arrays import (
 from carp_optimized.compiling import compiled, entry
 from carp_optimized.distances import nearest
 from carp_optimized.guides import shortest_of
-from carp_optimized.natives import answers_at, options_at, state_at, work_at
+from carp_optimized.natives import adding_at
 from carp_optimized.order_search import search_orders
 from carp_optimized.orders import draw_orders
 from carp_optimized.records import cost_of, same_plan
 from carp_optimized.references import Native
-from carp_optimized.replanning import could_use_freed, forget_freed, note_freed, replan
-from carp_optimized.search import find_plan, find_plan_by
-from carp_optimized.windows import give_rank, plan_fits, reserve, withdraw
+from carp_optimized.replanning import alike_at_end, alike_at_start, could_use_freed, forget_freed, note_freed, replan
+from carp_optimized.search import find_plan, find_plan_alone, find_plan_by
+from carp_optimized.windows import give_rank, plan_fits, reserve_but, withdraw, withdraw_but
 
 
 @entry
 def add_robot(  # noqa: C901 - Algorithm 1 from its first line to its last
-    native: Native[State],
-    native_empty: Native[State],
-    native_work: Native[Work],
-    native_answers: Native[Answers],
-    native_options: Native[Options],
-    size: int,
-    now: int,
+    native: Native[Adding], before: Ints, robot: int, now: int, after: Ints
 ) -> bool:
-    """Add the last robot of the queue of `work` to the `size` before it; returns whether it got a plan.
+    """Add a robot to those `before` it in planning order; returns whether it got a plan.
 
-    If so, the queue becomes that of the best candidate. The windows hold the plans before and afterwards.
+    If so, `after` becomes the planning order with the robot. The windows hold the plans before and afterwards.
     """
-    state = state_at(native)
-    empty = state_at(native_empty)
-    work = work_at(native_work)
-    answers = answers_at(native_answers)
-    options = options_at(native_options)
+    adding = adding_at(native)
+    state = adding.state
+    empty = adding.empty
+    work = adding.work
+    answers = adding.answers
+    options = adding.options
+    size = before.size
     robots = size + 1
-    new = int(work.queue[size])
-    shortest = find_plan(empty, new, NONE, now, NEVER)
+    shortest = find_plan_alone(empty, robot, now)
     if shortest == NONE:
         return False
-    rounds = min(begin(state, work, size, shortest, now), options.m - 1)
+    rounds = min(begin(state, work, before, robot, shortest, now), options.m - 1)
     best = NO_LIMIT
     if options.baseline or rounds == 0:
         best = try_baseline(state, work, size, shortest, now, options.unchanged)
@@ -79,20 +75,23 @@ def add_robot(  # noqa: C901 - Algorithm 1 from its first line to its last
     if best == NO_LIMIT:
         for k in range(robots - 1):
             work.best_plans[k] = work.before[work.queue[k]]
-        settle(state, work.queue, work.best_plans, robots - 1)
+        settle(state, work, work.queue, work.best_plans, robots - 1)
         return False
-    settle(state, work.best_order, work.best_plans, robots)
+    settle(state, work, work.best_order, work.best_plans, robots)
     for k in range(robots):
-        work.queue[k] = work.best_order[k]
+        after[k] = work.best_order[k]
     return True
 
 
 @compiled
-def begin(state: State, work: Work, size: int, shortest: int, now: int) -> int:
+def begin(state: State, work: Work, queue: Ints, new: int, shortest: int, now: int) -> int:
     """Begin with all robots but the new one outside the neighbourhood; returns how many have not ended by now."""
+    size = queue.size
+    for k in range(size):
+        work.queue[k] = queue[k]
+    work.queue[size] = new
     give_ranks(state, work.queue, size + 1)
     under_way = 0
-    new = int(work.queue[size])
     work.before[new] = NONE
     work.trajectories[new] = shortest
     work.members[0] = new
@@ -242,17 +241,31 @@ def keep_candidate(work: Work, size: int, count: int) -> None:
 
 
 @compiled
-def settle(state: State, robots: Ints, plans: Ints, count: int) -> None:
-    """Make the windows hold just these plans of these robots."""
-    for k in range(count):
-        held = int(state.reserved[robots[k]])
-        if held == NONE or held == plans[k]:
-            continue
-        if plans[k] != NONE and same_plan(state.records, held, int(plans[k])):
-            state.reserved[robots[k]] = plans[k]
-        else:
-            withdraw(state, held)
+def settle(state: State, work: Work, robots: Ints, plans: Ints, count: int) -> None:
+    """Make the windows hold just these plans of these robots.
+
+    Stays that a robot's plan before has too, at its beginning or end, stay reserved; ranks grow first, so theirs are
+    right.
+    """
     give_ranks(state, robots, count)
     for k in range(count):
-        if plans[k] != NONE and state.reserved[robots[k]] == NONE:
-            reserve(state, int(plans[k]))
+        robot = int(robots[k])
+        held = int(state.reserved[robot])
+        work.held[robot] = NONE
+        if held == NONE or held == plans[k]:
+            continue
+        if plans[k] == NONE:
+            withdraw(state, held)
+        elif same_plan(state.records, held, int(plans[k])):
+            state.reserved[robot] = plans[k]
+        else:
+            work.held[robot] = held
+            head = alike_at_start(state.records, held, int(plans[k]))
+            withdraw_but(state, held, head, alike_at_end(state.records, held, int(plans[k])))
+    for k in range(count):
+        robot = int(robots[k])
+        plan = int(plans[k])
+        if plan != NONE and state.reserved[robot] == NONE:
+            held = int(work.held[robot])
+            head = alike_at_start(state.records, held, plan) if held != NONE else 0
+            reserve_but(state, plan, head, alike_at_end(state.records, held, plan) if held != NONE else 0)

@@ -33,7 +33,7 @@ from carp_optimized.arrays import (
     State,
     Work,
 )
-from carp_optimized.compiling import compiled
+from carp_optimized.compiling import compiled, inlined
 from carp_optimized.guides import guide_slot, toll_of
 from carp_optimized.records import same_plan
 from carp_optimized.search import find_plan_by
@@ -45,6 +45,9 @@ def forget_freed(freed: Freed) -> None:
     """Set a new mark: nothing has been taken back since."""
     freed.now[0] += 1
     freed.regions[0] = 0
+    for resource in range(freed.near_latest.size):
+        freed.near_earliest[resource] = NEVER
+        freed.near_latest[resource] = 0
 
 
 @compiled
@@ -82,13 +85,8 @@ def note_near(state: State, resource: int, enter: int, leave: int) -> None:
     """Note that a stay there, or one move away, has been taken back."""
     freed = state.freed
     freed.regions[0] |= state.graph.region[resource]
-    if freed.near[resource] == freed.now[0]:
-        freed.near_earliest[resource] = min(int(freed.near_earliest[resource]), enter)
-        freed.near_latest[resource] = max(int(freed.near_latest[resource]), leave)
-    else:
-        freed.near[resource] = freed.now[0]
-        freed.near_earliest[resource] = enter
-        freed.near_latest[resource] = leave
+    freed.near_earliest[resource] = min(int(freed.near_earliest[resource]), enter)
+    freed.near_latest[resource] = max(int(freed.near_latest[resource]), leave)
 
 
 @compiled
@@ -110,9 +108,10 @@ def could_use_freed(state: State, record: int, behind: int) -> bool:
     last = first + int(records.expansions[record]) - 1
     for k in range(first, last + 1):
         resource = int(records.expanded[k])
-        if freed.near[resource] == mark and (
-            records.ready[k] < freed.near_latest[resource] and freed.near_earliest[resource] - reach < records.until[k]
-        ):
+        is_early = freed.near_earliest[resource] - reach < records.until[k]
+        if is_early & (
+            records.ready[k] < freed.near_latest[resource]
+        ):  # no branch for each: half would be mispredicted
             if freed.mark[resource] == mark:
                 if state.parks and k < last and resource == records.expanded[last]:
                     return True
@@ -123,7 +122,7 @@ def could_use_freed(state: State, record: int, behind: int) -> bool:
     return False
 
 
-@compiled
+@inlined
 def leads_out(state: State, record: int, k: int, behind: int) -> bool:
     """Whether the expansion's resource, which lost a stay, could be left again so that it matters."""
     graph = state.graph
@@ -143,7 +142,7 @@ def leads_out(state: State, record: int, k: int, behind: int) -> bool:
     return False
 
 
-@compiled
+@inlined
 def leads_in(state: State, record: int, k: int, behind: int) -> bool:
     """Whether the expansion's resource leads again into one that lost a stay, so that it matters."""
     graph = state.graph
@@ -164,7 +163,7 @@ def leads_in(state: State, record: int, k: int, behind: int) -> bool:
     return False
 
 
-@compiled
+@inlined
 def matters(state: State, record: int, k: int, target: int, entry: int, last_entry: int, behind: int) -> bool:
     """Whether the target can be entered between the two ticks with a key that would be popped.
 

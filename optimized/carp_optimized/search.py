@@ -62,6 +62,59 @@ def find_plan_by(state: State, robot: int, before: int, now: int, behind: int, l
 
 
 @compiled
+def find_plan_alone(empty: State, robot: int, now: int) -> int:
+    """The record of the robot's plan where nothing is reserved, or `NONE`, as `find_plan` makes it.
+
+    There A* expands just the path. As h is exact, each resource leads to one of the same f and a smaller h. Of these,
+    entered at one tick, the one of the smallest toll has the smallest key. Entries made before have no smaller f, and
+    where it is the same, no smaller h than the resource of the path that was expanded in their place, so a larger one
+    than what follows. A robot that starts at its goal, or is too far from it, is left to the search.
+    """
+    graph = empty.graph
+    windows = empty.windows
+    search = empty.search
+    resource = int(empty.robots.start[robot])
+    goal = int(empty.robots.goal[robot])
+    pace = int(empty.robots.pace[robot])
+    enter = int(empty.robots.release[robot])
+    slot = guide_slot(empty, int(empty.robots.destination[robot]))
+    toll = toll_of(empty, slot, resource)
+    ready = max(enter + pace * int(graph.duration[resource]), now)
+    if resource == goal or toll < 0 or ready + (toll >> 32) > LARGEST:
+        return find_plan(empty, robot, NONE, now, NEVER)
+    empty.counters[ASKED] += 1
+    search.generation[0] += 1
+    label = int(search.generation[0]) << 32
+    before = NONE
+    expansions = 0
+    while True:
+        window = int(windows.offset[resource])
+        search.reached[window] = label - enter
+        search.parent[window] = before
+        if expansions == search.expanded.size:
+            raise RoomExhausted
+        search.expanded[expansions] = resource
+        search.ready[expansions] = ready
+        search.popped[expansions] = (enter << 32) + toll
+        expansions += 1
+        before = window
+        if resource == goal:
+            break
+        toll = NO_LIMIT
+        for edge in range(int(graph.first[resource]), int(graph.first[resource + 1])):
+            target = int(graph.target[edge])
+            if 0 <= toll_of(empty, slot, target) < toll:
+                toll = toll_of(empty, slot, target)
+                resource = target
+        enter = ready
+        ready = enter + pace * int(graph.duration[resource])
+    search.expansions[0] = expansions
+    record = start_record(empty, robot, 0, 0)
+    write_record(empty, record, before, expansions)
+    return record
+
+
+@compiled
 def stand(state: State, resource: int, enter: int, behind: int) -> int:
     """Copy the window around the tick into the slot `STANDING`; return its own slot."""
     windows = state.windows

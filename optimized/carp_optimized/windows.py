@@ -7,7 +7,7 @@ forbidden, a gap is a tick shorter at both ends. The windows of other resources 
 
 from carp_optimized.arrays import BLOCK, NEVER, NONE, Ints, Records, Rows, State
 from carp_optimized.blocks import below, width
-from carp_optimized.compiling import RoomExhausted, compiled
+from carp_optimized.compiling import RoomExhausted, compiled, inlined
 
 
 @compiled
@@ -32,7 +32,7 @@ def skip_below(ticks: Ints, slot: int, row_end: int, limit: int) -> int:
             return slot
 
 
-@compiled
+@inlined
 def make_room(rows: Rows, resource: int) -> None:
     """Move the row to the end of the pool if it is full."""
     count = int(rows.size[resource])
@@ -56,7 +56,7 @@ def make_room(rows: Rows, resource: int) -> None:
     rows.used[0] = new + room
 
 
-@compiled
+@inlined
 def split_window(
     windows: Rows, resource: int, enter: int, leave: int, gap: int, source: int, robot: int, rank: int
 ) -> None:
@@ -80,7 +80,7 @@ def split_window(
     windows.size[resource] += 1
 
 
-@compiled
+@inlined
 def join_windows(windows: Rows, resource: int, enter: int) -> None:
     """Give the stay that begins at `enter` back to the windows on both its sides."""
     slot = last_by(windows, resource, enter)

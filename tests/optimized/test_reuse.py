@@ -120,8 +120,8 @@ def test_more_plans_and_answers_than_there_is_room_for_change_no_plan() -> None:
     most = [0, 0]
     for robot in range(14):
         fleet.add(robot, 0, planner)
-        assert fleet._scratch is not None
-        most = [max(pair) for pair in zip(most, fleet._scratch.answers.fields.used.tolist(), strict=True)]
+        assert fleet._adding is not None
+        most = [max(pair) for pair in zip(most, fleet._adding.fields.answers.used.tolist(), strict=True)]
     assert most == [PLANS, ANSWERS]
     assert fleet.plans == carp_optimized.plan(instance, planner, reuse=replace(Reuse(), shared=False)).plans
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-UNCOMPILED = ("test_replanning", "test_sorting", "test_little_memory")
+UNCOMPILED = ("test_replanning", "test_sorting", "test_little_memory", "test_adding")
 CROSSCHECK = "from carproof.crosscheck import first_difference; print(first_difference(60, seed=3))"
 
 
@@ -29,4 +29,5 @@ def test_the_tests_that_only_run_uncompiled_pass() -> None:
     quietly = ["-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-W", "ignore::RuntimeWarning"]
     done = uncompiled("-m", "pytest", *quietly, *(f"tests/optimized/{name}.py" for name in UNCOMPILED))
     assert done.returncode == 0, done.stdout
-    assert f"{len(UNCOMPILED)} passed" in done.stdout
+    assert "skipped" not in done.stdout
+    assert "passed" in done.stdout
