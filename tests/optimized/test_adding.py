@@ -6,16 +6,16 @@ from fractions import Fraction
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from tests.optimized.arrivals import CROWDED, ROOMS, arrivals
 from tests.profiles import draws
 
+import carp_reference
 from carp_optimized import distances, neighbourhood
 from carp_optimized.arrays import NEVER, NONE, Records, Work
-from carp_optimized.distances import Mean, distance_below, nearest
+from carp_optimized.distances import Mean, distance_below, least_sum, likely_nearest, nearest, term
 from carp_optimized.encoding import no_work
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.search import find_plan, find_plan_alone
-from carp_spec import neighbourhood_rules
+from carp_spec import Instance, Neighbourhood, Resource, ResourceGraph, Robot, neighbourhood_rules
 from carproof.generate import Fleet, Grid, Range, grid_instance
 from carproof.strategies import FleetUnderWay, Sizes, fleets_under_way
 
@@ -118,10 +118,43 @@ def test_a_plan_where_nothing_is_reserved_is_made_as_by_a_search(under_way: Flee
     assert fleet.queries.asked == 2
 
 
-def test_plans_that_are_exchanged_whole_at_the_end_are_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Not only where they differ."""
-    fleets = [arrivals(number, mix) for number in range(draws(20)) for mix in (CROWDED, ROOMS)]
-    found = [fleet.by_fleet() for fleet in fleets]
-    for name in ("alike_at_start", "alike_at_end"):
-        monkeypatch.setattr(neighbourhood, name, lambda *_: 0)
-    assert [fleet.by_fleet() for fleet in fleets] == found
+def rows(fleet: PlannedFleet) -> list[list[tuple[int, ...]]]:
+    """The windows of each resource, with the robots that end them and where these came from."""
+    windows = fleet._state.windows
+    fields = (windows.start, windows.end, windows.source, windows.robot)
+    slots = [slice(int(at), int(at + size)) for at, size in zip(windows.offset, windows.size, strict=True)]
+    return [list(zip(*(each[row].tolist() for each in fields), strict=True)) for row in slots]
+
+
+@settings(max_examples=draws(20))
+@given(st.integers(0, 999), st.sampled_from(["alike_at_start", "alike_at_end", ""]))
+def test_the_windows_hold_just_the_plans_whether_exchanged_whole_or_where_they_differ(seed: int, whole: str) -> None:
+    instance = grid_instance(Grid(6, 6, map=10, map_seed=seed), Fleet(14, seed=seed))
+    fleet = PlannedFleet(instance)
+    with pytest.MonkeyPatch.context() as patch:
+        if whole:
+            patch.setattr(neighbourhood, whole, lambda *_: 0)
+        for robot in range(14):
+            fleet.add(robot, 0, Neighbourhood(m=4))
+            fresh = PlannedFleet(instance)
+            fresh.commit(fleet.plans)
+            assert rows(fleet) == rows(fresh)
+    assert fleet.plans == carp_reference.plan(instance, Neighbourhood(m=4)).plans
+
+
+def test_of_two_robots_equally_near_the_earlier_is_taken_though_the_other_is_the_likelier() -> None:
+    """Both are 5 away, at (3, 4) and at (5, 0)."""
+    places = (Resource("a", x=3, y=4), Resource("b", x=5, y=0), Resource("c", x=0, y=0))
+    robots = tuple(Robot(each.id, each.id, each.id) for each in places)
+    fleet = PlannedFleet(Instance(ResourceGraph(places, ()), robots))
+    fleet.carp(range(3))
+    work = split(fleet, 1)
+    assert likely_nearest(fleet._state, work, 2, 1) == 1
+    assert nearest(fleet._state, work, 2, 1) == 0
+
+
+@settings(max_examples=draws(1000))
+@given(st.lists(st.tuples(st.integers(-40, 40), st.integers(-40, 40)), min_size=1, max_size=8))
+def test_the_least_sum_is_no_larger_than_the_sum_of_the_terms(differences: list[tuple[int, int]]) -> None:
+    x, y = (sum(each) for each in zip(*differences, strict=True))
+    assert least_sum(x, y, len(differences)) <= sum(term(*each) for each in differences)
