@@ -318,7 +318,7 @@ class Options(NamedTuple):
 
 
 class Adding(NamedTuple):
-    """What adding a robot takes: the state, the same on the empty graph, the options, and scratch.
+    """All that adding a robot takes: the state, the same on the empty graph, the options, and scratch.
 
     One tuple in place of five has Python do less than half as much for a call.
     """

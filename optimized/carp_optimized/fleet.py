@@ -266,7 +266,7 @@ class PlannedFleet:
         return (self._records.size - self._order.size, self._cost(self._records[self._order]))
 
     def _adding_with(self, options: Neighbourhood) -> Native[Adding]:
-        """What adding a robot with these options takes, kept as long as they and the arrays stay the same."""
+        """All that adding a robot with these options takes, kept as long as they and the arrays stay the same."""
         reuse = self.reuse
         if self._adding is not None and self._options is options and self._reuse is reuse:
             return self._adding
