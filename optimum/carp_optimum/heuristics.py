@@ -10,12 +10,14 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TypeAlias
 
 from carp_optimum.solver import TimeOver
-from carp_spec import Instance, Neighbourhood, Plan, Refusal, ResourceId, RobotId, total_cost
+from carp_spec import Instance, Neighbourhood, Plan, Refusal, ResourceId, RobotId, Solution, total_cost
 from carp_spec.permutations import shuffle, splitmix64
 
 ATTEMPTS = 1000
 TOGETHER = 3
 STUBBORN = 20
+STARTS = 8
+ROUNDS = 100_000  # of all starts
 
 Attempt: TypeAlias = Callable[[Sequence[RobotId]], tuple[Plan, ...]]
 
@@ -61,6 +63,22 @@ def plans_of_all(
     except TimeOver:
         pass
     return best
+
+
+def polished(instance: Instance, look: Callable[[], None]) -> Solution:
+    """Good plans of as many robots as possible; `look` is called now and then, and may end it by an exception.
+
+    Raises `Refusal` for numbers that are too large.
+    """
+    from carp_optimized import polish  # noqa: PLC0415 - slow to load
+    from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415
+    from carp_optimum.joint_repair import repair  # noqa: PLC0415
+    from carp_optimum.many_starts import polish_many  # noqa: PLC0415
+
+    fleet = PlannedFleet(instance)
+    fleet.carp(range(len(instance.robots)))
+    solution = repair(instance, Solution.of(instance, fleet.plans))
+    return polish_many(polish, STARTS, instance, solution, iterations=ROUNDS, advance=lambda *_: look())
 
 
 def _run(instance: Instance, check: Callable[[], None]) -> Attempt | None:

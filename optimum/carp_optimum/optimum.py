@@ -6,8 +6,9 @@ horizon, and the next assumption is that no other one of the core is given up. O
 model's plans have a total of just the lower bound; the conflicts among them are forbidden and the search
 continues, until none is left. Source: the OLL algorithm of Andres, Kaufmann, Matheis and Schaub 2012, over delays.
 
-After many conflicts a lower bound with prices takes over (`carp_optimum.bound`). From there up, total by total, the
-formula of all plans of at most this total (`carp_optimum.priced_formula`) either has no model or holds the optimum.
+After many conflicts a polish finds good plans, and a lower bound with prices takes over (`carp_optimum.bound`). From
+there up, total by total, the formula of all plans of at most this total (`carp_optimum.priced_formula`) either has no
+model or holds the optimum, until the total of the polished plans is reached.
 
 Where no plan set exists, the search finds one of these obstacles (`carp_verify.unsolvable` says why each is one):
 
@@ -24,7 +25,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from time import monotonic_ns
 
-from carp_optimum.heuristics import plans_of_all
+from carp_optimum.heuristics import plans_of_all, polished
 from carp_optimum.priced_formula import priced_formula
 from carp_optimum.reduced_costs import PricedBound
 from carp_optimum.solver import Deadline, Solver, TimeOver
@@ -38,7 +39,7 @@ from carp_verify.unsolvable import Clauses, FullGoal, NoWay, Obstacle, States, i
 
 CONFLICTS_TO_SHRINK = 900
 CONFLICTS_BEFORE_PRICES = 20_000
-PRICE_STEPS = 1000
+PRICE_STEPS = 2400
 LARGEST_GAP = 12  # ticks
 DELAY_OF_DOUBT = 20
 PARTS = 5
@@ -148,11 +149,23 @@ class _Search:
                     return self.unsolvable(States())
 
     def search_with_prices(self) -> Sequence[Plan] | None:
-        """The plans of an optimum, searched for from the bound up; `None` if it is too far from that for prices."""
+        """The plans of an optimum, searched for from the bound up; `None` if it is too far from that for prices.
+
+        The search ends below the total of the best plans known, which are an optimum once the bound has reached it.
+        """
+        from carp_optimized.compiling import is_cached  # noqa: PLC0415 - slow to load
+        from carp_optimum.priced_ways import find_ways  # noqa: PLC0415
+
+        if not is_cached(find_ways):
+            return None
         try:
+            self.polish()
             bound = self.priced_bound()
-            while bound is not None and bound.gap(self.lower) <= LARGEST_GAP * bound.scale:
-                plans = self.plans_in(priced_formula(self.instance, bound, self.lower, self.look))
+            while bound.gap(self.lower) <= LARGEST_GAP * bound.scale:
+                if self.best is not None and total_cost(self.instance, self.best) == self.lower:
+                    plans: Sequence[Plan] | None = self.best
+                else:
+                    plans = self.plans_in(priced_formula(self.instance, bound, self.lower, self.look))
                 if plans is not None:
                     self.horizon = self.lower - self.encoding.shortest
                     return plans
@@ -161,14 +174,18 @@ class _Search:
             pass
         return None
 
-    def priced_bound(self) -> PricedBound | None:
-        """A lower bound with prices, if the search for them is compiled and takes the instance's numbers."""
-        from carp_optimized.compiling import is_cached  # noqa: PLC0415 - slow to load
-        from carp_optimum.bound import lower_bound  # noqa: PLC0415
-        from carp_optimum.priced_ways import find_ways  # noqa: PLC0415
+    def polish(self) -> None:
+        """Find good plans, if a polish finds any of all robots."""
+        solution = polished(self.instance, self.look)
+        if len(solution.plans) == len(self.instance.robots) and (
+            self.best is None or total_cost(self.instance, solution.plans) < total_cost(self.instance, self.best)
+        ):
+            self.best = solution.plans
 
-        if not is_cached(find_ways):
-            return None
+    def priced_bound(self) -> PricedBound:
+        """A lower bound with prices."""
+        from carp_optimum.bound import lower_bound  # noqa: PLC0415 - slow to load
+
         certificate = lower_bound(self.instance, steps=PRICE_STEPS, on_step=lambda _: self.look())
         self.proved = certificate.bound
         self.look()

@@ -179,6 +179,7 @@ def test_at_the_bound_one_robot_of_each_group_with_deadlines_is_late_and_no_seco
 def prices_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("carp_optimum.optimum.CONFLICTS_BEFORE_PRICES", -1)
     monkeypatch.setattr("carp_optimum.optimum.PRICE_STEPS", 5)
+    monkeypatch.setattr("carp_optimum.heuristics.ROUNDS", 40)
     monkeypatch.setattr("carp_optimized.compiling.is_cached", lambda _: True)
 
 
@@ -196,6 +197,24 @@ def test_a_search_with_prices_from_the_first_core_on_finds_the_optimum(instance:
 def test_the_search_goes_up_from_a_weak_bound_total_by_total(seed: int, after_goal: AfterGoal) -> None:
     instance = town(seed, after_goal)
     assert optimum(instance, SECONDS).cost == optimum(instance, SECONDS, priced=False).cost
+
+
+@pytest.mark.usefixtures("prices_at_once")
+def test_the_search_ends_where_the_bound_reaches_the_total_of_the_best_plans_known(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    instance = town(7, "park")
+    least = optimum(instance, SECONDS, priced=False)
+    searched = []
+
+    def none(_: object, encoding: Encoding) -> None:
+        searched.append(encoding)
+
+    monkeypatch.setattr("carp_optimum.optimum.polished", lambda *_: least.solution)
+    monkeypatch.setattr("carp_optimum.optimum._Search.plans_in", none)
+    best = optimum(instance, SECONDS)
+    assert (best.decided, best.cost, best.solution) == (True, least.cost, least.solution)
+    assert searched
 
 
 @pytest.mark.usefixtures("prices_at_once")
