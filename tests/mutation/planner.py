@@ -3,9 +3,9 @@
 `python -m tests.mutation.planner` lists the mutants that no check notices; with names of modules, of these alone, and
 with a name and lines, `windows:89:91`, of these lines alone. The checks are those of tests/optimized that fit into a
 few seconds: random small questions and fleets to which robots are added, whose answers by the reference are known
-before the first fork; test_replanning.py and test_reuse.py. Beside a mutant that survives stands how many queries it
-asks of the fleets, where it asks other ones: more cost time alone, fewer want a reason. Starting pytest and numba for
-each mutant would take ten times as long.
+before the first fork; test_replanning.py, test_reuse.py and test_adding.py. Beside a mutant that survives stands how
+many queries it asks of the fleets, where it asks other ones: more cost time alone, fewer want a reason. Starting pytest
+and numba for each mutant would take ten times as long.
 """
 
 import os
@@ -67,6 +67,11 @@ TESTS: Sequence[tuple[str, str, tuple[object, ...]]] = (
     ("test_reuse", "test_without_reuse_every_query_is_asked", ()),
     *(("test_reuse", "test_each_kind_avoids_queries_and_counts_them", (kind,)) for kind in KINDS),
     ("test_reuse", "test_sampled_orders_share_their_beginnings_too", ()),
+    ("test_adding", "test_a_distance_is_that_of_the_law_or_larger_than_the_best_as_it_should_be", ()),
+    ("test_adding", "test_the_nearest_robot_is_that_of_the_law", ()),
+    ("test_adding", "test_a_plan_where_nothing_is_reserved_is_made_as_by_a_search", ()),
+    ("test_adding", "test_of_two_robots_equally_near_the_earlier_is_taken_though_the_other_is_the_likelier", ()),
+    ("test_adding", "test_the_least_sum_is_no_larger_than_the_sum_of_the_terms", ()),
 )
 
 

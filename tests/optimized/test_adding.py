@@ -45,7 +45,7 @@ def by_law(fleet: PlannedFleet, one: int, other: int) -> Fraction:
     return neighbourhood_rules.distance(fleet.instance, plans[one], plans[other])
 
 
-@settings(max_examples=draws(100))
+@settings(max_examples=draws(40))
 @given(planned_fleets(), st.integers(0, 3 << 16))
 def test_a_distance_is_that_of_the_law_or_larger_than_the_best_as_it_should_be(fleet: PlannedFleet, best: int) -> None:
     records = fleet._records[fleet._order]
@@ -66,7 +66,7 @@ def split(fleet: PlannedFleet, members: int) -> Work:
     return work
 
 
-@settings(max_examples=draws(100))
+@settings(max_examples=draws(40))
 @given(planned_fleets(), st.data())
 def test_the_nearest_robot_is_that_of_the_law(fleet: PlannedFleet, data: st.DataObject) -> None:
     """Whether or not sums bound distances from below."""
@@ -104,7 +104,7 @@ def what_was_read(records: Records, record: int) -> list[list[int]]:
     return [each.tolist() for each in (*fields, *readings, records.regions[record : record + 1])]
 
 
-@settings(max_examples=draws(200))
+@settings(max_examples=draws(60))
 @given(fleets_under_way(SIZES))
 def test_a_plan_where_nothing_is_reserved_is_made_as_by_a_search(under_way: FleetUnderWay) -> None:
     fleet = PlannedFleet(under_way.instance)
@@ -153,7 +153,7 @@ def test_of_two_robots_equally_near_the_earlier_is_taken_though_the_other_is_the
     assert nearest(fleet._state, work, 2, 1) == 0
 
 
-@settings(max_examples=draws(1000))
+@settings(max_examples=draws(200))
 @given(st.lists(st.tuples(st.integers(-40, 40), st.integers(-40, 40)), min_size=1, max_size=8))
 def test_the_least_sum_is_no_larger_than_the_sum_of_the_terms(differences: list[tuple[int, int]]) -> None:
     x, y = (sum(each) for each in zip(*differences, strict=True))
