@@ -86,4 +86,10 @@ TOWNS = {
         [("e", "c", 2, 1), ("a", "c", 0, 1), ("b", "a", 0, 1), ("x", "y", 0, 1)],
         durations={"c": 4},
     ),
+    # when 0 is gone, 1 parks in g a tick earlier, at which 2 was passing
+    "one behind who passes where another parks": Town(
+        "ab eb bf bg cg gh ci ij jh",
+        [("e", "f", 0, 1), ("a", "g", 0, 1), ("c", "h", 1, 1)],
+        after_goal="park",
+    ),
 }
