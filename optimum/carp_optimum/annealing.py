@@ -19,6 +19,8 @@ ROUNDS = 50
 """The rounds of one compiled call."""
 HEAT = 64
 """The mean raise of the first rounds, in 16ths of the mean delay of a robot."""
+ENOUGH = 32
+"""With fewer rounds a robot than this the raises are smaller by as much: there is no time to make up for them."""
 PARTS = 1 << 10
 """The time left is counted in parts of this."""
 BRIEF = 0.01
@@ -51,13 +53,13 @@ def anneal(  # noqa: PLR0913 - what a polish has, and the clock
     best, plans = fleet.worth, fleet.plans
     started = clock()
     while played != last:
-        left = (
-            PARTS * (last - played) // last if last else PARTS - int(PARTS * (clock() - started) / (seconds or BRIEF))
-        )
-        if left <= 0:
+        spent = PARTS * played // last if last else int(PARTS * (clock() - started) / (seconds or BRIEF))
+        if spent >= PARTS:
             break
         rounds = ROUNDS if last is None else min(ROUNDS, last - played)
-        polishing.fields.counts[CHANCE] = _chance(max(best[1] - least, 0), len(instance.robots), left)
+        expected = PARTS * played // max(spent, 1)
+        delay = max(best[1] - least, 0)
+        polishing.fields.counts[CHANCE] = _chance(delay, len(instance.robots), expected, PARTS - spent)
         batch = fleet.polish(polishing, rounds)
         played += batch
         if fleet.worth < best:
@@ -68,10 +70,11 @@ def anneal(  # noqa: PLR0913 - what a polish has, and the clock
     return Solution.of(instance, plans)
 
 
-def _chance(delay: int, robots: int, left: int) -> int:
+def _chance(delay: int, robots: int, rounds: int, left: int) -> int:
     """The chance of each further tick of a raise, in parts of `SURE`; it makes the mean raise what it is to be."""
-    mean = HEAT * delay * left**3
-    return SURE * mean // (mean + 16 * max(robots, 1) * PARTS**3)
+    enough = max(ENOUGH * robots, 1)
+    mean = HEAT * delay * min(rounds, enough) * left**3
+    return SURE * mean // (mean + 16 * max(robots, 1) * enough * PARTS**3)
 
 
 def polish_for(

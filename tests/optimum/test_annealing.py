@@ -5,8 +5,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from carp_optimized import plan, polish
+from carp_optimized.polishing import SURE
 from carp_optimum import annealing
-from carp_optimum.annealing import anneal, polish_for
+from carp_optimum.annealing import ENOUGH, PARTS, _chance, anneal, polish_for
 from carp_spec import Carp, Instance, Solution, judge, total_cost
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.strategies import PlannedInstance, Sizes, planned_instances
@@ -33,6 +34,18 @@ def test_rounds_that_raise_the_total_lead_out_of_where_a_polish_ends() -> None:
     polished = {total_cost(instance, polish(instance, start, iterations=ROUNDS, seed=seed).plans) for seed in range(3)}
     annealed = {total_cost(instance, anneal(instance, start, iterations=ROUNDS, seed=seed).plans) for seed in range(3)}
     assert max(annealed) < min(polished)
+
+
+def test_the_mean_raise_is_four_mean_delays_falls_as_the_cube_of_the_time_left_and_waits_for_enough_rounds() -> None:
+    def mean_raise(rounds: int, left: int) -> float:
+        chance = _chance(delay=100, robots=50, rounds=rounds, left=left)
+        return chance / (SURE - chance)
+
+    assert mean_raise(50 * ENOUGH, PARTS) == pytest.approx(4 * 2, rel=0.01)
+    assert mean_raise(500 * ENOUGH, PARTS) == mean_raise(50 * ENOUGH, PARTS)
+    assert mean_raise(50 * ENOUGH, PARTS // 2) == pytest.approx(1, rel=0.01)
+    assert mean_raise(ENOUGH, PARTS) == pytest.approx(8 / 50, rel=0.01)
+    assert mean_raise(0, PARTS) == _chance(0, 0, 0, PARTS) == 0
 
 
 def test_the_best_plans_seen_are_the_result(monkeypatch: pytest.MonkeyPatch) -> None:
