@@ -1,8 +1,9 @@
 """A polish that may raise the total for a while: simulated annealing (Kirkpatrick et al. 1983) of `polish/...`.
 
 A polish ends where no small change helps any more. So each round draws by how many ticks it may raise the total: on
-average a share of the mean delay of a robot, which falls to 0 as the cube of the time that is left. The best plans seen
-are the result. Nothing here is trusted: the law judges the plans.
+average a share of the mean delay of a robot, which falls to 0 as the cube of the time left in the cycle. One long cycle
+ends in a bad place as often as a short one does. So there are several, each from the best plans seen, which are the
+result. Nothing here is trusted: the law judges the plans.
 """
 
 from collections.abc import Callable
@@ -17,8 +18,11 @@ from carp_spec.polish_rules import last_round, polishable, require_polish_option
 
 ROUNDS = 50
 """The rounds of one compiled call."""
+CYCLES = 8
 HEAT = 64
 """The mean raise of the first rounds, in 16ths of the mean delay of a robot."""
+REHEAT = 16
+"""The same of later cycles, which are not to leave their place altogether."""
 ENOUGH = 32
 """With fewer rounds a robot than this the raises are smaller by as much: there is no time to make up for them."""
 PARTS = 1 << 10
@@ -51,15 +55,23 @@ def anneal(  # noqa: PLR0913 - what a polish has, and the clock
     least = int(polishing.fields.least.sum())
     played = fleet.polish(polishing, 0)
     best, plans = fleet.worth, fleet.plans
+    current = 0
     started = clock()
     while played != last:
         spent = PARTS * played // last if last else int(PARTS * (clock() - started) / (seconds or BRIEF))
         if spent >= PARTS:
             break
         rounds = ROUNDS if last is None else min(ROUNDS, last - played)
+        cycle, gone = divmod(CYCLES * spent, PARTS)
+        if cycle > current:
+            current = cycle
+            if fleet.worth > best:
+                fleet.clear()
+                fleet.commit(plans)
         expected = PARTS * played // max(spent, 1)
         delay = max(best[1] - least, 0)
-        polishing.fields.counts[CHANCE] = _chance(delay, len(instance.robots), expected, PARTS - spent)
+        heat = HEAT if cycle == 0 else REHEAT
+        polishing.fields.counts[CHANCE] = _chance(heat * delay, len(instance.robots), expected, PARTS - gone)
         batch = fleet.polish(polishing, rounds)
         played += batch
         if fleet.worth < best:
@@ -70,10 +82,13 @@ def anneal(  # noqa: PLR0913 - what a polish has, and the clock
     return Solution.of(instance, plans)
 
 
-def _chance(delay: int, robots: int, rounds: int, left: int) -> int:
-    """The chance of each further tick of a raise, in parts of `SURE`; it makes the mean raise what it is to be."""
+def _chance(heated: int, robots: int, rounds: int, left: int) -> int:
+    """The chance of each further tick of a raise, in parts of `SURE`; it makes the mean raise what it is to be.
+
+    `heated` is the delay of all robots times the heat, and `rounds` are those expected.
+    """
     enough = max(ENOUGH * robots, 1)
-    mean = HEAT * delay * min(rounds, enough) * left**3
+    mean = heated * min(rounds, enough) * left**3
     return SURE * mean // (mean + 16 * max(robots, 1) * enough * PARTS**3)
 
 

@@ -1,14 +1,17 @@
 """Simulated annealing of a polish: lawful and reproducible plans, never worse than those given, and no dead ends."""
 
+from collections.abc import Sequence
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from carp_optimized import plan, polish
+from carp_optimized.fleet import PlannedFleet
 from carp_optimized.polishing import SURE
 from carp_optimum import annealing
 from carp_optimum.annealing import ENOUGH, PARTS, _chance, anneal, polish_for
-from carp_spec import Carp, Instance, Solution, judge, total_cost
+from carp_spec import Carp, Instance, Plan, Solution, judge, total_cost
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.strategies import PlannedInstance, Sizes, planned_instances
 
@@ -38,7 +41,7 @@ def test_rounds_that_raise_the_total_lead_out_of_where_a_polish_ends() -> None:
 
 def test_the_mean_raise_is_four_mean_delays_falls_as_the_cube_of_the_time_left_and_waits_for_enough_rounds() -> None:
     def mean_raise(rounds: int, left: int) -> float:
-        chance = _chance(delay=100, robots=50, rounds=rounds, left=left)
+        chance = _chance(heated=64 * 100, robots=50, rounds=rounds, left=left)
         return chance / (SURE - chance)
 
     assert mean_raise(50 * ENOUGH, PARTS) == pytest.approx(4 * 2, rel=0.01)
@@ -58,8 +61,26 @@ def test_the_best_plans_seen_are_the_result(monkeypatch: pytest.MonkeyPatch) -> 
     assert [rounds for rounds, _, _ in seen] == [50, 100, 150, 200]
 
 
+def test_each_cycle_begins_with_the_best_plans_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(annealing, "HEAT", 10_000)
+    instance = grid_instance(Grid(8, 8, map=8), Fleet(robots=24, seed=1))
+    given = polish(instance, plan(instance, Carp()), iterations=ROUNDS)
+    begun: list[int] = []
+    commit = PlannedFleet.commit
+
+    def recorded(fleet: PlannedFleet, plans: Sequence[Plan]) -> None:
+        begun.append(total_cost(instance, tuple(plans)))
+        commit(fleet, plans)
+
+    monkeypatch.setattr(PlannedFleet, "commit", recorded)
+    anneal(instance, given, iterations=1600)
+    assert len(begun) > 1
+    assert begun == sorted(begun, reverse=True)
+
+
 def test_no_heat_gives_the_plans_of_a_polish(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(annealing, "HEAT", 0)
+    monkeypatch.setattr(annealing, "REHEAT", 0)
     instance = grid_instance(Grid(8, 8, map=8), Fleet(robots=24, seed=1))
     given = plan(instance, Carp())
     assert anneal(instance, given, iterations=130, seed=5) == polish(instance, given, iterations=130, seed=5)
