@@ -80,7 +80,7 @@ TOWNS = {
         [("b", "t", 13, 1), ("a", "g", 0, 3), ("c", "e", 0, 1)],
         durations={"t": 4, "u": 4},
     ),
-    # when 0 is gone, 1 goes on from b to c at once, and still comes to b as 2 could go the other way
+    # when 0 is gone, 1 leaves b for c at once, and still comes to b as 2 could go the other way
     "one behind that would be met": Town(
         "ab bc bd ec xy",
         [("e", "c", 2, 1), ("a", "c", 0, 1), ("b", "a", 0, 1), ("x", "y", 0, 1)],
