@@ -2,8 +2,10 @@
 
 from carp_optimized.__main__ import compile_all as compile_planner
 from carp_optimum.bound import lower_bound
-from carp_optimum.price_search import PriceSearch
+from carp_optimum.price_search import Deadlines, Member, PriceSearch
+from carp_optimum.sight_search import SightSearch
 from carp_spec import Instance, Resource, ResourceGraph, Robot
+from carp_verify.bounds import DeadlinesDocument
 
 
 def compile_all() -> None:
@@ -13,7 +15,9 @@ def compile_all() -> None:
     instance = Instance(graph, (Robot("r", "a", "c"), Robot("s", "c", "a"), Robot("t", "d", "a")))
     lower_bound(instance, steps=20)
     search = PriceSearch(instance, 1)
-    search.add_deadlines([{0: 0, 1: 0}])
+    unproved = DeadlinesDocument(("r", "s"), (0, 0), 0, "")
+    search.add_deadlines([Deadlines([Member(0, 0, 0, ()), Member(1, 0, 1, (1,))], unproved)])
+    SightSearch(search).round(lambda: None)
     search.finish()
     search.least_costs()
 

@@ -2,8 +2,8 @@
 
 This is Lagrangian relaxation. Step by step, prices rise where the robots' cheapest ways exceed a capacity, and fall
 where they use less than it (`carp_optimum.price_steps`). When that gains nothing more, deadlines are added
-(`carp_optimum.deadline_search`), and where these gain nothing either, cuts (`carp_optimum.cut_search`). The search aims
-a little above the best bound known, and closer to it after each failure.
+(`carp_optimum.sight_search`, `carp_optimum.deadline_search`), and where these gain nothing either, cuts
+(`carp_optimum.cut_search`). The search aims a little above the best bound known, and closer to it after each failure.
 Source: the target level method of Goffin and Kiwiel 1999, over the Lagrangian relaxation of all rules of plans
 together.
 """
@@ -23,7 +23,6 @@ from carp_verify.limits import require_following
 
 if TYPE_CHECKING:
     from carp_optimum.cut_search import CutSearch
-    from carp_optimum.deadline_search import DeadlineSearch
     from carp_optimum.price_search import PriceSearch
 
 SCALE = 1 << 16
@@ -47,22 +46,26 @@ def lower_bound(
     steps: int | None = None,
     on_step: Callable[[Progress], None] = lambda _: None,
     clock: Callable[[], int] = monotonic_ns,
+    seen: bool = True,
 ) -> BoundDocument:
     """Search for this many seconds or steps, whichever is over first, or until nothing is gained any more.
 
     With steps alone, the same instance gives the same certificate. `on_step` is called after each step, and now and
-    then while cuts are searched for; `clock` gives nanoseconds. Raises `Refusal` for numbers that are too large.
+    then while cuts are searched for; `clock` gives nanoseconds. `seen` is whether robots with
+    deadlines may be seen at ticks, which the kernel does not know. Raises `Refusal` for numbers that are too large.
     """
     require_following(instance)
     from carp_optimum.cut_search import CutSearch  # noqa: PLC0415 - numba is slow to load
     from carp_optimum.deadline_search import DeadlineSearch  # noqa: PLC0415
     from carp_optimum.price_search import PriceSearch  # noqa: PLC0415
+    from carp_optimum.sight_search import SightSearch  # noqa: PLC0415
 
     rough = _limit(seconds, steps, ROUGH_PARTS, clock)
     end = _limit(seconds, steps, PARTS, clock)
     search = PriceSearch(instance, SCALE)
     cuts = CutSearch(search)
     deadlines = DeadlineSearch(search)
+    sights = SightSearch(search)
 
     def report(count: int, best: int) -> None:
         on_step(Progress(count, -(-best // SCALE)))
@@ -76,11 +79,11 @@ def lower_bound(
         gain = search.best // FIRST_AIM
         while gain > 0 or not cuts.is_exhausted:
             search.climb(gain, ROUGH_AIM, lambda: rough(search.count), report)
-            gain = deadlines.round(look) or cuts.round(look)
+            gain = (sights.round(look) if seen else 0) or deadlines.round(look) or cuts.round(look)
     with suppress(TimeOver):
         search.climb(ROUGH_AIM, FINE_AIM, lambda: end(search.count), report)
     search.finish()
-    return _certificate(search, cuts, deadlines)
+    return _certificate(search, cuts)
 
 
 def _limit(seconds: float | None, steps: int | None, parts: int, clock: Callable[[], int]) -> Callable[[int], None]:
@@ -96,7 +99,7 @@ def _limit(seconds: float | None, steps: int | None, parts: int, clock: Callable
     return check
 
 
-def _certificate(search: "PriceSearch", cuts: "CutSearch", deadlines: "DeadlineSearch") -> BoundDocument:
+def _certificate(search: "PriceSearch", cuts: "CutSearch") -> BoundDocument:
     prices = search.prices()
     robots = search.least_costs()
     used = tuple(
@@ -104,11 +107,7 @@ def _certificate(search: "PriceSearch", cuts: "CutSearch", deadlines: "DeadlineS
         for cut, multiplier in zip(cuts.cuts, search.multipliers, strict=True)
         if multiplier > 0
     )
-    priced = tuple(
-        replace(each.document, price=int(fee))
-        for each, fee in zip(deadlines.found, search.fees, strict=True)
-        if fee > 0
-    )
+    priced = search.priced_deadlines()
     parts = sum(least or 0 for _, least in robots) + sum(cut.multiplier * cut.least for cut in used) - search.worth
     parts -= sum(each.price * (len(each.robots) - 1) for each in priced)
     return BoundDocument(

@@ -10,14 +10,13 @@ of the hitting set.
 """
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from itertools import count
 from typing import TypeAlias
 
 import numpy as np
 
 from carp_optimized.arrays import Longs
-from carp_optimum.price_search import PriceSearch
+from carp_optimum.price_search import Deadlines, Member, PriceSearch
 from carp_optimum.proving import refutation
 from carp_optimum.solver import NANOSECONDS, Deadline, Solver, TimeOver
 from carp_spec import Instance, Refusal
@@ -53,21 +52,12 @@ Allowed: TypeAlias = Mapping[int, int]
 """The largest delay that a robot is allowed, for robots by position."""
 
 
-@dataclass(frozen=True, slots=True)
-class Deadlines:
-    """Delays that the robots cannot all keep, and the certificate of that, without price."""
-
-    allowed: Allowed
-    document: DeadlinesDocument
-
-
 class DeadlineSearch:
     """Finds deadlines for a search for prices."""
 
     def __init__(self, search: PriceSearch) -> None:
         self.search = search
         self.instance = search.instance
-        self.found: list[Deadlines] = []
         self.known: set[tuple[tuple[int, int], ...]] = set()
         self.cores: _Cores | None = None
 
@@ -101,8 +91,7 @@ class DeadlineSearch:
                             chosen.append(deadlines)
                             gain += STEPS - _steps(later, raised)
         finally:
-            self.found += chosen
-            self.search.add_deadlines([deadlines.allowed for deadlines in chosen])
+            self.search.add_deadlines(chosen)
         return gain * self.search.scale // STEPS
 
     def _prove(self, allowed: Allowed, check: Callable[[], None]) -> Deadlines | None:
@@ -128,7 +117,8 @@ class DeadlineSearch:
             return None
         if len(lines) > LONGEST_REFUTATION:
             return None
-        return Deadlines(allowed, DeadlinesDocument(robots, ticks, 0, lines))
+        members = [Member(position, tick, 0, ()) for position, tick in zip(allowed, ticks, strict=True)]
+        return Deadlines(members, DeadlinesDocument(robots, ticks, 0, lines))
 
 
 def _steps(later: Longs, allowed: Allowed) -> int:

@@ -9,7 +9,7 @@ cheaper than the best known. The last column is for delays that no node has. The
 
 from typing import NamedTuple
 
-from carp_optimized.arrays import NONE, LongTable
+from carp_optimized.arrays import NONE, IntTable, LongTable
 from carp_optimized.compiling import compiled, entry
 from carp_optimized.references import Native, dereference
 from carp_optimum.priced_ways import (
@@ -28,58 +28,81 @@ from carp_optimum.priced_ways import (
 )
 
 
-class Arrivals(NamedTuple):
-    """By robot and delay: what an arrival costs, and the least of that and of all greater delays."""
+class Charges(NamedTuple):
+    """Costs with deadlines: by robot and delay that of an arrival, and the least of that and of all greater delays.
+
+    A robot that is in a resource at a tick, on its way, pays by the row of the robot and tick: `fee[row][resource]`.
+    `place` is where the robots' ways have them at each tick: a resource, the number of resources for a robot that has
+    come to its goal, and `NONE` before its release.
+    """
 
     cost: LongTable
     least: LongTable
+    row: IntTable
+    fee: LongTable
+    place: IntTable
 
 
-arrivals_at = dereference(Arrivals)
+charges_at = dereference(Charges)
 
 
 @entry
-def find_late_ways(native: Native[Market], native_arrivals: Native[Arrivals]) -> int:
+def find_late_ways(native: Native[Market], native_charges: Native[Charges]) -> int:
     """Give each robot a cheapest way: the sum of their least priced costs, less the prices times the capacities."""
     market = market_at(native)
-    arrivals = arrivals_at(native_arrivals)
+    charges = charges_at(native_charges)
     total = -add_up(market)
     for robot in range(market.requests.start.size):
         if market.requests.earliest[robot] != NONE:
             count_way(market, robot, -1)
-            total += find_late_way(market, arrivals, robot)
+            total += find_late_way(market, charges, robot)
             count_way(market, robot, 1)
     return total
 
 
 @entry
-def least_late_cost(native: Native[Market], native_arrivals: Native[Arrivals], robot: int) -> int:
+def least_late_cost(native: Native[Market], native_charges: Native[Charges], robot: int) -> int:
     """The least priced cost of a robot, once the prices have been added up."""
-    return find_late_way(market_at(native), arrivals_at(native_arrivals), robot)
+    return find_late_way(market_at(native), charges_at(native_charges), robot)
 
 
 @compiled
-def find_late_way(market: Market, arrivals: Arrivals, robot: int) -> int:
+def find_late_way(market: Market, charges: Charges, robot: int) -> int:
     """Give the robot a cheapest way: the least priced cost of all its ways, or less where a delay has no nodes."""
     requests = market.requests
     start = int(requests.start[robot])
     release = int(requests.release[robot])
-    best = price_of_way(market, arrivals, robot)
+    best = price_of_way(market, charges, robot)
     if start == requests.goal[robot]:
-        at_once = goal_price(market, robot, release) + int(arrivals.cost[robot][0])
+        at_once = goal_price(market, robot, release) + int(charges.cost[robot][0])
         if at_once < best:
             best = at_once
             market.ways.length[robot] = 1
             market.ways.resource[robot][0] = start
             market.ways.enter[robot][0] = release
     if requests.rest[robot][start] != NONE:
-        best = settle_late(market, arrivals, robot, best)
-        best = min(best, int(arrivals.least[robot][market.delays]))
+        best = settle_late(market, charges, robot, best)
+        best = min(best, int(charges.least[robot][market.delays]))
     return best
 
 
 @compiled
-def price_of_way(market: Market, arrivals: Arrivals, robot: int) -> int:
+def fee_of(charges: Charges, robot: int, here: int, tick: int) -> int:
+    """The payment of a robot that is seen in the resource at the tick, which is before the horizon."""
+    return int(charges.fee[int(charges.row[robot][tick])][here])
+
+
+@compiled
+def price_of_stay(market: Market, charges: Charges, robot: int, here: int, enter: int, leave: int) -> int:
+    """The price of a stay in [enter, leave) on the way, where the robot is seen included."""
+    paid = stay_price(market, here, enter, leave)
+    for tick in range(enter, min(leave, market.horizon)):
+        paid += fee_of(charges, robot, here, tick)
+    return paid
+
+
+@compiled
+def price_of_way(market: Market, charges: Charges, robot: int) -> int:
     """The priced cost of the way that the robot has; endless if it has none."""
     resources = market.ways.resource[robot]
     enters = market.ways.enter[robot]
@@ -90,15 +113,15 @@ def price_of_way(market: Market, arrivals: Arrivals, robot: int) -> int:
     for visit in range(last):
         here = int(resources[visit])
         leaves = int(enters[visit + 1])
-        paid += stay_price(market, here, int(enters[visit]), leaves)
+        paid += price_of_stay(market, charges, robot, here, int(enters[visit]), leaves)
         paid += move_price(market, move_between(market, here, int(resources[visit + 1])), leaves)
     arrival = int(enters[last])
     delay = arrival - int(market.requests.earliest[robot])
-    return paid + goal_price(market, robot, arrival) + int(arrivals.cost[robot][delay])
+    return paid + goal_price(market, robot, arrival) + int(charges.cost[robot][delay])
 
 
 @compiled
-def settle_late(market: Market, arrivals: Arrivals, robot: int, best: int) -> int:
+def settle_late(market: Market, charges: Charges, robot: int, best: int) -> int:
     """Search for a way that costs less than the best known, and take it; the least priced cost."""
     requests = market.requests
     scratch = market.scratch
@@ -106,14 +129,14 @@ def settle_late(market: Market, arrivals: Arrivals, robot: int, best: int) -> in
     release = int(requests.release[robot])
     earliest = int(requests.earliest[robot])
     rest = requests.rest[robot]
-    least = arrivals.least[robot]
+    least = charges.least[robot]
     tick = release + duration_of(market, robot, start)
     delay = tick + int(rest[start]) - earliest
     if delay >= market.delays:
         return best
     scratch.generation[0] = int(scratch.generation[0]) + 1
     first = start * market.delays + delay
-    pending = reach(scratch, first, tick, stay_price(market, start, release, tick), NONE)
+    pending = reach(scratch, first, tick, price_of_stay(market, charges, robot, start, release, tick), NONE)
     found = NONE
     while pending > 0:
         place = tick % scratch.head.size
@@ -125,11 +148,11 @@ def settle_late(market: Market, arrivals: Arrivals, robot: int, best: int) -> in
             paid = int(scratch.paid[node])
             following = int(scratch.following[node])
             if paid + int(least[tick + int(rest[here]) - earliest]) < best:
-                price = price_of_arrival(market, arrivals, robot, here, tick, paid)
+                price = price_of_arrival(market, charges, robot, here, tick, paid)
                 if price < best:
                     best = price
                     found = node
-                pending += drive_on(market, robot, node, tick, paid)
+                pending += drive_on(market, charges, robot, node, tick, paid)
             node = following
         tick += 1
     if found != NONE:
@@ -138,7 +161,7 @@ def settle_late(market: Market, arrivals: Arrivals, robot: int, best: int) -> in
 
 
 @compiled
-def drive_on(market: Market, robot: int, node: int, tick: int, paid: int) -> int:
+def drive_on(market: Market, charges: Charges, robot: int, node: int, tick: int, paid: int) -> int:
     """Wait or move from a node, also through the goal, to come late: how many new nodes are reached."""
     graph = market.graph
     scratch = market.scratch
@@ -151,6 +174,7 @@ def drive_on(market: Market, robot: int, node: int, tick: int, paid: int) -> int
         if tick < market.horizon:
             across = market.prices.across[here]
             waited += int(market.prices.resource[here][tick]) + int(across[tick + 1]) - int(across[tick])
+            waited += fee_of(charges, robot, here, tick)
         reached += reach(scratch, node + 1, tick + 1, waited, node)
     for move in range(int(graph.first[here]), int(graph.first[here + 1])):
         target = int(graph.target[move])
@@ -158,13 +182,14 @@ def drive_on(market: Market, robot: int, node: int, tick: int, paid: int) -> int
             ready = tick + duration_of(market, robot, target)
             delay = ready + int(rest[target]) - earliest
             if delay < market.delays:
-                moved = paid + move_price(market, move, tick) + stay_price(market, target, tick, ready)
+                moved = paid + move_price(market, move, tick)
+                moved += price_of_stay(market, charges, robot, target, tick, ready)
                 reached += reach(scratch, target * market.delays + delay, ready, moved, node)
     return reached
 
 
 @compiled
-def price_of_arrival(market: Market, arrivals: Arrivals, robot: int, here: int, tick: int, paid: int) -> int:
+def price_of_arrival(market: Market, charges: Charges, robot: int, here: int, tick: int, paid: int) -> int:
     """The priced cost of moving to the goal now; endless if no move leads there."""
     graph = market.graph
     goal = int(market.requests.goal[robot])
@@ -172,5 +197,26 @@ def price_of_arrival(market: Market, arrivals: Arrivals, robot: int, here: int, 
         if graph.target[move] == goal:
             delay = tick - int(market.requests.earliest[robot])
             arrived = paid + move_price(market, move, tick) + goal_price(market, robot, tick)
-            return arrived + int(arrivals.cost[robot][delay])
+            return arrived + int(charges.cost[robot][delay])
     return ENDLESS
+
+
+@entry
+def see_ways(native: Native[Market], native_charges: Native[Charges]) -> None:
+    """Fill in where the ways have the robots at each tick."""
+    market = market_at(native)
+    place = charges_at(native_charges).place
+    for robot in range(market.requests.start.size):
+        tick = 0
+        here = NONE
+        for visit in range(int(market.ways.length[robot])):
+            enter = min(int(market.ways.enter[robot][visit]), market.horizon)
+            while tick < enter:
+                place[robot][tick] = here
+                tick += 1
+            here = int(market.ways.resource[robot][visit])
+        if market.ways.length[robot] > 0:
+            here = market.graph.duration.size
+        while tick < market.horizon:
+            place[robot][tick] = here
+            tick += 1

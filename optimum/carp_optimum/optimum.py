@@ -186,7 +186,7 @@ class _Search:
         """A lower bound with prices."""
         from carp_optimum.bound import lower_bound  # noqa: PLC0415 - slow to load
 
-        certificate = lower_bound(self.instance, steps=PRICE_STEPS, on_step=lambda _: self.look())
+        certificate = lower_bound(self.instance, steps=PRICE_STEPS, on_step=lambda _: self.look(), seen=False)
         self.proved = certificate.bound
         self.look()
         return PricedBound(self.instance, certificate)

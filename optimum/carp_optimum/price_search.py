@@ -1,14 +1,17 @@
 """The search for good prices: the work between the compiled steps of `carp_optimum.price_steps`."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
+from msgspec.structs import replace
 
-from carp_optimized.arrays import LARGEST, NONE, Graph, Ints, Longs, LongTable
+from carp_optimized.arrays import LARGEST, NONE, Graph, Ints, IntTable, Longs, LongTable
 from carp_optimized.encoding import encode_graph, refuse_tick, refuse_what_is_too_large
 from carp_optimized.references import Native
-from carp_optimum.late_ways import Arrivals, find_late_ways, least_late_cost
+from carp_optimum.late_ways import Charges, find_late_ways, least_late_cost, see_ways
 from carp_optimum.price_steps import KEPT, LARGEST_GAIN, PARTS, UNIT, turn_all, walk_all
 from carp_optimum.priced_ways import (
     Market,
@@ -23,6 +26,7 @@ from carp_optimum.priced_ways import (
 )
 from carp_spec import Instance, Refusal, ResourceId, RobotId
 from carp_verify.bound_rules import LARGEST_TABLE, LONGEST_STAY, size_fits, stay_is_searched
+from carp_verify.bounds import DeadlinesDocument
 
 TICKS_BEYOND = 32  # of the horizon beyond the last arrival of a robot that nothing delays
 DELAYS = 64
@@ -54,11 +58,75 @@ class Point(NamedTuple):
     fees: Longs
 
 
+class Member(NamedTuple):
+    """A robot, by position, of a group with deadlines.
+
+    It keeps its own if it enters its goal for the last time by tick `arrival`, or if at tick `seen` it is in one
+    of the places, on its way.
+    """
+
+    robot: int
+    arrival: int
+    seen: int
+    places: Sequence[int]
+
+
+@dataclass(frozen=True, slots=True)
+class Deadlines:
+    """Deadlines that their members cannot all keep, and the certificate of that, without price."""
+
+    members: Sequence[Member]
+    document: DeadlinesDocument
+
+
+class Flat(NamedTuple):
+    """All members of all deadlines, one after the other, and their places, each with the number of its deadlines.
+
+    `inside[member]` has the places of the member, as `carp_optimum.late_ways` numbers them, `NONE` as the last. A place
+    has the row of its robot and tick.
+    """
+
+    sizes: Longs
+    group: Longs
+    robot: Longs
+    arrival: Longs
+    seen: Longs
+    inside: npt.NDArray[np.bool_]
+    place: Longs
+    row: Longs
+    group_of_place: Longs
+
+
+def flattened(deadlines: Sequence[Deadlines], resources: int) -> tuple[Flat, Mapping[tuple[int, int], int]]:
+    """The members of all deadlines, and the rows of robots that are seen at a tick, from 1 on."""
+    members = [(number, member) for number, each in enumerate(deadlines) for member in each.members]
+    rows: dict[tuple[int, int], int] = {}
+    inside = np.zeros((len(members), resources + 2), np.bool_)
+    places: list[tuple[int, int, int]] = []
+    for position, (number, member) in enumerate(members):
+        inside[position, list(member.places)] = True
+        if member.places:
+            row = rows.setdefault((member.robot, member.seen), len(rows) + 1)
+            places += [(place, row, number) for place in member.places]
+    flat = Flat(
+        sizes=np.array([len(each.members) for each in deadlines], np.int64),
+        group=np.array([number for number, _ in members], np.int64),
+        robot=np.array([member.robot for _, member in members], np.int64),
+        arrival=np.array([member.arrival for _, member in members], np.int64),
+        seen=np.array([member.seen for _, member in members], np.int64),
+        inside=inside,
+        place=np.array([place for place, _, _ in places], np.int64),
+        row=np.array([row for _, row, _ in places], np.int64),
+        group_of_place=np.array([number for _, _, number in places], np.int64),
+    )
+    return flat, rows
+
+
 class PriceSearch:
     """Prices of an instance and multipliers of cuts; `best` is the best bound found with them, in parts of a tick.
 
     A cut says that the costs of its members, robots by position, add up to no less than `least`. Deadlines say that one
-    of their members has a larger delay than is allowed to it; `fees` are their prices.
+    of their members does not keep its own; `fees` are their prices.
     """
 
     def __init__(self, instance: Instance, scale: int) -> None:
@@ -88,10 +156,12 @@ class PriceSearch:
         self.least = np.zeros(0, np.int64)
         self.multipliers = np.zeros(0, np.int64)
         self._course = np.zeros(0, np.int64)
-        self.deadlines: list[tuple[Ints, Ints]] = []
+        self.deadlines: list[Deadlines] = []
         self.fees = np.zeros(0, np.int64)
         self._course_of_fees = np.zeros(0, np.int64)
-        self._arrivals = Native(Arrivals(*np.zeros((2, 0, 0), np.int64)))
+        self._flat, _ = flattened([], 0)
+        wide, narrow = np.zeros((0, 0), np.int64), np.zeros((0, 0), np.int32)
+        self._charges = Native(Charges(wide, wide, narrow, wide, narrow))
         self.best = find_ways(self.native)
         self._kept = self._point()
         self.count = 0
@@ -110,22 +180,23 @@ class PriceSearch:
         if not self.deadlines:
             return proved + find_ways(self.native)
         self._charge()
-        worth = sum(
-            fee * (len(members) - 1) for fee, (members, _) in zip(self.fees.tolist(), self.deadlines, strict=True)
-        )
-        return proved - worth + find_late_ways(self.native, self._arrivals)
+        worth = int((self.fees * (self._flat.sizes - 1)).sum())
+        return proved - worth + find_late_ways(self.native, self._charges)
 
     def _charge(self) -> None:
-        """Fill the tables of what an arrival costs each robot, by its delay."""
-        requests = self.market.requests
-        cost, least = self._arrivals.fields
+        """Fill the tables of what an arrival costs each robot, by its delay, and of what it pays on its way."""
+        requests, flat = self.market.requests, self._flat
+        cost, least, _, fee, _ = self._charges.fields
         cost[:] = 0
-        for fee, (members, delays) in zip(self.fees, self.deadlines, strict=True):
-            cost[members, delays] += fee
+        delay = np.minimum(flat.arrival - requests.earliest[flat.robot], self.market.delays)
+        can = delay >= 0
+        np.add.at(cost, (flat.robot[can], delay[can]), self.fees[flat.group[can]])
         cost[:] = np.cumsum(cost[:, ::-1], axis=1)[:, ::-1]
         ticks = np.arange(cost.shape[1]) + (requests.earliest - requests.release)[:, None]
         cost += requests.weight[:, None] * ticks
         least[:] = np.minimum.accumulate(cost[:, ::-1], axis=1)[:, ::-1]
+        fee[:] = 0
+        np.add.at(fee, (flat.row, flat.place), self.fees[flat.group_of_place])
 
     def _restore(self) -> int:
         """Go back to the best prices, without a course: their bound."""
@@ -146,19 +217,42 @@ class PriceSearch:
         self._course = np.concatenate([self._course, none])
         self._kept = self._kept._replace(multipliers=np.concatenate([self._kept.multipliers, none]))
 
-    def add_deadlines(self, deadlines: Sequence[Mapping[int, int]]) -> None:
-        """Add deadlines, each the delays that it allows its members, with prices of 0."""
-        if not self.deadlines:
-            self._arrivals = Native(
-                Arrivals(*np.zeros((2, len(self.instance.robots), self.market.delays + 1), np.int64))
+    def add_deadlines(self, deadlines: Sequence[Deadlines]) -> None:
+        """Add deadlines with prices of 0."""
+        self.deadlines.extend(deadlines)
+        robots, resources = len(self.instance.robots), len(self.instance.graph.resources)
+        self._flat, rows = flattened(self.deadlines, resources)
+        row = np.zeros((robots, self.horizon), np.int32)
+        for place, number in rows.items():
+            row[place] = number
+        self._charges = Native(
+            Charges(
+                cost=np.zeros((robots, self.market.delays + 1), np.int64),
+                least=np.zeros((robots, self.market.delays + 1), np.int64),
+                row=row,
+                fee=np.zeros((len(rows) + 1, resources), np.int64),
+                place=np.zeros((robots, self.horizon), np.int32),
             )
-        self.deadlines.extend(
-            (np.array([*allowed], np.int32), np.array([*allowed.values()], np.int32)) for allowed in deadlines
         )
         none = np.zeros(len(deadlines), np.int64)
         self.fees = np.concatenate([self.fees, none])
         self._course_of_fees = np.concatenate([self._course_of_fees, none])
         self._kept = self._kept._replace(fees=np.concatenate([self._kept.fees, none]))
+
+    def priced_deadlines(self) -> tuple[DeadlinesDocument, ...]:
+        """The deadlines that have a price, with it."""
+        priced = zip(self.deadlines, self.fees.tolist(), strict=True)
+        return tuple(replace(each.document, price=fee) for each, fee in priced if fee > 0)
+
+    def _kept_by(self) -> Longs:
+        """How many members of each deadlines keep their own in the robots' cheapest ways."""
+        flat = self._flat
+        keeps = self.delays()[flat.robot] <= flat.arrival - self.market.requests.earliest[flat.robot]
+        if flat.place.size > 0:
+            see_ways(self.native, self._charges)
+            places = self._charges.fields.place[flat.robot, flat.seen]
+            keeps |= flat.inside[np.arange(len(places)), places]
+        return np.bincount(flat.group, keeps, len(flat.sizes)).astype(np.int64)
 
     def delays(self) -> Longs:
         """The delays of the robots' cheapest ways; 0 for one that has none."""
@@ -177,9 +271,8 @@ class PriceSearch:
         lacking = self.least - np.array([costs[members].sum() for members in self.cuts], np.int64)
         self._course = self._course * KEPT // PARTS + UNIT * lacking
         self._course[(self._course < 0) & (self.multipliers == 0)] = 0
-        delays = self.delays()
-        surplus = [1 - int((delays[members] > allowed).sum()) for members, allowed in self.deadlines]
-        self._course_of_fees = self._course_of_fees * KEPT // PARTS + UNIT * np.array(surplus, np.int64)
+        surplus = self._kept_by() - self._flat.sizes + 1
+        self._course_of_fees = self._course_of_fees * KEPT // PARTS + UNIT * surplus
         self._course_of_fees[(self._course_of_fees < 0) & (self.fees == 0)] = 0
         square = turn_all(self.native) + int((self._course * self._course).sum() + (self._course_of_fees**2).sum())
         if square == 0:
@@ -242,6 +335,20 @@ class PriceSearch:
             on_step()
         return delays
 
+    def wander_places(self, steps: int, aim: int, on_step: Callable[[], None]) -> tuple[LongTable, IntTable]:
+        """As `wander`, with the places of all robots, by step, robot and tick."""
+        if not self.deadlines:
+            self.add_deadlines([])
+        places: list[IntTable] = []
+
+        def look() -> None:
+            on_step()
+            see_ways(self.native, self._charges)
+            places.append(self._charges.fields.place.astype(np.int16))
+
+        delays = self.wander(steps, aim, look)
+        return delays, np.stack(places)
+
     def prices(self) -> PriceLists:
         """The prices that are not 0."""
         graph = self.instance.graph
@@ -271,7 +378,7 @@ class PriceSearch:
     def _least_cost(self, position: int) -> int:
         if not self.deadlines:
             return least_cost(self.native, position)
-        return least_late_cost(self.native, self._arrivals, position)
+        return least_late_cost(self.native, self._charges, position)
 
 
 def _requests(instance: Instance, scale: int) -> Requests:

@@ -100,6 +100,8 @@ def _prices_of_late_robots(encoding: Encoding, bound: PricedBound, unit: int) ->
     clauses = {robot.robot.id: robot for robot in encoding.robots}
     numbers = []
     for deadlines in bound.certificate.deadlines:
+        if deadlines.seen:
+            continue  # no literal says whether a robot keeps its own
         entries = [(clauses[name], tick) for name, tick in zip(deadlines.robots, deadlines.ticks, strict=True)]
         if any(tick < robot.earliest for robot, tick in entries):
             continue  # a robot that is late anyhow has no literal for it

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from carp_spec import Instance, ResourceId, RobotId
 from carp_verify.bounds import BoundDocument
 from carp_verify.robot_clauses import Node, RobotClauses
-from carp_verify.verify_bound import Tariff
+from carp_verify.verify_bound import Tariff, fees_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class PricedBound:
         self.tariff = Tariff(instance, certificate)
         self.least = {robot: least or 0 for robot, least in certificate.robots}
         self.weight = dict.fromkeys(instance.robot, certificate.scale)
-        self.fees: dict[RobotId, list[tuple[int, int]]] = defaultdict(list)
+        self.fees = fees_of(instance, certificate.deadlines)
         self.parts = sum(self.least.values()) - self.tariff.worth
         for cut in certificate.cuts:
             self.parts += cut.multiplier * cut.least
@@ -42,8 +42,6 @@ class PricedBound:
                 self.weight[robot] -= cut.multiplier
         for deadlines in certificate.deadlines:
             self.parts -= deadlines.price * (len(deadlines.robots) - 1)
-            for robot, tick in zip(deadlines.robots, deadlines.ticks, strict=True):
-                self.fees[robot].append((tick, deadlines.price))
 
     def gap(self, cost: int) -> int:
         """The parts of a tick by which plans of this total cost more than the bound."""
@@ -64,6 +62,7 @@ class _Pricing:
         self.goal = robot.robot.goal
         self.parks = bound.instance.after_goal == "park"
         self.gap = bound.gap(cost)
+        self.fees = bound.fees[name]
         self.longest = cost - sum(shortest.values())
         self.shortest = shortest[name]
         self.cuts = [
@@ -82,7 +81,7 @@ class _Pricing:
             self.delays[0] = self.excess(0, self.stay_at_goal(release))
         if start != self.goal or self.robot.nodes_within(self.longest) > 0:
             ready = release + self._duration(start)
-            self.pay((start, ready), self.bound.tariff.stay(start, release, ready))
+            self.pay((start, ready), self.stay(start, release, ready))
         rests: dict[Node | None, int] = {None: 0}
         for node in reversed(self.paid):
             rests[node] = min((price + rests[to] for to, price in self.ways[node] if to in rests), default=self.gap + 1)
@@ -113,9 +112,9 @@ class _Pricing:
         for following in self.robot.leads_to(node):
             target, later = following
             if target == resource:
-                yield following, tariff.stay(resource, tick - 1, later) - tariff.stay(resource, tick - 1, tick)
+                yield following, self.stay(resource, tick - 1, later) - self.stay(resource, tick - 1, tick)
             else:
-                yield following, tariff.move(resource, target, tick) + tariff.stay(target, tick, later)
+                yield following, tariff.move(resource, target, tick) + self.stay(target, tick, later)
         if self.goal in self.bound.instance.graph.successors[resource]:
             delay = tick - self.robot.earliest
             last = self.excess(delay, tariff.move(resource, self.goal, tick) + self.stay_at_goal(tick))
@@ -128,12 +127,17 @@ class _Pricing:
         name = self.robot.robot.id
         return paid + self.bound.weight[name] * (self.shortest + delay) + beyond - self.bound.least[name]
 
+    def stay(self, resource: ResourceId, enter: int, leave: int) -> int:
+        """The payment of a stay in [enter, leave) on the way."""
+        return self.bound.tariff.stay(resource, enter, leave) + self.fees.on_the_way(resource, enter, leave)
+
     def stay_at_goal(self, tick: int) -> int:
         """The payment of a robot that enters its goal at the tick for the last time."""
         leave = tick + self._duration(self.goal)
-        fees = sum(price for deadline, price in self.bound.fees[self.robot.robot.id] if tick <= deadline)
         tariff = self.bound.tariff
-        return fees + tariff.stay(self.goal, tick, max(leave, tariff.horizon) if self.parks else leave)
+        return self.fees.at_arrival(tick) + tariff.stay(
+            self.goal, tick, max(leave, tariff.horizon) if self.parks else leave
+        )
 
     def _duration(self, resource: ResourceId) -> int:
         return self.bound.instance.duration(self.robot.robot.id, resource)

@@ -51,12 +51,9 @@ def test_deadlines_that_are_found_are_proved_and_raise_the_bound() -> None:
     prices = PriceSearch(instance, SCALE)
     search = DeadlineSearch(prices)
     assert search.round(lambda: None) > 0
-    for deadlines in search.found:
+    for deadlines in prices.deadlines:
         assert require_deadlines(instance, deadlines.document, 10**6) > 0
-        assert all(
-            tick >= prices.market.requests.earliest[at]
-            for at, tick in zip(deadlines.allowed, deadlines.document.ticks, strict=True)
-        )
+        assert all(member.arrival >= prices.market.requests.earliest[member.robot] for member in deadlines.members)
     before = prices.best
     prices.climb(SCALE, SCALE >> 4, lambda: None, lambda _, __: None)
     assert prices.best > before
@@ -65,9 +62,9 @@ def test_deadlines_that_are_found_are_proved_and_raise_the_bound() -> None:
 def test_the_same_deadlines_are_not_found_twice() -> None:
     search = DeadlineSearch(PriceSearch(dead_end(), SCALE))
     search.round(lambda: None)
-    found = len(search.found)
+    found = len(search.search.deadlines)
     assert search.round(lambda: None) == 0
-    assert len(search.found) == found
+    assert len(search.search.deadlines) == found
 
 
 def test_no_deadlines_are_searched_for_where_the_formula_would_be_large(monkeypatch: pytest.MonkeyPatch) -> None:

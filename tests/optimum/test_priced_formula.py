@@ -19,12 +19,12 @@ from carp_optimum.priced_formula import priced_formula
 from carp_optimum.proving import write_proof
 from carp_optimum.reduced_costs import PricedBound
 from carp_optimum.solver import Deadline, Solver
-from carp_spec import AfterGoal, Instance, Robot, RobotId, judge
+from carp_spec import AfterGoal, Instance, Robot, judge
 from carp_verify.bounds import BOUND_FORMAT, BoundDocument, CutDocument, digest
 from carp_verify.encoding import Encoding
 from carp_verify.joint_search import least_total_cost
 from carp_verify.proof import solution_of, verify_proof
-from carp_verify.verify_bound import Budget, RobotSearch, Tariff, predecessors, verify_bound
+from carp_verify.verify_bound import Budget, RobotSearch, Tariff, fees_of, predecessors, verify_bound
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.strategies import instances
 
@@ -78,13 +78,10 @@ def completed(instance: Instance, certificate: BoundDocument) -> BoundDocument:
     """The certificate with the least costs and the bound that its prices prove."""
     tariff, before, budget = Tariff(instance, certificate), predecessors(instance), Budget()
     weight = dict.fromkeys(instance.robot, certificate.scale)
-    fees: dict[RobotId, list[tuple[int, int]]] = {robot: [] for robot in instance.robot}
+    fees = fees_of(instance, certificate.deadlines)
     for cut in certificate.cuts:
         for robot in cut.robots:
             weight[robot] -= cut.multiplier
-    for deadlines in certificate.deadlines:
-        for robot, tick in zip(deadlines.robots, deadlines.ticks, strict=True):
-            fees[robot].append((tick, deadlines.price))
     robots = tuple(
         (each.id, RobotSearch(tariff, each, weight[each.id], before, budget, fees[each.id]).least_cost())
         for each in instance.robots
@@ -128,7 +125,7 @@ def test_the_certificate_s_cuts_and_deadlines_count(seed: int, after_goal: After
     instance = town(seed, after_goal)
     least = optimum(instance, SECONDS, priced=False).cost
     assert least is not None
-    certificate = lower_bound(instance, steps=1000)
+    certificate = lower_bound(instance, steps=1000, seen=False)
     assert len(certificate.deadlines) > 2
     if cuts:
         cut = first_cut(instance, certificate.scale // 2)
@@ -159,7 +156,7 @@ def test_nodes_beyond_the_gap_are_left_out() -> None:
 
 def test_at_the_bound_one_robot_of_each_group_with_deadlines_is_late_and_no_second_one_if_that_is_too_dear() -> None:
     instance = town(7, "park")
-    bound = PricedBound(instance, lower_bound(instance, steps=1000))
+    bound = PricedBound(instance, lower_bound(instance, steps=1000, seen=False))
     encoding = priced_formula(instance, bound, bound.certificate.bound, lambda: None)
     clauses = {robot.robot.id: robot for robot in encoding.robots}
     solver = Cadical195(bootstrap_with=encoding.formula.clauses)

@@ -70,7 +70,7 @@ def test_a_certificate_that_proves_nothing_is_refused_with_path_rule_and_reason(
 def test_plans_that_cost_less_than_the_bound_are_a_contradiction(
     carproof: Run, monkeypatch: pytest.MonkeyPatch, command: str
 ) -> None:
-    def too_much(_: object, __: object, ___: object, keep: Callable[[Progress], None]) -> BoundDocument:
+    def too_much(_: object, __: object, ___: object, keep: Callable[[Progress], None], **____: object) -> BoundDocument:
         keep(Progress(1, 1_000_000))
         return EMPTY
 

@@ -11,7 +11,7 @@ from time import process_time
 
 import msgspec
 import pytest
-from hypothesis import given, settings
+from hypothesis import event, given, settings
 from hypothesis import strategies as st
 from tests.profiles import draws
 from tests.verify.tiny import TINY
@@ -19,7 +19,7 @@ from tests.verify.tiny import TINY
 from carp_optimum.bound import Progress, lower_bound
 from carp_optimum.cut_search import prove
 from carp_optimum.proving import refutation
-from carp_optimum.solver import Deadline
+from carp_optimum.solver import Deadline, Solver
 from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, ResourceId, Robot, Rule, Visit
 from carp_spec.plan_rules import plan_cost
 from carp_verify import bound_rules
@@ -27,8 +27,10 @@ from carp_verify import verify_bound as page
 from carp_verify.bound_cuts import formula_of, formula_of_deadlines
 from carp_verify.bounds import BOUND_FORMAT, BoundDocument, CutDocument, DeadlinesDocument, digest, read_bound
 from carp_verify.documents import write
+from carp_verify.encoding import violated
 from carp_verify.joint_search import least_total_cost
-from carp_verify.verify_bound import Budget, RobotSearch, Tariff, predecessors, verify_bound
+from carp_verify.refutation import NotRefutedError
+from carp_verify.verify_bound import Budget, Fees, RobotSearch, Tariff, fees_of, predecessors, verify_bound
 from carproof.strategies import PlannedInstance, Sizes, instances, planned_instances
 
 SCALE = 4
@@ -50,27 +52,17 @@ def crossing() -> Instance:
 def completed(instance: Instance, certificate: BoundDocument) -> BoundDocument:
     """The certificate with all that its prices prove."""
     tariff = Tariff(instance, certificate)
-    before = predecessors(instance)
+    before, fees = predecessors(instance), fees_of(instance, certificate.deadlines)
     robots = tuple(
         (
             robot.id,
-            RobotSearch(tariff, robot, certificate.scale, before, Budget(), fees_of(certificate, robot)).least_cost(),
+            RobotSearch(tariff, robot, certificate.scale, before, Budget(), fees[robot.id]).least_cost(),
         )
         for robot in instance.robots
     )
     worth = sum(deadlines.price * (len(deadlines.robots) - 1) for deadlines in certificate.deadlines)
     parts = sum(least or 0 for _, least in robots) - tariff.worth - worth
     return msgspec.structs.replace(certificate, robots=robots, bound=-(-parts // certificate.scale))
-
-
-def fees_of(certificate: BoundDocument, robot: Robot) -> list[tuple[int, int]]:
-    """The deadlines of a robot with their prices."""
-    return [
-        (tick, deadlines.price)
-        for deadlines in certificate.deadlines
-        for member, tick in zip(deadlines.robots, deadlines.ticks, strict=True)
-        if member == robot.id
-    ]
 
 
 @st.composite
@@ -125,7 +117,7 @@ def plans_of(instance: Instance, robot: Robot) -> Iterator[Plan]:
             yield Plan(robot.id, (*visits, Visit(here, enter, None if instance.after_goal == "park" else ready)))
         for leave in range(ready, min(last, max(ready, HORIZON)) + 1):
             for target in instance.graph.successors[here]:
-                if leave < HORIZON or all(visit.resource != target for visit in visits):
+                if leave < HORIZON or all(visit.resource != target or visit.enter < HORIZON for visit in visits):
                     yield from go_on((*visits, Visit(here, enter, leave)), target, leave)
 
     return go_on((), robot.start, robot.release)
@@ -155,6 +147,73 @@ def test_who_keeps_a_deadline_pays_for_it_and_may_drive_on_through_the_goal_to_m
         for plan in plans_of(instance, robot)
     ]
     tariff = Tariff(instance, certificate)
+    search = RobotSearch(tariff, robot, SCALE, predecessors(instance), Budget(), Fees(fees))
+    assert search.least_cost() == min(costs, default=None)
+
+
+def left(visit: Visit) -> int:
+    """The tick at which a visit ends that is not the last one."""
+    assert visit.leave is not None
+    return visit.leave
+
+
+def keeps(plan: Plan, deadline: int, seen: int, places: frozenset[ResourceId]) -> bool:
+    """Whether the plan keeps the deadline of a robot that is seen, word for word as the document has it."""
+    arrival = plan.visits[-1].enter
+    at = {visit.resource for visit in plan.visits[:-1] if visit.enter <= seen < left(visit)}
+    return (arrival <= deadline and arrival <= seen) or bool(at & places)
+
+
+@settings(max_examples=draws(400))
+@given(
+    st.data(),
+    instances(Sizes(resources=4, robots=2, capacity=1, duration=2, release=2, pace=1), least_robots=2),
+)
+def test_no_plans_that_break_no_rule_keep_all_deadlines_whose_formula_has_no_model(
+    data: st.DataObject, instance: Instance
+) -> None:
+    ticks = st.integers(0, HORIZON - 1)
+    places = st.frozensets(st.sampled_from([resource.id for resource in instance.graph.resources]))
+    members = [data.draw(st.tuples(ticks, ticks, places)) for _ in instance.robots]
+    robots = tuple(robot.id for robot in instance.robots)
+    seen = tuple((tick, tuple(sorted(at, key=str))) for _, tick, at in members)
+    deadlines = DeadlinesDocument(robots, tuple(tick for tick, _, _ in members), 0, "", seen)
+    try:
+        formula = formula_of_deadlines(instance, deadlines, 10**6)
+    except NotRefutedError:
+        return  # a robot has no way
+    keeping = [
+        [plan for plan in plans_of(instance, robot) if keeps(plan, *member)]
+        for robot, member in zip(instance.robots, members, strict=True)
+    ]
+    is_possible = any(not violated(instance, plans) for plans in product(*keeping))
+    has_model = Solver(formula, lambda: None).satisfiable([])
+    assert has_model or not is_possible
+    event("possible" if is_possible else "refuted" if not has_model else "not refuted")
+
+
+@settings(max_examples=draws(200))
+@given(st.data(), instances(Sizes(resources=3, robots=1, capacity=1, duration=3, release=3, pace=1), least_robots=1))
+def test_who_is_seen_in_a_place_on_the_way_pays_for_it_once(data: st.DataObject, instance: Instance) -> None:
+    certificate = data.draw(certificates(instance))
+    robot = instance.robots[0]
+    places = st.sets(st.sampled_from([resource.id for resource in instance.graph.resources]))
+    prices = st.integers(0, 4 * SCALE)
+    arrivals = data.draw(st.lists(st.tuples(st.integers(0, HORIZON - 1), prices), max_size=2))
+    sights = data.draw(st.lists(st.tuples(st.integers(0, HORIZON - 1), places, prices), max_size=4))
+    fees = Fees([*arrivals, (0, 0)], sights)
+    costs = [
+        SCALE * plan_cost(instance, plan)
+        + payment(certificate, plan)
+        + sum(price for tick, price in arrivals if plan.visits[-1].enter <= tick)
+        + sum(
+            price
+            for tick, counted, price in sights
+            if any(visit.resource in counted and visit.enter <= tick < left(visit) for visit in plan.visits[:-1])
+        )
+        for plan in plans_of(instance, robot)
+    ]
+    tariff = Tariff(instance, certificate)
     search = RobotSearch(tariff, robot, SCALE, predecessors(instance), Budget(), fees)
     assert search.least_cost() == min(costs, default=None)
 
@@ -174,7 +233,7 @@ def test_a_robot_is_late_where_that_is_cheaper(
     lane = Instance(ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),)), (Robot("r", "a", "b"),))
     certificate = BoundDocument(BOUND_FORMAT, digest(lane), 0, SCALE, HORIZON, prices, (), (), ())
     paid = [(tick, SCALE * price) for tick, price in fees]
-    search = RobotSearch(Tariff(lane, certificate), lane.robots[0], SCALE, predecessors(lane), Budget(), paid)
+    search = RobotSearch(Tariff(lane, certificate), lane.robots[0], SCALE, predecessors(lane), Budget(), Fees(paid))
     assert search.least_cost() == SCALE * least
 
 
@@ -198,8 +257,9 @@ def test_whatever_the_prices_sound_plans_pay_no_more_than_they_are_worth_and_cos
 @given(instances(TINY, least_robots=2))
 def test_a_bound_that_was_found_is_verified_and_at_most_the_optimum(instance: Instance) -> None:
     seen: list[Progress] = []
-    certificate = lower_bound(instance, steps=150, on_step=seen.append)
+    certificate = lower_bound(instance, steps=600, on_step=seen.append)
     assert verify_bound(instance, certificate) == certificate.bound
+    event(f"seen: {any(deadlines.seen for deadlines in certificate.deadlines)}")
     if not certificate.cuts:
         assert completed(instance, certificate) == certificate
     assert certificate.bound >= seen[0].bound
@@ -218,9 +278,9 @@ def test_prices_find_what_the_shortest_paths_miss() -> None:
 def test_deadlines_find_what_prices_alone_miss_and_carry_their_proofs() -> None:
     instance = crossing()
     certificate = lower_bound(instance, steps=4500)
-    assert certificate.bound == 11
+    assert certificate.bound == 10
     assert certificate.deadlines
-    assert verify_bound(instance, certificate) == 11
+    assert verify_bound(instance, certificate) == 10
 
 
 def with_deadlines(**fields: object) -> Tamper:
@@ -273,6 +333,86 @@ def test_a_robot_without_a_way_has_no_deadline() -> None:
     deadlines = DeadlinesDocument(("r0", "lost"), (2, 2), 1, "1 0 1 0\n")
     with pytest.raises(Refusal, match="robot lost can be at its goal at None, not at 2"):
         verify_bound(instance, msgspec.structs.replace(lower_bound(instance, steps=2), deadlines=(deadlines,)))
+
+
+def with_sights(**fields: object) -> Tamper:
+    """Change the only deadlines, of robots that are seen."""
+
+    def tamper(certificate: BoundDocument) -> BoundDocument:
+        changed = msgspec.structs.replace(certificate.deadlines[0], **fields)
+        tampered = msgspec.structs.replace(certificate, deadlines=(changed,))
+        return completed(crossing(), tampered) if len(changed.seen) > 1 else tampered
+
+    return tamper
+
+
+def sight(tick: object = 1, places: object = ("middle",), other: object = ("middle",)) -> Tamper:
+    return with_sights(seen=((tick, places), (1, other)))
+
+
+@pytest.mark.parametrize(
+    ("tamper", "reason"),
+    [
+        (sight(tick=2), "its proof does not hold"),  # r0 can wait while r2 passes
+        (sight(tick=0), "its proof does not hold"),
+        (sight(places=("middle", "north")), "its proof does not hold"),
+        (sight(other=("middle", "south")), "its proof does not hold"),
+        (with_sights(robots=("r0", "r1"), refutation="1 0 1 0\n"), "its proof does not hold"),
+        (sight(tick=-1), "robot r0 must have whole ticks of at least 0, not 0 and -1"),
+        (sight(tick=1.0), r"whole ticks of at least 0, not 0 and 1\.0"),
+        (sight(tick=True), "whole ticks of at least 0, not 0 and True"),
+        (with_sights(ticks=(0, -1)), "robot r2 must have whole ticks of at least 0, not -1 and 1"),
+        (sight(places=("moon",)), "the places of robot r0 must be resources"),
+        (with_sights(seen=((1, ("middle",)),)), "it must see each of 2 robots"),
+        (with_sights(refutation=""), "it does not end with the empty clause"),
+    ],
+)
+def test_tampered_sights_are_refused(tamper: Tamper, reason: str) -> None:
+    with pytest.raises(Refusal, match=reason) as refused:
+        verify_bound(crossing(), tamper(sight_certificate()))
+    assert (refused.value.path, refused.value.rule) == ("$.deadlines[0]", "bound/deadline")
+
+
+def test_a_robot_that_vanishes_may_have_passed_its_goal_when_it_is_seen() -> None:
+    lane = Instance(
+        ResourceGraph((Resource("a"), Resource("b"), Resource("c")), (("a", "b"), ("b", "c"))), (Robot("r", "a", "b"),)
+    )
+    deadlines = DeadlinesDocument(("r",), (0,), 1, "", ((2, ("c",)),))
+    assert Solver(formula_of_deadlines(lane, deadlines, 100), lambda: None).satisfiable([])
+    earlier = msgspec.structs.replace(deadlines, seen=((1, ("c",)),))
+    assert not Solver(formula_of_deadlines(lane, earlier, 100), lambda: None).satisfiable([])
+
+
+@cache
+def sight_certificate() -> BoundDocument:
+    """A certificate without prices of places: r0 and r2, which meet head-on, are not both in the middle at tick 1."""
+    certificate = msgspec.structs.replace(lower_bound(crossing(), steps=0), resources=(), exchanges=())
+    unproved = DeadlinesDocument(("r0", "r2"), (0, 0), 3 << 15, "", ((1, ("middle",)), (1, ("middle",))))
+    lines = refutation(formula_of_deadlines(crossing(), unproved, 10**6), Deadline(60))
+    proved = msgspec.structs.replace(unproved, refutation=lines)
+    with_it = completed(crossing(), msgspec.structs.replace(certificate, deadlines=(proved,)))
+    assert verify_bound(crossing(), with_it) == with_it.bound == 7
+    return with_it
+
+
+def test_deadlines_of_robots_that_are_seen_are_written_and_read() -> None:
+    certificate = sight_certificate()
+    assert read_bound(write(certificate)) == certificate
+    assert b"seen" not in write(deadline_certificate())
+
+
+def test_robots_are_not_seen_in_a_certificate_for_the_kernel() -> None:
+    certificate = lower_bound(crossing(), steps=1500, seen=False)
+    assert certificate.deadlines
+    assert not any(deadlines.seen for deadlines in certificate.deadlines)
+
+
+def test_a_robot_pays_only_where_it_is_seen() -> None:
+    certificate = sight_certificate()
+    assert [least for _, least in certificate.robots] == [3 << 16, 2 << 16, 3 << 16]
+    claimed = tuple((robot, 7 << 15) for robot, _ in certificate.robots)
+    with pytest.raises(Refusal, match="robot r0 can have no more than 196608"):
+        verify_bound(crossing(), msgspec.structs.replace(certificate, robots=claimed))
 
 
 @cache

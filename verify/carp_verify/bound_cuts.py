@@ -5,7 +5,8 @@ formula of a total below `least` is made again from the instance, and its refuta
 where more robots are in the way, no plans of the group cost less either.
 
 Deadlines are proved in the same way, by the formula of plans of the group that keep all of them: each robot's horizon
-is the delay with which it would just keep its own, and none is later than that.
+is the delay with which it would just keep its own, and none is later than that. Robots that are seen at a tick are
+described up to it: then each is in one of its places, or has arrived by its deadline.
 """
 
 from collections.abc import Sequence
@@ -52,9 +53,11 @@ def require_cut(instance: Instance, cut: CutDocument, most: int) -> int:
 def formula_of_deadlines(instance: Instance, deadlines: DeadlinesDocument, most: int) -> Formula:
     """The formula that shows deadlines which cannot all be kept; raises as `formula_of` does."""
     group = group_of(instance, deadlines.robots)
-    encoding = Encoding(group, most=most)
     if len(deadlines.ticks) != len(group.robots):
         raise NotRefutedError(f"it must have a deadline of each of {len(group.robots)} robots")
+    if deadlines.seen:
+        return _formula_of_seen(group, deadlines, most)
+    encoding = Encoding(group, most=most)
     for robot, tick in zip(encoding.robots, deadlines.ticks, strict=True):
         earliest = None if robot.shortest is None else robot.earliest
         if not is_deadline(tick, earliest):
@@ -62,6 +65,30 @@ def formula_of_deadlines(instance: Instance, deadlines: DeadlinesDocument, most:
     encoding.grow_to([tick - robot.earliest for robot, tick in zip(encoding.robots, deadlines.ticks, strict=True)])
     encoding.forbid_all()
     encoding.close()
+    return encoding.formula
+
+
+def _formula_of_seen(group: Instance, deadlines: DeadlinesDocument, most: int) -> Formula:
+    """The formula of deadlines of robots that are seen."""
+    if len(deadlines.seen) != len(group.robots):
+        raise NotRefutedError(f"it must see each of {len(group.robots)} robots")
+    for name, tick, (seen, places) in zip(deadlines.robots, deadlines.ticks, deadlines.seen, strict=True):
+        if not is_deadline(tick, 0) or not is_deadline(seen, 0):
+            raise NotRefutedError(f"robot {name} must have whole ticks of at least 0, not {tick!r} and {seen!r}")
+        if not group.graph.index.keys() >= set(places):
+            raise NotRefutedError(f"the places of robot {name} must be resources")
+    encoding = Encoding(group, most=most, seen=[seen for seen, _ in deadlines.seen])
+    if encoding.wayless:
+        raise NotRefutedError("a robot of the group has no way to its goal")
+    members = [
+        (robot, places, min(tick, seen))
+        for robot, tick, (seen, places) in zip(encoding.robots, deadlines.ticks, deadlines.seen, strict=True)
+    ]
+    encoding.grow_to([robot.largest_delay(places, arrival) for robot, places, arrival in members])
+    encoding.forbid_all()
+    encoding.close()
+    for robot, places, arrival in members:
+        robot.demand(places, arrival)
     return encoding.formula
 
 

@@ -64,8 +64,9 @@ def is_weight(scale: int, multipliers: int) -> bool:
 
 @rule(
     "bound/deadline",
-    "Deadlines are those of a group of one or more distinct robots, each with a whole tick; their price is a whole "
-    "number of at least 0, and a refutation shows that no plans of the group keep all of them.",
+    "Deadlines are those of a group of one or more distinct robots, each with a whole tick, and if they are seen, each "
+    "with another and with places, which are resources; their price is a whole number of at least 0, and a refutation "
+    "shows that no plans of the group keep all of them.",
     DESIGN,
 )
 def is_deadline(tick: object, earliest: int | None) -> bool:

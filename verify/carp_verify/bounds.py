@@ -14,6 +14,8 @@ from carp_verify.documents import Positive, Tick, decode, write_instance
 BOUND_FORMAT: Final = "carproof-bound/1"
 
 Price: TypeAlias = Annotated[int, msgspec.Meta(extra_json_schema={"minimum": 0})]
+Sight: TypeAlias = tuple[int, tuple[ResourceId, ...]]
+"""A tick at which a robot is seen, and the places that count for it then."""
 
 
 class CutDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -31,17 +33,20 @@ class CutDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     refutation: str
 
 
-class DeadlinesDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class DeadlinesDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
     """Deadlines that the robots of a group cannot all keep, and what each of them pays if it keeps its own.
 
-    A robot keeps a deadline if it enters its goal for the last time at that tick or before. The price is in parts of a
-    tick. The refutation is that of the formula of plans of the group that keep all deadlines: LRAT without RAT steps.
+    A robot keeps a deadline if it enters its goal for the last time at that tick or before. In `seen`, each robot may
+    have a tick at which it is seen, and places. Then it keeps its deadline if it has done so when it is seen, or if it
+    is in one of the places then, and enters its goal for the last time later. The price is in parts of a tick. The
+    refutation is that of the formula of plans of the group that keep all deadlines: LRAT without RAT steps.
     """
 
     robots: tuple[RobotId, ...]
     ticks: tuple[int, ...]
     price: Price
     refutation: str
+    seen: tuple[Sight, ...] = ()
 
 
 class BoundDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):

@@ -11,7 +11,7 @@ Each robot has the clauses of `carp_verify.robot_clauses` up to its own horizon,
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import pairwise, zip_longest
 
 from carp_spec import Instance, Move, Plan, ResourceId, Robot
 from carp_verify.clauses import Clause, Formula, Literal
@@ -38,22 +38,26 @@ class Evidence:
 
 
 class Encoding:
-    """The clauses of all robots of an instance, each with a horizon of 0 at first; every robot must have a way.
+    """The clauses of all robots of an instance, without a horizon at first; every robot must have a way.
 
     `check` is called before each robot, whose distances on a large map take a while; it may raise `TimeOver`. A formula
-    of more than `most` clauses is refused.
+    of more than `most` clauses is refused. `seen` has the tick at which each robot is seen, if they are.
     """
 
     def __init__(
-        self, instance: Instance, check: Callable[[], None] = lambda: None, most: int = LARGEST_FORMULA
+        self,
+        instance: Instance,
+        check: Callable[[], None] = lambda: None,
+        most: int = LARGEST_FORMULA,
+        seen: Sequence[int] = (),
     ) -> None:
         self.instance = instance
         self.formula = Formula(most)
         before = predecessors(instance)
         self.robots: list[RobotClauses] = []
-        for robot in instance.robots:
+        for robot, tick in zip_longest(instance.robots, seen):
             check()
-            self.robots.append(RobotClauses(instance, robot, before, self.formula))
+            self.robots.append(RobotClauses(instance, robot, before, self.formula, tick))
         self._presence: dict[tuple[int, ResourceId, int], tuple[Literal, set[Clause]]] = {}
 
     @property

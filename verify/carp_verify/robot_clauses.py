@@ -9,11 +9,14 @@ that of the best way through it, and is there only if this delay is at most the 
 is later than its horizon is not described at all: where a way leaves the nodes that exist, the clause ends in
 `delay > horizon`. So every plan of the robot is a model of the clauses, whatever the horizon (the clauses are a
 relaxation), and every model with a delay within the horizon holds a plan of at most that delay.
+
+A robot that is *seen* at a tick is described up to that tick alone, to the first node that it leaves later. Its delay
+is the least delay of that node then, unless it has arrived by the tick.
 """
 
 from bisect import bisect_right, insort
 from collections import defaultdict
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Collection, Container, Mapping, Sequence
 from heapq import heappop, heappush
 from itertools import count
 from typing import TypeAlias
@@ -54,19 +57,27 @@ class RobotClauses:
     """The clauses of one robot, added to a formula and growing with the robot's horizon.
 
     `shortest` is the robot's cost on the empty graph, or `None` if no way leads from its start to its goal; then
-    it has no clauses. With `vanish` a robot that enters its goal has arrived: going on could only cost more.
+    it has no clauses. With `vanish` a robot that enters its goal has arrived: going on could only cost more. One that
+    is seen, at tick `seen`, may go on.
     """
 
     def __init__(
-        self, instance: Instance, robot: Robot, before: Mapping[ResourceId, Sequence[ResourceId]], formula: Formula
+        self,
+        instance: Instance,
+        robot: Robot,
+        before: Mapping[ResourceId, Sequence[ResourceId]],
+        formula: Formula,
+        seen: int | None = None,
     ) -> None:
         self.robot = robot
+        self.seen = seen
         self.horizon = -1
         self.node: dict[Node, Literal] = {}
         self.late: list[Literal] = []
         """The k-th literal, from 1, says that the delay is at least k; there are horizon + 1."""
         self._formula = formula
         self._parks = instance.after_goal == "park"
+        self._drives_on = self._parks or seen is not None
         self._successors = instance.graph.successors
         self._predecessors = before
         self._duration = {each.id: instance.duration(robot.id, each.id) for each in instance.graph.resources}
@@ -91,7 +102,7 @@ class RobotClauses:
 
     @property
     def _stands_still(self) -> bool:
-        return self.robot.start == self.robot.goal and not self._parks
+        return self.robot.start == self.robot.goal and not self._drives_on
 
     def least_delay(self, node: Node) -> int:
         """The least delay of a plan through the node."""
@@ -105,10 +116,12 @@ class RobotClauses:
     def leads_to(self, node: Node) -> list[Node]:
         """Where the robot can be free to leave next."""
         resource, tick = node
+        if self._is_after(tick):
+            return []
         moves = [
             (target, tick + self._duration[target])
             for target in self._successors[resource]
-            if target in self._rest and (self._parks or target != self.robot.goal)
+            if target in self._rest and (self._drives_on or target != self.robot.goal)
         ]
         following = [(resource, tick + 1), *moves]
         return following if self._kept is None else [each for each in following if each in self._kept]
@@ -188,9 +201,15 @@ class RobotClauses:
         if delay > 0:
             self._formula.add(-self.node[node], self.late[delay - 1])
 
+    def _is_after(self, tick: int) -> bool:
+        """Whether the robot is not described at the tick, as it was seen before."""
+        return self.seen is not None and tick > self.seen
+
     def _go_on(self, node: Node) -> bool:
         """From the node the robot waits, moves, arrives, or is too late; returns whether all nodes exist."""
         resource, tick = node
+        if self._is_after(tick):
+            return True
         following = self.leads_to(node)
         ways = [self.node[each] for each in following if each in self.node]
         complete = len(ways) == len(following)
@@ -212,7 +231,7 @@ class RobotClauses:
     def _arrive_at_horizon(self) -> None:
         """A robot that arrives with a delay of exactly the horizon comes from a node before the goal."""
         tick = self.earliest + self.horizon
-        if self.robot.start == self.robot.goal and self.horizon == 0:
+        if self._is_after(tick) or (self.robot.start == self.robot.goal and self.horizon == 0):
             return
         earlier = [-self.late[self.horizon - 1]] if self.horizon > 0 else []
         sources = [(source, tick) for source in self._predecessors[self.robot.goal]]
@@ -226,10 +245,10 @@ class RobotClauses:
 
     def stays(self, resource: ResourceId, tick: int) -> list[Clause]:
         """The alternatives that put the robot into the resource at the tick: each is literals that hold together."""
+        if self._is_after(tick):
+            return []
         duration = self._duration[resource]
-        ticks = self._ticks.get(resource, [])
-        until = ticks[bisect_right(ticks, tick) : bisect_right(ticks, tick + duration)]
-        stays: list[Clause] = [(self.node[resource, each],) for each in until]
+        stays: list[Clause] = [(node,) for node in self.nodes_of(resource, tick)]
         delay = tick - self.earliest
         if resource == self.robot.goal and delay >= 0 and not self._stands_still:
             left = delay - duration
@@ -238,6 +257,23 @@ class RobotClauses:
             elif left < self.horizon:
                 stays.append((-self.later_than(delay), self.late[left]))
         return stays
+
+    def nodes_of(self, resource: ResourceId, tick: int) -> list[Literal]:
+        """The nodes of a stay in the resource at the tick that is not the last one."""
+        ticks = self._ticks.get(resource, [])
+        until = ticks[bisect_right(ticks, tick) : bisect_right(ticks, tick + self._duration[resource])]
+        return [self.node[resource, each] for each in until]
+
+    def largest_delay(self, places: Collection[ResourceId], arrival: int) -> int:
+        """The largest delay of a robot that arrives by the tick, or is in one of the places when it is seen."""
+        last = [(place, (self.seen or 0) + self._duration[place]) for place in places if place in self._rest]
+        return max([0, arrival - self.earliest, *map(self.least_delay, last)])
+
+    def demand(self, places: Collection[ResourceId], arrival: int) -> None:
+        """Demand that the robot is in one of the places when it is seen, or arrives by a tick not after that."""
+        nodes = [node for place in places for node in self.nodes_of(place, self.seen or 0)]
+        arrived = [-self.later_than(arrival - self.earliest)] if arrival >= self.earliest else []
+        self._formula.add(*nodes, *arrived)
 
     def entries(self) -> list[tuple[ResourceId, int]]:
         """The resources and ticks at which the robot may enter, in the order of its nodes."""

@@ -9,6 +9,8 @@ kernel's theorem is `accepted_bound_is_below_every_solution`.
 - The price of a deadline is paid by each robot of its group that enters its goal for the last time at its tick or
   before: by all of the group but one, at most, because its formula has no model. To come late is free of it, so a
   robot that vanishes at its goal may gain by driving through the goal and on. Then it is searched for that, too.
+- A robot that is seen at a tick pays if it has come by then, and by the deadline. On its way it pays if it is in one of
+  its places at the tick: once, as it is in one place.
 
 - A price of a resource r at a tick t is paid by all who are in r at t: at most the capacity of r, by `joint/capacity`.
 - An exchange price of (r, s) at t is paid by all who move from r to s or from s to r at t, and by all who are in r both
@@ -22,9 +24,11 @@ Tables that would be too large are refused before the first is made. The search 
 number of steps.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from bisect import bisect_left
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from heapq import heappop, heappush
 from itertools import accumulate
+from operator import itemgetter
 from typing import TypeAlias
 
 from carp_spec import Instance, Refusal, ResourceGraph, ResourceId, Robot, RobotId, Rule
@@ -47,8 +51,46 @@ from carp_verify.bounds import BoundDocument, CutDocument, DeadlinesDocument, di
 from carp_verify.limits import require_following
 
 Before: TypeAlias = Mapping[ResourceId, Sequence[ResourceId]]
-Fees: TypeAlias = Sequence[tuple[int, int]]
-"""Deadlines of a robot: the tick, and the price of keeping it."""
+
+
+class Fees:
+    """The prices of a robot's deadlines.
+
+    Each (tick, price) of `arrivals` is paid by a robot that arrives by the tick. Each (tick, places, price) of `sights`
+    is paid by one that is in one of the places at the tick, on its way.
+    """
+
+    def __init__(
+        self,
+        arrivals: Sequence[tuple[int, int]] = (),
+        sights: Sequence[tuple[int, Collection[ResourceId], int]] = (),
+    ) -> None:
+        self.arrivals = arrivals
+        self._sights = sorted(sights, key=itemgetter(0))
+        self._ticks = [tick for tick, _, _ in self._sights]
+        self.last = max([-1, *(tick for tick, _ in arrivals), *self._ticks])
+        """The last tick at which anything is paid, if it is not negative."""
+
+    def on_the_way(self, resource: ResourceId, first: int, end: int) -> int:
+        """The payment of a robot that is in the resource in [first, end), on its way."""
+        seen = self._sights[bisect_left(self._ticks, first) : bisect_left(self._ticks, end)]
+        return sum(price for _, places, price in seen if resource in places)
+
+    def at_arrival(self, tick: int) -> int:
+        """The payment of a robot that enters its goal for the last time at the tick."""
+        return sum(price for last, price in self.arrivals if tick <= last)
+
+
+def fees_of(instance: Instance, deadlines: Sequence[DeadlinesDocument]) -> Mapping[RobotId, Fees]:
+    """The prices of each robot's deadlines."""
+    arrivals: dict[RobotId, list[tuple[int, int]]] = {robot: [] for robot in instance.robot}
+    sights: dict[RobotId, list[tuple[int, Collection[ResourceId], int]]] = {robot: [] for robot in instance.robot}
+    for each in deadlines:
+        for number, (robot, tick) in enumerate(zip(each.robots, each.ticks, strict=True)):
+            seen, places = each.seen[number] if each.seen else (tick, ())
+            arrivals.setdefault(robot, []).append((min(tick, seen), each.price))
+            sights.setdefault(robot, []).append((seen, frozenset(places), each.price))
+    return {robot: Fees(paid, sights[robot]) for robot, paid in arrivals.items()}
 
 
 def verify_bound(instance: Instance, certificate: BoundDocument) -> int:
@@ -66,7 +108,8 @@ def verify_bound(instance: Instance, certificate: BoundDocument) -> int:
     _require_size(table, LARGEST_TABLE, "$.robots", "the table of robots by resources")
     tariff = Tariff(instance, certificate)
     weights, proved, clauses = _weights(instance, certificate)
-    fees, worth = _fees(instance, certificate, clauses)
+    worth = _worth(instance, certificate, clauses)
+    fees = fees_of(instance, certificate.deadlines)
     before = predecessors(instance)
     parts = proved - tariff.worth - worth
     budget = Budget()
@@ -114,12 +157,11 @@ def _weights(instance: Instance, certificate: BoundDocument) -> tuple[Sequence[i
     return list(left.values()), proved, clauses
 
 
-def _fees(instance: Instance, certificate: BoundDocument, clauses: int) -> tuple[Mapping[RobotId, Fees], int]:
-    """The deadlines of each robot with their prices, and the most that all robots together can pay for them.
+def _worth(instance: Instance, certificate: BoundDocument, clauses: int) -> int:
+    """The most that all robots together can pay for their deadlines, which are checked.
 
     The formulas of the cuts have `clauses` clauses already.
     """
-    fees: dict[RobotId, list[tuple[int, int]]] = {robot: [] for robot in instance.robot}
     members = sum(len(deadlines.robots) for deadlines in certificate.deadlines)
     size = members * len(instance.graph.resources)
     _require_size(size, LARGEST_TABLE, "$.deadlines", "the resources that robots with deadlines are searched in")
@@ -130,13 +172,11 @@ def _fees(instance: Instance, certificate: BoundDocument, clauses: int) -> tuple
         message = f"the price must be a whole number of at least 0, and is {price!r}"
         _require(is_deadline, is_whole(price) and price >= 0, f"{path}.price", message)
         message = "it must name one or more robots of the instance once"
-        known = len(robots) == len(set(robots)) > 0 and fees.keys() >= set(robots)
+        known = len(robots) == len(set(robots)) > 0 and instance.robot.keys() >= set(robots)
         _require(is_deadline, known, f"{path}.robots", message)
         clauses += _clauses_of(instance, deadlines, LARGEST_FORMULA - clauses, path)
-        for robot, tick in zip(robots, deadlines.ticks, strict=True):
-            fees[robot].append((tick, price))
         worth += price * (len(robots) - 1)
-    return fees, worth
+    return worth
 
 
 def _clauses_of(instance: Instance, group: CutDocument | DeadlinesDocument, most: int, path: str) -> int:
@@ -243,21 +283,19 @@ class RobotSearch:
     """A* for one robot, over the resources and the ticks at which it is free to leave them.
 
     The remaining cost is at least the weighted ticks of a shortest way, and from the horizon on exactly that: it is not
-    before the last deadline. A robot that vanishes at its goal, and has no deadline, never gains by driving on, because
-    neither ticks nor prices are negative.
+    before the last deadline, or the last tick at which the robot is seen. A robot that vanishes at its goal, and has no
+    deadline, never gains by driving on, because neither ticks nor prices are negative.
     """
 
-    def __init__(
-        self, tariff: Tariff, robot: Robot, weight: int, before: Before, budget: Budget, fees: Fees = ()
-    ) -> None:
+    def __init__(self, tariff: Tariff, robot: Robot, weight: int, before: Before, budget: Budget, fees: Fees) -> None:
         self.tariff = tariff
         self.budget = budget
         self.robot = robot
         self.weight = weight
         self.parks = tariff.instance.after_goal == "park"
         self.fees = fees
-        self.horizon = max([tariff.horizon, *(tick + 1 for tick, _ in fees)])
-        self.drives_on = self.parks or len(fees) > 0
+        self.horizon = max(tariff.horizon, fees.last + 1)
+        self.drives_on = self.parks or len(fees.arrivals) > 0
         self.duration = {resource: tariff.instance.duration(robot.id, resource) for resource in before}
         self.rest = ticks_after_leaving(robot, self.duration, before)
         self.queue: list[tuple[int, int, int, ResourceId | None, int]] = []
@@ -283,7 +321,7 @@ class RobotSearch:
         """Wait in a resource for a tick, or move on from it."""
         self.budget.spend()
         waiting = self.tariff.stay(here, tick - 1, tick + 1) - self.tariff.stay(here, tick - 1, tick)
-        self.reach(here, tick + 1, paid + waiting)
+        self.reach(here, tick + 1, paid + waiting + self.fees.on_the_way(here, tick, tick + 1))
         for target in self.tariff.instance.graph.successors[here]:
             moved = paid + self.tariff.move(here, target, tick)
             if target == self.robot.goal:
@@ -294,7 +332,8 @@ class RobotSearch:
     def enter(self, resource: ResourceId, tick: int, paid: int) -> None:
         """Stay in a resource for as long as it takes."""
         ready = tick + self.duration[resource]
-        self.reach(resource, ready, paid + self.tariff.stay(resource, tick, ready))
+        staying = self.tariff.stay(resource, tick, ready) + self.fees.on_the_way(resource, tick, ready)
+        self.reach(resource, ready, paid + staying)
 
     def reach(self, resource: ResourceId, tick: int, paid: int) -> None:
         """Be free to leave at the tick."""
@@ -307,8 +346,7 @@ class RobotSearch:
         """Enter the goal for the last time."""
         leave = tick + self.duration[self.robot.goal]
         last = self.tariff.stay(self.robot.goal, tick, max(leave, self.tariff.horizon) if self.parks else leave)
-        kept = sum(price for deadline, price in self.fees if tick <= deadline)
-        total = paid + last + kept + self.weight * (tick - self.robot.release)
+        total = paid + last + self.fees.at_arrival(tick) + self.weight * (tick - self.robot.release)
         heappush(self.queue, (total, -tick, -1, None, total))
 
 

@@ -1,0 +1,230 @@
+"""The search for deadlines of two robots that are seen at a tick: places that they cannot both be in then.
+
+Prices let robots that meet head-on pass each other by halves. Near the best prices, a robot's ways have it in several
+places at a tick. `carp_optimum.meetings` finds places of two robots that exclude each other at a tick, and that the
+ways take too often. All places that these exclude are added, and the claim is proved by a refutation.
+"""
+
+from collections import Counter, defaultdict
+from collections.abc import Callable, Sequence
+from heapq import heappop, heappush
+from itertools import combinations, count
+
+import numpy as np
+import numpy.typing as npt
+
+from carp_optimized.arrays import NONE, Graph, Ints, IntTable, Longs
+from carp_optimized.references import Native
+from carp_optimum.meetings import Meeting, Side, find_claim
+from carp_optimum.price_search import Deadlines, Member, PriceSearch
+from carp_optimum.proving import refutation
+from carp_optimum.solver import NANOSECONDS, Deadline, TimeOver
+from carp_spec import Refusal
+from carp_verify.bound_cuts import formula_of_deadlines
+from carp_verify.bound_rules import ContradictionError
+from carp_verify.bounds import DeadlinesDocument
+from carp_verify.optimum_rules import LARGEST_FORMULA
+
+STEPS = 120
+EVERY = 4  # step: the places in it are compared
+MARGIN = 4  # ticks of delay above the largest of a robot's ways
+LARGEST_DELAY = 30
+MOST_SPOTS = 400
+LARGEST_ENCODING = 2_000_000
+LEAST_WEIGHT = 8  # by which ways break a claim
+MOST_TRIED = 1500  # pairs in a round
+MOST_FOUND = 200  # claims in a round
+LEAST_GAIN = 60  # one part of the best bound: what a round's claims must be broken by for another round
+LOOKS = 400  # of a search for a refutation at its clock
+LONGEST_REFUTATION = 300_000  # characters
+
+
+class SightSearch:
+    """Finds deadlines of pairs of robots for a search for prices."""
+
+    def __init__(self, search: PriceSearch) -> None:
+        self.search = search
+        self.instance = search.instance
+        self.most = min(LARGEST_DELAY, search.market.delays - 1)
+
+    def round(self, check: Callable[[], None]) -> int:
+        """Add claims that the ways near the best prices break, and return by how much, in parts of a tick; 0 if little.
+
+        `check` may raise `TimeOver`; the claims found until then are added first.
+        """
+        search = self.search
+        wide = max(len(self.instance.graph.resources), search.market.delays, search.horizon)
+        if len(self.instance.robots) * wide > LARGEST_ENCODING:
+            return 0
+        delays, at = search.wander_places(STEPS, search.scale // 4, check)
+        sides = _Sides(search, at, np.minimum(delays.max(axis=0) + MARGIN, self.most))
+        chosen: list[Deadlines] = []
+        gain = 0
+        try:
+            for one, other in pairs_in(at, len(self.instance.graph.resources))[:MOST_TRIED]:
+                check()
+                if len(chosen) == MOST_FOUND:
+                    break
+                weight, members = sides.claim(one, other)
+                if weight >= LEAST_WEIGHT:
+                    proved = self._prove(members, check)
+                    if proved is not None:
+                        chosen.append(proved)
+                        gain += weight
+        finally:
+            search.add_deadlines(chosen)
+        gained = gain * search.scale // STEPS
+        return gained if gained * LEAST_GAIN >= search.best else 0
+
+    def _prove(self, members: Sequence[Member], check: Callable[[], None]) -> Deadlines | None:
+        """The claim with a proof, unless it has none that is short."""
+        graph = self.instance.graph
+        robots = tuple(self.instance.robots[member.robot].id for member in members)
+        seen = tuple((member.seen, tuple(graph.resources[at].id for at in member.places)) for member in members)
+        ticks = tuple(max(member.arrival, 0) for member in members)
+        looks = count()
+
+        def clock() -> int:
+            check()
+            return next(looks) * NANOSECONDS
+
+        try:
+            unproved = DeadlinesDocument(robots, ticks, 0, "", seen)
+            formula = formula_of_deadlines(self.instance, unproved, LARGEST_FORMULA)
+            lines = refutation(formula, Deadline(LOOKS, clock))
+        except (TimeOver, Refusal, ContradictionError):
+            check()
+            return None
+        if len(lines) > LONGEST_REFUTATION:
+            return None
+        return Deadlines(members, DeadlinesDocument(robots, ticks, 0, lines, seen))
+
+
+def pairs_in(at: IntTable, resources: int) -> Sequence[tuple[int, int]]:
+    """Pairs of robots that are in the same places at the same ticks in some steps, those in most of them first."""
+    robots: dict[tuple[int, int], set[int]] = defaultdict(set)
+    for places in at[::EVERY]:
+        for robot, tick in np.argwhere((places >= 0) & (places < resources)).tolist():
+            robots[int(places[robot, tick]), tick].add(robot)
+    found = Counter(pair for each in robots.values() if len(each) > 1 for pair in combinations(sorted(each), 2))
+    return [pair for pair, _ in sorted(found.items(), key=lambda each: (-each[1], each[0]))]
+
+
+def first_entries(graph: Graph, durations: Longs, start: int, release: int) -> Longs:
+    """The ticks at which a robot can enter the resources first; late where it cannot."""
+    ticks = np.full(len(durations), 1 << 30, np.int64)
+    queue = [(release, start)]
+    while queue:
+        tick, here = heappop(queue)
+        if tick < ticks[here]:
+            ticks[here] = tick
+            for target in graph.target[graph.first[here] : graph.first[here + 1]].tolist():
+                heappush(queue, (tick + int(durations[here]), target))
+    return ticks
+
+
+class _Sides:
+    """The robots as `carp_optimum.meetings` sees them, each made when it is first asked for."""
+
+    def __init__(self, search: PriceSearch, at: IntTable, delays: Ints) -> None:
+        self.search = search
+        self.at = at
+        self.delays = delays
+        self.known: dict[int, Side | None] = {}
+
+    def claim(self, one: int, other: int) -> tuple[int, Sequence[Member]]:
+        """The heaviest claim of two robots, and its weight; nothing if that is 0."""
+        first, second = self.side(one), self.side(other)
+        if first is None or second is None:
+            return 0, ()
+        rows, columns = first.first.size, second.first.size
+        pairs = int(first.first[-1]) * int(second.first[-1])
+        meeting = Meeting(
+            pairs=np.zeros(pairs, np.int32),
+            later=np.zeros(pairs, np.int32),
+            mark=np.zeros(pairs, np.int32),
+            together=np.zeros((rows, columns), np.int32),
+            flow=np.zeros((rows, columns), np.int32),
+            queue=np.zeros(rows + columns, np.int32),
+            kept=np.zeros((rows, columns), np.int32),
+            found=np.zeros(2, np.int64),
+        )
+        earliest = self.search.market.requests.earliest
+        end = int(min(earliest[at] + self.delays[at] for at in (one, other)))
+        natives = Native(first), Native(second), Native(meeting)
+        weight = find_claim(self.search.native, *natives, min(end + 1, self.search.horizon), STEPS)
+        if weight == 0:
+            return 0, ()
+        tick = int(meeting.found[1])
+        together = meeting.kept[: rows - 3, : columns - 3] > 0
+        chosen = first.chosen[1 : 1 + first.chosen[0]]
+        far = self.valid(first, tick), self.valid(second, tick)
+        others = ~together[chosen].any(axis=0) & far[1]
+        others &= together.any(axis=0) | np.isin(np.arange(len(others)), second.chosen[1 : 1 + second.chosen[0]])
+        ones = ~together[:, others].any(axis=1) & far[0]
+        ones &= together.any(axis=1) | np.isin(np.arange(len(ones)), chosen)
+        return weight, [self.member(first, ones, tick), self.member(second, others, tick)]
+
+    def member(self, side: Side, spots: npt.NDArray[np.bool_], tick: int) -> Member:
+        """The robot, seen at the tick in the spots."""
+        places = tuple(side.resource[np.flatnonzero(spots[:-1])].tolist())
+        return Member(int(side.robot[0]), tick if spots[-1] else -1, tick, places)
+
+    def valid(self, side: Side, tick: int) -> npt.NDArray[np.bool_]:
+        """Whether all ways of the robot that are in a spot at the tick have a delay that is looked at."""
+        requests = self.search.market.requests
+        robot = int(side.robot[0])
+        duration = self.search.market.graph.duration[side.resource].astype(np.int64) * int(requests.pace[robot])
+        late = tick - int(requests.earliest[robot])
+        within = late + duration + requests.rest[robot][side.resource] <= side.delay[0]
+        return np.append(within, late <= side.delay[0])
+
+    def side(self, robot: int) -> Side | None:
+        """The robot, unless it has no way or too many spots."""
+        if robot not in self.known:
+            self.known[robot] = self._side(robot)
+        return self.known[robot]
+
+    def _side(self, robot: int) -> Side | None:
+        market = self.search.market
+        requests, graph = market.requests, market.graph
+        start, goal = int(requests.start[robot]), int(requests.goal[robot])
+        if start == goal or requests.rest[robot][start] == NONE:
+            return None
+        durations = graph.duration.astype(np.int64) * int(requests.pace[robot])
+        near = first_entries(market.graph, durations, start, int(requests.release[robot]))
+        delay = np.where(requests.rest[robot] == NONE, 1 << 30, near + durations + requests.rest[robot])
+        resource = np.flatnonzero(delay - int(requests.earliest[robot]) <= self.delays[robot]).astype(np.int32)
+        if len(resource) > MOST_SPOTS or durations[resource].sum() > MOST_SPOTS or start not in resource:
+            return None
+        spot = np.full(len(durations), NONE, np.int32)
+        spot[resource] = np.arange(len(resource))
+        lengths = [*durations[resource].tolist(), 1 if market.parks else int(durations[goal]), 1, 1]
+        first = np.cumsum([0, *lengths]).astype(np.int32)
+        spots = len(resource)
+        number = np.append(spot, [spots, NONE]).astype(np.int32)  # at the goal at the end, or nowhere
+        often = np.zeros((self.search.horizon, spots + 2), np.int32)
+        places = number[self.at[:, robot, :]]
+        ticks = np.broadcast_to(np.arange(self.search.horizon), places.shape)
+        np.add.at(often, (ticks.ravel(), places.ravel()), 1)
+        side = Side(
+            robot=np.array([robot], np.int64),
+            delay=np.array([self.delays[robot]], np.int64),
+            spot=spot,
+            resource=resource,
+            first=first,
+            often=often[:, : spots + 1].copy(),
+            spot_of=np.zeros(first[-1], np.int32),
+            place=np.zeros(first[-1], np.int32),
+            branches=np.zeros(first[-1], np.int32),
+            following=np.zeros((first[-1], int(np.diff(graph.first).max(initial=0)) + 2), np.int32),
+            used=np.zeros(spots + 4, np.int32),
+            left=np.zeros(spots + 4, np.int32),
+            before=np.zeros(spots + 4, np.int32),
+            chosen=np.zeros(spots + 4, np.int32),
+        )
+        late = np.arange(self.search.horizon) - int(requests.earliest[robot])
+        within = late[:, None] + durations[resource] + requests.rest[robot][resource] <= self.delays[robot]
+        side.often[:, :spots][~within] = 0
+        side.often[late > self.delays[robot], spots] = 0
+        return side

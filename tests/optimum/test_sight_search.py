@@ -1,0 +1,77 @@
+"""The search for deadlines of robots that are seen: what it finds is true, and raises the bound where robots meet."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import event, given, settings
+from tests.profiles import draws
+
+from carp_optimum.price_search import PriceSearch
+from carp_optimum.sight_search import STEPS, SightSearch, _Sides, pairs_in
+from carp_spec import Instance, Resource, ResourceGraph, Robot
+from carp_verify.bound_cuts import require_deadlines
+from carproof.strategies import Sizes, instances
+
+SCALE = 1 << 10
+MIXED = Sizes(resources=5, robots=3, capacity=2, duration=3, release=3, pace=2)
+
+
+def two_lanes() -> Instance:
+    """`long` meets `first` head-on in a lane, then `second` in another; there is a bay between the lanes."""
+    cells = [*(f"west{number}" for number in range(4)), "bay", "hall", *(f"east{number}" for number in range(4))]
+    lane = [cell for cell in cells if cell != "bay"]
+    edges = (*pairwise(lane), ("bay", "hall"))
+    robots = (Robot("long", "west0", "east3"), Robot("first", "hall", "west0"), Robot("second", "east3", "bay"))
+    return Instance(ResourceGraph(tuple(map(Resource, cells)), edges), robots)
+
+
+def search_of(instance: Instance) -> PriceSearch:
+    search = PriceSearch(instance, SCALE)
+    search.climb(SCALE, SCALE >> 4, lambda: None, lambda _, __: None)
+    return search
+
+
+def test_claims_are_proved_and_raise_the_bound() -> None:
+    instance = two_lanes()
+    prices = search_of(instance)
+    before = prices.best
+    search = SightSearch(prices)
+    for _ in range(4):
+        search.round(lambda: None)
+        prices.climb(SCALE, SCALE >> 4, lambda: None, lambda _, __: None)
+    assert prices.best > before + SCALE
+    assert prices.deadlines
+    for deadlines in prices.deadlines:
+        assert deadlines.document.seen
+        assert require_deadlines(instance, deadlines.document, 10**6) > 0
+
+
+@settings(max_examples=draws(200))
+@given(instances(MIXED, least_robots=2))
+def test_all_that_is_found_has_a_proof(instance: Instance) -> None:
+    prices = search_of(instance)
+    search = SightSearch(prices)
+    delays, at = prices.wander_places(STEPS, SCALE // 4, lambda: None)
+    sides = _Sides(prices, at, np.minimum(delays.max(axis=0) + 2, search.most))
+    for one, other in pairs_in(at, len(instance.graph.resources)):
+        weight, members = sides.claim(one, other)
+        if weight > 0:
+            event("claimed")
+            assert search._prove(members, lambda: None) is not None
+
+
+def test_the_same_search_finds_the_same() -> None:
+    found = []
+    for _ in range(2):
+        prices = search_of(two_lanes())
+        SightSearch(prices).round(lambda: None)
+        found.append([deadlines.document for deadlines in prices.deadlines])
+    assert found[0] == found[1]
+
+
+def test_nothing_is_searched_for_where_tables_would_be_large(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("carp_optimum.sight_search.LARGEST_ENCODING", 0)
+    prices = search_of(two_lanes())
+    assert SightSearch(prices).round(lambda: None) == 0
+    assert not prices.deadlines
