@@ -401,6 +401,19 @@ def test_deadlines_of_robots_that_are_seen_are_written_and_read() -> None:
     assert b"seen" not in write(deadline_certificate())
 
 
+def test_who_arrives_after_it_is_seen_pays_nothing_and_who_waits_where_it_is_seen_pays() -> None:
+    deadlines = DeadlinesDocument(("r0", "r2"), (5, 0), 3, "", ((1, ("middle",)), (2, ())))
+    fees = fees_of(crossing(), [deadlines])["r0"]
+    assert [fees.at_arrival(tick) for tick in range(4)] == [3, 3, 0, 0]
+    assert [fees.on_the_way("middle", tick, tick + 1) for tick in range(3)] == [0, 3, 0]
+    assert fees.on_the_way("north", 0, 9) == 0
+    lane = Instance(ResourceGraph(tuple(map(Resource, "abc")), (("a", "b"), ("b", "c"))), (Robot("r", "a", "c"),))
+    certificate = BoundDocument(BOUND_FORMAT, digest(lane), 0, SCALE, HORIZON, (("b", 1, 9 * SCALE),), (), (), ())
+    waits = Fees([], [(1, ("a",), SCALE)])
+    search = RobotSearch(Tariff(lane, certificate), lane.robots[0], SCALE, predecessors(lane), Budget(), waits)
+    assert search.least_cost() == 4 * SCALE
+
+
 def test_robots_are_not_seen_in_a_certificate_for_the_kernel() -> None:
     certificate = lower_bound(crossing(), steps=1500, seen=False)
     assert certificate.deadlines
