@@ -111,7 +111,7 @@ class TimeRow(msgspec.Struct, frozen=True):
 
 
 def time_report(rows: Iterable[Row]) -> ExperimentReport:
-    """A table for the 50th and 100th robot (or half of them and all) beside the paper's, and a figure over k."""
+    """A table for the 50th and 100th robot (or half of them and all) beside the paper's."""
     times: dict[tuple[str, int], list[float]] = defaultdict(list)
     for row in rows:
         for name, by_k in msgspec.convert(row, TimeRow, strict=False).measured.items():
@@ -122,7 +122,7 @@ def time_report(rows: Iterable[Row]) -> ExperimentReport:
         Time(name, k, mean_interval(values), mean_interval([value / carp[k] for value in values]))
         for (name, k), values in sorted(times.items())
     )
-    return ExperimentReport(summary, (time_table(summary),), time_figures(summary))
+    return ExperimentReport(summary, (time_table(summary),))
 
 
 def time_figures(summary: Sequence[Time]) -> tuple[Figure, ...]:

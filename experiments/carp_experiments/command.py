@@ -191,6 +191,7 @@ def go(  # noqa: PLR0913 - the campaign's options
     import msgspec  # noqa: PLC0415 - loaded with the experiment
 
     from carp_experiments.campaign import run_campaign  # noqa: PLC0415
+    from carp_experiments.redrawing import draw_figures  # noqa: PLC0415
     from carp_experiments.report import write_report  # noqa: PLC0415
     from carp_experiments.store import open_store  # noqa: PLC0415
 
@@ -211,6 +212,7 @@ def go(  # noqa: PLR0913 - the campaign's options
         }
     if report is not None:
         write_report(report, name, reported, facts)
+        draw_figures(report, name)
     if as_json:
         print_document(msgspec.json.encode({"experiment": name, **facts, "summary": reported.summary}) + b"\n")
         return Answer.of(reported.holds)

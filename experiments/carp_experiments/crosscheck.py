@@ -86,4 +86,4 @@ def crosscheck_report(rows: Iterable[Row]) -> ExperimentReport:
     table = Table(
         "crosscheck", "Both engines, asked the same", columns, ((*map(str, sums), str(len(differences))),), columns
     )
-    return ExperimentReport({"differences": differences}, (table,), (), lines, holds=not differences)
+    return ExperimentReport({"differences": differences}, (table,), lines, holds=not differences)

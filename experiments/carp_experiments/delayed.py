@@ -115,7 +115,7 @@ class DriverOf:
 
 
 def execution_report(rows: Iterable[Row]) -> ExperimentReport:
-    """A table of each map, and figures of lateness and collisions."""
+    """A table of each map."""
     summary = tuple(
         driver_of(map, planner, driver, place, [row.planners[planner].drivers[driver][place] for row in each])
         for map, each in rows_by_map(rows, ExecutionRow).items()
@@ -123,7 +123,7 @@ def execution_report(rows: Iterable[Row]) -> ExperimentReport:
         for driver in DRIVERS
         for place in range(len(PER_CENT))
     )
-    return ExperimentReport(summary, execution_tables(summary), execution_figures(summary))
+    return ExperimentReport(summary, execution_tables(summary))
 
 
 def driver_of(map: int, planner: str, driver: str, place: int, found: Sequence[Executed]) -> DriverOf:

@@ -172,4 +172,4 @@ def executions_report(rows: Iterable[Row]) -> ExperimentReport:
     title = "Delayed executions in order: without a rotation all robots arrive, with one its robots stop"
     row = (executions, cyclic, delays, str(len(broken)), solutions, collided)
     table = Table("executions", title, columns, (row,), columns)
-    return ExperimentReport({**counts, "broken": broken}, (table,), (), shown, holds=not broken)
+    return ExperimentReport({**counts, "broken": broken}, (table,), shown, holds=not broken)

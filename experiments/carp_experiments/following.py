@@ -119,7 +119,7 @@ def following_report(rows: Iterable[Row]) -> ExperimentReport:
         for each in summary
     ]
     table = Table("following", title, columns, tuple(lines), columns[2:])
-    return ExperimentReport(summary, (table,), following_figures(summary))
+    return ExperimentReport(summary, (table,))
 
 
 def following_figures(summary: Sequence[FollowingOf]) -> tuple[Figure, ...]:

@@ -187,4 +187,4 @@ def kernel_report(rows: Iterable[Row]) -> ExperimentReport:
     table = Table(
         "kernel", "The kernel and the checkers in Python", columns, ((*sums, str(len(differences))),), columns
     )
-    return ExperimentReport({"differences": differences}, (table,), (), shown, holds=not differences)
+    return ExperimentReport({"differences": differences}, (table,), shown, holds=not differences)

@@ -81,10 +81,9 @@ class Run(msgspec.Struct, frozen=True):
     summary: msgspec.Raw
 
 
-def read_run(name: str) -> Run | None:
-    """The results of an experiment, if there are any."""
-    path = RESULTS / f"{name}.json"
-    return msgspec.json.decode(path.read_bytes(), type=Run) if path.exists() else None
+def read_run(path: Path) -> Run:
+    """A stored run."""
+    return msgspec.json.decode(path.read_bytes(), type=Run)
 
 
 def claims_of(run: Run) -> Iterator[Claim]:
@@ -106,7 +105,7 @@ def summary_of(run: Run, type: type[T]) -> T:
 
 def results() -> str:
     """The claims, then each experiment with its run, tables and figures."""
-    runs = {name: run for name in TITLES if (run := read_run(name)) is not None}
+    runs = {name: read_run(path) for name in TITLES if (path := RESULTS / f"{name}.json").exists()}
     claims = [claim for run in runs.values() for claim in claims_of(run)]
     lines = [
         f"| {claim.claim} | **{claim.verdict}** | {claim.with_baseline or ''} | {claim.found} |\n" for claim in claims

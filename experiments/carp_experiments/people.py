@@ -123,7 +123,7 @@ class PeopleOf:
 
 
 def people_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
-    """A table of all maps, and a figure of the cost."""
+    """A table of all maps."""
     by_map = rows_by_map(rows, PeopleRow)
     summary = tuple(
         people_of(map, count, enough)
@@ -163,7 +163,7 @@ def people_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
         for each in summary
     ]
     table = Table("people", title, columns, tuple(lines), columns)
-    return ExperimentReport(summary, (table,), people_figures(summary))
+    return ExperimentReport(summary, (table,))
 
 
 def people_figures(summary: Sequence[PeopleOf]) -> tuple[Figure, ...]:

@@ -149,13 +149,12 @@ class PolishSummary:
 
 
 def polish_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
-    """Tables of gaps, of bounds and of failures; figures of the gaps and of the totals."""
+    """Tables of gaps, of bounds and of failures."""
     maps = rows_by_map(rows, PolishRow).items()
     floors = tuple(floor(map, each) for map, each in maps)
     methods = tuple(polished(map, name, each, robots) for map, each in maps for name in METHODS)
     tables = (gaps_table(methods), bounds_table(floors, methods), failures_table(methods))
-    summary = PolishSummary(floors, methods)
-    return ExperimentReport(summary, tables, polish_figures(summary))
+    return ExperimentReport(PolishSummary(floors, methods), tables)
 
 
 def floor(map: int, rows: Sequence[PolishRow]) -> Floor:

@@ -12,12 +12,8 @@ FEWEST_SHOWN = 4  # a mean over less than a quarter of the assignments is no poi
 
 
 def quality_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
-    """Failure rates in per cent, and mean totals over the assignments that did not fail."""
-    return report_of(summarise(rows, robots))
-
-
-def report_of(summary: QualitySummary) -> ExperimentReport:
-    """Two tables over some of the maps, and two figures over all."""
+    """Failure rates in per cent, and mean totals over the assignments that did not fail, on some of the maps."""
+    summary = summarise(rows, robots)
     by_place = {(each.algorithm, each.map): each for each in summary.algorithms}
     maps = shown_maps(each.map for each in summary.algorithms)
     columns = ("algorithm", *(f"map {map}" for map in maps))
@@ -33,7 +29,7 @@ def report_of(summary: QualitySummary) -> ExperimentReport:
             columns[1:],
         ),
     )
-    return ExperimentReport(summary, tables, quality_figures(summary))
+    return ExperimentReport(summary, tables)
 
 
 def quality_figures(summary: QualitySummary) -> tuple[Figure, ...]:

@@ -1,9 +1,11 @@
-"""Draws the figures of the stored results again; `python -m carp_experiments.redrawing` writes them in their places."""
+"""The figures of stored runs; `python -m carp_experiments.redrawing` draws those of the stored results again."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 
 from carp_experiments.adding_time import Time, time_figures
 from carp_experiments.delayed import DriverOf, execution_figures
+from carp_experiments.figures import line_figure
 from carp_experiments.following import FollowingOf, following_figures
 from carp_experiments.page import RESULTS, Run, read_run, summary_of
 from carp_experiments.people import PeopleOf, people_figures
@@ -11,7 +13,7 @@ from carp_experiments.polishing import PolishSummary, polish_figures
 from carp_experiments.quality import QualitySummary
 from carp_experiments.quality_report import quality_figures
 from carp_experiments.related_work import Related, related_figures
-from carp_experiments.report import Figure, write_figure
+from carp_experiments.report import Figure
 from carp_experiments.small_gaps import GapOf, gap_figures
 from carp_experiments.streams import StreamOf, stream_figures
 
@@ -29,13 +31,12 @@ FIGURES: Mapping[str, Callable[[Run], Sequence[Figure]]] = {
 """The figures of a run, by the name of its experiment."""
 
 
-def stored_figures() -> Iterator[Figure]:
-    """All figures of the results in the repository, by the numbers that were stored with them."""
-    for name, figures in FIGURES.items():
-        run = read_run(name)
-        yield from () if run is None else figures(run)
+def draw_figures(folder: Path, name: str) -> None:
+    """Draw the figures of the run stored as `NAME.json` beside it, from the rounded numbers in it."""
+    for each in FIGURES[name](read_run(folder / f"{name}.json")) if name in FIGURES else ():
+        line_figure(folder / f"{each.name}.svg", each.title, each.axes, each.lines, each.logarithmic)
 
 
 if __name__ == "__main__":
-    for figure in stored_figures():
-        write_figure(RESULTS, figure)
+    for name in FIGURES:
+        draw_figures(RESULTS, name)

@@ -112,7 +112,7 @@ class RelatedRow(msgspec.Struct, frozen=True):
 
 
 def related_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
-    """Tables over some of the maps, a figure over all."""
+    """Tables over some of the maps."""
     by_map = rows_by_map(rows, RelatedRow)
     summary = tuple(related_of(map, name, each) for map, each in by_map.items() for name in METHODS)
     maps = shown_maps(by_map)
@@ -137,7 +137,7 @@ def related_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
             columns[1:],
         ),
     )
-    return ExperimentReport(summary, tables, related_figures(summary))
+    return ExperimentReport(summary, tables)
 
 
 def related_figures(summary: Sequence[Related]) -> tuple[Figure, ...]:

@@ -95,11 +95,11 @@ class GapRow(msgspec.Struct, frozen=True):
 
 
 def gap_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
-    """A table over some of the maps, and a figure over all."""
+    """A table over some of the maps."""
     by_map = rows_by_map(rows, GapRow)
     summary = tuple(gap_of(map, name, each, robots) for map, each in by_map.items() for name in REPORTED)
     title = f"Above the optimum that the search found, {robots} robots on {SIDE} x {SIDE} maps"
-    return ExperimentReport(summary, (gap_table(summary, by_map, title),), gap_figures(summary))
+    return ExperimentReport(summary, (gap_table(summary, by_map, title),))
 
 
 def gap_figures(summary: Sequence[GapOf]) -> tuple[Figure, ...]:

@@ -118,7 +118,7 @@ class StreamOf:
 
 
 def stream_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
-    """A table of all maps, and figures of the throughput and the waiting by the rate."""
+    """A table of all maps."""
     summary = tuple(
         stream_of(map, planner, rate, [row.planners[planner][place] for row in each], robots)
         for map, each in rows_by_map(rows, StreamRow).items()
@@ -141,7 +141,7 @@ def stream_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
         for each in summary
     ]
     table = Table("stream", title, columns, tuple(lines), columns[2:])
-    return ExperimentReport(summary, (table,), stream_figures(summary))
+    return ExperimentReport(summary, (table,))
 
 
 def stream_of(map: int, planner: str, rate: int, found: Sequence[Streamed], robots: int) -> StreamOf:

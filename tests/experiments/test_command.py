@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 from tests.oracle.running import Document, Run
 
+from carp_experiments.redrawing import draw_figures
+
 QUALITY = "experiment quality --json --robots 8"
 SMALL = f"{QUALITY} --assignments 2 --map 5 --map 12"
 pytestmark = pytest.mark.usefixtures("elsewhere")
@@ -31,12 +33,15 @@ def test_a_larger_run_takes_over_what_a_smaller_one_left(carproof: Run) -> None:
     assert document(carproof, f"{SMALL} --store store")["digest"] == document(carproof, SMALL)["digest"]
 
 
-def test_a_report_holds_tables_figures_and_numbers(carproof: Run) -> None:
+def test_a_report_holds_tables_numbers_and_the_figures_of_the_stored_numbers(carproof: Run) -> None:
     document(carproof, f"{SMALL} --report report")
-    assert sorted(path.name for path in Path("report").iterdir()) == [
+    written = {path.name: path.read_bytes() for path in Path("report").iterdir()}
+    assert sorted(written) == [
         "quality-failures.svg",
         "quality-savings.svg",
         "quality-totals.svg",
         "quality.json",
         "quality.md",
     ]
+    draw_figures(Path("report"), "quality")
+    assert {path.name: path.read_bytes() for path in Path("report").iterdir()} == written

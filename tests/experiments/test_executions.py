@@ -1,14 +1,23 @@
 """Late robots, rotations and people: what the experiments measure and how they sum it up."""
 
+from collections.abc import Iterable
+
 import msgspec
 import pytest
 
 from carp_experiments import people
-from carp_experiments.delayed import PLANNERS, DriverOf, ExecutionRow, execution_report, execution_row
-from carp_experiments.following import FollowingOf, following_report, following_row
+from carp_experiments.delayed import (
+    PLANNERS,
+    DriverOf,
+    ExecutionRow,
+    execution_figures,
+    execution_report,
+    execution_row,
+)
+from carp_experiments.following import FollowingOf, following_figures, following_report, following_row
 from carp_experiments.map_cases import FULL_MAP, STATIONS, WAREHOUSE, MapCase, instance_of
 from carp_experiments.people import PeopleOf, PeopleRow, people_report, people_row
-from carp_experiments.store import digest_of
+from carp_experiments.store import Row, digest_of
 from carp_spec import Instance, RobotId, Solution
 from carproof.engines import Engine
 from carproof.giving_way import GivenWay, give_way
@@ -27,16 +36,20 @@ def test_late_robots_collide_on_the_clock_alone_and_nobody_stands() -> None:
     summary = msgspec.convert(execution_report([row, row]).summary, tuple[DriverOf, ...])
     assert {each.executions for each in summary} == {2}
     assert all(each.worst.estimate >= each.late.estimate for each in summary)
-    figures = {figure.name: figure for figure in execution_report([row, row]).figures}
+    figures = {figure.name: figure for figure in execution_figures(summary)}
     assert [*figures] == ["execution-late", "execution-worst", "execution-arrivals", "execution-collisions"]
     (last,) = (each for each in summary if (each.planner, each.driver, each.share) == ("CARP", "order", 20))
     ends = [figure.lines["CARP + order"][-1] for figure in figures.values()]
     assert ends == [(20, value) for value in (last.late, last.worst, last.arrivals, last.collisions)]
 
 
+def following_of_places(rows: Iterable[Row]) -> tuple[FollowingOf, ...]:
+    return msgspec.convert(following_report(rows).summary, tuple[FollowingOf, ...])
+
+
 def test_without_following_there_is_no_rotation_and_plans_cost_more() -> None:
     row = MapCase(following_row, FULL_MAP, 0, 60).run()
-    summary = msgspec.convert(following_report([row]).summary, tuple[FollowingOf, ...])
+    summary = following_of_places([row])
     assert all(each.forbidden.estimate > 0 for each in summary)
     assert all(each.unplanned[0].estimate < each.unplanned[1].estimate for each in summary)
     priced = {"unplanned": [0, 1], "totals": [100, 110], "whole": 150, "rotations": 2, "extra": 3, "left": False}
@@ -47,9 +60,9 @@ def test_without_following_there_is_no_rotation_and_plans_cost_more() -> None:
     (line, _) = following_report(rows).tables[0].rows
     assert (line[3], line[4][:5], line[5:7]) == ("1.0 ± 0.0", "15.00", ("1/2", "0"))
     assert line[8].startswith("1.000")
-    (figure,) = following_report(rows).figures
+    (figure,) = following_figures(following_of_places(rows))
     assert [point[1].estimate for point in figure.lines["CARP + forbidden"] if point[1]] == [pytest.approx(15)]
-    assert following_report([{**each, "map": WAREHOUSE} for each in rows]).figures == ()
+    assert following_figures(following_of_places([{**each, "map": WAREHOUSE} for each in rows])) == ()
 
 
 def test_people_are_first_and_robots_pay() -> None:

@@ -12,6 +12,7 @@ from carp_experiments.streams import (
     StreamOf,
     StreamRow,
     middle_half,
+    stream_figures,
     stream_instance,
     stream_report,
     stream_row,
@@ -90,5 +91,6 @@ def test_the_report_has_the_throughput_of_each_rate() -> None:
     assert (first.streams, first.rate) == (2, RATES[0])
     assert (first.throughput.estimate, first.taken.estimate, first.waited.estimate) == (100, 3, 1)
     assert report.tables[0].rows[0][:4] == ("map 10", "CARP", "100", "100 ± 0")
-    assert [figure.name for figure in report.figures] == ["stream-throughput", "stream-waiting"]
-    assert [*report.figures[0].lines] == ["CARP + map 10", "Proposed_4 + map 10"]
+    throughput, waiting = stream_figures(msgspec.convert(report.summary, tuple[StreamOf, ...]))
+    assert (throughput.name, waiting.name) == ("stream-throughput", "stream-waiting")
+    assert [*throughput.lines] == ["CARP + map 10", "Proposed_4 + map 10"]
