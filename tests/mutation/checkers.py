@@ -26,6 +26,7 @@ from tests.mutation.mutants import Mutant, mutants
 PIN = "verify/test_kept_formulas"
 SEARCH = ("verify/test_joint_search", "verify/test_unsolvable")
 FORMULAS = ("verify/test_encoding", PIN)
+BOUNDS = ("verify/test_bound", "verify/test_bound_groups", "verify/test_bound_refusals", "verify/test_forgery")
 QUERIES = ("verify/test_query_certificate", "verify/test_forgery", "verify/test_vectors", "oracle/test_audit")
 ANSWERS = ("oracle/test_conform_one_answer",)
 REPORT = ("oracle/test_conform_report", *ANSWERS)
@@ -35,9 +36,9 @@ TESTS: Mapping[str, Sequence[str]] = {
     "carp_spec.polish_rules": ("spec/test_polish_rules",),
     "carp_spec.windows": ("spec/test_windows",),
     "carp_verify.documents": ("verify/test_documents",),
-    "carp_verify.verify_bound": ("verify/test_bound", "verify/test_forgery"),
-    "carp_verify.bound_rules": ("verify/test_bound", "verify/test_forgery", "verify/test_gap", "oracle/test_bound"),
-    "carp_verify.bound_cuts": ("verify/test_bound", "verify/test_forgery"),
+    "carp_verify.verify_bound": BOUNDS,
+    "carp_verify.bound_rules": (*BOUNDS, "verify/test_gap", "oracle/test_bound"),
+    "carp_verify.bound_cuts": BOUNDS,
     "carp_verify.refutation": ("verify/test_refutation", "verify/test_forgery"),
     "carp_verify.proof": (
         "verify/test_proof",

@@ -8,8 +8,8 @@ import msgspec
 import pytest
 from tests.oracle.running import EAST, TWO, TWO_PLANNED, Outcome, Run, corridor, line, save, solution
 from tests.oracle.test_optimum import UNSOLVABLE
+from tests.verify.bound_examples import crossing, cut_certificate, deadline_certificate
 from tests.verify.kernel_program import program
-from tests.verify.test_bound import crossing, cut_certificate, deadline_certificate
 
 import carp_verify.kernel
 from carp_verify.documents import write, write_instance

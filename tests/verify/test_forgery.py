@@ -13,9 +13,9 @@ from pathlib import Path
 
 import msgspec
 import pytest
+from tests.verify.bound_examples import completed, crossing, cut_certificate
 from tests.verify.forging import FAR, changed, changed_lines
 from tests.verify.query_examples import QUESTIONS, Question, fleets
-from tests.verify.test_bound import completed, crossing, cut_certificate
 from tests.verify.test_proof import crossing as four_crossing
 from tests.verify.test_proof import with_digests
 

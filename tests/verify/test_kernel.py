@@ -12,8 +12,8 @@ import msgspec
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from tests.verify.bound_examples import certificates, crossing, cut_certificate
 from tests.verify.kernel_program import program
-from tests.verify.test_bound import certificates, crossing, cut_certificate
 from tests.verify.tiny import TINY
 
 from carp_reference.context import context_of

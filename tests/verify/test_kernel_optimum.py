@@ -9,9 +9,9 @@ from typing import Any
 
 import msgspec
 import pytest
+from tests.verify.bound_examples import completed, deadline_certificate
+from tests.verify.bound_examples import crossing as head_on
 from tests.verify.kernel_program import program
-from tests.verify.test_bound import completed, deadline_certificate
-from tests.verify.test_bound import crossing as head_on
 from tests.verify.test_proof import crossing, drop_last_line, prove
 from tests.verify.test_unsolvable import BORN_TOGETHER
 from tests.verify.tiny import case

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from tests.profiles import draws
 from tests.spec.making import grid
-from tests.verify.test_bound import UNSOUND_DRAT
+from tests.verify.bound_examples import UNSOUND_DRAT
 from tests.verify.tiny import TINY
 
 from carp_optimum.optimum import optimum

@@ -5,7 +5,7 @@ from itertools import product
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.verify.test_bound import UNSOUND_DRAT
+from tests.verify.bound_examples import UNSOUND_DRAT
 
 from carp_optimum.hints import NoHintsError, refutation_with_hints
 from carp_optimum.solver import Solver

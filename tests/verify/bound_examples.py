@@ -1,0 +1,141 @@
+"""Certificates of lower bounds that several tests take, and plans with their payments, word for word."""
+
+from collections.abc import Callable, Iterator
+from functools import cache
+from itertools import pairwise
+
+import msgspec
+from hypothesis import strategies as st
+
+from carp_optimum.bound import lower_bound
+from carp_optimum.cut_search import prove
+from carp_optimum.proving import refutation
+from carp_optimum.solver import Deadline
+from carp_spec import Instance, Plan, Resource, ResourceGraph, ResourceId, Robot, Visit
+from carp_verify.bound_cuts import formula_of_deadlines
+from carp_verify.bounds import BOUND_FORMAT, BoundDocument, DeadlinesDocument, digest
+from carp_verify.verify_bound import Budget, RobotSearch, Tariff, fees_of, predecessors, verify_bound
+
+SCALE = 4
+HORIZON = 6
+UNSOUND_DRAT = "91 0\n92 -91 0\nd 92 -91 0\n-92 0\n0\n"
+"""Refuted every formula by a checker that forgets a unit clause and keeps what it implied."""
+Tamper = Callable[[BoundDocument], BoundDocument]
+
+
+def crossing() -> Instance:
+    """Three robots meet in the middle cell of a plus; no move leads to the island."""
+    cells = tuple(Resource(name) for name in ("north", "east", "south", "west", "middle", "island"))
+    edges = tuple((name, "middle") for name in ("north", "east", "south", "west"))
+    ends = (("north", "south"), ("east", "west"), ("south", "north"))
+    robots = tuple(Robot(f"r{number}", *each) for number, each in enumerate(ends))
+    return Instance(ResourceGraph(cells, edges), robots)
+
+
+def completed(instance: Instance, certificate: BoundDocument) -> BoundDocument:
+    """The certificate with all that its prices prove."""
+    tariff = Tariff(instance, certificate)
+    before, fees = predecessors(instance), fees_of(instance, certificate.deadlines)
+    robots = tuple(
+        (
+            robot.id,
+            RobotSearch(tariff, robot, certificate.scale, before, Budget(), fees[robot.id]).least_cost(),
+        )
+        for robot in instance.robots
+    )
+    worth = sum(deadlines.price * (len(deadlines.robots) - 1) for deadlines in certificate.deadlines)
+    parts = sum(least or 0 for _, least in robots) - tariff.worth - worth
+    return msgspec.structs.replace(certificate, robots=robots, bound=-(-parts // certificate.scale))
+
+
+@st.composite
+def certificates(draw: st.DrawFn, instance: Instance) -> BoundDocument:
+    """Certificates with any prices at all, many of them bad."""
+    graph = instance.graph
+    ticks, prices = st.integers(0, HORIZON - 1), st.integers(1, 3 * SCALE)
+    places = st.sampled_from([resource.id for resource in graph.resources])
+    moves = [(source, target) for source in graph.index for target in graph.successors[source]]
+    both = [move for move in moves if (*reversed(move),) in graph.moves]
+    resources = draw(st.dictionaries(st.tuples(places, ticks), prices, max_size=8))
+    exchanges = draw(st.dictionaries(st.tuples(st.sampled_from(both), ticks), prices, max_size=8)) if both else {}
+    certificate = BoundDocument(
+        format=BOUND_FORMAT,
+        instance=digest(instance),
+        bound=0,
+        scale=SCALE,
+        horizon=HORIZON,
+        resources=tuple((place, tick, price) for (place, tick), price in resources.items()),
+        exchanges=tuple((*pair, tick, price) for (pair, tick), price in exchanges.items()),
+        cuts=(),
+        robots=(),
+    )
+    return completed(instance, certificate)
+
+
+def payment(certificate: BoundDocument, plan: Plan) -> int:
+    """The payments of a plan, tick by tick."""
+    ticks = range(certificate.horizon)
+    at = {
+        tick: visit.resource
+        for visit in plan.visits
+        for tick in ticks
+        if visit.enter <= tick and (visit.leave is None or tick < visit.leave)
+    }
+    moves = {(b.enter, a.resource, b.resource) for a, b in pairwise(plan.visits)}
+    stays = {(t, v.resource) for v in plan.visits for t in ticks if v.enter < t and (v.leave is None or t < v.leave)}
+    paid = sum(price for resource, tick, price in certificate.resources if at.get(tick) == resource)
+    for one, other, tick, price in certificate.exchanges:
+        pays = {(tick, one, other), (tick, other, one)} & moves or (tick, one) in stays
+        paid += price if pays else 0
+    return paid
+
+
+def plans_of(instance: Instance, robot: Robot) -> Iterator[Plan]:
+    """All plans of a robot alone that do not come later than a shortest way from the horizon on would."""
+    last = HORIZON + 2 * sum(instance.duration(robot.id, resource) for resource in instance.graph.index)
+
+    def go_on(visits: tuple[Visit, ...], here: ResourceId, enter: int) -> Iterator[Plan]:
+        ready = enter + instance.duration(robot.id, here)
+        if here == robot.goal:
+            yield Plan(robot.id, (*visits, Visit(here, enter, None if instance.after_goal == "park" else ready)))
+        for leave in range(ready, min(last, max(ready, HORIZON)) + 1):
+            for target in instance.graph.successors[here]:
+                if leave < HORIZON or all(visit.resource != target or visit.enter < HORIZON for visit in visits):
+                    yield from go_on((*visits, Visit(here, enter, leave)), target, leave)
+
+    return go_on((), robot.start, robot.release)
+
+
+@cache
+def sight_certificate() -> BoundDocument:
+    """A certificate without prices of places: r0 and r2, which meet head-on, are not both in the middle at tick 1."""
+    certificate = msgspec.structs.replace(lower_bound(crossing(), steps=0), resources=(), exchanges=())
+    unproved = DeadlinesDocument(("r0", "r2"), (0, 0), 3 << 15, "", ((1, ("middle",)), (1, ("middle",))))
+    lines = refutation(formula_of_deadlines(crossing(), unproved, 10**6), Deadline(60))
+    proved = msgspec.structs.replace(unproved, refutation=lines)
+    with_it = completed(crossing(), msgspec.structs.replace(certificate, deadlines=(proved,)))
+    assert verify_bound(crossing(), with_it) == with_it.bound == 7
+    return with_it
+
+
+@cache
+def deadline_certificate() -> BoundDocument:
+    """A certificate without prices of places, in which one of r0 and r2, which meet head-on, comes late."""
+    certificate = msgspec.structs.replace(lower_bound(crossing(), steps=0), resources=(), exchanges=())
+    unproved = DeadlinesDocument(("r0", "r2"), (2, 2), 3 << 15, "")
+    lines = refutation(formula_of_deadlines(crossing(), unproved, 10**6), Deadline(60))
+    proved = msgspec.structs.replace(unproved, refutation=lines)
+    with_it = completed(crossing(), msgspec.structs.replace(certificate, deadlines=(proved,)))
+    assert verify_bound(crossing(), with_it) == with_it.bound == 7
+    return with_it
+
+
+@cache
+def cut_certificate() -> BoundDocument:
+    """A certificate with a cut of r0 and r2, which meet head-on."""
+    certificate = lower_bound(crossing(), steps=2)
+    cut = prove(crossing(), (0, 2), lambda: None)
+    assert cut is not None
+    with_it = msgspec.structs.replace(certificate, cuts=(cut.document,))
+    assert (cut.document.least, verify_bound(crossing(), with_it)) == (7, certificate.bound)
+    return with_it

@@ -1,0 +1,361 @@
+"""Cuts and deadlines of groups of robots, some of which are seen at a tick, in lower bounds."""
+
+from itertools import product
+
+import msgspec
+import pytest
+from hypothesis import event, given, settings
+from hypothesis import strategies as st
+from tests.profiles import draws
+from tests.verify.bound_examples import (
+    HORIZON,
+    SCALE,
+    UNSOUND_DRAT,
+    Tamper,
+    certificates,
+    completed,
+    crossing,
+    cut_certificate,
+    deadline_certificate,
+    payment,
+    plans_of,
+    sight_certificate,
+)
+
+from carp_optimum.bound import lower_bound
+from carp_optimum.solver import Solver
+from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, ResourceId, Robot, Visit
+from carp_spec.plan_rules import plan_cost
+from carp_verify.bound_cuts import formula_of, formula_of_deadlines
+from carp_verify.bounds import BOUND_FORMAT, BoundDocument, CutDocument, DeadlinesDocument, digest, read_bound
+from carp_verify.documents import write
+from carp_verify.encoding import violated
+from carp_verify.refutation import NotRefutedError
+from carp_verify.verify_bound import Budget, Fees, RobotSearch, Tariff, fees_of, predecessors, verify_bound
+from carproof.strategies import Sizes, instances
+
+
+@settings(max_examples=draws(120))
+@given(st.data(), instances(Sizes(resources=3, robots=1, capacity=1, duration=2, release=3, pace=1), least_robots=1))
+def test_who_keeps_a_deadline_pays_for_it_and_may_drive_on_through_the_goal_to_miss_it(
+    data: st.DataObject, instance: Instance
+) -> None:
+    certificate = data.draw(certificates(instance))
+    robot = instance.robots[0]
+    fees = data.draw(st.lists(st.tuples(st.integers(0, HORIZON - 1), st.integers(0, 4 * SCALE)), max_size=3))
+    costs = [
+        SCALE * plan_cost(instance, plan)
+        + payment(certificate, plan)
+        + sum(price for tick, price in fees if plan.visits[-1].enter <= tick)
+        for plan in plans_of(instance, robot)
+    ]
+    tariff = Tariff(instance, certificate)
+    search = RobotSearch(tariff, robot, SCALE, predecessors(instance), Budget(), Fees(fees))
+    assert search.least_cost() == min(costs, default=None)
+
+
+def left(visit: Visit) -> int:
+    """The tick at which a visit ends that is not the last one."""
+    assert visit.leave is not None
+    return visit.leave
+
+
+def keeps(plan: Plan, deadline: int, seen: int, places: frozenset[ResourceId]) -> bool:
+    """Whether the plan keeps the deadline of a robot that is seen, word for word as the document has it."""
+    arrival = plan.visits[-1].enter
+    at = {visit.resource for visit in plan.visits[:-1] if visit.enter <= seen < left(visit)}
+    return (arrival <= deadline and arrival <= seen) or bool(at & places)
+
+
+@settings(max_examples=draws(400))
+@given(
+    st.data(),
+    instances(Sizes(resources=4, robots=2, capacity=1, duration=2, release=2, pace=1), least_robots=2),
+)
+def test_no_plans_that_break_no_rule_keep_all_deadlines_whose_formula_has_no_model(
+    data: st.DataObject, instance: Instance
+) -> None:
+    ticks = st.integers(0, HORIZON - 1)
+    places = st.frozensets(st.sampled_from([resource.id for resource in instance.graph.resources]))
+    members = [data.draw(st.tuples(ticks, ticks, places)) for _ in instance.robots]
+    robots = tuple(robot.id for robot in instance.robots)
+    seen = tuple((tick, tuple(sorted(at, key=str))) for _, tick, at in members)
+    deadlines = DeadlinesDocument(robots, tuple(tick for tick, _, _ in members), 0, "", seen)
+    try:
+        formula = formula_of_deadlines(instance, deadlines, 10**6)
+    except NotRefutedError:
+        return  # a robot has no way
+    keeping = [
+        [plan for plan in plans_of(instance, robot) if keeps(plan, *member)]
+        for robot, member in zip(instance.robots, members, strict=True)
+    ]
+    is_possible = any(not violated(instance, plans) for plans in product(*keeping))
+    has_model = Solver(formula, lambda: None).satisfiable([])
+    assert has_model or not is_possible
+    event("possible" if is_possible else "refuted" if not has_model else "not refuted")
+
+
+@settings(max_examples=draws(200))
+@given(st.data(), instances(Sizes(resources=3, robots=1, capacity=1, duration=3, release=3, pace=1), least_robots=1))
+def test_who_is_seen_in_a_place_on_the_way_pays_for_it_once(data: st.DataObject, instance: Instance) -> None:
+    certificate = data.draw(certificates(instance))
+    robot = instance.robots[0]
+    places = st.sets(st.sampled_from([resource.id for resource in instance.graph.resources]))
+    prices = st.integers(0, 4 * SCALE)
+    arrivals = data.draw(st.lists(st.tuples(st.integers(0, HORIZON - 1), prices), max_size=2))
+    sights = data.draw(st.lists(st.tuples(st.integers(0, HORIZON - 1), places, prices), max_size=4))
+    fees = Fees([*arrivals, (0, 0)], sights)
+    costs = [
+        SCALE * plan_cost(instance, plan)
+        + payment(certificate, plan)
+        + sum(price for tick, price in arrivals if plan.visits[-1].enter <= tick)
+        + sum(
+            price
+            for tick, counted, price in sights
+            if any(visit.resource in counted and visit.enter <= tick < left(visit) for visit in plan.visits[:-1])
+        )
+        for plan in plans_of(instance, robot)
+    ]
+    tariff = Tariff(instance, certificate)
+    search = RobotSearch(tariff, robot, SCALE, predecessors(instance), Budget(), fees)
+    assert search.least_cost() == min(costs, default=None)
+
+
+@pytest.mark.parametrize(
+    ("prices", "fees", "least"),
+    [
+        ((), [(3, 10)], 4),  # comes after the deadline, although nothing else is priced
+        ((), [(3, 2)], 3),  # pays
+        ((), [(1, 1), (3, 1)], 3),  # pays both
+        ((("a", 1, 10 * SCALE),), [(2, 10)], 3),  # drives through the goal, as to wait is dear
+    ],
+)
+def test_a_robot_is_late_where_that_is_cheaper(
+    prices: tuple[tuple[str, int, int], ...], fees: list[tuple[int, int]], least: int
+) -> None:
+    lane = Instance(ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),)), (Robot("r", "a", "b"),))
+    certificate = BoundDocument(BOUND_FORMAT, digest(lane), 0, SCALE, HORIZON, prices, (), (), ())
+    paid = [(tick, SCALE * price) for tick, price in fees]
+    search = RobotSearch(Tariff(lane, certificate), lane.robots[0], SCALE, predecessors(lane), Budget(), Fees(paid))
+    assert search.least_cost() == SCALE * least
+
+
+def test_deadlines_find_what_prices_alone_miss_and_carry_their_proofs() -> None:
+    instance = crossing()
+    certificate = lower_bound(instance, steps=4500)
+    assert certificate.bound == 10
+    assert certificate.deadlines
+    assert verify_bound(instance, certificate) == 10
+
+
+def with_deadlines(**fields: object) -> Tamper:
+    """Change the only deadlines."""
+
+    def tamper(certificate: BoundDocument) -> BoundDocument:
+        changed = msgspec.structs.replace(certificate.deadlines[0], **fields)
+        return completed(crossing(), msgspec.structs.replace(certificate, deadlines=(changed,)))
+
+    return tamper
+
+
+@pytest.mark.parametrize(
+    ("tamper", "path", "reason"),
+    [
+        (with_deadlines(price=-1), "$.deadlines[0].price", "must be a whole number of at least 0, and is -1"),
+        (with_deadlines(price=1.5), "$.deadlines[0].price", r"and is 1\.5"),
+        (with_deadlines(price=True), "$.deadlines[0].price", "and is True"),
+        (
+            with_deadlines(robots=("r0", "r0")),
+            "$.deadlines[0].robots",
+            "must name one or more robots of the instance once",
+        ),
+        (with_deadlines(robots=("r0", "moon")), "$.deadlines[0].robots", "one or more robots of the instance"),
+        (with_deadlines(robots=(), ticks=()), "$.deadlines[0].robots", "one or more robots"),
+        (with_deadlines(ticks=(2, 3)), "$.deadlines[0]", "its proof does not hold"),
+        (with_deadlines(ticks=(1, 2)), "$.deadlines[0]", "robot r0 can be at its goal at 2, not at 1"),
+        (with_deadlines(ticks=(2.0, 2)), "$.deadlines[0]", r"not at 2\.0"),
+        (with_deadlines(ticks=(True, 2)), "$.deadlines[0]", "not at True"),
+        (with_deadlines(refutation=""), "$.deadlines[0]", "it does not end with the empty clause"),
+    ],
+)
+def test_tampered_deadlines_are_refused(tamper: Tamper, path: str, reason: str) -> None:
+    with pytest.raises(Refusal, match=reason) as refused:
+        verify_bound(crossing(), tamper(deadline_certificate()))
+    assert (refused.value.path, refused.value.rule) == (path, "bound/deadline")
+
+
+def test_each_robot_has_a_deadline_or_the_deadlines_are_refused() -> None:
+    for ticks in ((2,), (2, 2, 2)):
+        changed = msgspec.structs.replace(deadline_certificate().deadlines[0], ticks=ticks)
+        with pytest.raises(Refusal, match="it must have a deadline of each of 2 robots") as refused:
+            verify_bound(crossing(), msgspec.structs.replace(deadline_certificate(), deadlines=(changed,)))
+        assert refused.value.rule == "bound/deadline"
+
+
+def test_a_robot_without_a_way_has_no_deadline() -> None:
+    crossed = crossing()
+    instance = Instance(crossed.graph, (*crossed.robots, Robot("lost", "north", "island")))
+    deadlines = DeadlinesDocument(("r0", "lost"), (2, 2), 1, "1 0 1 0\n")
+    with pytest.raises(Refusal, match="robot lost can be at its goal at None, not at 2"):
+        verify_bound(instance, msgspec.structs.replace(lower_bound(instance, steps=2), deadlines=(deadlines,)))
+
+
+def with_sights(**fields: object) -> Tamper:
+    """Change the only deadlines, of robots that are seen."""
+
+    def tamper(certificate: BoundDocument) -> BoundDocument:
+        changed = msgspec.structs.replace(certificate.deadlines[0], **fields)
+        tampered = msgspec.structs.replace(certificate, deadlines=(changed,))
+        return completed(crossing(), tampered) if len(changed.seen) > 1 else tampered
+
+    return tamper
+
+
+def sight(tick: object = 1, places: object = ("middle",), other: object = ("middle",)) -> Tamper:
+    return with_sights(seen=((tick, places), (1, other)))
+
+
+@pytest.mark.parametrize(
+    ("tamper", "reason"),
+    [
+        (sight(tick=2), "its proof does not hold"),  # r0 can wait while r2 passes
+        (sight(tick=0), "its proof does not hold"),
+        (sight(places=("middle", "north")), "its proof does not hold"),
+        (sight(other=("middle", "south")), "its proof does not hold"),
+        (with_sights(robots=("r0", "r1"), refutation="1 0 1 0\n"), "its proof does not hold"),
+        (sight(tick=-1), "robot r0 must have whole ticks of at least 0, not 0 and -1"),
+        (sight(tick=1.0), r"whole ticks of at least 0, not 0 and 1\.0"),
+        (sight(tick=True), "whole ticks of at least 0, not 0 and True"),
+        (with_sights(ticks=(0, -1)), "robot r2 must have whole ticks of at least 0, not -1 and 1"),
+        (sight(places=("moon",)), "the places of robot r0 must be resources"),
+        (with_sights(seen=((1, ("middle",)),)), "it must see each of 2 robots"),
+        (with_sights(refutation=""), "it does not end with the empty clause"),
+    ],
+)
+def test_tampered_sights_are_refused(tamper: Tamper, reason: str) -> None:
+    with pytest.raises(Refusal, match=reason) as refused:
+        verify_bound(crossing(), tamper(sight_certificate()))
+    assert (refused.value.path, refused.value.rule) == ("$.deadlines[0]", "bound/deadline")
+
+
+def test_a_robot_that_vanishes_may_have_passed_its_goal_when_it_is_seen() -> None:
+    lane = Instance(
+        ResourceGraph((Resource("a"), Resource("b"), Resource("c")), (("a", "b"), ("b", "c"))), (Robot("r", "a", "b"),)
+    )
+    deadlines = DeadlinesDocument(("r",), (0,), 1, "", ((2, ("c",)),))
+    assert Solver(formula_of_deadlines(lane, deadlines, 100), lambda: None).satisfiable([])
+    earlier = msgspec.structs.replace(deadlines, seen=((1, ("c",)),))
+    assert not Solver(formula_of_deadlines(lane, earlier, 100), lambda: None).satisfiable([])
+
+
+def test_deadlines_of_robots_that_are_seen_are_written_and_read() -> None:
+    certificate = sight_certificate()
+    assert read_bound(write(certificate)) == certificate
+    assert b"seen" not in write(deadline_certificate())
+
+
+def test_who_arrives_after_it_is_seen_pays_nothing_and_who_waits_where_it_is_seen_pays() -> None:
+    deadlines = DeadlinesDocument(("r0", "r2"), (5, 0), 3, "", ((1, ("middle",)), (2, ())))
+    fees = fees_of(crossing(), [deadlines])["r0"]
+    assert [fees.at_arrival(tick) for tick in range(4)] == [3, 3, 0, 0]
+    assert [fees.on_the_way("middle", tick, tick + 1) for tick in range(3)] == [0, 3, 0]
+    assert fees.on_the_way("north", 0, 9) == 0
+    lane = Instance(ResourceGraph(tuple(map(Resource, "abc")), (("a", "b"), ("b", "c"))), (Robot("r", "a", "c"),))
+    certificate = BoundDocument(BOUND_FORMAT, digest(lane), 0, SCALE, HORIZON, (("b", 1, 9 * SCALE),), (), (), ())
+    waits = Fees([], [(1, ("a",), SCALE)])
+    search = RobotSearch(Tariff(lane, certificate), lane.robots[0], SCALE, predecessors(lane), Budget(), waits)
+    assert search.least_cost() == 4 * SCALE
+
+
+def test_robots_are_not_seen_in_a_certificate_for_the_kernel() -> None:
+    certificate = lower_bound(crossing(), steps=1500, seen=False)
+    assert certificate.deadlines
+    assert not any(deadlines.seen for deadlines in certificate.deadlines)
+
+
+def test_a_robot_pays_only_where_it_is_seen() -> None:
+    certificate = sight_certificate()
+    assert [least for _, least in certificate.robots] == [3 << 16, 2 << 16, 3 << 16]
+    claimed = tuple((robot, 7 << 15) for robot, _ in certificate.robots)
+    with pytest.raises(Refusal, match="robot r0 can have no more than 196608"):
+        verify_bound(crossing(), msgspec.structs.replace(certificate, robots=claimed))
+
+
+def test_deadlines_are_counted_once_for_all_robots_but_one() -> None:
+    certificate = deadline_certificate()
+    assert [least for _, least in certificate.robots] == [3 << 16, 2 << 16, 3 << 16]
+    dearer = msgspec.structs.replace(certificate, bound=8)
+    with pytest.raises(Refusal, match="the bound must be 7") as refused:
+        verify_bound(crossing(), dearer)
+    assert refused.value.rule == "bound/total"
+
+
+def test_a_document_without_deadlines_is_written_as_before() -> None:
+    certificate = lower_bound(crossing(), steps=2)
+    assert b"deadlines" not in write(certificate)
+    assert read_bound(write(deadline_certificate())) == deadline_certificate()
+
+
+def with_cut(**fields: object) -> Tamper:
+    """Change the first cut."""
+
+    def tamper(certificate: BoundDocument) -> BoundDocument:
+        first = msgspec.structs.replace(certificate.cuts[0], **fields)
+        return msgspec.structs.replace(certificate, cuts=(first, *certificate.cuts[1:]))
+
+    return tamper
+
+
+@pytest.mark.parametrize(
+    ("tamper", "path", "reason"),
+    [
+        (with_cut(multiplier=-1), "$.cuts[0].multiplier", "must be a whole number of at least 0, and is -1"),
+        (with_cut(multiplier=1.5), "$.cuts[0].multiplier", r"and is 1\.5"),
+        (with_cut(multiplier=(1 << 16) + 1), "$.cuts[0].multiplier", "must add up to 65536 at most"),
+        (with_cut(robots=("r0", "r0")), "$.cuts[0].robots", "must name robots of the instance once, also 'r0'"),
+        (with_cut(robots=("r0", "moon")), "$.cuts[0].robots", "also 'moon'"),
+        (with_cut(robots=("r1",)), "$.cuts[0]", "it must have a horizon of each of 1 robots"),
+        (with_cut(robots=("r1", "r2")), "$.cuts[0]", "its proof does not hold: line"),
+        (with_cut(robots=(), horizons=(), order=()), "$.cuts[0].robots", "it must name at least one robot"),
+        (with_cut(least=99), "$.cuts[0]", "its proof does not hold: line"),
+        (with_cut(least=7.0), "$.cuts[0]", "must be whole numbers"),
+        (with_cut(least=True), "$.cuts[0]", "must be whole numbers"),
+        (with_cut(horizons=(1,)), "$.cuts[0]", "it must have a horizon of each of 2 robots"),
+        (with_cut(horizons=(-1, 1)), "$.cuts[0]", "a horizon must be between 0 and the least total"),
+        (with_cut(order=(0, 0)), "$.cuts[0]", "and an order of them"),
+        (with_cut(order=(0, 1, 1)), "$.cuts[0]", "and an order of them"),
+        (with_cut(order=(1, 2)), "$.cuts[0]", "and an order of them"),
+        (with_cut(horizons=(1, 1, 1)), "$.cuts[0]", "it must have a horizon of each of 2 robots"),
+        (with_cut(horizons=(8, 1)), "$.cuts[0]", "a horizon must be between 0 and the least total"),
+        (with_cut(refutation=""), "$.cuts[0]", "it does not end with the empty clause"),
+        (with_cut(refutation="hello"), "$.cuts[0]", "line 1 must be a clause with its hints"),
+        (with_cut(refutation=UNSOUND_DRAT), "$.cuts[0]", "line 1 has no hints: refutations without hints"),
+    ],
+)
+def test_a_tampered_cut_is_refused(tamper: Tamper, path: str, reason: str) -> None:
+    with pytest.raises(Refusal, match=reason) as refused:
+        verify_bound(crossing(), tamper(cut_certificate()))
+    assert (refused.value.path, refused.value.rule) == (path, "bound/cut")
+
+
+def test_horizons_of_a_cut_go_from_0_to_its_least_total() -> None:
+    (cut,) = cut_certificate().cuts
+    for horizons in ((0, cut.least), (cut.least, 0)):
+        assert formula_of(crossing(), msgspec.structs.replace(cut, horizons=horizons), 10**6).clauses
+
+
+def test_the_multipliers_of_all_cuts_of_a_robot_count_together() -> None:
+    (cut,) = cut_certificate().cuts
+    half = msgspec.structs.replace(cut, multiplier=cut_certificate().scale * 3 // 4)
+    with pytest.raises(Refusal, match="the multipliers of robot r0 must add up to 65536 at most") as refused:
+        verify_bound(crossing(), msgspec.structs.replace(cut_certificate(), cuts=(half, half)))
+    assert refused.value.path == "$.cuts[1].multiplier"
+
+
+def test_a_cut_of_a_robot_without_a_way_is_refused() -> None:
+    crossed = crossing()
+    instance = Instance(crossed.graph, (*crossed.robots, Robot("lost", "north", "island")))
+    certificate = lower_bound(instance, steps=2)
+    cut = CutDocument(("r0", "lost"), 0, 1, (0, 0), (0, 1), "1 0 1 0\n")
+    with pytest.raises(Refusal, match="a robot of the group has no way to its goal"):
+        verify_bound(instance, msgspec.structs.replace(certificate, cuts=(cut,)))

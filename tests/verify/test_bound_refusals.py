@@ -1,0 +1,225 @@
+"""Certificates of lower bounds that are refused: forged, malformed, or too large."""
+
+from time import process_time
+
+import msgspec
+import pytest
+from tests.verify.bound_examples import Tamper, completed, crossing, cut_certificate
+
+from carp_optimum.bound import lower_bound
+from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, Rule
+from carp_verify import bound_rules
+from carp_verify import verify_bound as page
+from carp_verify.bounds import BOUND_FORMAT, BoundDocument, digest, read_bound
+from carp_verify.documents import write
+from carp_verify.verify_bound import verify_bound
+
+
+def test_a_horizon_below_zero_is_malformed() -> None:
+    with pytest.raises(Refusal, match="expected int >= 0") as refused:
+        read_bound(write(msgspec.structs.replace(lower_bound(crossing(), steps=1), resources=(), horizon=-1)))
+    assert (refused.value.path, refused.value.rule) == ("$.horizon", "document/shape")
+
+
+def test_a_search_for_least_costs_that_takes_too_long_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(page, "LARGEST_SEARCH", 2)
+    with pytest.raises(Refusal, match="takes more than 2 steps") as refused:
+        verify_bound(crossing(), lower_bound(crossing(), steps=500))
+    assert refused.value.rule == "bound/size"
+
+
+def sized(change: str) -> tuple[Instance, BoundDocument]:
+    """A certificate with one size larger than all others."""
+    if change == "prices":
+        lane = Instance(ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),)), (Robot("r", "a", "b"),))
+        prices = {"resources": (("a", 29, 1),), "exchanges": (("b", "a", 29, 1), ("a", "b", 3, 1))}
+        return lane, completed(lane, msgspec.structs.replace(lower_bound(lane, steps=1), horizon=30, **prices))
+    certificate = cut_certificate()
+    return crossing(), msgspec.structs.replace(certificate, cuts=certificate.cuts * (2 if change == "cuts" else 0))
+
+
+@pytest.mark.parametrize(
+    ("change", "limit", "size", "path"),
+    [
+        ("robots", "LARGEST_TABLE", 3 * 6, "$.robots"),
+        ("cuts", "LARGEST_TABLE", 2 * 2 * 6, "$.cuts"),
+        ("prices", "LARGEST_TABLE", 30 * 2, "$.resources"),
+        ("cuts", "LARGEST_FORMULA", 2 * 97, "$.cuts[1]"),
+        ("prices", "LARGEST_SEARCH", 1, "$.robots"),
+    ],
+)
+def test_each_size_is_accepted_up_to_its_limit(
+    change: str, limit: str, size: int, path: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    instance, certificate = sized(change)
+    monkeypatch.setattr(page, limit, size)
+    assert verify_bound(instance, certificate) == certificate.bound
+    monkeypatch.setattr(page, limit, size - 1)
+    with pytest.raises(Refusal, match=f"at most {size - 1}|more than {size - 1}") as refused:
+        verify_bound(instance, certificate)
+    assert (refused.value.path, refused.value.rule) == (path, "bound/size")
+
+
+def test_prices_that_keep_a_robot_waiting_for_long_are_refused_after_a_bounded_search() -> None:
+    lane = ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),))
+    instance = Instance(lane, (Robot("r", "a", "b"),))
+    prices = (*(("b", tick, 10**12) for tick in range(1000)), ("b", 9_999_999, 1))
+    certificate = BoundDocument(BOUND_FORMAT, digest(instance), 0, 1, 10**7, prices, (), (), (("r", 0),))
+    started = process_time()
+    with pytest.raises(Refusal, match="bound"):
+        verify_bound(instance, certificate)
+    assert process_time() - started < 30
+
+
+@pytest.mark.parametrize(("horizons", "least"), [((3000, 3000), 3007), ((10**9, 0), 10**9), ((0, 10**99), 10**99)])
+def test_a_cut_with_a_large_formula_is_refused_at_once(horizons: tuple[int, int], least: int) -> None:
+    (cut,) = cut_certificate().cuts
+    large = msgspec.structs.replace(cut, horizons=horizons, least=least)
+    started = process_time()
+    with pytest.raises(Refusal, match="must have at most 5000000 clauses together") as refused:
+        verify_bound(crossing(), msgspec.structs.replace(cut_certificate(), cuts=(large,)))
+    assert (refused.value.path, refused.value.rule) == ("$.cuts[0]", "bound/size")
+    assert process_time() - started < 20
+
+
+def test_stays_too_long_to_be_searched_are_refused_with_the_limit_named() -> None:
+    lane = ResourceGraph((Resource("a", duration=200_000), Resource("b")), (("a", "b"),))
+    with pytest.raises(Refusal, match="must be at most 100000, the limit, and is 200000") as refused:
+        lower_bound(Instance(lane, (Robot("r", "a", "b"),)), steps=3)
+    assert refused.value.rule == "bound/stay"
+
+
+def test_a_robot_without_a_way_is_named_and_left_out() -> None:
+    crossed = crossing()
+    lost = Robot("lost", "north", "island")
+    instance = Instance(crossed.graph, (crossed.robots[0], lost))
+    certificate = lower_bound(instance, steps=30)
+    assert certificate.robots[1] == ("lost", None)
+    assert verify_bound(instance, certificate) == 2
+    for wrong in ((("r0", None), ("lost", None)), (certificate.robots[0], ("lost", 0))):
+        with pytest.raises(Refusal, match="bound/robots"):
+            verify_bound(instance, msgspec.structs.replace(certificate, robots=wrong))
+
+
+def change(**fields: object) -> Tamper:
+    return lambda certificate: msgspec.structs.replace(certificate, **fields)
+
+
+def reprice(price: object = None, tick: object = None, place: object = None) -> Tamper:
+    """Change the first price."""
+
+    def tamper(certificate: BoundDocument) -> BoundDocument:
+        first = certificate.resources[0]
+        new = (place or first[0], first[1] if tick is None else tick, first[2] if price is None else price)
+        return msgspec.structs.replace(certificate, resources=(new, *certificate.resources[1:]))
+
+    return tamper
+
+
+def exchange(*row: object) -> Tamper:
+    return lambda certificate: msgspec.structs.replace(certificate, exchanges=(row, *certificate.exchanges))
+
+
+def of_robot(more: int) -> Tamper:
+    """Claim more of the first robot, and of the bound."""
+
+    def tamper(certificate: BoundDocument) -> BoundDocument:
+        (robot, least), *rest = certificate.robots
+        bound = certificate.bound + more // certificate.scale
+        return msgspec.structs.replace(certificate, robots=((robot, (least or 0) + more), *rest), bound=bound)
+
+    return tamper
+
+
+@pytest.mark.parametrize(
+    ("tamper", "path", "rule", "reason"),
+    [
+        (change(instance="0" * 64), "$.instance", "bound/instance", "it is about another instance"),
+        (change(scale=3), "$.scale", "bound/scale", "must be a power of two, and is 3"),
+        (change(scale=0), "$.scale", "bound/scale", "and is 0"),
+        (change(scale=True), "$.scale", "bound/scale", "and is True"),
+        (change(scale=4.0), "$.scale", "bound/scale", r"and is 4\.0"),
+        (reprice(price=-1), "$.resources[0]", "bound/price", "-1 at . must be a price of at least 0"),
+        (reprice(price=1.5), "$.resources[0]", "bound/price", "1.5 at"),
+        (reprice(price=True), "$.resources[0]", "bound/price", "True at"),
+        (reprice(tick=99), "$.resources[0]", "bound/price", "at 99 must be .* at a tick below"),
+        (reprice(tick=-1), "$.resources[0]", "bound/price", "at -1 must be"),
+        (reprice(tick=1.0), "$.resources[0]", "bound/price", r"at 1\.0 must be"),
+        (reprice(place="moon"), "$.resources[0]", "bound/price", "moon must be a resource"),
+        (exchange("north", "moon", 1, 1), "$.exchanges[0]", "bound/price", "north and moon must be"),
+        (exchange("north", "east", 1, 1), "$.exchanges[0]", "bound/price", "with a move each way"),
+        (
+            lambda each: exchange("middle", "north", 0, 1)(exchange("north", "east", 1, 1)(each)),
+            "$.exchanges[1]",
+            "bound/price",
+            "with a move each way",
+        ),
+        (change(robots=()), "$.robots", "bound/robots", "must name each robot of the instance once"),
+        (lambda each: change(robots=each.robots[1:])(each), "$.robots", "bound/robots", "once, in its order"),
+        (lambda each: change(robots=each.robots[::-1])(each), "$.robots", "bound/robots", "once, in its order"),
+        (lambda each: change(robots=each.robots * 2)(each), "$.robots", "bound/robots", "once, in its order"),
+        (lambda each: change(resources=each.resources * 2)(each), None, "bound/once", "must have one price at tick"),
+        (of_robot(1 << 16), "$.robots[0]", "bound/robots", "robot r0 can have no more than"),
+        (lambda each: change(bound=each.bound + 1)(each), "$.bound", "bound/total", "the bound must be 9,"),
+        (lambda each: change(bound=each.bound - 1)(each), "$.bound", "bound/total", "and is 8"),
+        (change(bound=9.0), "$.bound", "bound/total", r"and is 9\.0"),
+        (lambda each: reprice(tick=10**12)(change(horizon=10**13)(each)), "$.resources", "bound/size", "would be"),
+    ],
+)
+def test_a_tampered_certificate_is_refused(tamper: Tamper, path: str | None, rule: str, reason: str) -> None:
+    instance = crossing()
+    certificate = lower_bound(instance, steps=500)
+    verify_bound(instance, certificate)
+    with pytest.raises(Refusal, match=reason) as refused:
+        verify_bound(instance, tamper(certificate))
+    assert refused.value.rule == rule
+    assert path in {None, refused.value.path}
+
+
+def test_a_scale_is_a_power_of_two() -> None:
+    scales = (*range(-8, 18), True, 1.0, 1 << 99, (1 << 99) + 1)
+    assert [scale for scale in scales if bound_rules.is_scale(scale)] == [1, 2, 4, 8, 16, 1 << 99]
+
+
+def test_a_certificate_is_about_no_instance_whose_digest_is_less_or_greater() -> None:
+    certificate = lower_bound(crossing(), steps=2)
+    for other in ("", "0" * 64, "f" * 64, certificate.instance.upper()):
+        with pytest.raises(Refusal) as refused:
+            verify_bound(crossing(), msgspec.structs.replace(certificate, instance=other))
+        assert refused.value.rule == "bound/instance"
+
+
+def test_prices_are_whole_numbers_at_ticks_before_the_horizon() -> None:
+    assert [tick for tick in (-1, 0, 4, 5, 6, True, 1.0) if bound_rules.is_price(0, tick, 5)] == [0, 4]
+    assert [price for price in (-1, 0, 1, 10**99, True, 1.0) if bound_rules.is_price(price, 0, 5)] == [0, 1, 10**99]
+
+
+def test_a_robots_least_cost_is_claimed_as_no_more_than_it_is() -> None:
+    claims = (None, -1, 0, 4, 5, 6, True, 4.0)
+    assert [claimed for claimed in claims if bound_rules.is_least(claimed, 5)] == [-1, 0, 4, 5]
+    assert [claimed for claimed in claims if bound_rules.is_least(claimed, None)] == [None]
+
+
+def test_every_rule_of_bounds_is_listed_in_order() -> None:
+    assert [each for each in vars(bound_rules).values() if isinstance(each, Rule)] == [*bound_rules.BOUND_RULES]
+
+
+@pytest.mark.parametrize("price", ["1.5", "true", "1e3", '"1"', "null", "-1.0"])
+def test_a_document_with_anything_but_whole_numbers_is_malformed(price: str) -> None:
+    certificate = write(lower_bound(crossing(), steps=30)).decode()
+    before, after = certificate.split('"resources":[["middle",', 1)
+    tick, _, rest = after.split(",", 1)[0], *after.split("]", 1)
+    malformed = f'{before}"resources":[["middle",{tick},{price}]{rest}'
+    with pytest.raises(Refusal) as refused:
+        read_bound(malformed.encode())
+    assert (refused.value.path, refused.value.rule) == ("$.resources[0][2]", "document/shape")
+
+
+@pytest.mark.parametrize("place", [("a", "b"), ("b", "a")])
+def test_an_exchange_needs_moves_both_ways(place: tuple[str, str]) -> None:
+    one_way = ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),), directed=True)
+    instance = Instance(one_way, (Robot("r", "a", "b"),))
+    certificate = msgspec.structs.replace(lower_bound(instance, steps=1), horizon=3, exchanges=((*place, 1, 1),))
+    with pytest.raises(Refusal, match="must be a resource, or two with a move each way") as refused:
+        verify_bound(instance, certificate)
+    assert (refused.value.path, refused.value.rule) == ("$.exchanges[0]", "bound/price")
