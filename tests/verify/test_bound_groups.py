@@ -1,4 +1,4 @@
-"""Cuts and deadlines of groups of robots, some of which are seen at a tick, in lower bounds."""
+"""Cuts and deadlines of groups of robots, also of robots that are seen at a tick, in lower bounds."""
 
 from itertools import product
 
