@@ -10,11 +10,12 @@ from collections.abc import Callable
 from contextlib import suppress
 from time import perf_counter
 
+import carp_optimized
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.polishing import CHANCE, SURE
 from carp_optimum.joint_repair import repair
 from carp_spec import Instance, Refusal, Solution
-from carp_spec.polish_rules import last_round, polishable, require_polish_options
+from carp_spec.polish_rules import polishable, require_polish_options
 
 ROUNDS = 50
 """The rounds of one compiled call."""
@@ -31,7 +32,7 @@ BRIEF = 0.01
 """The seconds of an annealing if a repair took the time."""
 
 
-def anneal(  # noqa: PLR0913 - what a polish has, and the clock
+def polish(
     instance: Instance,
     solution: Solution,
     *,
@@ -39,15 +40,40 @@ def anneal(  # noqa: PLR0913 - what a polish has, and the clock
     seconds: float | None = None,
     seed: int = 0,
     advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
-    clock: Callable[[], float] = perf_counter,
 ) -> Solution:
-    """Improve a solution for that many rounds or seconds; `advance` gets the rounds and the best so far.
+    """Improve a solution by large neighbourhood search; `advance` gets rounds, unplanned robots and total.
 
-    Equal iterations and seed give an equal solution. Raises what `polish` raises.
+    With `seconds`, robots without a plan are planned first, and rounds may raise the total for a while (simulated
+    annealing); the best plans seen are the result. Otherwise `iterations` rounds of `polish/...` are played, 10,000
+    unless given, none of which raises the total; equal iterations and seed give an equal solution. All robots are
+    planned from their release on: none is under way. Raises `Refusal` for wrong options, for a solution that breaks a
+    rule, and for numbers that are too large.
     """
     require_polish_options(iterations, seconds, seed)
+    if seconds is None:
+        return carp_optimized.polish(instance, solution, iterations=iterations, seed=seed, advance=advance)
+    return anneal(instance, solution, seconds, seed=seed, advance=advance)
+
+
+def anneal(
+    instance: Instance,
+    solution: Solution,
+    seconds: float,
+    *,
+    seed: int = 0,
+    advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
+    clock: Callable[[], float] = perf_counter,
+) -> Solution:
+    """Improve a solution for that many seconds, the repair of robots left out included.
+
+    `advance` gets the rounds and the best so far. Raises what `polish` raises.
+    """
+    started = clock()
+    if len(solution.plans) < len(instance.robots):
+        with suppress(Refusal):
+            solution = repair(instance, solution)
+    seconds = max(seconds - (clock() - started), BRIEF)
     whole = polishable(instance, solution)
-    last = last_round(iterations, seconds)
     by_robot = {each.robot: each for each in whole.plans}
     fleet = PlannedFleet(instance)
     fleet.commit([by_robot[each] for each in whole.order])
@@ -57,11 +83,7 @@ def anneal(  # noqa: PLR0913 - what a polish has, and the clock
     best, plans = fleet.worth, fleet.plans
     current = 0
     started = clock()
-    while played != last:
-        spent = PARTS * played // last if last else int(PARTS * (clock() - started) / (seconds or BRIEF))
-        if spent >= PARTS:
-            break
-        rounds = ROUNDS if last is None else min(ROUNDS, last - played)
+    while (spent := int(PARTS * (clock() - started) / seconds)) < PARTS:
         cycle, gone = divmod(CYCLES * spent, PARTS)
         if cycle > current:
             current = cycle
@@ -72,12 +94,12 @@ def anneal(  # noqa: PLR0913 - what a polish has, and the clock
         delay = max(best[1] - least, 0)
         heat = HEAT if cycle == 0 else REHEAT
         polishing.fields.counts[CHANCE] = _chance(heat * delay, len(instance.robots), expected, PARTS - gone)
-        batch = fleet.polish(polishing, rounds)
+        batch = fleet.polish(polishing, ROUNDS)
         played += batch
         if fleet.worth < best:
             best, plans = fleet.worth, fleet.plans
         advance(played, *best)
-        if batch < rounds:
+        if batch < ROUNDS:
             break
     return Solution.of(instance, plans)
 
@@ -90,27 +112,3 @@ def _chance(heated: int, robots: int, rounds: int, left: int) -> int:
     enough = max(ENOUGH * robots, 1)
     mean = heated * min(rounds, enough) * left**3
     return SURE * mean // (mean + 16 * max(robots, 1) * enough * PARTS**3)
-
-
-def polish_for(
-    instance: Instance,
-    solution: Solution,
-    seconds: float,
-    *,
-    seed: int = 0,
-    advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
-    clock: Callable[[], float] = perf_counter,
-) -> Solution:
-    """Improve a solution for that many seconds, the repair of robots left out included."""
-    started = clock()
-    if len(solution.plans) < len(instance.robots):
-        with suppress(Refusal):
-            solution = repair(instance, solution)
-    return anneal(
-        instance,
-        solution,
-        seconds=max(seconds - (clock() - started), BRIEF),
-        seed=seed,
-        advance=advance,
-        clock=clock,
-    )

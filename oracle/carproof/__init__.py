@@ -20,7 +20,8 @@ TYPE_CHECKING = False  # typing is slow to load, and type checkers know the name
 if TYPE_CHECKING:
     from typing import Any
 
-    from carp_optimized import add, plan, polish, query
+    from carp_optimized import add, plan, query
+    from carp_optimum.annealing import polish
     from carp_optimum.bound import lower_bound as bound
     from carp_optimum.optimum import Optimum, optimum
     from carp_spec import (
@@ -63,7 +64,7 @@ _DOCUMENTS = ("read_instance", "read_solution", "write_instance", "write_solutio
 _ELSEWHERE = {
     "add": "carp_optimized",
     "plan": "carp_optimized",
-    "polish": "carp_optimized",
+    "polish": "carp_optimum.annealing",
     "query": "carp_optimized",
     "check": "carp_spec:judge",
     "BoundDocument": "carp_verify.bounds",

@@ -1,6 +1,6 @@
 """The planners to choose from, each loaded when it is first used."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from importlib import import_module
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Protocol, cast
@@ -12,6 +12,7 @@ from carproof.progress import progress
 
 if TYPE_CHECKING:
     from carp_optimized.fleet import PlannedFleet
+    from carp_optimum.many_starts import Polish
 
 ENGINES = ("optimized", "reference")
 
@@ -43,16 +44,8 @@ class Engine(Protocol):
     def add(self, instance: Instance, solution: Solution, robot: RobotId, now: int, options: Neighbourhood) -> Solution:
         """Plans with one robot more."""
 
-    def polish(
-        self,
-        instance: Instance,
-        solution: Solution,
-        *,
-        iterations: int | None = None,
-        seconds: float | None = None,
-        seed: int = 0,
-        advance: Callable[[int, int, int], None] = ...,
-    ) -> Solution:
+    @property
+    def polish(self) -> "Polish":
         """Better plans; `advance` gets rounds, unplanned robots and total."""
 
     def retime(self, instance: Instance, solution: Solution, trace: Trace) -> Solution:
@@ -69,6 +62,13 @@ class FastestEngine:
     def plan(self, instance: Instance, planner: Planner) -> Solution:
         """Plans of all robots."""
         return engine_named(_fastest_with(planner)).plan(instance, planner)
+
+    @property
+    def polish(self) -> "Polish":
+        """Better plans; with `seconds`, by simulated annealing."""
+        from carp_optimum.annealing import polish  # noqa: PLC0415 - loaded when it is first used
+
+        return polish
 
 
 def engine_named(name: str | None) -> Engine:

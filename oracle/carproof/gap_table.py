@@ -14,7 +14,7 @@ from pathlib import Path
 from time import process_time, process_time_ns
 
 from carp_optimized import plan
-from carp_optimum.annealing import polish_for
+from carp_optimum.annealing import anneal
 from carp_optimum.bound import lower_bound
 from carp_optimum.optimum import optimum
 from carp_spec import Instance, total_cost
@@ -61,7 +61,7 @@ SPLITS = tuple(Task(map, robots, 10, 10, limit=30) for map, robots in ((20, 100)
 def measure(task: Task, seed: int) -> Found:
     """Plan and bound one assignment; the bound is verified."""
     instance = task.instance(seed)
-    better = polish_for(instance, plan(instance), task.seconds, seed=seed, clock=process_time)
+    better = anneal(instance, plan(instance), task.seconds, seed=seed, clock=process_time)
     certificate = lower_bound(instance, seconds=task.seconds, clock=process_time_ns)
     bound = verify_bound(instance, certificate)
     total = None if better.unplanned else total_cost(instance, better.plans)

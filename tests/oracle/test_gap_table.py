@@ -52,7 +52,7 @@ def test_other_work_on_the_machine_takes_no_time_from_a_measurement(monkeypatch:
         clocks.append(options.get("clock"))
         return lower_bound(instance, steps=0)
 
-    monkeypatch.setattr(gap_table, "polish_for", plans)
+    monkeypatch.setattr(gap_table, "anneal", plans)
     monkeypatch.setattr(gap_table, "lower_bound", bound)
     gap_table.measure(Task(20, 6, 1, 60), 1)
     assert clocks[:2] == [process_time, process_time_ns]

@@ -3,12 +3,19 @@
 import json
 from pathlib import Path
 
+import msgspec
 import pytest
 from tests.oracle.running import HEAD_ON, TWO, TWO_PLANNED, Run, corridor, save, solution
 
-from carp_spec import Instance, Solution
+import carp_reference
+from carp_spec import Instance, Refusal, Solution
+from carp_verify.documents import read_instance, read_solution
+from carproof import polish
+from carproof.engines import engine_named
+from carproof.server import respond
 
 LATE = solution({"r1": [["a", 0, 2], ["b", 2, 4], ["c", 4, 5]], "r2": TWO_PLANNED["plans"][1]["visits"]})
+INSTANCE, GIVEN = read_instance(msgspec.json.encode(TWO)), read_solution(msgspec.json.encode(LATE))
 
 
 @pytest.fixture(autouse=True)
@@ -53,16 +60,29 @@ def test_the_gap_is_that_of_a_certificate_which_is_verified(carproof: Run) -> No
     assert "$.bound" in refused.stderr
 
 
-def test_for_a_time_robots_without_a_plan_are_planned_first(carproof: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    given: list[Solution] = []
+def test_for_a_time_the_command_python_and_the_op_anneal(carproof: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    times: list[float] = []
 
-    def anneal(_: Instance, solution: Solution, **__: object) -> Solution:
-        given.append(solution)
+    def anneal(_: Instance, solution: Solution, seconds: float, **__: object) -> Solution:
+        times.append(seconds)
         return solution
 
     monkeypatch.setattr("carp_optimum.annealing.anneal", anneal)
-    assert carproof("polish town.json one.json --seconds 0.1").code == 0
-    assert [each.unplanned for each in given] == [()]
+    assert carproof("polish town.json late.json --seconds 0.1").code == 0
+    assert polish(INSTANCE, GIVEN, seconds=0.2) == GIVEN
+    op = {"id": 1, "op": "polish", "instance": TWO, "solution": LATE, "seconds": 0.3}
+    response, _ = respond(msgspec.json.encode(op), engine_named(None))
+    assert json.loads(msgspec.json.encode(response))["result"] == LATE
+    assert times == [0.1, 0.2, 0.3]
+
+
+def test_rounds_from_python_are_those_of_the_reference() -> None:
+    assert polish(INSTANCE, GIVEN, iterations=9) == carp_reference.polish(INSTANCE, GIVEN, iterations=9)
+
+
+def test_a_time_that_is_none_is_refused_from_python_too() -> None:
+    with pytest.raises(Refusal, match="must be a number above 0"):
+        polish(INSTANCE, GIVEN, seconds=0)
 
 
 @pytest.mark.parametrize("option", ["--engine optimized", "--starts 2"])

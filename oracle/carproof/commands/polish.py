@@ -89,15 +89,10 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
             played = rounds
             show(rounds, found_so_far(total, least, unplanned))
 
-        if seconds is not None and engine is None and starts == 1:
-            from carp_optimum.annealing import polish_for  # noqa: PLC0415 - numba is slow to load
-
-            after = polish_for(instance, before, seconds, seed=seed, advance=advance)
-        else:
-            improve = engine_named(engine).polish
-            if starts > 1:
-                improve = partial(polish_many, improve, starts)
-            after = improve(instance, before, iterations=iterations, seconds=seconds, seed=seed, advance=advance)
+        improve = engine_named(engine).polish
+        if starts > 1:
+            improve = partial(polish_many, engine_named(engine or "optimized").polish, starts)
+        after = improve(instance, before, iterations=iterations, seconds=seconds, seed=seed, advance=advance)
         if after.unplanned and seconds is None:
             from carp_optimum.joint_repair import repair  # noqa: PLC0415 - numba is slow to load
 
