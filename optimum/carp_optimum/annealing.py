@@ -45,7 +45,7 @@ def polish(
 
     With `seconds`, robots without a plan are planned first, and rounds may raise the total for a while (simulated
     annealing); the best plans seen are the result. Otherwise `iterations` rounds of `polish/...` are played, 10,000
-    unless given, none of which raises the total; equal iterations and seed give an equal solution. All robots are
+    unless given. They never raise the total, and equal iterations and seed give an equal solution. All robots are
     planned from their release on: none is under way. Raises `Refusal` for wrong options, for a solution that breaks a
     rule, and for numbers that are too large.
     """
