@@ -52,3 +52,10 @@ def test_a_library_that_has_development_releases_alone_can_be_installed() -> Non
     extras = PROJECT["optional-dependencies"]
     wanted = [each for extra in ("prove", "test") for each in extras[extra] if each.startswith("python-sat")]
     assert wanted == ["python-sat>=1.8.dev1,<2"] * 2, "pip takes no development release that a bound does not name"
+
+
+def test_the_version_is_that_of_the_newest_changes() -> None:
+    heading = next(line for line in (ROOT / "CHANGELOG.md").read_text().splitlines() if line.startswith("## "))
+    number, _, state = heading.removeprefix("## ").partition(", ")
+    assert PROJECT["version"].startswith(f"{number}.")
+    assert ("dev" in PROJECT["version"]) == (state == "not released yet")

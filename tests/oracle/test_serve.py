@@ -4,6 +4,7 @@ import io
 import json
 import subprocess
 import sys
+from importlib.metadata import version
 from typing import Any, Never
 
 import msgspec
@@ -61,7 +62,7 @@ def error(**fields: object) -> tuple[str, str, str | None, str]:
 
 
 def test_start_tells_name_version_and_ops() -> None:
-    assert result(op="start", version=1) == {"name": "carproof", "version": "0.1.0", "ops": list(OPS)}
+    assert result(op="start", version=1) == {"name": "carproof", "version": version("carproof"), "ops": list(OPS)}
 
 
 def test_check_gives_a_verdict() -> None:
