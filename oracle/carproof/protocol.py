@@ -6,7 +6,7 @@ or `{"id": same, "error": {"kind", "path", "rule", "message"}}`. The kinds of er
 - `document`: a document in the request is malformed, or the line is no JSON;
 - `request`: the request makes no sense (its fields, its robot, its tick, plans that break a rule);
 - `option`: a planner's option;
-- `limit`: the line is too long;
+- `limit`: the line is too long, or a number or the work is larger than carproof takes;
 - `internal`: carproof has a fault, or its installation lacks a library that the op needs; `rule` is null, and the next
   request is answered normally.
 """
