@@ -81,6 +81,13 @@ def test_a_readme_names_the_minutes_to_read_the_package(package: str) -> None:
     assert words(package) <= int(minutes) * READ_IN_A_MINUTE + READ_IN_A_MINUTE / 2
 
 
+def test_tests_that_pages_name_are_there() -> None:
+    pages = [page for pattern in ("*.md", "[a-z]*/README.md", "docs/**/*.md") for page in ROOT.glob(pattern)]
+    named = {name for page in pages for name in re.findall(r"`(tests/[a-z_/.]+)`", page.read_text())}
+    assert len(named) > 50
+    assert {name for name in named if not (ROOT / name).exists()} == set()
+
+
 @pytest.mark.parametrize("package", packages())
 def test_a_readme_names_every_module(package: str) -> None:
     modules = {path.stem for path in packages()[package].glob("*.py")} - {"__init__", "__main__"}

@@ -62,13 +62,14 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     """Improve SOLUTION, plans for INSTANCE, round by round; robots without a plan get one, if it can be found.
 
     SOLUTION is in any format that check reads (--from); the result is carproof's document. This is large neighbourhood
-    search: a round removes a few robots, replans them, and keeps the new plans if they are not worse. With --seconds
-    and neither --starts nor --engine, a round may also make the total larger, by ever fewer ticks (simulated
-    annealing), and the best plans seen are the result. With --starts, copies of SOLUTION share the rounds: the worse
-    half of them ends early, again and again. Equal --iterations, --starts and --seed give equal plans. Robots that
-    are left out are planned with others, in small groups or in another order: first if the search is simulated
-    annealing, last without --seconds. All robots are planned from their release on: none is under way. The lower
-    bound is the sum of the shortest paths, or that of --bound, which is verified first.
+    search: a round removes a few robots, replans them, and keeps the new plans if they are not worse. All robots are
+    planned from their release on: none is under way. Equal --iterations, --starts and --seed give equal plans. The
+    lower bound is the sum of the shortest paths, or that of --bound, which is verified first.
+
+    With --seconds, rounds may raise the total for a while (simulated annealing), and the best plans seen are the
+    result; --starts and --engine keep to rounds that never raise it. With --starts, copies of SOLUTION share the
+    rounds, and the worse half of the copies is dropped again and again. Robots that are left out are planned together
+    with others, in small groups or in another order: before the annealing, or after the --iterations.
 
     Exit codes: 0 every robot has a plan, 1 some robot has none, 2 bad input.
     """
