@@ -1,14 +1,13 @@
 """A polish with many starts: rounds are shared, the better copies go on, and the result is the best of them."""
 
-from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 from carp_optimum.many_starts import polish_many
 from carp_reference import plan, polish
 from carp_spec import Carp, Instance, Plan, Resource, ResourceGraph, Robot, Solution, Visit, check, total_cost
 
 ROUNDS = 10
-Advance = Callable[[int, int, int], None]
 
 
 def lane(robots: int = 1) -> Instance:
@@ -29,20 +28,11 @@ class Recorder:
         self.totals = totals
         self.asked: list[tuple[int, int | None, float | None, int]] = []
 
-    def __call__(
-        self,
-        instance: Instance,
-        solution: Solution,
-        *,
-        iterations: int | None = None,
-        seconds: float | None = None,
-        seed: int = 0,
-        advance: Advance = lambda _, __, ___: None,
-    ) -> Solution:
-        self.asked.append((total_cost(instance, solution.plans), iterations, seconds, seed))
-        better = waiting(instance, self.totals[seed])
-        advance(iterations or ROUNDS, 0, self.totals[seed])
-        return better
+    def __call__(self, instance: Instance, solution: Solution, **options: Any) -> Solution:  # noqa: ANN401 - of any type
+        seed, total = options["seed"], self.totals[options["seed"]]
+        self.asked.append((total_cost(instance, solution.plans), options["iterations"], options["seconds"], seed))
+        options["advance"](options["iterations"] or ROUNDS, 0, total)
+        return waiting(instance, total)
 
 
 def test_the_better_half_goes_on_from_where_it_is_and_the_last_gets_the_rest() -> None:
@@ -76,17 +66,8 @@ def test_a_solution_that_leaves_robots_out_is_worse_than_any_that_does_not() -> 
     instance = lane()
     nothing = Solution((), (), ("r0",))
 
-    def improve(
-        instance: Instance,
-        solution: Solution,
-        *,
-        iterations: int | None = None,
-        seconds: float | None = None,
-        seed: int = 0,
-        advance: Advance = lambda _, __, ___: None,
-    ) -> Solution:
-        advance(iterations or 0, int(seconds or 0), 0)
-        return waiting(instance, 9) if seed == 1 else solution
+    def improve(instance: Instance, solution: Solution, **options: Any) -> Solution:  # noqa: ANN401 - of any type
+        return waiting(instance, 9) if options["seed"] == 1 else solution
 
     assert polish_many(improve, 2, instance, nothing, iterations=10).unplanned == ()
 

@@ -109,20 +109,18 @@ def plans_of(instance: Instance, robot: Robot) -> Iterator[Plan]:
 @cache
 def sight_certificate() -> BoundDocument:
     """A certificate without prices of places: r0 and r2, which meet head-on, are not both in the middle at tick 1."""
-    certificate = msgspec.structs.replace(lower_bound(crossing(), steps=0), resources=(), exchanges=())
-    unproved = DeadlinesDocument(("r0", "r2"), (0, 0), 3 << 15, "", ((1, ("middle",)), (1, ("middle",))))
-    lines = refutation(formula_of_deadlines(crossing(), unproved, 10**6), Deadline(60))
-    proved = msgspec.structs.replace(unproved, refutation=lines)
-    with_it = completed(crossing(), msgspec.structs.replace(certificate, deadlines=(proved,)))
-    assert verify_bound(crossing(), with_it) == with_it.bound == 7
-    return with_it
+    return with_deadlines(DeadlinesDocument(("r0", "r2"), (0, 0), 3 << 15, "", ((1, ("middle",)), (1, ("middle",)))))
 
 
 @cache
 def deadline_certificate() -> BoundDocument:
     """A certificate without prices of places, in which one of r0 and r2, which meet head-on, comes late."""
+    return with_deadlines(DeadlinesDocument(("r0", "r2"), (2, 2), 3 << 15, ""))
+
+
+def with_deadlines(unproved: DeadlinesDocument) -> BoundDocument:
+    """A certificate of the crossing with nothing but these deadlines, and their refutation."""
     certificate = msgspec.structs.replace(lower_bound(crossing(), steps=0), resources=(), exchanges=())
-    unproved = DeadlinesDocument(("r0", "r2"), (2, 2), 3 << 15, "")
     lines = refutation(formula_of_deadlines(crossing(), unproved, 10**6), Deadline(60))
     proved = msgspec.structs.replace(unproved, refutation=lines)
     with_it = completed(crossing(), msgspec.structs.replace(certificate, deadlines=(proved,)))
