@@ -104,7 +104,7 @@ PLANTED: Mapping[str, Sequence[tuple[str, str]]] = {
     ),
     "carp_verify.robot_clauses": (
         (
-            "if target in self._rest and (self._parks or target != self.robot.goal)",
+            "if target in self._rest and (self._drives_on or target != self.robot.goal)",
             "if target in self._rest and target != self.robot.goal",
         ),
     ),

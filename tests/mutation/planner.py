@@ -46,6 +46,7 @@ MODULES = (
     "passes",
     "windows",
     "guides",
+    "search",
 )
 QUESTIONS = 150
 FLEETS = 300  # of each kind

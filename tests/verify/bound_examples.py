@@ -33,18 +33,20 @@ def crossing() -> Instance:
 
 
 def completed(instance: Instance, certificate: BoundDocument) -> BoundDocument:
-    """The certificate with all that its prices prove."""
+    """The certificate with all that its prices and cuts prove."""
     tariff = Tariff(instance, certificate)
     before, fees = predecessors(instance), fees_of(instance, certificate.deadlines)
+    weight = dict.fromkeys(instance.robot, certificate.scale)
+    for cut in certificate.cuts:
+        for robot in cut.robots:
+            weight[robot] = max(weight.get(robot, 0) - cut.multiplier, 0)
     robots = tuple(
-        (
-            robot.id,
-            RobotSearch(tariff, robot, certificate.scale, before, Budget(), fees[robot.id]).least_cost(),
-        )
+        (robot.id, RobotSearch(tariff, robot, weight[robot.id], before, Budget(), fees[robot.id]).least_cost())
         for robot in instance.robots
     )
     worth = sum(deadlines.price * (len(deadlines.robots) - 1) for deadlines in certificate.deadlines)
-    parts = sum(least or 0 for _, least in robots) - tariff.worth - worth
+    proved = sum(cut.multiplier * cut.least for cut in certificate.cuts)
+    parts = proved + sum(least or 0 for _, least in robots) - tariff.worth - worth
     return msgspec.structs.replace(certificate, robots=robots, bound=-(-parts // certificate.scale))
 
 
@@ -130,10 +132,12 @@ def with_deadlines(unproved: DeadlinesDocument) -> BoundDocument:
 
 @cache
 def cut_certificate() -> BoundDocument:
-    """A certificate with a cut of r0 and r2, which meet head-on."""
+    """A certificate with a cut of r0 and r2, which meet head-on, that counts half of their costs."""
     certificate = lower_bound(crossing(), steps=2)
     cut = prove(crossing(), (0, 2), lambda: None)
     assert cut is not None
-    with_it = msgspec.structs.replace(certificate, cuts=(cut.document,))
-    assert (cut.document.least, verify_bound(crossing(), with_it)) == (7, certificate.bound)
+    half = msgspec.structs.replace(cut.document, multiplier=certificate.scale // 2)
+    with_it = completed(crossing(), msgspec.structs.replace(certificate, cuts=(half,)))
+    assert (half.least, verify_bound(crossing(), with_it)) == (7, with_it.bound)
+    assert with_it.bound > certificate.bound
     return with_it

@@ -338,6 +338,24 @@ def test_a_tampered_cut_is_refused(tamper: Tamper, path: str, reason: str) -> No
     assert (refused.value.path, refused.value.rule) == (path, "bound/cut")
 
 
+@pytest.mark.parametrize(("quarters", "number", "bound"), [(0, 1, 6), (1, 1, 7), (2, 1, 8), (4, 1, 9), (2, 2, 9)])
+def test_a_cut_counts_its_least_total_in_place_of_a_share_of_its_robots_costs(
+    quarters: int, number: int, bound: int
+) -> None:
+    """Each robot costs 2 on its shortest path, and r0 and r2 cost 7 together: 6 + 3/4 of a tick for each quarter."""
+    (cut,) = cut_certificate().cuts
+    part = 1 << 4
+    cuts = (msgspec.structs.replace(cut, multiplier=quarters * part),) * number
+    left = 2 * (4 - quarters * number) * part
+    robots = (("r0", left), ("r1", 8 * part), ("r2", left))
+    certificate = BoundDocument(BOUND_FORMAT, digest(crossing()), bound, 4 * part, 0, (), (), cuts, robots)
+    assert verify_bound(crossing(), certificate) == bound
+    for robot in range(3):
+        claims = tuple((name, least + (robot == at)) for at, (name, least) in enumerate(robots))
+        with pytest.raises(Refusal, match="can have no more than"):
+            verify_bound(crossing(), msgspec.structs.replace(certificate, robots=claims))
+
+
 def test_horizons_of_a_cut_go_from_0_to_its_least_total() -> None:
     (cut,) = cut_certificate().cuts
     for horizons in ((0, cut.least), (cut.least, 0)):

@@ -35,7 +35,8 @@ def sized(change: str) -> tuple[Instance, BoundDocument]:
         prices = {"resources": (("a", 29, 1),), "exchanges": (("b", "a", 29, 1), ("a", "b", 3, 1))}
         return lane, completed(lane, msgspec.structs.replace(lower_bound(lane, steps=1), horizon=30, **prices))
     certificate = cut_certificate()
-    return crossing(), msgspec.structs.replace(certificate, cuts=certificate.cuts * (2 if change == "cuts" else 0))
+    cuts = certificate.cuts * (2 if change == "cuts" else 0)
+    return crossing(), completed(crossing(), msgspec.structs.replace(certificate, cuts=cuts))
 
 
 @pytest.mark.parametrize(

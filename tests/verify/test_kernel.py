@@ -12,7 +12,7 @@ import msgspec
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from tests.verify.bound_examples import certificates, crossing, cut_certificate
+from tests.verify.bound_examples import certificates, completed, crossing, cut_certificate
 from tests.verify.kernel_program import program
 from tests.verify.tiny import TINY
 
@@ -574,6 +574,7 @@ def test_a_bound_with_cuts_is_decided(tmp_path: Path) -> None:
 )
 def test_a_cut_whose_proof_is_changed_is_refused(change: dict[str, Any]) -> None:
     (cut,) = cut_certificate().cuts
-    certificate = msgspec.structs.replace(cut_certificate(), cuts=(msgspec.structs.replace(cut, **change),))
+    changed = (msgspec.structs.replace(cut, **change),)
+    certificate = completed(crossing(), msgspec.structs.replace(cut_certificate(), cuts=changed))
     verdict = check_bound(crossing(), certificate)
     assert (verdict["verdict"], verdict["rule"]) == ("refused", "bound/cut")
