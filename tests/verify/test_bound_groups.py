@@ -1,5 +1,6 @@
 """Cuts and deadlines of groups of robots, also of robots that are seen at a tick, in lower bounds."""
 
+from collections.abc import Sequence
 from itertools import product
 
 import msgspec
@@ -24,7 +25,7 @@ from tests.verify.bound_examples import (
 
 from carp_optimum.bound import lower_bound
 from carp_optimum.solver import Solver
-from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, ResourceId, Robot, Visit
+from carp_spec import AfterGoal, Instance, Plan, Refusal, Resource, ResourceGraph, ResourceId, Robot, Visit
 from carp_spec.plan_rules import plan_cost
 from carp_verify.bound_cuts import formula_of, formula_of_deadlines
 from carp_verify.bounds import BOUND_FORMAT, BoundDocument, CutDocument, DeadlinesDocument, digest, read_bound
@@ -93,6 +94,57 @@ def test_no_plans_that_break_no_rule_keep_all_deadlines_whose_formula_has_no_mod
     has_model = Solver(formula, lambda: None).satisfiable([])
     assert has_model or not is_possible
     event("possible" if is_possible else "refuted" if not has_model else "not refuted")
+
+
+def lane_of(slow: str, *robots: Robot, after_goal: AfterGoal = "vanish") -> Instance:
+    """Three cells in a row, one of which takes two ticks."""
+    cells = tuple(Resource(cell, duration=1 + (cell == slow)) for cell in "abc")
+    return Instance(ResourceGraph(cells, (("a", "b"), ("b", "c"))), robots, after_goal)
+
+
+def may_keep(instance: Instance, members: Sequence[tuple[int, int, str]]) -> bool:
+    """Whether the formula of the robots, each with its deadline, the tick at which it is seen and places, has one."""
+    seen = tuple((tick, tuple(places)) for _, tick, places in members)
+    names = tuple(robot.id for robot in instance.robots)
+    deadlines = DeadlinesDocument(names, tuple(deadline for deadline, _, _ in members), 0, "", seen)
+    return Solver(formula_of_deadlines(instance, deadlines, 10**6), lambda: None).satisfiable([])
+
+
+@pytest.mark.parametrize("after_goal", ["vanish", "park"])
+@pytest.mark.parametrize(("goal", "slow"), [*product("abc", " bc")])
+def test_the_formula_of_a_single_robot_that_is_seen_has_a_model_just_where_one_of_its_plans_keeps_the_deadline(
+    goal: str, slow: str, after_goal: AfterGoal
+) -> None:
+    instance = lane_of(slow, Robot("r", "a", goal, 1), after_goal=after_goal)
+    plans = [*plans_of(instance, instance.robots[0])]
+    for deadline, seen, places in product(range(5), range(5), ("", "a", "b", "c", "ab", "ac", "bc", "abc")):
+        is_kept = any(keeps(plan, deadline, seen, frozenset(places)) for plan in plans)
+        assert may_keep(instance, [(deadline, seen, places)]) == is_kept
+
+
+@pytest.mark.parametrize("slow", ["b", "c"])
+@pytest.mark.parametrize("ends", [("ca", "ab"), ("bc", "cb"), ("ab", "ca")])
+def test_two_robots_that_are_seen_are_refuted_only_where_no_plans_keep_both_deadlines(
+    ends: tuple[str, str], slow: str
+) -> None:
+    one, other = (Robot(release, *end, release) for release, end in enumerate(ends))
+    instance = lane_of(slow, one, other)
+    pairs = [
+        pair for pair in product(plans_of(instance, one), plans_of(instance, other)) if not violated(instance, pair)
+    ]
+    refuted = 0
+    for deadline, seen, places, others in product((0, 4), range(5), " abc", " abc"):
+        for second in ((deadline, seen, others.strip()), (deadline, seen + 1, others.strip()), (4, 2, others.strip())):
+            first = (deadline, seen, places.strip())
+            is_kept = any(
+                keeps(plan, first[0], first[1], frozenset(first[2]))
+                and keeps(beside, second[0], second[1], frozenset(second[2]))
+                for plan, beside in pairs
+            )
+            is_refuted = not may_keep(instance, [first, second])
+            assert not (is_kept and is_refuted)
+            refuted += is_refuted
+    assert refuted > 300
 
 
 @settings(max_examples=draws(200))
@@ -258,6 +310,7 @@ def test_who_arrives_after_it_is_seen_pays_nothing_and_who_waits_where_it_is_see
     deadlines = DeadlinesDocument(("r0", "r2"), (5, 0), 3, "", ((1, ("middle",)), (2, ())))
     fees = fees_of(crossing(), [deadlines])["r0"]
     assert [fees.at_arrival(tick) for tick in range(4)] == [3, 3, 0, 0]
+    assert [fees_of(crossing(), [deadlines])["r2"].at_arrival(tick) for tick in range(4)] == [3, 0, 0, 0]
     assert [fees.on_the_way("middle", tick, tick + 1) for tick in range(3)] == [0, 3, 0]
     assert fees.on_the_way("north", 0, 9) == 0
     lane = Instance(ResourceGraph(tuple(map(Resource, "abc")), (("a", "b"), ("b", "c"))), (Robot("r", "a", "c"),))
@@ -265,6 +318,15 @@ def test_who_arrives_after_it_is_seen_pays_nothing_and_who_waits_where_it_is_see
     waits = Fees([], [(1, ("a",), SCALE)])
     search = RobotSearch(Tariff(lane, certificate), lane.robots[0], SCALE, predecessors(lane), Budget(), waits)
     assert search.least_cost() == 4 * SCALE
+
+
+def test_who_is_seen_several_times_pays_for_each_tick_of_its_stay_in_whatever_order_they_are_named() -> None:
+    sights = [(3, {"a"}, 1), (1, {"a", "b"}, 2), (2, {"b"}, 4), (0, {"a"}, 8), (2, {"a"}, 16)]
+    fees = Fees([], sights)
+    for resource, first, end in product("abc", range(5), range(5)):
+        paid = sum(price for tick, places, price in sights if first <= tick < end and resource in places)
+        assert fees.on_the_way(resource, first, end) == paid
+    assert (fees.last, Fees([(5, 1)], sights).last) == (3, 5)
 
 
 def test_robots_are_not_seen_in_a_certificate_for_the_kernel() -> None:
