@@ -107,7 +107,7 @@ def may_keep(instance: Instance, members: Sequence[tuple[int, int, str]]) -> boo
     seen = tuple((tick, tuple(places)) for _, tick, places in members)
     names = tuple(robot.id for robot in instance.robots)
     deadlines = DeadlinesDocument(names, tuple(deadline for deadline, _, _ in members), 0, "", seen)
-    return Solver(formula_of_deadlines(instance, deadlines, 10**6), lambda: None).satisfiable([])
+    return bool(Solver(formula_of_deadlines(instance, deadlines, 10**6), lambda: None).satisfiable([]))
 
 
 @pytest.mark.parametrize("after_goal", ["vanish", "park"])
@@ -127,7 +127,7 @@ def test_the_formula_of_a_single_robot_that_is_seen_has_a_model_just_where_one_o
 def test_two_robots_that_are_seen_are_refuted_only_where_no_plans_keep_both_deadlines(
     ends: tuple[str, str], slow: str
 ) -> None:
-    one, other = (Robot(release, *end, release) for release, end in enumerate(ends))
+    one, other = (Robot(release, end[0], end[1], release) for release, end in enumerate(ends))
     instance = lane_of(slow, one, other)
     pairs = [
         pair for pair in product(plans_of(instance, one), plans_of(instance, other)) if not violated(instance, pair)

@@ -1,10 +1,11 @@
 """Certificates of lower bounds that are refused: forged, malformed, or too large."""
 
+from dataclasses import replace
 from time import process_time
 
 import msgspec
 import pytest
-from tests.verify.bound_examples import Tamper, completed, crossing, cut_certificate
+from tests.verify.bound_examples import Tamper, completed, crossing, cut_certificate, deadline_certificate
 
 from carp_optimum.bound import lower_bound
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, Rule
@@ -34,9 +35,10 @@ def sized(change: str) -> tuple[Instance, BoundDocument]:
         lane = Instance(ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),)), (Robot("r", "a", "b"),))
         prices = {"resources": (("a", 29, 1),), "exchanges": (("b", "a", 29, 1), ("a", "b", 3, 1))}
         return lane, completed(lane, msgspec.structs.replace(lower_bound(lane, steps=1), horizon=30, **prices))
-    certificate = cut_certificate()
-    cuts = certificate.cuts * (2 if change == "cuts" else 0)
-    return crossing(), completed(crossing(), msgspec.structs.replace(certificate, cuts=cuts))
+    cuts = {"cuts": 2, "both": 1}.get(change, 0) * cut_certificate().cuts
+    deadlines = {"deadlines": 3, "both": 1}.get(change, 0) * deadline_certificate().deadlines
+    certificate = msgspec.structs.replace(cut_certificate(), cuts=cuts, deadlines=deadlines)
+    return crossing(), completed(crossing(), certificate)
 
 
 @pytest.mark.parametrize(
@@ -46,6 +48,9 @@ def sized(change: str) -> tuple[Instance, BoundDocument]:
         ("cuts", "LARGEST_TABLE", 2 * 2 * 6, "$.cuts"),
         ("prices", "LARGEST_TABLE", 30 * 2, "$.resources"),
         ("cuts", "LARGEST_FORMULA", 2 * 97, "$.cuts[1]"),
+        ("deadlines", "LARGEST_TABLE", 3 * 2 * 6, "$.deadlines"),
+        ("deadlines", "LARGEST_FORMULA", 3 * 13, "$.deadlines[2]"),
+        ("both", "LARGEST_FORMULA", 97 + 13, "$.deadlines[0]"),
         ("prices", "LARGEST_SEARCH", 1, "$.robots"),
     ],
 )
@@ -59,6 +64,14 @@ def test_each_size_is_accepted_up_to_its_limit(
     with pytest.raises(Refusal, match=f"at most {size - 1}|more than {size - 1}") as refused:
         verify_bound(instance, certificate)
     assert (refused.value.path, refused.value.rule) == (path, "bound/size")
+
+
+def test_nothing_is_proved_where_following_is_forbidden() -> None:
+    instance = replace(crossing(), following="forbidden")
+    certificate = msgspec.structs.replace(lower_bound(crossing(), steps=2), instance=digest(instance))
+    with pytest.raises(Refusal) as refused:
+        verify_bound(instance, certificate)
+    assert refused.value.rule == "limit/following"
 
 
 def test_prices_that_keep_a_robot_waiting_for_long_are_refused_after_a_bounded_search() -> None:
