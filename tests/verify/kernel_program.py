@@ -1,16 +1,25 @@
 """The proved kernel, for tests."""
 
 import fcntl
+import json
 import os
 import subprocess
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 from shutil import which
+from typing import Any
 
+import msgspec
 import pytest
+
+from carp_spec import Instance, Solution
+from carp_verify.bounds import BoundDocument
+from carp_verify.documents import instance_document, solution_document
 
 ROOT = Path(__file__).parents[2]
 PROGRAM = ROOT / "build/kernel/carproof-kernel"
+Json = Any
 PACKAGES = "coq, ocaml, ocaml-findlib, libyojson-ocaml-dev and libzarith-ocaml-dev"
 
 
@@ -33,3 +42,47 @@ def program() -> str:
         )
     assert made.returncode == 0, made.stderr
     return str(PROGRAM)
+
+
+@cache
+def server() -> "subprocess.Popen[str]":
+    """A kernel that stays up."""
+    return subprocess.Popen([program(), "serve"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+
+
+def served() -> Iterator[None]:
+    """A fixture: the kernel stays up until the tests of a module have ended."""
+    kernel = server()
+    yield
+    kernel.communicate()
+    server.cache_clear()
+
+
+def ask(request: str) -> Json:
+    """Put one request to the kernel that stays up."""
+    kernel = server()
+    assert kernel.stdin is not None
+    assert kernel.stdout is not None
+    kernel.stdin.write(request + "\n")
+    kernel.stdin.flush()
+    return json.loads(kernel.stdout.readline())
+
+
+def check(instance: Instance, solution: Solution) -> Json:
+    """The kernel's answer about a solution."""
+    return ask(encoded(op="check", instance=instance_document(instance), solution=solution_document(solution)))
+
+
+def check_bound(instance: Instance, certificate: BoundDocument) -> Json:
+    """The kernel's answer about the certificate of a bound."""
+    return ask(encoded(op="verify-bound", instance=instance_document(instance), certificate=certificate))
+
+
+def encoded(**request: object) -> str:
+    return msgspec.json.encode(request).decode()
+
+
+def run(*arguments: str | Path) -> tuple[int, Json, str]:
+    """Run the kernel once: exit code, verdict, and what it prints on standard error."""
+    done = subprocess.run([program(), *map(str, arguments)], capture_output=True, text=True, check=False)
+    return done.returncode, json.loads(done.stdout) if done.stdout else None, done.stderr

@@ -1,0 +1,297 @@
+"""The proved kernel on certificates: of queries, refutations and bounds."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from tests.verify.bound_examples import certificates, completed, crossing, cut_certificate
+from tests.verify.kernel_program import Json, ask, check_bound, encoded, run, served
+from tests.verify.tiny import TINY
+
+from carp_reference.context import context_of
+from carp_reference.problem import Problem, prepare
+from carp_reference.query import _expand, _start, find_plan
+from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, ResourceId, Robot, RobotId, Solution, has_ended
+from carp_verify.bounds import BOUND_FORMAT, BoundDocument, digest
+from carp_verify.documents import instance_document, solution_document, write
+from carp_verify.verify_bound import verify_bound
+from carproof.strategies import FleetUnderWay, fleets_under_way, instances
+
+_kernel = pytest.fixture(scope="module", autouse=True)(served)
+
+
+# ---- queries ----
+
+
+def query_certificate(problem: Problem, committed: Sequence[Plan], robot: RobotId) -> Json:
+    """A certificate made by the reference's steps: each window that can be entered in time, at its earliest."""
+    instance = problem.instance
+    plan = find_plan(problem, committed, robot)
+    bound = None if plan is None else plan.visits[-1].enter
+    context, potential = context_of(instance, committed), problem.ticks_to_goal[robot]
+    _, start = _start(problem, context, robot)
+    entered: dict[tuple[ResourceId, int], int] = {}
+    queue = [] if start is None else [start]
+    while queue:
+        node = min(queue, key=lambda each: each.enter)
+        queue.remove(node)
+        for following in _expand(context, robot, node, instance.graph.successors[node.resource]):
+            key = (following.resource, following.window.start)
+            in_time = following.resource in potential and (
+                bound is None or following.enter + potential[following.resource] < bound
+            )
+            if in_time and entered.get(key, following.enter + 1) > following.enter:
+                entered[key] = following.enter
+                queue.append(following)
+    return {
+        "format": "carproof-query/1",
+        "robot": robot,
+        "now": problem.now,
+        "bound": bound,
+        "labels": [(resource, enter) for (resource, _), enter in entered.items()],
+        "potential": list(potential.items()),
+    }
+
+
+def verify_query(instance: Instance, solution: Solution, certificate: Json) -> Json:
+    documents = {"instance": instance_document(instance), "solution": solution_document(solution)}
+    return ask(encoded(op="verify-query", certificate=certificate, **documents))
+
+
+@given(st.data(), fleets_under_way())
+def test_query_certificates_prove_the_least_arrival_and_no_later_one(data: st.DataObject, fleet: FleetUnderWay) -> None:
+    certificate = query_certificate(prepare(fleet.instance, fleet.now), fleet.solution.plans, fleet.robot)
+    verdict = verify_query(fleet.instance, fleet.solution, certificate)
+    assert (verdict["verdict"], verdict["bound"]) == ("accepted", certificate["bound"])
+    if certificate["bound"] is not None:
+        for later in (certificate["bound"] + 1, None):
+            assert verify_query(fleet.instance, fleet.solution, certificate | {"bound": later})["verdict"] == "refused"
+    if certificate["labels"]:
+        missing = data.draw(st.integers(0, len(certificate["labels"]) - 1))
+        fewer = [label for number, label in enumerate(certificate["labels"]) if number != missing]
+        assert verify_query(fleet.instance, fleet.solution, certificate | {"labels": fewer})["verdict"] == "refused"
+
+
+@given(st.data(), fleets_under_way())
+def test_query_certificates_of_robots_under_way_prove_the_least_arrival(
+    data: st.DataObject, fleet: FleetUnderWay
+) -> None:
+    assume(fleet.solution.plans)
+    plan = data.draw(st.sampled_from(fleet.solution.plans))
+    assume(not has_ended(plan, fleet.now))
+    problem = replace(prepare(fleet.instance, fleet.now), before={plan.robot: plan})
+    others = [each for each in fleet.solution.plans if each != plan]
+    certificate = query_certificate(problem, others, plan.robot)
+    verdict = verify_query(fleet.instance, fleet.solution, certificate)
+    assert (verdict["verdict"], verdict["bound"]) == ("accepted", certificate["bound"])
+    later = certificate | {"bound": certificate["bound"] + 1}
+    assert verify_query(fleet.instance, fleet.solution, later)["verdict"] == "refused"
+
+
+@given(instances())
+def test_an_audit_accepts_plans_made_one_after_the_other_and_no_later_one(instance: Instance) -> None:
+    problem = prepare(instance, 0)
+    plans: list[Plan] = []
+    certificates = []
+    for robot in instance.robot:
+        plan = find_plan(problem, plans, robot)
+        if plan is not None:
+            certificates.append(query_certificate(problem, plans, robot))
+            plans.append(plan)
+    solution = Solution.of(instance, plans)
+    documents = {"instance": instance_document(instance), "solution": solution_document(solution)}
+    assert ask(encoded(op="audit", certificates=certificates, **documents))["verdict"] == "accepted"
+    if certificates:
+        verdict = ask(encoded(op="audit", certificates=certificates[1:], **documents))
+        assert (verdict["verdict"], verdict["rule"]) == ("refused", "query/optimal")
+
+
+# ---- refutations ----
+
+FORMULA = "c a comment\np cnf 2 4\n1 2 0\n-1 2 0\n1 -2 0\n-1 -2 0\n"
+
+
+PROOF = "5 2 0 1 2 0\n5 d 1 2 0\n6 0 5 3 4 0\n"
+
+
+BAD_PROOFS = {
+    "empty": "",
+    "no empty clause": "5 2 0 1 2 0\n",
+    "a hint that is missing": "5 2 0 1 0\n6 0 5 3 4 0\n",
+    "a hint that is deleted": "5 2 0 1 2 0\n5 d 3 0\n6 0 5 3 4 0\n",
+    "a hint of no clause": "5 2 0 1 9 0\n6 0 5 3 4 0\n",
+    "hints in another order": "5 2 0 1 2 0\n6 0 3 5 4 0\n",
+    "a RAT step": "5 2 0 1 -2 0\n6 0 5 3 4 0\n",
+    "no 0": "5 2 0 1 2 0\n6 0 5 3 4\n",
+    "words after 0": "5 2 0 1 2 0 7\n6 0 5 3 4 0\n",
+    "a number that is taken": "1 2 0 1 2 0\n6 0 1 3 4 0\n",
+    "a 0 as literal": "5 0 0 1 2 0\n6 0 5 3 4 0\n",
+}
+
+
+def refute(folder: Path, formula: str, proof: str) -> tuple[int, Json, str]:
+    (folder / "formula.cnf").write_text(formula)
+    (folder / "proof.lrat").write_text(proof)
+    return run("refute", folder / "formula.cnf", folder / "proof.lrat")
+
+
+def test_a_refutation_is_accepted(tmp_path: Path) -> None:
+    assert refute(tmp_path, FORMULA, PROOF)[0] == 0
+
+
+@pytest.mark.parametrize("proof", BAD_PROOFS.values(), ids=BAD_PROOFS)
+def test_a_bad_refutation_is_refused(proof: str, tmp_path: Path) -> None:
+    assert refute(tmp_path, FORMULA, proof)[0] == 1
+
+
+def test_a_formula_that_has_a_solution_is_not_refuted(tmp_path: Path) -> None:
+    formula = FORMULA.replace("4\n", "3\n", 1).replace("-1 -2 0\n", "")
+    assert refute(tmp_path, formula, PROOF)[0] == 1
+
+
+@pytest.mark.parametrize(
+    "formula", ["", "1 0\n", "p cnf 1 2\n1 0\n", "p cnf 1 1\n2 0\n", "p cnf 1 1\n1\n", "p cnf x 1\n"]
+)
+def test_a_malformed_formula_is_bad_input(formula: str, tmp_path: Path) -> None:
+    assert refute(tmp_path, formula, PROOF)[0] == 2
+
+
+@pytest.mark.parametrize("proof", ["5 x 0\n", "5 1.0 0 1 0\n", "5 0x1 0 1 0\n", "5 1_0 0 1 0\n", "5 - 0 1 0\n"])
+def test_words_that_are_no_numbers_are_bad_input(proof: str, tmp_path: Path) -> None:
+    assert refute(tmp_path, FORMULA, proof)[0] == 2
+
+
+# ---- bounds ----
+
+
+def broken_rule(instance: Instance, certificate: BoundDocument) -> str | None:
+    """The rule by which `carp_verify` refuses a certificate, if it does."""
+    try:
+        verify_bound(instance, certificate)
+    except Refusal as refusal:
+        return refusal.rule
+    return None
+
+
+def with_price(number: int, change: int) -> Callable[[BoundDocument], BoundDocument]:
+    """Change a price of a resource: its tick (1) or its amount (2)."""
+
+    def tamper(certificate: BoundDocument) -> BoundDocument:
+        first, others = certificate.resources[:1], certificate.resources[1:]
+        changed = tuple(
+            (place, tick + change * (number == 1), amount + change * (number == 2)) for place, tick, amount in first
+        )
+        return msgspec.structs.replace(certificate, resources=(*changed, *others))
+
+    return tamper
+
+
+def with_claim(change: Callable[[int | None], int | None]) -> Callable[[BoundDocument], BoundDocument]:
+    """Change the claim of the first robot."""
+
+    def tamper(certificate: BoundDocument) -> BoundDocument:
+        (robot, least), *others = certificate.robots
+        return msgspec.structs.replace(certificate, robots=((robot, change(least)), *others))
+
+    return tamper
+
+
+def replaced(**fields: Callable[[Any], object]) -> Callable[[BoundDocument], BoundDocument]:
+    """Change fields by what they are."""
+    return lambda certificate: msgspec.structs.replace(
+        certificate, **{name: change(getattr(certificate, name)) for name, change in fields.items()}
+    )
+
+
+TAMPERS = (
+    replaced(bound=lambda bound: bound + 1),
+    replaced(bound=lambda bound: bound - 1),
+    replaced(scale=lambda scale: scale - 1),
+    replaced(scale=lambda scale: scale * 2),
+    replaced(horizon=lambda horizon: horizon - 1),
+    replaced(horizon=lambda horizon: horizon * 10**30),
+    replaced(robots=lambda robots: robots[1:]),
+    replaced(robots=lambda robots: (*robots, *robots[:1])),
+    replaced(robots=lambda robots: robots[::-1]),
+    replaced(resources=lambda prices: (*prices, *prices[:1])),
+    replaced(exchanges=lambda prices: (*prices, *prices[:1])),
+    replaced(exchanges=lambda prices: tuple((two, one, tick, price) for one, two, tick, price in prices)),
+    replaced(exchanges=lambda prices: tuple((one, one, tick, price) for one, _, tick, price in prices)),
+    replaced(resources=lambda prices: tuple(("no place", tick, price) for _, tick, price in prices)),
+    with_price(1, 1),
+    with_price(1, -1),
+    with_price(2, 1),
+    with_price(2, -1),
+    with_price(2, -100),
+    with_claim(lambda _: None),
+    with_claim(lambda least: (least or 0) + 1),
+    with_claim(lambda least: (least or 0) - 1),
+)
+
+
+@given(st.data(), instances(TINY, least_robots=1))
+def test_bounds_are_accepted_and_refused_as_by_carp_verify(data: st.DataObject, instance: Instance) -> None:
+    certificate = data.draw(certificates(instance))
+    verdict = check_bound(instance, certificate)
+    assert (verdict["verdict"], verdict["bound"]) == ("accepted", certificate.bound)
+    tampered = data.draw(st.sampled_from(TAMPERS))(certificate)
+    verdict = check_bound(instance, tampered)
+    assert verdict.get("rule") == broken_rule(instance, tampered)
+    assert verdict["verdict"] == ("refused" if "rule" in verdict else "accepted")
+
+
+def test_long_stays_and_late_releases_cost_no_time() -> None:
+    """Ticks beyond the horizon are not gone through."""
+    resources = (Resource("a", duration=10**60), Resource("b"))
+    robots = (Robot("r", "a", "b", release=10**90), Robot("s", "a", "b"))
+    instance = Instance(ResourceGraph(resources, (("a", "b"),)), robots)
+    certificate = BoundDocument(
+        format=BOUND_FORMAT,
+        instance=digest(instance),
+        bound=2 * 10**60 + 3 - 3,
+        scale=1,
+        horizon=10**6,
+        resources=(("a", 5, 3),),
+        exchanges=(),
+        cuts=(),
+        robots=(("r", 10**60), ("s", 10**60 + 3)),
+    )
+    assert broken_rule(instance, certificate) is None
+    assert check_bound(instance, certificate)["verdict"] == "accepted"
+
+
+def test_a_bound_with_cuts_is_decided(tmp_path: Path) -> None:
+    certificate = cut_certificate()
+    (tmp_path / "instance.json").write_bytes(write(instance_document(crossing())))
+    (tmp_path / "bound.json").write_bytes(write(certificate))
+    code, verdict, _ = run("verify-bound", tmp_path / "instance.json", tmp_path / "bound.json")
+    assert (code, verdict) == (0, {"kernel": "1", "verdict": "accepted", "bound": certificate.bound})
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"refutation": ""},
+        {"refutation": "nonsense\n"},
+        {"least": 8},
+        {"horizons": (0, 0)},
+        {"horizons": (1,)},
+        {"horizons": (-1, 3)},
+        {"order": (0, 0)},
+        {"order": (0, 10**40)},
+        {"robots": ("r0", "r1")},
+        {"robots": ("r0", "r0")},
+        {"robots": ("r0", "r9")},
+    ],
+)
+def test_a_cut_whose_proof_is_changed_is_refused(change: dict[str, Any]) -> None:
+    (cut,) = cut_certificate().cuts
+    changed = (msgspec.structs.replace(cut, **change),)
+    certificate = completed(crossing(), msgspec.structs.replace(cut_certificate(), cuts=changed))
+    verdict = check_bound(crossing(), certificate)
+    assert (verdict["verdict"], verdict["rule"]) == ("refused", "bound/cut")
