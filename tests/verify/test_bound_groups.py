@@ -97,7 +97,7 @@ def test_no_plans_that_break_no_rule_keep_all_deadlines_whose_formula_has_no_mod
 
 
 def lane_of(slow: str, *robots: Robot, after_goal: AfterGoal = "vanish") -> Instance:
-    """Three cells in a row, one of which takes two ticks."""
+    """Three cells in a row; one takes two ticks."""
     cells = tuple(Resource(cell, duration=1 + (cell == slow)) for cell in "abc")
     return Instance(ResourceGraph(cells, (("a", "b"), ("b", "c"))), robots, after_goal)
 
