@@ -18,7 +18,7 @@ from carp_optimized.compiling import compiled, entry
 from carp_optimized.distances import nearest
 from carp_optimized.guides import shortest_of
 from carp_optimized.natives import adding_at
-from carp_optimized.order_search import search_orders
+from carp_optimized.order_search import hold_members, search_orders
 from carp_optimized.orders import draw_orders
 from carp_optimized.records import cost_of, same_plan
 from carp_optimized.references import Native
@@ -73,9 +73,9 @@ def add_robot(  # noqa: C901 - Algorithm 1 from its first line to its last
             best = cost_outside + cost
             keep_candidate(work, size, turn + 1)
     if best == NO_LIMIT:
-        for k in range(robots - 1):
+        for k in range(robots):
             work.best_plans[k] = work.before[work.queue[k]]
-        settle(state, work, work.queue, work.best_plans, robots - 1)
+        settle(state, work, work.queue, work.best_plans, robots)
         return False
     settle(state, work, work.best_order, work.best_plans, robots)
     for k in range(robots):
@@ -183,7 +183,7 @@ def plan_members(
     """The cost of the members' best order below the limit, or `NONE`.
 
     Orders are drawn even if no member can be planned: the next round draws from the same stream. With a limit there is
-    no next round.
+    no next round, and plans of members may stay reserved until `settle`.
     """
     possible = True
     if options.shared or options.bounds:
@@ -193,40 +193,58 @@ def plan_members(
     rows = draw_orders(work, count, options.sample, work.stream)
     if not possible:
         return NONE
-    return search_orders(state, work, answers, count, rows, limit, now, options)
+    cost = search_orders(state, work, answers, count, rows, limit, now, options)
+    if limit == NO_LIMIT:
+        hold_members(state, work, 0, count)
+    return cost
 
 
 @compiled
 def plan_alone(state: State, work: Work, count: int, limit: int, now: int, skip_unchanged: bool) -> bool:
     """Update the members' plans against the robots outside alone; returns whether all have one and cost less together.
 
-    The member taken in last comes with its plan among the robots outside. It saw those before it, and none of them has
-    changed in this round, so what was taken back does not touch it; those behind it were added since.
-    A plan that still fits can be found again, so none that arrives later is.
-    A robot not looked at yet costs at least its shortest path, so the rest need not be asked once that is too much.
+    A robot not asked for yet costs at least its shortest path. So the rest need not be asked once that is too much, and
+    a query is asked for a plan that does not make it too much. The plans that stand are counted first.
     """
     least = 0
     for member in range(count):
-        least += shortest_of(state, int(work.members[member]))
+        latest = latest_alone(state, work, member, member == count - 1, skip_unchanged)
+        work.chosen[member] = latest
+        is_known = latest == NONE
+        least += cost_of(state, int(work.alone[member])) if is_known else shortest_of(state, int(work.members[member]))
     for member in range(count):
         if least >= limit:
             return False
-        robot = int(work.members[member])
-        record = int(work.alone[member])
-        is_last = member == count - 1
-        still_fits = record != NONE and plan_fits(state, record)
-        is_known = still_fits and skip_unchanged and state.records.expansions[record] != UNKNOWN
-        if is_known and (is_last or not could_use_freed(state, record, NEVER)):
+        if work.chosen[member] == NONE:
             state.counters[UNCHANGED] += 1
-        else:
-            latest = int(state.records.arrival[record]) if still_fits else NEVER
-            work.alone[member] = find_plan_by(state, robot, int(work.before[robot]), now, NEVER, latest)
+            continue
+        robot = int(work.members[member])
+        shortest = shortest_of(state, robot)
+        latest = min(int(work.chosen[member]), int(state.robots.release[robot]) + shortest + limit - least - 1)
+        work.alone[member] = find_plan_by(state, robot, int(work.before[robot]), now, NEVER, latest)
         if work.alone[member] == NONE:
             for k in range(count):
                 work.alone[k] = NONE
             return False
-        least += cost_of(state, int(work.alone[member])) - shortest_of(state, robot)
+        least += cost_of(state, int(work.alone[member])) - shortest
     return least < limit
+
+
+@compiled
+def latest_alone(state: State, work: Work, member: int, is_last: bool, skip_unchanged: bool) -> int:
+    """By when the member's plan against the robots outside alone arrives; `NONE` if the plan that it has stands.
+
+    A plan that still fits can be found again, so none that arrives later is.
+    The member taken in last comes with its plan among the robots outside. It saw those before it, and none of them has
+    changed in this round, so what was taken back does not touch it; those behind it were added since.
+    """
+    record = int(work.alone[member])
+    if record == NONE or not plan_fits(state, record):
+        return NEVER
+    is_known = skip_unchanged and state.records.expansions[record] != UNKNOWN
+    if is_known and (is_last or not could_use_freed(state, record, NEVER)):
+        return NONE
+    return int(state.records.arrival[record])
 
 
 @compiled

@@ -44,7 +44,7 @@ def search_orders(
     """The cost of the cheapest order below the limit, the first of such, or `NONE`; it is put into `found_order`.
 
     `rows` is the number of orders drawn, 0 for all. The members' plans `alone` are there if `shared` or `bounds` is on.
-    Afterwards the windows are as they were.
+    Afterwards some members' plans may be reserved.
     """
     rest = start_search(state, work, answers, count, options)
     if rows == 0:
@@ -79,7 +79,6 @@ def search_orders(
             break
         if not options.prefixes:
             place = 0
-    hold_members(state, work, 0, count)
     return found
 
 

@@ -60,6 +60,7 @@ def note_freed(state: State, record: int, head: int, tail: int) -> None:
     first = int(records.visits_at[record])
     last = first + int(records.visits[record]) - 1
     source = int(records.resource[first + head - 1]) if head > 0 else NONE
+    regions = int(freed.regions[0])
     for k in range(first + head, last + 1 - tail):
         resource = int(records.resource[k])
         enter = int(records.enter[k]) - state.gap
@@ -75,16 +76,18 @@ def note_freed(state: State, record: int, head: int, tail: int) -> None:
             freed.latest[resource] = leave
             freed.source[resource] = source
         source = resource
-        note_near(state, resource, enter, leave)
+        note_near(freed, resource, enter, leave)
+        regions |= int(graph.region[resource])
         for edge in range(int(graph.backward_first[resource]), int(graph.backward_first[resource + 1])):
-            note_near(state, int(graph.source[edge]), enter, leave)
+            near = int(graph.source[edge])
+            note_near(freed, near, enter, leave)
+            regions |= int(graph.region[near])
+    freed.regions[0] = regions
 
 
 @compiled
-def note_near(state: State, resource: int, enter: int, leave: int) -> None:
+def note_near(freed: Freed, resource: int, enter: int, leave: int) -> None:
     """Note that a stay there, or one move away, has been taken back."""
-    freed = state.freed
-    freed.regions[0] |= state.graph.region[resource]
     freed.near_earliest[resource] = min(int(freed.near_earliest[resource]), enter)
     freed.near_latest[resource] = max(int(freed.near_latest[resource]), leave)
 

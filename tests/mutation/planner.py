@@ -70,6 +70,10 @@ TESTS: Sequence[tuple[str, str, tuple[object, ...]]] = (
     ("test_reuse", "test_sampled_orders_share_their_beginnings_too", ()),
     ("test_adding", "test_a_distance_is_that_of_the_law_or_larger_than_the_best_as_it_should_be", ()),
     ("test_adding", "test_the_nearest_robot_is_that_of_the_law", ()),
+    *(
+        ("test_adding", "test_members_are_planned_alone_as_long_as_they_cost_less_than_the_limit", (more,))
+        for more in (0, 1)
+    ),
     ("test_adding", "test_a_plan_where_nothing_is_reserved_is_made_as_by_a_search", ()),
     ("test_adding", "test_of_two_robots_equally_near_the_earlier_is_taken_though_the_other_is_the_likelier", ()),
     ("test_adding", "test_the_least_sum_is_no_larger_than_the_sum_of_the_terms", ()),

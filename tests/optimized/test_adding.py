@@ -10,10 +10,13 @@ from tests.profiles import draws
 
 import carp_reference
 from carp_optimized import distances, neighbourhood
-from carp_optimized.arrays import NEVER, NONE, Records, Work
+from carp_optimized.arrays import NEVER, NO_LIMIT, NONE, Records, Work
 from carp_optimized.distances import Mean, distance_below, least_sum, likely_nearest, nearest, term
 from carp_optimized.encoding import no_work
 from carp_optimized.fleet import PlannedFleet
+from carp_optimized.neighbourhood import plan_alone
+from carp_optimized.passes import withdraw_all
+from carp_optimized.records import cost_of
 from carp_optimized.search import find_plan, find_plan_alone
 from carp_spec import Instance, Neighbourhood, Resource, ResourceGraph, Robot, neighbourhood_rules
 from carproof.generate import Fleet, Grid, Range, grid_instance
@@ -116,6 +119,27 @@ def test_a_plan_where_nothing_is_reserved_is_made_as_by_a_search(under_way: Flee
     if one != NONE:
         assert what_was_read(state.records, one) == what_was_read(state.records, other)
     assert fleet.queries.asked == 2
+
+
+@pytest.mark.parametrize("more", [0, 1])
+def test_members_are_planned_alone_as_long_as_they_cost_less_than_the_limit(more: int) -> None:
+    """No plan is found that makes them cost as much, though their shortest paths leave room for a query."""
+    late = 0
+    for seed in range(40):
+        fleet = PlannedFleet(grid_instance(Grid(5, 5, map=5), Fleet(9, seed)))
+        fleet.carp(range(9))
+        members = 2
+        work = split(fleet, members)
+        withdraw_all(fleet._native, work.members)
+        work.before[:] = NONE
+        if not plan_alone(fleet._state, work, members, NO_LIMIT, 0, False):
+            continue
+        cost = sum(cost_of(fleet._state, int(record)) for record in work.alone)
+        late += cost > sum(fleet.ticks_to_goal(int(robot)) for robot in work.members)
+        work.alone[:] = NONE
+        assert plan_alone(fleet._state, work, members, cost + more, 0, False) == (more > 0)
+        assert (work.alone != NONE).all() if more > 0 else (work.alone == NONE).all()
+    assert late > 2
 
 
 def rows(fleet: PlannedFleet) -> list[list[tuple[int, ...]]]:
