@@ -145,13 +145,13 @@ def reuse_claims(summary: Sequence[ReuseOf]) -> Iterator[Claim]:
     wanted = [PAPERS_SHARES[each.m] for each in summary if each.last is not None]
     yield Claim(
         "with shared beginnings of orders, 67 %, 54 % and 45 % of the queries of 4, 5 and 6 neighbours remain",
-        "of the last round's queries for orders: " + listed(last, unit="%"),
+        "of the last round's queries for orders: " + listed(last, unit=" %"),
         verdict_of([abs(each.estimate - paper) <= 1 for each, paper in zip(last.values(), wanted, strict=True)]),
     )
     outside = {f"Proposed_{each.m}": each.replanned for each in summary}
     yield Claim(
         "robots before the one taken out keep their plans, which halves the queries for those outside on average",
-        "of them remain: " + listed(outside, unit="%"),
+        "of them remain: " + listed(outside, unit=" %"),
         verdict_of([each.low <= 50 <= each.high for each in outside.values()]),  # noqa: PLR2004 - a half
     )
     longer = {each.m: below(each.outside, each.orders) for each in summary}
@@ -268,6 +268,6 @@ def scaled(interval: Interval, by: float) -> Interval:
     return Interval(interval.estimate * by, interval.low * by, interval.high * by)
 
 
-def listed(intervals: Mapping[str, Interval], by: float = 1, unit: str = "") -> str:
+def listed(intervals: Mapping[str, Interval], unit: str = "") -> str:
     """Each name with its interval."""
-    return ", ".join(f"{name} {scaled(each, by):.1f}{' ' + unit if unit else ''}" for name, each in intervals.items())
+    return ", ".join(f"{name} {each:.1f}{unit}" for name, each in intervals.items())

@@ -53,7 +53,7 @@ class Solver:
         self._sent = 0
 
     def satisfiable(self, assumptions: Sequence[Literal], conflicts: int | None = None) -> bool | None:
-        """Whether the formula has a model in which the assumptions hold; `None` if this many conflicts do not tell."""
+        """Whether the formula has a model in which the assumptions hold; `None` if these conflicts do not decide."""
         for clause in self.formula.clauses[self._sent :]:
             self._solver.add_clause(list(clause))
         self._sent = len(self.formula.clauses)

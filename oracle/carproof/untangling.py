@@ -4,7 +4,7 @@ In a rotation, robots enter each other's places at one tick. A robot of the rota
 and gets the earliest plan beside the others. This is done with the robot whose cost grows least.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from carp_spec import Instance, Plan, Robot, RobotId, Solution, Visit, plan_cost
@@ -27,9 +27,7 @@ class Untangled:
     rotation: tuple[RobotId, ...]
 
 
-def untangle(
-    instance: Instance, solution: Solution, engine: Engine, advance: Callable[[], None] = lambda: None
-) -> Untangled:
+def untangle(instance: Instance, solution: Solution, engine: Engine) -> Untangled:
     """Remove all rotations of a lawful solution, the shortest first."""
     plans = {plan.robot: plan for plan in solution.plans}
     kept_out: dict[RobotId, list[Visit]] = {}
@@ -52,7 +50,6 @@ def untangle(
         extra += more
         plans[plan.robot] = plan
         kept_out.setdefault(plan.robot, []).append(block)
-        advance()
     raise AssertionError("each round keeps a robot from one more place and tick")
 
 

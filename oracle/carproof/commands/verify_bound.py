@@ -35,7 +35,7 @@ def command(*, instance: str, certificate: str, kernel: bool, as_json: bool) -> 
     """Check that CERTIFICATE proves its lower bound on the total cost of plans for all robots of INSTANCE.
 
     The least priced cost of each robot is computed again, in whole numbers, by code that shares nothing with the search
-    for the prices. The proved kernel (--kernel) makes the formula of each cut itself.
+    for the prices. The proved kernel (--kernel) makes the formulas of cuts and deadlines itself.
 
     Exit codes: 0 the bound is proved, 1 it is not, 2 bad input, 3 the kernel cannot decide.
     """
