@@ -47,9 +47,10 @@ MEANINGS = {
     "rotation; the law judges two of each solution, and two on the clock, and must say the same.",
 }
 EXPLANATIONS = """\
-Numbers of actions are means over the assignments on which neither of the two fails, so what they are to be compared
-with is the same for both. A claim with a number is reproduced where the number lies in the intervals of 95 %; any other
-where the intervals say so for all that it names; in part where for some, and undecided where for none, but not against.
+Numbers of actions are means over the assignments on which neither of the two fails, so both are compared on the same
+ones. A claim with a number is reproduced if the number lies in the 95 % intervals. Any other claim is reproduced if the
+intervals support all that it names, in part if they support some of it, and not reproduced if they contradict all of
+it; otherwise it is undecided.
 
 Where our conventions may make the difference:
 

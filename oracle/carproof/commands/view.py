@@ -36,9 +36,9 @@ def command(problem: Problem, at: int | None, chart: bool, trace: str | None, ou
 
     SOLUTION is in any format that check reads (--from). The page has the map with its robots moving, the chart of
     resources by time with its free windows, all broken rules, and a list of its keys. A broken solution is shown like
-    any other. With a trace, robots are where they were by it, dashed rings are where they were to be, and the rules
-    that the trace breaks are listed if SOLUTION breaks none. Resources without positions are laid out automatically.
-    The file goes to standard output, or with -o to a file.
+    any other. With --trace, robots are where the trace has them, dashed rings show where they were planned to be, and
+    the rules that the trace breaks are listed if SOLUTION breaks none. Resources without positions are laid out
+    automatically. The file goes to standard output, or with -o to a file.
 
     Exit codes: 0 the picture is drawn, 2 bad input, or too large for a picture.
     """
