@@ -6,7 +6,7 @@ plan moved to the front, or in a random order if all did. Each is added by the n
 instance's numbers, by CARP of `carp_reference`, as compiling would take longer than many a limit.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TypeAlias
 
 from carp_optimum.solver import TimeOver
@@ -16,8 +16,10 @@ from carp_spec.permutations import shuffle, splitmix64
 ATTEMPTS = 1000
 TOGETHER = 3
 STUBBORN = 20
-STARTS = 8
-ROUNDS = 100_000  # of all starts
+STARTS = 6
+ROUNDS = 100_000
+WORK_OF_ROUND = 2
+"""The propagations of a round of annealing, for each robot."""
 
 Attempt: TypeAlias = Callable[[Sequence[RobotId]], tuple[Plan, ...]]
 
@@ -65,20 +67,46 @@ def plans_of_all(
     return best
 
 
-def polished(instance: Instance, look: Callable[[], None]) -> Solution:
-    """Good plans of as many robots as possible; `look` is called now and then, and may end it by an exception.
+def ever_better(instance: Instance, look: Callable[[], None]) -> Iterator[tuple[int, Sequence[Plan]]]:
+    """The best plans of all robots so far, with the work for them: by annealings, then by `carp_optimum.group_search`.
 
-    Raises `Refusal` for numbers that are too large.
+    It ends if there are no plans of all robots to begin with. The work is about that of as many propagations of a
+    solver; `look` is called now and then, and may end it by an exception. Raises `Refusal` for numbers that are too
+    large, and for formulas.
     """
-    from carp_optimized import polish  # noqa: PLC0415 - slow to load
-    from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415
+    from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415 - slow to load
+    from carp_optimum.group_search import improved  # noqa: PLC0415
     from carp_optimum.joint_repair import repair  # noqa: PLC0415
-    from carp_optimum.many_starts import polish_many  # noqa: PLC0415
 
     fleet = PlannedFleet(instance)
     fleet.carp(range(len(instance.robots)))
-    solution = repair(instance, Solution.of(instance, fleet.plans))
-    return polish_many(polish, STARTS, instance, solution, iterations=ROUNDS, advance=lambda *_: look())
+    first = repair(instance, Solution.of(instance, fleet.plans))
+    if len(first.plans) < len(instance.robots):
+        return
+    best: Sequence[Plan] = first.plans
+    work = 0
+    for seed in range(STARTS):
+        found = _annealed(instance, first, seed, look)
+        if total_cost(instance, found) < total_cost(instance, best):
+            best = found
+        work += ROUNDS * len(instance.robots) * WORK_OF_ROUND
+        yield work, best
+    for further, plans in improved(instance, best, look):
+        yield work + further, plans
+
+
+def _annealed(instance: Instance, solution: Solution, seed: int, look: Callable[[], None]) -> Sequence[Plan]:
+    """The plans of an annealing whose clock counts rounds."""
+    from carp_optimum.annealing import anneal  # noqa: PLC0415 - slow to load
+
+    played = 0
+
+    def count(rounds: int, _: int, __: int) -> None:
+        nonlocal played
+        look()
+        played = rounds
+
+    return anneal(instance, solution, ROUNDS, seed=seed, advance=count, clock=lambda: played).plans
 
 
 def _run(instance: Instance, check: Callable[[], None]) -> Attempt | None:

@@ -6,9 +6,10 @@ horizon, and the next assumption is that no other one of the core is given up. O
 model's plans have a total of just the lower bound; the conflicts among them are forbidden and the search
 continues, until none is left. Source: the OLL algorithm of Andres, Kaufmann, Matheis and Schaub 2012, over delays.
 
-After many conflicts a polish finds good plans, and a lower bound with prices takes over (`carp_optimum.bound`). From
-there up, total by total, the formula of all plans of at most this total (`carp_optimum.priced_formula`) either has no
-model or holds the optimum, until the total of the polished plans is reached.
+After many conflicts two searches take over. One finds ever better plans (`carp_optimum.heuristics.ever_better`), in
+another process (`carp_optimum.beside`). The other finds a lower bound with prices (`carp_optimum.bound`). From there
+up, total by total, the formula of all plans of at most this total (`carp_optimum.priced_formula`) either has no model
+or holds the optimum, until the total of the best plans is reached.
 
 Where no plan set exists, the search finds one of these obstacles (`carp_verify.unsolvable` says why each is one):
 
@@ -25,12 +26,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from time import monotonic_ns
 
-from carp_optimum.heuristics import plans_of_all, polished
+from carp_optimum.beside import Beside
+from carp_optimum.heuristics import ever_better, plans_of_all
 from carp_optimum.priced_formula import priced_formula
 from carp_optimum.reduced_costs import PricedBound
 from carp_optimum.solver import Deadline, Solver, TimeOver
-from carp_spec import Instance, Plan, Refusal, Solution, total_cost
-from carp_verify.bound_rules import require_kept
+from carp_spec import Instance, Plan, Refusal, Solution, judge, total_cost
+from carp_verify.bound_rules import ContradictionError, require_kept
 from carp_verify.clauses import Literal, Unary
 from carp_verify.encoding import Encoding, Evidence, violated
 from carp_verify.joint_search import least_total_cost
@@ -41,6 +43,12 @@ CONFLICTS_TO_SHRINK = 900
 CONFLICTS_BEFORE_PRICES = 20_000
 PRICE_STEPS = 2400
 LARGEST_GAP = 12  # ticks
+CONFLICTS_BEFORE_BESIDE = 2000
+"""After this many conflicts a formula's search asks for the plans that were found beside it."""
+WORK_OF_STEP = 300
+"""The propagations of a step of the search for prices, for each robot."""
+WORK_OF_CLAUSE = 28
+"""The propagations of making a clause of a formula with prices."""
 DELAY_OF_DOUBT = 20
 PARTS = 5
 PARTS_BEFORE_HEURISTICS = (1, 3)
@@ -96,6 +104,7 @@ class _Search:
         self.horizon = 0
         self.proved = 0
         self.best: Sequence[Plan] | None = None
+        self.beside: Beside[Sequence[Plan]] | None = None
         self.tries_of_heuristics = 0
         self.order: dict[int, None] = {}
         self.robot_of: dict[Literal, int] = {}
@@ -103,6 +112,8 @@ class _Search:
 
     def close(self) -> None:
         self.solver.close()
+        if self.beside is not None:
+            self.beside.close()
 
     def run(self) -> Optimum:
         obstacle = self.obstacle()
@@ -149,23 +160,22 @@ class _Search:
                     return self.unsolvable(States())
 
     def search_with_prices(self) -> Sequence[Plan] | None:
-        """The plans of an optimum, searched for from the bound up; `None` if it is too far from that for prices.
+        """The plans of an optimum, searched for from a bound up; `None` if it is too far from that for prices.
 
-        The search ends below the total of the best plans known, which are an optimum once the bound has reached it.
+        All that is asked from the search beside this one is asked at an amount of work, so the plans do not depend on
+        the clock.
         """
         from carp_optimized.compiling import is_cached  # noqa: PLC0415 - slow to load
         from carp_optimum.priced_ways import find_ways  # noqa: PLC0415
 
         if not is_cached(find_ways):
             return None
+        self.beside = Beside(lambda look: ever_better(self.instance, look), self.look)
         try:
-            self.polish()
             bound = self.priced_bound()
+            work = PRICE_STEPS * len(self.instance.robots) * WORK_OF_STEP
             while bound.gap(self.lower) <= LARGEST_GAP * bound.scale:
-                if self.best is not None and total_cost(self.instance, self.best) == self.lower:
-                    plans: Sequence[Plan] | None = self.best
-                else:
-                    plans = self.plans_in(priced_formula(self.instance, bound, self.lower, self.look))
+                plans, work = self.plans_of_bound(bound, work)
                 if plans is not None:
                     self.horizon = self.lower - self.encoding.shortest
                     return plans
@@ -174,13 +184,27 @@ class _Search:
             pass
         return None
 
-    def polish(self) -> None:
-        """Find good plans, if a polish finds any of all robots."""
-        solution = polished(self.instance, self.look)
-        if len(solution.plans) == len(self.instance.robots) and (
-            self.best is None or total_cost(self.instance, solution.plans) < total_cost(self.instance, self.best)
-        ):
-            self.best = solution.plans
+    def plans_of_bound(self, bound: PricedBound, work: int) -> tuple[Sequence[Plan] | None, int]:
+        """Plans whose total is the lower bound, by the formula of these or found beside, and the work so far."""
+        if plans := self.plans_beside(work):
+            return plans, work
+        encoding = priced_formula(self.instance, bound, self.lower, self.look)
+        work += len(encoding.formula.clauses) * WORK_OF_CLAUSE
+        solver = Solver(encoding.formula, self.look, glucose=True)
+        try:
+            while (answer := solver.satisfiable([], CONFLICTS_BEFORE_BESIDE)) is None:
+                if plans := self.plans_beside(work + solver.propagations):
+                    return plans, work
+            model = [plan for plan in encoding.plans(solver.model()) if plan is not None] if answer else None
+            return model, work + solver.propagations
+        finally:
+            solver.close()
+
+    def plans_beside(self, work: int) -> Sequence[Plan] | None:
+        """The plans found beside with this amount of work, if their total is the lower bound."""
+        assert self.beside is not None  # noqa: S101 - it is there while prices are searched with
+        plans = self.beside.result(work)
+        return plans if plans is not None and total_cost(self.instance, plans) == self.lower else None
 
     def priced_bound(self) -> PricedBound:
         """A lower bound with prices."""
@@ -190,16 +214,6 @@ class _Search:
         self.proved = certificate.bound
         self.look()
         return PricedBound(self.instance, certificate)
-
-    def plans_in(self, encoding: Encoding) -> Sequence[Plan] | None:
-        """The plans in a model of the encoding, if there is one."""
-        solver = Solver(encoding.formula, self.look)
-        try:
-            if not solver.satisfiable([]):
-                return None
-            return [plan for plan in encoding.plans(solver.model()) if plan is not None]
-        finally:
-            solver.close()
 
     def has_no_end(self) -> bool:
         """Whether the states of all robots together are few, and none is the end of a plan set."""
@@ -249,6 +263,10 @@ class _Search:
 
     def look(self) -> None:
         """Look at the clock. A long search stops to plan with heuristics, and stops again if they find nothing."""
+        if self.beside is not None:
+            self.beside.read()
+            self.deadline.check()
+            return
         tries = self.tries_of_heuristics
         parts = PARTS_BEFORE_HEURISTICS[tries:]
         if self.best is None and parts and self.deadline.is_past(parts[0], PARTS):
@@ -276,7 +294,7 @@ class _Search:
             cost,
             cost,
             decided=True,
-            solution=_solution(plans),
+            solution=self.solution(plans),
             evidence=self.evidence,
         )
 
@@ -284,6 +302,9 @@ class _Search:
         return Optimum(self.encoding.shortest, None, self.lower, True, None, self.evidence, obstacle)
 
     def undecided(self) -> Optimum:
+        beside = None if self.beside is None else self.beside.latest()
+        known = [plans for plans in (self.best, beside) if plans is not None]
+        self.best = min(known, key=lambda plans: total_cost(self.instance, plans), default=None)
         if self.best is None:
             return Optimum(
                 self.encoding.shortest, None, self.lower, decided=False, solution=None, evidence=self.evidence
@@ -291,9 +312,13 @@ class _Search:
         cost = total_cost(self.instance, self.best)
         require_kept(self.lower, cost)
         return Optimum(
-            self.encoding.shortest, cost, self.lower, cost == self.lower, _solution(self.best), self.evidence
+            self.encoding.shortest, cost, self.lower, cost == self.lower, self.solution(self.best), self.evidence
         )
 
-
-def _solution(plans: Sequence[Plan]) -> Solution:
-    return Solution(tuple(plans), tuple(plan.robot for plan in plans))
+    def solution(self, plans: Sequence[Plan]) -> Solution:
+        """The solution with these plans; raises `ContradictionError` if they break the law."""
+        solution = Solution(tuple(plans), tuple(plan.robot for plan in plans))
+        verdict = judge(self.instance, solution)
+        if verdict.violations or verdict.unplanned:
+            raise ContradictionError("the search has found plans that break a rule")
+        return solution

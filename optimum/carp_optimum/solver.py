@@ -44,12 +44,14 @@ class Solver:
     `look` is called every few conflicts and may end the search by raising `TimeOver`.
     """
 
-    def __init__(self, formula: Formula, look: Callable[[], None], with_proof: bool = False) -> None:
-        from pysat.solvers import Cadical195  # noqa: PLC0415 - slow to load
+    def __init__(
+        self, formula: Formula, look: Callable[[], None], with_proof: bool = False, glucose: bool = False
+    ) -> None:
+        from pysat.solvers import Cadical195, Glucose4  # noqa: PLC0415 - slow to load
 
         self.formula = formula
         self.look = look
-        self._solver = Cadical195(with_proof=with_proof)
+        self._solver = Glucose4() if glucose else Cadical195(with_proof=with_proof)
         self._sent = 0
 
     def satisfiable(self, assumptions: Sequence[Literal], conflicts: int | None = None) -> bool | None:
@@ -70,6 +72,11 @@ class Solver:
     def conflicts(self) -> int:
         """The conflicts of all searches so far."""
         return int(self._solver.accum_stats()["conflicts"])
+
+    @property
+    def propagations(self) -> int:
+        """The propagations of all searches so far: a measure of work that is the same on every machine."""
+        return int(self._solver.accum_stats()["propagations"])
 
     def model(self) -> list[bool]:
         """The truth of each variable, from index 1, in the model found last."""

@@ -76,11 +76,6 @@ TESTS: Sequence[tuple[str, str, tuple[object, ...]]] = (
     ),
     ("test_adding", "test_a_plan_where_nothing_is_reserved_is_made_as_by_a_search", ()),
     ("test_adding", "test_of_two_robots_equally_near_the_earlier_is_taken_though_the_other_is_the_likelier", ()),
-    (
-        "test_adding",
-        "test_a_plan_must_cost_less_than_what_is_known_of_the_members_behind_leaves",
-        (),
-    ),
     ("test_adding", "test_the_least_sum_is_no_larger_than_the_sum_of_the_terms", ()),
 )
 

@@ -1,5 +1,7 @@
 """Formulas made small by a lower bound hold an optimum, and nothing cheaper."""
 
+import os
+from collections.abc import Callable
 from itertools import combinations
 from pathlib import Path
 
@@ -183,10 +185,17 @@ def prices_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("prices_at_once")
 @settings(max_examples=draws(100), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(instances(TINY, least_robots=2))
-def test_a_search_with_prices_from_the_first_core_on_finds_the_optimum(instance: Instance) -> None:
-    best = optimum(instance, SECONDS)
-    assert best.decided
-    assert best.cost == least_total_cost(instance)
+def test_a_search_with_prices_from_the_first_core_on_finds_the_optimum_on_one_core_and_on_two(
+    instance: Instance,
+) -> None:
+    found = []
+    for cores in (1, 2):
+        with pytest.MonkeyPatch.context() as patched:
+            patched.setattr(os, "sched_getaffinity", lambda _, cores=cores: {*range(cores)})
+            found.append(optimum(instance, SECONDS))
+    assert found[0] == found[1]
+    assert found[0].decided
+    assert found[0].cost == least_total_cost(instance)
 
 
 @pytest.mark.usefixtures("prices_at_once")
@@ -202,16 +211,21 @@ def test_the_search_ends_where_the_bound_reaches_the_total_of_the_best_plans_kno
 ) -> None:
     instance = town(7, "park")
     least = optimum(instance, SECONDS, priced=False)
+    assert least.cost is not None
+    assert least.solution is not None
+    plans = least.solution.plans
     searched = []
 
-    def none(_: object, encoding: Encoding) -> None:
-        searched.append(encoding)
+    def below(instance: Instance, bound: PricedBound, cost: int, look: Callable[[], None]) -> Encoding:
+        searched.append(cost)
+        return priced_formula(instance, bound, cost, look)
 
-    monkeypatch.setattr("carp_optimum.optimum.polished", lambda *_: least.solution)
-    monkeypatch.setattr("carp_optimum.optimum._Search.plans_in", none)
+    monkeypatch.setattr("carp_optimum.optimum.ever_better", lambda *_: iter([(0, plans)]))
+    monkeypatch.setattr("carp_optimum.optimum.priced_formula", below)
     best = optimum(instance, SECONDS)
     assert (best.decided, best.cost, best.solution) == (True, least.cost, least.solution)
     assert searched
+    assert max(searched) == least.cost - 1
 
 
 @pytest.mark.usefixtures("prices_at_once")

@@ -1,0 +1,118 @@
+"""A search that runs beside another one, on a second core if there is one, and decides nothing by the clock.
+
+The search gives its results with the work that it has done, in units that are the same on every machine. The other one
+asks for the result after an amount of work, and waits for it if need be. So its answers depend neither on the clock nor
+on whether there is a second core: without one, the search runs where it is asked.
+"""
+
+import os
+import signal
+from collections import deque
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from multiprocessing.connection import Connection, Pipe
+from typing import Generic, TypeAlias, TypeVar
+
+from carp_spec import Refusal
+
+Result = TypeVar("Result")
+Look: TypeAlias = Callable[[], None]
+Search: TypeAlias = Callable[[Look], Iterator[tuple[int, Result]]]
+"""Gives results with the work up to each, which rises. It ends where a `Refusal` is raised, too."""
+PATIENCE = 0.05
+"""Seconds between two looks at the clock of one who waits."""
+
+
+class Beside(Generic[Result]):
+    """A search and its results so far; `look` is called now and then by one who waits, and may raise an exception."""
+
+    def __init__(self, search: Search[Result], look: Look) -> None:
+        self._look = look
+        self._found: deque[tuple[int, Result | None]] = deque()
+        self._result: Result | None = None
+        self._work = 0
+        self._ended = False
+        self._process: int | None = None
+        self._receiver: Connection | None = None
+        if len(os.sched_getaffinity(0)) > 1:
+            self._process, self._receiver = _started(search)
+        else:
+            self._steps = _changes(search(look))
+
+    def result(self, work: int) -> Result | None:
+        """The last result before the search has done more than this work; `None` if it had none."""
+        while self._work <= work and not self._ended:
+            while self._receiver is not None and not self._receiver.poll(PATIENCE):
+                self._look()
+            self._take()
+        return self._last(work)
+
+    def latest(self) -> Result | None:
+        """The last result that is known; which one that is depends on the clock."""
+        self.read()
+        return self._last(self._work)
+
+    def read(self) -> None:
+        """Take in what the search has found; its process waits if this is not called for long."""
+        while self._receiver is not None and not self._ended and self._receiver.poll():
+            self._take()
+
+    def close(self) -> None:
+        """End the search."""
+        if self._process is not None:
+            with suppress(ProcessLookupError, ChildProcessError):
+                os.kill(self._process, signal.SIGKILL)
+                os.waitpid(self._process, 0)
+            self._process = None
+        if self._receiver is not None:
+            self._receiver.close()
+
+    def _last(self, work: int) -> Result | None:
+        while self._found and self._found[0][0] <= work:
+            _, result = self._found.popleft()
+            self._result = self._result if result is None else result
+        return self._result
+
+    def _take(self) -> None:
+        try:
+            step = next(self._steps) if self._receiver is None else self._receiver.recv()
+        except (EOFError, StopIteration, Refusal):
+            self._ended = True
+            return
+        if isinstance(step, Exception):
+            raise step
+        self._found.append(step)
+        self._work = step[0]
+
+
+def _changes(steps: Iterator[tuple[int, Result]]) -> Iterator[tuple[int, Result | None]]:
+    """The steps, with `None` for a result that is the one before."""
+    before = None
+    for work, result in steps:
+        yield work, None if result is before else result
+        before = result
+
+
+def _started(search: Search[Result]) -> tuple[int, Connection]:
+    """A process that runs the search, and the end of a pipe through which its steps come."""
+    receiver, sender = Pipe(duplex=False)
+    process = os.fork()
+    if process == 0:
+        try:
+            receiver.close()
+            _run(search, sender)
+        finally:
+            os._exit(0)
+    sender.close()
+    return process, receiver
+
+
+def _run(search: Search[Result], sender: Connection) -> None:
+    """Send all steps of the search, or the exception that ended it."""
+    try:
+        for step in _changes(search(lambda: None)):
+            sender.send(step)
+    except (Refusal, OSError):
+        pass  # it has ended, or nobody listens any more
+    except Exception as error:  # noqa: BLE001 - raised where the results are read
+        sender.send(error)
