@@ -51,8 +51,8 @@ def lower_bound(
     """Search for this many seconds or steps, whichever is over first, or until nothing is gained any more.
 
     With steps alone, the same instance gives the same certificate. `on_step` is called after each step, and now and
-    then while cuts are searched for; `clock` gives nanoseconds. `seen` is whether robots with
-    deadlines may be seen at ticks, which the kernel does not know. Raises `Refusal` for numbers that are too large.
+    then while cuts are searched for; `clock` gives nanoseconds. `seen` is whether robots with deadlines may be seen at
+    ticks, for which the search for an optimum has no literals. Raises `Refusal` for numbers that are too large.
     """
     require_following(instance)
     from carp_optimum.cut_search import CutSearch  # noqa: PLC0415 - numba is slow to load

@@ -329,7 +329,7 @@ def test_who_is_seen_several_times_pays_for_each_tick_of_its_stay_in_whatever_or
     assert (fees.last, Fees([(5, 1)], sights).last) == (3, 5)
 
 
-def test_robots_are_not_seen_in_a_certificate_for_the_kernel() -> None:
+def test_robots_are_not_seen_in_a_certificate_where_they_may_not_be() -> None:
     certificate = lower_bound(crossing(), steps=1500, seen=False)
     assert certificate.deadlines
     assert not any(deadlines.seen for deadlines in certificate.deadlines)

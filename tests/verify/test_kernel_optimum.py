@@ -354,16 +354,6 @@ def test_deadlines_whose_proof_is_changed_are_refused(change: Mapping[str, Any],
     assert answer["message"].startswith(f"the proof of deadlines 0 does not hold: {why}")
 
 
-def test_deadlines_of_robots_that_are_seen_on_their_way_are_bad_input(tmp_path: Path) -> None:
-    assert bound_verdict(head_on(), deadline_certificate(), tmp_path)["verdict"] == "accepted"
-    document = json.loads((tmp_path / "bound.json").read_text())
-    document["deadlines"][0]["seen"] = [[1, ["middle"]], [1, ["north"]]]
-    (tmp_path / "bound.json").write_text(json.dumps(document))
-    answer = decided(tmp_path)
-    assert (answer["verdict"], answer["path"], answer["rule"]) == ("bad input", "$.deadlines[0].seen", "limit/seen")
-    assert answer["message"] == "no robot may be seen on its way: the kernel decides deadlines of arrivals alone"
-
-
 def test_a_deadline_too_late_for_a_formula_is_undecided(tmp_path: Path) -> None:
     (deadlines,) = deadline_certificate().deadlines
     for tick in (10**7, 10**40):

@@ -171,7 +171,7 @@ THEOREMS = (
     Theorem(
         "Total",
         "refuted_deadlines_are_not_all_kept",
-        "in each lawful solution that plans every plannable robot, one of the robots with refuted deadlines is later",
+        "in each lawful solution of all plannable robots, one of the robots with refuted deadlines breaks its own",
     ),
     Theorem(
         "Total",

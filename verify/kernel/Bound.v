@@ -8,8 +8,23 @@ Open Scope Z_scope.
 (** A group of robots that cost at least [least_total] together, and how much it counts, in parts of a tick. *)
 Record cut := Cut { members : list Z; least_total : Z; multiplier : Z }.
 
-(** Deadlines (robot, tick) that cannot all be kept, and what each robot pays that keeps its own, in parts of a tick. *)
-Record group := Group { deadlines : list (Z * Z); fee : Z }.
+(** A tick at which a robot is seen, and the places that count for it then. *)
+Record sight := Sight { seen_at : Z; spots : list Z }.
+
+(** The robot [who] enters its goal for the last time by the tick [due]. If it is seen, it does so by then, or is in one
+    of the spots then, on its way. *)
+Record deadline := Deadline { who : Z; due : Z; seen : option sight }.
+
+Definition Keeps (d : deadline) (p : plan) : Prop :=
+  match seen d with
+  | None => arrives (visits p) <= due d
+  | Some s =>
+      arrives (visits p) <= due d /\ arrives (visits p) <= seen_at s \/
+      exists v w, Consecutive p v w /\ In (visit_resource v) (spots s) /\ enter v <= seen_at s < enter w
+  end.
+
+(** Deadlines that cannot all be kept, and what each robot pays that keeps its own, in parts of a tick. *)
+Record group := Group { deadlines : list deadline; fee : Z }.
 
 (** The certificate as its document has it: [claims] are the robots with their least priced costs, in parts of a tick,
     or with none where no way leads to the goal. *)
@@ -60,11 +75,26 @@ Definition cuts_accepted (i : instance) (c : certificate) : bool :=
     (0 <=? multiplier k) && Ids.distinct (members k) && forallb (Ids.contains ids) (members k)) (cuts c) &&
   forallb (fun id => 0 <=? weight_of c id) (robot_ids i).
 
-(** bound/deadline: what a robot pays that arrives at the tick. *)
-Definition keeps (id t : Z) (deadline : Z * Z) : bool := (fst deadline =? id) && (t <=? snd deadline).
+(** bound/deadline: the deadlines of a robot, each with what it pays if it keeps it. *)
+Definition dues_of (c : certificate) (id : Z) : list (Z * deadline) :=
+  flat_map (fun g => flat_map (fun d => if who d =? id then [(fee g, d)] else []) (deadlines g)) (groups c).
 
-Definition fees_of (c : certificate) (id t : Z) : Z :=
-  sum (fun g => fee g * sum (fun d => Z.b2z (keeps id t d)) (deadlines g)) (groups c).
+(** The tick by which a robot that keeps its deadline arrives, if it is not seen on its way. *)
+Definition last_arrival (d : deadline) : Z :=
+  match seen d with Some s => Z.min (due d) (seen_at s) | None => due d end.
+
+(** A robot that is in the resource from one tick up to another, on its way, is seen there. *)
+Definition is_seen (d : deadline) (r first end_ : Z) : bool :=
+  match seen d with
+  | Some s => (first <=? seen_at s) && (seen_at s <? end_) && existsb (Z.eqb r) (spots s)
+  | None => false
+  end.
+
+Definition fees_at_arrival (dues : list (Z * deadline)) (t : Z) : Z :=
+  sum (fun x : Z * deadline => fst x * Z.b2z (t <=? last_arrival (snd x))) dues.
+
+Definition fees_on_the_way (dues : list (Z * deadline)) (r first end_ : Z) : Z :=
+  sum (fun x : Z * deadline => fst x * Z.b2z (is_seen (snd x) r first end_)) dues.
 
 (** The most that the robots of a group pay: all but one. *)
 Definition group_worth (g : group) : Z := fee g * (Z.of_nat (length (deadlines g)) - 1).
@@ -80,12 +110,13 @@ Fixpoint leads_on (successors : Z -> list Z) (r : Z) (later : list Z) (to : Z) :
 
 (** bound/robots, for one robot. *)
 Definition claim_accepted (i : instance) (tf : tariff) (successors : Z -> list Z) (takes : Z -> Z) (own : Z) (a : robot)
-    (early : Z -> Z) (claimed_least : option Z) (e : evidence) : bool :=
+    (dues : list (Z * deadline)) (claimed_least : option Z) (e : evidence) : bool :=
   let rests := index fst (ticks_after e) in
   let rest_at r := match Map.find r rests with Some x => Some (snd x) | None => None end in
   let label_table := pairs_of (labels e) in
   let label_in r t := Pair_map.find (r, t) label_table in
-  let c := Claim match claimed_least with Some n => n | None => 0 end own rest_at label_in early in
+  let c := Claim match claimed_least with Some n => n | None => 0 end own rest_at label_in
+    (fees_at_arrival dues) (fees_on_the_way dues) in
   forallb (rests_are_least successors takes a c) (resource_ids i) &&
   match claimed_least with
   | Some _ =>
@@ -102,7 +133,7 @@ Fixpoint refused_claims (i : instance) (tf : tariff) (successors : Z -> list Z) 
   | [], [], _ => None
   | a :: robots', (id, claimed_least) :: claims', e :: all' =>
       if (id =? robot_id a) &&
-        claim_accepted i tf successors (takes_in table a) (weight_of c id) a (fees_of c id) claimed_least e
+        claim_accepted i tf successors (takes_in table a) (weight_of c id) a (dues_of c id) claimed_least e
       then refused_claims i tf successors table c robots' claims' all'
       else Some robots
   | _, _, _ => Some robots
@@ -150,9 +181,13 @@ Definition cost_of_robot (i : instance) (s : solution) (id : Z) : Z :=
 Definition Cut_holds (i : instance) (s : solution) (k : cut) : Prop :=
   least_total k <= sum (cost_of_robot i s) (members k).
 
-(** Not all robots of the group arrive by their deadlines. *)
+(** How often visits keep a deadline: by arriving, and by each visit in which the robot is seen. *)
+Definition times_kept (d : deadline) (vs : list visit) : Z :=
+  Z.b2z (arrives vs <=? last_arrival d) + passed (fun r first end_ => Z.b2z (is_seen d r first end_)) vs.
+
+(** Not all robots of the group keep their deadlines. *)
 Definition Group_holds (s : solution) (g : group) : Prop :=
-  sum (fun p => sum (fun d => Z.b2z (keeps (plan_robot p) (arrives (visits p)) d)) (deadlines g)) (plans s) <=
+  sum (fun p => sum (fun d => Z.b2z (who d =? plan_robot p) * times_kept d (visits p)) (deadlines g)) (plans s) <=
   Z.of_nat (length (deadlines g)) - 1.
 
 (** Each robot has a plan if a way leads to its goal. *)
@@ -183,6 +218,12 @@ Proof.
   - intros [E | Hin]; [congruence |]. simpl Z.b2z. rewrite IH; auto.
 Qed.
 
+Lemma sum_of_joined {A} (f : A -> Z) l m : sum f (l ++ m) = sum f l + sum f m.
+Proof. induction l as [| x l IH]; simpl; lia. Qed.
+
+Lemma sum_over_all {A B} (f : B -> Z) (g : A -> list B) l : sum f (flat_map g l) = sum (fun x => sum f (g x)) l.
+Proof. induction l as [| x l IH]; simpl; auto. rewrite sum_of_joined, IH. reflexivity. Qed.
+
 Lemma leads_on_leads successors i r later to : (forall r s, In s (successors r) -> Move i r s) ->
   leads_on successors r later to = true -> Leads i r to.
 Proof.
@@ -204,9 +245,13 @@ Let successors := listed (successor_table i).
 Let table := resource_table i.
 Let tf := tariff_of (prices c).
 
+(** What visits pay for deadlines. *)
+Let fees (dues : list (Z * deadline)) (vs : list visit) : Z :=
+  fees_at_arrival dues (arrives vs) + passed (fees_on_the_way dues) vs.
+
 (** What a plan costs, weighted, together with its prices and those of the deadlines that it keeps. *)
 Let own_plan (p : plan) : Z := paid (prices c) (visits p) + weight_of c (plan_robot p) * cost_of_plan i p.
-Let priced_plan (p : plan) : Z := own_plan p + fees_of c (plan_robot p) (arrives (visits p)).
+Let priced_plan (p : plan) : Z := own_plan p + fees (dues_of c (plan_robot p)) (visits p).
 
 Hypothesis scaled : 0 < scale c.
 Hypothesis prices_right : forall x, In x (prices c) -> 0 <= amount x /\ In (place x) (resource_ids i) /\
@@ -215,18 +260,65 @@ Hypothesis weights_right : forall id, In id (robot_ids i) -> 0 <= weight_of c id
 Hypothesis multipliers_right : forall k, In k (cuts c) -> 0 <= multiplier k.
 Hypothesis fees_right : forall g, In g (groups c) -> 0 <= fee g.
 
-Lemma no_fees_are_below_0 id t : 0 <= fees_of c id t.
+Lemma dues_are_not_negative id x : In x (dues_of c id) -> 0 <= fst x.
 Proof.
-  apply sum_is_not_negative. intros g Hg. apply Z.mul_nonneg_nonneg; [apply fees_right, Hg |].
-  apply sum_is_not_negative. intros d _. destruct (keeps id t d); simpl Z.b2z; lia.
+  intros H. apply in_flat_map in H as (g & Hg & H). apply in_flat_map in H as (d & _ & H).
+  destruct (who d =? id); [| destruct H]. destruct H as [<- | []]. apply fees_right, Hg.
+Qed.
+
+Lemma fees_at_arrival_are_not_negative id t : 0 <= fees_at_arrival (dues_of c id) t.
+Proof.
+  apply sum_is_not_negative. intros x Hx. pose proof (dues_are_not_negative id x Hx).
+  destruct (_ <=? _); simpl Z.b2z; lia.
+Qed.
+
+Lemma fees_on_the_way_are_not_negative id r first end_ : 0 <= fees_on_the_way (dues_of c id) r first end_.
+Proof.
+  apply sum_is_not_negative. intros x Hx. pose proof (dues_are_not_negative id x Hx).
+  destruct (is_seen _ _ _ _); simpl Z.b2z; lia.
+Qed.
+
+Lemma fees_on_the_way_add_up dues r first middle end_ : first <= middle <= end_ ->
+  fees_on_the_way dues r first end_ = fees_on_the_way dues r first middle + fees_on_the_way dues r middle end_.
+Proof.
+  intros L. unfold fees_on_the_way. rewrite <- sum_of_sums. apply sum_of_equal. intros x _. unfold is_seen.
+  destruct (seen (snd x)) as [[t places] |]; [| simpl; lia]. cbn [seen_at spots].
+  destruct (Z.leb_spec first t), (Z.leb_spec middle t), (Z.ltb_spec t middle), (Z.ltb_spec t end_),
+    (existsb (Z.eqb r) places); simpl; lia.
+Qed.
+
+(** A deadline's price is paid as often as the deadline is kept. *)
+Lemma fees_are_paid_as_often_as_kept dues vs : fees dues vs = sum (fun x => fst x * times_kept (snd x) vs) dues.
+Proof.
+  unfold fees, times_kept.
+  assert (E : passed (fees_on_the_way dues) vs =
+    sum (fun x => fst x * passed (fun r first end_ => Z.b2z (is_seen (snd x) r first end_)) vs) dues).
+  { assert (Z0 : 0 = sum (fun x : Z * deadline => fst x * 0) dues)
+      by (rewrite (sum_of_equal _ (fun _ => 0)) by (intros; lia); symmetry; apply sum_of_zeros).
+    induction vs as [| v rest IH]; [exact Z0 |]. cbn [passed]. rewrite IH. destruct rest as [| w later].
+    - apply sum_of_equal. intros. lia.
+    - unfold fees_on_the_way. rewrite <- sum_of_sums. apply sum_of_equal. intros. lia. }
+  rewrite E. unfold fees_at_arrival. rewrite <- sum_of_sums. apply sum_of_equal. intros. lia.
+Qed.
+
+Lemma no_fees_are_below_0 id vs : 0 <= fees (dues_of c id) vs.
+Proof.
+  apply Z.add_nonneg_nonneg; [apply fees_at_arrival_are_not_negative |].
+  induction vs as [| v rest IH]; cbn [passed]; [lia |]. apply Z.add_nonneg_nonneg; auto.
+  destruct rest as [| w later]; [lia | apply fees_on_the_way_are_not_negative].
 Qed.
 
 (** All robots together pay no more for deadlines than those of each group but one. *)
 Lemma fees_are_no_more_than_their_worth :
-  sum (fun p => fees_of c (plan_robot p) (arrives (visits p))) (plans s) <= sum group_worth (groups c).
+  sum (fun p => fees (dues_of c (plan_robot p)) (visits p)) (plans s) <= sum group_worth (groups c).
 Proof.
-  unfold fees_of. rewrite sums_are_exchanged. apply sum_is_monotone. intros g Hg. rewrite sum_of_multiples.
-  apply Z.mul_le_mono_nonneg_l; [apply fees_right, Hg | apply groups_hold, Hg].
+  rewrite (sum_of_equal _ (fun p => sum (fun g => fee g *
+    sum (fun d => Z.b2z (who d =? plan_robot p) * times_kept d (visits p)) (deadlines g)) (groups c))).
+  - rewrite sums_are_exchanged. apply sum_is_monotone. intros g Hg. rewrite sum_of_multiples.
+    apply Z.mul_le_mono_nonneg_l; [apply fees_right, Hg | apply groups_hold, Hg].
+  - intros p _. rewrite fees_are_paid_as_often_as_kept. unfold dues_of. rewrite sum_over_all. apply sum_of_equal.
+    intros g _. rewrite sum_over_all, <- sum_of_multiples. apply sum_of_equal. intros d _.
+    destruct (who d =? plan_robot p); cbn [sum fold_right fst snd Z.b2z]; ring.
 Qed.
 
 Lemma prices_are_held : Holds_prices tf (prices c).
@@ -257,7 +349,7 @@ Proof.
   pose proof (plans_lawful i s lawful p a Hp Ha E) as L.
   destruct (starts_at_release i a p L) as (v & rest & V & _ & T).
   pose proof (way_does_not_arrive_before_it_starts a (visits p) Ha W v rest V) as A.
-  pose proof (no_fees_are_below_0 (plan_robot p) (arrives (visits p))) as Fees.
+  pose proof (no_fees_are_below_0 (plan_robot p) (visits p)) as Fees.
   unfold priced_plan, own_plan. rewrite (cost_is_of_robot a p) by auto. unfold cost, arrival. rewrite V in *.
   change (fold_left (fun _ v => enter v) (v :: rest) (release a)) with (arrives (v :: rest)).
   assert (0 <= weight_of c (plan_robot p)) by (apply weights_right; rewrite <- E; apply in_map, Ha). nia.
@@ -265,7 +357,7 @@ Qed.
 
 (** What an accepted claim says of the robot's plans, if there are any. *)
 Lemma accepted_claim_is_below_plans a claimed_least e : In a (robots i) ->
-  claim_accepted i tf successors (takes_in table a) (weight_of c (robot_id a)) a (fees_of c (robot_id a))
+  claim_accepted i tf successors (takes_in table a) (weight_of c (robot_id a)) a (dues_of c (robot_id a))
     claimed_least e = true ->
   match claimed_least with Some n => n | None => 0 end <=
   sum (fun p => Z.b2z (robot_id a =? plan_robot p) * priced_plan p) (plans s).
@@ -282,9 +374,11 @@ Proof.
   apply in_map_iff in P as (p & E & Hp).
   apply Z.le_trans with (Z.b2z (robot_id a =? plan_robot p) * priced_plan p);
     [| apply (sum_is_above_each _ _ p Positive Hp)].
-  rewrite E, Z.eqb_refl. simpl Z.b2z. rewrite Z.mul_1_l. unfold priced_plan, own_plan. rewrite (cost_is_of_robot a p), E by auto.
+  rewrite E, Z.eqb_refl. simpl Z.b2z. rewrite Z.mul_1_l. unfold priced_plan, own_plan, fees.
+  rewrite (cost_is_of_robot a p), E, Z.add_assoc by auto.
   eapply (claim_is_below_every_plan i tf successors (takes_in table a) a
-    (Claim n (weight_of c (robot_id a)) _ _ (fees_of c (robot_id a))) (prices c) p right Ha
+    (Claim n (weight_of c (robot_id a)) _ _ (fees_at_arrival (dues_of c (robot_id a)))
+      (fees_on_the_way (dues_of c (robot_id a)))) (prices c) p right Ha
     prices_are_held).
   - intros r t. apply successors_are_moves, right.
   - intros r. apply takes_what_is_needed, right.
@@ -294,7 +388,9 @@ Proof.
       apply (proj1 (forallb_forall _ _) Closed _ L).
     + apply forallb_forall, Rests.
     + apply weights_right, in_map, Ha.
-    + apply no_fees_are_below_0.
+    + apply fees_at_arrival_are_not_negative.
+    + apply fees_on_the_way_are_not_negative.
+    + apply fees_on_the_way_add_up.
   - apply (plans_lawful i s lawful p a); auto.
 Qed.
 
@@ -350,7 +446,8 @@ Lemma all_parts_are_below_the_total : refused_claims i tf successors table c (ro
   parts table c <= scale c * total_cost i s.
 Proof.
   intros H. apply accepted_claims_are_below_plans in H; auto. rewrite each_plan_counts_once in H.
-  unfold priced_plan in H. rewrite sum_of_sums in H. unfold own_plan in H. rewrite sum_of_sums, cuts_count_the_rest in H.
+  unfold priced_plan in H. rewrite sum_of_sums in H. unfold own_plan in H.
+  rewrite sum_of_sums, cuts_count_the_rest in H.
   pose proof fees_are_no_more_than_their_worth as Fees.
   pose proof (all_pay_no_more_than_prices_times_capacities i s right lawful (prices c) prices_right) as Paid.
   unfold parts. rewrite !total_of_is_the_sum.
@@ -365,8 +462,8 @@ Qed.
 End Instance.
 
 (** bound/robots: a robot has no claim only where no way leads to its goal. *)
-Theorem robot_without_a_claim_has_no_way i tf own a early e : Well_formed i -> In a (robots i) ->
-  claim_accepted i tf (listed (successor_table i)) (takes_in (resource_table i) a) own a early None e = true ->
+Theorem robot_without_a_claim_has_no_way i tf own a dues e : Well_formed i -> In a (robots i) ->
+  claim_accepted i tf (listed (successor_table i)) (takes_in (resource_table i) a) own a dues None e = true ->
     ~ Plannable i a.
 Proof.
   intros right Ha H. unfold claim_accepted in H. apply andb_true_iff in H as [Least H].

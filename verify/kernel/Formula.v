@@ -24,11 +24,11 @@ Inductive meaning :=
 | Crowded (first end_ place tick least : Z).
 
 (** The plans of the group that a formula asks for: any lawful ones, those that cost less than a total together, or
-    those that enter their goals by deadlines (robot, tick). *)
+    those that keep deadlines. *)
 Inductive demand :=
 | Lawful_plans
 | Cheaper_than (total : Z)
-| In_time (due : list (Z * Z)).
+| In_time (due : list deadline).
 
 (** Why a clause holds. *)
 Inductive reason :=
@@ -46,7 +46,8 @@ Inductive reason :=
 | Are_two (one other place tick : Z)
 | Exchange (one other source target tick : Z)
 | Is_cheaper
-| Is_in_time (id : Z).
+| Is_in_time (id : Z)
+| Is_seen (id : Z).
 
 (** What the clauses of a robot rest on: its rank among the delays that are added up, its seat among the robots that are
     counted, its least cost, the least ticks from leaving a resource to entering the goal, the least tick at which it is
@@ -73,23 +74,38 @@ Record tables := Tables {
   onwards : Z -> list Z;
   backwards : Z -> list Z;
   crew : list member;
-  member_of : Map.t member
+  member_of : Map.t member;
+  dues : Map.t deadline
 }.
 
 Definition predecessor_table (i : instance) : Map.t (list Z) :=
   fold_left (fun m e => enlist (snd e) (fst e) m) (moves_of_graph i) (Map.empty (list Z)).
 
-Definition tables_of (i : instance) (group : list robot) (b : blueprint) : tables :=
+Definition tables_of (i : instance) (group : list robot) (asked : demand) (b : blueprint) : tables :=
   let all := combine group (guides b) in
   let moves := successor_table i in
   let back := predecessor_table i in
-  Tables (after_goal i) (resource_table i) (listed moves) (listed back) all (index (fun m => robot_id (fst m)) all).
+  Tables (after_goal i) (resource_table i) (listed moves) (listed back) all (index (fun m => robot_id (fst m)) all)
+    (index who match asked with In_time due => due | _ => [] end).
 
 Section Checker.
 Variable w : tables.
 
-Definition is_passable (a : robot) (r : Z) : bool :=
-  match policy w with Vanish => negb (r =? goal a) | Park => true end.
+(** The tick at which the robot is seen, if it is. *)
+Definition seen_tick (id : Z) : option Z :=
+  match Map.find id (dues w) with
+  | Some d => match seen d with Some s => Some (seen_at s) | None => None end
+  | None => None
+  end.
+
+(** A robot that is seen is described up to then. *)
+Definition is_described (id t : Z) : bool := match seen_tick id with Some last => t <=? last | None => true end.
+
+(** A robot may go on from its goal if it parks, or is seen. *)
+Definition goes_through (a : robot) : bool :=
+  match policy w, seen_tick (robot_id a) with Vanish, None => false | _, _ => true end.
+
+Definition is_passable (a : robot) (r : Z) : bool := passable (goes_through a) a r.
 
 (** ** Guides *)
 
@@ -153,6 +169,7 @@ Definition if_free (c : list signed) (id r t : Z) : bool :=
 
 (** The clause holds if the robot is not in the resource at the tick. *)
 Definition unless_present (c : list signed) (id r t : Z) : bool :=
+  is_described id t &&
   of_robot id (fun a g =>
     let ticks := takes_in (places w) a r in
     existsb (fun l =>
@@ -165,6 +182,15 @@ Definition unless_present (c : list signed) (id r t : Z) : bool :=
       end) c ||
     (r =? goal a) && if_costs c id (t + 1 - release a) &&
       match policy w with Park => true | Vanish => if_cheaper c id (t + 1 - release a - ticks) end).
+
+(** The clause holds if the robot is free to leave the resource at the tick: it waited there, as far as it is described,
+    or moved there, and did not start there. *)
+Definition if_came (c : list signed) (id r t : Z) : bool :=
+  of_robot id (fun a _ =>
+    let ticks := takes_in (places w) a r in
+    (negb (is_described id (t - 1)) || if_free c id r (t - 1)) &&
+    forallb (fun s => if_free c id s (t - ticks)) (backwards w r) &&
+    negb ((r =? start a) && (t =? release a + ticks))).
 
 (** ** Sums: what a false literal says of robots in a range, and what makes a literal true *)
 
@@ -236,14 +262,48 @@ Definition too_late (asked : demand) (c : list signed) : bool :=
   | _ => false
   end.
 
-(** The clause holds if the robot enters its goal by its deadline. *)
-Definition if_in_time (asked : demand) (c : list signed) (id : Z) : bool :=
-  match asked with
-  | In_time due =>
-      of_robot id (fun a _ =>
-        existsb (fun d => (fst d =? id) && if_cheaper c id (snd d + 1 - release a)) due)
-  | _ => false
-  end.
+(** f holds at each tick from [first] up to, not including, [end_]. *)
+Definition always (f : Z -> bool) (first end_ : Z) : bool := span (fun t => Z.b2z (negb (f t))) first end_ =? 0.
+
+(** The clause holds if the robot comes no later than it must: by its deadline, or on a shortest way from a spot where
+    it is seen. *)
+Definition if_in_time (c : list signed) (id : Z) : bool :=
+  of_robot id (fun a g =>
+    match Map.find id (dues w) with
+    | Some d =>
+        if_cheaper c id (last_arrival d + 1 - release a) &&
+        match seen d with
+        | Some s =>
+            forallb (fun r =>
+              match Map.find r (rests g) with
+              | Some rest =>
+                  if_cheaper c id (seen_at s + takes_in (places w) a r + Z.max 0 rest + 1 - release a)
+              | None => true
+              end) (spots s)
+        | None => true
+        end
+    | None => false
+    end).
+
+Definition is_free_at (r : Z) (l : signed) : bool := match snd l with Free _ r' _ => r' =? r | _ => false end.
+
+(** The clause holds if the robot arrives by its deadline or is seen in a spot. A robot that is in a resource is free to
+    leave it at the next tick, or later, first within the resource's duration. *)
+Definition if_seen (c : list signed) (id : Z) : bool :=
+  of_robot id (fun a _ =>
+    match Map.find id (dues w) with
+    | Some d =>
+        if_cheaper c id (last_arrival d + 1 - release a) &&
+        match seen d with
+        | Some s =>
+            forallb (fun r =>
+              let here := filter (is_free_at r) c in
+              always (fun t => if_free here id r t || if_came here id r t)
+                (seen_at s + 1) (seen_at s + takes_in (places w) a r + 1)) (spots s)
+        | None => true
+        end
+    | None => false
+    end).
 
 (** The reason holds for the clause. *)
 Definition justified (asked : demand) (c : list signed) (why : reason) : bool :=
@@ -254,20 +314,15 @@ Definition justified (asked : demand) (c : list signed) (why : reason) : bool :=
         (negb (start a =? goal a) || if_cheaper c id 1))
   | Waits_moves_or_arrives id r t =>
       of_robot id (fun a _ =>
-        unless_free c id r t && if_free c id r (t + 1) &&
+        is_described id t && unless_free c id r t && if_free c id r (t + 1) &&
         forallb (fun s =>
           if_free c id s (t + takes_in (places w) a s) &&
           (negb (s =? goal a) || if_cheaper c id (t + 1 - release a))) (onwards w r))
-  | Waited_or_moved id r t =>
-      of_robot id (fun a _ =>
-        let ticks := takes_in (places w) a r in
-        unless_free c id r t && if_free c id r (t - 1) &&
-        forallb (fun s => if_free c id s (t - ticks)) (backwards w r) &&
-        negb ((r =? start a) && (t =? release a + ticks)))
+  | Waited_or_moved id r t => unless_free c id r t && if_came c id r t
   | Passes id r t => of_robot id (fun _ _ => unless_free c id r t && if_free c id r t)
   | Arrives id cost =>
       of_robot id (fun a _ =>
-        if_costs c id (cost + 1) && if_cheaper c id cost &&
+        is_described id (release a + cost) && if_costs c id (cost + 1) && if_cheaper c id cost &&
         forallb (fun s => if_free c id s (release a + cost)) (backwards w (goal a)) &&
         negb ((start a =? goal a) && (cost =? 0)))
   | Costs_one_way id cost => of_robot id (fun _ _ => if_costs c id cost && if_cheaper c id cost)
@@ -285,7 +340,8 @@ Definition justified (asked : demand) (c : list signed) (why : reason) : bool :=
       negb (one =? other) && negb (r =? s) && unless_free c one r t && unless_free c other s t &&
       unless_present c one s t && unless_present c other r t
   | Is_cheaper => too_late asked c
-  | Is_in_time id => if_in_time asked c id
+  | Is_in_time id => if_in_time c id
+  | Is_seen id => if_seen c id
   end.
 
 (** A literal as its variable's meaning has it; one without a meaning is left out. *)
@@ -315,7 +371,7 @@ End Checker.
 (** Every clause of the formula is kept by every lawful solution that plans every robot and in which the group does what
     is demanded. *)
 Definition blueprint_accepted (i : instance) (group : list robot) (asked : demand) (b : blueprint) : bool :=
-  let w := tables_of i group b in
+  let w := tables_of i group asked b in
   (length (guides b) =? length group)%nat &&
   forallb (guide_accepted w (resource_ids i)) (crew w) &&
   all_justified w asked (meanings b) (formula b) (reasons b).
@@ -339,7 +395,7 @@ Definition cut_refuted (i : instance) (k : cut) : blueprint -> list (list word) 
   group_refuted i (members k) (Cheaper_than (least_total k)).
 
 Definition deadlines_refuted (i : instance) (g : group) : blueprint -> list (list word) -> bool :=
-  group_refuted i (map fst (deadlines g)) (In_time (deadlines g)).
+  group_refuted i (map who (deadlines g)) (In_time (deadlines g)).
 
 (** Each claim has a proof. *)
 Fixpoint all_refuted {A} (claim_refuted : A -> blueprint -> list (list word) -> bool) (claimed : list A)

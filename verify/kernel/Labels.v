@@ -194,15 +194,25 @@ End Tables.
 (** * The claim of one robot *)
 
 (** The evidence that a robot has no way of less weighted cost and prices than [claimed]: for resources that lead to its
-    goal, least ticks from leaving them to entering it; labels; and a way through the graph. Who arrives at a tick pays [early]
-    for the deadlines that it keeps. *)
+    goal, least ticks from leaving them to entering it; labels; and a way through the graph. For the deadlines that it
+    keeps, it pays [early] at the tick at which it arrives, and [passing] for being in a resource, on its way, from one
+    tick up to another. *)
 Record claim := Claim {
   claimed : Z;
   weight : Z;
   rest_of : Z -> option Z;
   label_at : Z -> Z -> option Z;
-  early : Z -> Z
+  early : Z -> Z;
+  passing : Z -> Z -> Z -> Z
 }.
+
+(** What a robot pays on its way: in each visit but the last. *)
+Fixpoint passed (pay : Z -> Z -> Z -> Z) (vs : list visit) : Z :=
+  match vs with
+  | [] => 0
+  | v :: rest =>
+      match rest with [] => 0 | w :: _ => pay (visit_resource v) (enter v) (enter w) end + passed pay rest
+  end.
 
 Section Claim.
 Variables (i : instance) (tf : tariff) (successors : Z -> list Z) (takes : Z -> Z) (a : robot) (c : claim).
@@ -225,11 +235,11 @@ Definition arrives_covered (amount t : Z) : bool :=
 (** Who enters the resource at the tick, and has paid the amount: it may be there for the last time, or go on. *)
 Definition entry_covered (amount r t : Z) : bool :=
   (negb (r =? goal a) || arrives_covered amount t) &&
-  (let ready := t + takes r in covered (amount + stay_price tf r t ready) r ready).
+  (let ready := t + takes r in covered (amount + stay_price tf r t ready + passing c r t ready) r ready).
 
 (** All that may follow a label is covered: waiting for a tick, and each move. *)
 Definition label_is_closed (r t label : Z) : bool :=
-  covered (label + wait_price tf r t) r (t + 1) &&
+  covered (label + wait_price tf r t + passing c r t (t + 1)) r (t + 1) &&
   forallb (fun s => entry_covered (label + move_price tf r s t) s t) (successors r).
 
 (** The remaining ticks are no more than along each move. *)
@@ -247,7 +257,10 @@ Record Claim_holds : Prop := {
   labels_are_closed : forall r t label, label_at c r t = Some label -> label_is_closed r t label = true;
   all_rests_are_least : forall r, In r (resource_ids i) -> rests_are_least r = true;
   weight_is_not_negative : 0 <= weight c;
-  early_is_not_negative : forall t, 0 <= early c t
+  early_is_not_negative : forall t, 0 <= early c t;
+  passing_is_not_negative : forall r first end_, 0 <= passing c r first end_;
+  passing_adds_up : forall r first middle end_, first <= middle <= end_ ->
+    passing c r first end_ = passing c r first middle + passing c r middle end_
 }.
 
 Variable xs : list price.
@@ -279,6 +292,9 @@ Qed.
 Hypothesis closed : forall r t label, label_at c r t = Some label -> label_is_closed r t label = true.
 Hypothesis weighted : 0 <= weight c.
 Hypothesis charged : forall t, 0 <= early c t.
+Hypothesis tolled : forall r first end_, 0 <= passing c r first end_.
+Hypothesis tolls_add_up : forall r first middle end_, first <= middle <= end_ ->
+  passing c r first end_ = passing c r first middle + passing c r middle end_.
 
 Lemma who_pays_more_is_covered amount more r t : amount <= more -> covered amount r t = true -> covered more r t = true.
 Proof.
@@ -288,11 +304,22 @@ Qed.
 
 (** What a way costs from its first visit on, after the amount was paid before it. *)
 Definition priced_cost (vs : list visit) : Z :=
-  paid xs vs + weight c * (arrives vs - release a) + early c (arrives vs).
+  paid xs vs + weight c * (arrives vs - release a) + early c (arrives vs) + passed (passing c) vs.
 
 Lemma paid_from_the_second_visit_on v w rest :
   paid xs (v :: w :: rest) = visit_paid xs v + move_paid xs v w + paid xs (w :: rest).
 Proof. reflexivity. Qed.
+
+Lemma passed_from_the_second_visit_on v w rest :
+  passed (passing c) (v :: w :: rest) =
+  passing c (visit_resource v) (enter v) (enter w) + passed (passing c) (w :: rest).
+Proof. reflexivity. Qed.
+
+Lemma nothing_is_passed_below_0 vs : 0 <= passed (passing c) vs.
+Proof.
+  induction vs as [| v [| w rest] IH]; [simpl; lia | simpl; lia |]. rewrite passed_from_the_second_visit_on.
+  pose proof (tolled (visit_resource v) (enter v) (enter w)). lia.
+Qed.
 
 Lemma covered_entry_is_claimed v before : Way i a [v] -> 
   arrives_covered before (enter v) = true -> claimed c <= before + priced_cost [v].
@@ -307,7 +334,8 @@ Qed.
 (** Who is covered when free to leave the first visit comes to the claim. *)
 Lemma covered_way_is_claimed vs : Way i a vs -> forall v w rest, vs = v :: w :: rest -> forall before t,
   enter v + need i a (visit_resource v) <= t <= enter w ->
-  covered (before + visit_paid xs (Visit (visit_resource v) (enter v) (Some t))) (visit_resource v) t = true ->
+  covered (before + visit_paid xs (Visit (visit_resource v) (enter v) (Some t)) +
+    passing c (visit_resource v) (enter v) t) (visit_resource v) t = true ->
   claimed c <= before + priced_cost vs.
 Proof.
   intros H. induction H as [v Hg Hl | v w later Hl Hn Hm Hw IH]; intros v' w' rest E; [discriminate |].
@@ -319,9 +347,11 @@ Proof.
   remember (Z.to_nat (enter w - t)) as n eqn:N. revert t N. induction n as [| n IHn]; intros t N T C.
   - assert (t = enter w) by lia. subst t. clear N T. unfold covered in C. rewrite R in C.
     apply orb_true_iff in C as [C | C].
-    { split_bools. unfold priced_cost. rewrite paid_from_the_second_visit_on.
+    { split_bools. unfold priced_cost. rewrite paid_from_the_second_visit_on, passed_from_the_second_visit_on.
       pose proof (nothing_is_paid_below_0 tf xs tables (w :: later)).
+      pose proof (nothing_is_passed_below_0 (w :: later)).
       pose proof (no_move_pays_below_0 tf xs tables (Visit r first (Some (enter w))) w).
+      cbn [visit_resource enter] in *.
       match goal with |- context [early c ?at_] => pose proof (charged at_) end. nia. }
     destruct (label_at c r (enter w)) as [label |] eqn:Label; [| discriminate]. split_bools.
     pose proof (closed _ _ _ Label) as K. apply andb_true_iff in K as [_ K].
@@ -329,7 +359,8 @@ Proof.
     apply andb_true_iff in M as [Last On].
     destruct (moves_join_resources i right _ _ Hm) as (Different & _).
     pose proof (move_price_is_paid tf xs tables (Visit r first (Some (enter w))) w Different) as Move. simpl in Move.
-    set (v := Visit r first (Some (enter w))). set (before' := before + visit_paid xs v + move_paid xs v w).
+    set (v := Visit r first (Some (enter w))).
+    set (before' := before + visit_paid xs v + passing c r first (enter w) + move_paid xs v w).
     assert (Goal : claimed c <= before' + priced_cost (w :: later)).
     { destruct later as [| u rest].
       - inversion Hw as [w' Hg |]; subst. rewrite Hg, Z.eqb_refl in Last. simpl in Last.
@@ -340,18 +371,22 @@ Proof.
         rewrite durations in On. eapply who_pays_more_is_covered; [| exact On].
         rewrite stay_price_is_paid with (tf := tf) by auto.
         unfold before', v. lia. }
-    unfold before', v, priced_cost in *. rewrite paid_from_the_second_visit_on.
+    unfold before', v, priced_cost in *. rewrite paid_from_the_second_visit_on, passed_from_the_second_visit_on.
+    cbn [visit_resource enter].
     change (arrives (Visit r first (Some (enter w)) :: w :: later)) with (arrives (w :: later)). lia.
   - unfold covered in C. rewrite R in C. apply orb_true_iff in C as [C | C].
-    { split_bools. unfold priced_cost. rewrite paid_from_the_second_visit_on.
+    { split_bools. unfold priced_cost. rewrite paid_from_the_second_visit_on, passed_from_the_second_visit_on.
       pose proof (nothing_is_paid_below_0 tf xs tables (w :: later)).
+      pose proof (nothing_is_passed_below_0 (w :: later)).
       pose proof (no_move_pays_below_0 tf xs tables (Visit r first (Some (enter w))) w).
+      pose proof (tolls_add_up r first t (enter w) ltac:(lia)). pose proof (tolled r t (enter w)).
+      cbn [visit_resource enter] in *.
       pose proof (longer_stay_pays_more tf xs tables r first t (enter w)).
       match goal with |- context [early c ?at_] => pose proof (charged at_) end. nia. }
     destruct (label_at c r t) as [label |] eqn:Label; [| discriminate]. split_bools.
     pose proof (closed _ _ _ Label) as K. apply andb_true_iff in K as [K _].
     apply (IHn (t + 1)); [lia | lia |]. eapply who_pays_more_is_covered; [| exact K].
-    rewrite (stay_pays_a_tick_more tf xs tables) by lia. lia.
+    rewrite (stay_pays_a_tick_more tf xs tables), (tolls_add_up r first t (t + 1)) by lia. lia.
 Qed.
 
 End Claim.
@@ -360,9 +395,9 @@ End Claim.
 Theorem claim_is_below_every_plan i tf successors takes a c xs p : Well_formed i -> In a (robots i) ->
   Holds_prices tf xs -> (forall r s, Move i r s -> In s (successors r)) -> (forall r, takes r = need i a r) ->
   Claim_holds i tf successors takes a c -> Plan_lawful i a p ->
-  claimed c <= paid xs (visits p) + weight c * cost a p + early c (arrives (visits p)).
+  claimed c <= paid xs (visits p) + weight c * cost a p + early c (arrives (visits p)) + passed (passing c) (visits p).
 Proof.
-  intros right known tables moves durations [Start Closed Least Weight Early] lawful.
+  intros right known tables moves durations [Start Closed Least Weight Early Passing Adds] lawful.
   pose proof (lawful_plan_is_a_way i a right known p lawful) as W.
   destruct (starts_at_release i a p lawful) as (v & rest & E & R & T). unfold cost, arrival. rewrite E in *.
   change (fold_left (fun _ v => enter v) (v :: rest) (release a)) with (arrives (v :: rest)).
@@ -373,7 +408,7 @@ Proof.
     unfold priced_cost in P. apply P in Last. lia.
   - inversion W; subst.
     pose proof (covered_way_is_claimed i tf successors takes a c xs right known tables moves durations Least Closed
-      Weight Early (v :: w :: later) W v w later eq_refl 0 (enter v + need i a (visit_resource v))) as P.
+      Weight Early Passing Adds (v :: w :: later) W v w later eq_refl 0 (enter v + need i a (visit_resource v))) as P.
     unfold priced_cost in P. rewrite T in *. apply P; [lia |].
     rewrite stay_price_is_paid with (tf := tf), <- durations by auto. exact On.
 Qed.

@@ -6,7 +6,7 @@ Import ListNotations.
 Open Scope Z_scope.
 
 (** The tables are those of the instance, and all guides are accepted. *)
-Record Right_tables (i : instance) (w : tables) : Prop := {
+Record Right_tables (i : instance) (asked : demand) (w : tables) : Prop := {
   policy_is_right : policy w = after_goal i;
   takes_are_right : forall a r, takes_in (places w) a r = need i a r;
   places_are_right : forall r x, Map.find r (places w) = Some x -> In x (resources i) /\ resource_id x = r;
@@ -15,6 +15,8 @@ Record Right_tables (i : instance) (w : tables) : Prop := {
   crew_is_known : forall m, In m (crew w) -> In (fst m) (robots i);
   crew_is_distinct : NoDup (map (fun m : member => robot_id (fst m)) (crew w));
   members_are_found : forall id m, Map.find id (member_of w) = Some m <-> In m (crew w) /\ robot_id (fst m) = id;
+  dues_are_demanded : forall id d, Map.find id (dues w) = Some d ->
+    who d = id /\ exists all, asked = In_time all /\ In d all;
   guides_are_accepted : forall m, In m (crew w) -> guide_accepted w (resource_ids i) m = true
 }.
 
@@ -32,14 +34,25 @@ Qed.
 Lemma combined_with_as_many {A B} (l : list A) (m : list B) : length m = length l -> map fst (combine l m) = l.
 Proof. revert m. induction l as [| x l IH]; intros [| y m] E; try discriminate; auto. simpl. rewrite IH; auto. Qed.
 
-Lemma tables_are_right i group b : Well_formed i -> (forall a, In a group -> In a (robots i)) ->
+Lemma found_in_index_is_listed {A} (key : A -> Z) l k x : Map.find k (index key l) = Some x -> In x l /\ key x = k.
+Proof.
+  unfold index.
+  assert (H : forall l m, Map.find k (fold_left (fun m x => Map.add (key x) x m) l m) = Some x ->
+    In x l /\ key x = k \/ Map.find k m = Some x).
+  { clear l. induction l as [| y l IH]; intros m; simpl; auto. intros F. apply IH in F as [F | F]; [tauto |].
+    rewrite Map_facts.add_o in F. destruct (OrderedTypeEx.Z_as_OT.eq_dec (key y) k) as [E | E]; auto.
+    injection F as ->. auto. }
+  intros F. apply H in F as [F | F]; auto. rewrite Map_facts.empty_o in F. discriminate.
+Qed.
+
+Lemma tables_are_right i group asked b : Well_formed i -> (forall a, In a group -> In a (robots i)) ->
   NoDup (map robot_id group) -> (length (guides b) =? length group)%nat = true ->
-  forallb (guide_accepted (tables_of i group b) (resource_ids i)) (crew (tables_of i group b)) = true ->
-  Right_tables i (tables_of i group b).
+  forallb (guide_accepted (tables_of i group asked b) (resource_ids i)) (crew (tables_of i group asked b)) = true ->
+  Right_tables i asked (tables_of i group asked b).
 Proof.
   intros right Known Distinct Length Guides. apply Nat.eqb_eq in Length.
-  assert (All : map fst (crew (tables_of i group b)) = group) by (apply combined_with_as_many, Length).
-  assert (N : NoDup (map (fun m : member => robot_id (fst m)) (crew (tables_of i group b)))).
+  assert (All : map fst (crew (tables_of i group asked b)) = group) by (apply combined_with_as_many, Length).
+  assert (N : NoDup (map (fun m : member => robot_id (fst m)) (crew (tables_of i group asked b)))).
   { rewrite <- All, map_map in Distinct. exact Distinct. }
   constructor; auto.
   - intros a r. apply takes_what_is_needed, right.
@@ -48,40 +61,272 @@ Proof.
   - intros r s. apply predecessors_are_moves, right.
   - intros m H. apply Known. rewrite <- All. apply in_map, H.
   - intros id m. apply (find_in_index (fun m : member => robot_id (fst m))), N.
+  - intros id d F. apply (found_in_index_is_listed who) in F as [F E]. destruct asked; [destruct F.. |]. eauto.
   - apply forallb_forall, Guides.
 Qed.
-
-(** The robot enters its goal for the last time by its deadline (robot, tick), if it has a plan. *)
-Definition Keeps_deadline (s : solution) (d : Z * Z) : Prop :=
-  forall p, In p (plans s) -> plan_robot p = fst d -> arrives (visits p) <= snd d.
 
 (** The robots of the group do what is demanded. *)
 Definition Meets (i : instance) (s : solution) (group : list robot) (asked : demand) : Prop :=
   match asked with
   | Lawful_plans => True
   | Cheaper_than total => sum (fun a => cost_of_robot i s (robot_id a)) group < total
-  | In_time due => forall d, In d due -> Keeps_deadline s d
+  | In_time due => forall d p, In d due -> In p (plans s) -> plan_robot p = who d -> Keeps d p
   end.
 
 Lemma sum_over_images {A B} (f : B -> Z) (g : A -> B) l : sum f (map g l) = sum (fun x => f (g x)) l.
 Proof. induction l as [| x l IH]; simpl; auto. rewrite IH. reflexivity. Qed.
 
+Lemma always_holds f first end_ : always f first end_ = true -> forall t, first <= t < end_ -> f t = true.
+Proof.
+  unfold always. intros H. apply Z.eqb_eq in H. revert H.
+  assert (P : forall n, 0 <= span (fun t => Z.b2z (negb (f t))) first n).
+  { intros n. pattern n. apply (by_the_end _ first); clear n; intros n Hn.
+    - rewrite span_is_empty by lia. lia.
+    - intros IH. rewrite span_to_the_next_tick by lia. destruct (f n); simpl; lia. }
+  pattern end_. apply (by_the_end _ first); clear end_; intros end_ L; [intros; lia |].
+  intros IH H t Ht. rewrite span_to_the_next_tick in H by lia. specialize (P end_).
+  destruct (Z.eq_dec t end_) as [-> | N]; [| apply IH; [| lia]]; destruct (f end_); auto; simpl in H; lia.
+Qed.
+
 Section Solution.
-Variables (i : instance) (w : tables) (s : solution).
+Variables (i : instance) (asked : demand) (w : tables) (s : solution).
 Hypothesis right : Well_formed i.
-Hypothesis tabled : Right_tables i w.
+Hypothesis tabled : Right_tables i asked w.
 Hypothesis lawful : Lawful i s.
 Hypothesis complete : Plans_every_plannable_robot i s.
 
+(** * Members *)
+
+Lemma member_is_a_robot m : In m (crew w) -> In (fst m) (robots i).
+Proof. apply (crew_is_known i asked w tabled). Qed.
+
+Lemma member_has_a_plan m : In m (crew w) -> exists p v rest, In p (plans s) /\ plan_robot p = robot_id (fst m) /\
+  Way i (fst m) (visits p) /\ visits p = v :: rest /\ visit_resource v = start (fst m) /\ enter v = release (fst m).
+Proof.
+  intros H. pose proof (guides_are_accepted i asked w tabled m H) as G. pose proof (member_is_a_robot m H) as Ha.
+  destruct m as [a g]. simpl in *. decided.
+  assert (P : In (robot_id a) (planned s)).
+  { apply complete; auto. apply (leads_on_leads (onwards w) i _ (leads g)); auto.
+    intros r t. apply (onwards_are_moves i asked w tabled). }
+  apply in_map_iff in P as (p & E & Hp). pose proof (plans_lawful i s lawful p a Hp Ha (eq_sym E)) as L.
+  destruct (starts_at_release i a p L) as (v & rest & V & R & T). exists p, v, rest.
+  repeat split; auto. apply lawful_plan_is_a_way; auto.
+Qed.
+
+(** ** What accepted guides say *)
+
+Lemma guides_are_right a g r t : In (a, g) (crew w) -> Move i r t -> guides_moves w (a, g) r = true.
+Proof.
+  intros H M. pose proof (guides_are_accepted i asked w tabled _ H) as G. cbn [guide_accepted] in G. decided.
+  match goal with K : forallb _ _ = true |- _ => apply (proj1 (forallb_forall _ _) K) end.
+  apply (moves_join_resources i right r t M).
+Qed.
+
+Lemma at_most_iff x y : at_most x y = true <-> exists n, x = Some n /\ n <= y.
+Proof.
+  destruct x as [n |]; simpl; [rewrite Z.leb_le |]; split; try discriminate; eauto.
+  - intros (m & E & L). injection E as ->. auto.
+  - intros (m & E & _). discriminate.
+Qed.
+
+Lemma guided_rests_are_least a g : In (a, g) (crew w) -> forall r t, Move i r t ->
+  (t = goal a -> exists x, Map.find r (rests g) = Some x /\ x <= 0) /\
+  (forall y, Map.find t (rests g) = Some y -> exists x, Map.find r (rests g) = Some x /\ x <= need i a t + y).
+Proof.
+  intros H r t M. pose proof (guides_are_right a g r t H M) as G. unfold guides_moves in G.
+  pose proof (proj1 (forallb_forall _ _) G t (proj2 (onwards_are_moves i asked w tabled r t) M)) as K.
+  cbv zeta beta in K.
+  rewrite (takes_are_right i asked w tabled) in K. apply andb_true_iff in K as [K L]. split.
+  - intros ->. rewrite Z.eqb_refl in K. apply at_most_iff, K.
+  - intros y E. rewrite E in L. apply andb_true_iff in L as [L _]. apply at_most_iff, L.
+Qed.
+
+Lemma guided_firsts_are_least a g : In (a, g) (crew w) -> forall r t x, Move i r t ->
+  Map.find r (firsts g) = Some x -> is_passable w a t = true -> Map.find t (rests g) <> None ->
+  exists y, Map.find t (firsts g) = Some y /\ y <= x + need i a t.
+Proof.
+  intros H r t x M F P N. pose proof (guides_are_right a g r t H M) as G. unfold guides_moves in G.
+  pose proof (proj1 (forallb_forall _ _) G t (proj2 (onwards_are_moves i asked w tabled r t) M)) as K.
+  cbv zeta beta in K.
+  rewrite (takes_are_right i asked w tabled), F, P in K. apply andb_true_iff in K as [_ K].
+  destruct (Map.find t (rests g)); [| congruence]. apply andb_true_iff in K as [_ K]. apply at_most_iff, K.
+Qed.
+
+Lemma described_up_to id t : is_described w id t = true -> Described (seen_tick w id) t.
+Proof. unfold is_described, Described. destruct (seen_tick w id); auto. apply Z.leb_le. Qed.
+
+(** * Routes of robots that do what is demanded *)
+
+(** The visits and the arrival are as the robot's clauses have them: those of its plan, up to where it is seen. *)
+Definition Comes_in_time (m : member) (vs : list visit) (end_ : Z) (d : deadline) : Prop :=
+  end_ <= last_arrival d \/
+  exists sight r rest t, seen d = Some sight /\ In r (spots sight) /\ Map.find r (rests (snd m)) = Some rest /\
+    seen_at sight < t <= seen_at sight + need i (fst m) r /\
+    end_ <= t + Z.max 0 rest /\ is_free i (fst m) vs r t = true.
+
+Record Describes (m : member) (vs : list visit) (end_ : Z) : Prop := {
+  is_a_route : Route i (fst m) (goes_through w (fst m)) (seen_tick w (robot_id (fst m)))
+    (fun r => Map.find r (rests (snd m))) vs end_;
+  begins_at_release : exists v later, vs = v :: later /\ visit_resource v = start (fst m) /\ enter v = release (fst m);
+  holds_what_it_visits : forall r t, Described (seen_tick w (robot_id (fst m))) t -> is_in i (fst m) vs r t = true ->
+    Occupies (plans s) (robot_id (fst m)) r t;
+  makes_its_moves : forall r x t, Described (seen_tick w (robot_id (fst m))) t -> is_free i (fst m) vs r t = true ->
+    is_in i (fst m) vs x t = true -> r <> x -> Makes_move (plans s) (robot_id (fst m)) r x t;
+  costs_no_more : end_ - release (fst m) <= cost_of_robot i s (robot_id (fst m));
+  comes_in_time : forall d, Map.find (robot_id (fst m)) (dues w) = Some d -> Comes_in_time m vs end_ d
+}.
+
+Lemma parking_robots_go_through a : after_goal i = Park -> goes_through w a = true.
+Proof. intros P. unfold goes_through. rewrite (policy_is_right i asked w tabled), P. reflexivity. Qed.
+
+Lemma cost_is_of_the_plan m p : In m (crew w) -> In p (plans s) -> plan_robot p = robot_id (fst m) ->
+  arrives (visits p) - release (fst m) <= cost_of_robot i s (robot_id (fst m)).
+Proof.
+  intros H Hp E. pose proof (member_is_a_robot m H) as Ha.
+  assert (C : forall q, In q (plans s) -> 0 <= cost_of_plan i q).
+  { intros q Hq. destruct (plan_is_a_way i s right lawful q Hq) as (a & Hb & F & Wq).
+    rewrite (cost_is_of_robot i right a q Hb (eq_sym F)).
+    destruct (starts_at_release i a q (plans_lawful i s lawful q a Hq Hb F)) as (u & later & U & _ & T).
+    pose proof (way_does_not_arrive_before_it_starts i right a _ Hb Wq u later U) as A.
+    unfold cost, arrival. rewrite U in *. unfold arrives in A. simpl in *. lia. }
+  unfold cost_of_robot.
+  pose proof (sum_is_above_each (fun q => if plan_robot q =? robot_id (fst m) then cost_of_plan i q else 0) (plans s) p)
+    as S. cbv beta in S. rewrite E, Z.eqb_refl in S. rewrite (cost_is_of_robot i right (fst m) p Ha E) in S.
+  assert (K : cost (fst m) p = arrives (visits p) - release (fst m)).
+  { destruct (starts_at_release i (fst m) p (plans_lawful i s lawful p (fst m) Hp Ha (eq_sym E))) as (v & rest & V & _).
+    unfold cost, arrival, arrives. rewrite V. reflexivity. }
+  rewrite K in S. apply S; auto. intros q Hq. destruct (_ =? _); auto; lia.
+Qed.
+
+(** A robot that arrives before it is seen, or is not seen, is described by the visits that count. *)
+Lemma arrived_member_is_described m p : In m (crew w) -> In p (plans s) -> plan_robot p = robot_id (fst m) ->
+  Way i (fst m) (visits p) ->
+  (exists v rest, visits p = v :: rest /\ visit_resource v = start (fst m) /\ enter v = release (fst m)) ->
+  Described (seen_tick w (robot_id (fst m))) (arrives (visits p)) ->
+  (forall d, Map.find (robot_id (fst m)) (dues w) = Some d -> arrives (visits p) <= last_arrival d) ->
+  let vs := counted (goes_through w (fst m)) (fst m) (visits p) in Describes m vs (arrives vs).
+Proof.
+  intros H Hp E W (v & rest & V & S & T) D Due vs. pose proof (member_is_a_robot m H) as Ha.
+  pose proof (counted_arrives_no_later i (fst m) (goes_through w (fst m)) right Ha (visits p) W) as L. fold vs in L.
+  assert (Routed : Route i (fst m) (goes_through w (fst m)) (seen_tick w (robot_id (fst m)))
+    (fun r => Map.find r (rests (snd m))) vs (arrives vs)) by (apply way_is_a_route; auto).
+  constructor; auto.
+  - destruct (counted_begins_alike (fst m) (goes_through w (fst m)) v rest) as [later C]. unfold vs. rewrite V, C.
+    eauto.
+  - intros r t _ K.
+    destruct (counted_visits_hold i (fst m) (goes_through w (fst m)) (visits p) r t W
+      (parking_robots_go_through (fst m)) K) as (u & Hu & R). exists p, u. tauto.
+  - intros r x t Dt F K N.
+    destruct (free_robot_elsewhere_moves i (fst m) _ _ _ right Ha vs _ r x t Routed Dt F K N)
+      as (before & u & u' & later & U & Hu & Hu' & Ht).
+    destruct (counted_is_a_prefix (fst m) (goes_through w (fst m)) (visits p)) as [end_ P].
+    exists p, u, u'. repeat split; auto. exists before, (later ++ end_). fold vs in P. rewrite P, U, <- app_assoc.
+    reflexivity.
+  - pose proof (cost_is_of_the_plan m p H Hp E). lia.
+  - intros d F. left. specialize (Due d F). lia.
+Qed.
+
+(** One that is seen in a spot is described up to its visit there. *)
+Lemma seen_member_is_described m p d sight v x : In m (crew w) -> In p (plans s) -> plan_robot p = robot_id (fst m) ->
+  Way i (fst m) (visits p) ->
+  (exists v rest, visits p = v :: rest /\ visit_resource v = start (fst m) /\ enter v = release (fst m)) ->
+  Map.find (robot_id (fst m)) (dues w) = Some d -> seen d = Some sight -> Consecutive p v x ->
+  In (visit_resource v) (spots sight) -> enter v <= seen_at sight < enter x ->
+  exists vs end_, Describes m vs end_.
+Proof.
+  intros H Hp E W (f & all & V & S & T) F Sight (before & later & C) Spot Seen.
+  pose proof (member_is_a_robot m H) as Ha.
+  assert (Tick : seen_tick w (robot_id (fst m)) = Some (seen_at sight)) by (unfold seen_tick; rewrite F, Sight; auto).
+  assert (Through : goes_through w (fst m) = true) by (unfold goes_through; rewrite Tick; destruct (policy w); auto).
+  rewrite C in W.
+  destruct m as [a g]. cbn [fst snd] in *.
+  destruct (way_has_a_rest i a (fun r => Map.find r (rests g)) (guided_rests_are_least a g H) (v :: x :: later)) with
+    (v := v) (w := x) (rest := later) as (rest & Rest & Least); auto.
+  { apply (way_has_ways i a before (v :: x :: later)); auto. discriminate. }
+  set (mark := Visit (goal a) (Z.max (seen_at sight + 1) (enter v + need i a (visit_resource v))) None).
+  assert (Arrival : arrives (visits p) = arrives (v :: x :: later)).
+  { rewrite C. unfold arrives. rewrite fold_left_app. reflexivity. }
+  assert (Later : enter v + need i a (visit_resource v) <= enter x /\ enter x <= arrives (v :: x :: later)).
+  { assert (W' : Way i a (v :: x :: later)) by (apply (way_has_ways i a before); auto; discriminate).
+    inversion W' as [| ? ? ? Hl Hn Hm Hw]; subst. split; auto.
+    apply (entered_before_the_arrival i a right Ha (x :: later) Hw x later eq_refl). }
+  pose proof (need_is_positive i a right Ha (visit_resource v)).
+  assert (Routed : Route i a (goes_through w a) (seen_tick w (robot_id a)) (fun r => Map.find r (rests g))
+    (before ++ [v; mark]) (enter mark + Z.max 0 rest)) by (eapply seen_way_is_a_route; eauto).
+  exists (before ++ [v; mark]), (enter mark + Z.max 0 rest). constructor; cbn [fst snd]; auto.
+  - rewrite C in V. destruct before; simpl in *; injection V as -> _; eauto.
+  - intros r t D K. unfold Described in D. rewrite Tick in D.
+    destruct (seen_visits_hold i a before v x later mark r t (seen_at sight) W) as (u & Hu & R); auto;
+      [lia | simpl; lia |]. exists p, u. rewrite C. tauto.
+  - intros r y t D Fr K N. pose proof (free_robot_elsewhere_moves i a _ _ _ right Ha _ _ r y t Routed D Fr K N)
+      as (first & u & u' & after & U & Hu & Hu' & Ht).
+    unfold Described in D. rewrite Tick in D.
+    destruct (seen_moves_are_made before v x later mark (seen_at sight) first u u' after) as [rest' M]; auto;
+      [simpl; lia | lia |]. exists p, u, u'. repeat split; auto. exists first, rest'. rewrite C. exact M.
+  - pose proof (cost_is_of_the_plan (a, g) p H Hp E) as K. cbn [fst] in K. rewrite Arrival in K. simpl enter. lia.
+  - intros d' F'. rewrite F in F'. injection F' as <-. right.
+    exists sight, (visit_resource v), rest, (enter mark). repeat split; auto; try (simpl; lia).
+    assert (M : enter v + need i a (visit_resource v) <= enter mark) by (simpl; lia). clear - M.
+    induction before as [| u before IH]; simpl app.
+    + apply mover_is_free; [exact M | lia].
+    + apply free_is_free_after, IH.
+Qed.
+
+Lemma member_is_described m : In m (crew w) -> Meets i s (map fst (crew w)) asked ->
+  exists vs end_, Describes m vs end_.
+Proof.
+  intros H L. destruct (member_has_a_plan m H) as (p & v & rest & Hp & E & W & V & S & T).
+  assert (Begins : exists v rest, visits p = v :: rest /\ visit_resource v = start (fst m) /\ enter v = release (fst m))
+    by eauto.
+  destruct (Map.find (robot_id (fst m)) (dues w)) as [d |] eqn:F.
+  - destruct (dues_are_demanded i asked w tabled _ d F) as (Who & all & Asked & Hd).
+    assert (K : Keeps d p) by (rewrite Asked in L; apply (L d p); congruence). unfold Keeps in K.
+    destruct (seen d) as [sight |] eqn:Sight.
+    + destruct K as [[K K'] | (u & x & C & Spot & Seen)]; [| eapply seen_member_is_described; eauto].
+      eexists _, _. eapply (arrived_member_is_described m p); eauto.
+      * unfold seen_tick. rewrite F, Sight. exact K'.
+      * intros d' F'. rewrite F in F'. injection F' as <-. unfold last_arrival. rewrite Sight. lia.
+    + eexists _, _. eapply (arrived_member_is_described m p); eauto.
+      * unfold seen_tick. rewrite F, Sight. exact I.
+      * intros d' F'. rewrite F in F'. injection F' as <-. unfold last_arrival. rewrite Sight. exact K.
+  - eexists _, _. eapply (arrived_member_is_described m p); eauto.
+    + unfold seen_tick. rewrite F. exact I.
+    + intros d' F'. rewrite F in F'. discriminate.
+Qed.
+
+(** Each member has what some member of its id has. *)
+Lemma all_have_one {A} (P : member -> A -> Prop) (default : A) l : NoDup (map (fun m : member => robot_id (fst m)) l) ->
+  (forall m, In m l -> exists x, P m x) -> exists f, forall m, In m l -> P m (f (robot_id (fst m))).
+Proof.
+  induction l as [| m l IH]; simpl; intros N H; [exists (fun _ => default); tauto |].
+  inversion N as [| ? ? Hm Hl]; subst.
+  destruct (IH Hl) as [f F]; auto. destruct (H m (or_introl eq_refl)) as [x X].
+  exists (fun id => if id =? robot_id (fst m) then x else f id). intros n [<- | Hn]; [rewrite Z.eqb_refl; auto |].
+  destruct (Z.eqb_spec (robot_id (fst n)) (robot_id (fst m))) as [E |]; auto. destruct Hm. rewrite <- E.
+  apply (in_map (fun m : member => robot_id (fst m))), Hn.
+Qed.
+
+Lemma crew_is_described : Meets i s (map fst (crew w)) asked -> exists routes ends,
+  forall m, In m (crew w) -> Describes m (routes (robot_id (fst m))) (ends (robot_id (fst m))).
+Proof.
+  intros L. destruct (all_have_one (fun m x => Describes m (fst x) (snd x)) ([], 0) (crew w)) as [f F].
+  - apply (crew_is_distinct i asked w tabled).
+  - intros m H. destruct (member_is_described m H L) as (vs & end_ & D). exists (vs, end_). exact D.
+  - exists (fun id => fst (f id)), (fun id => snd (f id)). exact F.
+Qed.
+
 (** * What the variables mean *)
 
-(** What counts of the robot's plan. *)
-Definition route (a : robot) : list visit :=
-  counted i a match find (fun p => plan_robot p =? robot_id a) (plans s) with Some p => visits p | None => [] end.
+Variable routes : Z -> list visit.
+Variable ends : Z -> Z.
+Hypothesis described : forall m, In m (crew w) -> Describes m (routes (robot_id (fst m))) (ends (robot_id (fst m))).
 
-Definition route_cost (a : robot) : Z := arrives (route a) - release a.
+Definition route (a : robot) : list visit := routes (robot_id a).
+Definition route_cost (a : robot) : Z := ends (robot_id a) - release a.
 Definition delay (m : member) : Z := route_cost (fst m) - shortest (snd m).
-Definition presence (r t : Z) (m : member) : Z := Z.b2z (is_in i (fst m) (route (fst m)) r t).
+Definition is_present (r t : Z) (m : member) : bool :=
+  is_described w (robot_id (fst m)) t && is_in i (fst m) (route (fst m)) r t.
+Definition presence (r t : Z) (m : member) : Z := Z.b2z (is_present r t m).
 
 (** The sum over the robots whose keys are in a range. *)
 Definition ranged (key f : member -> Z) (first end_ : Z) : Z :=
@@ -102,100 +347,17 @@ Definition is_true (m : meaning) : bool :=
 (** One of the literals is true. *)
 Definition Kept (c : list signed) : Prop := exists l, In l c /\ is_true (snd l) = fst l.
 
-(** * Members *)
-
-Lemma member_is_a_robot m : In m (crew w) -> In (fst m) (robots i).
-Proof. apply (crew_is_known i w tabled). Qed.
-
-Lemma member_has_a_plan m : In m (crew w) -> exists p v rest, In p (plans s) /\ plan_robot p = robot_id (fst m) /\
-  Way i (fst m) (visits p) /\ route (fst m) = counted i (fst m) (visits p) /\
-  visits p = v :: rest /\ visit_resource v = start (fst m) /\ enter v = release (fst m).
-Proof.
-  intros H. pose proof (guides_are_accepted i w tabled m H) as G. pose proof (member_is_a_robot m H) as Ha.
-  destruct m as [a g]. simpl in *. decided.
-  assert (P : In (robot_id a) (planned s)).
-  { apply complete; auto. apply (leads_on_leads (onwards w) i _ (leads g)); auto.
-    intros r t. apply (onwards_are_moves i w tabled). }
-  unfold route. destruct (find (fun p => plan_robot p =? robot_id a) (plans s)) as [p |] eqn:F.
-  - apply find_some in F as [Hp E]. decided. pose proof (plans_lawful i s lawful p a Hp Ha (eq_sym E)) as L.
-    destruct (starts_at_release i a p L) as (v & rest & V & R & T). exists p, v, rest.
-    repeat split; auto. apply lawful_plan_is_a_way; auto.
-  - apply in_map_iff in P as (p & E & Hp). apply (find_none _ _ F) in Hp. decided. congruence.
-Qed.
-
-Lemma member_has_a_route m : In m (crew w) -> Route i (fst m) (route (fst m)) /\
-  exists v later, route (fst m) = v :: later /\ visit_resource v = start (fst m) /\ enter v = release (fst m).
-Proof.
-  intros H. destruct (member_has_a_plan m H) as (p & v & rest & Hp & E & W & -> & V & R & T).
-  pose proof (member_is_a_robot m H) as Ha. split; [apply way_is_a_route; auto |].
-  rewrite V. destruct (counted_begins_alike i (fst m) v rest) as [later L]. eauto.
-Qed.
-
 Lemma route_costs_no_more m : In m (crew w) -> route_cost (fst m) <= cost_of_robot i s (robot_id (fst m)).
-Proof.
-  intros H. destruct (member_has_a_plan m H) as (p & v & rest & Hp & E & W & R & V & _ & _).
-  pose proof (member_is_a_robot m H) as Ha. pose proof (counted_arrives_no_later i _ right Ha _ W) as L.
-  assert (C : forall q, In q (plans s) -> 0 <= cost_of_plan i q).
-  { intros q Hq. destruct (plan_is_a_way i s right lawful q Hq) as (a & Hb & F & Wq).
-    rewrite (cost_is_of_robot i right a q Hb (eq_sym F)).
-    destruct (starts_at_release i a q (plans_lawful i s lawful q a Hq Hb F)) as (u & later & U & _ & T).
-    pose proof (way_does_not_arrive_before_it_starts i right a _ Hb Wq u later U) as A.
-    unfold cost, arrival. rewrite U in *. unfold arrives in A. simpl in *. lia. }
-  unfold cost_of_robot, route_cost. rewrite R.
-  pose proof (sum_is_above_each (fun q => if plan_robot q =? robot_id (fst m) then cost_of_plan i q else 0) (plans s) p)
-    as S. cbv beta in S. rewrite E, Z.eqb_refl in S. rewrite (cost_is_of_robot i right (fst m) p Ha E) in S.
-  assert (K : cost (fst m) p = arrives (visits p) - release (fst m)).
-  { unfold cost, arrival, arrives. rewrite V. reflexivity. }
-  rewrite K in S. etransitivity; [| apply S; auto]; [lia |].
-  intros q Hq. destruct (_ =? _); auto; lia.
-Qed.
+Proof. intros H. apply (costs_no_more m _ _ (described m H)). Qed.
 
-(** ** What accepted guides say *)
-
-Lemma is_passable_is_right a r : is_passable w a r = passable i a r.
-Proof. unfold is_passable, passable. rewrite (policy_is_right i w tabled). reflexivity. Qed.
-
-Lemma guides_are_right a g r t : In (a, g) (crew w) -> Move i r t -> guides_moves w (a, g) r = true.
-Proof.
-  intros H M. pose proof (guides_are_accepted i w tabled _ H) as G. cbn [guide_accepted] in G. decided.
-  match goal with K : forallb _ _ = true |- _ => apply (proj1 (forallb_forall _ _) K) end.
-  apply (moves_join_resources i right r t M).
-Qed.
-
-Lemma at_most_iff x y : at_most x y = true <-> exists n, x = Some n /\ n <= y.
-Proof.
-  destruct x as [n |]; simpl; [rewrite Z.leb_le |]; split; try discriminate; eauto.
-  - intros (m & E & L). injection E as ->. auto.
-  - intros (m & E & _). discriminate.
-Qed.
-
-Lemma guided_rests_are_least a g : In (a, g) (crew w) -> forall r t, Move i r t ->
-  (t = goal a -> exists x, Map.find r (rests g) = Some x /\ x <= 0) /\
-  (forall y, Map.find t (rests g) = Some y -> exists x, Map.find r (rests g) = Some x /\ x <= need i a t + y).
-Proof.
-  intros H r t M. pose proof (guides_are_right a g r t H M) as G. unfold guides_moves in G.
-  pose proof (proj1 (forallb_forall _ _) G t (proj2 (onwards_are_moves i w tabled r t) M)) as K. cbv zeta beta in K.
-  rewrite (takes_are_right i w tabled) in K. apply andb_true_iff in K as [K L]. split.
-  - intros ->. rewrite Z.eqb_refl in K. apply at_most_iff, K.
-  - intros y E. rewrite E in L. apply andb_true_iff in L as [L _]. apply at_most_iff, L.
-Qed.
-
-Lemma guided_firsts_are_least a g : In (a, g) (crew w) -> forall r t x, Move i r t ->
-  Map.find r (firsts g) = Some x -> passable i a t = true -> Map.find t (rests g) <> None ->
-  exists y, Map.find t (firsts g) = Some y /\ y <= x + need i a t.
-Proof.
-  intros H r t x M F P N. pose proof (guides_are_right a g r t H M) as G. unfold guides_moves in G.
-  pose proof (proj1 (forallb_forall _ _) G t (proj2 (onwards_are_moves i w tabled r t) M)) as K. cbv zeta beta in K.
-  rewrite (takes_are_right i w tabled), F, is_passable_is_right, P in K. apply andb_true_iff in K as [_ K].
-  destruct (Map.find t (rests g)); [| congruence]. apply andb_true_iff in K as [_ K]. apply at_most_iff, K.
-Qed.
+(** * Clauses of one robot *)
 
 Section Member.
 Variables (a : robot) (g : guide) (id : Z).
 Hypothesis found : Map.find id (member_of w) = Some (a, g).
 
 Lemma found_member : In (a, g) (crew w) /\ robot_id a = id.
-Proof. apply (members_are_found i w tabled id (a, g)), found. Qed.
+Proof. apply (members_are_found i asked w tabled id (a, g)), found. Qed.
 
 Lemma listed_member : In (a, g) (crew w).
 Proof. apply found_member. Qed.
@@ -203,8 +365,16 @@ Proof. apply found_member. Qed.
 Lemma known : In a (robots i).
 Proof. apply (member_is_a_robot (a, g) listed_member). Qed.
 
-Lemma routed : Route i a (route a).
-Proof. apply (member_has_a_route (a, g) listed_member). Qed.
+Let end_ := ends (robot_id a).
+
+Lemma routed : Route i a (goes_through w a) (seen_tick w (robot_id a)) (fun r => Map.find r (rests g)) (route a) end_.
+Proof. apply (is_a_route (a, g) _ _ (described (a, g) listed_member)). Qed.
+
+Lemma begins : exists v later, route a = v :: later /\ visit_resource v = start a /\ enter v = release a.
+Proof. apply (begins_at_release (a, g) _ _ (described (a, g) listed_member)). Qed.
+
+Lemma described_tick t : is_described w id t = true -> Described (seen_tick w (robot_id a)) t.
+Proof. rewrite (proj2 found_member). apply described_up_to. Qed.
 
 Lemma of_found_robot f : of_robot w id f = f a g.
 Proof. unfold of_robot. rewrite found. reflexivity. Qed.
@@ -214,32 +384,31 @@ Lemma free_robot_is_guided r t : is_free i a (route a) r t = true ->
   (exists first, Map.find r (firsts g) = Some first /\ first <= t) /\
   is_passable w a r = true.
 Proof.
-  intros F. pose proof (guides_are_accepted i w tabled _ listed_member) as G. cbn [guide_accepted] in G.
-  rewrite (takes_are_right i w tabled) in G. decided.
-  destruct (free_robot_has_a_rest i a (fun r => Map.find r (rests g)) (guided_rests_are_least a g listed_member)
-    _ r t routed F) as (rest & R & L).
-  split; [exists rest; unfold route_cost; split; [auto | lia] |]. split.
-  - apply (free_robot_is_not_too_early i a (fun r => Map.find r (rests g)) (guided_rests_are_least a g listed_member)
-      (fun r => Map.find r (firsts g)) (guided_firsts_are_least a g listed_member) _ r t routed); auto.
-    intros v x later E. destruct (member_has_a_route (a, g) listed_member) as (Ru & u & later' & E' & S & T).
-    cbn [fst] in *. rewrite E in E'. injection E' as <- _. rewrite S, T. apply at_most_iff. auto.
-  - rewrite is_passable_is_right. apply (free_robot_can_pass i a _ r t routed F).
+  intros F. pose proof (guides_are_accepted i asked w tabled _ listed_member) as G. cbn [guide_accepted] in G.
+  rewrite (takes_are_right i asked w tabled) in G. decided.
+  destruct (free_robot_has_a_rest i a _ _ _ (guided_rests_are_least a g listed_member) _ _ r t routed F)
+    as (rest & R & L).
+  split; [exists rest; unfold route_cost; split; [auto | unfold end_ in L; lia] |]. split.
+  - apply (free_robot_is_not_too_early i a _ _ _ (guided_rests_are_least a g listed_member)
+      (fun r => Map.find r (firsts g)) (guided_firsts_are_least a g listed_member) _ _ r t routed); auto.
+    intros v x later E. destruct begins as (u & later' & E' & S & T). rewrite E in E'. injection E' as <- _.
+    rewrite S, T. apply at_most_iff. auto.
+  - apply (free_robot_can_pass i a _ _ _ _ _ r t routed F).
 Qed.
 
 Lemma shortest_is_least : shortest g <= route_cost a.
 Proof.
-  pose proof (guides_are_accepted i w tabled _ listed_member) as G. cbn [guide_accepted] in G.
-  rewrite (takes_are_right i w tabled) in G. decided. unfold route_cost.
-  destruct (member_has_a_route (a, g) listed_member) as (Rv & v & later & E & S & T). cbn [fst] in *.
-  pose proof routed as R. rewrite E in *. inversion R as [u Hg | u x rest Hp Hn Hm Hx]; subst.
-  - rewrite (proj2 (Z.eqb_eq (start a) (goal a))) in * by congruence. decided. unfold arrives. simpl. lia.
-  - destruct (mover_has_a_rest i a (fun r => Map.find r (rests g)) (guided_rests_are_least a g listed_member)
-      _ R v x rest eq_refl) as (n & F & L). rewrite S, F in *.
-    pose proof (route_arrives_after_its_start i a right known _ R v (x :: rest) eq_refl).
-    destruct (start a =? goal a); decided; lia.
+  pose proof (guides_are_accepted i asked w tabled _ listed_member) as G. cbn [guide_accepted] in G.
+  rewrite (takes_are_right i asked w tabled) in G. decided. unfold route_cost. fold end_.
+  destruct begins as (v & later & E & S & T). pose proof routed as R. rewrite E in *.
+  pose proof (route_arrives_after_its_start i a _ _ _ right known _ _ R v later eq_refl) as A.
+  destruct (Z.eqb_spec (start a) (goal a)) as [Same | Other]; [decided; lia |].
+  destruct later as [| x rest]; [inversion R; congruence |].
+  destruct (mover_has_a_rest i a _ _ _ (guided_rests_are_least a g listed_member) _ _ R v x rest eq_refl)
+    as (n & F & L).
+  assert (enter v + need i a (visit_resource v) <= enter x) by (inversion R; lia).
+  rewrite S, T, F in *. decided. lia.
 Qed.
-
-(** * Clauses of one robot *)
 
 Section Clause.
 Variable c : list signed.
@@ -270,72 +439,104 @@ Qed.
 
 Lemma kept_unless_present r t : unless_present w c id r t = true -> is_in i a (route a) r t = false -> Kept c.
 Proof.
-  unfold unless_present. rewrite of_found_robot, (takes_are_right i w tabled). intros H F.
-  apply orb_true_iff in H as [H | H].
+  unfold unless_present. rewrite of_found_robot, (takes_are_right i asked w tabled). intros H F.
+  apply andb_true_iff in H as [D H]. apply described_tick in D. apply orb_true_iff in H as [H | H].
   - look H l.
     + shown. destruct (is_free i a (route a) r tick) eqn:E; auto.
-      rewrite (free_robot_is_inside i a _ r tick t routed E) in F; auto; discriminate.
+      rewrite (free_robot_is_inside i a _ _ _ _ _ r tick t routed E) in F; auto; discriminate.
     + shown. exact F.
-    + destruct (member_has_a_route (a, g) listed_member) as (R & v & later & E & S & T). cbn [fst] in *.
-      rewrite E in *. rewrite <- S in *. rewrite is_passable_is_right in *.
-      rewrite (standing_robot_is_inside i a v later t R) in F; [discriminate | | |]; auto; lia.
+    + destruct begins as (v & later & E & S & T). pose proof routed as R. rewrite E in *. rewrite <- S in *.
+      rewrite (standing_robot_is_inside i a _ _ _ v later _ t R) in F; [discriminate | | |]; auto; lia.
   - decided. subst r. destruct (Z_lt_le_dec (route_cost a) (t + 1 - release a)) as [L | L].
-    + destruct (after_goal i) eqn:Policy; rewrite (policy_is_right i w tabled), Policy in *.
+    + destruct (after_goal i) eqn:Policy; rewrite (policy_is_right i asked w tabled), Policy in *.
       * destruct (Z_lt_le_dec (route_cost a) (t + 1 - release a - need i a (goal a))) as [M | M].
         -- eapply kept_if_cheaper; eauto.
-        -- rewrite (arrived_robot_is_inside i a _ t routed) in F; [discriminate | |]; unfold route_cost in *;
-             rewrite ?Policy; lia.
-      * rewrite (arrived_robot_is_inside i a _ t routed) in F; [discriminate | |]; unfold route_cost in *;
-             rewrite ?Policy; auto; lia.
+        -- rewrite (arrived_robot_is_inside i a _ _ _ _ _ t routed D) in F; [discriminate | |]; unfold route_cost in *;
+             rewrite ?Policy; unfold end_; lia.
+      * rewrite (arrived_robot_is_inside i a _ _ _ _ _ t routed D) in F; [discriminate | |]; unfold route_cost in *;
+             rewrite ?Policy; unfold end_; auto; lia.
     + eapply kept_if_costs; eauto.
 Qed.
 
 Lemma kept_at_the_start : if_free w c id (start a) (release a + need i a (start a)) = true ->
   start a <> goal a \/ if_cheaper w c id 1 = true -> Kept c.
 Proof.
-  intros F C. destruct (member_has_a_route (a, g) listed_member) as (R & v & later & E & S & T). cbn [fst] in *.
-  inversion R as [u Hg K | u x rest Hp Hn Hm Hx K]; rewrite E in K; injection K as <- K; subst.
-  - destruct C as [C | C]; [congruence |]. apply (kept_if_cheaper _ C). unfold route_cost. rewrite E. unfold arrives.
-    simpl. lia.
-  - apply (kept_if_free _ _ F). rewrite E, <- S, <- T. apply mover_is_free; lia.
+  intros F C. destruct begins as (v & later & E & S & T). pose proof routed as R. rewrite E in R.
+  destruct later as [| x rest].
+  - inversion R as [u Hg K K' | |]; subst. destruct C as [C | C]; [congruence |]. apply (kept_if_cheaper _ C).
+    unfold route_cost. fold end_. lia.
+  - apply (kept_if_free _ _ F). rewrite E, <- S, <- T. apply mover_is_free; [lia |]. inversion R; lia.
 Qed.
 
-Lemma kept_by_going_on r t : unless_free c id r t = true -> if_free w c id r (t + 1) = true ->
+Lemma kept_by_going_on r t : is_described w id t = true -> unless_free c id r t = true ->
+  if_free w c id r (t + 1) = true ->
   (forall x, Move i r x -> if_free w c id x (t + need i a x) = true) ->
   (Move i r (goal a) -> if_cheaper w c id (t + 1 - release a) = true) -> Kept c.
 Proof.
-  intros U W M G. destruct (is_free i a (route a) r t) eqn:F; [| eapply kept_unless_free; eauto].
-  destruct (free_robot_goes_on i a _ r t routed F) as [K | [(x & Hx & K) | (Hx & K)]].
+  intros D U W M G. destruct (is_free i a (route a) r t) eqn:F; [| eapply kept_unless_free; eauto].
+  destruct (free_robot_goes_on i a _ _ _ _ _ r t routed (described_tick t D) F) as [K | [(x & Hx & K) | (Hx & K)]].
   - exact (kept_if_free _ _ W K).
   - exact (kept_if_free _ _ (M _ Hx) K).
-  - apply (kept_if_cheaper _ (G Hx)). unfold route_cost. lia.
+  - apply (kept_if_cheaper _ (G Hx)). unfold route_cost. unfold end_ in K. lia.
 Qed.
 
-Lemma kept_by_coming_from r t : unless_free c id r t = true -> if_free w c id r (t - 1) = true ->
-  (forall x, Move i x r -> if_free w c id x (t - need i a r) = true) ->
-  r <> start a \/ t <> release a + need i a r -> Kept c.
+Lemma kept_by_coming_from r t : if_came w c id r t = true -> is_free i a (route a) r t = true -> Kept c.
 Proof.
-  intros U W M N. destruct (is_free i a (route a) r t) eqn:F; [| eapply kept_unless_free; eauto].
-  destruct (free_robot_comes_from i a _ r t routed F) as [K | [(x & Hx & K) | (v & rest & E & Hr & Ht)]].
-  - exact (kept_if_free _ _ W K).
-  - exact (kept_if_free _ _ (M _ Hx) K).
-  - destruct (member_has_a_route (a, g) listed_member) as (R & u & later & E' & S & T). cbn [fst] in *.
-    rewrite E in E'. injection E' as <- <-. exfalso. destruct N; congruence.
+  unfold if_came. rewrite of_found_robot, (takes_are_right i asked w tabled). intros H F.
+  apply andb_true_iff in H as [H N]. apply andb_true_iff in H as [W M]. rewrite forallb_forall in M.
+  destruct (free_robot_comes_from i a _ _ _ _ _ r t routed F) as [(D & K) | [(x & Hx & K) | (v & rest & E & Hr & Ht)]].
+  - apply orb_true_iff in W as [W | W]; [| exact (kept_if_free _ _ W K)]. exfalso. unfold is_described in W.
+    rewrite (proj2 found_member) in D. unfold Described in D. destruct (seen_tick w id); decided; [lia | discriminate].
+  - exact (kept_if_free _ _ (M _ (proj2 (backwards_are_moves i asked w tabled r x) Hx)) K).
+  - destruct begins as (u & later & E' & S & T). rewrite E in E'. injection E' as <- <-. rewrite Hr, S, Ht, T in N.
+    rewrite !Z.eqb_refl in N. exfalso. rewrite Hr, S, Z.eqb_refl in N. discriminate.
 Qed.
 
-Lemma kept_by_arriving x : if_costs c id (x + 1) = true -> if_cheaper w c id x = true ->
+Lemma kept_by_arriving x : is_described w id (release a + x) = true -> if_costs c id (x + 1) = true ->
+  if_cheaper w c id x = true ->
   (forall r, Move i r (goal a) -> if_free w c id r (release a + x) = true) ->
   start a <> goal a \/ x <> 0 -> Kept c.
 Proof.
-  intros C D M N. destruct (Z_lt_le_dec (route_cost a) x) as [L | L]; [eapply kept_if_cheaper; eauto |].
+  intros Early C D M N. destruct (Z_lt_le_dec (route_cost a) x) as [L | L]; [eapply kept_if_cheaper; eauto |].
   destruct (Z_lt_le_dec x (route_cost a)) as [L' | L']; [eapply kept_if_costs; eauto; lia |].
-  assert (A : arrives (route a) = release a + x) by (unfold route_cost in *; lia).
-  destruct (arrival_comes_from i a _ routed) as [(r & Hr & F) | (v & E & Hg)].
+  assert (A : end_ = release a + x) by (unfold route_cost in *; fold end_ in L, L'; lia).
+  apply described_tick in Early. rewrite <- A in Early.
+  destruct (arrival_comes_from i a _ _ _ _ _ routed Early) as [(r & Hr & F) | (v & E & Hg & Hv)].
   - rewrite A in F. exact (kept_if_free _ _ (M _ Hr) F).
-  - destruct (member_has_a_route (a, g) listed_member) as (R & u & later & E' & S & T). cbn [fst] in *.
-    rewrite E in *. injection E' as <- _. unfold arrives in A. simpl in A. exfalso. destruct N; [congruence | lia].
+  - destruct begins as (u & later & E' & S & T). rewrite E in *. injection E' as <- _.
+    exfalso. destruct N; [congruence | lia].
+Qed.
+
+(** ** Clauses of a deadline *)
+
+Lemma kept_if_in_time : if_in_time w c id = true -> Kept c.
+Proof.
+  unfold if_in_time. rewrite of_found_robot. destruct (Map.find id (dues w)) as [d |] eqn:F; [| discriminate].
+  intros H. apply andb_true_iff in H as [H K]. pose proof (described (a, g) listed_member) as Desc.
+  assert (F' : Map.find (robot_id a) (dues w) = Some d) by (rewrite (proj2 found_member); exact F).
+  destruct (comes_in_time _ _ _ Desc d F') as [L | (sight & r & rest & t & S & Spot & R & T & L & _)];
+    cbn [fst snd] in *.
+  - apply (kept_if_cheaper _ H). unfold route_cost. lia.
+  - rewrite S in K. pose proof (proj1 (forallb_forall _ _) K r Spot) as J. cbv beta in J.
+    rewrite R, (takes_are_right i asked w tabled) in J. apply (kept_if_cheaper _ J). unfold route_cost. lia.
 Qed.
 End Clause.
+
+Lemma kept_if_seen c : if_seen w c id = true -> Kept c.
+Proof.
+  unfold if_seen. rewrite of_found_robot. destruct (Map.find id (dues w)) as [d |] eqn:F; [| discriminate].
+  intros H. apply andb_true_iff in H as [H K]. pose proof (described (a, g) listed_member) as Desc.
+  assert (F' : Map.find (robot_id a) (dues w) = Some d) by (rewrite (proj2 found_member); exact F).
+  destruct (comes_in_time _ _ _ Desc d F') as [L | (sight & r & rest & t & S & Spot & R & T & L & Free)];
+    cbn [fst snd] in *.
+  - apply (kept_if_cheaper c _ H). unfold route_cost. lia.
+  - rewrite S in K. pose proof (proj1 (forallb_forall _ _) K r Spot) as J. cbv beta zeta in J.
+    rewrite (takes_are_right i asked w tabled) in J. apply always_holds with (t := t) in J; [| lia].
+    assert (Here : Kept (filter (is_free_at r) c)).
+    { apply orb_true_iff in J as [J | J];
+        [exact (kept_if_free _ _ _ J Free) | exact (kept_by_coming_from _ _ _ J Free)]. }
+    destruct Here as (l & Hl & True_l). apply filter_In in Hl as [Hl _]. exists l. auto.
+Qed.
 End Member.
 
 (** The robot of a condition that holds is a member. *)
@@ -343,31 +544,29 @@ Lemma some_robot id f : of_robot w id f = true -> exists a g, Map.find id (membe
 Proof. unfold of_robot. destruct (Map.find id (member_of w)) as [[a g] |]; [eauto | discriminate]. Qed.
 
 Lemma presence_is_of_a_robot c id r t : unless_present w c id r t = true ->
-  exists a g, Map.find id (member_of w) = Some (a, g) /\ (is_in i a (route a) r t = false -> Kept c).
+  exists a g, Map.find id (member_of w) = Some (a, g) /\ is_described w (robot_id a) t = true /\
+  (is_in i a (route a) r t = false -> Kept c).
 Proof.
-  intros H. pose proof (some_robot _ _ H) as (a & g & F & _). exists a, g. split; auto.
-  apply (kept_unless_present a g id F c r t H).
+  intros H. pose proof H as K. unfold unless_present in K. apply andb_true_iff in K as [D K].
+  pose proof (some_robot _ _ K) as (a & g & F & _). exists a, g. split; auto. split.
+  - rewrite (proj2 (found_member a g id F)). exact D.
+  - apply (kept_unless_present a g id F c r t H).
 Qed.
 
 (** * Clauses of robots together *)
 
 (** A robot that is in a resource on its route occupies it. *)
-Lemma robot_inside_occupies m r t : In m (crew w) -> is_in i (fst m) (route (fst m)) r t = true ->
-  Occupies (plans s) (robot_id (fst m)) r t.
+Lemma robot_inside_occupies m r t : In m (crew w) -> is_described w (robot_id (fst m)) t = true ->
+  is_in i (fst m) (route (fst m)) r t = true -> Occupies (plans s) (robot_id (fst m)) r t.
 Proof.
-  intros H K. destruct (member_has_a_plan m H) as (p & v & rest & Hp & E & W & R & _).
-  rewrite R in K. destruct (counted_visits_hold i (fst m) _ r t W K) as (u & Hu & Hr & Ht). exists p, u. auto.
+  intros H D. apply (holds_what_it_visits m _ _ (described m H)), described_up_to, D.
 Qed.
 
-Lemma robot_free_elsewhere_makes_the_move m r x t : In m (crew w) -> is_free i (fst m) (route (fst m)) r t = true ->
-  is_in i (fst m) (route (fst m)) x t = true -> r <> x -> Makes_move (plans s) (robot_id (fst m)) r x t.
+Lemma robot_free_elsewhere_makes_the_move m r x t : In m (crew w) -> is_described w (robot_id (fst m)) t = true ->
+  is_free i (fst m) (route (fst m)) r t = true -> is_in i (fst m) (route (fst m)) x t = true -> r <> x ->
+  Makes_move (plans s) (robot_id (fst m)) r x t.
 Proof.
-  intros H F K D. destruct (member_has_a_plan m H) as (p & v & rest & Hp & E & W & R & _).
-  destruct (member_has_a_route m H) as [Routed _].
-  destruct (free_robot_elsewhere_moves i (fst m) right (member_is_a_robot m H) _ r x t Routed F K D) as
-    (before & u & u' & later & V & Hu & Hu' & T).
-  destruct (counted_is_a_prefix i (fst m) (visits p)) as [end_ P]. rewrite <- R, V in P.
-  exists p, u, u'. repeat split; auto. exists before, (later ++ end_). rewrite P, <- app_assoc. reflexivity.
+  intros H D. apply (makes_its_moves m _ _ (described m H)), described_up_to, D.
 Qed.
 
 (** ** Sums over ranges *)
@@ -402,11 +601,11 @@ Qed.
 Lemma delays_are_not_negative m : In m (crew w) -> 0 <= delay m.
 Proof.
   intros H. destruct m as [a g]. unfold delay. pose proof (shortest_is_least a g (robot_id a)) as L. simpl.
-  rewrite (members_are_found i w tabled) in L. simpl in L. specialize (L (conj H eq_refl)). lia.
+  rewrite (members_are_found i asked w tabled) in L. simpl in L. specialize (L (conj H eq_refl)). lia.
 Qed.
 
 Lemma presences_are_not_negative r t m : 0 <= presence r t m.
-Proof. unfold presence. destruct (is_in _ _ _ _ _); simpl; lia. Qed.
+Proof. unfold presence. destruct (is_present _ _ _); simpl; lia. Qed.
 
 (** A clause that adds up is kept. *)
 Lemma kept_by_adding if_false true_if value c key f : value = ranged key f -> (forall m, In m (crew w) -> 0 <= f m) ->
@@ -454,12 +653,13 @@ Proof.
       end = Some (from, upto, n) -> is_true (snd l) = fst l \/ n <= presences r t from upto).
     { intros H. destruct (unless_present w [l] (robot_of_meaning (snd l)) r t) eqn:U;
         [| destruct (Map.find _ _) as [[? ?] |]; discriminate].
-      destruct (presence_is_of_a_robot _ _ _ _ U) as (a & g & Found & K). rewrite Found in H. injection H as <- <- <-.
+      destruct (presence_is_of_a_robot _ _ _ _ U) as (a & g & Found & D & K). rewrite Found in H.
+      injection H as <- <- <-.
       destruct (is_in i a (route a) r t) eqn:In_it.
       - right. pose proof (found_member a g _ Found) as [M E'].
         pose proof (one_is_in_its_range (fun m => seat (snd m)) (presence r t) (a, g)
           (fun m _ => presences_are_not_negative r t m) M) as L.
-        unfold presence at 1 in L. cbn [fst snd] in L. rewrite In_it in L. exact L.
+        unfold presence at 1, is_present in L. cbn [fst snd] in L. rewrite D, In_it in L. exact L.
       - left. destruct (K eq_refl) as (l' & [<- | []] & T). exact T. }
     unfold robots_if_false in E. destruct l as [[|] []];
       try (apply One, E).
@@ -475,24 +675,25 @@ Qed.
 Lemma room_is_not_exceeded x r t ids : Map.find r (places w) = Some x -> NoDup ids ->
   (forall id, In id ids -> Occupies (plans s) id r t) -> Z.of_nat (length ids) <= capacity x.
 Proof.
-  intros F N H. destruct (places_are_right i w tabled r x F) as [Hx <-]. apply (capacity_is_kept i s lawful x t); auto.
+  intros F N H. destruct (places_are_right i asked w tabled r x F) as [Hx <-].
+  apply (capacity_is_kept i s lawful x t); auto.
 Qed.
 
 Lemma presences_keep_capacity x r t first end_ : Map.find r (places w) = Some x ->
   presences r t first end_ <= capacity x.
 Proof.
-  intros F. set (here := filter (fun m => is_in i (fst m) (route (fst m)) r t) (crew w)).
+  intros F. set (here := filter (is_present r t) (crew w)).
   assert (L : presences r t first end_ <= Z.of_nat (length here)).
   { unfold presences, ranged, here. clear. induction (crew w) as [| m l IH]; simpl; [lia |].
-    unfold presence at 1. destruct (_ && _), (is_in _ _ _ _ _); simpl length; simpl Z.b2z; lia. }
-  rewrite <- (map_length (fun m => robot_id (fst m))) in L. etransitivity; [exact L |].
+    unfold presence at 1. destruct (_ && (_ <? _)), (is_present r t m); simpl length; simpl Z.b2z; lia. }
+  rewrite <- (map_length (fun m : member => robot_id (fst m))) in L. etransitivity; [exact L |].
   apply (room_is_not_exceeded x r t); auto.
-  - pose proof (crew_is_distinct i w tabled) as N. unfold here. clear - N.
+  - pose proof (crew_is_distinct i asked w tabled) as N. unfold here. clear - N.
     induction (crew w) as [| m l IH]; simpl in *; auto. inversion N as [| ? ? Hn Hd]; subst.
-    destruct (is_in _ _ _ _ _); simpl; auto. constructor; auto. intros H. apply Hn.
+    destruct (is_present r t m); simpl; auto. constructor; auto. intros H. apply Hn.
     apply in_map_iff in H as (x & E & H). apply filter_In in H as [H _]. apply in_map_iff. eauto.
   - intros id H. apply in_map_iff in H as (m & <- & H). apply filter_In in H as [H K].
-    apply robot_inside_occupies; auto.
+    apply andb_true_iff in K as [D K]. apply robot_inside_occupies; auto.
 Qed.
 
 Lemma kept_by_capacity c :
@@ -507,8 +708,8 @@ Qed.
 Lemma kept_by_room_for_one c one other r t : one <> other -> room_below w r 2 = true ->
   unless_present w c one r t = true -> unless_present w c other r t = true -> Kept c.
 Proof.
-  intros D R U V. destruct (presence_is_of_a_robot _ _ _ _ U) as (a & g & F & K).
-  destruct (presence_is_of_a_robot _ _ _ _ V) as (b & h & G & L).
+  intros D R U V. destruct (presence_is_of_a_robot _ _ _ _ U) as (a & g & F & Da & K).
+  destruct (presence_is_of_a_robot _ _ _ _ V) as (b & h & G & Db & L).
   destruct (is_in i a (route a) r t) eqn:A; [| auto]. destruct (is_in i b (route b) r t) eqn:B; [| auto]. exfalso.
   destruct (found_member a g one F) as [Ma Ea]. destruct (found_member b h other G) as [Mb Eb].
   unfold room_below in R. destruct (Map.find r (places w)) as [x |] eqn:X; [| discriminate]. decided.
@@ -526,14 +727,14 @@ Lemma kept_by_exchange c one other r x t : one <> other -> r <> x ->
   unless_free c one r t = true -> unless_free c other x t = true ->
   unless_present w c one x t = true -> unless_present w c other r t = true -> Kept c.
 Proof.
-  intros D E Fr Fx U V. destruct (presence_is_of_a_robot _ _ _ _ U) as (a & g & F & K).
-  destruct (presence_is_of_a_robot _ _ _ _ V) as (b & h & G & L).
+  intros D E Fr Fx U V. destruct (presence_is_of_a_robot _ _ _ _ U) as (a & g & F & Da & K).
+  destruct (presence_is_of_a_robot _ _ _ _ V) as (b & h & G & Db & L).
   destruct (is_in i a (route a) x t) eqn:A; [| auto]. destruct (is_in i b (route b) r t) eqn:B; [| auto].
   destruct (is_free i a (route a) r t) eqn:A'; [| exact (kept_unless_free a g one F c _ _ Fr A')].
   destruct (is_free i b (route b) x t) eqn:B'; [| exact (kept_unless_free b h other G c _ _ Fx B')]. exfalso.
   destruct (found_member a g one F) as [Ma <-]. destruct (found_member b h other G) as [Mb <-].
-  pose proof (robot_inside_occupies (a, g) x t Ma A) as (p & u & Hp & _ & Hu & Ru & _).
-  pose proof (robot_inside_occupies (b, h) r t Mb B) as (q & v & Hq & _ & Hv & Rv & _).
+  pose proof (robot_inside_occupies (a, g) x t Ma Da A) as (p & u & Hp & _ & Hu & Ru & _).
+  pose proof (robot_inside_occupies (b, h) r t Mb Db B) as (q & v & Hq & _ & Hv & Rv & _).
   assert (Known : forall p u, In p (plans s) -> In u (visits p) -> In (visit_resource u) (resource_ids i)).
   { intros p' u' Hp' Hu'. destruct (planned_robot_is_known i s lawful p' Hp') as (a' & Ha' & E').
     apply (visits_resources i a' p' (plans_lawful i s lawful p' a' Hp' Ha' E') u' Hu'). }
@@ -546,11 +747,13 @@ Qed.
 
 (** ** What is demanded *)
 
-Let met := Meets i s (map fst (crew w)).
+Hypothesis met : Meets i s (map fst (crew w)) asked.
 
-Lemma all_delays_are_below total first end_ : met (Cheaper_than total) -> delays first end_ < delays_below w total.
+Lemma all_delays_are_below total first end_ : asked = Cheaper_than total -> delays first end_ < delays_below w total.
 Proof.
-  unfold met, Meets. rewrite (sum_over_images (A := member)). intros H. unfold delays, ranged, delays_below.
+  intros Asked. pose proof met as H. rewrite Asked in H. unfold Meets in H.
+  rewrite (sum_over_images (A := member)) in H.
+  unfold delays, ranged, delays_below.
   assert (L : forall l, (forall m, In m l -> In m (crew w)) ->
     sum (fun m : member => if (first <=? rank (snd m)) && (rank (snd m) <? end_) then delay m else 0) l +
     sum (fun m : member => shortest (snd m)) l <= sum (fun m : member => cost_of_robot i s (robot_id (fst m))) l).
@@ -562,9 +765,11 @@ Proof.
   specialize (L (crew w) (fun _ H => H)). lia.
 Qed.
 
-Lemma kept_by_costing_less asked c : met asked -> too_late w asked c = true -> Kept c.
+Lemma kept_by_costing_less c : too_late w asked c = true -> Kept c.
 Proof.
-  unfold too_late. destruct asked as [| k |]; try discriminate. intros L H. apply orb_true_iff in H as [H | H].
+  unfold too_late. intros H.
+  assert (A : exists k, asked = Cheaper_than k) by (destruct asked; try discriminate; eauto).
+  destruct A as [k L]. rewrite L in H. apply orb_true_iff in H as [H | H].
   - decided. pose proof (all_delays_are_below k 0 0 L) as D. unfold delays in D.
     assert (0 <= ranged (fun m => rank (snd m)) delay 0 0); [| lia].
     apply sum_is_not_negative. intros m Hm. pose proof (delays_are_not_negative m Hm). destruct (_ && _); lia.
@@ -579,39 +784,25 @@ Proof.
     + decided. cbn [is_true fst snd]. apply Z.leb_gt. pose proof (all_delays_are_below k first end_ L). lia.
 Qed.
 
-Lemma kept_by_keeping_the_deadline asked c id : met asked -> if_in_time w asked c id = true -> Kept c.
-Proof.
-  unfold if_in_time. destruct asked as [| | due]; try discriminate. intros L H.
-  apply some_robot in H as (a & g & Found & H). apply existsb_exists in H as (d & Hd & H). decided.
-  apply (kept_if_cheaper a g id Found c (snd d + 1 - release a)); auto. destruct (found_member a g id Found) as [M E].
-  destruct (member_has_a_plan (a, g) M) as (p & _ & _ & Hp & Ep & W & R & _). cbn [fst] in *.
-  pose proof (L d Hd p Hp ltac:(congruence)).
-  pose proof (counted_arrives_no_later i a right (member_is_a_robot (a, g) M) _ W).
-  unfold route_cost. rewrite R. lia.
-Qed.
-
 (** * All clauses *)
 
-Theorem justified_clause_is_kept asked c why : met asked -> justified w asked c why = true -> Kept c.
+Theorem justified_clause_is_kept c why : justified w asked c why = true -> Kept c.
 Proof.
-  intros L H. destruct why; cbn [justified] in H.
-  - apply some_robot in H as (a & g & Found & H). rewrite (takes_are_right i w tabled) in H. decided.
+  intros H. destruct why; cbn [justified] in H.
+  - apply some_robot in H as (a & g & Found & H). rewrite (takes_are_right i asked w tabled) in H. decided.
     apply (kept_at_the_start a g id Found); auto.
     match goal with K : _ || _ = true |- _ => apply orb_true_iff in K as [K | K] end; decided; auto.
   - apply some_robot in H as (a & g & Found & H). decided.
     match goal with K : forallb _ _ = true |- _ => rename K into All end.
     assert (Each : forall x, Move i place x -> if_free w c id x (tick + need i a x) = true /\
       (x = goal a -> if_cheaper w c id (tick + 1 - release a) = true)).
-    { intros x M. apply (onwards_are_moves i w tabled) in M. apply (proj1 (forallb_forall _ _) All) in M.
-      rewrite (takes_are_right i w tabled) in M. apply andb_true_iff in M as [M N]. split; auto. intros ->.
+    { intros x M. apply (onwards_are_moves i asked w tabled) in M. apply (proj1 (forallb_forall _ _) All) in M.
+      rewrite (takes_are_right i asked w tabled) in M. apply andb_true_iff in M as [M N]. split; auto. intros ->.
       rewrite Z.eqb_refl in N. exact N. }
     apply (kept_by_going_on a g id Found c place tick); auto; intros; eapply Each; eauto.
-  - apply some_robot in H as (a & g & Found & H). rewrite (takes_are_right i w tabled) in H. decided.
-    match goal with K : forallb _ _ = true |- _ => rename K into All end.
-    match goal with K : _ && _ = false |- _ => rename K into Not_first end.
-    apply (kept_by_coming_from a g id Found c place tick); auto.
-    + intros x M. apply (backwards_are_moves i w tabled) in M. apply (proj1 (forallb_forall _ _) All) in M. exact M.
-    + apply andb_false_iff in Not_first as [N | N]; decided; auto.
+  - apply andb_true_iff in H as [U H]. pose proof H as Came. apply some_robot in Came as (a & g & Found & _).
+    destruct (is_free i a (route a) place tick) eqn:Is_free; [| exact (kept_unless_free a g id Found c _ _ U Is_free)].
+    exact (kept_by_coming_from a g id Found c _ _ H Is_free).
   - apply some_robot in H as (a & g & Found & H). apply andb_true_iff in H as [U F].
     destruct (is_free i a (route a) place tick) eqn:Is_free; [| exact (kept_unless_free a g id Found c _ _ U Is_free)].
     exact (kept_if_free a g id Found c _ _ F Is_free).
@@ -619,13 +810,14 @@ Proof.
     match goal with K : forallb _ _ = true |- _ => rename K into All end.
     match goal with K : _ && _ = false |- _ => rename K into Not_first end.
     apply (kept_by_arriving a g id Found c cost); auto.
-    + intros x M. apply (backwards_are_moves i w tabled) in M. apply (proj1 (forallb_forall _ _) All) in M. exact M.
+    + intros x M. apply (backwards_are_moves i asked w tabled) in M. apply (proj1 (forallb_forall _ _) All) in M.
+      exact M.
     + apply andb_false_iff in Not_first as [N | N]; decided; auto.
   - apply some_robot in H as (a & g & Found & H). apply andb_true_iff in H as [C D].
     destruct (Z_lt_le_dec (route_cost a) cost) as [K | K]; [exact (kept_if_cheaper a g id Found c _ D K) |].
     exact (kept_if_costs a g id Found c _ C K).
   - decided. match goal with K : unless_present _ _ _ _ _ = true |- _ => rename K into Unless end.
-    destruct (presence_is_of_a_robot _ _ _ _ Unless) as (a & g & Found & K).
+    destruct (presence_is_of_a_robot _ _ _ _ Unless) as (a & g & Found & _ & K).
     destruct (is_in i a (route a) place tick) eqn:Inside; auto.
     match goal with E : existsb _ _ = true |- _ => apply existsb_exists in E as (l & Hl & E) end.
     destruct l as [[|] []]; try discriminate. decided. subst. eexists. split; [eassumption |].
@@ -636,8 +828,9 @@ Proof.
   - apply kept_by_capacity, H.
   - decided. apply (kept_by_room_for_one c one other place tick); auto.
   - decided. apply (kept_by_exchange c one other source target tick); auto.
-  - eapply kept_by_costing_less; eauto.
-  - eapply kept_by_keeping_the_deadline; eauto.
+  - apply kept_by_costing_less, H.
+  - pose proof H as Due. apply some_robot in Due as (a & g & Found & _). apply (kept_if_in_time a g id Found c H).
+  - pose proof H as Due. apply some_robot in Due as (a & g & Found & _). apply (kept_if_seen a g id Found c H).
 Qed.
 
 (** The valuation that a solution gives the variables. *)
@@ -665,14 +858,14 @@ Proof.
   - destruct (IH H) as (k & Hk & K). exists k. simpl. auto.
 Qed.
 
-Lemma justified_clauses_are_satisfied asked known f : forall why, met asked ->
+Lemma justified_clauses_are_satisfied known f : forall why,
   all_justified w asked known f why = true -> forall c, In c f -> Satisfies (valuation known) c.
 Proof.
-  induction f as [| c f IH]; simpl; intros why L H d Hd; [destruct Hd |].
+  induction f as [| c f IH]; simpl; intros why H d Hd; [destruct Hd |].
   destruct why as [| r why]; [discriminate |].
   destruct (justified w asked (read_clause known c) r) eqn:J; [| discriminate].
-  destruct Hd as [<- | Hd]; [| apply (IH why L H d Hd)].
-  apply kept_clause_is_satisfied, (justified_clause_is_kept asked _ r L J).
+  destruct Hd as [<- | Hd]; [| apply (IH why H d Hd)].
+  apply kept_clause_is_satisfied, (justified_clause_is_kept _ r J).
 Qed.
 End Solution.
 
@@ -683,11 +876,12 @@ Lemma refuted_blueprint_has_no_solution i group asked b lines s : Well_formed i 
 Proof.
   intros right Known Distinct H lawful complete L. unfold blueprint_accepted in H.
   apply andb_true_iff in H as [H R]. apply andb_true_iff in H as [H J]. apply andb_true_iff in H as [N G].
-  assert (All : map fst (crew (tables_of i group b)) = group) by (apply combined_with_as_many, Nat.eqb_eq, N).
-  apply (accepted_refutation_means_unsatisfiable _ _ R (valuation i (tables_of i group b) s (meanings b))).
-  apply (justified_clauses_are_satisfied i (tables_of i group b) s right
-    (tables_are_right i group b right Known Distinct N G) lawful complete asked (meanings b) _ (reasons b)); auto.
-  rewrite All. exact L.
+  assert (All : map fst (crew (tables_of i group asked b)) = group) by (apply combined_with_as_many, Nat.eqb_eq, N).
+  pose proof (tables_are_right i group asked b right Known Distinct N G) as Right. rewrite <- All in L.
+  destruct (crew_is_described i asked _ s right Right lawful complete L) as (routes & ends & Described_crew).
+  apply (accepted_refutation_means_unsatisfiable _ _ R
+    (valuation i (tables_of i group asked b) routes ends (meanings b))).
+  apply (justified_clauses_are_satisfied i asked _ s right Right lawful routes ends Described_crew L _ _ (reasons b) J).
 Qed.
 
 Lemma costs_add_up i s : Well_formed i -> Lawful i s ->
@@ -764,21 +958,121 @@ Proof.
   unfold Cut_holds. apply Z.le_ngt. rewrite <- E, sum_over_images. exact N.
 Qed.
 
+(** ** How often a deadline is kept *)
+
+Section Deadline.
+Variable d : deadline.
+Let sighted (r first end_ : Z) : Z := Z.b2z (is_seen d r first end_).
+
+Lemma is_seen_in_a_spot r first end_ : is_seen d r first end_ = true <->
+  exists sight, seen d = Some sight /\ first <= seen_at sight < end_ /\ In r (spots sight).
+Proof.
+  unfold is_seen. destruct (seen d) as [sight |]; [| split; [discriminate | intros (x & E & _); discriminate]].
+  rewrite !andb_true_iff, Z.leb_le, Z.ltb_lt, existsb_exists. split.
+  - intros [L (x & Hx & E)]. apply Z.eqb_eq in E. subst x. eauto.
+  - intros (x & E & L & Hr). injection E as <-. split; auto. exists r. rewrite Z.eqb_refl. auto.
+Qed.
+
+Lemma sightings_are_not_negative vs : 0 <= passed sighted vs.
+Proof.
+  induction vs as [| v rest IH]; cbn [passed]; [lia |]. apply Z.add_nonneg_nonneg; auto.
+  destruct rest as [| w later]; [lia |]. unfold sighted. destruct (is_seen _ _ _ _); simpl; lia.
+Qed.
+
+Lemma sightings_from_the_second_visit_on v w rest :
+  passed sighted (v :: w :: rest) = sighted (visit_resource v) (enter v) (enter w) + passed sighted (w :: rest).
+Proof. reflexivity. Qed.
+
+Lemma sighting_is_counted before v w later : is_seen d (visit_resource v) (enter v) (enter w) = true ->
+  1 <= passed sighted (before ++ v :: w :: later).
+Proof.
+  intros H. induction before as [| u before IH]; simpl app.
+  - rewrite sightings_from_the_second_visit_on. pose proof (sightings_are_not_negative (w :: later)).
+    unfold sighted at 1. rewrite H. simpl Z.b2z. lia.
+  - destruct (before ++ v :: w :: later) as [| x rest]; [simpl in IH; lia |].
+    rewrite sightings_from_the_second_visit_on. unfold sighted at 1. clear H.
+    destruct (is_seen d _ _ _); simpl Z.b2z; lia.
+Qed.
+
+Lemma counted_sighting_is_one vs : 1 <= passed sighted vs -> exists before v w later,
+  vs = before ++ v :: w :: later /\ is_seen d (visit_resource v) (enter v) (enter w) = true.
+Proof.
+  induction vs as [| v [| w rest] IH]; [simpl; lia | simpl; lia |]. rewrite sightings_from_the_second_visit_on.
+  intros H. destruct (is_seen d (visit_resource v) (enter v) (enter w)) eqn:Seen.
+  - exists [], v, w, rest. auto.
+  - unfold sighted at 1 in H. rewrite Seen in H. simpl Z.b2z in H.
+    destruct IH as (before & x & y & later & E & R); [lia |]. exists (v :: before), x, y, later. rewrite E. auto.
+Qed.
+
+Lemma kept_deadline_is_counted p : Keeps d p <-> 1 <= times_kept d (visits p).
+Proof.
+  unfold Keeps, times_kept, last_arrival. fold sighted. pose proof (sightings_are_not_negative (visits p)) as P.
+  assert (Spot : 1 <= passed sighted (visits p) <-> exists v w sight, Consecutive p v w /\ seen d = Some sight /\
+    enter v <= seen_at sight < enter w /\ In (visit_resource v) (spots sight)).
+  { split.
+    - intros H. destruct (counted_sighting_is_one _ H) as (before & v & w & later & E & K).
+      apply is_seen_in_a_spot in K as (sight & K). exists v, w, sight. split; [exists before, later; auto | tauto].
+    - intros (v & w & sight & (before & later & E) & K). rewrite E. apply sighting_is_counted, is_seen_in_a_spot.
+      eauto. }
+  destruct (seen d) as [sight |].
+  - split.
+    + intros [[K L] | (v & w & C & Hr & L)].
+      * rewrite (proj2 (Z.leb_le _ _)) by lia. cbn [Z.b2z]. lia.
+      * assert (1 <= passed sighted (visits p)) by (apply Spot; exists v, w, sight; auto).
+        destruct (_ <=? _); cbn [Z.b2z]; lia.
+    + intros K. destruct (Z.leb_spec (arrives (visits p)) (Z.min (due d) (seen_at sight))) as [L | L]; [left; lia |].
+      right. cbn [Z.b2z] in K. rewrite Z.add_0_l in K. apply Spot in K as (v & w & x & C & E & L' & Hr).
+      injection E as <-. eauto.
+  - assert (Z0 : ~ 1 <= passed sighted (visits p)) by (rewrite Spot; intros (v & w & x & _ & E & _); discriminate).
+    destruct (Z.leb_spec (arrives (visits p)) (due d)); cbn [Z.b2z]; lia.
+Qed.
+
+(** A deadline is kept once: nobody is in two places at a tick, or has arrived and is on its way. *)
+Lemma deadline_is_kept_once i a vs : Well_formed i -> In a (robots i) -> Way i a vs -> times_kept d vs <= 1.
+Proof.
+  intros right known H. unfold times_kept. fold sighted.
+  destruct (seen d) as [sight |] eqn:Sight.
+  - assert (L : forall v rest, vs = v :: rest ->
+      passed sighted vs <= Z.b2z ((enter v <=? seen_at sight) && (seen_at sight <? arrives vs))).
+    { induction H as [v Hg Hl | v w rest Hl Hn Hm Hw IH]; intros u later E; injection E as <- <-.
+      - simpl. destruct (_ && _); simpl; lia.
+      - rewrite sightings_from_the_second_visit_on. specialize (IH w rest eq_refl).
+        pose proof (entered_before_the_arrival i a right known _ Hw w rest eq_refl).
+        pose proof (need_is_positive i a right known (visit_resource v)).
+        rewrite arrives_later. unfold sighted at 1. destruct (is_seen d _ _ _) eqn:Seen.
+        + apply is_seen_in_a_spot in Seen as (x & E & Seen & _). rewrite Sight in E. injection E as <-.
+          destruct (Z.leb_spec (enter v) (seen_at sight)), (Z.ltb_spec (seen_at sight) (arrives (w :: rest))),
+            (Z.leb_spec (enter w) (seen_at sight)); cbn [Z.b2z andb] in *; lia.
+        + destruct (Z.leb_spec (enter v) (seen_at sight)), (Z.ltb_spec (seen_at sight) (arrives (w :: rest))),
+            (Z.leb_spec (enter w) (seen_at sight)); cbn [Z.b2z andb] in *; lia. }
+    unfold last_arrival. rewrite Sight. destruct vs as [| v rest]; [inversion H |]. specialize (L v rest eq_refl).
+    destruct (Z.leb_spec (arrives (v :: rest)) (Z.min (due d) (seen_at sight))),
+      (Z.leb_spec (enter v) (seen_at sight)), (Z.ltb_spec (seen_at sight) (arrives (v :: rest)));
+        cbn [Z.b2z andb] in *; lia.
+  - assert (None_seen : passed sighted vs = 0); [| rewrite None_seen; destruct (_ <=? _); cbn [Z.b2z]; lia].
+    clear H. induction vs as [| v rest IH]; cbn [passed]; auto. rewrite IH. destruct rest; auto.
+    unfold sighted, is_seen. rewrite Sight. reflexivity.
+Qed.
+
+End Deadline.
+
 (** In every lawful solution that plans every robot with a way to its goal, one of the robots with refuted deadlines
-    enters its goal for the last time after its own. *)
+    does not keep its own: it enters its goal for the last time later, and is not seen on its way in a place that
+    counts. *)
 Theorem refuted_deadlines_are_not_all_kept i g b lines s : Well_formed i -> deadlines_refuted i g b lines = true ->
   Lawful i s -> Plans_every_plannable_robot i s ->
-  exists id tick p, In (id, tick) (deadlines g) /\ In p (plans s) /\ plan_robot p = id /\ tick < arrives (visits p).
+  exists d p, In d (deadlines g) /\ In p (plans s) /\ plan_robot p = who d /\ ~ Keeps d p.
 Proof.
   intros right H lawful complete.
   destruct (refuted_group_does_not_meet i _ _ b lines s right H lawful complete) as [_ N].
-  set (late := fun d p => (plan_robot p =? fst d) && (snd d <? arrives (visits p))).
-  destruct (existsb (fun d => existsb (late d) (plans s)) (deadlines g)) eqn:Late.
-  - apply existsb_exists in Late as ([id tick] & Hd & Late). apply existsb_exists in Late as (p & Hp & Late).
-    unfold late in Late. decided. exists id, tick, p. auto.
-  - destruct N. intros d Hd p Hp E. apply Z.le_ngt. intros L. apply not_true_iff_false in Late. apply Late.
+  set (broken := fun d p => (plan_robot p =? who d) && (times_kept d (visits p) <? 1)).
+  destruct (existsb (fun d => existsb (broken d) (plans s)) (deadlines g)) eqn:Broken.
+  - apply existsb_exists in Broken as (d & Hd & Broken). apply existsb_exists in Broken as (p & Hp & Broken).
+    unfold broken in Broken. decided. exists d, p. repeat split; auto. rewrite kept_deadline_is_counted. lia.
+  - destruct N. intros d p Hd Hp E. apply kept_deadline_is_counted, Z.le_ngt. intros L.
+    apply not_true_iff_false in Broken. apply Broken.
     apply existsb_exists. exists d. split; auto. apply existsb_exists. exists p. split; auto.
-    unfold late. apply andb_true_iff. split; [apply Z.eqb_eq, E | apply Z.ltb_lt, L].
+    unfold broken. apply andb_true_iff. split; [apply Z.eqb_eq, E | apply Z.ltb_lt, L].
 Qed.
 
 Lemma robot_has_one_plan_at_most i s id : Lawful i s -> sum (fun p => Z.b2z (plan_robot p =? id)) (plans s) <= 1.
@@ -793,26 +1087,29 @@ Lemma refuted_deadlines_hold i g b lines s : Well_formed i -> deadlines_refuted 
   Plans_every_plannable_robot i s -> Group_holds s g.
 Proof.
   intros right H lawful complete.
-  destruct (refuted_deadlines_are_not_all_kept i g b lines s right H lawful complete)
-    as (id & tick & p & Hd & Hp & E & L).
-  set (late := fun q d => Z.b2z ((plan_robot q =? fst d) && (snd d <? arrives (visits q)))).
-  set (all := sum (fun q => sum (late q) (deadlines g)) (plans s)).
+  destruct (refuted_deadlines_are_not_all_kept i g b lines s right H lawful complete) as (d & p & Hd & Hp & E & K).
+  rewrite kept_deadline_is_counted in K.
+  set (broken := fun q d => Z.b2z (who d =? plan_robot q) * (1 - times_kept d (visits q))).
+  set (all := sum (fun q => sum (broken q) (deadlines g)) (plans s)).
+  assert (Once : forall q d, In q (plans s) -> 0 <= broken q d).
+  { intros q c Hq. unfold broken. destruct (plan_is_a_way i s right lawful q Hq) as (a & Ha & _ & W).
+    pose proof (deadline_is_kept_once c i a (visits q) right Ha W). destruct (_ =? _); simpl Z.b2z; lia. }
   assert (One : 1 <= all).
-  { assert (P : forall q d, 0 <= late q d) by (intros; unfold late; destruct (_ && _); simpl; lia).
-    assert (S : late p (id, tick) = 1).
-    { unfold late. simpl. rewrite (proj2 (Z.eqb_eq _ _) E), (proj2 (Z.ltb_lt _ _) L). reflexivity. }
-    rewrite <- S. etransitivity; [apply (sum_is_above_each (late p) (deadlines g)); auto |].
-    apply (sum_is_above_each (fun q => sum (late q) (deadlines g)) (plans s)); auto.
-    intros q _. apply sum_is_not_negative. auto. }
-  unfold Group_holds. set (kept := fun q d => Z.b2z (keeps (plan_robot q) (arrives (visits q)) d)).
+  { assert (S : 1 <= broken p d).
+    { unfold broken. rewrite E, Z.eqb_refl. simpl Z.b2z. lia. }
+    etransitivity; [exact S |].
+    etransitivity; [apply (sum_is_above_each (broken p) (deadlines g)); auto |].
+    apply (sum_is_above_each (fun q => sum (broken q) (deadlines g)) (plans s)); auto.
+    intros q Hq. apply sum_is_not_negative. auto. }
+  unfold Group_holds. set (kept := fun q d => Z.b2z (who d =? plan_robot q) * times_kept d (visits q)).
   assert (All : sum (fun q => sum (kept q) (deadlines g)) (plans s) + all <= Z.of_nat (length (deadlines g)));
     [| unfold kept in All; lia].
   unfold all. rewrite <- sum_of_sums.
-  rewrite (sum_of_equal _ (fun q => sum (fun d => Z.b2z (plan_robot q =? fst d)) (deadlines g))).
+  rewrite (sum_of_equal _ (fun q => sum (fun d => Z.b2z (plan_robot q =? who d)) (deadlines g))).
   - rewrite sums_are_exchanged. clear - lawful. induction (deadlines g) as [| d l IH]; simpl; [lia |].
-    pose proof (robot_has_one_plan_at_most i s (fst d) lawful). lia.
-  - intros q _. rewrite <- sum_of_sums. apply sum_of_equal. intros d _. unfold late, kept, keeps. rewrite Z.eqb_sym.
-    rewrite Z.ltb_antisym. destruct (_ =? _), (_ <=? _); reflexivity.
+    pose proof (robot_has_one_plan_at_most i s (who d) lawful). lia.
+  - intros q _. rewrite <- sum_of_sums. apply sum_of_equal. intros c _. unfold broken, kept. rewrite Z.eqb_sym.
+    destruct (_ =? _); simpl Z.b2z; lia.
 Qed.
 
 Lemma all_refuted_claims_hold {A} refuted (Holds : A -> Prop) claimed :

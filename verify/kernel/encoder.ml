@@ -45,6 +45,7 @@ type clerk = {
   guide : guide;
   takes : Z.t -> Z.t;
   parks : bool;
+  seen : Bound.sight option;
   onwards : Z.t -> Z.t list;
   backwards : Z.t -> Z.t list;
   node : (Z.t * Z.t, int) Hashtbl.t;
@@ -59,13 +60,18 @@ let rest clerk place = Collections.Map.find place clerk.guide.rests
 let earliest clerk = Z.add clerk.robot.release clerk.guide.shortest
 let least_delay clerk (place, tick) = Z.sub (Z.add tick (Option.get (rest clerk place))) (earliest clerk)
 let later_than clerk delay = Hashtbl.find clerk.late (Z.to_int (Z.min delay (Z.of_int clerk.horizon)))
-let stands_still clerk = Z.equal clerk.robot.start clerk.robot.goal && not clerk.parks
+let drives_on clerk = clerk.parks || clerk.seen <> None
+let stands_still clerk = Z.equal clerk.robot.start clerk.robot.goal && not (drives_on clerk)
+
+(* The robot was seen before, and is not described. *)
+let is_after clerk tick = match clerk.seen with Some sight -> Z.gt tick sight.seen_at | None -> false
 let first_node clerk = (clerk.robot.start, Z.add clerk.robot.release (clerk.takes clerk.robot.start))
 
 let leads_to clerk (place, tick) =
-  let is_open target = rest clerk target <> None && (clerk.parks || not (Z.equal target clerk.robot.goal)) in
+  let is_open target = rest clerk target <> None && (drives_on clerk || not (Z.equal target clerk.robot.goal)) in
   let entered target = (target, Z.add tick (clerk.takes target)) in
-  (place, Z.succ tick) :: List.map entered (List.filter is_open (clerk.onwards place))
+  if is_after clerk tick then []
+  else (place, Z.succ tick) :: List.map entered (List.filter is_open (clerk.onwards place))
 
 let known_nodes clerk = List.filter_map (Hashtbl.find_opt clerk.node)
 
@@ -116,6 +122,7 @@ let come_from draft clerk ((place, tick) as node) =
 
 (* Whether all nodes that follow exist. *)
 let go_on draft clerk ((place, tick) as node) =
+  is_after clerk tick ||
   let following = leads_to clerk node in
   let ways = known_nodes clerk following in
   let complete = List.length ways = List.length following in
@@ -129,9 +136,9 @@ let go_on draft clerk ((place, tick) as node) =
 
 let arrive_at_horizon draft clerk =
   let cost = Z.add clerk.guide.shortest (Z.of_int clerk.horizon) in
-  if not (Z.equal clerk.robot.start clerk.robot.goal && clerk.horizon = 0) then
+  let tick = Z.add clerk.robot.release cost in
+  if not (is_after clerk tick || (Z.equal clerk.robot.start clerk.robot.goal && clerk.horizon = 0)) then
     let earlier = if clerk.horizon > 0 then [ -Hashtbl.find clerk.late (clerk.horizon - 1) ] else [] in
-    let tick = Z.add clerk.robot.release cost in
     let sources = known_nodes clerk (List.map (fun source -> (source, tick)) (clerk.backwards clerk.robot.goal)) in
     add draft (Arrives (clerk.robot.robot_id, cost)) (earlier @ (Hashtbl.find clerk.late clerk.horizon :: sources))
 
@@ -156,18 +163,23 @@ let grow draft clerk =
     clerk.unfinished <- List.filter (fun node -> not (go_on draft clerk node)) (clerk.unfinished @ added);
     arrive_at_horizon draft clerk)
 
-(* The alternatives that put the robot into the resource at the tick: each is literals that hold together. *)
-let stays clerk place tick =
-  let duration = clerk.takes place in
+(* The nodes of a stay in the resource at the tick that is not the last one. *)
+let nodes_of clerk place tick =
   let rec held ticks =
     match ticks () with
-    | Seq.Cons (each, later) when Z.leq each (Z.add tick duration) -> each :: held later
+    | Seq.Cons (each, later) when Z.leq each (Z.add tick (clerk.takes place)) -> each :: held later
     | _ -> []
   in
   let ticks = held (Ticks.to_seq_from (Z.succ tick) (ticks_in clerk place)) in
-  let nodes = List.map (fun each -> [ Hashtbl.find clerk.node (place, each) ]) ticks in
+  List.map (fun each -> Hashtbl.find clerk.node (place, each)) ticks
+
+(* The alternatives that put the robot into the resource at the tick: each is literals that hold together. *)
+let stays clerk place tick =
+  let duration = clerk.takes place in
+  let nodes = List.map (fun node -> [ node ]) (nodes_of clerk place tick) in
   let delay = Z.sub tick (earliest clerk) in
-  if Z.equal place clerk.robot.goal && Z.sign delay >= 0 && not (stands_still clerk) then
+  if is_after clerk tick then []
+  else if Z.equal place clerk.robot.goal && Z.sign delay >= 0 && not (stands_still clerk) then
     let left = Z.sub delay duration in
     if clerk.parks || Z.sign left < 0 then nodes @ [ [ -later_than clerk delay ] ]
     else if Z.lt left (Z.of_int clerk.horizon) then nodes @ [ [ -later_than clerk delay; later_than clerk left ] ]
@@ -325,13 +337,30 @@ let bound_delays { draft; clerks; _ } total order =
 
 (* ---- Deadlines ---- *)
 
-(* The delay with which the robot just keeps its deadline. *)
-let horizon_by clerk (_, tick) =
-  let delay = Z.sub tick (earliest clerk) in
-  if Z.sign delay < 0 then raise (Too_early (clerk.robot, earliest clerk));
-  if Z.fits_int delay then Z.to_int delay else raise Too_large
+(* The largest delay with which the robot keeps its deadline. *)
+let horizon_by clerk (d : Bound.deadline) =
+  let delay = Z.sub (Bound.last_arrival d) (earliest clerk) in
+  let largest =
+    match d.seen with
+    | None -> if Z.sign delay < 0 then raise (Too_early (clerk.robot, earliest clerk)) else delay
+    | Some { seen_at; spots } ->
+        let spots = List.filter (fun place -> rest clerk place <> None) spots in
+        let last place = least_delay clerk (place, Z.add seen_at (clerk.takes place)) in
+        List.fold_left Z.max Z.zero (delay :: List.map last spots)
+  in
+  if Z.fits_int largest then Z.to_int largest else raise Too_large
 
 let close draft clerk = add draft (Is_in_time clerk.robot.robot_id) [ -Hashtbl.find clerk.late clerk.horizon ]
+
+(* Demand that the robot is in one of the spots when it is seen, or has arrived by its deadline. *)
+let see draft clerk (d : Bound.deadline) =
+  let look ({ seen_at; spots } : Bound.sight) =
+    let nodes = List.concat_map (fun place -> nodes_of clerk place seen_at) spots in
+    let delay = Z.sub (Bound.last_arrival d) (earliest clerk) in
+    let arrived = if Z.sign delay < 0 then [] else [ -later_than clerk delay ] in
+    add draft (Is_seen clerk.robot.robot_id) (nodes @ arrived)
+  in
+  Option.iter look d.seen
 
 (* ---- Guides ---- *)
 
@@ -349,12 +378,12 @@ let first_ticks (a : Law.robot) takes onwards is_open =
   in
   settle Collections.Map.empty (Search.Queue.singleton (Z.add a.release (takes a.start), a.start))
 
-let clerk_of (instance : Law.instance) table (onward, backward) ranks position (a : Law.robot) =
+let clerk_of (instance : Law.instance) table (onward, backward) ranks position (a : Law.robot) seen =
   let takes = Tables.takes_in table a and parks = instance.after_goal = Law.Park in
   let onwards place = List.sort Z.compare (Search.resources_to onward place) in
   let backwards place = List.sort Z.compare (Search.resources_to backward place) in
   let rests = Search.ticks_after takes backward a.goal in
-  let is_open s = Hashtbl.mem rests s && (parks || not (Z.equal s a.goal)) in
+  let is_open s = Hashtbl.mem rests s && (parks || seen <> None || not (Z.equal s a.goal)) in
   let shortest =
     if Z.equal a.start a.goal then Z.zero
     else match Hashtbl.find_opt rests a.start with Some rest -> Z.add (takes a.start) rest | None -> raise (No_way a)
@@ -365,7 +394,7 @@ let clerk_of (instance : Law.instance) table (onward, backward) ranks position (
       firsts = first_ticks a takes onwards is_open;
       leads = Search.way_on takes onward rests a.goal a.start }
   in
-  { robot = a; guide; takes; parks; onwards; backwards; node = Hashtbl.create 1024; nodes = [];
+  { robot = a; guide; takes; parks; seen; onwards; backwards; node = Hashtbl.create 1024; nodes = [];
     ticks = Hashtbl.create 64; late = Hashtbl.create 64; horizon = -1; unfinished = [] }
 
 (* The blueprint and the number of its variables; deadlines, in the group's order, need no horizons. Raises [No_way]
@@ -376,7 +405,13 @@ let blueprint (instance : Law.instance) group asked { horizons; order } =
   in
   let table = Tables.resource_table instance and moves = Search.moves_of instance and ranks = Hashtbl.create 64 in
   List.iteri (fun rank position -> Hashtbl.replace ranks position rank) order;
-  let clerks = Array.of_list (List.mapi (clerk_of instance table moves ranks) group) in
+  let sights =
+    match asked with
+    | In_time due -> List.map (fun (d : Bound.deadline) -> d.seen) due
+    | _ -> List.map (fun _ -> None) group
+  in
+  let clerk position (a, seen) = clerk_of instance table moves ranks position a seen in
+  let clerks = Array.of_list (List.mapi clerk (List.combine group sights)) in
   let grow_to clerk horizon = while clerk.horizon < horizon do grow draft clerk done in
   let all = Array.to_list clerks in
   List.iter2 grow_to all (match asked with In_time due -> List.map2 horizon_by all due | _ -> horizons);
@@ -385,7 +420,7 @@ let blueprint (instance : Law.instance) group asked { horizons; order } =
   (match asked with
   | Lawful_plans -> ()
   | Cheaper_than total -> bound_delays encoding total order
-  | In_time _ -> List.iter (close draft) all);
+  | In_time due -> List.iter (close draft) all; List.iter2 (see draft) all due);
   ( { guides = List.map (fun clerk -> clerk.guide) all; meanings = draft.meanings;
       reasons = List.rev draft.reasons; formula = List.rev draft.clauses },
     draft.variables )

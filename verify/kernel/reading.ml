@@ -347,16 +347,25 @@ let bound_of_json { resource_numbers; robot_numbers; _ } path json =
       (required field "horizons" (elements whole), required field "order" (elements whole),
         required field "refutation" text) )
   in
+  let sight path (json : Yojson.Safe.t) =
+    match json with
+    | `List [ tick; places ] ->
+        { Bound.seen_at = whole (path ^ "[0]") tick; spots = elements resource (path ^ "[1]") places }
+    | _ -> shape path "an array of a tick and an array of resources"
+  in
   let group path json =
     let field = fields path ~required:[ "robots"; "ticks"; "price"; "refutation" ] ~optional:[ "seen" ] json in
-    let seen path json =
-      if json <> `List [] then
-        refuse path "limit/seen" "no robot may be seen on its way: the kernel decides deadlines of arrivals alone"
-    in
-    ignore (present field "seen" seen);
     let robots = required field "robots" (elements robot) and ticks = required field "ticks" (elements whole) in
     if List.compare_lengths robots ticks <> 0 then shape path "a tick for each robot";
-    ({ Bound.deadlines = List.combine robots ticks; fee = required field "price" whole }, required field "refutation" text)
+    let sights =
+      match optional [] field "seen" (elements sight) with
+      | [] -> List.map (fun _ -> None) robots
+      | sights when List.compare_lengths robots sights = 0 -> List.map Option.some sights
+      | _ -> shape (path ^ ".seen") "a tick and places for each robot"
+    in
+    let deadline (who, due) seen = { Bound.who; due; seen } in
+    ( { Bound.deadlines = List.map2 deadline (List.combine robots ticks) sights; fee = required field "price" whole },
+      required field "refutation" text )
   in
   let claim path (json : Yojson.Safe.t) =
     match json with

@@ -47,7 +47,7 @@ let rec way_on takes onwards ticks goal r =
     match List.find_opt is_shortest next with None -> [] | Some s -> s :: way_on takes onwards ticks goal s
 
 (* Labels for all that costs less than is claimed, tick by tick; none once the claim is seen to be too high. *)
-let labels_below claimed weight (tariff : Labels.tariff) horizon takes onwards ticks (a : Law.robot) =
+let labels_below claimed weight (tariff : Labels.tariff) dues horizon takes onwards ticks (a : Law.robot) =
   let amounts = Hashtbl.create 1024 and queue = ref Queue.empty and too_high = ref false in
   let reach amount r t =
     match Hashtbl.find_opt ticks r with
@@ -63,7 +63,8 @@ let labels_below claimed weight (tariff : Labels.tariff) horizon takes onwards t
   in
   let enter amount r t =
     let ready = Z.add t (takes r) in
-    reach (Z.add amount (Labels.stay_price tariff r t ready)) r ready
+    let paid = Z.add (Labels.stay_price tariff r t ready) (Bound.fees_on_the_way dues r t ready) in
+    reach (Z.add amount paid) r ready
   in
   enter Z.zero a.start a.release;
   let rec settle () =
@@ -71,7 +72,9 @@ let labels_below claimed weight (tariff : Labels.tariff) horizon takes onwards t
     | Some ((t, r) as first) when not !too_high ->
         queue := Queue.remove first !queue;
         let amount = Hashtbl.find amounts (r, t) in
-        reach (Z.add amount (Labels.wait_price tariff r t)) r (Z.succ t);
+        let later = Z.succ t in
+        let paid = Z.add (Labels.wait_price tariff r t) (Bound.fees_on_the_way dues r t later) in
+        reach (Z.add amount paid) r later;
         List.iter (fun s -> enter (Z.add amount (Labels.move_price tariff r s t)) s t) (resources_to onwards r);
         settle ()
     | _ -> ()
@@ -84,8 +87,11 @@ let evidence (instance : Law.instance) (certificate : Bound.certificate) =
   let onwards, backwards = moves_of instance in
   let tariff = Tables.tariff_of certificate.prices and table = Tables.resource_table instance in
   let claims = Hashtbl.of_seq (List.to_seq certificate.claims) in
-  (* Nothing is paid after the last price and the last deadline. *)
-  let after last (_, tick) = Z.max last (Z.succ tick) in
+  (* Nothing is paid after the last price, the last deadline, and the last tick at which a robot is seen. *)
+  let after last (d : Bound.deadline) =
+    let tick = match d.seen with Some sight -> sight.seen_at | None -> d.due in
+    Z.max last (Z.succ tick)
+  in
   let deadlines = List.concat_map (fun (g : Bound.group) -> g.deadlines) certificate.groups in
   let horizon = List.fold_left after tariff.horizon deadlines in
   let known = Hashtbl.create 64 in
@@ -99,7 +105,8 @@ let evidence (instance : Law.instance) (certificate : Bound.certificate) =
     let labels =
       match Hashtbl.find_opt claims a.robot_id with
       | Some (Some claimed) ->
-          labels_below claimed (Bound.weight_of certificate a.robot_id) tariff horizon takes onwards ticks a
+          let weight = Bound.weight_of certificate a.robot_id and dues = Bound.dues_of certificate a.robot_id in
+          labels_below claimed weight tariff dues horizon takes onwards ticks a
       | _ -> []
     in
     { Bound.ticks_after = Hashtbl.fold (fun r rest all -> (r, rest) :: all) ticks []; labels;

@@ -164,12 +164,22 @@ let proof_of_cut (read : Reading.instance) (k : Bound.cut) (horizons, order, ref
     let evidence = { Encoder.horizons = List.map Z.to_int horizons; order = List.map Z.to_int order } in
     proof_of_group read group (Formula.Cheaper_than k.least_total) evidence refutation
 
+(* The robot has no right tick, or place, for being seen. *)
+let is_never (read : Reading.instance) (d : Bound.deadline) =
+  let table = Tables.resource_table read.instance in
+  let is_unknown place = not (Collections.Map.mem place table) in
+  match d.seen with
+  | Some { seen_at; spots } -> Z.sign d.due < 0 || Z.sign seen_at < 0 || List.exists is_unknown spots
+  | None -> false
+
 let proof_of_deadlines (read : Reading.instance) (g : Bound.group) refutation =
-  let ids = List.map fst g.deadlines in
+  let ids = List.map (fun (d : Bound.deadline) -> d.who) g.deadlines in
   let group = Formula.group_of read.instance ids in
   if group = [] || List.length group <> List.length (List.sort_uniq Z.compare ids)
      || List.length group <> List.length ids then
     Error (Refused ("bound/deadline", "it must name one or more robots of the instance once"))
+  else if List.exists (is_never read) g.deadlines then
+    Error (Refused ("bound/deadline", "a robot must be seen at a tick of at least 0, in resources of the graph"))
   else proof_of_group read group (Formula.In_time g.deadlines) { horizons = []; order = [] } refutation
 
 (* The proofs of all claims, or what is wrong with the first one that cannot be made. *)

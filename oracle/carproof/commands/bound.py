@@ -35,7 +35,6 @@ COLUMNS = ("robots", "shortest paths", "lower bound", "best known", "gap", "step
     "--seconds", type=click.IntRange(min=1), help=f"For how long to search at most.  [default: {DEFAULT_SECONDS}]"
 )
 @click.option("--steps", type=click.IntRange(min=0), help="End after this many steps; the result is always the same.")
-@click.option("--kernel", is_flag=True, help="Find a certificate that the proved kernel can check, too.")
 @click.option("--plans", type=InputFile(), help="A solution in any format, whose total is set against the bound.")
 @from_option
 @output_option
@@ -48,7 +47,6 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     agents: int | None,
     seconds: int | None,
     steps: int | None,
-    kernel: bool,
     plans: str | None,
     format: str | None,
     output: Path | None,
@@ -57,9 +55,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     """Find a lower bound on the total cost of any plans for all robots of INSTANCE.
 
     Robots pay prices for places that they contend for. The bound is the cheapest priced paths minus the most that
-    the prices can collect. --output writes the prices as a certificate, which verify-bound checks. With --kernel the
-    proved kernel can check it too, and the bound is lower where robots meet head-on. The gap is that of the plans
-    given, or else of the best of ten orders in which the robots are planned one after the other.
+    the prices can collect. --output writes the prices as a certificate, which verify-bound checks. The gap is
+    that of the plans given, or else of the best of ten orders in which the robots are planned one after the other.
 
     Exit codes: 0 a bound is found, 1 a robot has no way to its goal (the bound is that of the others), 2 bad input.
     """
@@ -84,7 +81,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     warm()
     started = perf_counter()
     with naming(given.names[0]), search_progress("bounding", steps, limit) as show:
-        certificate = lower_bound(problem, limit, steps, keep, seen=not kernel)
+        certificate = lower_bound(problem, limit, steps, keep)
     took = perf_counter() - started
     document = write(certificate)
     if output is not None:

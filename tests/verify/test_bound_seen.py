@@ -1,0 +1,161 @@
+"""Bounds with robots that are seen at a tick: at most the optimum, and decided alike in Python and by the kernel."""
+
+import json
+import subprocess
+from collections.abc import Iterator, Sequence
+from functools import cache
+from itertools import combinations
+from typing import Any
+
+import msgspec
+import pytest
+from tests.verify.bound_examples import Tamper, completed, crossing, sight_certificate
+from tests.verify.kernel_program import program
+from tests.verify.test_bound_groups import sight, with_sights
+from tests.verify.tiny import case
+
+from carp_optimum.bound import lower_bound
+from carp_optimum.proving import refutation
+from carp_optimum.solver import Deadline, Solver
+from carp_spec import Instance, Robot
+from carp_spec.permutations import shuffle
+from carp_verify.bound_cuts import formula_of_deadlines
+from carp_verify.bound_rules import LARGEST_FORMULA
+from carp_verify.bounds import BoundDocument, DeadlinesDocument, Sight
+from carp_verify.documents import instance_document
+from carp_verify.encoding import Encoding
+from carp_verify.joint_search import least_total_cost
+from carp_verify.verify_bound import verify_bound
+from carproof.questions import Draw
+
+CASES = 300
+SCALE = 4
+
+
+def sight_of(instance: Instance, robot: Robot, draw: Draw) -> tuple[int, Sight]:
+    """A deadline of the robot, a tick at which it is seen, and a few places."""
+    earliest = next(each.earliest for each in Encoding(instance).robots if each.robot == robot)
+    places = shuffle([resource.id for resource in instance.graph.resources], draw.stream)[: draw.between(0, 2)]
+    return earliest + draw.between(-1, 1), (robot.release + draw.between(0, 5), tuple(places))
+
+
+def deadlines_of(instance: Instance, draw: Draw) -> Iterator[DeadlinesDocument]:
+    """Deadlines of two robots that are seen, which they cannot both keep, with their refutations."""
+    for pair in combinations(instance.robots, 2):
+        for _ in range(8):
+            drawn = [sight_of(instance, robot, draw) for robot in pair]
+            ticks = tuple(max(0, tick) for tick, _ in drawn)
+            names = tuple(robot.id for robot in pair)
+            unproved = DeadlinesDocument(names, ticks, 0, "", tuple(seen for _, seen in drawn))
+            formula = formula_of_deadlines(instance, unproved, LARGEST_FORMULA)
+            if not Solver(formula, lambda: None).satisfiable([]):
+                yield msgspec.structs.replace(unproved, refutation=refutation(formula, Deadline(60)))
+
+
+def best_with(instance: Instance, certificate: BoundDocument, deadlines: DeadlinesDocument) -> BoundDocument:
+    """The certificate with the deadlines too, at the price at which it proves most."""
+    priced = [msgspec.structs.replace(deadlines, price=price) for price in range(0, 3 * SCALE, 2)]
+    bounds = [
+        completed(instance, msgspec.structs.replace(certificate, deadlines=(*certificate.deadlines, each)))
+        for each in priced
+    ]
+    return max(bounds, key=lambda each: sum(least or 0 for _, least in each.robots) - worth(each))
+
+
+def worth(certificate: BoundDocument) -> int:
+    """The most that robots pay for their deadlines."""
+    return sum(each.price * (len(each.robots) - 1) for each in certificate.deadlines)
+
+
+@cache
+def found() -> list[tuple[Instance, BoundDocument]]:
+    """Tiny instances with certificates of robots that are seen, whose deadlines are priced one after the other."""
+    certificates = []
+    for number in range(CASES):
+        instance, draw = case(number)
+        least = None if Encoding(instance).wayless else least_total_cost(instance)
+        if least is not None and least > Encoding(instance).shortest:
+            plain = msgspec.structs.replace(lower_bound(instance, steps=0), resources=(), exchanges=(), scale=SCALE)
+            certificate = completed(instance, plain)
+            for deadlines in deadlines_of(instance, draw):
+                better = best_with(instance, certificate, deadlines)
+                certificate = better if better.deadlines[-1].price > 0 else certificate
+            if certificate.deadlines:
+                certificates.append((instance, certificate))
+    return certificates
+
+
+def test_a_bound_with_robots_that_are_seen_is_verified_and_at_most_the_optimum() -> None:
+    tight = 0
+    for instance, certificate in found():
+        least = least_total_cost(instance)
+        bound = verify_bound(instance, certificate)
+        assert least is not None
+        assert bound <= least
+        tight += bound == least and bound > lower_bound(instance, steps=0).bound
+    assert tight > 4
+
+
+def verdicts(questions: Sequence[tuple[Instance, object]]) -> list[Any]:
+    """The kernel's answers."""
+    requests = [
+        {"op": "verify-bound", "instance": instance_document(instance), "certificate": certificate}
+        for instance, certificate in questions
+    ]
+    text = b"".join(msgspec.json.encode(each) + b"\n" for each in requests)
+    done = subprocess.run([program(), "serve"], input=text, stdout=subprocess.PIPE, check=False)
+    return [json.loads(line) for line in done.stdout.splitlines()]
+
+
+def test_the_kernel_accepts_bounds_with_robots_that_are_seen() -> None:
+    bounds = [certificate.bound for _, certificate in found()]
+    assert [answer.get("bound") for answer in verdicts(found())] == bounds
+    assert len(bounds) > 20
+
+
+def test_the_kernel_refuses_claims_that_are_a_part_of_a_tick_too_high() -> None:
+    forged = []
+    for instance, certificate in found():
+        for position, (name, least) in enumerate(certificate.robots):
+            robots = list(certificate.robots)
+            robots[position] = (name, (least or 0) + 1)
+            forged.append((instance, msgspec.structs.replace(certificate, robots=tuple(robots))))
+    assert {answer.get("rule") for answer in verdicts(forged)} == {"bound/robots"}
+
+
+@pytest.mark.parametrize(
+    "tamper",
+    [
+        sight(tick=2),
+        sight(tick=0),
+        sight(places=("middle", "north")),
+        sight(other=("middle", "south")),
+        sight(tick=-1),
+        sight(places=("moon",)),
+        with_sights(ticks=(0, -1)),
+        with_sights(refutation=""),
+    ],
+)
+def test_the_kernel_refuses_tampered_sights(tamper: Tamper) -> None:
+    honest = sight_certificate()
+    questions = [(crossing(), certificate) for certificate in (honest, tamper(honest))]
+    accepted, refused = verdicts(questions)
+    assert (accepted["verdict"], accepted["bound"]) == ("accepted", honest.bound)
+    assert (refused["verdict"], refused["rule"]) == ("refused", "bound/deadline")
+
+
+@pytest.mark.parametrize(
+    ("seen", "path", "expected"),
+    [
+        ([[1, ["middle"]]], "$.certificate.deadlines[0].seen", "a tick and places for each robot"),
+        ([[1, ["middle"]], [1]], "$.certificate.deadlines[0].seen[1]", "an array of a tick and an array of resources"),
+        ([[1, ["middle"]], [1, "middle"]], "$.certificate.deadlines[0].seen[1][1]", "an array"),
+        ([[1, ["middle"]], [1.0, ["middle"]]], "$.certificate.deadlines[0].seen[1][0]", "a whole number"),
+    ],
+)
+def test_malformed_sights_are_bad_input(seen: object, path: str, expected: str) -> None:
+    document = msgspec.to_builtins(sight_certificate())
+    document["deadlines"][0]["seen"] = seen
+    (answer,) = verdicts([(crossing(), document)])
+    assert (answer["verdict"], answer["path"]) == ("bad input", path)
+    assert answer["message"] == f"expected {expected}"
