@@ -25,6 +25,7 @@ os.environ["NUMBA_DISABLE_JIT"] = "1"  # numba looks when it is loaded
 os.environ["HYPOTHESIS_PROFILE"] = "mutation"
 
 import numpy as np
+import pytest
 import tests.conftest  # noqa: F401 - the profile
 from tests.mutation.forking import ROOT, Case, chosen, outcome, run_mutants
 from tests.mutation.mutants import Mutant, mutants
@@ -33,6 +34,7 @@ from tests.optimized.towns import TOWNS
 
 import carp_reference
 from carp_spec import Instance, Neighbourhood, Planner, Solution
+from carproof.generate import Range
 from carproof.questions import question
 
 FOLDER = ROOT / "optimized" / "carp_optimized"
@@ -75,7 +77,28 @@ TESTS: Sequence[tuple[str, str, tuple[object, ...]]] = (
         for more in (0, 1)
     ),
     ("test_adding", "test_a_plan_where_nothing_is_reserved_is_made_as_by_a_search", ()),
+    ("test_adding", "test_a_plan_where_nothing_is_reserved_passes_by_places_that_do_not_lead_to_the_goal", ()),
     ("test_adding", "test_of_two_robots_equally_near_the_earlier_is_taken_though_the_other_is_the_likelier", ()),
+    (
+        "test_adding",
+        "test_a_plan_must_cost_less_than_what_is_known_of_the_members_behind_leaves",
+        (),
+    ),
+    ("test_corners", "test_a_goal_that_is_too_far_is_refused", (1,)),
+    *(
+        ("test_limits", "test_a_goal_behind_resources_that_are_too_far_is_refused_and_not_called_out_of_reach", (last,))
+        for last in (2**29, 1)
+    ),
+    ("test_limits", "test_a_plan_that_would_pass_the_largest_tick_is_refused_while_planning", ()),
+    *(
+        (
+            "test_adding",
+            "test_tolls_are_in_the_order_of_the_ticks_to_the_goal_and_then_of_the_indices",
+            (pytest.MonkeyPatch(), durations, ranked),
+        )
+        for durations in (Range(1, 1), Range(1, 3))
+        for ranked in (False, True)
+    ),
     ("test_adding", "test_the_least_sum_is_no_larger_than_the_sum_of_the_terms", ()),
 )
 
@@ -138,6 +161,9 @@ def as_case(test: tuple[str, str, tuple[object, ...]]) -> Callable[[], int]:
 
     def case() -> int:
         getattr(import_module(f"tests.optimized.{module}"), name)(*arguments)
+        for each in arguments:
+            if isinstance(each, pytest.MonkeyPatch):
+                each.undo()
         return 0
 
     return case

@@ -9,17 +9,20 @@ from hypothesis import strategies as st
 from tests.profiles import draws
 
 import carp_reference
-from carp_optimized import distances, neighbourhood
-from carp_optimized.arrays import NEVER, NO_LIMIT, NONE, Records, Work
+from carp_optimized import distances, encoding, neighbourhood
+from carp_optimized.answers import learn, start_answers
+from carp_optimized.arrays import LATE, NEVER, NO_LIMIT, NONE, Records, Work
 from carp_optimized.distances import Mean, distance_below, least_sum, likely_nearest, nearest, term
-from carp_optimized.encoding import no_work
+from carp_optimized.encoding import no_answers, no_work
 from carp_optimized.fleet import PlannedFleet
+from carp_optimized.guides import guide_slot, toll_of
 from carp_optimized.neighbourhood import plan_alone
+from carp_optimized.order_search import spare_for
 from carp_optimized.passes import withdraw_all
 from carp_optimized.records import cost_of
 from carp_optimized.search import find_plan, find_plan_alone
 from carp_spec import Instance, Neighbourhood, Resource, ResourceGraph, Robot, neighbourhood_rules
-from carproof.generate import Fleet, Grid, Range, grid_instance
+from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 from carproof.strategies import FleetUnderWay, Sizes, fleets_under_way
 
 pytestmark = pytest.mark.skipif(os.environ.get("NUMBA_DISABLE_JIT") != "1", reason="it runs uncompiled")
@@ -182,3 +185,42 @@ def test_of_two_robots_equally_near_the_earlier_is_taken_though_the_other_is_the
 def test_the_least_sum_is_no_larger_than_the_sum_of_the_terms(differences: list[tuple[int, int]]) -> None:
     x, y = (sum(each) for each in zip(*differences, strict=True))
     assert least_sum(x, y, len(differences)) <= sum(term(*each) for each in differences)
+
+
+def test_a_plan_must_cost_less_than_what_is_known_of_the_members_behind_leaves() -> None:
+    """In the order 2, 0, 1: alone each costs 10; beside plan 5, 0 costs 12 and 1 costs 13; beside 6 too, 1 costs 17."""
+    work = no_work(3, 3, 0)
+    work.order[:], work.least[:], work.given[:] = (2, 0, 1), 10, (1 << 5, 1 << 5 | 1 << 6, 0, 0)
+    answers = no_answers(3)
+    start_answers(answers, 3)
+    known = ((0, 1 << 5, 12), (1, 1 << 5, 13), (1, 1 << 5 | 1 << 6, 17), (2, 0, 19))
+    for member, beside, least in (*((member, 0, 10) for member in range(3)), *known):
+        learn(answers, member, beside, LATE, NONE, least)
+    assert [spare_for(work, answers, place, 3, 100, 0) for place in range(3)] == [95, 93, 100]
+    assert spare_for(work, answers, 0, 3, 100, 98) == 98
+
+
+@pytest.mark.parametrize("ranked", [False, True])
+@pytest.mark.parametrize("durations", [Range(1, 1), Range(1, 3)], ids=["levels", "durations"])
+def test_tolls_are_in_the_order_of_the_ticks_to_the_goal_and_then_of_the_indices(
+    monkeypatch: pytest.MonkeyPatch, durations: Range, ranked: bool
+) -> None:
+    if ranked:
+        monkeypatch.setattr(encoding, "scale_of_tolls", lambda *_: 0)
+    state = PlannedFleet(grid_instance(Grid(5, 5, 10), Fleet(1), Traits(duration=durations)))._state
+    slot = guide_slot(state, 0)
+    ticks = [int(each) for each in state.guides.ticks[slot]]
+    tolls = [toll_of(state, slot, resource) for resource in range(len(ticks))]
+    able = [resource for resource, each in enumerate(ticks) if each >= 0]
+    assert sorted(able, key=tolls.__getitem__) == sorted(able, key=lambda resource: (ticks[resource], resource))
+    assert len({tolls[resource] for resource in able}) == len(able) > 9
+    assert (state.guides.rank.size > 0) == ranked
+
+
+def test_a_plan_where_nothing_is_reserved_passes_by_places_that_do_not_lead_to_the_goal() -> None:
+    cells = tuple(Resource(cell) for cell in "abcd")
+    edges = (("a", "b"), ("a", "d"), ("b", "c"))
+    fleet = PlannedFleet(Instance(ResourceGraph(cells, edges, directed=True), (Robot("r", "a", "c"),)))
+    state = fleet._empty.fields
+    one, other = find_plan_alone(state, 0, 0), find_plan(state, 0, NONE, 0, NEVER)
+    assert what_was_read(state.records, one) == what_was_read(state.records, other)

@@ -20,7 +20,7 @@ def test_the_robots_behind_get_the_plans_of_the_reference(name: str) -> None:
     fleet = PlannedFleet(instance)
     last = len(instance.robots) - 1
     for robot in range(last + 1):
-        now, options = (0, ALONE) if robot < last else (town.now, Neighbourhood(m=town.m, baseline=False))
+        now, options = (0, ALONE) if robot < last else (town.now, Neighbourhood(m=town.m, baseline=town.baseline))
         solution = carp_reference.add(instance, solution, robot, now, options)
         fleet.add(robot, now, options)
         assert fleet.plans == solution.plans

@@ -1,7 +1,7 @@
 """Small fleets in which a robot is taken out, and one behind it has to be asked again, or may not be.
 
 Resources are letters, edges pairs of them. No resource has a position, so all robots are equally near, and the first in
-planning order is taken out. The robot added last has nothing to do with the others.
+planning order is taken out. The robot added last has nothing to do with the others, unless a town names it.
 """
 
 from collections.abc import Mapping, Sequence
@@ -21,14 +21,18 @@ class Town:
     now: int = 0
     m: int = 2
     is_directed: bool = False
+    added: tuple[str, str, int, int] | None = None
+    baseline: bool = False
 
     @property
     def instance(self) -> Instance:
-        """The robots have numbers in the order of their planning; the last one stands on `z`."""
+        """The robots have numbers in the order of their planning; the last one stands on `z`, unless it is named."""
         edges = tuple((pair[0], pair[1]) for pair in self.edges.split())
         names = sorted({name for edge in edges for name in edge} | {"z"})
         cells = tuple(Resource(name, duration=self.durations.get(name, 1)) for name in names)
-        robots = [Robot(number, *each) for number, each in enumerate((*self.robots, ("z", "z", self.now, 1)))]
+        robots = [
+            Robot(number, *each) for number, each in enumerate((*self.robots, self.added or ("z", "z", self.now, 1)))
+        ]
         return Instance(ResourceGraph(cells, edges, self.is_directed), tuple(robots), self.after_goal)
 
 
@@ -91,5 +95,22 @@ TOWNS = {
         "ab eb bf bg cg gh ci ij jh",
         [("e", "f", 0, 1), ("a", "g", 0, 1), ("c", "h", 1, 1)],
         after_goal="park",
+    ),
+    # the robot added costs more than the others together, and 0 gains in the last round by letting 1 pass
+    "a long way beside short ones": Town(
+        "at tb ct td no",
+        [("a", "b", 0, 5), ("c", "d", 5, 1)],
+        durations={"n": 20},
+        added=("n", "o", 0, 1),
+        baseline=True,
+    ),
+    # 1 is in the way of 0 in t, and of 2 in u; when 1 is gone too, 2 passes s at once, where 3 is to begin, so that 3
+    # has no plan until 2 is gone; then 0 can go straight through t, though 2 has never been there
+    "two that leave, and one without a plan between": Town(
+        "at tb ct tu ud eu us sf sg",
+        [("a", "b", 4, 1), ("c", "d", 0, 4), ("e", "f", 7, 1)],
+        m=4,
+        is_directed=True,
+        added=("s", "g", 9, 1),
     ),
 }
