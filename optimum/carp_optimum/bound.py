@@ -26,15 +26,21 @@ if TYPE_CHECKING:
     from carp_optimum.price_search import PriceSearch
 
 SCALE = 1 << 16
-FIRST_AIM = 50  # one part of the sum of shortest paths
+FIRST_AIM, NEXT_AIM, FINAL_AIM = 10, 50, 1024
+"""Parts of the best bound: the largest aims at the beginning, after new claims, and when all claims are proved."""
 ROUGH_AIM = SCALE >> 4
+LAST_PART = 64  # of the first aim: the last one before new claims, where that is more than the rough one
 FINE_AIM = SCALE >> 10
-ROUGH_PARTS, PARTS = 7, 8  # of the time: cuts are searched for, then prices alone are refined
+ROUGH_PARTS, PROVED_PARTS, PARTS = 13, 15, 16
+"""Parts of the time: claims are searched for, then the last ones are proved, then prices alone are refined."""
 
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """The progress of the search: steps taken, and the best bound so far, in whole ticks."""
+    """The progress of the search: steps taken, and the best bound so far, in whole ticks.
+
+    The bound may count claims that are not proved yet, and fall if one of them has no short proof.
+    """
 
     steps: int
     bound: int
@@ -61,6 +67,7 @@ def lower_bound(
     from carp_optimum.sight_search import SightSearch  # noqa: PLC0415
 
     rough = _limit(seconds, steps, ROUGH_PARTS, clock)
+    proved = _limit(seconds, None, PROVED_PARTS, clock)
     end = _limit(seconds, steps, PARTS, clock)
     search = PriceSearch(instance, SCALE)
     cuts = CutSearch(search)
@@ -74,14 +81,21 @@ def lower_bound(
         report(search.count, search.best)
         rough(search.count)
 
+    def prove() -> None:
+        with suppress(TimeOver):
+            sights.prove(lambda: proved(0))
+
     report(0, search.best)
     with suppress(TimeOver):
         gain = search.best // FIRST_AIM
         while gain > 0 or not cuts.is_exhausted:
-            search.climb(gain, ROUGH_AIM, lambda: rough(search.count), report)
+            search.climb(gain, max(ROUGH_AIM, gain // LAST_PART), lambda: rough(search.count), report)
+            prove()
             gain = (sights.round(look) if seen else 0) or deadlines.round(look) or cuts.round(look)
+            gain = min(gain, search.best // NEXT_AIM)
+    prove()
     with suppress(TimeOver):
-        search.climb(ROUGH_AIM, FINE_AIM, lambda: end(search.count), report)
+        search.climb(max(ROUGH_AIM, search.best // FINAL_AIM), FINE_AIM, lambda: end(search.count), report)
     search.finish()
     return _certificate(search, cuts)
 

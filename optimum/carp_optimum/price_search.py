@@ -33,6 +33,11 @@ DELAYS = 64
 MOST_NODES = 1 << 21
 LAST_TICK = 20_000  # of prices, so that a step does not take long
 PATIENCE = 35
+ENOUGH, LEAST_ENOUGH = 32, 4096
+"""Parts of the aim, and of the best bound: patience begins again where both are gained.
+
+On a spanning tree the bound rises slowly and long, in steps that are small beside the aim.
+"""
 
 
 class PriceLists(NamedTuple):
@@ -239,6 +244,18 @@ class PriceSearch:
         self._course_of_fees = np.concatenate([self._course_of_fees, none])
         self._kept = self._kept._replace(fees=np.concatenate([self._kept.fees, none]))
 
+    def keep_deadlines(self, kept: Sequence[Deadlines]) -> None:
+        """Keep these deadlines alone, with their prices; the best bound is then the one that they prove."""
+        numbers = {id(each): number for number, each in enumerate(self.deadlines)}
+        places = [numbers[id(each)] for each in kept]
+        fees = self._kept.fees[places]
+        self.deadlines = []
+        self.fees = self._course_of_fees = self.fees[:0]
+        self._kept = self._kept._replace(fees=self.fees)
+        self.add_deadlines(kept)
+        self._kept = self._kept._replace(fees=fees)
+        self.best = self._restore()
+
     def priced_deadlines(self) -> tuple[DeadlinesDocument, ...]:
         """The deadlines that have a price, with it."""
         priced = zip(self.deadlines, self.fees.tolist(), strict=True)
@@ -304,6 +321,7 @@ class PriceSearch:
         self.best = max(self.best, bound)
         aim = max(first_aim, last_aim)
         failures = 0
+        before = self.best
         while aim >= last_aim:
             check()
             if not self._step(min(max(self.best + aim - bound, 0), LARGEST_GAIN)):
@@ -311,11 +329,14 @@ class PriceSearch:
             bound = self._bound()
             failures += 1
             if bound > self.best:
-                failures = 0 if bound > self.best + aim // 8 else failures
                 self.best = bound
                 self._kept = self._point()
+            if self.best - before > max(aim // ENOUGH, self.best // LEAST_ENOUGH):
+                failures = 0
+                before = self.best
             if failures > PATIENCE:
                 failures = 0
+                before = self.best
                 aim = aim * 3 // 4
                 bound = self._restore()
             on_step(self.count, self.best)

@@ -2,7 +2,11 @@
 
 Prices let robots that meet head-on pass each other by halves. Near the best prices, a robot's ways have it in several
 places at a tick. `carp_optimum.meetings` finds places of two robots that exclude each other at a tick, and that the
-ways take too often. All places that these exclude are added, and the claim is proved by a refutation.
+ways take too often. All places that these exclude are added.
+
+That search has followed all joint states of the two, so such a claim is true, and prices may count on it at once. A
+certificate needs its refutation, which takes longer to find. So only the claims that have a price after a climb are
+proved; the others are dropped, and a later round finds them again where they are still broken.
 """
 
 from collections import Counter, defaultdict
@@ -12,6 +16,7 @@ from itertools import combinations, count
 
 import numpy as np
 import numpy.typing as npt
+from msgspec.structs import replace
 
 from carp_optimized.arrays import NONE, Graph, Ints, IntTable, Longs
 from carp_optimized.references import Native
@@ -33,8 +38,8 @@ MOST_SPOTS = 400
 LARGEST_ENCODING = 2_000_000
 LEAST_WEIGHT = 8  # by which ways break a claim
 MOST_TRIED = 1500  # pairs in a round
-MOST_FOUND = 200  # claims in a round
-LEAST_GAIN = 60  # one part of the best bound: what a round's claims must be broken by for another round
+MOST_FOUND = 400  # claims in a round
+LEAST_GAIN = 100  # one part of the best bound: what a round's claims must be broken by for another round
 LOOKS = 400  # of a search for a refutation at its clock
 LONGEST_REFUTATION = 300_000  # characters
 
@@ -46,6 +51,7 @@ class SightSearch:
         self.search = search
         self.instance = search.instance
         self.most = min(LARGEST_DELAY, search.market.delays - 1)
+        self.without_proof: set[Sequence[Member]] = set()
 
     def round(self, check: Callable[[], None]) -> int:
         """Add claims that the ways near the best prices break, and return by how much, in parts of a tick; 0 if little.
@@ -66,22 +72,51 @@ class SightSearch:
                 if len(chosen) == MOST_FOUND:
                     break
                 weight, members = sides.claim(one, other)
-                if weight >= LEAST_WEIGHT:
-                    proved = self._prove(members, check)
-                    if proved is not None:
-                        chosen.append(proved)
-                        gain += weight
+                if weight >= LEAST_WEIGHT and members not in self.without_proof:
+                    chosen.append(self._unproved(members))
+                    gain += weight
         finally:
             search.add_deadlines(chosen)
         gained = gain * search.scale // STEPS
         return gained if gained * LEAST_GAIN >= search.best else 0
 
-    def _prove(self, members: Sequence[Member], check: Callable[[], None]) -> Deadlines | None:
-        """The claim with a proof, unless it has none that is short."""
+    def prove(self, check: Callable[[], None]) -> None:
+        """Prove the claims that have a price, the dearest first, and drop those without a proof.
+
+        `check` may raise `TimeOver`; the claims proved until then are kept.
+        """
+        search = self.search
+        if all(each.document.refutation for each in search.deadlines):
+            return
+        search.finish()
+        kept = [each for each in search.deadlines if each.document.refutation]
+        unproved = [
+            (fee, number)
+            for number, fee in enumerate(search.fees.tolist())
+            if fee > 0 and not search.deadlines[number].document.refutation
+        ]
+        try:
+            for _, number in sorted(unproved, key=lambda each: (-each[0], each[1])):
+                claim = search.deadlines[number]
+                lines = self._refutation(claim.document, check)
+                if lines:
+                    search.deadlines[number] = Deadlines(claim.members, replace(claim.document, refutation=lines))
+                    kept.append(search.deadlines[number])
+                else:
+                    self.without_proof.add(claim.members)
+        finally:
+            search.keep_deadlines(kept)
+
+    def _unproved(self, members: Sequence[Member]) -> Deadlines:
+        """The claim without its proof."""
         graph = self.instance.graph
         robots = tuple(self.instance.robots[member.robot].id for member in members)
         seen = tuple((member.seen, tuple(graph.resources[at].id for at in member.places)) for member in members)
         ticks = tuple(max(member.arrival, 0) for member in members)
+        return Deadlines(members, DeadlinesDocument(robots, ticks, 0, "", seen))
+
+    def _refutation(self, claim: DeadlinesDocument, check: Callable[[], None]) -> str:
+        """The refutation of the claim's contrary; nothing if there is none that is short."""
         looks = count()
 
         def clock() -> int:
@@ -89,15 +124,12 @@ class SightSearch:
             return next(looks) * NANOSECONDS
 
         try:
-            unproved = DeadlinesDocument(robots, ticks, 0, "", seen)
-            formula = formula_of_deadlines(self.instance, unproved, LARGEST_FORMULA)
+            formula = formula_of_deadlines(self.instance, claim, LARGEST_FORMULA)
             lines = refutation(formula, Deadline(LOOKS, clock))
         except (TimeOver, Refusal, ContradictionError):
             check()
-            return None
-        if len(lines) > LONGEST_REFUTATION:
-            return None
-        return Deadlines(members, DeadlinesDocument(robots, ticks, 0, lines, seen))
+            return ""
+        return lines if len(lines) <= LONGEST_REFUTATION else ""
 
 
 def pairs_in(at: IntTable, resources: int) -> Sequence[tuple[int, int]]:
@@ -163,7 +195,7 @@ class _Sides:
         others &= together.any(axis=0) | np.isin(np.arange(len(others)), second.chosen[1 : 1 + second.chosen[0]])
         ones = ~together[:, others].any(axis=1) & far[0]
         ones &= together.any(axis=1) | np.isin(np.arange(len(ones)), chosen)
-        return weight, [self.member(first, ones, tick), self.member(second, others, tick)]
+        return weight, (self.member(first, ones, tick), self.member(second, others, tick))
 
     def member(self, side: Side, spots: npt.NDArray[np.bool_], tick: int) -> Member:
         """The robot, seen at the tick in the spots."""

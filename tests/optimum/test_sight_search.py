@@ -7,8 +7,10 @@ import pytest
 from hypothesis import event, given, settings
 from tests.profiles import draws
 
+from carp_optimum.bound import lower_bound
 from carp_optimum.price_search import PriceSearch
 from carp_optimum.sight_search import STEPS, SightSearch, _Sides, pairs_in
+from carp_optimum.solver import TimeOver
 from carp_spec import Instance, Resource, ResourceGraph, Robot
 from carp_verify.bound_cuts import require_deadlines
 from carproof.strategies import Sizes, instances
@@ -40,6 +42,7 @@ def test_claims_are_proved_and_raise_the_bound() -> None:
     for _ in range(4):
         search.round(lambda: None)
         prices.climb(SCALE, SCALE >> 4, lambda: None, lambda _, __: None)
+        search.prove(lambda: None)
     assert prices.best > before + SCALE
     assert prices.deadlines
     for deadlines in prices.deadlines:
@@ -58,7 +61,44 @@ def test_all_that_is_found_has_a_proof(instance: Instance) -> None:
         weight, members = sides.claim(one, other)
         if weight > 0:
             event("claimed")
-            assert search._prove(members, lambda: None) is not None
+            assert search._refutation(search._unproved(members).document, lambda: None)
+
+
+def test_claims_without_a_price_or_a_proof_are_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
+    prices = search_of(two_lanes())
+    before = prices.best
+    search = SightSearch(prices)
+    search.round(lambda: None)
+    found = len(prices.deadlines)
+    prices.climb(SCALE, SCALE >> 4, lambda: None, lambda _, __: None)
+    priced = int((prices.fees > 0).sum())
+    assert prices.best > before
+    search.prove(lambda: None)
+    assert 0 < len(prices.deadlines) == priced <= found
+    search.round(lambda: None)
+    prices.climb(SCALE, SCALE >> 4, lambda: None, lambda _, __: None)
+    monkeypatch.setattr("carp_optimum.sight_search.LONGEST_REFUTATION", 0)
+    search.prove(lambda: None)
+    assert all(each.document.refutation for each in prices.deadlines)
+
+
+def test_the_bound_is_that_of_the_claims_that_are_proved_in_time() -> None:
+    prices = search_of(two_lanes())
+    before = prices.best
+    search = SightSearch(prices)
+    search.round(lambda: None)
+    prices.climb(SCALE, SCALE >> 4, lambda: None, lambda _, __: None)
+    assert prices.best > before
+
+    def stop() -> None:
+        raise TimeOver
+
+    with pytest.raises(TimeOver):
+        search.prove(stop)
+    assert not prices.deadlines
+    assert prices.best <= before
+    certificate = lower_bound(two_lanes(), steps=0)
+    assert certificate.bound <= -(-before // SCALE)
 
 
 def test_the_same_search_finds_the_same() -> None:
