@@ -29,7 +29,7 @@ SCALE = 1 << 16
 FIRST_AIM, NEXT_AIM, FINAL_AIM = 10, 50, 1024
 """Parts of the best bound: the largest aims at the beginning, after new claims, and when all claims are proved."""
 ROUGH_AIM = SCALE >> 4
-LAST_PART = 64  # of the first aim: the last one before new claims, where that is more than the rough one
+LARGE = 16384  # parts of the best bound: the last aim before new claims, where that is more than the rough one
 FINE_AIM = SCALE >> 10
 ROUGH_PARTS, PROVED_PARTS, PARTS = 13, 15, 16
 """Parts of the time: claims are searched for, then the last ones are proved, then prices alone are refined."""
@@ -89,7 +89,7 @@ def lower_bound(
     with suppress(TimeOver):
         gain = search.best // FIRST_AIM
         while gain > 0 or not cuts.is_exhausted:
-            search.climb(gain, max(ROUGH_AIM, gain // LAST_PART), lambda: rough(search.count), report)
+            search.climb(gain, max(ROUGH_AIM, search.best // LARGE), lambda: rough(search.count), report)
             prove()
             gain = (sights.round(look) if seen else 0) or deadlines.round(look) or cuts.round(look)
             gain = min(gain, search.best // NEXT_AIM)
