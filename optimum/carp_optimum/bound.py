@@ -31,6 +31,7 @@ FIRST_AIM, NEXT_AIM, FINAL_AIM = 10, 50, 1024
 ROUGH_AIM = SCALE >> 4
 LARGE = 16384  # parts of the best bound: the last aim before new claims, where that is more than the rough one
 FINE_AIM = SCALE >> 10
+LEAST_RISE = 500  # one part of the bound: what sights must raise it by to be searched for again at once
 ROUGH_PARTS, PROVED_PARTS, PARTS = 13, 15, 16
 """Parts of the time: claims are searched for, then the last ones are proved, then prices alone are refined."""
 
@@ -88,10 +89,15 @@ def lower_bound(
     report(0, search.best)
     with suppress(TimeOver):
         gain = search.best // FIRST_AIM
+        by_sights = False
         while gain > 0 or not cuts.is_exhausted:
+            before = search.best
             search.climb(gain, max(ROUGH_AIM, search.best // LARGE), lambda: rough(search.count), report)
             prove()
-            gain = (sights.round(look) if seen else 0) or deadlines.round(look) or cuts.round(look)
+            fruitless = by_sights and (search.best - before) * LEAST_RISE < search.best
+            gain = 0 if fruitless or not seen else sights.round(look)
+            by_sights = gain > 0
+            gain = gain or deadlines.round(look) or cuts.round(look)
             gain = min(gain, search.best // NEXT_AIM)
     prove()
     with suppress(TimeOver):

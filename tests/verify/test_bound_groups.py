@@ -195,9 +195,9 @@ def test_a_robot_is_late_where_that_is_cheaper(
 def test_deadlines_find_what_prices_alone_miss_and_carry_their_proofs() -> None:
     instance = crossing()
     certificate = lower_bound(instance, steps=4500)
-    assert certificate.bound == 10
+    assert certificate.bound == 11
     assert certificate.deadlines
-    assert verify_bound(instance, certificate) == 10
+    assert verify_bound(instance, certificate) == 11
 
 
 def with_deadlines(**fields: object) -> Tamper:
