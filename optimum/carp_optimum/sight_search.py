@@ -116,7 +116,7 @@ class SightSearch:
         return Deadlines(members, DeadlinesDocument(robots, ticks, 0, "", seen))
 
     def _refutation(self, claim: DeadlinesDocument, check: Callable[[], None]) -> str:
-        """The refutation of the claim's contrary; nothing if there is none that is short."""
+        """The refutation of the claim's contrary, or nothing if it is too long."""
         looks = count()
 
         def clock() -> int:
