@@ -127,7 +127,7 @@ def test_the_certificate_s_cuts_and_deadlines_count(seed: int, after_goal: After
     instance = town(seed, after_goal)
     least = optimum(instance, SECONDS, priced=False).cost
     assert least is not None
-    certificate = lower_bound(instance, steps=1000, seen=False)
+    certificate = lower_bound(instance, steps=1500, seen=False)
     assert len(certificate.deadlines) > 2
     if cuts:
         cut = first_cut(instance, certificate.scale // 2)
@@ -158,7 +158,7 @@ def test_nodes_beyond_the_gap_are_left_out() -> None:
 
 def test_at_the_bound_one_robot_of_each_group_with_deadlines_is_late_and_no_second_one_if_that_is_too_dear() -> None:
     instance = town(7, "park")
-    bound = PricedBound(instance, lower_bound(instance, steps=1000, seen=False))
+    bound = PricedBound(instance, lower_bound(instance, steps=1500, seen=False))
     encoding = priced_formula(instance, bound, bound.certificate.bound, lambda: None)
     clauses = {robot.robot.id: robot for robot in encoding.robots}
     solver = Cadical195(bootstrap_with=encoding.formula.clauses)
