@@ -1,12 +1,13 @@
-"""A search that runs beside another one, on a second core if there is one, and decides nothing by the clock.
+"""A search that runs beside another one, on a second core of a Linux machine, and decides nothing by the clock.
 
 The search gives its results with the work that it has done, in units that are the same on every machine. The other one
 asks for the result after an amount of work, and waits for it if need be. So its answers depend neither on the clock nor
-on whether there is a second core: without one, the search runs where it is asked.
+on whether there is a second core: without one, or elsewhere, the search runs where it is asked.
 """
 
 import os
 import signal
+import sys
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import suppress
@@ -34,7 +35,7 @@ class Beside(Generic[Result]):
         self._ended = False
         self._process: int | None = None
         self._receiver: Connection | None = None
-        if len(os.sched_getaffinity(0)) > 1:
+        if sys.platform == "linux" and len(os.sched_getaffinity(0)) > 1:
             self._process, self._receiver = _started(search)
         else:
             self._steps = _changes(search(look))
