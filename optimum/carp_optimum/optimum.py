@@ -8,8 +8,8 @@ continues, until none is left. Source: the OLL algorithm of Andres, Kaufmann, Ma
 
 After many conflicts two searches take over. One finds ever better plans (`carp_optimum.heuristics.ever_better`), in
 another process (`carp_optimum.beside`). The other finds a lower bound with prices (`carp_optimum.bound`). From there
-up, total by total, the formula of all plans of at most this total (`carp_optimum.priced_formula`) either has no model
-or holds the optimum, until the total of the best plans is reached.
+up, a few totals at a time, the formula of all plans of at most such a total (`carp_optimum.priced_formula`) either has
+no model, which raises the bound, or one, which gives better plans, until the bound is the total of the best plans.
 
 Where no plan set exists, the search finds one of these obstacles (`carp_verify.unsolvable` says why each is one):
 
@@ -41,8 +41,10 @@ from carp_verify.unsolvable import Clauses, FullGoal, NoWay, Obstacle, States, i
 
 CONFLICTS_TO_SHRINK = 900
 CONFLICTS_BEFORE_PRICES = 20_000
-PRICE_STEPS = 2400
+PRICE_STEPS = 1600
 LARGEST_GAP = 12  # ticks
+STRIDE = 2
+"""A formula's largest total is this far above the lower bound: one for each total would take twice the time."""
 CONFLICTS_BEFORE_BESIDE = 2000
 """After this many conflicts a formula's search asks for the plans that were found beside it."""
 WORK_OF_STEP = 300
@@ -171,40 +173,47 @@ class _Search:
         if not is_cached(find_ways):
             return None
         self.beside = Beside(lambda look: ever_better(self.instance, look), self.look)
+        plans: Sequence[Plan] | None = None
         try:
             bound = self.priced_bound()
             work = PRICE_STEPS * len(self.instance.robots) * WORK_OF_STEP
             while bound.gap(self.lower) <= LARGEST_GAP * bound.scale:
-                plans, work = self.plans_of_bound(bound, work)
-                if plans is not None:
+                known = self.cheaper(plans, self.beside.result(work))
+                most = self.lower + STRIDE
+                if known is not None:
+                    most = min(most, total_cost(self.instance, known) - 1)
+                if most < self.lower:
                     self.horizon = self.lower - self.encoding.shortest
-                    return plans
-                self.proved = self.lower + 1
+                    return known
+                found, work = self.plans_within(bound, most, work)
+                plans = self.cheaper(known, found)
+                self.best = self.cheaper(self.best, found)
+                if found is None:
+                    self.proved = most + 1
         except Refusal:
             pass
         return None
 
-    def plans_of_bound(self, bound: PricedBound, work: int) -> tuple[Sequence[Plan] | None, int]:
-        """Plans whose total is the lower bound, by the formula of these or found beside, and the work so far."""
-        if plans := self.plans_beside(work):
-            return plans, work
-        encoding = priced_formula(self.instance, bound, self.lower, self.look)
+    def cheaper(self, *known: Sequence[Plan] | None) -> Sequence[Plan] | None:
+        """The cheapest of the plan sets, the first one of equal ones; `None` without any."""
+        there = [plans for plans in known if plans is not None]
+        return min(there, key=lambda plans: total_cost(self.instance, plans), default=None)
+
+    def plans_within(self, bound: PricedBound, most: int, work: int) -> tuple[Sequence[Plan] | None, int]:
+        """Plans of at most this total, by their formula or found beside, and the work so far; `None` if none exist."""
+        assert self.beside is not None  # noqa: S101 - it is there while prices are searched with
+        encoding = priced_formula(self.instance, bound, most, self.look)
         work += len(encoding.formula.clauses) * WORK_OF_CLAUSE
         solver = Solver(encoding.formula, self.look, glucose=True)
         try:
             while (answer := solver.satisfiable([], CONFLICTS_BEFORE_BESIDE)) is None:
-                if plans := self.plans_beside(work + solver.propagations):
-                    return plans, work
+                plans = self.beside.result(work + solver.propagations)
+                if plans is not None and total_cost(self.instance, plans) <= most:
+                    return plans, work + solver.propagations
             model = [plan for plan in encoding.plans(solver.model()) if plan is not None] if answer else None
             return model, work + solver.propagations
         finally:
             solver.close()
-
-    def plans_beside(self, work: int) -> Sequence[Plan] | None:
-        """The plans found beside with this amount of work, if their total is the lower bound."""
-        assert self.beside is not None  # noqa: S101 - it is there while prices are searched with
-        plans = self.beside.result(work)
-        return plans if plans is not None and total_cost(self.instance, plans) == self.lower else None
 
     def priced_bound(self) -> PricedBound:
         """A lower bound with prices."""
@@ -303,8 +312,7 @@ class _Search:
 
     def undecided(self) -> Optimum:
         beside = None if self.beside is None else self.beside.latest()
-        known = [plans for plans in (self.best, beside) if plans is not None]
-        self.best = min(known, key=lambda plans: total_cost(self.instance, plans), default=None)
+        self.best = self.cheaper(self.best, beside)
         if self.best is None:
             return Optimum(
                 self.encoding.shortest, None, self.lower, decided=False, solution=None, evidence=self.evidence

@@ -200,7 +200,7 @@ def test_a_search_with_prices_from_the_first_core_on_finds_the_optimum_on_one_co
 
 @pytest.mark.usefixtures("prices_at_once")
 @pytest.mark.parametrize(("seed", "after_goal"), [(7, "park"), (10, "vanish")])
-def test_the_search_goes_up_from_a_weak_bound_total_by_total(seed: int, after_goal: AfterGoal) -> None:
+def test_the_search_goes_up_from_a_weak_bound(seed: int, after_goal: AfterGoal) -> None:
     instance = town(seed, after_goal)
     assert optimum(instance, SECONDS).cost == optimum(instance, SECONDS, priced=False).cost
 
