@@ -128,7 +128,8 @@ Definition claim_accepted (i : instance) (tf : tariff) (successors : Z -> list Z
 
 (** The first robots of the instance that are not named in order, or whose claims do not hold; none if all is right. *)
 Fixpoint refused_claims (i : instance) (tf : tariff) (successors : Z -> list Z) (table : Map.t resource)
-    (c : certificate) (robots : list robot) (claims : list (Z * option Z)) (all : list evidence) : option (list robot) :=
+    (c : certificate) (robots : list robot) (claims : list (Z * option Z)) (all : list evidence)
+    : option (list robot) :=
   match robots, claims, all with
   | [], [], _ => None
   | a :: robots', (id, claimed_least) :: claims', e :: all' =>
@@ -150,7 +151,8 @@ Definition total_accepted (table : Map.t resource) (c : certificate) : bool :=
   bound c =? - ((- parts table c) / scale c).
 
 (** The rules, one after the other: the first that is broken, or none. *)
-Inductive bound_rule := Scale | Price_rule | Once | Size | Cut_rule | Deadline_rule | Robots (refused : list robot) | Total.
+Inductive bound_rule :=
+  Scale | Price_rule | Once | Size | Cut_rule | Deadline_rule | Robots (refused : list robot) | Total.
 
 Definition broken_rule (i : instance) (c : certificate) (all : list evidence) : option bound_rule :=
   let table := resource_table i in

@@ -898,7 +898,8 @@ Qed.
 (** If the formula of an accepted blueprint of a total is refuted, no lawful solution that plans every robot with a way
     to its goal costs less. *)
 Theorem refuted_total_is_impossible i total b lines s : Well_formed i ->
-  refuted i (Cheaper_than total) b lines = true -> Lawful i s -> Plans_every_plannable_robot i s -> total <= total_cost i s.
+  refuted i (Cheaper_than total) b lines = true -> Lawful i s -> Plans_every_plannable_robot i s ->
+  total <= total_cost i s.
 Proof.
   intros right H lawful complete. apply Z.le_ngt. rewrite <- costs_add_up by auto.
   apply (refuted_blueprint_has_no_solution i (robots i) (Cheaper_than total) b lines s right); auto.
