@@ -18,6 +18,8 @@ from carproof.supervising import GRACE
 CARPROOF = [sys.executable, "-m", "carproof"]
 PATIENCE = 5.0
 """Seconds beyond the grace after which a test calls it a hang: the machine may be busy."""
+LOADING = 60.0
+"""Seconds after which a program that has not started its processes is called a hang."""
 FEW = ["bound town.json --seconds 600 -o out.json", "check - plans.json"]
 MORE = [
     "optimum town.json --limit 600 -o out.json",
@@ -34,6 +36,7 @@ MORE = [
     "experiment quality --quick --store quality.sqlite --workers 2",
 ]
 LONG = [each for each in MORE if each != "theorems"]
+TWO_CORES = sys.platform == "linux" and len(os.sched_getaffinity(0)) > 1
 PATHS = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2] / "oracle")}
 
 
@@ -59,8 +62,8 @@ def processes_of(marker: str) -> list[str]:
     return found
 
 
-def interrupted(command: str, number: signal.Signals, folder: Path, seconds: float) -> None:
-    """Run a command, interrupt it, and look at what is left."""
+def interrupted(command: str, number: signal.Signals, folder: Path, seconds: float, processes: int = 2) -> None:
+    """Run a command, interrupt it some seconds after it has that many processes, and look at what is left."""
     before = {each.name for each in folder.iterdir()}
     marker = f"CARPROOF_TEST={number}-{os.getpid()}-{time.monotonic_ns()}"
     name, _, value = marker.partition("=")
@@ -74,21 +77,23 @@ def interrupted(command: str, number: signal.Signals, folder: Path, seconds: flo
         stderr=subprocess.PIPE,
         text=True,
     ) as process:
-        deadline = time.monotonic() + PATIENCE
-        while len(processes_of(marker)) < 2 and time.monotonic() < deadline:
+        deadline = time.monotonic() + LOADING
+        while len(processes_of(marker)) < processes and time.monotonic() < deadline:
             time.sleep(0.02)
         time.sleep(seconds)
         assert process.poll() is None, f"{command} ended by itself"
+        assert len(processes_of(marker)) >= processes
         started = time.monotonic()
         process.send_signal(number)
-        stderr = process.stderr.read() if process.stderr else ""
         process.wait()
+        left = processes_of(marker)
         taken = time.monotonic() - started
+        stderr = process.stderr.read() if process.stderr else ""
     assert process.returncode == 128 + number
     assert taken < GRACE + PATIENCE
     assert stderr.endswith("Interrupted.\n")
     assert "Traceback" not in stderr
-    assert processes_of(marker) == []
+    assert left == []
     assert {each.name for each in folder.iterdir()} <= before | {"quality.sqlite"}
 
 
@@ -103,6 +108,14 @@ def test_a_signal_ends_a_command_with_all_that_it_started(command: str, number: 
 @pytest.mark.parametrize(("command", "seconds"), [*((each, 0.1) for each in MORE), *((each, 0.3) for each in LONG)])
 def test_a_signal_ends_every_long_command(command: str, number: signal.Signals, seconds: float, town: Path) -> None:
     interrupted(command, number, town, seconds)
+
+
+@pytest.mark.nightly
+@pytest.mark.skipif(not TWO_CORES, reason="the search has a process of its own on a second core of a Linux machine")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_a_search_and_the_one_beside_it(number: signal.Signals, town: Path) -> None:
+    (town / "hard.json").write_bytes(write_instance(grid_instance(Grid(map=8), Fleet(robots=80))))
+    interrupted("optimum hard.json --limit 600 -o out.json", number, town, 0.3, processes=3)
 
 
 EARLY = """
