@@ -82,6 +82,10 @@ def lower_bound(
         report(search.count, search.best)
         rough(search.count)
 
+    def watch(count: int, best: int) -> None:
+        report(count, best)
+        sights.watch(look)
+
     def prove() -> None:
         with suppress(TimeOver):
             sights.prove(lambda: proved(0))
@@ -92,7 +96,11 @@ def lower_bound(
         by_sights = False
         while gain > 0 or not cuts.is_exhausted:
             before = search.best
-            search.climb(gain, max(ROUGH_AIM, search.best // LARGE), lambda: rough(search.count), report)
+            last_aim = max(ROUGH_AIM, search.best // LARGE)
+            if by_sights:
+                search.roam(gain // 4, last_aim, lambda: rough(search.count), watch)
+            else:
+                search.climb(gain, last_aim, lambda: rough(search.count), report)
             prove()
             fruitless = by_sights and (search.best - before) * LEAST_RISE < search.best
             gain = 0 if fruitless or not seen else sights.round(look)

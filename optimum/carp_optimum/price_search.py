@@ -38,6 +38,8 @@ ENOUGH, LEAST_ENOUGH = 32, 4096
 
 On a spanning tree the bound rises slowly and long, in steps that are small beside the aim.
 """
+SPAN = 200  # steps
+ENOUGH_OF_SPAN = 16  # parts of the aim
 
 
 class PriceLists(NamedTuple):
@@ -247,14 +249,30 @@ class PriceSearch:
     def keep_deadlines(self, kept: Sequence[Deadlines]) -> None:
         """Keep these deadlines alone, with their prices; the best bound is then the one that they prove."""
         numbers = {id(each): number for number, each in enumerate(self.deadlines)}
-        places = [numbers[id(each)] for each in kept]
-        fees = self._kept.fees[places]
-        self.deadlines = []
-        self.fees = self._course_of_fees = self.fees[:0]
-        self._kept = self._kept._replace(fees=self.fees)
-        self.add_deadlines(kept)
-        self._kept = self._kept._replace(fees=fees)
+        self._select([numbers[id(each)] for each in kept])
         self.best = self._restore()
+
+    def drop_idle_deadlines(self) -> None:
+        """Drop the deadlines without proof that have no price, neither now nor among the best prices."""
+        self._select(
+            [
+                number
+                for number, each in enumerate(self.deadlines)
+                if each.document.refutation or self.fees[number] > 0 or self._kept.fees[number] > 0
+            ]
+        )
+
+    def _select(self, numbers: Sequence[int]) -> None:
+        """Keep the deadlines with these numbers alone, with their prices and courses."""
+        kept = [self.deadlines[number] for number in numbers]
+        places = np.array(numbers, np.int64)
+        fees, course, best = self.fees[places], self._course_of_fees[places], self._kept.fees[places]
+        none = self.fees[:0]
+        self.deadlines, self.fees, self._course_of_fees = [], none, none
+        self._kept = self._kept._replace(fees=none)
+        self.add_deadlines(kept)
+        self.fees, self._course_of_fees = fees, course
+        self._kept = self._kept._replace(fees=best)
 
     def priced_deadlines(self) -> tuple[DeadlinesDocument, ...]:
         """The deadlines that have a price, with it."""
@@ -341,6 +359,29 @@ class PriceSearch:
                 bound = self._restore()
             on_step(self.count, self.best)
 
+    def roam(
+        self, first_aim: int, last_aim: int, check: Callable[[], None], on_step: Callable[[int, int], None]
+    ) -> None:
+        """Take steps as `climb` does, but never back to the best prices, while `on_step` may add deadlines.
+
+        New deadlines would lose the prices that they have gained since. After each `SPAN` steps the aim is doubled if
+        enough of it was gained, and halved if not; the steps end when it is below the last aim.
+        """
+        bound = self._restore()
+        aim = max(first_aim, last_aim)
+        while aim >= last_aim:
+            before = self.best
+            for _ in range(SPAN):
+                check()
+                if not self._step(min(max(self.best + aim - bound, 0), LARGEST_GAIN)):
+                    return
+                bound = self._bound()
+                if bound > self.best:
+                    self.best = bound
+                    self._kept = self._point()
+                on_step(self.count, self.best)
+            aim = aim * 2 if (self.best - before) * ENOUGH_OF_SPAN > aim else aim // 2
+
     def finish(self) -> None:
         """Go back to the best prices."""
         self._restore()
@@ -358,17 +399,21 @@ class PriceSearch:
 
     def wander_places(self, steps: int, aim: int, on_step: Callable[[], None]) -> tuple[LongTable, IntTable]:
         """As `wander`, with the places of all robots, by step, robot and tick."""
-        if not self.deadlines:
-            self.add_deadlines([])
         places: list[IntTable] = []
 
         def look() -> None:
             on_step()
-            see_ways(self.native, self._charges)
-            places.append(self._charges.fields.place.astype(np.int16))
+            places.append(self.places())
 
         delays = self.wander(steps, aim, look)
         return delays, np.stack(places)
+
+    def places(self) -> IntTable:
+        """Where the cheapest ways have the robots, by robot and tick."""
+        if not self.deadlines:
+            self.add_deadlines([])
+        see_ways(self.native, self._charges)
+        return self._charges.fields.place.astype(np.int16)
 
     def prices(self) -> PriceLists:
         """The prices that are not 0."""

@@ -9,7 +9,7 @@ certificate needs its refutation, which takes longer to find. So only the claims
 proved; the others are dropped, and a later round finds them again where they are still broken.
 """
 
-from collections import Counter, defaultdict
+from collections import defaultdict
 from collections.abc import Callable, Sequence
 from heapq import heappop, heappush
 from itertools import combinations, count
@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 from msgspec.structs import replace
 
-from carp_optimized.arrays import NONE, Graph, Ints, IntTable, Longs
+from carp_optimized.arrays import NONE, Graph, Ints, IntTable, Longs, LongTable
 from carp_optimized.references import Native
 from carp_optimum.meetings import Meeting, Side, find_claim
 from carp_optimum.price_search import Deadlines, Member, PriceSearch
@@ -31,13 +31,14 @@ from carp_verify.bounds import DeadlinesDocument
 from carp_verify.optimum_rules import LARGEST_FORMULA
 
 STEPS = 120
+PERIOD = 200  # steps; ways of the last `STEPS` among them are looked at
 EVERY = 4  # step: the places in it are compared
 MARGIN = 4  # ticks of delay above the largest of a robot's ways
 LARGEST_DELAY = 30
 MOST_SPOTS = 400
 LARGEST_ENCODING = 2_000_000
 LEAST_WEIGHT = 8  # by which ways break a claim
-MOST_TRIED = 1500  # pairs in a round
+MOST_WORK = 150_000_000  # pairs of states by ticks, in a round
 MOST_FOUND = 400  # claims in a round
 LEAST_GAIN = 100  # one part of the best bound: what a round's claims must be broken by for another round
 LOOKS = 400  # of a search for a refutation at its clock
@@ -52,6 +53,8 @@ class SightSearch:
         self.instance = search.instance
         self.most = min(LARGEST_DELAY, search.market.delays - 1)
         self.without_proof: set[Sequence[Member]] = set()
+        self.watched = 0
+        self.ways: list[tuple[Longs, IntTable]] = []
 
     def round(self, check: Callable[[], None]) -> int:
         """Add claims that the ways near the best prices break, and return by how much, in parts of a tick; 0 if little.
@@ -62,23 +65,50 @@ class SightSearch:
         wide = max(len(self.instance.graph.resources), search.market.delays, search.horizon)
         if len(self.instance.robots) * wide > LARGEST_ENCODING:
             return 0
-        delays, at = search.wander_places(STEPS, search.scale // 4, check)
+        gain = self._add(*search.wander_places(STEPS, search.scale // 4, check), check)
+        gained = gain * search.scale // STEPS
+        return gained if gained * LEAST_GAIN >= search.best else 0
+
+    def watch(self, check: Callable[[], None]) -> None:
+        """Look at the ways after a step of a climb; now and then add claims that the last ones break, and drop others.
+
+        A claim that has no price after `PERIOD` steps is dropped. `check` may raise `TimeOver`.
+        """
+        search = self.search
+        self.watched = self.watched % PERIOD + 1
+        if self.watched > PERIOD - STEPS:
+            self.ways.append((search.delays(), search.places()))
+        if self.watched == PERIOD:
+            delays, at = (np.stack(each) for each in zip(*self.ways, strict=True))
+            self.ways = []
+            search.drop_idle_deadlines()
+            self._add(delays, at, check)
+
+    def _add(self, delays: LongTable, at: IntTable, check: Callable[[], None]) -> int:
+        """Add claims that these ways break, those that are found fastest first: by how many ways in all.
+
+        On a tree, robots whose ways are short or cannot pass each other break claims most often, and have few states.
+        """
+        search = self.search
         sides = _Sides(search, at, np.minimum(delays.max(axis=0) + MARGIN, self.most))
+        known = {tuple(claim.members) for claim in search.deadlines} | self.without_proof
+        work = {pair: sides.work(*pair) for pair in pairs_in(at, len(self.instance.graph.resources))}
         chosen: list[Deadlines] = []
         gain = 0
+        left = MOST_WORK
         try:
-            for one, other in pairs_in(at, len(self.instance.graph.resources))[:MOST_TRIED]:
+            for pair in sorted(work, key=lambda each: (work[each], each)):
                 check()
-                if len(chosen) == MOST_FOUND:
+                left -= work[pair]
+                if left < 0 or len(chosen) == MOST_FOUND:
                     break
-                weight, members = sides.claim(one, other)
-                if weight >= LEAST_WEIGHT and members not in self.without_proof:
+                weight, members = sides.claim(*pair)
+                if weight >= LEAST_WEIGHT and members not in known:
                     chosen.append(self._unproved(members))
                     gain += weight
         finally:
             search.add_deadlines(chosen)
-        gained = gain * search.scale // STEPS
-        return gained if gained * LEAST_GAIN >= search.best else 0
+        return gain
 
     def prove(self, check: Callable[[], None]) -> None:
         """Prove the claims that have a price, the dearest first, and drop those without a proof.
@@ -132,14 +162,13 @@ class SightSearch:
         return lines if len(lines) <= LONGEST_REFUTATION else ""
 
 
-def pairs_in(at: IntTable, resources: int) -> Sequence[tuple[int, int]]:
-    """Pairs of robots that are in the same places at the same ticks in some steps, those in most of them first."""
+def pairs_in(at: IntTable, resources: int) -> set[tuple[int, int]]:
+    """Pairs of robots that are in the same place at the same tick, in one step or in different ones."""
     robots: dict[tuple[int, int], set[int]] = defaultdict(set)
     for places in at[::EVERY]:
         for robot, tick in np.argwhere((places >= 0) & (places < resources)).tolist():
             robots[int(places[robot, tick]), tick].add(robot)
-    found = Counter(pair for each in robots.values() if len(each) > 1 for pair in combinations(sorted(each), 2))
-    return [pair for pair, _ in sorted(found.items(), key=lambda each: (-each[1], each[0]))]
+    return {pair for each in robots.values() for pair in combinations(sorted(each), 2)}
 
 
 def first_entries(graph: Graph, durations: Longs, start: int, release: int) -> Longs:
@@ -164,6 +193,18 @@ class _Sides:
         self.delays = delays
         self.known: dict[int, Side | None] = {}
 
+    def work(self, one: int, other: int) -> int:
+        """The most pairs of states, over all ticks, in a search for a claim of two robots."""
+        first, second = self.side(one), self.side(other)
+        if first is None or second is None:
+            return 0
+        return int(first.first[-1]) * int(second.first[-1]) * self.end(one, other)
+
+    def end(self, one: int, other: int) -> int:
+        """The tick before which a claim of two robots is searched for."""
+        earliest = self.search.market.requests.earliest
+        return min(int(min(earliest[at] + self.delays[at] for at in (one, other))) + 1, self.search.horizon)
+
     def claim(self, one: int, other: int) -> tuple[int, Sequence[Member]]:
         """The heaviest claim of two robots, and its weight; nothing if that is 0."""
         first, second = self.side(one), self.side(other)
@@ -181,10 +222,8 @@ class _Sides:
             kept=np.zeros((rows, columns), np.int32),
             found=np.zeros(2, np.int64),
         )
-        earliest = self.search.market.requests.earliest
-        end = int(min(earliest[at] + self.delays[at] for at in (one, other)))
         natives = Native(first), Native(second), Native(meeting)
-        weight = find_claim(self.search.native, *natives, min(end + 1, self.search.horizon), STEPS)
+        weight = find_claim(self.search.native, *natives, self.end(one, other), STEPS)
         if weight == 0:
             return 0, ()
         tick = int(meeting.found[1])

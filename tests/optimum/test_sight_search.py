@@ -8,11 +8,12 @@ from hypothesis import event, given, settings
 from tests.profiles import draws
 
 from carp_optimum.bound import lower_bound
-from carp_optimum.price_search import PriceSearch
+from carp_optimum.price_search import Deadlines, Member, PriceSearch
 from carp_optimum.sight_search import STEPS, SightSearch, _Sides, pairs_in
 from carp_optimum.solver import TimeOver
 from carp_spec import Instance, Resource, ResourceGraph, Robot
 from carp_verify.bound_cuts import require_deadlines
+from carp_verify.bounds import DeadlinesDocument
 from carproof.strategies import Sizes, instances
 
 SCALE = 1 << 10
@@ -48,6 +49,47 @@ def test_claims_are_proved_and_raise_the_bound() -> None:
     for deadlines in prices.deadlines:
         assert deadlines.document.seen
         assert require_deadlines(instance, deadlines.document, 10**6) > 0
+
+
+def test_claims_are_added_and_dropped_while_prices_move_on() -> None:
+    prices = search_of(two_lanes())
+    before = prices.best
+    late = DeadlinesDocument(("long", "first"), (0, 0), 0, "")
+    prices.add_deadlines([Deadlines([Member(0, 0, 0, ()), Member(1, 0, 0, ())], late)])
+    search = SightSearch(prices)
+    seen: set[int] = set()
+
+    def watch(_: int, __: int) -> None:
+        search.watch(lambda: None)
+        seen.update(map(id, prices.deadlines))
+
+    prices.roam(SCALE, SCALE >> 4, lambda: None, watch)
+    assert prices.best > before + SCALE
+    assert len(prices.deadlines) < len(seen)
+    best = prices.best
+    prices.drop_idle_deadlines()
+    search.prove(lambda: None)
+    assert all(each.document.refutation for each in prices.deadlines)
+    assert prices.best == best
+
+
+def test_claims_that_are_dropped_leave_the_others_their_prices() -> None:
+    prices = search_of(two_lanes())
+    search = SightSearch(prices)
+    search.round(lambda: None)
+    prices.climb(SCALE, SCALE >> 4, lambda: None, lambda _, __: None)
+    prices.finish()
+    expected = [each for each, fee in zip(prices.deadlines, prices.fees.tolist(), strict=True) if fee > 0]
+    fees = prices.fees[prices.fees > 0].tolist()
+    best = prices.best
+    prices.add_deadlines([prices.deadlines[0]])
+    prices.drop_idle_deadlines()
+    assert [each is other for each, other in zip(prices.deadlines, expected, strict=True)] == [True] * len(expected)
+    assert prices.fees.tolist() == fees
+    prices.finish()
+    assert prices.fees.tolist() == fees
+    prices.climb(SCALE, SCALE, lambda: None, lambda _, __: None)
+    assert prices.best >= best
 
 
 @settings(max_examples=draws(200))
