@@ -99,8 +99,7 @@ def lower_bound(
             last_aim = max(ROUGH_AIM, search.best // LARGE)
             if by_sights:
                 search.roam(gain // 4, last_aim, lambda: rough(search.count), watch)
-            else:
-                search.climb(gain, last_aim, lambda: rough(search.count), report)
+            search.climb(gain, last_aim, lambda: rough(search.count), report)
             prove()
             fruitless = by_sights and (search.best - before) * LEAST_RISE < search.best
             gain = 0 if fruitless or not seen else sights.round(look)
