@@ -51,8 +51,8 @@ def improved(
                     failures = 0 if search.improves(search.group(random, size)) else failures + 1
                     plans = search.plans
                     work += clauses * WORK_TO_TRY
-                    yield work + search.solver.propagations, plans
-            work += search.solver.propagations
+                    yield work + search.solver.work, plans
+            work += search.solver.work
         finally:
             search.solver.close()
         if not search.delays:

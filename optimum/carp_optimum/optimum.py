@@ -6,10 +6,8 @@ horizon, and the next assumption is that no other one of the core is given up. O
 model's plans have a total of just the lower bound; the conflicts among them are forbidden and the search
 continues, until none is left. Source: the OLL algorithm of Andres, Kaufmann, Matheis and Schaub 2012, over delays.
 
-After many conflicts two searches take over. One finds ever better plans (`carp_optimum.heuristics.ever_better`), in
-another process (`carp_optimum.beside`). The other finds a lower bound with prices (`carp_optimum.bound`). From there
-up, a few totals at a time, the formula of all plans of at most such a total (`carp_optimum.priced_formula`) either has
-no model, which raises the bound, or one, which gives better plans, until the bound is the total of the best plans.
+After many conflicts a second search, for plans and for a lower bound (`carp_optimum.narrowing`), begins in another
+process (`carp_optimum.beside`). The search ends where the best plans cost no more than the better bound.
 
 Where no plan set exists, the search finds one of these obstacles (`carp_verify.unsolvable` says why each is one):
 
@@ -27,9 +25,8 @@ from dataclasses import dataclass
 from time import monotonic_ns
 
 from carp_optimum.beside import Beside
-from carp_optimum.heuristics import ever_better, plans_of_all
-from carp_optimum.priced_formula import priced_formula
-from carp_optimum.reduced_costs import PricedBound
+from carp_optimum.heuristics import plans_of_all
+from carp_optimum.narrowing import Between, narrowed
 from carp_optimum.solver import Deadline, Solver, TimeOver
 from carp_spec import Instance, Plan, Refusal, Solution, judge, total_cost
 from carp_verify.bound_rules import ContradictionError, require_kept
@@ -39,18 +36,11 @@ from carp_verify.joint_search import least_total_cost
 from carp_verify.limits import require_following
 from carp_verify.unsolvable import Clauses, FullGoal, NoWay, Obstacle, States, is_searched
 
-CONFLICTS_TO_SHRINK = 900
-CONFLICTS_BEFORE_PRICES = 20_000
-PRICE_STEPS = 1600
-LARGEST_GAP = 12  # ticks
-STRIDE = 2
-"""A formula's largest total is this far above the lower bound: one for each total would take twice the time."""
-CONFLICTS_BEFORE_BESIDE = 2000
-"""After this many conflicts a formula's search asks for the plans that were found beside it."""
-WORK_OF_STEP = 300
-"""The propagations of a step of the search for prices, for each robot."""
-WORK_OF_CLAUSE = 28
-"""The propagations of making a clause of a formula with prices."""
+CONFLICTS_TO_SHRINK = 300
+CONFLICTS_BEFORE_BESIDE = 60_000
+"""Most searches that end within a minute end before these, and faster while nothing uses the memory beside them."""
+CONFLICTS_BETWEEN_RESULTS = 2000
+"""After this many conflicts the search asks for what was found beside it."""
 DELAY_OF_DOUBT = 20
 PARTS = 5
 PARTS_BEFORE_HEURISTICS = (1, 3)
@@ -101,12 +91,13 @@ class _Search:
         self.priced = priced
         self.deadline = deadline
         self.encoding = encoding
-        self.solver = Solver(encoding.formula, self.look)
+        self.solver = Solver(encoding.formula, self.look, glucose=True)
         self.delay = 0
         self.horizon = 0
-        self.proved = 0
         self.best: Sequence[Plan] | None = None
-        self.beside: Beside[Sequence[Plan]] | None = None
+        self.known = Between(self.instance)
+        self.beside: Beside[Between] | None = None
+        self.work_before = 0
         self.tries_of_heuristics = 0
         self.order: dict[int, None] = {}
         self.robot_of: dict[Literal, int] = {}
@@ -141,7 +132,13 @@ class _Search:
     def raise_bound(self) -> Optimum:
         while True:
             assumptions = [-literal for literal in (*self.robot_of, *self.sum_of)]
-            if self.solver.satisfiable(assumptions):
+            answer = None
+            while answer is None:
+                self.read_beside()
+                if self.known.plans is not None and self.known.total == self.lower:
+                    return self.optimal_beside(self.known.plans)
+                answer = self.solver.satisfiable(assumptions, CONFLICTS_BETWEEN_RESULTS)
+            if answer:
                 plans = [plan for plan in self.encoding.plans(self.solver.model()) if plan is not None]
                 conflicts = violated(self.instance, plans)
                 if not conflicts:
@@ -153,76 +150,26 @@ class _Search:
                 if not core:
                     return self.unsolvable(Clauses(self.evidence.horizons))
                 self.relax(core)
-                if self.priced and self.solver.conflicts > CONFLICTS_BEFORE_PRICES:
-                    self.priced = False
-                    found = self.search_with_prices()
-                    if found is not None:
-                        return self.optimal(found)
                 if self.delay == DELAY_OF_DOUBT and self.has_no_end():
                     return self.unsolvable(States())
 
-    def search_with_prices(self) -> Sequence[Plan] | None:
-        """The plans of an optimum, searched for from a bound up; `None` if it is too far from that for prices.
+    def read_beside(self) -> None:
+        """Ask for what was found beside at an amount of work, so that the answer does not depend on the clock."""
+        if self.beside is not None:
+            work = (self.solver.work - self.work_before) * 3 // 4  # the two slow each other down, the other one more
+            self.known = self.beside.result(work) or self.known
+        elif self.priced and self.solver.conflicts > CONFLICTS_BEFORE_BESIDE:
+            self.start_beside()
 
-        All that is asked from the search beside this one is asked at an amount of work, so the plans do not depend on
-        the clock.
-        """
+    def start_beside(self) -> None:
+        """Start the search beside where the compiled search for prices is at hand."""
         from carp_optimized.compiling import is_cached  # noqa: PLC0415 - slow to load
         from carp_optimum.priced_ways import find_ways  # noqa: PLC0415
 
-        if not is_cached(find_ways):
-            return None
-        self.beside = Beside(lambda look: ever_better(self.instance, look), self.look)
-        plans: Sequence[Plan] | None = None
-        try:
-            bound = self.priced_bound()
-            work = PRICE_STEPS * len(self.instance.robots) * WORK_OF_STEP
-            while bound.gap(self.lower) <= LARGEST_GAP * bound.scale:
-                known = self.cheaper(plans, self.beside.result(work))
-                most = self.lower + STRIDE
-                if known is not None:
-                    most = min(most, total_cost(self.instance, known) - 1)
-                if most < self.lower:
-                    self.horizon = self.lower - self.encoding.shortest
-                    return known
-                found, work = self.plans_within(bound, most, work)
-                plans = self.cheaper(known, found)
-                self.best = self.cheaper(self.best, found)
-                if found is None:
-                    self.proved = most + 1
-        except Refusal:
-            pass
-        return None
-
-    def cheaper(self, *known: Sequence[Plan] | None) -> Sequence[Plan] | None:
-        """The cheapest of the plan sets, the first one of equal ones; `None` without any."""
-        there = [plans for plans in known if plans is not None]
-        return min(there, key=lambda plans: total_cost(self.instance, plans), default=None)
-
-    def plans_within(self, bound: PricedBound, most: int, work: int) -> tuple[Sequence[Plan] | None, int]:
-        """Plans of at most this total, by their formula or found beside, and the work so far; `None` if none exist."""
-        assert self.beside is not None  # noqa: S101 - it is there while prices are searched with
-        encoding = priced_formula(self.instance, bound, most, self.look)
-        work += len(encoding.formula.clauses) * WORK_OF_CLAUSE
-        solver = Solver(encoding.formula, self.look, glucose=True)
-        try:
-            while (answer := solver.satisfiable([], CONFLICTS_BEFORE_BESIDE)) is None:
-                plans = self.beside.result(work + solver.propagations)
-                if plans is not None and total_cost(self.instance, plans) <= most:
-                    return plans, work + solver.propagations
-            model = [plan for plan in encoding.plans(solver.model()) if plan is not None] if answer else None
-            return model, work + solver.propagations
-        finally:
-            solver.close()
-
-    def priced_bound(self) -> PricedBound:
-        """A lower bound with prices."""
-        from carp_optimum.bound import lower_bound  # noqa: PLC0415 - slow to load
-
-        certificate = lower_bound(self.instance, steps=PRICE_STEPS, on_step=lambda _: self.look(), seen=False)
-        self.proved = certificate.bound
-        self.look()
-        return PricedBound(self.instance, certificate)
+        self.priced = False
+        if is_cached(find_ways):
+            self.work_before = self.solver.work
+            self.beside = Beside(lambda look: narrowed(self.instance, look), self.look)
 
     def has_no_end(self) -> bool:
         """Whether the states of all robots together are few, and none is the end of a plan set."""
@@ -293,35 +240,32 @@ class _Search:
 
     @property
     def lower(self) -> int:
-        return max(self.encoding.shortest + self.delay, self.proved)
+        return max(self.encoding.shortest + self.delay, self.known.lower)
 
     def optimal(self, plans: Sequence[Plan]) -> Optimum:
         cost = total_cost(self.instance, plans)
         require_kept(self.lower, cost)
-        return Optimum(
-            self.encoding.shortest,
-            cost,
-            cost,
-            decided=True,
-            solution=self.solution(plans),
-            evidence=self.evidence,
-        )
+        solution = self.solution(plans)
+        return Optimum(self.encoding.shortest, cost, cost, decided=True, solution=solution, evidence=self.evidence)
+
+    def optimal_beside(self, plans: Sequence[Plan]) -> Optimum:
+        """The optimum found beside, with horizons that suffice for a proof."""
+        self.horizon = self.lower - self.encoding.shortest
+        return self.optimal(plans)
 
     def unsolvable(self, obstacle: Obstacle) -> Optimum:
         return Optimum(self.encoding.shortest, None, self.lower, True, None, self.evidence, obstacle)
 
     def undecided(self) -> Optimum:
-        beside = None if self.beside is None else self.beside.latest()
-        self.best = self.cheaper(self.best, beside)
-        if self.best is None:
-            return Optimum(
-                self.encoding.shortest, None, self.lower, decided=False, solution=None, evidence=self.evidence
-            )
-        cost = total_cost(self.instance, self.best)
+        if self.beside is not None:
+            self.known = self.beside.latest() or self.known
+        known = self.known if self.best is None else self.known.with_plans(self.best)
+        cost = known.total
+        if known.plans is None or cost is None:
+            return Optimum(self.encoding.shortest, None, self.lower, False, None, self.evidence)
         require_kept(self.lower, cost)
-        return Optimum(
-            self.encoding.shortest, cost, self.lower, cost == self.lower, self.solution(self.best), self.evidence
-        )
+        solution = self.solution(known.plans)
+        return Optimum(self.encoding.shortest, cost, self.lower, cost == self.lower, solution, self.evidence)
 
     def solution(self, plans: Sequence[Plan]) -> Solution:
         """The solution with these plans; raises `ContradictionError` if they break the law."""

@@ -1,31 +1,26 @@
 """Formulas made small by a lower bound hold an optimum, and nothing cheaper."""
 
-import os
-from collections.abc import Callable
 from itertools import combinations
-from pathlib import Path
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 from pysat.solvers import Cadical195
 from tests.profiles import draws
-from tests.spec.making import grid
 from tests.verify.tiny import TINY
 
 from carp_optimum.bound import lower_bound
 from carp_optimum.cut_search import prove
 from carp_optimum.optimum import optimum
 from carp_optimum.priced_formula import priced_formula
-from carp_optimum.proving import write_proof
 from carp_optimum.reduced_costs import PricedBound
 from carp_optimum.solver import Deadline, Solver
-from carp_spec import AfterGoal, Instance, Robot, judge
+from carp_spec import AfterGoal, Instance, judge
 from carp_verify.bounds import BOUND_FORMAT, BoundDocument, CutDocument, digest
 from carp_verify.encoding import Encoding
 from carp_verify.joint_search import least_total_cost
-from carp_verify.proof import solution_of, verify_proof
+from carp_verify.proof import solution_of
 from carp_verify.verify_bound import Budget, RobotSearch, Tariff, fees_of, predecessors, verify_bound
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.strategies import instances
@@ -172,69 +167,3 @@ def test_at_the_bound_one_robot_of_each_group_with_deadlines_is_late_and_no_seco
             assert not solver.propagate(late[:2])[0]
     solver.delete()
     assert dear > 0
-
-
-@pytest.fixture
-def prices_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("carp_optimum.optimum.CONFLICTS_BEFORE_PRICES", -1)
-    monkeypatch.setattr("carp_optimum.optimum.PRICE_STEPS", 5)
-    monkeypatch.setattr("carp_optimum.heuristics.ROUNDS", 40)
-    monkeypatch.setattr("carp_optimized.compiling.is_cached", lambda _: True)
-
-
-@pytest.mark.usefixtures("prices_at_once")
-@settings(max_examples=draws(100), suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(instances(TINY, least_robots=2))
-def test_a_search_with_prices_from_the_first_core_on_finds_the_optimum_on_one_core_and_on_two(
-    instance: Instance,
-) -> None:
-    found = []
-    for cores in (1, 2):
-        with pytest.MonkeyPatch.context() as patched:
-            patched.setattr(os, "sched_getaffinity", lambda _, cores=cores: {*range(cores)})
-            found.append(optimum(instance, SECONDS))
-    assert found[0] == found[1]
-    assert found[0].decided
-    assert found[0].cost == least_total_cost(instance)
-
-
-@pytest.mark.usefixtures("prices_at_once")
-@pytest.mark.parametrize(("seed", "after_goal"), [(7, "park"), (10, "vanish")])
-def test_the_search_goes_up_from_a_weak_bound(seed: int, after_goal: AfterGoal) -> None:
-    instance = town(seed, after_goal)
-    assert optimum(instance, SECONDS).cost == optimum(instance, SECONDS, priced=False).cost
-
-
-@pytest.mark.usefixtures("prices_at_once")
-def test_the_search_ends_where_the_bound_reaches_the_total_of_the_best_plans_known(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    instance = town(7, "park")
-    least = optimum(instance, SECONDS, priced=False)
-    assert least.cost is not None
-    assert least.solution is not None
-    plans = least.solution.plans
-    searched = []
-
-    def below(instance: Instance, bound: PricedBound, cost: int, look: Callable[[], None]) -> Encoding:
-        searched.append(cost)
-        return priced_formula(instance, bound, cost, look)
-
-    monkeypatch.setattr("carp_optimum.optimum.ever_better", lambda *_: iter([(0, plans)]))
-    monkeypatch.setattr("carp_optimum.optimum.priced_formula", below)
-    best = optimum(instance, SECONDS)
-    assert (best.decided, best.cost, best.solution) == (True, least.cost, least.solution)
-    assert searched
-    assert max(searched) == least.cost - 1
-
-
-@pytest.mark.usefixtures("prices_at_once")
-def test_robots_on_every_cell_are_proved_to_need_their_total(tmp_path: Path) -> None:
-    """The opposite corners of a full grid change places; the proof does without prices."""
-    cells = [(x, y) for y in range(3) for x in range(3)]
-    robots = (Robot(i, f"{x},{y}", f"{2 - x},{2 - y}") for i, (x, y) in enumerate(cells) if (x, y) != (1, 1))
-    instance = Instance(grid(3, 3), tuple(robots), "vanish")
-    best = optimum(instance, SECONDS)
-    assert (best.decided, best.cost) == (True, optimum(instance, SECONDS, priced=False).cost)
-    write_proof(instance, best, tmp_path, SECONDS)
-    assert verify_proof(tmp_path).cost == best.cost
