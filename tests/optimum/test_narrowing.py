@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, given, settings
+from tests.optimum.test_priced_formula import town
 from tests.profiles import draws
 from tests.spec.making import grid
 from tests.verify.tiny import TINY
@@ -22,15 +23,9 @@ from carp_spec import AfterGoal, Carp, Instance, Robot, judge, total_cost
 from carp_verify.encoding import Encoding
 from carp_verify.joint_search import least_total_cost
 from carp_verify.proof import solution_of, verify_proof
-from carproof.generate import Fleet, Grid, grid_instance
 from carproof.strategies import instances
 
 SECONDS = 60
-
-
-def town(seed: int, after_goal: AfterGoal) -> Instance:
-    """Nine robots that are in each other's way."""
-    return grid_instance(Grid(5, 5, 10, map_seed=seed), Fleet(9, seed, after_goal))
 
 
 @pytest.fixture
