@@ -18,6 +18,7 @@ from carp_optimum.priced_ways import (
     add_up,
     count_way,
     duration_of,
+    further_price,
     goal_price,
     market_at,
     move_between,
@@ -167,23 +168,23 @@ def drive_on(market: Market, charges: Charges, robot: int, node: int, tick: int,
     scratch = market.scratch
     rest = market.requests.rest[robot]
     earliest = int(market.requests.earliest[robot])
+    waiting = market.prices.waiting[min(tick, market.horizon)]
+    entering = market.prices.entering[min(tick, market.horizon)]
+    fee = charges.fee[int(charges.row[robot][tick]) if tick < market.horizon else 0]
     here = node // market.delays
     reached = 0
     if node - here * market.delays + 1 < market.delays:
-        waited = paid
-        if tick < market.horizon:
-            across = market.prices.across[here]
-            waited += int(market.prices.resource[here][tick]) + int(across[tick + 1]) - int(across[tick])
-            waited += fee_of(charges, robot, here, tick)
-        reached += reach(scratch, node + 1, tick + 1, waited, node)
+        reached += reach(scratch, node + 1, tick + 1, paid + int(waiting[here]) + int(fee[here]), node)
     for move in range(int(graph.first[here]), int(graph.first[here + 1])):
         target = int(graph.target[move])
         if rest[target] != NONE:
             ready = tick + duration_of(market, robot, target)
             delay = ready + int(rest[target]) - earliest
             if delay < market.delays:
-                moved = paid + move_price(market, move, tick)
-                moved += price_of_stay(market, charges, robot, target, tick, ready)
+                moved = paid + int(entering[move]) + int(fee[target])
+                moved += further_price(market, target, tick + 1, ready)
+                for later in range(tick + 1, min(ready, market.horizon)):
+                    moved += fee_of(charges, robot, target, later)
                 reached += reach(scratch, target * market.delays + delay, ready, moved, node)
     return reached
 

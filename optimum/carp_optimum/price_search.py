@@ -476,7 +476,8 @@ def _market(instance: Instance, graph: Graph, requests: Requests, longest: int) 
         nodes=np.zeros(edges + 1, np.int32),
     )
     back = _moves_back(instance)
-    prices = Prices(wide, wide, np.array([back.get(move, NONE) for move in range(edges)], np.int32), wide, wide)
+    numbers = np.array([back.get(move, NONE) for move in range(edges)], np.int32)
+    prices = Prices(wide, wide, numbers, wide, wide, wide, wide)
     usage = Usage(empty, empty, empty, wide, wide)
     ways = Ways(np.zeros(0, np.int32), empty, empty)
     return Market(graph, requests, prices, ways, usage, scratch, 0, 1, instance.after_goal == "park")
@@ -505,6 +506,8 @@ def _sized(market: Market, horizon: int, delays: int) -> Market:
             exchange=np.zeros((edges, horizon), np.int64),
             stay=np.zeros((resources, horizon + 1), np.int64),
             across=np.zeros((resources, horizon + 1), np.int64),
+            waiting=np.zeros((horizon + 1, resources), np.int64),
+            entering=np.zeros((horizon + 1, edges), np.int64),
         ),
         ways=Ways(
             np.zeros(robots, np.int32), np.zeros((robots, visits), np.int32), np.zeros((robots, visits), np.int32)

@@ -40,7 +40,9 @@ class Prices(NamedTuple):
     """Prices by resource and tick, and by move (r, s) and tick for the exchange row (r, s).
 
     `back[move]` is the number of the move back, or `NONE`. `stay[r][t]` is the sum of the prices of r before t, and
-    `across[r][t]` that of all exchange rows of r.
+    `across[r][t]` that of all exchange rows of r. A search goes from tick to tick, so what a robot pays at a tick lies
+    together: `waiting[t][r]` for being in r just before t and at t, `entering[t][move]` for moving at t, with the price
+    of the target at t. From the horizon on these are 0.
     """
 
     resource: LongTable
@@ -48,6 +50,8 @@ class Prices(NamedTuple):
     back: Ints
     stay: LongTable
     across: LongTable
+    waiting: LongTable
+    entering: LongTable
 
 
 class Ways(NamedTuple):
@@ -164,6 +168,18 @@ def stay_price(market: Market, resource: int, enter: int, leave: int) -> int:
     end = min(leave, market.horizon)
     present = int(stay[end]) - int(stay[min(enter, end)])
     return present + int(across[end]) - int(across[min(enter + 1, end)])
+
+
+@compiled
+def further_price(market: Market, resource: int, tick: int, leave: int) -> int:
+    """The price of staying in [tick, leave) in a resource that the robot is in just before the tick, and later ones."""
+    if tick >= leave:
+        return 0
+    stay = market.prices.stay[resource]
+    across = market.prices.across[resource]
+    begin = min(tick, market.horizon)
+    end = min(leave, market.horizon)
+    return int(stay[end]) - int(stay[begin]) + int(across[end]) - int(across[begin])
 
 
 @compiled
@@ -313,21 +329,19 @@ def leave(market: Market, robot: int, node: int, tick: int, paid: int) -> int:
     rest = market.requests.rest[robot]
     earliest = int(market.requests.earliest[robot])
     goal = int(market.requests.goal[robot])
+    waiting = market.prices.waiting[min(tick, market.horizon)]
+    entering = market.prices.entering[min(tick, market.horizon)]
     here = node // market.delays
     reached = 0
     if node - here * market.delays + 1 < market.delays:
-        waited = paid
-        if tick < market.horizon:
-            across = market.prices.across[here]
-            waited += int(market.prices.resource[here][tick]) + int(across[tick + 1]) - int(across[tick])
-        reached += reach(scratch, node + 1, tick + 1, waited, node)
+        reached += reach(scratch, node + 1, tick + 1, paid + int(waiting[here]), node)
     for move in range(int(graph.first[here]), int(graph.first[here + 1])):
         target = int(graph.target[move])
         if rest[target] != NONE and (market.parks or target != goal):
             ready = tick + duration_of(market, robot, target)
             delay = ready + int(rest[target]) - earliest
             if delay < market.delays:
-                moved = paid + move_price(market, move, tick) + stay_price(market, target, tick, ready)
+                moved = paid + int(entering[move]) + further_price(market, target, tick + 1, ready)
                 reached += reach(scratch, target * market.delays + delay, ready, moved, node)
     return reached
 
@@ -432,5 +446,10 @@ def add_up(market: Market) -> int:
                 of_rows += int(market.prices.exchange[move][tick])
             across[tick + 1] = int(across[tick]) + of_rows
             stay[tick + 1] = int(stay[tick]) + int(price[tick])
+            market.prices.waiting[tick][here] = int(price[tick]) + of_rows
+            for move in range(int(graph.first[here]), int(graph.first[here + 1])):
+                target = int(graph.target[move])
+                paid = move_price(market, move, tick) + int(market.prices.resource[target][tick])
+                market.prices.entering[tick][move] = paid
         worth += (int(stay[market.horizon]) + int(across[market.horizon])) * int(graph.capacity[here])
     return worth
