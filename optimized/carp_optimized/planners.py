@@ -84,8 +84,10 @@ def plan_with_fleet(
 ) -> tuple[Solution, "PlannedFleet"]:
     """The same solution, and the fleet that made it, which answers further questions."""
     if not isinstance(planner, PLANNERS):
-        names = ", ".join(each.name for each in PLANNERS)
-        message = f"the optimised engine has the planners {names}; ask the reference engine for {planner.name}"
+        names = ", ".join(each.__name__ for each in PLANNERS)
+        message = (
+            f"the optimised engine has no {planner!r}, only values of {names}; the reference engine has all planners"
+        )
         raise Refusal("option", "$.planner", "planner/options", message)
     fleet = _fleet(instance, reuse)
     everyone = range(len(instance.robots))

@@ -32,6 +32,11 @@ def test_another_name_is_refused() -> None:
         carproof.warehouse  # noqa: B018 - the look-up is what is tested
 
 
+def test_the_name_of_a_planner_is_refused_in_place_of_the_planner() -> None:
+    with pytest.raises(carproof.Refusal, match="has no 'carp', only values of Carp, "):
+        carproof.plan(lane(), "carp")  # type: ignore[arg-type]
+
+
 def test_the_version_is_that_of_the_installation() -> None:
     shown = subprocess.run([sys.executable, "-m", "carproof", "--version"], check=True, capture_output=True, text=True)
     assert shown.stdout == f"carproof {carproof.__version__}\n"
