@@ -5,7 +5,7 @@ from tests.spec.making import row
 from tests.verify.tiny import TINY
 
 from carp_optimum.solver import Deadline, Solver
-from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, check, total_cost
+from carp_spec import Instance, Refusal, Resource, ResourceGraph, ResourceId, Robot, check, total_cost
 from carp_verify.encoding import Conflict, Encoding, violated
 from carp_verify.joint_search import least_total_cost
 from carproof.strategies import PlannedInstance, instances, planned_instances
@@ -146,3 +146,20 @@ def test_many_robots_in_a_wide_place_are_counted() -> None:
     instance = Instance(graph, tuple(Robot(i, 0, 2) for i in range(5)))
     for bound, possible in ((2, False), (3, True)):
         assert has_model(bounded(instance, [2] * 5, bound, closed=True)) == possible
+
+
+def test_conflicts_of_long_stays_are_found_without_listing_the_ticks_of_each() -> None:
+    class Counted(dict[tuple[ResourceId, int], int]):
+        reads = 0
+
+        def __getitem__(self, node: tuple[ResourceId, int]) -> int:
+            Counted.reads += 1
+            return super().__getitem__(node)
+
+    graph = ResourceGraph((Resource("a", 2), Resource("m", 2, 100), Resource("b", 2)), (("a", "m"), ("m", "b")))
+    encoding = Encoding(Instance(graph, (Robot("r", "a", "b"), Robot("s", "b", "a"))))
+    encoding.grow_to([100, 100])
+    for robot in encoding.robots:
+        robot.node = Counted(robot.node)
+    assert len(list(encoding.conflicts())) > 100
+    assert Counted.reads <= 2 * sum(len(robot.node) for robot in encoding.robots)

@@ -72,7 +72,7 @@ class Encoding:
 
     def presence(self, position: int, resource: ResourceId, tick: int) -> Literal | None:
         """A literal that holds if the robot is in the resource at the tick; `None` if it cannot be there."""
-        stays = self.robots[position].stays(resource, tick)
+        stays = list(self.robots[position].stays(resource, tick))
         if not stays:
             return None
         if len(stays) == 1 and len(stays[0]) == 1:
@@ -121,7 +121,7 @@ class Encoding:
         for position, robot in enumerate(self.robots):
             for source, tick in robot.node:
                 for target in self.instance.graph.successors[source]:
-                    if self.robots[position].stays(target, tick):
+                    if any(self.robots[position].stays(target, tick)):
                         movers[tick, (source, target)].add(position)
         index = self.instance.graph.index
         for (tick, (source, target)), there in movers.items():

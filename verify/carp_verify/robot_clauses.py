@@ -16,7 +16,7 @@ is the least delay of that node then, unless it has arrived by the tick.
 
 from bisect import bisect_right, insort
 from collections import defaultdict
-from collections.abc import Collection, Container, Mapping, Sequence
+from collections.abc import Collection, Container, Iterator, Mapping, Sequence
 from heapq import heappop, heappush
 from itertools import count
 from typing import TypeAlias
@@ -243,26 +243,25 @@ class RobotClauses:
         """Whether the robot may be in the resource at all, within its horizon."""
         return resource == self.robot.goal or resource in self._ticks
 
-    def stays(self, resource: ResourceId, tick: int) -> list[Clause]:
+    def stays(self, resource: ResourceId, tick: int) -> Iterator[Clause]:
         """The alternatives that put the robot into the resource at the tick: each is literals that hold together."""
         if self._is_after(tick):
-            return []
+            return
+        yield from ((node,) for node in self.nodes_of(resource, tick))
         duration = self._duration[resource]
-        stays: list[Clause] = [(node,) for node in self.nodes_of(resource, tick)]
         delay = tick - self.earliest
         if resource == self.robot.goal and delay >= 0 and not self._stands_still:
             left = delay - duration
             if self._parks or left < 0:
-                stays.append((-self.later_than(delay),))
+                yield (-self.later_than(delay),)
             elif left < self.horizon:
-                stays.append((-self.later_than(delay), self.late[left]))
-        return stays
+                yield (-self.later_than(delay), self.late[left])
 
-    def nodes_of(self, resource: ResourceId, tick: int) -> list[Literal]:
+    def nodes_of(self, resource: ResourceId, tick: int) -> Iterator[Literal]:
         """The nodes of a stay in the resource at the tick that is not the last one."""
         ticks = self._ticks.get(resource, [])
-        until = ticks[bisect_right(ticks, tick) : bisect_right(ticks, tick + self._duration[resource])]
-        return [self.node[resource, each] for each in until]
+        until = range(bisect_right(ticks, tick), bisect_right(ticks, tick + self._duration[resource]))
+        return (self.node[resource, ticks[each]] for each in until)
 
     def largest_delay(self, places: Collection[ResourceId], arrival: int) -> int:
         """The largest delay of a robot that arrives by the tick, or is in one of the places when it is seen."""
