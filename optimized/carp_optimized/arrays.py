@@ -35,6 +35,7 @@ NO_LIMIT = 1 << 62  # of a cost
 LATE = -2  # the plan of an answer is not below the limit
 
 MOST_MEMBERS = 10  # of a neighbourhood that is polished
+MOST_TURNS = 16  # members of a round in which robots take turns at a resource
 
 
 class Graph(NamedTuple):

@@ -5,11 +5,14 @@ is cut as soon as it leaves more robots unplanned than before, or as many and it
 robots still to come is above that of the plans before: it could not be kept.
 
 `carp_optimum.annealing` lets rounds raise the total. In a polish by the rules none may: then nothing is drawn for it.
+With raises, every second round takes turns: it takes out robots that cross one resource, up to 16 of them, and plans
+them in the order in which they cross it, changed a little by draws. So on a tree one direction can go before the
+other. Of 16 robots in a drawn order hardly any could be planned as well as before.
 """
 
 import numpy as np
 
-from carp_optimized.arrays import MOST_MEMBERS, NEVER, NONE, Numbers, Polish, Records, State
+from carp_optimized.arrays import MOST_MEMBERS, MOST_TURNS, NEVER, NONE, Numbers, Polish, Records, State
 from carp_optimized.compiling import compiled, entry
 from carp_optimized.distances import Mean, distance_below, is_apart, is_less
 from carp_optimized.natives import polish_at, state_at
@@ -24,6 +27,9 @@ SURE = 1 << 16  # a chance is in parts of this
 REPAIR, DELAYED, CONTESTED, NEAR = range(4)
 LEAST_MEMBERS = 4
 SIZES = MOST_MEMBERS - LEAST_MEMBERS + 1
+PIVOTS_WAY, OTHER_WAYS, DRAWN = range(3)  # the robots that go first, of four choices; else none does
+NOISE = 16  # ticks by which robots may change places
+AFTER = 1 << 40  # more than any tick
 
 
 @entry
@@ -53,18 +59,21 @@ def play_round(state: State, polish: Polish) -> bool:
     for robot in range(polish.plans.size):
         waiting += weight(state, polish, REPAIR, robot)
         delay += weight(state, polish, DELAYED, robot)
-        planned += weight(state, polish, NEAR, robot)
+        planned += weight(state, polish, CONTESTED, robot)
     if waiting > 0 and (delay == 0 or polish.counts[TURN] % 2 == 0):
         kind = REPAIR
         pivot = pivot_of(state, polish, kind, waiting)
     elif delay == 0:
         return False
+    elif polish.counts[CHANCE] > 0 and choice(polish.stream, 2) == 0:
+        take_turns(state, polish, pivot_of(state, polish, CONTESTED, planned))
+        return True
     else:
         number = choice(polish.stream, 10)
         kind = max(DELAYED, number - 6)
         pivot = pivot_of(state, polish, kind, delay if kind == DELAYED else planned)
     if kind == CONTESTED:
-        candidates = rank_crossing(state, polish, pivot)
+        candidates = rank_crossing(state, polish, pivot, choose_visit(state, polish, pivot), MOST_MEMBERS)
     elif kind == NEAR:
         candidates = rank_near(state, polish, pivot)
     else:
@@ -168,26 +177,92 @@ def meets_span(state: State, polish: Polish, record: int) -> bool:
 
 
 @compiled
-def rank_crossing(state: State, polish: Polish, pivot: int) -> int:
-    """Rank the robots that visit the resource of a visit of the pivot (`polish/contested`); how many there are."""
-    records = state.records
+def choose_visit(state: State, polish: Polish, pivot: int) -> int:
+    """Choose a visit of the pivot's plan (`polish/contested`)."""
     own = int(polish.plans[pivot])
-    chosen = int(records.visits_at[own]) + choice(polish.stream, int(records.visits[own]))
-    resource = int(records.resource[chosen])
-    tick = int(records.enter[chosen])
+    return int(state.records.visits_at[own]) + choice(polish.stream, int(state.records.visits[own]))
+
+
+@compiled
+def crossing(state: State, record: int, chosen: int) -> int:
+    """The plan's visit to the resource of the chosen visit that begins the fewest ticks apart from it; else `NONE`."""
+    records = state.records
+    nearest = NONE
+    least = NEVER
+    first = int(records.visits_at[record])
+    for visit in range(first, first + int(records.visits[record])):
+        apart = abs(int(records.enter[visit]) - int(records.enter[chosen]))
+        if records.resource[visit] == records.resource[chosen] and apart < least:
+            nearest = visit
+            least = apart
+    return nearest
+
+
+@compiled
+def rank_crossing(state: State, polish: Polish, pivot: int, chosen: int, most: int) -> int:
+    """Rank the robots that visit the resource of the chosen visit (`polish/contested`); how many there are.
+
+    With the pivot they are at most as many as given.
+    """
+    records = state.records
     count = 0
     for robot in range(polish.plans.size):
         record = int(polish.plans[robot])
         if robot == pivot or record == NONE:
             continue
-        least = NEVER
-        first = int(records.visits_at[record])
-        for k in range(first, first + int(records.visits[record])):
-            if records.resource[k] == resource:
-                least = min(least, abs(int(records.enter[k]) - tick))
-        if least < NEVER:
-            count = insert(polish, count, robot, Mean(least, 0, 1))
+        visit = crossing(state, record, chosen)
+        if visit != NONE:
+            apart = abs(int(records.enter[visit]) - int(records.enter[chosen]))
+            count = insert(polish, count, robot, Mean(apart, 0, 1), most)
     return count
+
+
+@compiled
+def take_turns(state: State, polish: Polish, pivot: int) -> None:
+    """Replan robots that cross a resource of the pivot's plan, in an order like that of their crossings."""
+    chosen = choose_visit(state, polish, pivot)
+    candidates = rank_crossing(state, polish, pivot, chosen, MOST_TURNS)
+    size = min(LEAST_MEMBERS + choice(polish.stream, MOST_TURNS - LEAST_MEMBERS + 1), candidates + 1)
+    polish.members[0] = pivot
+    for k in range(1, size):
+        polish.members[k] = polish.candidates[k - 1]
+    draw_turns(state, polish, size, chosen)
+    replan_members(state, polish, size)
+
+
+@compiled
+def draw_turns(state: State, polish: Polish, size: int, chosen: int) -> None:
+    """Order the members by their crossings: those of one direction first, or a drawn half, or with drawn delays."""
+    own = way_after(state, int(polish.plans[polish.members[0]]), chosen)
+    leaders = choice(polish.stream, 4)
+    noise = 1 + choice(polish.stream, 2) * (NOISE - 1)
+    for k in range(size):
+        robot = int(polish.members[k])
+        record = int(polish.plans[robot])
+        visit = crossing(state, record, chosen)
+        key = int(state.records.enter[visit]) + choice(polish.stream, noise)
+        is_own = way_after(state, record, visit) == own
+        if (
+            (leaders == PIVOTS_WAY and not is_own)
+            or (leaders == OTHER_WAYS and is_own)
+            or (leaders == DRAWN and choice(polish.stream, 2) == 0)
+        ):
+            key += AFTER
+        place = k
+        while place > 0 and polish.whole[place - 1] > key:
+            polish.whole[place] = polish.whole[place - 1]
+            polish.members[place] = polish.members[place - 1]
+            place -= 1
+        polish.whole[place] = key
+        polish.members[place] = robot
+
+
+@compiled
+def way_after(state: State, record: int, visit: int) -> int:
+    """The resource that the plan goes to after the visit; `NONE` after its last."""
+    records = state.records
+    last = int(records.visits_at[record]) + int(records.visits[record]) - 1
+    return int(records.resource[visit + 1]) if visit < last else NONE
 
 
 @compiled
@@ -208,20 +283,20 @@ def rank_near(state: State, polish: Polish, pivot: int) -> int:
             continue
         mean = distance_below(state, record, int(polish.plans[pivot]), farthest)
         if is_less(mean, farthest):
-            count = insert(polish, count, robot, mean)
+            count = insert(polish, count, robot, mean, MOST_MEMBERS)
     return count
 
 
 @compiled
-def insert(polish: Polish, count: int, robot: int, rank: Mean) -> int:
-    """Insert a candidate behind those of its rank or less; as many are kept as can become members."""
+def insert(polish: Polish, count: int, robot: int, rank: Mean, most: int) -> int:
+    """Insert a candidate behind those of its rank or less; with the pivot, as many as given are kept."""
     place = count
     while place > 0:
         before = Mean(int(polish.whole[place - 1]), int(polish.rest[place - 1]), int(polish.ticks[place - 1]))
         if not is_less(rank, before):
             break
         place -= 1
-    count = min(count + 1, MOST_MEMBERS - 1)
+    count = min(count + 1, most - 1)
     for k in range(count - 1, place, -1):
         polish.candidates[k] = polish.candidates[k - 1]
         polish.whole[k] = polish.whole[k - 1]

@@ -1,9 +1,10 @@
 """A polish that may raise the total for a while: simulated annealing (Kirkpatrick et al. 1983) of `polish/...`.
 
 A polish ends where no small change helps any more. So each round draws by how many ticks it may raise the total: on
-average a share of the mean delay of a robot, which falls to 0 as the cube of the time left in the cycle. One long cycle
-ends in a bad place as often as a short one does. So there are several, each from the best plans seen, which are the
-result. Nothing here is trusted: the law judges the plans.
+average a share of the mean delay of a robot, which falls to 0 as the cube of the time left in the cycle. As long as
+rounds may raise it, every second one takes turns (`carp_optimized.polishing`). One long cycle ends in a bad place as
+often as a short one does. So there are several, each from the best plans seen, which are the result. Nothing here is
+trusted: the law judges the plans.
 """
 
 from collections.abc import Callable
