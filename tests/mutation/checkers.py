@@ -26,7 +26,13 @@ from tests.mutation.mutants import Mutant, mutants
 PIN = "verify/test_kept_formulas"
 SEARCH = ("verify/test_joint_search", "verify/test_unsolvable")
 FORMULAS = ("verify/test_encoding", PIN)
-BOUNDS = ("verify/test_bound", "verify/test_bound_groups", "verify/test_bound_refusals", "verify/test_forgery")
+BOUNDS = (
+    "verify/test_bound",
+    "verify/test_bound_groups",
+    "verify/test_bound_refusals",
+    "verify/test_bound_seen",
+    "verify/test_forgery",
+)
 QUERIES = ("verify/test_query_certificate", "verify/test_forgery", "verify/test_vectors", "oracle/test_audit")
 ANSWERS = ("oracle/test_conform_one_answer",)
 REPORT = ("oracle/test_conform_report", *ANSWERS)
