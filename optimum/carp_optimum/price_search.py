@@ -364,16 +364,19 @@ class PriceSearch:
     ) -> None:
         """Take steps as `climb` does, but never back to the best prices, while `on_step` may add deadlines.
 
-        New deadlines would lose the prices that they have gained since. After each `SPAN` steps the aim is doubled if
-        enough of it was gained, and halved if not; the steps end when it is below the last aim.
+        New deadlines would lose the prices that they have gained since. In each span of `SPAN` steps an aim above a
+        tick falls to a tick, as the square of the steps left: large aims bring the prices far, and small ones find the
+        best bound near there. The next span begins with twice the aim if enough of it was gained, and with half if
+        not; the steps end when that is below the last aim.
         """
         bound = self._restore()
         aim = max(first_aim, last_aim)
         while aim >= last_aim:
             before = self.best
-            for _ in range(SPAN):
+            for left in range(SPAN, 0, -1):
                 check()
-                if not self._step(min(max(self.best + aim - bound, 0), LARGEST_GAIN)):
+                near = max(aim * left * left // (SPAN * SPAN), min(aim, self.scale))
+                if not self._step(min(max(self.best + near - bound, 0), LARGEST_GAIN)):
                     return
                 bound = self._bound()
                 if bound > self.best:
