@@ -2,7 +2,8 @@
 
 from carp_optimized.__main__ import compile_all as compile_planner
 from carp_optimum.bound import lower_bound
-from carp_optimum.price_search import Deadlines, Member, PriceSearch
+from carp_optimum.deadlines import Deadlines, Member
+from carp_optimum.price_search import PriceSearch
 from carp_optimum.sight_search import SightSearch
 from carp_spec import Instance, Resource, ResourceGraph, Robot
 from carp_verify.bounds import DeadlinesDocument

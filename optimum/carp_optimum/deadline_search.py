@@ -16,7 +16,8 @@ from typing import TypeAlias
 import numpy as np
 
 from carp_optimized.arrays import Longs
-from carp_optimum.price_search import Deadlines, Member, PriceSearch
+from carp_optimum.deadlines import Deadlines, Member
+from carp_optimum.price_search import PriceSearch
 from carp_optimum.proving import refutation
 from carp_optimum.solver import NANOSECONDS, Deadline, Solver, TimeOver
 from carp_spec import Instance, Refusal

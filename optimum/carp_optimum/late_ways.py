@@ -32,9 +32,9 @@ from carp_optimum.priced_ways import (
 class Charges(NamedTuple):
     """Costs with deadlines: by robot and delay that of an arrival, and the least of that and of all greater delays.
 
-    A robot that is in a resource at a tick, on its way, pays by the row of the robot and tick: `fee[row][resource]`.
-    `place` is where the robots' ways have them at each tick: a resource, the number of resources for a robot that has
-    come to its goal, and `NONE` before its release.
+    A robot that is in a resource at a tick, on its way, pays by the row of the robot and tick: `fee[row][resource]`,
+    which is 0 in row 0, that of robots and ticks without claims. `place` is where the robots' ways have them at each
+    tick: a resource, the number of resources for a robot that has come to its goal, and `NONE` before its release.
     """
 
     cost: LongTable

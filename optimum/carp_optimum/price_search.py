@@ -1,31 +1,21 @@
 """The search for good prices: the work between the compiled steps of `carp_optimum.price_steps`."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from msgspec.structs import replace
 
-from carp_optimized.arrays import LARGEST, NONE, Graph, Ints, IntTable, Longs, LongTable
+from carp_optimized.arrays import LARGEST, NONE, Ints, IntTable, Longs, LongTable
 from carp_optimized.encoding import encode_graph, refuse_tick, refuse_what_is_too_large
 from carp_optimized.references import Native
+from carp_optimum.deadlines import Deadlines, flattened
 from carp_optimum.late_ways import Charges, find_late_ways, least_late_cost, see_ways
+from carp_optimum.market import market_of, refuse_table, requests_of, sized
 from carp_optimum.price_steps import KEPT, LARGEST_GAIN, PARTS, UNIT, turn_all, walk_all
-from carp_optimum.priced_ways import (
-    Market,
-    Prices,
-    Requests,
-    Scratch,
-    Usage,
-    Ways,
-    find_rests,
-    find_ways,
-    least_cost,
-)
+from carp_optimum.priced_ways import find_rests, find_ways, least_cost
 from carp_spec import Instance, Refusal, ResourceId, RobotId
-from carp_verify.bound_rules import LARGEST_TABLE, LONGEST_STAY, size_fits, stay_is_searched
+from carp_verify.bound_rules import LARGEST_TABLE, LONGEST_STAY, stay_is_searched
 from carp_verify.bounds import DeadlinesDocument
 
 TICKS_BEYOND = 32  # of the horizon beyond the last arrival of a robot that nothing delays
@@ -49,13 +39,6 @@ class PriceLists(NamedTuple):
     exchanges: tuple[tuple[ResourceId, ResourceId, int, int], ...]
 
 
-def refuse_table(path: str, what: str, entries: int) -> None:
-    """Raise `Refusal` if a table would be too large."""
-    if not size_fits(entries, LARGEST_TABLE):
-        message = f"{what} must be at most {LARGEST_TABLE}, the limit, and would be {entries}"
-        raise Refusal("limit", path, size_fits.id, message)
-
-
 class Point(NamedTuple):
     """Prices of places, multipliers of cuts, and prices of deadlines."""
 
@@ -63,70 +46,6 @@ class Point(NamedTuple):
     exchange: LongTable
     multipliers: Longs
     fees: Longs
-
-
-class Member(NamedTuple):
-    """A robot, by position, of a group with deadlines.
-
-    It keeps its own if it enters its goal for the last time by tick `arrival`, or if at tick `seen` it is in one
-    of the places, on its way.
-    """
-
-    robot: int
-    arrival: int
-    seen: int
-    places: Sequence[int]
-
-
-@dataclass(frozen=True, slots=True)
-class Deadlines:
-    """Deadlines that their members cannot all keep, and the certificate of that, without price."""
-
-    members: Sequence[Member]
-    document: DeadlinesDocument
-
-
-class Flat(NamedTuple):
-    """All members of all deadlines, one after the other, and their places, each with the number of its deadlines.
-
-    `inside[member]` has the places of the member, as `carp_optimum.late_ways` numbers them, `NONE` as the last. A place
-    has the row of its robot and tick.
-    """
-
-    sizes: Longs
-    group: Longs
-    robot: Longs
-    arrival: Longs
-    seen: Longs
-    inside: npt.NDArray[np.bool_]
-    place: Longs
-    row: Longs
-    group_of_place: Longs
-
-
-def flattened(deadlines: Sequence[Deadlines], resources: int) -> tuple[Flat, Mapping[tuple[int, int], int]]:
-    """The members of all deadlines, and the rows of robots that are seen at a tick, from 1 on."""
-    members = [(number, member) for number, each in enumerate(deadlines) for member in each.members]
-    rows: dict[tuple[int, int], int] = {}
-    inside = np.zeros((len(members), resources + 2), np.bool_)
-    places: list[tuple[int, int, int]] = []
-    for position, (number, member) in enumerate(members):
-        inside[position, list(member.places)] = True
-        if member.places:
-            row = rows.setdefault((member.robot, member.seen), len(rows) + 1)
-            places += [(place, row, number) for place in member.places]
-    flat = Flat(
-        sizes=np.array([len(each.members) for each in deadlines], np.int64),
-        group=np.array([number for number, _ in members], np.int64),
-        robot=np.array([member.robot for _, member in members], np.int64),
-        arrival=np.array([member.arrival for _, member in members], np.int64),
-        seen=np.array([member.seen for _, member in members], np.int64),
-        inside=inside,
-        place=np.array([place for place, _, _ in places], np.int64),
-        row=np.array([row for _, row, _ in places], np.int64),
-        group_of_place=np.array([number for _, _, number in places], np.int64),
-    )
-    return flat, rows
 
 
 class PriceSearch:
@@ -144,12 +63,12 @@ class PriceSearch:
         self.scale = scale
         graph = encode_graph(instance)
         graph = graph._replace(capacity=np.minimum(graph.capacity, robots).astype(np.int32))
-        requests = _requests(instance, scale)
+        requests = requests_of(instance, scale)
         longest = max((robot.pace for robot in instance.robots), default=1) * int(graph.duration.max(initial=1))
         if not stay_is_searched(longest):
             message = f"the pace times the duration must be at most {LONGEST_STAY}, the limit, and is {longest}"
             raise Refusal("limit", "$.graph", stay_is_searched.id, message)
-        market = _market(instance, graph, requests, longest)
+        market = market_of(instance, graph, requests, longest)
         native = Native(market)
         find_rests(native)
         last = max(requests.earliest.tolist(), default=0)
@@ -157,7 +76,7 @@ class PriceSearch:
         rows = resources + graph.target.size
         self.horizon = min(max(last, 0) + longest + TICKS_BEYOND, LARGEST_TABLE // max(rows, 1), LAST_TICK)
         wanted = max(DELAYS * longest, self.horizon + longest)
-        self.market = _sized(market, self.horizon, max(1, min(wanted, MOST_NODES // max(resources, 1), LARGEST - last)))
+        self.market = sized(market, self.horizon, max(1, min(wanted, MOST_NODES // max(resources, 1), LARGEST - last)))
         self.native = Native(self.market)
         self.cuts: list[Ints] = []
         self.least = np.zeros(0, np.int64)
@@ -448,86 +367,3 @@ class PriceSearch:
         if not self.deadlines:
             return least_cost(self.native, position)
         return least_late_cost(self.native, self._charges, position)
-
-
-def _requests(instance: Instance, scale: int) -> Requests:
-    index, robots = instance.graph.index, instance.robots
-    return Requests(
-        start=np.array([index[robot.start] for robot in robots], np.int32),
-        goal=np.array([index[robot.goal] for robot in robots], np.int32),
-        release=np.array([robot.release for robot in robots], np.int32),
-        pace=np.array([robot.pace for robot in robots], np.int32),
-        earliest=np.zeros(len(robots), np.int64),
-        rest=np.full((len(robots), len(index)), NONE, np.int32),
-        weight=np.full(len(robots), scale, np.int64),
-    )
-
-
-def _market(instance: Instance, graph: Graph, requests: Requests, longest: int) -> Market:
-    """A market without ticks."""
-    empty = np.zeros((0, 0), np.int32)
-    wide = np.zeros((0, 0), np.int64)
-    edges = graph.target.size
-    scratch = Scratch(
-        generation=np.zeros(1, np.int64),
-        mark=np.zeros(0, np.int64),
-        paid=np.zeros(0, np.int64),
-        parent=np.zeros(0, np.int32),
-        following=np.zeros(0, np.int32),
-        head=np.full(longest + 1, NONE, np.int32),
-        keys=np.zeros(edges + 1, np.int64),
-        nodes=np.zeros(edges + 1, np.int32),
-    )
-    back = _moves_back(instance)
-    numbers = np.array([back.get(move, NONE) for move in range(edges)], np.int32)
-    prices = Prices(wide, wide, numbers, wide, wide, wide, wide)
-    usage = Usage(empty, empty, empty, wide, wide)
-    ways = Ways(np.zeros(0, np.int32), empty, empty)
-    return Market(graph, requests, prices, ways, usage, scratch, 0, 1, instance.after_goal == "park")
-
-
-def _moves_back(instance: Instance) -> Mapping[int, int]:
-    """For each move that has a move back, the number of that."""
-    moves = [(source, target) for source in instance.graph.index for target in instance.graph.successors[source]]
-    number = {move: position for position, move in enumerate(moves)}
-    return {
-        position: number[target, source] for (source, target), position in number.items() if (target, source) in number
-    }
-
-
-def _sized(market: Market, horizon: int, delays: int) -> Market:
-    """The market with tables for this many ticks and delays."""
-    requests, graph = market.requests, market.graph
-    robots, resources, edges = requests.start.size, graph.duration.size, graph.target.size
-    ticks = int((requests.earliest - requests.release).max(initial=0)) + delays
-    visits = ticks // int(graph.duration.min(initial=1)) + 2
-    refuse_table("$.robots", "robots times the visits of a plan", robots * visits)
-    nodes = resources * delays
-    return market._replace(
-        prices=market.prices._replace(
-            resource=np.zeros((resources, horizon), np.int64),
-            exchange=np.zeros((edges, horizon), np.int64),
-            stay=np.zeros((resources, horizon + 1), np.int64),
-            across=np.zeros((resources, horizon + 1), np.int64),
-            waiting=np.zeros((horizon + 1, resources), np.int64),
-            entering=np.zeros((horizon + 1, edges), np.int64),
-        ),
-        ways=Ways(
-            np.zeros(robots, np.int32), np.zeros((robots, visits), np.int32), np.zeros((robots, visits), np.int32)
-        ),
-        usage=Usage(
-            present=np.zeros((resources, horizon), np.int32),
-            moving=np.zeros((edges, horizon), np.int32),
-            staying=np.zeros((resources, horizon), np.int32),
-            course=np.zeros((resources, horizon), np.int64),
-            course_of_exchange=np.zeros((edges, horizon), np.int64),
-        ),
-        scratch=market.scratch._replace(
-            mark=np.zeros(nodes, np.int64),
-            paid=np.zeros(nodes, np.int64),
-            parent=np.zeros(nodes, np.int32),
-            following=np.zeros(nodes, np.int32),
-        ),
-        horizon=horizon,
-        delays=delays,
-    )

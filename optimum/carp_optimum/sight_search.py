@@ -20,8 +20,9 @@ from msgspec.structs import replace
 
 from carp_optimized.arrays import NONE, Graph, Ints, IntTable, Longs, LongTable
 from carp_optimized.references import Native
+from carp_optimum.deadlines import Deadlines, Member
 from carp_optimum.meetings import Meeting, Side, find_claim
-from carp_optimum.price_search import Deadlines, Member, PriceSearch
+from carp_optimum.price_search import PriceSearch
 from carp_optimum.proving import refutation
 from carp_optimum.solver import NANOSECONDS, Deadline, TimeOver
 from carp_spec import Refusal

@@ -8,7 +8,8 @@ from hypothesis import event, given, settings
 from tests.profiles import draws
 
 from carp_optimum.bound import lower_bound
-from carp_optimum.price_search import Deadlines, Member, PriceSearch
+from carp_optimum.deadlines import Deadlines, Member
+from carp_optimum.price_search import PriceSearch
 from carp_optimum.sight_search import STEPS, SightSearch, _Sides, pairs_in
 from carp_optimum.solver import TimeOver
 from carp_spec import Instance, Resource, ResourceGraph, Robot
