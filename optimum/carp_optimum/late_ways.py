@@ -16,6 +16,7 @@ from carp_optimum.priced_ways import (
     ENDLESS,
     Market,
     add_up,
+    begin,
     count_way,
     duration_of,
     further_price,
@@ -23,6 +24,7 @@ from carp_optimum.priced_ways import (
     market_at,
     move_between,
     move_price,
+    place_after,
     reach,
     stay_price,
     take_way,
@@ -135,26 +137,27 @@ def settle_late(market: Market, charges: Charges, robot: int, best: int) -> int:
     delay = tick + int(rest[start]) - earliest
     if delay >= market.delays:
         return best
-    scratch.generation[0] = int(scratch.generation[0]) + 1
-    first = start * market.delays + delay
-    pending = reach(scratch, first, tick, price_of_stay(market, charges, robot, start, release, tick), NONE)
+    pending = begin(market, robot, tick, price_of_stay(market, charges, robot, start, release, tick))
+    size = market.graph.duration.size
     found = NONE
     while pending > 0:
         place = tick % scratch.head.size
-        node = int(scratch.head[place])
+        slot = int(scratch.head[place])
         scratch.head[place] = NONE
-        while node != NONE:
+        while slot != NONE:
             pending -= 1
-            here = node // market.delays
-            paid = int(scratch.paid[node])
-            following = int(scratch.following[node])
+            here = slot - place * size
+            node = (tick - release) * size + here
+            paid = int(scratch.paid[slot])
+            following = int(scratch.following[slot])
             if paid + int(least[tick + int(rest[here]) - earliest]) < best:
-                price = price_of_arrival(market, charges, robot, here, tick, paid)
-                if price < best:
-                    best = price
-                    found = node
+                if rest[here] == 0:  # a move from here enters the goal
+                    price = price_of_arrival(market, charges, robot, here, tick, paid)
+                    if price < best:
+                        best = price
+                        found = node
                 pending += drive_on(market, charges, robot, node, tick, paid)
-            node = following
+            slot = following
         tick += 1
     if found != NONE:
         take_way(market, robot, found)
@@ -165,16 +168,20 @@ def settle_late(market: Market, charges: Charges, robot: int, best: int) -> int:
 def drive_on(market: Market, charges: Charges, robot: int, node: int, tick: int, paid: int) -> int:
     """Wait or move from a node, also through the goal, to come late: how many new nodes are reached."""
     graph = market.graph
-    scratch = market.scratch
     rest = market.requests.rest[robot]
     earliest = int(market.requests.earliest[robot])
     waiting = market.prices.waiting[min(tick, market.horizon)]
     entering = market.prices.entering[min(tick, market.horizon)]
     fee = charges.fee[int(charges.row[robot][tick]) if tick < market.horizon else 0]
-    here = node // market.delays
+    scratch = market.scratch
+    size = graph.duration.size
+    here = node - (tick - int(market.requests.release[robot])) * size
+    now = tick % scratch.head.size
     reached = 0
-    if node - here * market.delays + 1 < market.delays:
-        reached += reach(scratch, node + 1, tick + 1, paid + int(waiting[here]) + int(fee[here]), node)
+    if tick + int(rest[here]) - earliest + 1 < market.delays:
+        place = place_after(scratch, now, 1)
+        waited = paid + int(waiting[here]) + int(fee[here])
+        reached += reach(scratch, place, place * size + here, node + size, waited, node)
     for move in range(int(graph.first[here]), int(graph.first[here + 1])):
         target = int(graph.target[move])
         if rest[target] != NONE:
@@ -185,7 +192,9 @@ def drive_on(market: Market, charges: Charges, robot: int, node: int, tick: int,
                 moved += further_price(market, target, tick + 1, ready)
                 for later in range(tick + 1, min(ready, market.horizon)):
                     moved += fee_of(charges, robot, target, later)
-                reached += reach(scratch, target * market.delays + delay, ready, moved, node)
+                place = place_after(scratch, now, ready - tick)
+                after = node - here + (ready - tick) * size + target
+                reached += reach(scratch, place, place * size + target, after, moved, node)
     return reached
 
 

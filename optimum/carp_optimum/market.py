@@ -70,7 +70,7 @@ def sized(market: Market, horizon: int, delays: int) -> Market:
     ticks = int((requests.earliest - requests.release).max(initial=0)) + delays
     visits = ticks // int(graph.duration.min(initial=1)) + 2
     refuse_table("$.robots", "robots times the visits of a plan", robots * visits)
-    nodes = resources * delays
+    slots = resources * market.scratch.head.size
     return market._replace(
         prices=market.prices._replace(
             resource=np.zeros((resources, horizon), np.int64),
@@ -91,10 +91,10 @@ def sized(market: Market, horizon: int, delays: int) -> Market:
             course_of_exchange=np.zeros((edges, horizon), np.int64),
         ),
         scratch=market.scratch._replace(
-            mark=np.zeros(nodes, np.int64),
-            paid=np.zeros(nodes, np.int64),
-            parent=np.zeros(nodes, np.int32),
-            following=np.zeros(nodes, np.int32),
+            mark=np.zeros(slots, np.int64),
+            paid=np.zeros(slots, np.int64),
+            parent=np.zeros(resources * ticks, np.int32),
+            following=np.zeros(slots, np.int32),
         ),
         horizon=horizon,
         delays=delays,

@@ -4,9 +4,9 @@ A robot pays for each tick that it is in a resource (`joint/capacity`), and for 
 moves from r to s or from s to r, or is in r just before t and at t (`joint/exchange`). Prices end at the horizon.
 
 A node is a resource r and a tick t: the robot is in r, free to leave it at t. Its delay is what the best way through it
-comes later than the earliest arrival, so nodes are numbered by resource and delay. They are settled tick by tick, and
-one through which no way is cheaper than the best known is left out. Source: Dijkstra over the time-expanded graph, as
-in `carp_verify.robot_clauses`.
+comes later than the earliest arrival. Nodes are settled tick by tick, and one through which no way is cheaper than the
+best known is left out. They are numbered by tick and resource, and what was paid is kept for the next ticks alone: so
+it stays in the processor's cache. Source: Dijkstra over the time-expanded graph, as in `carp_verify.robot_clauses`.
 """
 
 from typing import NamedTuple
@@ -76,10 +76,12 @@ class Usage(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """The scratch of a search, by node: prices paid on the way there, the node before, the next node of the tick.
+    """The scratch of a search.
 
-    `mark[node]` is the generation of the search that reached it, `head` the first node of each tick, modulo its size.
-    `keys` and `nodes` are a heap.
+    `parent[node]` is the node before. A tick has a place: the tick modulo one more than the longest stay. A place and a
+    resource are a slot, which keeps what was paid on the way to the node, the slot of the next node of the tick, and as
+    `mark` the sum of the search's `generation` and the node. `head` is the first slot of each place. `keys` and `nodes`
+    are a heap.
     """
 
     generation: Longs
@@ -228,21 +230,39 @@ def way_price(market: Market, robot: int) -> int:
 
 
 @compiled
-def reach(scratch: Scratch, node: int, tick: int, paid: int, parent: int) -> int:
+def reach(scratch: Scratch, place: int, slot: int, node: int, paid: int, parent: int) -> int:
     """Reach a node at this price; returns 1 if it was not reached before, else 0."""
-    generation = int(scratch.generation[0])
-    if scratch.mark[node] == generation:
-        if paid < scratch.paid[node]:
-            scratch.paid[node] = paid
+    mark = int(scratch.generation[0]) + node
+    if scratch.mark[slot] == mark:
+        if paid < scratch.paid[slot]:
+            scratch.paid[slot] = paid
             scratch.parent[node] = parent
         return 0
-    scratch.mark[node] = generation
-    scratch.paid[node] = paid
+    scratch.mark[slot] = mark
+    scratch.paid[slot] = paid
     scratch.parent[node] = parent
-    place = tick % scratch.head.size
-    scratch.following[node] = int(scratch.head[place])
-    scratch.head[place] = node
+    scratch.following[slot] = int(scratch.head[place])
+    scratch.head[place] = slot
     return 1
+
+
+@compiled
+def begin(market: Market, robot: int, tick: int, paid: int) -> int:
+    """Begin a search at the node of the robot's start; returns 1."""
+    scratch = market.scratch
+    size = market.graph.duration.size
+    start = int(market.requests.start[robot])
+    place = tick % scratch.head.size
+    node = (tick - int(market.requests.release[robot])) * size + start
+    scratch.generation[0] = int(scratch.generation[0]) + scratch.parent.size
+    return reach(scratch, place, place * size + start, node, paid, NONE)
+
+
+@compiled
+def place_after(scratch: Scratch, place: int, ticks: int) -> int:
+    """The place of the tick that comes these ticks after one with a place; no more ticks than the longest stay."""
+    after = place + ticks
+    return after if after < scratch.head.size else after - scratch.head.size
 
 
 @compiled
@@ -282,26 +302,27 @@ def settle(market: Market, robot: int, best: int) -> int:
     delay = tick + int(rest[start]) - int(requests.earliest[robot])
     if delay >= market.delays:
         return best
-    scratch.generation[0] = int(scratch.generation[0]) + 1
-    first = start * market.delays + delay
-    pending = reach(scratch, first, tick, stay_price(market, start, release, tick), NONE)
+    pending = begin(market, robot, tick, stay_price(market, start, release, tick))
+    size = market.graph.duration.size
     found = NONE
     while pending > 0:
         place = tick % scratch.head.size
-        node = int(scratch.head[place])
+        slot = int(scratch.head[place])
         scratch.head[place] = NONE
-        while node != NONE:
+        while slot != NONE:
             pending -= 1
-            here = node // market.delays
-            paid = int(scratch.paid[node])
-            following = int(scratch.following[node])
+            here = slot - place * size
+            node = (tick - release) * size + here
+            paid = int(scratch.paid[slot])
+            following = int(scratch.following[slot])
             if paid + weight * (tick + int(rest[here]) - release) < best:
-                price = arrival_price(market, robot, here, tick, paid)
-                if price < best:
-                    best = price
-                    found = node
+                if rest[here] == 0:  # a move from here enters the goal
+                    price = arrival_price(market, robot, here, tick, paid)
+                    if price < best:
+                        best = price
+                        found = node
                 pending += leave(market, robot, node, tick, paid)
-            node = following
+            slot = following
         tick += 1
     if found != NONE:
         take_way(market, robot, found)
@@ -325,16 +346,19 @@ def arrival_price(market: Market, robot: int, here: int, tick: int, paid: int) -
 def leave(market: Market, robot: int, node: int, tick: int, paid: int) -> int:
     """Wait or move from a node: how many nodes are reached that were not before."""
     graph = market.graph
-    scratch = market.scratch
     rest = market.requests.rest[robot]
     earliest = int(market.requests.earliest[robot])
+    scratch = market.scratch
     goal = int(market.requests.goal[robot])
     waiting = market.prices.waiting[min(tick, market.horizon)]
     entering = market.prices.entering[min(tick, market.horizon)]
-    here = node // market.delays
+    size = graph.duration.size
+    here = node - (tick - int(market.requests.release[robot])) * size
+    now = tick % scratch.head.size
     reached = 0
-    if node - here * market.delays + 1 < market.delays:
-        reached += reach(scratch, node + 1, tick + 1, paid + int(waiting[here]), node)
+    if tick + int(rest[here]) - earliest + 1 < market.delays:
+        place = place_after(scratch, now, 1)
+        reached += reach(scratch, place, place * size + here, node + size, paid + int(waiting[here]), node)
     for move in range(int(graph.first[here]), int(graph.first[here + 1])):
         target = int(graph.target[move])
         if rest[target] != NONE and (market.parks or target != goal):
@@ -342,7 +366,9 @@ def leave(market: Market, robot: int, node: int, tick: int, paid: int) -> int:
             delay = ready + int(rest[target]) - earliest
             if delay < market.delays:
                 moved = paid + int(entering[move]) + further_price(market, target, tick + 1, ready)
-                reached += reach(scratch, target * market.delays + delay, ready, moved, node)
+                place = place_after(scratch, now, ready - tick)
+                later = node - here + (ready - tick) * size + target
+                reached += reach(scratch, place, place * size + target, later, moved, node)
     return reached
 
 
@@ -350,15 +376,13 @@ def leave(market: Market, robot: int, node: int, tick: int, paid: int) -> int:
 def begins_stay(market: Market, node: int) -> bool:
     """Whether the way enters the node's resource there, rather than waits in it."""
     parent = int(market.scratch.parent[node])
-    return parent == NONE or parent // market.delays != node // market.delays
+    return parent == NONE or (node - parent) % market.graph.duration.size != 0
 
 
 @compiled
 def tick_of(market: Market, robot: int, node: int) -> int:
     """The tick of a node of the robot."""
-    here = node // market.delays
-    delay = node - here * market.delays
-    return int(market.requests.earliest[robot]) + delay - int(market.requests.rest[robot][here])
+    return int(market.requests.release[robot]) + node // market.graph.duration.size
 
 
 @compiled
@@ -379,7 +403,7 @@ def take_way(market: Market, robot: int, last: int) -> None:
     node = last
     while node != NONE:
         if begins_stay(market, node):
-            here = node // market.delays
+            here = node % market.graph.duration.size
             resources[visit] = here
             enters[visit] = tick_of(market, robot, node) - duration_of(market, robot, here)
             visit -= 1
