@@ -9,7 +9,6 @@ certificate needs its refutation, which takes longer to find. So only the claims
 proved; the others are dropped, and a later round finds them again where they are still broken.
 """
 
-from collections import defaultdict
 from collections.abc import Callable, Sequence
 from heapq import heappop, heappush
 from itertools import combinations, count
@@ -54,6 +53,7 @@ class SightSearch:
         self.instance = search.instance
         self.most = min(LARGEST_DELAY, search.market.delays - 1)
         self.without_proof: set[Sequence[Member]] = set()
+        self.entries: dict[int, Longs] = {}
         self.watched = 0
         self.ways: list[tuple[Longs, IntTable]] = []
 
@@ -91,7 +91,7 @@ class SightSearch:
         On a tree, robots whose ways are short or cannot pass each other break claims most often, and have few states.
         """
         search = self.search
-        sides = _Sides(search, at, np.minimum(delays.max(axis=0) + MARGIN, self.most))
+        sides = _Sides(search, at, np.minimum(delays.max(axis=0) + MARGIN, self.most), self.entries)
         known = {tuple(claim.members) for claim in search.deadlines} | self.without_proof
         work = {pair: sides.work(*pair) for pair in pairs_in(at, len(self.instance.graph.resources))}
         chosen: list[Deadlines] = []
@@ -165,11 +165,13 @@ class SightSearch:
 
 def pairs_in(at: IntTable, resources: int) -> set[tuple[int, int]]:
     """Pairs of robots that are in the same place at the same tick, in one step or in different ones."""
-    robots: dict[tuple[int, int], set[int]] = defaultdict(set)
-    for places in at[::EVERY]:
-        for robot, tick in np.argwhere((places >= 0) & (places < resources)).tolist():
-            robots[int(places[robot, tick]), tick].add(robot)
-    return {pair for each in robots.values() for pair in combinations(sorted(each), 2)}
+    places = at[::EVERY]
+    _, robots, ticks = places.shape
+    _, robot, tick = np.nonzero((places >= 0) & (places < resources))
+    place = places[(places >= 0) & (places < resources)].astype(np.int64)
+    cell, robot = np.divmod(np.unique((place * ticks + tick) * robots + robot), robots)
+    groups = np.split(robot, np.flatnonzero(np.diff(cell)) + 1)
+    return {pair for group in groups for pair in combinations(group.tolist(), 2)}
 
 
 def first_entries(graph: Graph, durations: Longs, start: int, release: int) -> Longs:
@@ -186,12 +188,16 @@ def first_entries(graph: Graph, durations: Longs, start: int, release: int) -> L
 
 
 class _Sides:
-    """The robots as `carp_optimum.meetings` sees them, each made when it is first asked for."""
+    """The robots as `carp_optimum.meetings` sees them, each made when it is first asked for.
 
-    def __init__(self, search: PriceSearch, at: IntTable, delays: Ints) -> None:
+    `entries` keeps the first entries of robots that were seen before.
+    """
+
+    def __init__(self, search: PriceSearch, at: IntTable, delays: Ints, entries: dict[int, Longs]) -> None:
         self.search = search
         self.at = at
         self.delays = delays
+        self.entries = entries
         self.known: dict[int, Side | None] = {}
 
     def work(self, one: int, other: int) -> int:
@@ -264,7 +270,9 @@ class _Sides:
         if start == goal or requests.rest[robot][start] == NONE:
             return None
         durations = graph.duration.astype(np.int64) * int(requests.pace[robot])
-        near = first_entries(market.graph, durations, start, int(requests.release[robot]))
+        if robot not in self.entries:
+            self.entries[robot] = first_entries(market.graph, durations, start, int(requests.release[robot]))
+        near = self.entries[robot]
         delay = np.where(requests.rest[robot] == NONE, 1 << 30, near + durations + requests.rest[robot])
         resource = np.flatnonzero(delay - int(requests.earliest[robot]) <= self.delays[robot]).astype(np.int32)
         if len(resource) > MOST_SPOTS or durations[resource].sum() > MOST_SPOTS or start not in resource:

@@ -99,7 +99,7 @@ def test_all_that_is_found_has_a_proof(instance: Instance) -> None:
     prices = search_of(instance)
     search = SightSearch(prices)
     delays, at = prices.wander_places(STEPS, SCALE // 4, lambda: None)
-    sides = _Sides(prices, at, np.minimum(delays.max(axis=0) + 2, search.most))
+    sides = _Sides(prices, at, np.minimum(delays.max(axis=0) + 2, search.most), {})
     for one, other in pairs_in(at, len(instance.graph.resources)):
         weight, members = sides.claim(one, other)
         if weight > 0:
