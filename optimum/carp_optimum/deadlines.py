@@ -35,8 +35,8 @@ class Deadlines:
 class Flat(NamedTuple):
     """All members of all deadlines, one after the other, and their places, each with the number of its deadlines.
 
-    `inside[member]` has the places of the member, as `carp_optimum.late_ways` numbers them, `NONE` as the last. A place
-    has the row of its robot and tick.
+    `inside[member]` has the places of the member, as `carp_optimum.market_arrays` numbers them, `NONE` as the last. A
+    place has the row of its robot and tick.
     """
 
     sizes: Longs

@@ -1,11 +1,11 @@
-"""The arrays of the search for prices (`carp_optimum.priced_ways`), made from an instance."""
+"""The arrays of the search for prices (`carp_optimum.market_arrays`), made from an instance."""
 
 from collections.abc import Mapping
 
 import numpy as np
 
-from carp_optimized.arrays import NONE, Graph
-from carp_optimum.priced_ways import Market, Prices, Requests, Scratch, Usage, Ways
+from carp_optimized.arrays import NONE, Graph, IntTable, LongTable
+from carp_optimum.market_arrays import Charges, Market, Prices, Requests, Scratch, Usage, Ways
 from carp_spec import Instance, Refusal
 from carp_verify.bound_rules import LARGEST_TABLE, size_fits
 
@@ -51,7 +51,8 @@ def market_of(instance: Instance, graph: Graph, requests: Requests, longest: int
     prices = Prices(wide, wide, numbers, wide, wide, wide, wide)
     usage = Usage(empty, empty, empty, wide, wide)
     ways = Ways(np.zeros(0, np.int32), empty, empty)
-    return Market(graph, requests, prices, ways, usage, scratch, 0, 1, instance.after_goal == "park")
+    charges = Charges(wide, wide, empty, wide, empty)
+    return Market(graph, requests, prices, charges, ways, usage, scratch, 0, 1, instance.after_goal == "park")
 
 
 def _moves_back(instance: Instance) -> Mapping[int, int]:
@@ -80,6 +81,7 @@ def sized(market: Market, horizon: int, delays: int) -> Market:
             waiting=np.zeros((horizon + 1, resources), np.int64),
             entering=np.zeros((horizon + 1, edges), np.int64),
         ),
+        charges=charges_of(np.zeros((robots, horizon), np.int32), np.zeros((1, resources), np.int64), delays),
         ways=Ways(
             np.zeros(robots, np.int32), np.zeros((robots, visits), np.int32), np.zeros((robots, visits), np.int32)
         ),
@@ -99,3 +101,10 @@ def sized(market: Market, horizon: int, delays: int) -> Market:
         horizon=horizon,
         delays=delays,
     )
+
+
+def charges_of(row: IntTable, fee: LongTable, delays: int) -> Charges:
+    """Charges with these rows and fees, and with tables for this many delays."""
+    robots, _ = row.shape
+    costs = (robots, delays + 1)
+    return Charges(np.zeros(costs, np.int64), np.zeros(costs, np.int64), row, fee, np.zeros_like(row))

@@ -15,7 +15,7 @@ from typing import NamedTuple
 from carp_optimized.arrays import NONE, Ints, IntTable, Longs
 from carp_optimized.compiling import compiled, entry
 from carp_optimized.references import Native, dereference
-from carp_optimum.priced_ways import Market, duration_of, market_at
+from carp_optimum.market_arrays import Market, duration_of, market_at
 
 UNREACHED = -2
 

@@ -10,10 +10,9 @@ from carp_optimized.arrays import LARGEST, NONE, Ints, IntTable, Longs, LongTabl
 from carp_optimized.encoding import encode_graph, refuse_tick, refuse_what_is_too_large
 from carp_optimized.references import Native
 from carp_optimum.deadlines import Deadlines, flattened
-from carp_optimum.late_ways import Charges, find_late_ways, least_late_cost, see_ways
-from carp_optimum.market import market_of, refuse_table, requests_of, sized
+from carp_optimum.market import charges_of, market_of, refuse_table, requests_of, sized
 from carp_optimum.price_steps import KEPT, LARGEST_GAIN, PARTS, UNIT, turn_all, walk_all
-from carp_optimum.priced_ways import find_rests, find_ways, least_cost
+from carp_optimum.priced_ways import find_rests, find_ways, least_cost, see_ways
 from carp_spec import Instance, Refusal, ResourceId, RobotId
 from carp_verify.bound_rules import LARGEST_TABLE, LONGEST_STAY, stay_is_searched
 from carp_verify.bounds import DeadlinesDocument
@@ -86,9 +85,7 @@ class PriceSearch:
         self.fees = np.zeros(0, np.int64)
         self._course_of_fees = np.zeros(0, np.int64)
         self._flat, _ = flattened([], 0)
-        wide, narrow = np.zeros((0, 0), np.int64), np.zeros((0, 0), np.int32)
-        self._charges = Native(Charges(wide, wide, narrow, wide, narrow))
-        self.best = find_ways(self.native)
+        self.best = self._bound()
         self._kept = self._point()
         self.count = 0
 
@@ -103,16 +100,14 @@ class PriceSearch:
         for members, multiplier in zip(self.cuts, self.multipliers, strict=True):
             weight[members] -= multiplier
         proved = int((self.multipliers * self.least).sum())
-        if not self.deadlines:
-            return proved + find_ways(self.native)
-        self._charge()
         worth = int((self.fees * (self._flat.sizes - 1)).sum())
-        return proved - worth + find_late_ways(self.native, self._charges)
+        self._charge()
+        return proved - worth + find_ways(self.native)
 
     def _charge(self) -> None:
         """Fill the tables of what an arrival costs each robot, by its delay, and of what it pays on its way."""
         requests, flat = self.market.requests, self._flat
-        cost, least, _, fee, _ = self._charges.fields
+        cost, least, _, fee, _ = self.market.charges
         cost[:] = 0
         delay = np.minimum(flat.arrival - requests.earliest[flat.robot], self.market.delays)
         can = delay >= 0
@@ -151,15 +146,9 @@ class PriceSearch:
         row = np.zeros((robots, self.horizon), np.int32)
         for place, number in rows.items():
             row[place] = number
-        self._charges = Native(
-            Charges(
-                cost=np.zeros((robots, self.market.delays + 1), np.int64),
-                least=np.zeros((robots, self.market.delays + 1), np.int64),
-                row=row,
-                fee=np.zeros((len(rows) + 1, resources), np.int64),
-                place=np.zeros((robots, self.horizon), np.int32),
-            )
-        )
+        fee = np.zeros((len(rows) + 1, resources), np.int64)
+        self.market = self.market._replace(charges=charges_of(row, fee, self.market.delays))
+        self.native = Native(self.market)
         none = np.zeros(len(deadlines), np.int64)
         self.fees = np.concatenate([self.fees, none])
         self._course_of_fees = np.concatenate([self._course_of_fees, none])
@@ -203,8 +192,8 @@ class PriceSearch:
         flat = self._flat
         keeps = self.delays()[flat.robot] <= flat.arrival - self.market.requests.earliest[flat.robot]
         if flat.place.size > 0:
-            see_ways(self.native, self._charges)
-            places = self._charges.fields.place[flat.robot, flat.seen]
+            see_ways(self.native)
+            places = self.market.charges.place[flat.robot, flat.seen]
             keeps |= flat.inside[np.arange(len(places)), places]
         return np.bincount(flat.group, keeps, len(flat.sizes)).astype(np.int64)
 
@@ -332,10 +321,8 @@ class PriceSearch:
 
     def places(self) -> IntTable:
         """Where the cheapest ways have the robots, by robot and tick."""
-        if not self.deadlines:
-            self.add_deadlines([])
-        see_ways(self.native, self._charges)
-        return self._charges.fields.place.astype(np.int16)
+        see_ways(self.native)
+        return self.market.charges.place.astype(np.int16)
 
     def prices(self) -> PriceLists:
         """The prices that are not 0."""
@@ -359,11 +346,6 @@ class PriceSearch:
         """The least priced cost of each robot, `None` where it cannot reach its goal."""
         earliest = self.market.requests.earliest
         return tuple(
-            (robot.id, None if earliest[position] == NONE else self._least_cost(position))
+            (robot.id, None if earliest[position] == NONE else least_cost(self.native, position))
             for position, robot in enumerate(self.instance.robots)
         )
-
-    def _least_cost(self, position: int) -> int:
-        if not self.deadlines:
-            return least_cost(self.native, position)
-        return least_late_cost(self.native, self._charges, position)

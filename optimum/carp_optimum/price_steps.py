@@ -7,7 +7,7 @@ the surplus and a part of the course before. The step is Polyak's: what is still
 from carp_optimized.arrays import NONE, Ints, Longs
 from carp_optimized.compiling import compiled, entry
 from carp_optimized.references import Native
-from carp_optimum.priced_ways import Market, market_at
+from carp_optimum.market_arrays import Market, market_at
 
 UNIT = 64  # of a course
 KEPT, PARTS = 15, 16  # of the course before
