@@ -44,11 +44,11 @@ def polish(
 ) -> Solution:
     """Improve a solution by large neighbourhood search; `advance` gets rounds, unplanned robots and total.
 
-    With `seconds`, robots without a plan are planned first, and rounds may raise the total for a while (simulated
-    annealing); the best plans seen are the result. Otherwise `iterations` rounds of `polish/...` are played, 10,000
-    unless given. They never raise the total, and equal iterations and seed give an equal solution. All robots are
-    planned from their release on: none is under way. Raises `Refusal` for wrong options, for a solution that breaks a
-    rule, and for numbers that are too large.
+    With `seconds`, robots without a plan are planned first, which may take longer, and rounds may raise the total for a
+    while (simulated annealing); the best plans seen are the result. Otherwise `iterations` rounds of `polish/...` are
+    played, 10,000 unless given. They never raise the total, and equal iterations and seed give an equal solution. All
+    robots are planned from their release on: none is under way. Raises `Refusal` for wrong options, for a solution that
+    breaks a rule, and for numbers that are too large.
     """
     require_polish_options(iterations, seconds, seed)
     if seconds is None:

@@ -37,7 +37,11 @@ COLUMNS = ("plans", "unplanned", "total cost", "bound", "gap", "rounds", "time")
 )
 @solution_files
 @click.option("--iterations", type=int, help=f"The number of rounds.  [default: {ITERATIONS}]", show_default=False)
-@click.option("--seconds", type=float, help="For how long, in place of a number of rounds.")
+@click.option(
+    "--seconds",
+    type=float,
+    help="For how long, in place of a number of rounds; to plan robots that are left out may take longer.",
+)
 @click.option("--seed", type=int, default=0, help="The seed of all choices.")
 @click.option(
     "--starts",
