@@ -58,11 +58,11 @@ def test_claims_are_added_and_dropped_while_prices_move_on() -> None:
     late = DeadlinesDocument(("long", "first"), (0, 0), 0, "")
     prices.add_deadlines([Deadlines([Member(0, 0, 0, ()), Member(1, 0, 0, ())], late)])
     search = SightSearch(prices)
-    seen: set[int] = set()
+    seen: dict[int, Deadlines] = {}  # which also keeps them, so that no id is used again
 
     def watch(_: int, __: int) -> None:
         search.watch(lambda: None)
-        seen.update(map(id, prices.deadlines))
+        seen.update((id(each), each) for each in prices.deadlines)
 
     prices.roam(SCALE, SCALE >> 4, lambda: None, watch)
     assert prices.best > before + SCALE
