@@ -93,7 +93,7 @@ def test_claims_that_are_dropped_leave_the_others_their_prices() -> None:
     assert prices.best >= best
 
 
-@settings(max_examples=draws(200))
+@settings(max_examples=draws(60))
 @given(instances(MIXED, least_robots=2))
 def test_all_that_is_found_has_a_proof(instance: Instance) -> None:
     prices = search_of(instance)
