@@ -73,8 +73,8 @@ class PriceSearch:
         last = max(requests.earliest.tolist(), default=0)
         refuse_tick("$.graph", last)
         rows = resources + graph.target.size
-        self.horizon = min(max(last, 0) + longest + TICKS_BEYOND, LARGEST_TABLE // max(rows, 1), LAST_TICK)
-        wanted = max(DELAYS * longest, self.horizon + longest)
+        self.horizon = min(max(last, 0) + longest + TICKS_BEYOND, LARGEST_TABLE // max(rows, robots, 1), LAST_TICK)
+        wanted = min(max(DELAYS * longest, self.horizon + longest), LARGEST_TABLE // max(robots, 1))
         self.market = sized(market, self.horizon, max(1, min(wanted, MOST_NODES // max(resources, 1), LARGEST - last)))
         self.native = Native(self.market)
         self.cuts: list[Ints] = []
