@@ -9,6 +9,7 @@ certificate needs its refutation, which takes longer to find. So only the claims
 proved; the others are dropped, and a later round finds them again where they are still broken.
 """
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from heapq import heappop, heappush
 from itertools import combinations, count
@@ -39,6 +40,7 @@ MOST_SPOTS = 400
 LARGEST_ENCODING = 2_000_000
 LEAST_WEIGHT = 8  # by which ways break a claim
 MOST_WORK = 150_000_000  # pairs of states by ticks, in a round
+MOST_DOUBLINGS = 6  # of a pair's work, by searches that found no claim
 MOST_FOUND = 400  # claims in a round
 LEAST_GAIN = 100  # one part of the best bound: what a round's claims must be broken by for another round
 LOOKS = 400  # of a search for a refutation at its clock
@@ -54,6 +56,7 @@ class SightSearch:
         self.most = min(LARGEST_DELAY, search.market.delays - 1)
         self.without_proof: set[Sequence[Member]] = set()
         self.entries: dict[int, Longs] = {}
+        self.searched: Counter[tuple[int, int]] = Counter()
         self.watched = 0
         self.ways: list[tuple[Longs, IntTable]] = []
 
@@ -89,6 +92,7 @@ class SightSearch:
         """Add claims that these ways break, those that are found fastest first: by how many ways in all.
 
         On a tree, robots whose ways are short or cannot pass each other break claims most often, and have few states.
+        A pair counts as twice the work for each search since its last claim, so that every pair has its turn.
         """
         search = self.search
         sides = _Sides(search, at, np.minimum(delays.max(axis=0) + MARGIN, self.most), self.entries)
@@ -98,15 +102,17 @@ class SightSearch:
         gain = 0
         left = MOST_WORK
         try:
-            for pair in sorted(work, key=lambda each: (work[each], each)):
+            for pair in sorted(work, key=lambda each: (work[each] << min(self.searched[each], MOST_DOUBLINGS), each)):
                 check()
                 left -= work[pair]
                 if left < 0 or len(chosen) == MOST_FOUND:
                     break
                 weight, members = sides.claim(*pair)
+                self.searched[pair] += 1
                 if weight >= LEAST_WEIGHT and members not in known:
                     chosen.append(self._unproved(members))
                     gain += weight
+                    del self.searched[pair]
         finally:
             search.add_deadlines(chosen)
         return gain

@@ -144,6 +144,23 @@ def test_the_bound_is_that_of_the_claims_that_are_proved_in_time() -> None:
     assert certificate.bound <= -(-before // SCALE)
 
 
+def test_a_pair_of_much_work_has_its_turn_when_others_were_searched_in_vain(monkeypatch: pytest.MonkeyPatch) -> None:
+    searched: list[tuple[int, ...]] = []
+
+    def claim(_: _Sides, *pair: int) -> tuple[int, tuple[()]]:
+        searched.append(pair)
+        return 0, ()
+
+    monkeypatch.setattr(_Sides, "claim", claim)
+    monkeypatch.setattr(_Sides, "work", lambda _, one, other: 1 + 2 * one * other)
+    monkeypatch.setattr("carp_optimum.sight_search.pairs_in", lambda *_: {(1, 3), (0, 2)})
+    monkeypatch.setattr("carp_optimum.sight_search.MOST_WORK", 7)
+    search = SightSearch(search_of(two_lanes()))
+    for _ in range(5):
+        search.round(lambda: None)
+    assert searched == [(0, 2)] * 3 + [(1, 3), (0, 2)]
+
+
 def test_the_same_search_finds_the_same() -> None:
     found = []
     for _ in range(2):
