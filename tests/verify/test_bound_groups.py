@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from itertools import product
+from operator import itemgetter
 
 import msgspec
 import pytest
@@ -78,17 +79,20 @@ def test_no_plans_that_break_no_rule_keep_all_deadlines_whose_formula_has_no_mod
 ) -> None:
     ticks = st.integers(0, HORIZON - 1)
     places = st.frozensets(st.sampled_from([resource.id for resource in instance.graph.resources]))
-    members = [data.draw(st.tuples(ticks, ticks, places)) for _ in instance.robots]
-    robots = tuple(robot.id for robot in instance.robots)
-    seen = tuple((tick, tuple(sorted(at, key=str))) for _, tick, at in members)
-    deadlines = DeadlinesDocument(robots, tuple(tick for tick, _, _ in members), 0, "", seen)
+    sights = st.lists(st.tuples(ticks, ticks, places), min_size=1, max_size=2, unique_by=itemgetter(1))
+    drawn = [(robot, sorted(data.draw(sights), key=itemgetter(1))) for robot in instance.robots]
+    members = [(robot.id, *sight) for robot, each in drawn for sight in each]
+    seen = tuple((tick, tuple(sorted(at, key=str))) for _, _, tick, at in members)
+    deadlines = DeadlinesDocument(
+        tuple(robot for robot, *_ in members), tuple(tick for _, tick, *_ in members), 0, "", seen
+    )
     try:
         formula = formula_of_deadlines(instance, deadlines, 10**6)
     except NotRefutedError:
         return  # a robot has no way
     keeping = [
-        [plan for plan in plans_of(instance, robot) if keeps(plan, *member)]
-        for robot, member in zip(instance.robots, members, strict=True)
+        [plan for plan in plans_of(instance, robot) if all(keeps(plan, *sight) for sight in each)]
+        for robot, each in drawn
     ]
     is_possible = any(not violated(instance, plans) for plans in product(*keeping))
     has_model = Solver(formula, lambda: None).satisfiable([])
@@ -103,9 +107,12 @@ def lane_of(slow: str, *robots: Robot, after_goal: AfterGoal = "vanish") -> Inst
 
 
 def may_keep(instance: Instance, members: Sequence[tuple[int, int, str]]) -> bool:
-    """Whether the formula of the robots, each with its deadline, the tick at which it is seen and places, has one."""
+    """Whether the formula of the robots, each with its deadline, the tick at which it is seen and places, has one.
+
+    With more deadlines than robots, all robots are seen again.
+    """
     seen = tuple((tick, tuple(places)) for _, tick, places in members)
-    names = tuple(robot.id for robot in instance.robots)
+    names = tuple(robot.id for robot in instance.robots) * (len(members) // len(instance.robots))
     deadlines = DeadlinesDocument(names, tuple(deadline for deadline, _, _ in members), 0, "", seen)
     return bool(Solver(formula_of_deadlines(instance, deadlines, 10**6), lambda: None).satisfiable([]))
 
@@ -120,6 +127,20 @@ def test_the_formula_of_a_single_robot_that_is_seen_has_a_model_just_where_one_o
     for deadline, seen, places in product(range(5), range(5), ("", "a", "b", "c", "ab", "ac", "bc", "abc")):
         is_kept = any(keeps(plan, deadline, seen, frozenset(places)) for plan in plans)
         assert may_keep(instance, [(deadline, seen, places)]) == is_kept
+
+
+@pytest.mark.parametrize("after_goal", ["vanish", "park"])
+@pytest.mark.parametrize(("goal", "slow"), [*product("abc", " bc")])
+def test_the_formula_of_a_robot_that_is_seen_twice_has_a_model_just_where_one_of_its_plans_keeps_both_deadlines(
+    goal: str, slow: str, after_goal: AfterGoal
+) -> None:
+    instance = lane_of(slow, Robot("r", "a", goal, 1), after_goal=after_goal)
+    plans = [*plans_of(instance, instance.robots[0])]
+    for first, later, places, others in product(range(3), (1, 2), ("", "a", "b", "ac"), ("", "b", "c", "ab")):
+        for deadline in (0, 3, 5):
+            sights = [(deadline, first, places), (2, first + later, others)]
+            is_kept = any(all(keeps(plan, due, seen, frozenset(at)) for due, seen, at in sights) for plan in plans)
+            assert may_keep(instance, sights) == is_kept
 
 
 @pytest.mark.parametrize("slow", ["b", "c"])
@@ -219,10 +240,10 @@ def with_deadlines(**fields: object) -> Tamper:
         (
             with_deadlines(robots=("r0", "r0")),
             "$.deadlines[0].robots",
-            "must name one or more robots of the instance once",
+            "each once, or again where it is seen later",
         ),
-        (with_deadlines(robots=("r0", "moon")), "$.deadlines[0].robots", "one or more robots of the instance"),
-        (with_deadlines(robots=(), ticks=()), "$.deadlines[0].robots", "one or more robots"),
+        (with_deadlines(robots=("r0", "moon")), "$.deadlines[0].robots", "must name robots of the instance"),
+        (with_deadlines(robots=(), ticks=()), "$.deadlines[0].robots", "must name robots"),
         (with_deadlines(ticks=(2, 3)), "$.deadlines[0]", "its proof does not hold"),
         (with_deadlines(ticks=(1, 2)), "$.deadlines[0]", "robot r0 can be at its goal at 2, not at 1"),
         (with_deadlines(ticks=(2.0, 2)), "$.deadlines[0]", r"not at 2\.0"),

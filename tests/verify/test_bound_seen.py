@@ -4,7 +4,7 @@ import json
 import subprocess
 from collections.abc import Iterator, Sequence
 from functools import cache
-from itertools import combinations
+from itertools import chain, combinations
 from typing import Any
 
 import msgspec
@@ -17,7 +17,7 @@ from tests.verify.tiny import case
 from carp_optimum.bound import lower_bound
 from carp_optimum.proving import refutation
 from carp_optimum.solver import Deadline, Solver
-from carp_spec import Instance, Robot
+from carp_spec import Instance, Robot, RobotId
 from carp_spec.permutations import shuffle
 from carp_verify.bound_cuts import formula_of_deadlines
 from carp_verify.bound_rules import LARGEST_FORMULA
@@ -39,14 +39,19 @@ def sight_of(instance: Instance, robot: Robot, draw: Draw) -> tuple[int, Sight]:
     return earliest + draw.between(-1, 1), (robot.release + draw.between(0, 5), tuple(places))
 
 
+def sights_of(instance: Instance, robot: Robot, draw: Draw) -> Iterator[tuple[RobotId, int, Sight]]:
+    """One deadline of the robot, or two: it is seen later by the second."""
+    drawn = [sight_of(instance, robot, draw) for _ in range(draw.between(1, 2))]
+    for _, (tick, seen) in sorted({seen[0]: (tick, seen) for tick, seen in drawn}.items()):
+        yield robot.id, max(0, tick), seen
+
+
 def deadlines_of(instance: Instance, draw: Draw) -> Iterator[DeadlinesDocument]:
-    """Deadlines of two robots that are seen, which they cannot both keep, with their refutations."""
+    """Deadlines of two robots that are seen, which they cannot all keep, with their refutations."""
     for pair in combinations(instance.robots, 2):
-        for _ in range(8):
-            drawn = [sight_of(instance, robot, draw) for robot in pair]
-            ticks = tuple(max(0, tick) for tick, _ in drawn)
-            names = tuple(robot.id for robot in pair)
-            unproved = DeadlinesDocument(names, ticks, 0, "", tuple(seen for _, seen in drawn))
+        for _ in range(16):
+            names, ticks, seen = zip(*chain(*(sights_of(instance, robot, draw) for robot in pair)), strict=True)
+            unproved = DeadlinesDocument(names, ticks, 0, "", seen)
             formula = formula_of_deadlines(instance, unproved, LARGEST_FORMULA)
             if not Solver(formula, lambda: None).satisfiable([]):
                 yield msgspec.structs.replace(unproved, refutation=refutation(formula, Deadline(60)))
@@ -105,6 +110,11 @@ def verdicts(questions: Sequence[tuple[Instance, object]]) -> list[Any]:
     text = b"".join(msgspec.json.encode(each) + b"\n" for each in requests)
     done = subprocess.run([program(), "serve"], input=text, stdout=subprocess.PIPE, check=False)
     return [json.loads(line) for line in done.stdout.splitlines()]
+
+
+def test_robots_are_seen_more_than_once() -> None:
+    priced = [deadlines for _, certificate in found() for deadlines in certificate.deadlines]
+    assert sum(len(each.robots) > len(set(each.robots)) for each in priced) > 20
 
 
 def test_the_kernel_accepts_bounds_with_robots_that_are_seen() -> None:

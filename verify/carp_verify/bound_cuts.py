@@ -52,9 +52,9 @@ def require_cut(instance: Instance, cut: CutDocument, most: int) -> int:
 
 def formula_of_deadlines(instance: Instance, deadlines: DeadlinesDocument, most: int) -> Formula:
     """The formula that shows deadlines which cannot all be kept; raises as `formula_of` does."""
-    group = group_of(instance, deadlines.robots)
-    if len(deadlines.ticks) != len(group.robots):
-        raise NotRefutedError(f"it must have a deadline of each of {len(group.robots)} robots")
+    group = group_of(instance, tuple(dict.fromkeys(deadlines.robots)))
+    if len(deadlines.ticks) != len(deadlines.robots):
+        raise NotRefutedError(f"it must have a deadline of each of {len(deadlines.robots)} robots")
     if deadlines.seen:
         return _formula_of_seen(group, deadlines, most)
     encoding = Encoding(group, most=most)
@@ -70,25 +70,33 @@ def formula_of_deadlines(instance: Instance, deadlines: DeadlinesDocument, most:
 
 def _formula_of_seen(group: Instance, deadlines: DeadlinesDocument, most: int) -> Formula:
     """The formula of deadlines of robots that are seen."""
-    if len(deadlines.seen) != len(group.robots):
-        raise NotRefutedError(f"it must see each of {len(group.robots)} robots")
+    if len(deadlines.seen) != len(deadlines.robots):
+        raise NotRefutedError(f"it must see each of {len(deadlines.robots)} robots")
+    last: dict[RobotId, int] = {}
     for name, tick, (seen, places) in zip(deadlines.robots, deadlines.ticks, deadlines.seen, strict=True):
         if not is_deadline(tick, 0) or not is_deadline(seen, 0):
             raise NotRefutedError(f"robot {name} must have whole ticks of at least 0, not {tick!r} and {seen!r}")
         if not group.graph.index.keys() >= set(places):
             raise NotRefutedError(f"the places of robot {name} must be resources")
-    encoding = Encoding(group, most=most, seen=[seen for seen, _ in deadlines.seen])
+        if seen <= last.get(name, -1):
+            raise NotRefutedError(f"robot {name} must be seen again later than at {last[name]}, not at {seen}")
+        last[name] = seen
+    encoding = Encoding(group, most=most, seen=[*last.values()])
     if encoding.wayless:
         raise NotRefutedError("a robot of the group has no way to its goal")
+    described = dict(zip(last, encoding.robots, strict=True))
     members = [
-        (robot, places, min(tick, seen))
-        for robot, tick, (seen, places) in zip(encoding.robots, deadlines.ticks, deadlines.seen, strict=True)
+        (described[name], seen, places, min(tick, seen))
+        for name, tick, (seen, places) in zip(deadlines.robots, deadlines.ticks, deadlines.seen, strict=True)
     ]
-    encoding.grow_to([robot.largest_delay(places, arrival) for robot, places, arrival in members])
+    horizons = dict.fromkeys(last, 0)
+    for robot, *sight in members:
+        horizons[robot.robot.id] = max(horizons[robot.robot.id], robot.largest_delay(*sight))
+    encoding.grow_to([*horizons.values()])
     encoding.forbid_all()
     encoding.close()
-    for robot, places, arrival in members:
-        robot.demand(places, arrival)
+    for robot, seen, places, arrival in members:
+        robot.demand(seen, places, arrival)
     return encoding.formula
 
 

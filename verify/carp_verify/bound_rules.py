@@ -64,9 +64,9 @@ def is_weight(scale: int, multipliers: int) -> bool:
 
 @rule(
     "bound/deadline",
-    "Deadlines are those of a group of one or more distinct robots, each with a whole tick, and if they are seen, each "
-    "with another and with places, which are resources; their price is a whole number of at least 0, and a refutation "
-    "shows that no plans of the group keep all of them.",
+    "Deadlines are those of a group of one or more robots, each with a whole tick, and if they are seen, each with "
+    "another and with places, which are resources; a robot is named once, or again where it is seen later. Their price "
+    "is a whole number of at least 0, and a refutation shows that no plans of the group keep all of them.",
     DESIGN,
 )
 def is_deadline(tick: object, earliest: int | None) -> bool:
@@ -77,7 +77,7 @@ def is_deadline(tick: object, earliest: int | None) -> bool:
 @rule(
     "bound/total",
     "The bound is the sum of the robots' least costs and of the cuts' least totals by their multipliers, less the sum "
-    "of prices by capacities, and less the price of each group's deadlines by all its robots but one, divided by the "
+    "of prices by capacities, and less the price of each group's deadlines by all of them but one, divided by the "
     "scale and rounded up.",
     DESIGN,
 )

@@ -38,7 +38,8 @@ class DeadlinesDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True,
 
     A robot keeps a deadline if it enters its goal for the last time at that tick or before. In `seen`, each robot may
     have a tick at which it is seen, and places. Then it keeps its deadline if it has done so when it is seen, or if it
-    is in one of the places then, and enters its goal for the last time later. The price is in parts of a tick. The
+    is in one of the places then, and enters its goal for the last time later. A robot that is seen more than once is
+    named each time, in the order of the ticks, and has a deadline each. The price is in parts of a tick. The
     refutation is that of the formula of plans of the group that keep all deadlines: LRAT without RAT steps.
     """
 

@@ -263,16 +263,23 @@ class RobotClauses:
         until = range(bisect_right(ticks, tick), bisect_right(ticks, tick + self._duration[resource]))
         return (self.node[resource, ticks[each]] for each in until)
 
-    def largest_delay(self, places: Collection[ResourceId], arrival: int) -> int:
-        """The largest delay of a robot that arrives by the tick, or is in one of the places when it is seen."""
-        last = [(place, (self.seen or 0) + self._duration[place]) for place in places if place in self._rest]
+    def largest_delay(self, seen: int, places: Collection[ResourceId], arrival: int) -> int:
+        """The largest delay of a robot that arrives by a tick, or is in one of the places at another."""
+        last = [(place, seen + self._duration[place]) for place in places if place in self._rest]
         return max([0, arrival - self.earliest, *map(self.least_delay, last)])
 
-    def demand(self, places: Collection[ResourceId], arrival: int) -> None:
-        """Demand that the robot is in one of the places when it is seen, or arrives by a tick not after that."""
-        nodes = [node for place in places for node in self.nodes_of(place, self.seen or 0)]
+    def demand(self, seen: int, places: Collection[ResourceId], arrival: int) -> None:
+        """Demand that the robot is in one of the places at a tick, or arrives by one that is not after it.
+
+        Its clauses would let it be in two places. So if it is seen again later, it is in no other place.
+        """
+        nodes = [node for place in places for node in self.nodes_of(place, seen)]
         arrived = [-self.later_than(arrival - self.earliest)] if arrival >= self.earliest else []
         self._formula.add(*nodes, *arrived)
+        if seen < (self.seen or 0):
+            for (place, leave), node in self.node.items():
+                if place not in places and seen < leave <= seen + self._duration[place]:
+                    self._formula.add(-node)
 
     def entries(self) -> list[tuple[ResourceId, int]]:
         """The resources and ticks at which the robot may enter, in the order of its nodes."""

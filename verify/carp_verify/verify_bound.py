@@ -10,7 +10,7 @@ kernel's theorem is `accepted_bound_is_below_every_solution`.
   before: by all of the group but one, at most, because its formula has no model. To come late is free of it, so a
   robot that vanishes at its goal may gain by driving through the goal and on. Then it is searched for that, too.
 - A robot that is seen at a tick pays if it has come by then, and by the deadline. On its way it pays if it is in one of
-  its places at the tick: once, as it is in one place.
+  its places at the tick: once, as it is in one place. One that is seen at more ticks pays for each.
 
 - A price of a resource r at a tick t is paid by all who are in r at t: at most the capacity of r, by `joint/capacity`.
 - An exchange price of (r, s) at t is paid by all who move from r to s or from s to r at t, and by all who are in r both
@@ -171,9 +171,10 @@ def _worth(instance: Instance, certificate: BoundDocument, clauses: int) -> int:
         price, robots = deadlines.price, deadlines.robots
         message = f"the price must be a whole number of at least 0, and is {price!r}"
         _require(is_deadline, is_whole(price) and price >= 0, f"{path}.price", message)
-        message = "it must name one or more robots of the instance once"
-        known = len(robots) == len(set(robots)) > 0 and instance.robot.keys() >= set(robots)
-        _require(is_deadline, known, f"{path}.robots", message)
+        message = "it must name robots of the instance, each once, or again where it is seen later"
+        known = len(robots) > 0 and instance.robot.keys() >= set(robots)
+        once = len(robots) == len(set(robots)) or len(deadlines.seen) > 0
+        _require(is_deadline, known and once, f"{path}.robots", message)
         clauses += _clauses_of(instance, deadlines, LARGEST_FORMULA - clauses, path)
         worth += price * (len(robots) - 1)
     return worth

@@ -47,7 +47,8 @@ Inductive reason :=
 | Exchange (one other source target tick : Z)
 | Is_cheaper
 | Is_in_time (id : Z)
-| Is_seen (id : Z).
+| Is_seen (id : Z)
+| Is_seen_elsewhere (id place tick : Z).
 
 (** What the clauses of a robot rest on: its rank among the delays that are added up, its seat among the robots that are
     counted, its least cost, the least ticks from leaving a resource to entering the goal, the least tick at which it is
@@ -75,6 +76,7 @@ Record tables := Tables {
   backwards : Z -> list Z;
   crew : list member;
   member_of : Map.t member;
+  demanded : list deadline;
   dues : Map.t deadline
 }.
 
@@ -85,13 +87,14 @@ Definition tables_of (i : instance) (group : list robot) (asked : demand) (b : b
   let all := combine group (guides b) in
   let moves := successor_table i in
   let back := predecessor_table i in
+  let demanded := match asked with In_time due => due | _ => [] end in
   Tables (after_goal i) (resource_table i) (listed moves) (listed back) all (index (fun m => robot_id (fst m)) all)
-    (index who match asked with In_time due => due | _ => [] end).
+    demanded (index who demanded).
 
 Section Checker.
 Variable w : tables.
 
-(** The tick at which the robot is seen, if it is. *)
+(** The tick at which the robot is seen, if it is: of more than one, that of its last deadline. *)
 Definition seen_tick (id : Z) : option Z :=
   match Map.find id (dues w) with
   | Some d => match seen d with Some s => Some (seen_at s) | None => None end
@@ -287,23 +290,35 @@ Definition if_in_time (c : list signed) (id : Z) : bool :=
 
 Definition is_free_at (r : Z) (l : signed) : bool := match snd l with Free _ r' _ => r' =? r | _ => false end.
 
-(** The clause holds if the robot arrives by its deadline or is seen in a spot. A robot that is in a resource is free to
+(** The clause holds if the robot arrives by the deadline or is seen in a spot. A robot that is in a resource is free to
     leave it at the next tick, or later, first within the resource's duration. *)
-Definition if_seen (c : list signed) (id : Z) : bool :=
+Definition if_seen_by (c : list signed) (a : robot) (d : deadline) : bool :=
+  let id := robot_id a in
+  (who d =? id) && if_cheaper c id (last_arrival d + 1 - release a) &&
+  match seen d, seen_tick id with
+  | Some s, Some last =>
+      (seen_at s <=? last) &&
+      forallb (fun r =>
+        let here := filter (is_free_at r) c in
+        always (fun t => if_free here id r t || if_came here id r t)
+          (seen_at s + 1) (seen_at s + takes_in (places w) a r + 1)) (spots s)
+  | _, _ => false
+  end.
+
+(** The clause holds because of one of the robot's deadlines. *)
+Definition if_seen (c : list signed) (id : Z) : bool := of_robot id (fun a _ => existsb (if_seen_by c a) (demanded w)).
+
+(** The robot is not free to leave the resource at the tick, as it is seen elsewhere just before. *)
+Definition is_seen_elsewhere (id r t : Z) : bool :=
   of_robot id (fun a _ =>
-    match Map.find id (dues w) with
-    | Some d =>
-        if_cheaper c id (last_arrival d + 1 - release a) &&
-        match seen d with
-        | Some s =>
-            forallb (fun r =>
-              let here := filter (is_free_at r) c in
-              always (fun t => if_free here id r t || if_came here id r t)
-                (seen_at s + 1) (seen_at s + takes_in (places w) a r + 1)) (spots s)
-        | None => true
-        end
-    | None => false
-    end).
+    existsb (fun d =>
+      (who d =? id) &&
+      match seen d, seen_tick id with
+      | Some s, Some last =>
+          (seen_at s <=? last) && (seen_at s <? t) && (t <=? seen_at s + takes_in (places w) a r) &&
+          negb (existsb (Z.eqb r) (spots s))
+      | _, _ => false
+      end) (demanded w)).
 
 (** The reason holds for the clause. *)
 Definition justified (asked : demand) (c : list signed) (why : reason) : bool :=
@@ -342,6 +357,7 @@ Definition justified (asked : demand) (c : list signed) (why : reason) : bool :=
   | Is_cheaper => too_late asked c
   | Is_in_time id => if_in_time c id
   | Is_seen id => if_seen c id
+  | Is_seen_elsewhere id r t => unless_free c id r t && is_seen_elsewhere id r t
   end.
 
 (** A literal as its variable's meaning has it; one without a meaning is left out. *)
@@ -394,8 +410,16 @@ Definition group_refuted (i : instance) (ids : list Z) (asked : demand) (b : blu
 Definition cut_refuted (i : instance) (k : cut) : blueprint -> list (list word) -> bool :=
   group_refuted i (members k) (Cheaper_than (least_total k)).
 
+(** The first of equal ids. *)
+Fixpoint once (known ids : list Z) : list Z :=
+  match ids with
+  | [] => []
+  | id :: rest => if existsb (Z.eqb id) known then once known rest else id :: once (id :: known) rest
+  end.
+
+(** A robot that is seen more than once has more than one deadline. *)
 Definition deadlines_refuted (i : instance) (g : group) : blueprint -> list (list word) -> bool :=
-  group_refuted i (map who (deadlines g)) (In_time (deadlines g)).
+  group_refuted i (once [] (map who (deadlines g))) (In_time (deadlines g)).
 
 (** Each claim has a proof. *)
 Fixpoint all_refuted {A} (claim_refuted : A -> blueprint -> list (list word) -> bool) (claimed : list A)

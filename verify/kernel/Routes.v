@@ -170,6 +170,59 @@ Proof.
     reflexivity.
 Qed.
 
+(** The visits of a way are entered one after the other. *)
+Lemma later_visit_is_entered_later v rest u : Way i a (v :: rest) -> In u rest -> enter v < enter u.
+Proof.
+  intros H. remember (v :: rest) as vs eqn:E. revert v rest E.
+  induction H as [v Hg Hl | v w rest Hl Hn Hm Hw IH]; intros x later E; injection E as <- <-; [intros [] |].
+  pose proof (need_is_positive i a right known (visit_resource v)).
+  intros [<- | Hu]; [lia |]. specialize (IH w rest eq_refl Hu). lia.
+Qed.
+
+(** A robot that is free to leave a resource has been in a visit there for its duration, and leaves it then or later. *)
+Lemma free_robot_leaves_later vs r t : is_free i a vs r t = true -> exists before v w later,
+  vs = before ++ v :: w :: later /\ visit_resource v = r /\ enter v + need i a r <= t <= enter w.
+Proof.
+  induction vs as [| v [| w rest] IH]; try discriminate. intros F. cbn [is_free] in F.
+  apply orb_true_iff in F as [F | F].
+  - decided. exists [], v, w, rest. auto.
+  - destruct (IH F) as (before & x & y & later & E & R). exists (v :: before), x, y, later. rewrite E. auto.
+Qed.
+
+(** Who leaves a visit of a route that ends where the robot is seen leaves it in its way. *)
+Lemma left_visit_is_of_the_way (before : list visit) v x later mark first u y rest :
+  before ++ [v; mark] = first ++ u :: y :: rest ->
+  exists z rest', before ++ v :: x :: later = first ++ u :: z :: rest' /\ (z = y \/ z = x).
+Proof.
+  revert first. induction before as [| b before IH]; intros [| f first] E; simpl app in *.
+  - injection E as -> _ _. exists x, later. auto.
+  - injection E as _ E. destruct first as [| c [| d first]]; discriminate.
+  - injection E as -> E. destruct before as [| c before]; simpl app in *; injection E as -> _;
+      [exists y, (x :: later) | exists y, (before ++ v :: x :: later)]; auto.
+  - injection E as -> E. destruct (IH first E) as (z & rest' & E' & R). exists z, rest'. rewrite E'. auto.
+Qed.
+
+(** A robot is in one visit at a tick. *)
+Lemma visit_at_a_tick_is_unique first v w later first' v' w' later' t : Way i a (first ++ v :: w :: later) ->
+  first ++ v :: w :: later = first' ++ v' :: w' :: later' -> enter v <= t < enter w -> enter v' <= t < enter w' ->
+  v = v'.
+Proof.
+  intros H E L L'. revert first' E. induction first as [| b first IH]; intros [| b' first'] E; simpl app in *.
+  - injection E as E _ _. exact E.
+  - injection E as _ E. exfalso. apply (way_has_ways i a [v] (w :: later)) in H; [| discriminate].
+    destruct first' as [| c first']; simpl app in E; injection E as E1 E2.
+    + subst. lia.
+    + pose proof (later_visit_is_entered_later w later v' H) as N. rewrite E2 in N.
+      assert (enter w < enter v') by (apply N, in_or_app; right; left; reflexivity). lia.
+  - injection E as _ E. exfalso. apply (way_has_ways i a [b] (first ++ v :: w :: later)) in H; [| destruct first; discriminate].
+    destruct first as [| c first]; simpl app in *; injection E as E1 E2.
+    + subst. lia.
+    + pose proof (later_visit_is_entered_later c (first ++ v :: w :: later) v H) as N.
+      assert (enter c < enter v) by (apply N, in_or_app; right; left; reflexivity). subst. lia.
+  - injection E as _ E. apply (IH) with (first' := first'); auto.
+    apply (way_has_ways i a [b] (first ++ v :: w :: later)) in H; auto. destruct first; discriminate.
+Qed.
+
 End Plan.
 
 Section Robot.
@@ -230,6 +283,34 @@ Lemma mover_is_free v w rest t : enter v + takes (visit_resource v) <= t -> t <=
 Proof.
   intros H K. unfold free, takes in *. cbn [is_free]. rewrite Z.eqb_refl.
   rewrite (proj2 (Z.leb_le _ _) H), (proj2 (Z.leb_le _ _) K). reflexivity.
+Qed.
+
+Lemma leaver_is_free before v w later t : enter v + takes (visit_resource v) <= t -> t <= enter w ->
+  free (before ++ v :: w :: later) (visit_resource v) t = true.
+Proof.
+  intros Ready Leaves. induction before as [| u before IH]; [apply mover_is_free; auto |].
+  apply free_is_free_after, IH.
+Qed.
+
+(** A robot that is seen again was in the same visits before. *)
+Lemma leaver_is_free_before_it_is_seen before v x later mark first u y rest l t :
+  Way i a (before ++ v :: x :: later) -> before ++ v :: x :: later = first ++ u :: y :: rest ->
+  enter u <= l < enter x -> enter u + takes (visit_resource u) <= t <= enter y -> (u = v -> t <= enter mark) ->
+  free (before ++ [v; mark]) (visit_resource u) t = true.
+Proof.
+  intros H E L T Mark. revert first E. induction before as [| b before IH]; intros first E; simpl app in *.
+  - destruct first as [| f first]; simpl app in E.
+    + injection E as -> _ _. apply mover_is_free; [lia | auto].
+    + injection E as _ E. inversion H as [| ? ? ? _ _ _ Hx]; subst.
+      assert (enter x <= enter u); [| lia].
+      destruct first as [| f' first]; simpl app in E; injection E as -> E; [lia |].
+      apply Z.lt_le_incl, (later_visit_is_entered_later i a right known f' later u Hx).
+      rewrite E. apply in_or_app. right. left. reflexivity.
+  - destruct first as [| f first]; simpl app in E.
+    + injection E as -> E. destruct before as [| c before]; simpl app in *; injection E as -> _;
+        apply mover_is_free; lia.
+    + injection E as -> E. apply free_is_free_after, (IH) with (first := first); auto.
+      apply (way_has_ways i a [f] (before ++ v :: x :: later)); auto. destruct before; discriminate.
 Qed.
 
 Lemma route_arrives_after_its_start vs end_ : Routed vs end_ -> forall v rest, vs = v :: rest -> enter v <= end_.

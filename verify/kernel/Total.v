@@ -15,6 +15,7 @@ Record Right_tables (i : instance) (asked : demand) (w : tables) : Prop := {
   crew_is_known : forall m, In m (crew w) -> In (fst m) (robots i);
   crew_is_distinct : NoDup (map (fun m : member => robot_id (fst m)) (crew w));
   members_are_found : forall id m, Map.find id (member_of w) = Some m <-> In m (crew w) /\ robot_id (fst m) = id;
+  demanded_is_asked : forall d, In d (demanded w) -> exists all, asked = In_time all /\ In d all;
   dues_are_demanded : forall id d, Map.find id (dues w) = Some d ->
     who d = id /\ exists all, asked = In_time all /\ In d all;
   guides_are_accepted : forall m, In m (crew w) -> guide_accepted w (resource_ids i) m = true
@@ -61,6 +62,7 @@ Proof.
   - intros r s. apply predecessors_are_moves, right.
   - intros m H. apply Known. rewrite <- All. apply in_map, H.
   - intros id m. apply (find_in_index (fun m : member => robot_id (fst m))), N.
+  - intros d Hd. destruct asked; [destruct Hd.. |]. eauto.
   - intros id d F. apply (found_in_index_is_listed who) in F as [F E]. destruct asked; [destruct F.. |]. eauto.
   - apply forallb_forall, Guides.
 Qed.
@@ -164,6 +166,12 @@ Definition Comes_in_time (m : member) (vs : list visit) (end_ : Z) (d : deadline
     seen_at sight < t <= seen_at sight + need i (fst m) r /\
     end_ <= t + Z.max 0 rest /\ is_free i (fst m) vs r t = true.
 
+(** It comes by the deadline, or is free to leave one of the spots after it was seen there. *)
+Definition Sighted (m : member) (vs : list visit) (end_ : Z) (d : deadline) (sight : sight) : Prop :=
+  end_ <= last_arrival d \/
+  exists r t, In r (spots sight) /\ seen_at sight < t <= seen_at sight + need i (fst m) r /\
+    is_free i (fst m) vs r t = true.
+
 Record Describes (m : member) (vs : list visit) (end_ : Z) : Prop := {
   is_a_route : Route i (fst m) (goes_through w (fst m)) (seen_tick w (robot_id (fst m)))
     (fun r => Map.find r (rests (snd m))) vs end_;
@@ -173,8 +181,24 @@ Record Describes (m : member) (vs : list visit) (end_ : Z) : Prop := {
   makes_its_moves : forall r x t, Described (seen_tick w (robot_id (fst m))) t -> is_free i (fst m) vs r t = true ->
     is_in i (fst m) vs x t = true -> r <> x -> Makes_move (plans s) (robot_id (fst m)) r x t;
   costs_no_more : end_ - release (fst m) <= cost_of_robot i s (robot_id (fst m));
-  comes_in_time : forall d, Map.find (robot_id (fst m)) (dues w) = Some d -> Comes_in_time m vs end_ d
+  comes_in_time : forall d, Map.find (robot_id (fst m)) (dues w) = Some d -> Comes_in_time m vs end_ d;
+  is_sighted : forall d sight last, In d (demanded w) -> who d = robot_id (fst m) -> seen d = Some sight ->
+    seen_tick w (robot_id (fst m)) = Some last -> seen_at sight <= last -> Sighted m vs end_ d sight;
+  is_seen_in_spots : forall d sight last r t, In d (demanded w) -> who d = robot_id (fst m) -> seen d = Some sight ->
+    seen_tick w (robot_id (fst m)) = Some last -> seen_at sight <= last -> is_free i (fst m) vs r t = true ->
+    seen_at sight < t <= seen_at sight + need i (fst m) r -> In r (spots sight)
 }.
+
+Lemma seen_robots_go_through a last : seen_tick w (robot_id a) = Some last -> goes_through w a = true.
+Proof. intros Tick. unfold goes_through. rewrite Tick. destruct (policy w); reflexivity. Qed.
+
+Lemma stay_is_long_enough m before v x later : In m (crew w) -> Way i (fst m) (before ++ v :: x :: later) ->
+  1 <= need i (fst m) (visit_resource v) /\ enter v + need i (fst m) (visit_resource v) <= enter x.
+Proof.
+  intros H W. split; [apply need_is_positive; auto; apply member_is_a_robot, H |].
+  apply (way_has_ways i (fst m) before (v :: x :: later)) in W; [| discriminate].
+  inversion W as [| ? ? ? _ Hn]; subst. exact Hn.
+Qed.
 
 Lemma parking_robots_go_through a : after_goal i = Park -> goes_through w a = true.
 Proof. intros P. unfold goes_through. rewrite (policy_is_right i asked w tabled), P. reflexivity. Qed.
@@ -198,15 +222,33 @@ Proof.
   rewrite K in S. apply S; auto. intros q Hq. destruct (_ =? _); auto; lia.
 Qed.
 
+(** Who keeps a deadline is in one of its spots when it is seen on its way. *)
+Lemma keeper_is_in_a_spot m p d sight before v x later : In m (crew w) -> Keeps d p -> seen d = Some sight ->
+  Way i (fst m) (visits p) -> visits p = before ++ v :: x :: later -> enter v <= seen_at sight < enter x ->
+  In (visit_resource v) (spots sight).
+Proof.
+  intros H K Sight W E L. pose proof (member_is_a_robot m H) as Ha. unfold Keeps in K. rewrite Sight in K.
+  destruct K as [[_ K] | (u & y & (first & rest & C) & Spot & Seen)]; rewrite E in *.
+  - exfalso. assert (Arrival : arrives (before ++ v :: x :: later) = arrives (x :: later)).
+    { unfold arrives. rewrite fold_left_app. reflexivity. }
+    rewrite Arrival in K.
+    apply (way_has_ways i (fst m) before (v :: x :: later)) in W; [| discriminate].
+    inversion W as [| ? ? ? _ _ _ Wx]; subst.
+    pose proof (entered_before_the_arrival i (fst m) right Ha (x :: later) Wx x later eq_refl). lia.
+  - rewrite (visit_at_a_tick_is_unique i (fst m) right Ha before v x later first u y rest (seen_at sight) W C L Seen).
+    exact Spot.
+Qed.
+
 (** A robot that arrives before it is seen, or is not seen, is described by the visits that count. *)
 Lemma arrived_member_is_described m p : In m (crew w) -> In p (plans s) -> plan_robot p = robot_id (fst m) ->
   Way i (fst m) (visits p) ->
   (exists v rest, visits p = v :: rest /\ visit_resource v = start (fst m) /\ enter v = release (fst m)) ->
   Described (seen_tick w (robot_id (fst m))) (arrives (visits p)) ->
   (forall d, Map.find (robot_id (fst m)) (dues w) = Some d -> arrives (visits p) <= last_arrival d) ->
+  (forall d, In d (demanded w) -> who d = robot_id (fst m) -> Keeps d p) ->
   let vs := counted (goes_through w (fst m)) (fst m) (visits p) in Describes m vs (arrives vs).
 Proof.
-  intros H Hp E W (v & rest & V & S & T) D Due vs. pose proof (member_is_a_robot m H) as Ha.
+  intros H Hp E W (v & rest & V & S & T) D Due Kept vs. pose proof (member_is_a_robot m H) as Ha.
   pose proof (counted_arrives_no_later i (fst m) (goes_through w (fst m)) right Ha (visits p) W) as L. fold vs in L.
   assert (Routed : Route i (fst m) (goes_through w (fst m)) (seen_tick w (robot_id (fst m)))
     (fun r => Map.find r (rests (snd m))) vs (arrives vs)) by (apply way_is_a_route; auto).
@@ -224,6 +266,16 @@ Proof.
     reflexivity.
   - pose proof (cost_is_of_the_plan m p H Hp E). lia.
   - intros d F. left. specialize (Due d F). lia.
+  - intros d sight last Hd Who Sight Tick _. specialize (Kept d Hd Who). unfold Keeps in Kept. rewrite Sight in Kept.
+    destruct Kept as [[K K'] | (u & x & (before & later & C) & Spot & Seen)].
+    + left. unfold last_arrival. rewrite Sight. lia.
+    + right. exists (visit_resource u), (Z.max (seen_at sight + 1) (enter u + need i (fst m) (visit_resource u))).
+      rewrite C in W. pose proof (stay_is_long_enough m before u x later H W). repeat split; auto; try lia.
+      unfold vs, counted. rewrite (seen_robots_go_through _ _ Tick), C. apply leaver_is_free; lia.
+  - intros d sight last r t Hd Who Sight Tick _ Fr R. unfold vs, counted in Fr.
+    rewrite (seen_robots_go_through _ _ Tick) in Fr.
+    destruct (free_robot_leaves_later i (fst m) _ r t Fr) as (before & u & x & later & C & <- & Left).
+    apply (keeper_is_in_a_spot m p d sight before u x later); auto. lia.
 Qed.
 
 (** One that is seen in a spot is described up to its visit there. *)
@@ -232,12 +284,13 @@ Lemma seen_member_is_described m p d sight v x : In m (crew w) -> In p (plans s)
   (exists v rest, visits p = v :: rest /\ visit_resource v = start (fst m) /\ enter v = release (fst m)) ->
   Map.find (robot_id (fst m)) (dues w) = Some d -> seen d = Some sight -> Consecutive p v x ->
   In (visit_resource v) (spots sight) -> enter v <= seen_at sight < enter x ->
+  (forall d, In d (demanded w) -> who d = robot_id (fst m) -> Keeps d p) ->
   exists vs end_, Describes m vs end_.
 Proof.
-  intros H Hp E W (f & all & V & S & T) F Sight (before & later & C) Spot Seen.
+  intros H Hp E W (f & all & V & S & T) F Sight (before & later & C) Spot Seen Kept.
   pose proof (member_is_a_robot m H) as Ha.
   assert (Tick : seen_tick w (robot_id (fst m)) = Some (seen_at sight)) by (unfold seen_tick; rewrite F, Sight; auto).
-  assert (Through : goes_through w (fst m) = true) by (unfold goes_through; rewrite Tick; destruct (policy w); auto).
+  pose proof (seen_robots_go_through _ _ Tick) as Through.
   rewrite C in W.
   destruct m as [a g]. cbn [fst snd] in *.
   destruct (way_has_a_rest i a (fun r => Map.find r (rests g)) (guided_rests_are_least a g H) (v :: x :: later)) with
@@ -266,10 +319,23 @@ Proof.
   - pose proof (cost_is_of_the_plan (a, g) p H Hp E) as K. cbn [fst] in K. rewrite Arrival in K. simpl enter. lia.
   - intros d' F'. rewrite F in F'. injection F' as <-. right.
     exists sight, (visit_resource v), rest, (enter mark). repeat split; auto; try (simpl; lia).
-    assert (M : enter v + need i a (visit_resource v) <= enter mark) by (simpl; lia). clear - M.
-    induction before as [| u before IH]; simpl app.
-    + apply mover_is_free; [exact M | lia].
-    + apply free_is_free_after, IH.
+    assert (M : enter v + need i a (visit_resource v) <= enter mark) by (simpl; lia).
+    apply (leaver_is_free i a before v mark []); [exact M | lia].
+  - intros d' sight' last Hd Who Sight' Tick' L. rewrite Tick in Tick'. injection Tick' as <-.
+    specialize (Kept d' Hd Who). unfold Keeps in Kept. rewrite Sight' in Kept.
+    destruct Kept as [[K K'] | (u & y & (first & rest' & C') & Spot' & Seen')].
+    + left. unfold last_arrival. rewrite Sight'. rewrite Arrival in K, K'. simpl enter. lia.
+    + right. exists (visit_resource u), (Z.max (seen_at sight' + 1) (enter u + need i a (visit_resource u))).
+      cbn [fst snd]. rewrite C in C'. pose proof W as W'. rewrite C' in W'.
+      pose proof (stay_is_long_enough (a, g) first u y rest' H W') as Stay. cbn [fst] in Stay.
+      repeat split; auto; try lia.
+      apply (leaver_is_free_before_it_is_seen i a right Ha before v x later mark first u y rest' (seen_at sight)); auto;
+        try lia. intros ->. simpl enter. lia.
+  - intros d' sight' last r t Hd Who Sight' Tick' L Fr R. rewrite Tick in Tick'. injection Tick' as <-.
+    destruct (free_robot_leaves_later i a _ r t Fr) as (first & u & y & rest' & C' & <- & Left).
+    destruct (left_visit_is_of_the_way before v x later mark first u y rest' C') as (z & others & C'' & Z).
+    apply (keeper_is_in_a_spot (a, g) p d' sight' first u z others); auto; cbn [fst]; try congruence.
+    destruct Z as [-> | ->]; lia.
 Qed.
 
 Lemma member_is_described m : In m (crew w) -> Meets i s (map fst (crew w)) asked ->
@@ -278,6 +344,9 @@ Proof.
   intros H L. destruct (member_has_a_plan m H) as (p & v & rest & Hp & E & W & V & S & T).
   assert (Begins : exists v rest, visits p = v :: rest /\ visit_resource v = start (fst m) /\ enter v = release (fst m))
     by eauto.
+  assert (Kept : forall d, In d (demanded w) -> who d = robot_id (fst m) -> Keeps d p).
+  { intros d Hd Who. destruct (demanded_is_asked i asked w tabled d Hd) as (all & Asked & Hd').
+    rewrite Asked in L. apply (L d p); congruence. }
   destruct (Map.find (robot_id (fst m)) (dues w)) as [d |] eqn:F.
   - destruct (dues_are_demanded i asked w tabled _ d F) as (Who & all & Asked & Hd).
     assert (K : Keeps d p) by (rewrite Asked in L; apply (L d p); congruence). unfold Keeps in K.
@@ -524,18 +593,34 @@ End Clause.
 
 Lemma kept_if_seen c : if_seen w c id = true -> Kept c.
 Proof.
-  unfold if_seen. rewrite of_found_robot. destruct (Map.find id (dues w)) as [d |] eqn:F; [| discriminate].
-  intros H. apply andb_true_iff in H as [H K]. pose proof (described (a, g) listed_member) as Desc.
-  assert (F' : Map.find (robot_id a) (dues w) = Some d) by (rewrite (proj2 found_member); exact F).
-  destruct (comes_in_time _ _ _ Desc d F') as [L | (sight & r & rest & t & S & Spot & R & T & L & Free)];
-    cbn [fst snd] in *.
+  unfold if_seen. rewrite of_found_robot. intros H. apply existsb_exists in H as (d & Hd & H).
+  unfold if_seen_by in H. cbv zeta in H. rewrite (proj2 found_member) in H.
+  destruct (seen d) as [sight |] eqn:Sight; [| rewrite andb_false_r in H; discriminate].
+  destruct (seen_tick w id) as [last |] eqn:Tick; [| rewrite andb_false_r in H; discriminate].
+  apply andb_true_iff in H as [H K]. apply andb_true_iff in H as [Who H]. apply andb_true_iff in K as [L K].
+  apply Z.eqb_eq in Who. apply Z.leb_le in L. pose proof (described (a, g) listed_member) as Desc.
+  destruct (is_sighted _ _ _ Desc d sight last) as [E | (r & t & Spot & T & Free)]; cbn [fst snd] in *; auto;
+    try (rewrite (proj2 found_member); auto).
   - apply (kept_if_cheaper c _ H). unfold route_cost. lia.
-  - rewrite S in K. pose proof (proj1 (forallb_forall _ _) K r Spot) as J. cbv beta zeta in J.
+  - pose proof (proj1 (forallb_forall _ _) K r Spot) as J. cbv beta zeta in J.
     rewrite (takes_are_right i asked w tabled) in J. apply always_holds with (t := t) in J; [| lia].
     assert (Here : Kept (filter (is_free_at r) c)).
     { apply orb_true_iff in J as [J | J];
         [exact (kept_if_free _ _ _ J Free) | exact (kept_by_coming_from _ _ _ J Free)]. }
     destruct Here as (l & Hl & True_l). apply filter_In in Hl as [Hl _]. exists l. auto.
+Qed.
+
+Lemma kept_if_seen_elsewhere c r t : unless_free c id r t = true -> is_seen_elsewhere w id r t = true -> Kept c.
+Proof.
+  unfold is_seen_elsewhere. rewrite of_found_robot. intros U H.
+  destruct (is_free i a (route a) r t) eqn:F; [exfalso | eapply kept_unless_free; eauto].
+  apply existsb_exists in H as (d & Hd & H). apply andb_true_iff in H as [Who H]. apply Z.eqb_eq in Who.
+  destruct (seen d) as [sight |] eqn:Sight; [| discriminate].
+  destruct (seen_tick w id) as [last |] eqn:Tick; [| discriminate].
+  rewrite (takes_are_right i asked w tabled) in H. apply andb_true_iff in H as [H N]. decided.
+  apply not_true_iff_false in N. apply N, existsb_exists. exists r. rewrite Z.eqb_refl. split; auto.
+  apply (is_seen_in_spots _ _ _ (described (a, g) listed_member) d sight last r t); cbn [fst snd]; auto;
+    rewrite ?(proj2 found_member); auto.
 Qed.
 End Member.
 
@@ -831,6 +916,8 @@ Proof.
   - apply kept_by_costing_less, H.
   - pose proof H as Due. apply some_robot in Due as (a & g & Found & _). apply (kept_if_in_time a g id Found c H).
   - pose proof H as Due. apply some_robot in Due as (a & g & Found & _). apply (kept_if_seen a g id Found c H).
+  - apply andb_true_iff in H as [U H]. pose proof H as Due. apply some_robot in Due as (a & g & Found & _).
+    apply (kept_if_seen_elsewhere a g id Found c _ _ U H).
 Qed.
 
 (** The valuation that a solution gives the variables. *)

@@ -352,13 +352,23 @@ let horizon_by clerk (d : Bound.deadline) =
 
 let close draft clerk = add draft (Is_in_time clerk.robot.robot_id) [ -Hashtbl.find clerk.late clerk.horizon ]
 
-(* Demand that the robot is in one of the spots when it is seen, or has arrived by its deadline. *)
+(* Demand that the robot is in one of the spots when it is seen, or has arrived by its deadline; and in no other place
+   where it is seen again later, as its clauses would let it be in two places. *)
 let see draft clerk (d : Bound.deadline) =
   let look ({ seen_at; spots } : Bound.sight) =
     let nodes = List.concat_map (fun place -> nodes_of clerk place seen_at) spots in
     let delay = Z.sub (Bound.last_arrival d) (earliest clerk) in
     let arrived = if Z.sign delay < 0 then [] else [ -later_than clerk delay ] in
-    add draft (Is_seen clerk.robot.robot_id) (nodes @ arrived)
+    let is_elsewhere (place, tick) =
+      Z.lt seen_at tick && Z.leq tick (Z.add seen_at (clerk.takes place)) && not (List.exists (Z.equal place) spots)
+    in
+    let forbid ((place, tick) as node) =
+      add draft (Is_seen_elsewhere (clerk.robot.robot_id, place, tick)) [ -Hashtbl.find clerk.node node ]
+    in
+    add draft (Is_seen clerk.robot.robot_id) (nodes @ arrived);
+    match clerk.seen with
+    | Some last when Z.lt seen_at last.seen_at -> List.iter forbid (List.filter is_elsewhere (List.rev clerk.nodes))
+    | _ -> ()
   in
   Option.iter look d.seen
 
@@ -397,8 +407,11 @@ let clerk_of (instance : Law.instance) table (onward, backward) ranks position (
   { robot = a; guide; takes; parks; seen; onwards; backwards; node = Hashtbl.create 1024; nodes = [];
     ticks = Hashtbl.create 64; late = Hashtbl.create 64; horizon = -1; unfinished = [] }
 
-(* The blueprint and the number of its variables; deadlines, in the group's order, need no horizons. Raises [No_way]
-   where no way leads to a goal, [Too_early] if a robot cannot be at its goal so early, and [Too_large]. *)
+(* The deadlines of the robot, the last one first. *)
+let dues_of due (a : Law.robot) = List.filter (fun (d : Bound.deadline) -> Z.equal d.who a.robot_id) (List.rev due)
+
+(* The blueprint and the number of its variables; deadlines need no horizons. Raises [No_way] where no way leads to a
+   goal, [Too_early] if a robot cannot be at its goal so early, and [Too_large]. *)
 let blueprint (instance : Law.instance) group asked { horizons; order } =
   let draft =
     { clauses = []; reasons = []; count = 0; meanings = Refutation.Numbered.empty; variables = 0 }
@@ -407,20 +420,24 @@ let blueprint (instance : Law.instance) group asked { horizons; order } =
   List.iteri (fun rank position -> Hashtbl.replace ranks position rank) order;
   let sights =
     match asked with
-    | In_time due -> List.map (fun (d : Bound.deadline) -> d.seen) due
+    | In_time due -> List.map (fun a -> (List.hd (dues_of due a)).seen) group
     | _ -> List.map (fun _ -> None) group
   in
   let clerk position (a, seen) = clerk_of instance table moves ranks position a seen in
   let clerks = Array.of_list (List.mapi clerk (List.combine group sights)) in
   let grow_to clerk horizon = while clerk.horizon < horizon do grow draft clerk done in
   let all = Array.to_list clerks in
-  List.iter2 grow_to all (match asked with In_time due -> List.map2 horizon_by all due | _ -> horizons);
+  let horizon_in due clerk = List.fold_left max 0 (List.map (horizon_by clerk) (dues_of due clerk.robot)) in
+  List.iter2 grow_to all (match asked with In_time due -> List.map (horizon_in due) all | _ -> horizons);
   let encoding = { draft; clerks; presences = Hashtbl.create 1024 } in
   forbid_all encoding (Tables.room_in table);
   (match asked with
   | Lawful_plans -> ()
   | Cheaper_than total -> bound_delays encoding total order
-  | In_time due -> List.iter (close draft) all; List.iter2 (see draft) all due);
+  | In_time due ->
+      let clerk_named id = List.find (fun clerk -> Z.equal clerk.robot.robot_id id) all in
+      List.iter (close draft) all;
+      List.iter (fun (d : Bound.deadline) -> see draft (clerk_named d.who) d) due);
   ( { guides = List.map (fun clerk -> clerk.guide) all; meanings = draft.meanings;
       reasons = List.rev draft.reasons; formula = List.rev draft.clauses },
     draft.variables )

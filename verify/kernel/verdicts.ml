@@ -172,12 +172,22 @@ let is_never (read : Reading.instance) (d : Bound.deadline) =
   | Some { seen_at; spots } -> Z.sign d.due < 0 || Z.sign seen_at < 0 || List.exists is_unknown spots
   | None -> false
 
+(* Each robot is named once, or again where it is seen later. *)
+let are_named_rightly deadlines =
+  let named = Hashtbl.create 16 in
+  let is_right (d : Bound.deadline) =
+    let tick = Option.map (fun (s : Bound.sight) -> s.seen_at) d.seen in
+    let before = Hashtbl.find_opt named d.who in
+    Hashtbl.replace named d.who tick;
+    match (before, tick) with None, _ -> true | Some (Some earlier), Some later -> Z.lt earlier later | _ -> false
+  in
+  List.for_all is_right deadlines
+
 let proof_of_deadlines (read : Reading.instance) (g : Bound.group) refutation =
-  let ids = List.map (fun (d : Bound.deadline) -> d.who) g.deadlines in
+  let ids = Formula.once [] (List.map (fun (d : Bound.deadline) -> d.who) g.deadlines) in
   let group = Formula.group_of read.instance ids in
-  if group = [] || List.length group <> List.length (List.sort_uniq Z.compare ids)
-     || List.length group <> List.length ids then
-    Error (Refused ("bound/deadline", "it must name one or more robots of the instance once"))
+  if group = [] || List.length group <> List.length ids || not (are_named_rightly g.deadlines) then
+    Error (Refused ("bound/deadline", "it must name robots of the instance, each once, or again where it is seen later"))
   else if List.exists (is_never read) g.deadlines then
     Error (Refused ("bound/deadline", "a robot must be seen at a tick of at least 0, in resources of the graph"))
   else proof_of_group read group (Formula.In_time g.deadlines) { horizons = []; order = [] } refutation
