@@ -90,8 +90,8 @@ def _formula_of_seen(group: Instance, deadlines: DeadlinesDocument, most: int) -
         for name, tick, (seen, places) in zip(deadlines.robots, deadlines.ticks, deadlines.seen, strict=True)
     ]
     horizons = dict.fromkeys(last, 0)
-    for robot, *sight in members:
-        horizons[robot.robot.id] = max(horizons[robot.robot.id], robot.largest_delay(*sight))
+    for robot, seen, places, arrival in members:
+        horizons[robot.robot.id] = max(horizons[robot.robot.id], robot.largest_delay(seen, places, arrival))
     encoding.grow_to([*horizons.values()])
     encoding.forbid_all()
     encoding.close()
