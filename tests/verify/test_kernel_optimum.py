@@ -339,9 +339,12 @@ def test_deadlines_of_some_robots_in_any_order_are_accepted_if_refuted(tmp_path:
         ({"ticks": (2, 3)}, "the refutation does not derive"),
         ({"ticks": (1, 2)}, "robot r0 can be at its goal at 2, not earlier"),
         ({"robots": ("r1",), "ticks": (2,)}, "the refutation does not derive"),
-        ({"robots": ("r0", "r0")}, "it must name one or more robots of the instance once"),
-        ({"robots": ("r0", "r9")}, "it must name one or more robots of the instance once"),
-        ({"robots": (), "ticks": ()}, "it must name one or more robots of the instance once"),
+        ({"robots": ("r0", "r0")}, "it must name robots of the instance, each once, or again where it is seen later"),
+        ({"robots": ("r0", "r9")}, "it must name robots of the instance, each once, or again where it is seen later"),
+        (
+            {"robots": (), "ticks": ()},
+            "it must name robots of the instance, each once, or again where it is seen later",
+        ),
     ],
 )
 def test_deadlines_whose_proof_is_changed_are_refused(change: Mapping[str, Any], why: str, tmp_path: Path) -> None:
