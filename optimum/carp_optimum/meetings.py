@@ -25,11 +25,12 @@ class Side(NamedTuple):
 
     `spot` is the number of each resource as a spot, or `NONE`, and `resource` the reverse; `first` has the first state
     of each spot, then the number of states. `often` is in how many ways the robot is in each spot at each tick. A state
-    has a spot, `spot_of`, takes a place, and has `branches` states that follow it.
+    has a spot, `spot_of`, takes a place, and has `branches` states that follow it. At a tick that it is seen at, one of
+    `sees`, the robot may only be in the spots that it has in `held`.
 
     At a tick, `used` are the spots in which any way is, `left` is how often that is, less the flow, and `before` is the
-    spot of the other robot that a path comes from. `chosen` are the spots of the heaviest claim. `used` and `chosen`
-    begin with the number of spots.
+    spot of the other robot that a path comes from. `chosen` are the spots of the heaviest claim, and `inside` says of
+    each spot whether it is one. `used` and `chosen` begin with the number of spots.
     """
 
     robot: Longs
@@ -42,26 +43,32 @@ class Side(NamedTuple):
     place: Ints
     branches: Ints
     following: IntTable
+    sees: Ints
+    held: IntTable
     used: Ints
     left: Ints
     before: Ints
     chosen: Ints
+    inside: Ints
 
 
 class Meeting(NamedTuple):
-    """Pairs of states at a tick and at the next, and `mark`, 1 plus the tick at which a pair was reached last.
+    """Pairs of states at a tick and at the next, and `mark`, a number of the tick and search that reached a pair last.
 
+    `origin` is the spot in which one of the robots was at an earlier tick, before a pair, and `blamed` are such spots.
     `together` is whether two spots can be taken together at the tick; `queue` holds spots to go on from. `found` is the
-    weight of the best claim, and its tick.
+    weight of the best claim, its tick, and the last mark.
     """
 
     pairs: Ints
     later: Ints
     mark: Ints
+    origin: Ints
+    later_origin: Ints
+    blamed: Ints
     together: IntTable
     flow: IntTable
     queue: Ints
-    kept: IntTable
     found: Longs
 
 
@@ -150,19 +157,73 @@ def find_claim(
     one = side_at(native_one)
     other = side_at(native_other)
     meeting = meeting_at(native_meeting)
-    describe(market, one)
-    describe(market, other)
-    wide = other.place.size
-    meeting.pairs[0] = start_of(market, one) * wide + start_of(market, other)
     meeting.found[0] = 0
-    size = 1
+    size = begin(market, one, other, meeting)
     for tick in range(end):
         if tick > 0:
             weigh(one, other, meeting, size, tick, ways)
         size = step(market, one, other, meeting, size, tick)
-        for number in range(size):
-            meeting.pairs[number] = int(meeting.later[number])
     return int(meeting.found[0])
+
+
+@entry
+def find_meetings(
+    native: Native[Market],
+    native_one: Native[Side],
+    native_other: Native[Side],
+    native_meeting: Native[Meeting],
+    whose: int,
+    earlier: int,
+) -> int:
+    """Find out which spots can be taken together at the claim's tick; returns how many pairs are in spots of the claim.
+
+    The spots in which the first robot, or with `whose` the other, was at an earlier tick before them are `blamed`.
+    """
+    market = market_at(native)
+    one = side_at(native_one)
+    other = side_at(native_other)
+    meeting = meeting_at(native_meeting)
+    size = begin(market, one, other, meeting)
+    wide = other.place.size
+    for tick in range(int(meeting.found[1])):
+        if tick == earlier:
+            for number in range(size):
+                state = int(meeting.pairs[number]) // wide
+                other_state = int(meeting.pairs[number]) - state * wide
+                meeting.origin[number] = spot_at(one, state) if whose == 0 else spot_at(other, other_state)
+        size = step(market, one, other, meeting, size, tick)
+    relate(one, other, meeting, size)
+    count = 0
+    for number in range(size):
+        state = int(meeting.pairs[number]) // wide
+        other_state = int(meeting.pairs[number]) - state * wide
+        if one.inside[spot_at(one, state)] == 1 and other.inside[spot_at(other, other_state)] == 1:
+            meeting.blamed[int(meeting.origin[number])] = 1
+            count += 1
+    return count
+
+
+@compiled
+def begin(market: Market, one: Side, other: Side, meeting: Meeting) -> int:
+    """Begin with the states at tick 0: one pair."""
+    describe(market, one)
+    describe(market, other)
+    meeting.pairs[0] = start_of(market, one) * other.place.size + start_of(market, other)
+    meeting.origin[0] = 0
+    return 1
+
+
+@compiled
+def spot_at(side: Side, state: int) -> int:
+    """The spot of a state; one that is after the goal has the goal's, and before its release the next one."""
+    spot = int(side.spot_of[state])
+    return spot if spot <= spots_of(side) else spot - 1
+
+
+@compiled
+def may_be(side: Side, state: int, tick: int) -> bool:
+    """Whether the robot may be in the state at the tick."""
+    return bool(side.sees[tick] == 0 or side.held[tick][spot_at(side, state)] == 1)
 
 
 @compiled
@@ -179,6 +240,8 @@ def step(market: Market, one: Side, other: Side, meeting: Meeting, size: int, ti
     go_on(market, one, tick)
     go_on(market, other, tick)
     wide = other.place.size
+    meeting.found[2] += 1
+    mark = int(meeting.found[2])
     reached = 0
     for number in range(size):
         state = int(meeting.pairs[number]) // wide
@@ -187,16 +250,24 @@ def step(market: Market, one: Side, other: Side, meeting: Meeting, size: int, ti
         other_place = int(other.place[other_state])
         for first in range(int(one.branches[state])):
             after = int(one.following[state][first])
+            if not may_be(one, after, tick + 1):
+                continue
             target = int(one.place[after])
             for second in range(int(other.branches[other_state])):
                 other_after = int(other.following[other_state][second])
                 pair = after * wide + other_after
-                if meeting.mark[pair] != tick + 2 and can_move(
-                    market, place, target, other_place, int(other.place[other_after])
+                if (
+                    meeting.mark[pair] != mark
+                    and may_be(other, other_after, tick + 1)
+                    and can_move(market, place, target, other_place, int(other.place[other_after]))
                 ):
-                    meeting.mark[pair] = tick + 2
+                    meeting.mark[pair] = mark
                     meeting.later[reached] = pair
+                    meeting.later_origin[reached] = meeting.origin[number]
                     reached += 1
+    for number in range(reached):
+        meeting.pairs[number] = int(meeting.later[number])
+        meeting.origin[number] = int(meeting.later_origin[number])
     return reached
 
 
@@ -221,7 +292,7 @@ def weigh(one: Side, other: Side, meeting: Meeting, size: int, tick: int, ways: 
     if weight > meeting.found[0]:
         meeting.found[0] = weight
         meeting.found[1] = tick
-        choose(one, other, meeting)
+        choose(one, other)
 
 
 @compiled
@@ -342,8 +413,8 @@ def push_along(one: Side, other: Side, meeting: Meeting, end: int) -> int:
 
 
 @compiled
-def choose(one: Side, other: Side, meeting: Meeting) -> None:
-    """Keep the spots of the one that a path reaches, those of the other that none does, and which can be together."""
+def choose(one: Side, other: Side) -> None:
+    """Keep the spots of the one that a path reaches, and those of the other that none does."""
     count = 0
     for number in range(1, int(one.used[0]) + 1):
         if one.before[int(one.used[number])] != UNREACHED:
@@ -356,6 +427,3 @@ def choose(one: Side, other: Side, meeting: Meeting) -> None:
             count += 1
             other.chosen[count] = other.used[number]
     other.chosen[0] = count
-    for row in range(spots_of(one) + 1):
-        for column in range(spots_of(other) + 1):
-            meeting.kept[row][column] = meeting.together[row][column]

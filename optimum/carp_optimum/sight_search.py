@@ -4,15 +4,21 @@ Prices let robots that meet head-on pass each other by halves. Near the best pri
 places at a tick. `carp_optimum.meetings` finds places of two robots that exclude each other at a tick, and that the
 ways take too often. All places that these exclude are added.
 
+Detours that no recent way makes may let the robots be in such places all the same. Then, once the prices hardly gain
+with claims about one tick, both robots are seen at earlier ticks too: first at all of them and where they have been,
+which leaves no detour. Ticks are dropped as long as the claim holds, in halves and then in smaller parts; mostly one or
+two are left. There all places are added but those that let the robots meet.
+
 That search has followed all joint states of the two, so such a claim is true, and prices may count on it at once. A
 certificate needs its refutation, which takes longer to find. So only the claims that have a price after a climb are
 proved; the others are dropped, and a later round finds them again where they are still broken.
 """
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from heapq import heappop, heappush
 from itertools import combinations, count
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -21,7 +27,7 @@ from msgspec.structs import replace
 from carp_optimized.arrays import NONE, Graph, Ints, IntTable, Longs, LongTable
 from carp_optimized.references import Native
 from carp_optimum.deadlines import Deadlines, Member
-from carp_optimum.meetings import Meeting, Side, find_claim
+from carp_optimum.meetings import Meeting, Side, find_claim, find_meetings
 from carp_optimum.price_search import PriceSearch
 from carp_optimum.proving import refutation
 from carp_optimum.solver import NANOSECONDS, Deadline, TimeOver
@@ -43,8 +49,15 @@ MOST_WORK = 150_000_000  # pairs of states by ticks, in a round
 MOST_DOUBLINGS = 6  # of a pair's work, by searches that found no claim
 MOST_FOUND = 400  # claims in a round
 LEAST_GAIN = 100  # one part of the best bound: what a round's claims must be broken by for another round
+SLOW = 500  # one part of the best bound: claims about more ticks are searched for where a period gains less
+MOST_SIGHTS = 8  # of a claim, beside its last tick
 LOOKS = 400  # of a search for a refutation at its clock
 LONGEST_REFUTATION = 300_000  # characters
+
+
+Natives: TypeAlias = tuple[Native[Side], Native[Side], Native[Meeting]]
+Sight: TypeAlias = tuple[int, int]
+"""The first of two robots, 0, or the other, 1, and a tick at which it is seen."""
 
 
 class SightSearch:
@@ -57,6 +70,8 @@ class SightSearch:
         self.without_proof: set[Sequence[Member]] = set()
         self.entries: dict[int, Longs] = {}
         self.searched: Counter[tuple[int, int]] = Counter()
+        self.before = 0
+        self.is_slow = False
         self.watched = 0
         self.ways: list[tuple[Longs, IntTable]] = []
 
@@ -86,6 +101,8 @@ class SightSearch:
             delays, at = (np.stack(each) for each in zip(*self.ways, strict=True))
             self.ways = []
             search.drop_idle_deadlines()
+            self.is_slow = (search.best - self.before) * SLOW < search.best
+            self.before = search.best
             self._add(delays, at, check)
 
     def _add(self, delays: LongTable, at: IntTable, check: Callable[[], None]) -> int:
@@ -107,7 +124,7 @@ class SightSearch:
                 left -= work[pair]
                 if left < 0 or len(chosen) == MOST_FOUND:
                     break
-                weight, members = sides.claim(*pair)
+                weight, members = sides.claim(*pair, self.is_slow, check)
                 self.searched[pair] += 1
                 if weight >= LEAST_WEIGHT and members not in known:
                     chosen.append(self._unproved(members))
@@ -180,6 +197,39 @@ def pairs_in(at: IntTable, resources: int) -> set[tuple[int, int]]:
     return {pair for group in groups for pair in combinations(group.tolist(), 2)}
 
 
+def meeting_of(first: Side, second: Side) -> Meeting:
+    """Room for the search of two robots."""
+    rows, columns = first.first.size, second.first.size
+    pairs = int(first.first[-1]) * int(second.first[-1])
+    return Meeting(
+        pairs=np.zeros(pairs, np.int32),
+        later=np.zeros(pairs, np.int32),
+        mark=np.zeros(pairs, np.int32),
+        origin=np.zeros(pairs, np.int32),
+        later_origin=np.zeros(pairs, np.int32),
+        blamed=np.zeros(rows + columns, np.int32),
+        together=np.zeros((rows, columns), np.int32),
+        flow=np.zeros((rows, columns), np.int32),
+        queue=np.zeros(rows + columns, np.int32),
+        found=np.zeros(3, np.int64),
+    )
+
+
+def fewest(sights: list[Sight], is_enough: Callable[[list[Sight]], bool]) -> list[Sight]:
+    """Some of the sights that are enough: they are dropped in halves, then in smaller parts."""
+    size = len(sights)
+    while size > 0:
+        place = 0
+        while place < len(sights):
+            fewer = sights[:place] + sights[place + size :]
+            if is_enough(fewer):
+                sights = fewer
+            else:
+                place += size
+        size //= 2
+    return sights
+
+
 def first_entries(graph: Graph, durations: Longs, start: int, release: int) -> Longs:
     """The ticks at which a robot can enter the resources first; late where it cannot."""
     ticks = np.full(len(durations), 1 << 30, np.int64)
@@ -218,36 +268,88 @@ class _Sides:
         earliest = self.search.market.requests.earliest
         return min(int(min(earliest[at] + self.delays[at] for at in (one, other))) + 1, self.search.horizon)
 
-    def claim(self, one: int, other: int) -> tuple[int, Sequence[Member]]:
-        """The heaviest claim of two robots, and its weight; nothing if that is 0."""
+    def claim(
+        self, one: int, other: int, is_about_more: bool, check: Callable[[], None]
+    ) -> tuple[int, Sequence[Member]]:
+        """The heaviest claim of two robots at a tick, or perhaps one about more ticks, and its weight; else nothing.
+
+        `check` may raise `TimeOver`.
+        """
         first, second = self.side(one), self.side(other)
         if first is None or second is None:
             return 0, ()
-        rows, columns = first.first.size, second.first.size
-        pairs = int(first.first[-1]) * int(second.first[-1])
-        meeting = Meeting(
-            pairs=np.zeros(pairs, np.int32),
-            later=np.zeros(pairs, np.int32),
-            mark=np.zeros(pairs, np.int32),
-            together=np.zeros((rows, columns), np.int32),
-            flow=np.zeros((rows, columns), np.int32),
-            queue=np.zeros(rows + columns, np.int32),
-            kept=np.zeros((rows, columns), np.int32),
-            found=np.zeros(2, np.int64),
-        )
+        sides = first, second
+        meeting = meeting_of(*sides)
         natives = Native(first), Native(second), Native(meeting)
-        weight = find_claim(self.search.native, *natives, self.end(one, other), STEPS)
-        if weight == 0:
+        end = self.end(one, other)
+        weight = find_claim(self.search.native, *natives, end, STEPS)
+        if weight >= LEAST_WEIGHT:
+            return weight, self.at_one_tick(sides, meeting, natives)
+        if not is_about_more:
             return 0, ()
+        for side in sides:
+            side.sees[:-1] = side.often.sum(axis=1) > 0
+            side.held[:-1, :-1] = side.often > 0
+        try:
+            weight = find_claim(self.search.native, *natives, end, STEPS)
+            kept = self.needed(sides, meeting, natives, check) if weight >= LEAST_WEIGHT else []
+            weight -= sum(STEPS - self.share(sides[whose], tick) for whose, tick in kept)
+            if weight < LEAST_WEIGHT or len(kept) > MOST_SIGHTS:
+                return 0, ()
+            last = self.at_one_tick(sides, meeting, natives)
+        finally:
+            first.sees[:], second.sees[:] = 0, 0
+        earlier = [
+            self.member(sides[whose], (sides[whose].held[tick, :-1] == 1) & self.valid(sides[whose], tick), tick)
+            for whose, tick in kept
+        ]
+        return weight, (*earlier, *last)
+
+    def at_one_tick(self, sides: tuple[Side, Side], meeting: Meeting, natives: Natives) -> tuple[Member, Member]:
+        """The robots at the claim's last tick, in all spots that cannot be taken together then."""
+        first, second = sides
+        find_meetings(self.search.native, *natives, 0, NONE)
         tick = int(meeting.found[1])
-        together = meeting.kept[: rows - 3, : columns - 3] > 0
+        together = meeting.together[: first.first.size - 3, : second.first.size - 3] > 0
         chosen = first.chosen[1 : 1 + first.chosen[0]]
         far = self.valid(first, tick), self.valid(second, tick)
         others = ~together[chosen].any(axis=0) & far[1]
         others &= together.any(axis=0) | np.isin(np.arange(len(others)), second.chosen[1 : 1 + second.chosen[0]])
         ones = ~together[:, others].any(axis=1) & far[0]
         ones &= together.any(axis=1) | np.isin(np.arange(len(ones)), chosen)
-        return weight, (self.member(first, ones, tick), self.member(second, others, tick))
+        return self.member(first, ones, tick), self.member(second, others, tick)
+
+    def share(self, side: Side, tick: int) -> int:
+        """In how many ways the robot is in spots that it has held at the tick."""
+        return int(side.often[tick][side.held[tick, :-1] == 1].sum())
+
+    def needed(
+        self, sides: tuple[Side, Side], meeting: Meeting, natives: Natives, check: Callable[[], None]
+    ) -> list[Sight]:
+        """The robots, 0 or 1, with earlier ticks at which they must be seen for the claim; `held` gets where."""
+        for side in sides:
+            side.inside[:] = 0
+            side.inside[side.chosen[1 : 1 + side.chosen[0]]] = 1
+
+        def meetings(kept: Iterable[Sight], whose: int = 0, earlier: int = NONE) -> int:
+            check()
+            for side in sides:
+                side.sees[:] = 0
+            for number, at in kept:
+                sides[number].sees[at] = 1
+            meeting.blamed[:] = 0
+            return find_meetings(self.search.native, *natives, whose, earlier)
+
+        seen = [(whose, at) for at in range(1, int(meeting.found[1])) for whose in (0, 1) if sides[whose].sees[at]]
+        kept = fewest(seen, lambda fewer: meetings(fewer) == 0)
+        if len(kept) <= MOST_SIGHTS:
+            for whose, at in kept:
+                held = sides[whose].held[at]
+                held[:] = 1
+                while meetings(kept, whose, at) > 0:
+                    held[meeting.blamed[: len(held)] == 1] = 0
+        meetings(kept)
+        return kept
 
     def member(self, side: Side, spots: npt.NDArray[np.bool_], tick: int) -> Member:
         """The robot, seen at the tick in the spots."""
@@ -304,10 +406,13 @@ class _Sides:
             place=np.zeros(first[-1], np.int32),
             branches=np.zeros(first[-1], np.int32),
             following=np.zeros((first[-1], int(np.diff(graph.first).max(initial=0)) + 2), np.int32),
+            sees=np.zeros(self.search.horizon + 1, np.int32),
+            held=np.ones((self.search.horizon + 1, spots + 2), np.int32),
             used=np.zeros(spots + 4, np.int32),
             left=np.zeros(spots + 4, np.int32),
             before=np.zeros(spots + 4, np.int32),
             chosen=np.zeros(spots + 4, np.int32),
+            inside=np.zeros(spots + 4, np.int32),
         )
         late = np.arange(self.search.horizon) - int(requests.earliest[robot])
         within = late[:, None] + durations[resource] + requests.rest[robot][resource] <= self.delays[robot]

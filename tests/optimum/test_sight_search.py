@@ -1,5 +1,6 @@
 """The search for deadlines of robots that are seen: what it finds is true, and raises the bound where robots meet."""
 
+from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
@@ -15,6 +16,8 @@ from carp_optimum.solver import TimeOver
 from carp_spec import Instance, Resource, ResourceGraph, Robot
 from carp_verify.bound_cuts import require_deadlines
 from carp_verify.bounds import DeadlinesDocument
+from carp_verify.verify_bound import verify_bound
+from carproof.generate import Fleet, Grid, grid_instance
 from carproof.strategies import Sizes, instances
 
 SCALE = 1 << 10
@@ -101,9 +104,9 @@ def test_all_that_is_found_has_a_proof(instance: Instance) -> None:
     delays, at = prices.wander_places(STEPS, SCALE // 4, lambda: None)
     sides = _Sides(prices, at, np.minimum(delays.max(axis=0) + 2, search.most), {})
     for one, other in pairs_in(at, len(instance.graph.resources)):
-        weight, members = sides.claim(one, other)
+        weight, members = sides.claim(one, other, True, lambda: None)
         if weight > 0:
-            event("claimed")
+            event("claimed" if len(members) == 2 else "seen more than once")
             assert search._refutation(search._unproved(members).document, lambda: None)
 
 
@@ -144,11 +147,22 @@ def test_the_bound_is_that_of_the_claims_that_are_proved_in_time() -> None:
     assert certificate.bound <= -(-before // SCALE)
 
 
+def test_robots_that_are_seen_more_than_once_raise_the_bound(monkeypatch: pytest.MonkeyPatch) -> None:
+    instance = grid_instance(Grid(width=5, height=5, map=5, map_seed=5), Fleet(robots=8, seed=5))
+    certificate = lower_bound(instance, steps=1600)
+    assert verify_bound(instance, certificate) == 52
+    assert sum(len(each.robots) > len(set(each.robots)) for each in certificate.deadlines) > 1
+    monkeypatch.setattr("carp_optimum.sight_search.MOST_SIGHTS", -1)
+    assert lower_bound(instance, steps=1600).bound == 51
+
+
 def test_a_pair_of_much_work_has_its_turn_when_others_were_searched_in_vain(monkeypatch: pytest.MonkeyPatch) -> None:
     searched: list[tuple[int, ...]] = []
 
-    def claim(_: _Sides, *pair: int) -> tuple[int, tuple[()]]:
-        searched.append(pair)
+    def claim(_: _Sides, one: int, other: int, is_about_more: bool, check: Callable[[], None]) -> tuple[int, tuple[()]]:
+        assert not is_about_more
+        check()
+        searched.append((one, other))
         return 0, ()
 
     monkeypatch.setattr(_Sides, "claim", claim)
