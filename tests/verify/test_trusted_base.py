@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 from docs.trusted_base import CHECK, KERNEL, ROOT, VERDICTS, coq_lines, kernel_lines, lines_of_code
+from tests.verify.kernel_mutants import mutants, mutated
 
 
 def test_docstrings_and_comments_are_no_lines_of_code(tmp_path: Path) -> None:
@@ -55,6 +56,11 @@ def test_the_map_of_the_kernel_says_to_a_tenth_how_long_the_proofs_are() -> None
     others = [path for path in KERNEL.glob("*.v") if path.name not in {"Law.v", "Extract.v"}]
     for said, counted in zip(found.groups(), coq_lines(others), strict=True):
         assert abs(int(said.replace(",", "")) - counted) <= counted / 10
+
+
+def test_each_planted_error_of_the_kernel_has_its_place() -> None:
+    planted = mutants()
+    assert len({mutated(mutant) for mutant in planted}) == len(planted) > 100
 
 
 def test_the_map_of_the_kernel_names_every_coq_file() -> None:
