@@ -9,9 +9,9 @@ with claims about one tick, both robots are seen at earlier ticks too: first at 
 which leaves no detour. Ticks are dropped as long as the claim holds, in halves and then in smaller parts; mostly one or
 two are left. There all places are added but those that let the robots meet.
 
-That search has followed all joint states of the two, so such a claim is true, and prices may count on it at once. A
-certificate needs its refutation, which takes longer to find. So only the claims that have a price after a climb are
-proved; the others are dropped, and a later round finds them again where they are still broken.
+The search follows all joint states of the two that it does not leave out, so such a claim is true, and prices may count
+on it at once. A certificate needs its refutation, which takes longer to find. So only the claims that have a price
+after a climb are proved; the others are dropped, and a later round finds them again where they are still broken.
 """
 
 from collections import Counter
@@ -215,6 +215,14 @@ def meeting_of(first: Side, second: Side) -> Meeting:
     )
 
 
+def see_at(sides: tuple[Side, Side], sights: Iterable[Sight]) -> None:
+    """Let the robots be seen there, and nowhere else."""
+    for side in sides:
+        side.sees[:] = 0
+    for whose, tick in sights:
+        sides[whose].sees[tick] = 1
+
+
 def fewest(sights: list[Sight], is_enough: Callable[[list[Sight]], bool]) -> list[Sight]:
     """Some of the sights that are enough: they are dropped in halves, then in smaller parts."""
     size = len(sights)
@@ -298,7 +306,7 @@ class _Sides:
                 return 0, ()
             last = self.at_one_tick(sides, meeting, natives)
         finally:
-            first.sees[:], second.sees[:] = 0, 0
+            see_at(sides, ())
         earlier = [
             self.member(sides[whose], (sides[whose].held[tick, :-1] == 1) & self.valid(sides[whose], tick), tick)
             for whose, tick in kept
@@ -333,10 +341,7 @@ class _Sides:
 
         def meetings(kept: Iterable[Sight], whose: int = 0, earlier: int = NONE) -> int:
             check()
-            for side in sides:
-                side.sees[:] = 0
-            for number, at in kept:
-                sides[number].sees[at] = 1
+            see_at(sides, kept)
             meeting.blamed[:] = 0
             return find_meetings(self.search.native, *natives, whose, earlier)
 
@@ -348,7 +353,7 @@ class _Sides:
                 held[:] = 1
                 while meetings(kept, whose, at) > 0:
                     held[meeting.blamed[: len(held)] == 1] = 0
-        meetings(kept)
+        see_at(sides, kept)
         return kept
 
     def member(self, side: Side, spots: npt.NDArray[np.bool_], tick: int) -> Member:

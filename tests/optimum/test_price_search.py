@@ -1,4 +1,4 @@
-"""The aims of the search for prices, while the prices stand still."""
+"""The search for prices: the sizes of its tables, and its aims while the prices stand still."""
 
 import pytest
 from tests.verify.bound_examples import crossing
@@ -22,3 +22,12 @@ def test_large_aims_fall_to_a_tick_in_each_span_and_the_next_begins_with_half(mo
     assert [span[-1] for span in spans] == [TICK, TICK, TICK, TICK // 2]
     assert all(span == sorted(span, reverse=True) for span in spans)
     assert spans[0][SPAN // 2] == TICK
+
+
+def test_many_robots_have_smaller_tables_of_charges(monkeypatch: pytest.MonkeyPatch) -> None:
+    robots = len(crossing().robots)
+    monkeypatch.setattr("carp_optimum.price_search.LARGEST_TABLE", 10 * robots)
+    monkeypatch.setattr("carp_optimum.price_search.DELAYS", 1000)
+    cost, _, row, *_ = PriceSearch(crossing(), TICK).market.charges
+    assert row.size <= 10 * robots
+    assert cost.size <= 11 * robots  # with a column for delays that no node has

@@ -33,6 +33,11 @@ def two_lanes() -> Instance:
     return Instance(ResourceGraph(tuple(map(Resource, cells)), edges), robots)
 
 
+def long_way_round() -> Instance:
+    """Robots that could make way for each other by detours."""
+    return grid_instance(Grid(width=5, height=5, map=5, map_seed=5), Fleet(robots=8, seed=5))
+
+
 def search_of(instance: Instance) -> PriceSearch:
     search = PriceSearch(instance, SCALE)
     search.climb(SCALE, SCALE >> 4, lambda: None, lambda _, __: None)
@@ -101,12 +106,11 @@ def test_claims_that_are_dropped_leave_the_others_their_prices() -> None:
 def test_all_that_is_found_has_a_proof(instance: Instance) -> None:
     prices = search_of(instance)
     search = SightSearch(prices)
-    delays, at = prices.wander_places(STEPS, SCALE // 4, lambda: None)
-    sides = _Sides(prices, at, np.minimum(delays.max(axis=0) + 2, search.most), {})
-    for one, other in pairs_in(at, len(instance.graph.resources)):
+    sides, pairs = sides_near(prices)
+    for one, other in pairs:
         weight, members = sides.claim(one, other, True, lambda: None)
         if weight > 0:
-            event("claimed" if len(members) == 2 else "seen more than once")
+            event("claimed")
             assert search._refutation(search._unproved(members).document, lambda: None)
 
 
@@ -148,12 +152,47 @@ def test_the_bound_is_that_of_the_claims_that_are_proved_in_time() -> None:
 
 
 def test_robots_that_are_seen_more_than_once_raise_the_bound(monkeypatch: pytest.MonkeyPatch) -> None:
-    instance = grid_instance(Grid(width=5, height=5, map=5, map_seed=5), Fleet(robots=8, seed=5))
+    instance = long_way_round()
     certificate = lower_bound(instance, steps=1600)
     assert verify_bound(instance, certificate) == 52
     assert sum(len(each.robots) > len(set(each.robots)) for each in certificate.deadlines) > 1
     monkeypatch.setattr("carp_optimum.sight_search.MOST_SIGHTS", -1)
     assert lower_bound(instance, steps=1600).bound == 51
+
+
+def sides_near(prices: PriceSearch) -> tuple[_Sides, list[tuple[int, int]]]:
+    """The robots near the best prices, and the pairs that are in the same place at the same tick."""
+    delays, at = prices.wander_places(STEPS, SCALE // 4, lambda: None)
+    sides = _Sides(prices, at, np.minimum(delays.max(axis=0) + 2, SightSearch(prices).most), {})
+    return sides, sorted(pairs_in(at, len(prices.instance.graph.resources)))
+
+
+@pytest.mark.parametrize("seed", [0, 2])
+def test_all_that_is_found_about_more_ticks_has_a_proof(seed: int) -> None:
+    instance = grid_instance(Grid(width=9, height=9, map=5, map_seed=seed), Fleet(robots=24, seed=seed))
+    prices = search_of(instance)
+    sides, pairs = sides_near(prices)
+    claims = [sides.claim(*pair, True, lambda: None) for pair in pairs]
+    again = [members for weight, members in claims if weight > 0 and len(members) > 2]
+    assert again
+    search = SightSearch(prices)
+    assert all(search._refutation(search._unproved(members).document, lambda: None) for members in again)
+
+
+def test_a_claim_for_which_there_is_no_time_leaves_the_robots_free_to_be_anywhere() -> None:
+    sides, pairs = sides_near(search_of(long_way_round()))
+
+    def stop() -> None:
+        raise TimeOver
+
+    stopped = 0
+    for pair in pairs:
+        try:
+            sides.claim(*pair, True, stop)
+        except TimeOver:
+            stopped += 1
+        assert all(not side.sees.any() for side in sides.known.values() if side is not None)
+    assert stopped > 0
 
 
 def test_a_pair_of_much_work_has_its_turn_when_others_were_searched_in_vain(monkeypatch: pytest.MonkeyPatch) -> None:
