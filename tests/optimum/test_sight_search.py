@@ -1,47 +1,17 @@
 """The search for deadlines of robots that are seen: what it finds is true, and raises the bound where robots meet."""
 
 from collections.abc import Callable
-from itertools import pairwise
 
-import numpy as np
 import pytest
-from hypothesis import event, given, settings
-from tests.profiles import draws
+from tests.optimum.sight_examples import SCALE, search_of, two_lanes
 
 from carp_optimum.bound import lower_bound
 from carp_optimum.deadlines import Deadlines, Member
-from carp_optimum.price_search import PriceSearch
-from carp_optimum.sight_search import STEPS, SightSearch, _Sides, pairs_in
+from carp_optimum.sight_claims import Sides
+from carp_optimum.sight_search import SightSearch
 from carp_optimum.solver import TimeOver
-from carp_spec import Instance, Resource, ResourceGraph, Robot
 from carp_verify.bound_cuts import require_deadlines
 from carp_verify.bounds import DeadlinesDocument
-from carp_verify.verify_bound import verify_bound
-from carproof.generate import Fleet, Grid, grid_instance
-from carproof.strategies import Sizes, instances
-
-SCALE = 1 << 10
-MIXED = Sizes(resources=5, robots=3, capacity=2, duration=3, release=3, pace=2)
-
-
-def two_lanes() -> Instance:
-    """`long` meets `first` head-on in a lane, then `second` in another; there is a bay between the lanes."""
-    cells = [*(f"west{number}" for number in range(4)), "bay", "hall", *(f"east{number}" for number in range(4))]
-    lane = [cell for cell in cells if cell != "bay"]
-    edges = (*pairwise(lane), ("bay", "hall"))
-    robots = (Robot("long", "west0", "east3"), Robot("first", "hall", "west0"), Robot("second", "east3", "bay"))
-    return Instance(ResourceGraph(tuple(map(Resource, cells)), edges), robots)
-
-
-def long_way_round() -> Instance:
-    """Robots that could make way for each other by detours."""
-    return grid_instance(Grid(width=5, height=5, map=5, map_seed=5), Fleet(robots=8, seed=5))
-
-
-def search_of(instance: Instance) -> PriceSearch:
-    search = PriceSearch(instance, SCALE)
-    search.climb(SCALE, SCALE >> 4, lambda: None, lambda _, __: None)
-    return search
 
 
 def test_claims_are_proved_and_raise_the_bound() -> None:
@@ -101,19 +71,6 @@ def test_claims_that_are_dropped_leave_the_others_their_prices() -> None:
     assert prices.best >= best
 
 
-@settings(max_examples=draws(60))
-@given(instances(MIXED, least_robots=2))
-def test_all_that_is_found_has_a_proof(instance: Instance) -> None:
-    prices = search_of(instance)
-    search = SightSearch(prices)
-    sides, pairs = sides_near(prices)
-    for one, other in pairs:
-        weight, members = sides.claim(one, other, True, lambda: None)
-        if weight > 0:
-            event("claimed")
-            assert search._refutation(search._unproved(members).document, lambda: None)
-
-
 def test_claims_without_a_price_or_a_proof_are_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
     prices = search_of(two_lanes())
     before = prices.best
@@ -151,61 +108,17 @@ def test_the_bound_is_that_of_the_claims_that_are_proved_in_time() -> None:
     assert certificate.bound <= -(-before // SCALE)
 
 
-def test_robots_that_are_seen_more_than_once_raise_the_bound(monkeypatch: pytest.MonkeyPatch) -> None:
-    instance = long_way_round()
-    certificate = lower_bound(instance, steps=1600)
-    assert verify_bound(instance, certificate) == 52
-    assert sum(len(each.robots) > len(set(each.robots)) for each in certificate.deadlines) > 1
-    monkeypatch.setattr("carp_optimum.sight_search.MOST_SIGHTS", -1)
-    assert lower_bound(instance, steps=1600).bound == 51
-
-
-def sides_near(prices: PriceSearch) -> tuple[_Sides, list[tuple[int, int]]]:
-    """The robots near the best prices, and the pairs that are in the same place at the same tick."""
-    delays, at = prices.wander_places(STEPS, SCALE // 4, lambda: None)
-    sides = _Sides(prices, at, np.minimum(delays.max(axis=0) + 2, SightSearch(prices).most), {})
-    return sides, sorted(pairs_in(at, len(prices.instance.graph.resources)))
-
-
-@pytest.mark.parametrize("seed", [0, 2])
-def test_all_that_is_found_about_more_ticks_has_a_proof(seed: int) -> None:
-    instance = grid_instance(Grid(width=9, height=9, map=5, map_seed=seed), Fleet(robots=24, seed=seed))
-    prices = search_of(instance)
-    sides, pairs = sides_near(prices)
-    claims = [sides.claim(*pair, True, lambda: None) for pair in pairs]
-    again = [members for weight, members in claims if weight > 0 and len(members) > 2]
-    assert again
-    search = SightSearch(prices)
-    assert all(search._refutation(search._unproved(members).document, lambda: None) for members in again)
-
-
-def test_a_claim_for_which_there_is_no_time_leaves_the_robots_free_to_be_anywhere() -> None:
-    sides, pairs = sides_near(search_of(long_way_round()))
-
-    def stop() -> None:
-        raise TimeOver
-
-    stopped = 0
-    for pair in pairs:
-        try:
-            sides.claim(*pair, True, stop)
-        except TimeOver:
-            stopped += 1
-        assert all(not side.sees.any() for side in sides.known.values() if side is not None)
-    assert stopped > 0
-
-
 def test_a_pair_of_much_work_has_its_turn_when_others_were_searched_in_vain(monkeypatch: pytest.MonkeyPatch) -> None:
     searched: list[tuple[int, ...]] = []
 
-    def claim(_: _Sides, one: int, other: int, is_about_more: bool, check: Callable[[], None]) -> tuple[int, tuple[()]]:
+    def claim(_: Sides, one: int, other: int, is_about_more: bool, check: Callable[[], None]) -> tuple[int, tuple[()]]:
         assert not is_about_more
         check()
         searched.append((one, other))
         return 0, ()
 
-    monkeypatch.setattr(_Sides, "claim", claim)
-    monkeypatch.setattr(_Sides, "work", lambda _, one, other: 1 + 2 * one * other)
+    monkeypatch.setattr(Sides, "claim", claim)
+    monkeypatch.setattr(Sides, "work", lambda _, one, other: 1 + 2 * one * other)
     monkeypatch.setattr("carp_optimum.sight_search.pairs_in", lambda *_: {(1, 3), (0, 2)})
     monkeypatch.setattr("carp_optimum.sight_search.MOST_WORK", 7)
     search = SightSearch(search_of(two_lanes()))
