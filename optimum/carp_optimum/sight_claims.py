@@ -143,7 +143,6 @@ class Pair:
                 held[:] = 1
                 while self.meetings(sights, whose, tick) > 0:
                     held[self.meeting.blamed[: len(held)] == 1] = 0
-        self.see_at(sights)
         return sights
 
     def missing(self, whose: int, tick: int) -> int:
@@ -165,7 +164,7 @@ class Pair:
         return member_of(first, ones, tick), member_of(second, others, tick)
 
     def earlier_member(self, whose: int, tick: int) -> Member:
-        """The robot where it is held at the tick."""
+        """The robot where it is held at the tick, without places from which it comes too late for the last tick."""
         side = self.sides[whose]
         return member_of(side, (side.held[tick, :-1] == 1) & self.within(side, tick), tick)
 

@@ -1,12 +1,15 @@
 """Instances whose robots raise a bound where they are seen, and the prices from which claims about them are found."""
 
+from contextlib import suppress
 from itertools import pairwise
 
 from carp_optimum.price_search import PriceSearch
+from carp_optimum.solver import TimeOver
 from carp_spec import Instance, Resource, ResourceGraph, Robot
 from carproof.generate import Fleet, Grid, grid_instance
 
 SCALE = 1 << 10
+MOST_STEPS = 4000
 
 
 def two_lanes() -> Instance:
@@ -24,6 +27,13 @@ def long_way_round() -> Instance:
 
 
 def search_of(instance: Instance) -> PriceSearch:
+    """Prices after a climb; it ends where no plans exist, as nothing else would end it."""
     search = PriceSearch(instance, SCALE)
-    search.climb(SCALE, SCALE >> 4, lambda: None, lambda _, __: None)
+
+    def check() -> None:
+        if search.count >= MOST_STEPS:
+            raise TimeOver
+
+    with suppress(TimeOver):
+        search.climb(SCALE, SCALE >> 4, check, lambda _, __: None)
     return search

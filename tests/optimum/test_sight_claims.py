@@ -1,14 +1,18 @@
-"""Claims about two robots that are seen: each is true, and has a proof."""
+"""Claims about two robots that are seen: each is true, has a proof, and is broken by as much as it says."""
+
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
 from hypothesis import event, given, settings
+from hypothesis.strategies import integers
 from tests.optimum.sight_examples import SCALE, long_way_round, search_of
 from tests.profiles import draws
 
 from carp_optimum.bound import lower_bound
+from carp_optimum.deadlines import Member
 from carp_optimum.price_search import PriceSearch
-from carp_optimum.sight_claims import Sides
+from carp_optimum.sight_claims import Claim, Pair, Sides
 from carp_optimum.sight_search import STEPS, SightSearch, pairs_in
 from carp_optimum.solver import TimeOver
 from carp_spec import Instance
@@ -19,36 +23,83 @@ from carproof.strategies import Sizes, instances
 MIXED = Sizes(resources=5, robots=3, capacity=2, duration=3, release=3, pace=2)
 
 
-def sides_near(prices: PriceSearch) -> tuple[Sides, list[tuple[int, int]]]:
-    """The robots near the best prices, and the pairs that are in the same place at the same tick."""
+def sides_near(prices: PriceSearch, margin: int = 2) -> tuple[Sides, list[tuple[int, int]]]:
+    """The robots near the best prices, and the pairs that are in the same place at the same tick.
+
+    The largest delays that are looked at are the margin more than those near the best prices.
+    """
     delays, at = prices.wander_places(STEPS, SCALE // 4, lambda: None)
-    sides = Sides(prices, at, np.minimum(delays.max(axis=0) + 2, SightSearch(prices).most), {})
+    sides = Sides(prices, at, np.minimum(delays.max(axis=0) + margin, SightSearch(prices).most), {})
     return sides, sorted(pairs_in(at, len(prices.instance.graph.resources)))
 
 
+def on_a_map(width: int, robots: int, seed: int) -> Instance:
+    return grid_instance(Grid(width=width, height=width, map=5, map_seed=seed), Fleet(robots=robots, seed=seed))
+
+
+def about_more_ticks(sides: Sides, pairs: list[tuple[int, int]]) -> dict[tuple[int, int], Claim]:
+    claims = {pair: sides.claim(*pair, True, lambda: None) for pair in pairs}
+    return {pair: claim for pair, claim in claims.items() if len(claim[1]) > 2}
+
+
+def broken_by(sides: Sides, members: Sequence[Member]) -> int:
+    """In how many steps the ways keep what the members say, beyond those of all members but one."""
+    kept = sum(int(np.isin(sides.at[:, each.robot, each.seen], each.places).sum()) for each in members)
+    arrived = len(sides.search.instance.graph.resources)
+    kept += sum(int((sides.at[:, each.robot, each.seen] == arrived).sum()) for each in members if each.arrival >= 0)
+    return kept - len(sides.at) * (len(members) - 1)
+
+
 @settings(max_examples=draws(60))
-@given(instances(MIXED, least_robots=2))
-def test_all_that_is_found_has_a_proof(instance: Instance) -> None:
+@given(instances(MIXED, least_robots=2), integers(0, 2))
+def test_all_that_is_found_has_a_proof(instance: Instance, margin: int) -> None:
     prices = search_of(instance)
     search = SightSearch(prices)
-    sides, pairs = sides_near(prices)
+    sides, pairs = sides_near(prices, margin)
     for one, other in pairs:
         weight, members = sides.claim(one, other, True, lambda: None)
         if weight > 0:
             event("claimed")
+            assert broken_by(sides, members) >= weight
             assert search._refutation(search._unproved(members).document, lambda: None)
 
 
-@pytest.mark.parametrize("seed", [0, 2])
-def test_all_that_is_found_about_more_ticks_has_a_proof(seed: int) -> None:
-    instance = grid_instance(Grid(width=9, height=9, map=5, map_seed=seed), Fleet(robots=24, seed=seed))
-    prices = search_of(instance)
+@pytest.mark.parametrize(("width", "robots", "seed"), [(7, 14, 7), (9, 24, 0), (9, 24, 2)])
+def test_all_that_is_found_about_more_ticks_is_broken_and_has_a_proof(width: int, robots: int, seed: int) -> None:
+    prices = search_of(on_a_map(width, robots, seed))
     sides, pairs = sides_near(prices)
-    claims = [sides.claim(*pair, True, lambda: None) for pair in pairs]
-    again = [members for weight, members in claims if weight > 0 and len(members) > 2]
-    assert again
     search = SightSearch(prices)
-    assert all(search._refutation(search._unproved(members).document, lambda: None) for members in again)
+    claims = about_more_ticks(sides, pairs)
+    assert claims
+    for weight, members in claims.values():
+        assert broken_by(sides, members) >= weight
+        assert search._refutation(search._unproved(members).document, lambda: None)
+
+
+def test_a_claim_does_not_depend_on_those_that_were_searched_for_before() -> None:
+    prices = search_of(on_a_map(7, 14, 7))
+    sides, pairs = sides_near(prices)
+    for pair, claim in about_more_ticks(sides, pairs).items():
+        alone = Sides(prices, sides.at, sides.delays, {})
+        assert alone.claim(*pair, True, lambda: None) == claim
+
+
+def test_no_place_can_be_added_to_where_a_robot_is_seen() -> None:
+    prices = search_of(on_a_map(7, 14, 7))
+    sides, pairs = sides_near(prices)
+    search = SightSearch(prices)
+    tried = 0
+    for _, members in about_more_ticks(sides, pairs).values():
+        for number, member in enumerate(members[:-2]):
+            side = sides.side(member.robot)
+            assert side is not None
+            within = Pair(prices, (side, side), 0, STEPS).within(side, member.seen)[:-1]
+            for place in {*side.resource[within].tolist()} - {*member.places}:
+                wider = [*members]
+                wider[number] = member._replace(places=(*member.places, place))
+                assert not search._refutation(search._unproved(wider).document, lambda: None)
+                tried += 1
+    assert tried > 0
 
 
 def test_a_claim_for_which_there_is_no_time_leaves_the_robots_free_to_be_anywhere() -> None:
