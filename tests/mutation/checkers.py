@@ -29,6 +29,7 @@ FORMULAS = ("verify/test_encoding", PIN)
 BOUNDS = (
     "verify/test_bound",
     "verify/test_bound_groups",
+    "verify/test_formulas_of_sights",
     "verify/test_bound_refusals",
     "verify/test_bound_seen",
     "verify/test_forgery",

@@ -141,3 +141,9 @@ def cut_certificate() -> BoundDocument:
     assert (half.least, verify_bound(crossing(), with_it)) == (7, with_it.bound)
     assert with_it.bound > certificate.bound
     return with_it
+
+
+def left(visit: Visit) -> int:
+    """The tick at which a visit ends that is not the last one."""
+    assert visit.leave is not None
+    return visit.leave

@@ -1,12 +1,10 @@
 """Cuts and deadlines of groups of robots, also of robots that are seen at a tick, in lower bounds."""
 
-from collections.abc import Sequence
 from itertools import product
-from operator import itemgetter
 
 import msgspec
 import pytest
-from hypothesis import event, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.profiles import draws
 from tests.verify.bound_examples import (
@@ -19,6 +17,7 @@ from tests.verify.bound_examples import (
     crossing,
     cut_certificate,
     deadline_certificate,
+    left,
     payment,
     plans_of,
     sight_certificate,
@@ -26,13 +25,11 @@ from tests.verify.bound_examples import (
 
 from carp_optimum.bound import lower_bound
 from carp_optimum.solver import Solver
-from carp_spec import AfterGoal, Instance, Plan, Refusal, Resource, ResourceGraph, ResourceId, Robot, Visit
+from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
 from carp_spec.plan_rules import plan_cost
 from carp_verify.bound_cuts import formula_of, formula_of_deadlines
 from carp_verify.bounds import BOUND_FORMAT, BoundDocument, CutDocument, DeadlinesDocument, digest, read_bound
 from carp_verify.documents import write
-from carp_verify.encoding import violated
-from carp_verify.refutation import NotRefutedError
 from carp_verify.verify_bound import Budget, Fees, RobotSearch, Tariff, fees_of, predecessors, verify_bound
 from carproof.strategies import Sizes, instances
 
@@ -54,118 +51,6 @@ def test_who_keeps_a_deadline_pays_for_it_and_may_drive_on_through_the_goal_to_m
     tariff = Tariff(instance, certificate)
     search = RobotSearch(tariff, robot, SCALE, predecessors(instance), Budget(), Fees(fees))
     assert search.least_cost() == min(costs, default=None)
-
-
-def left(visit: Visit) -> int:
-    """The tick at which a visit ends that is not the last one."""
-    assert visit.leave is not None
-    return visit.leave
-
-
-def keeps(plan: Plan, deadline: int, seen: int, places: frozenset[ResourceId]) -> bool:
-    """Whether the plan keeps the deadline of a robot that is seen, word for word as the document has it."""
-    arrival = plan.visits[-1].enter
-    at = {visit.resource for visit in plan.visits[:-1] if visit.enter <= seen < left(visit)}
-    return (arrival <= deadline and arrival <= seen) or bool(at & places)
-
-
-@settings(max_examples=draws(400))
-@given(
-    st.data(),
-    instances(Sizes(resources=4, robots=2, capacity=1, duration=2, release=2, pace=1), least_robots=2),
-)
-def test_no_plans_that_break_no_rule_keep_all_deadlines_whose_formula_has_no_model(
-    data: st.DataObject, instance: Instance
-) -> None:
-    ticks = st.integers(0, HORIZON - 1)
-    places = st.frozensets(st.sampled_from([resource.id for resource in instance.graph.resources]))
-    sights = st.lists(st.tuples(ticks, ticks, places), min_size=1, max_size=2, unique_by=itemgetter(1))
-    drawn = [(robot, sorted(data.draw(sights), key=itemgetter(1))) for robot in instance.robots]
-    members = [(robot.id, *sight) for robot, each in drawn for sight in each]
-    seen = tuple((tick, tuple(sorted(at, key=str))) for _, _, tick, at in members)
-    deadlines = DeadlinesDocument(
-        tuple(robot for robot, *_ in members), tuple(tick for _, tick, *_ in members), 0, "", seen
-    )
-    try:
-        formula = formula_of_deadlines(instance, deadlines, 10**6)
-    except NotRefutedError:
-        return  # a robot has no way
-    keeping = [
-        [plan for plan in plans_of(instance, robot) if all(keeps(plan, *sight) for sight in each)]
-        for robot, each in drawn
-    ]
-    is_possible = any(not violated(instance, plans) for plans in product(*keeping))
-    has_model = Solver(formula, lambda: None).satisfiable([])
-    assert has_model or not is_possible
-    event("possible" if is_possible else "refuted" if not has_model else "not refuted")
-
-
-def lane_of(slow: str, *robots: Robot, after_goal: AfterGoal = "vanish") -> Instance:
-    """Three cells in a row; one takes two ticks."""
-    cells = tuple(Resource(cell, duration=1 + (cell == slow)) for cell in "abc")
-    return Instance(ResourceGraph(cells, (("a", "b"), ("b", "c"))), robots, after_goal)
-
-
-def may_keep(instance: Instance, members: Sequence[tuple[int, int, str]]) -> bool:
-    """Whether the formula of the robots, each with its deadline, the tick at which it is seen and places, has one.
-
-    With more deadlines than robots, all robots are seen again.
-    """
-    seen = tuple((tick, tuple(places)) for _, tick, places in members)
-    names = tuple(robot.id for robot in instance.robots) * (len(members) // len(instance.robots))
-    deadlines = DeadlinesDocument(names, tuple(deadline for deadline, _, _ in members), 0, "", seen)
-    return bool(Solver(formula_of_deadlines(instance, deadlines, 10**6), lambda: None).satisfiable([]))
-
-
-@pytest.mark.parametrize("after_goal", ["vanish", "park"])
-@pytest.mark.parametrize(("goal", "slow"), [*product("abc", " bc")])
-def test_the_formula_of_a_single_robot_that_is_seen_has_a_model_just_where_one_of_its_plans_keeps_the_deadline(
-    goal: str, slow: str, after_goal: AfterGoal
-) -> None:
-    instance = lane_of(slow, Robot("r", "a", goal, 1), after_goal=after_goal)
-    plans = [*plans_of(instance, instance.robots[0])]
-    for deadline, seen, places in product(range(5), range(5), ("", "a", "b", "c", "ab", "ac", "bc", "abc")):
-        is_kept = any(keeps(plan, deadline, seen, frozenset(places)) for plan in plans)
-        assert may_keep(instance, [(deadline, seen, places)]) == is_kept
-
-
-@pytest.mark.parametrize("after_goal", ["vanish", "park"])
-@pytest.mark.parametrize(("goal", "slow"), [*product("abc", " bc")])
-def test_the_formula_of_a_robot_that_is_seen_twice_has_a_model_just_where_one_of_its_plans_keeps_both_deadlines(
-    goal: str, slow: str, after_goal: AfterGoal
-) -> None:
-    instance = lane_of(slow, Robot("r", "a", goal, 1), after_goal=after_goal)
-    plans = [*plans_of(instance, instance.robots[0])]
-    for first, later, places, others in product(range(3), (1, 2), ("", "a", "b", "ac"), ("", "b", "c", "ab")):
-        for deadline in (0, 3, 5):
-            sights = [(deadline, first, places), (2, first + later, others)]
-            is_kept = any(all(keeps(plan, due, seen, frozenset(at)) for due, seen, at in sights) for plan in plans)
-            assert may_keep(instance, sights) == is_kept
-
-
-@pytest.mark.parametrize("slow", ["b", "c"])
-@pytest.mark.parametrize("ends", [("ca", "ab"), ("bc", "cb"), ("ab", "ca")])
-def test_two_robots_that_are_seen_are_refuted_only_where_no_plans_keep_both_deadlines(
-    ends: tuple[str, str], slow: str
-) -> None:
-    one, other = (Robot(release, end[0], end[1], release) for release, end in enumerate(ends))
-    instance = lane_of(slow, one, other)
-    pairs = [
-        pair for pair in product(plans_of(instance, one), plans_of(instance, other)) if not violated(instance, pair)
-    ]
-    refuted = 0
-    for deadline, seen, places, others in product((0, 4), range(5), " abc", " abc"):
-        for second in ((deadline, seen, others.strip()), (deadline, seen + 1, others.strip()), (4, 2, others.strip())):
-            first = (deadline, seen, places.strip())
-            is_kept = any(
-                keeps(plan, first[0], first[1], frozenset(first[2]))
-                and keeps(beside, second[0], second[1], frozenset(second[2]))
-                for plan, beside in pairs
-            )
-            is_refuted = not may_keep(instance, [first, second])
-            assert not (is_kept and is_refuted)
-            refuted += is_refuted
-    assert refuted > 300
 
 
 @settings(max_examples=draws(200))
