@@ -5,6 +5,9 @@ average a share of the mean delay of a robot, which falls to 0 as the cube of th
 rounds may raise it, every second one takes turns (`carp_optimized.polishing`). One long cycle ends in a bad place as
 often as a short one does. So there are several, each from the best plans seen, which are the result. Nothing here is
 trusted: the law judges the plans.
+
+Where robots wait much, as on a tree, luck decides where a cycle ends. Then there are more of them, and some begin again
+with the plans given: each begins where the one before began if that gained, and at the other place if not.
 """
 
 from collections.abc import Callable
@@ -20,11 +23,15 @@ from carp_spec.polish_rules import polishable, require_polish_options
 
 ROUNDS = 50
 """The rounds of one compiled call."""
-CYCLES = 8
+CYCLES, CYCLES_OF_LUCK = 8, 16
+LUCK = 2
+"""Luck decides where the delays, times this, are more than the shortest paths."""
 HEAT = 64
 """The mean raise of the first rounds, in 16ths of the mean delay of a robot."""
 REHEAT = 16
-"""The same of later cycles, which are not to leave their place altogether."""
+"""The same of cycles from the best plans seen, which are not to leave their place altogether."""
+COOLER = 4
+"""If luck decides, delays are large, and raises are smaller shares of them by this."""
 ENOUGH = 32
 """With fewer rounds a robot than this the raises are smaller by as much: there is no time to make up for them."""
 PARTS = 1 << 10
@@ -81,24 +88,29 @@ def anneal(
     polishing = fleet.polishing(seed)
     least = int(polishing.fields.least.sum())
     played = fleet.polish(polishing, 0)
-    best, plans = fleet.worth, fleet.plans
+    given = plans = fleet.plans
+    best = before = own = fleet.worth
+    luck = (best[1] - least) * LUCK > least
+    cycles = CYCLES_OF_LUCK if luck else CYCLES
     current = 0
+    from_given = True
     started = clock()
     while (spent := int(PARTS * (clock() - started) / seconds)) < PARTS:
-        cycle, gone = divmod(CYCLES * spent, PARTS)
+        cycle, gone = divmod(cycles * spent, PARTS)
         if cycle > current:
-            current = cycle
-            if fleet.worth > best:
+            from_given = luck and played >= ENOUGH * len(instance.robots) and from_given == (best < before)
+            if from_given or fleet.worth > best:
                 fleet.clear()
-                fleet.commit(plans)
+                fleet.commit(given if from_given else plans)
+            current, before, own = cycle, best, fleet.worth
         expected = PARTS * played // max(spent, 1)
-        delay = max(best[1] - least, 0)
-        heat = HEAT if cycle == 0 else REHEAT
-        polishing.fields.counts[CHANCE] = _chance(heat * delay, len(instance.robots), expected, PARTS - gone)
+        heated = (HEAT if from_given else REHEAT) * max(own[1] - least, 0) // (COOLER if luck else 1)
+        polishing.fields.counts[CHANCE] = _chance(heated, len(instance.robots), expected, PARTS - gone)
         batch = fleet.polish(polishing, ROUNDS)
         played += batch
-        if fleet.worth < best:
-            best, plans = fleet.worth, fleet.plans
+        own = min(own, fleet.worth)
+        if own < best:
+            best, plans = own, fleet.plans
         advance(played, *best)
         if batch < ROUNDS:
             break
