@@ -1,9 +1,11 @@
-"""The search for prices: the sizes of its tables, and its aims while the prices stand still."""
+"""The search for prices: the sizes of its tables, its aims while the prices stand still, and what a step changes."""
 
 import pytest
 from tests.verify.bound_examples import crossing
 
 from carp_optimum.price_search import SPAN, PriceSearch
+from carp_optimum.price_steps import LESS
+from carp_spec import Instance, Resource, ResourceGraph, Robot
 
 TICK = 1 << 10
 
@@ -31,3 +33,17 @@ def test_many_robots_have_smaller_tables_of_charges(monkeypatch: pytest.MonkeyPa
     cost, _, row, *_ = PriceSearch(crossing(), TICK).market.charges
     assert row.size <= 10 * robots
     assert cost.size <= 11 * robots  # with a column for delays that no node has
+
+
+def test_a_step_changes_exchanges_less_than_resources_and_gains_what_it_is_to_gain() -> None:
+    cells = ("north", "east", "south", "west", "middle", "left", "right")
+    edges = (*((cell, "middle") for cell in cells[:4]), ("left", "right"))
+    meeting = (Robot("down", "north", "south"), Robot("across", "west", "east"))
+    exchanging = (Robot("to", "left", "right"), Robot("back", "right", "left"))
+    search = PriceSearch(Instance(ResourceGraph(tuple(map(Resource, cells)), edges), meeting + exchanging), TICK)
+    gain = (LESS + 2) * TICK
+    assert search._step(gain)
+    prices = search.prices()
+    assert prices.resources == (("middle", 1, LESS * TICK),)
+    assert sorted(prices.exchanges) == [("left", "right", 1, TICK), ("right", "left", 1, TICK)]
+    assert sum(price for *_, price in prices.resources + prices.exchanges) == gain
