@@ -5,11 +5,13 @@ import runpy
 import sys
 import tomllib
 from collections.abc import Callable
+from importlib.metadata import PackageNotFoundError, metadata
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from packaging.specifiers import SpecifierSet
 
 ROOT = Path(__file__).parent.parent
 PROJECT: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
@@ -40,6 +42,20 @@ def test_no_library_is_taken_in_an_untried_major_version() -> None:
     extras = PROJECT["optional-dependencies"]
     wanted = [*PROJECT["dependencies"], *extras["prove"], *extras["experiments"], *extras["test"]]
     assert [each for each in wanted if "<" not in each] == []
+
+
+def test_every_pinned_library_runs_on_the_oldest_python_that_the_package_takes() -> None:
+    oldest = f"{PROJECT['requires-python'].removeprefix('>=')}.0"
+    refused = []
+    for pin in (ROOT / "constraints.txt").read_text().splitlines():
+        name = pin.partition("==")[0]
+        try:
+            known = metadata(name)
+        except PackageNotFoundError:
+            continue  # of another extra, or of another Python
+        if "Requires-Python" in known and oldest not in SpecifierSet(known["Requires-Python"]):
+            refused.append(f"{name} {known['Requires-Python']}")
+    assert refused == []
 
 
 def test_an_index_can_place_the_package() -> None:
