@@ -25,7 +25,7 @@ CONFLICTS = 300
 """After this many conflicts a formula's search gives the work that it has done."""
 WORK_OF_STEP, WORK_OF_STEP_BY_TEN_RESOURCES = 120, 6
 """The propagations of a step of the search for prices, for each robot, and more on a larger graph."""
-WORK_OF_PAIR = 4000
+WORK_OF_PAIR = 2500
 """The propagations of making a formula with prices, for each robot and each other one."""
 
 

@@ -9,9 +9,9 @@ from collections.abc import Callable
 from itertools import pairwise
 
 from carp_optimum.reduced_costs import PricedBound, Reduced
-from carp_spec import Instance
+from carp_spec import Instance, ResourceId
 from carp_verify.clauses import Formula, Literal
-from carp_verify.encoding import Encoding
+from carp_verify.encoding import Conflict, Encoding
 from carp_verify.robot_clauses import RobotClauses
 
 LEVELS = 24
@@ -37,9 +37,10 @@ def priced_formula(instance: Instance, bound: PricedBound, cost: int, look: Call
         while robot.horizon < horizon:
             robot.grow()
     encoding.close()
-    for conflict in list(encoding.conflicts()):
+    for resource, tick in dict.fromkeys(entry for robot in encoding.robots for entry in robot.entries()):
         look()
-        encoding.forbid(conflict)
+        encoding.forbid(Conflict(tick, resource))
+    _forbid_exchanges(encoding)
     encoding.bound_delays(cost + 1 - encoding.shortest, range(len(encoding.robots)))
     unit = max(1, bound.gap(cost))
     numbers = [_reduced_cost(encoding.formula, robot, reduced, unit) for robot, reduced in described]
@@ -49,6 +50,26 @@ def priced_formula(instance: Instance, bound: PricedBound, cost: int, look: Call
     if len(total) > LEVELS:
         encoding.formula.add(-total[LEVELS])
     return encoding
+
+
+def _forbid_exchanges(encoding: Encoding) -> None:
+    """Give each edge a direction at each tick, and let robots move in no other.
+
+    The encoding forbids each pair of moves, which on a large map takes more clauses than all else.
+    """
+    index = encoding.instance.graph.index
+    directions: dict[tuple[int, ResourceId, ResourceId], Literal] = {}
+    for position, robot in enumerate(encoding.robots):
+        for source, tick in robot.node:
+            for target in encoding.instance.graph.successors[source]:
+                move = encoding.moves(position, source, target, tick)
+                if move is not None:
+                    forth = index[source] < index[target]
+                    edge = (tick, source, target) if forth else (tick, target, source)
+                    if edge not in directions:
+                        directions[edge] = encoding.formula.variable()
+                    direction = directions[edge] if forth else -directions[edge]
+                    encoding.formula.add(*(-literal for literal in move), direction)
 
 
 def _level(parts: int, unit: int) -> int:
