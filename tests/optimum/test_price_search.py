@@ -41,6 +41,7 @@ def test_a_step_changes_exchanges_less_than_resources_and_gains_what_it_is_to_ga
     meeting = (Robot("down", "north", "south"), Robot("across", "west", "east"))
     exchanging = (Robot("to", "left", "right"), Robot("back", "right", "left"))
     search = PriceSearch(Instance(ResourceGraph(tuple(map(Resource, cells)), edges), meeting + exchanging), TICK)
+    assert LESS > 1
     gain = (LESS + 2) * TICK
     assert search._step(gain)
     prices = search.prices()
