@@ -84,9 +84,11 @@ def narrowed(instance: Instance, look: Callable[[], None]) -> Iterator[tuple[int
         except Refusal:
             break
         for further in search.run():
+            if search.plans is not None:
+                known = known.with_plans(search.plans)
             yield work + further, known
         work += search.work
-        known = known.with_plans(search.plans) if search.plans is not None else replace(known, lower=most + 1)
+        known = replace(known, lower=search.least)
     yield work, known
     if not known.is_optimum:
         for further, plans in better:
@@ -101,22 +103,26 @@ def _priced_bound(instance: Instance, look: Callable[[], None]) -> PricedBound:
 
 
 class _Formula:
-    """The search for plans of at most a total; after it, `plans` has them, or there are none."""
+    """The search for the cheapest plans of at most a total; after it, no plans cost less than `least`."""
 
     def __init__(self, instance: Instance, bound: PricedBound, most: int, look: Callable[[], None]) -> None:
-        self.encoding = priced_formula(instance, bound, most, look)
+        self.priced = priced_formula(instance, bound, most, look)
         self.look = look
         self.plans: Sequence[Plan] | None = None
+        self.least = most + 1
         self.work = 0
 
     def run(self) -> Iterator[int]:
-        """Search, and give the work so far now and then."""
-        solver = Solver(self.encoding.formula, self.look, glucose=True)
+        """Search, and give the work so far now and then, and where `plans` are better."""
+        encoding = self.priced.encoding
+        solver = Solver(encoding.formula, self.look, glucose=True)
         try:
-            while (answer := solver.satisfiable([], CONFLICTS)) is None:
+            while (answer := solver.satisfiable([], CONFLICTS)) is not False:
+                if answer:
+                    self.plans = [plan for plan in encoding.plans(solver.model()) if plan is not None]
+                    self.least = total_cost(encoding.instance, self.plans)
+                    self.priced.require_less(self.least)
                 yield solver.work
             self.work = solver.work
-            if answer:
-                self.plans = [plan for plan in self.encoding.plans(solver.model()) if plan is not None]
         finally:
             solver.close()

@@ -5,21 +5,39 @@ It has only nodes whose reduced cost is within the gap, and all conflicts. The c
 the price of deadlines for each robot that is late, but one: the bound takes it that all the others pay it.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from itertools import pairwise
 
+from carp_optimum.near_sums import groups_of_near, sum_of_near
 from carp_optimum.reduced_costs import PricedBound, Reduced
 from carp_spec import Instance, ResourceId
-from carp_verify.clauses import Formula, Literal
+from carp_verify.clauses import Formula, Literal, Unary
 from carp_verify.encoding import Conflict, Encoding
-from carp_verify.robot_clauses import RobotClauses
+from carp_verify.robot_clauses import Node, RobotClauses
 
 LEVELS = 24
 MOST_CLAUSES = 4_000_000
 
 
-def priced_formula(instance: Instance, bound: PricedBound, cost: int, look: Callable[[], None]) -> Encoding:
-    """The encoding of all plans of at most this total; `look` is called now and then, and may end it by an exception.
+@dataclass(frozen=True, slots=True)
+class PricedFormula:
+    """The encoding of all plans of at most some total, and the sum of their delays."""
+
+    encoding: Encoding
+    delays: Unary
+
+    def require_less(self, cost: int) -> None:
+        """Demand a lower total than this."""
+        delay = cost - self.encoding.shortest
+        if delay <= 0:
+            self.encoding.formula.add()  # the empty clause: no delay is below zero
+        elif delay <= len(self.delays):
+            self.encoding.formula.add(-self.delays[delay - 1])
+
+
+def priced_formula(instance: Instance, bound: PricedBound, cost: int, look: Callable[[], None]) -> PricedFormula:
+    """The formula of all plans of at most this total; `look` is called now and then, and may end it by an exception.
 
     Raises `Refusal` beyond `MOST_CLAUSES`.
     """
@@ -41,15 +59,21 @@ def priced_formula(instance: Instance, bound: PricedBound, cost: int, look: Call
         look()
         encoding.forbid(Conflict(tick, resource))
     _forbid_exchanges(encoding)
-    encoding.bound_delays(cost + 1 - encoding.shortest, range(len(encoding.robots)))
-    unit = max(1, bound.gap(cost))
-    numbers = [_reduced_cost(encoding.formula, robot, reduced, unit) for robot, reduced in described]
-    numbers += _prices_of_empty_places(encoding, bound, unit)
-    numbers += _prices_of_late_robots(encoding, bound, unit)
-    total = encoding.formula.at_least(numbers, LEVELS + 1)
+    formula, unit = encoding.formula, max(1, bound.gap(cost))
+    levels = [{node: _level(reduced.nodes.get(node, 0), unit) for node in robot.node} for robot, reduced in described]
+    rounds = groups_of_near([{node: (LEVELS + 1 - level) ** 2 for node, level in each.items()} for each in levels])
+    delays = [robot.late for robot, _ in described]
+    priced = PricedFormula(encoding, sum_of_near(formula, delays, rounds, max(1, cost + 1 - encoding.shortest)))
+    priced.require_less(cost + 1)
+    costs = [
+        _reduced_cost(formula, robot, nodes, reduced, unit)
+        for (robot, reduced), nodes in zip(described, levels, strict=True)
+    ]
+    others = [*_prices_of_empty_places(encoding, bound, unit), *_prices_of_late_robots(encoding, bound, unit)]
+    total = formula.at_least([sum_of_near(formula, costs, rounds, LEVELS + 1), *others], LEVELS + 1)
     if len(total) > LEVELS:
-        encoding.formula.add(-total[LEVELS])
-    return encoding
+        formula.add(-total[LEVELS])
+    return priced
 
 
 def _forbid_exchanges(encoding: Encoding) -> None:
@@ -84,9 +108,10 @@ def _number(formula: Formula, most: int) -> list[Literal]:
     return number
 
 
-def _reduced_cost(formula: Formula, robot: RobotClauses, reduced: Reduced, unit: int) -> list[Literal]:
+def _reduced_cost(
+    formula: Formula, robot: RobotClauses, nodes: Mapping[Node, int], reduced: Reduced, unit: int
+) -> list[Literal]:
     """A number that is at least the level of each node that the robot passes, and of its delay."""
-    nodes = {node: _level(reduced.nodes.get(node, 0), unit) for node in robot.node}
     delays = {delay: _level(cost, unit) for delay, cost in reduced.delays.items()}
     number = _number(formula, max([*nodes.values(), *delays.values()], default=0))
     for node, level in nodes.items():

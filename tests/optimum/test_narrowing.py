@@ -16,11 +16,10 @@ import carproof
 from carp_optimum.beside import Beside
 from carp_optimum.narrowing import Between, narrowed
 from carp_optimum.optimum import optimum
-from carp_optimum.priced_formula import priced_formula
+from carp_optimum.priced_formula import PricedFormula, priced_formula
 from carp_optimum.proving import write_proof
 from carp_optimum.reduced_costs import PricedBound
 from carp_spec import AfterGoal, Carp, Instance, Robot, judge, total_cost
-from carp_verify.encoding import Encoding
 from carp_verify.joint_search import least_total_cost
 from carp_verify.proof import solution_of, verify_proof
 from carproof.strategies import instances
@@ -89,6 +88,18 @@ def test_formulas_lead_up_from_a_weak_bound(seed: int, after_goal: AfterGoal, mo
 
 
 @pytest.mark.usefixtures("beside_at_once")
+def test_one_formula_gives_cheaper_and_cheaper_plans_down_to_the_optimum(monkeypatch: pytest.MonkeyPatch) -> None:
+    instance = town(7, "park")
+    least = optimum(instance, SECONDS, priced=False).cost
+    monkeypatch.setattr("carp_optimum.heuristics.ever_better", lambda *_: iter(()))
+    monkeypatch.setattr("carp_optimum.narrowing.STRIDE", 40)
+    found = results(instance)
+    assert (found[-1].lower, found[-1].total) == (least, least)
+    assert len({known.lower for known in found}) == 3
+    assert len({known.total for known in found}) > 2
+
+
+@pytest.mark.usefixtures("beside_at_once")
 def test_formulas_end_below_the_total_of_the_best_plans_known(monkeypatch: pytest.MonkeyPatch) -> None:
     instance = town(7, "park")
     least = optimum(instance, SECONDS, priced=False)
@@ -97,7 +108,7 @@ def test_formulas_end_below_the_total_of_the_best_plans_known(monkeypatch: pytes
     plans = least.solution.plans
     searched = []
 
-    def below(instance: Instance, bound: PricedBound, cost: int, look: Callable[[], None]) -> Encoding:
+    def below(instance: Instance, bound: PricedBound, cost: int, look: Callable[[], None]) -> PricedFormula:
         searched.append(cost)
         return priced_formula(instance, bound, cost, look)
 

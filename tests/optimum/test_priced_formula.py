@@ -31,7 +31,7 @@ SCALE = 64
 
 def cheapest(instance: Instance, bound: PricedBound, cost: int) -> int | None:
     """The total of the plans in a model of the formula, which must be lawful; `None` if it has no model."""
-    encoding = priced_formula(instance, bound, cost, lambda: None)
+    encoding = priced_formula(instance, bound, cost, lambda: None).encoding
     solver = Solver(encoding.formula, Deadline(SECONDS).check)
     try:
         if not solver.satisfiable([]):
@@ -145,7 +145,7 @@ def test_nodes_beyond_the_gap_are_left_out() -> None:
     instance = town(7, "park")
     bound = PricedBound(instance, lower_bound(instance, steps=100))
     for cost in (bound.certificate.bound, bound.certificate.bound + 3):
-        encoding = priced_formula(instance, bound, cost, lambda: None)
+        encoding = priced_formula(instance, bound, cost, lambda: None).encoding
         shortest = {robot.robot.id: robot.shortest or 0 for robot in encoding.robots}
         for robot in encoding.robots:
             assert robot.node.keys() <= bound.reduced(robot, shortest, cost).nodes.keys()
@@ -154,7 +154,7 @@ def test_nodes_beyond_the_gap_are_left_out() -> None:
 def test_at_the_bound_one_robot_of_each_group_with_deadlines_is_late_and_no_second_one_if_that_is_too_dear() -> None:
     instance = town(7, "park")
     bound = PricedBound(instance, lower_bound(instance, steps=1500, seen=False))
-    encoding = priced_formula(instance, bound, bound.certificate.bound, lambda: None)
+    encoding = priced_formula(instance, bound, bound.certificate.bound, lambda: None).encoding
     clauses = {robot.robot.id: robot for robot in encoding.robots}
     solver = Cadical195(bootstrap_with=encoding.formula.clauses)
     dear = 0
