@@ -2,6 +2,7 @@
 
 from carp_optimized.__main__ import compile_all as compile_planner
 from carp_optimum.bound import lower_bound
+from carp_optimum.branching import Branching
 from carp_optimum.deadlines import Deadlines, Member
 from carp_optimum.price_search import PriceSearch
 from carp_optimum.sight_search import SightSearch
@@ -19,6 +20,7 @@ def compile_all() -> None:
     unproved = DeadlinesDocument(("r", "s"), (0, 0), 0, "")
     search.add_deadlines([Deadlines([Member(0, 0, 0, ()), Member(1, 0, 1, (1,))], unproved)])
     SightSearch(search).round(lambda: None)
+    list(Branching(instance, 12, lambda: None).run())
     search.finish()
     search.least_costs()
 

@@ -46,7 +46,7 @@ def market_of(instance: Instance, graph: Graph, requests: Requests, longest: int
         keys=np.zeros(edges + 1, np.int64),
         nodes=np.zeros(edges + 1, np.int32),
     )
-    back = _moves_back(instance)
+    back = moves_back(instance)
     numbers = np.array([back.get(move, NONE) for move in range(edges)], np.int32)
     prices = Prices(wide, wide, numbers, wide, wide, wide, wide)
     usage = Usage(empty, empty, empty, wide, wide)
@@ -55,7 +55,7 @@ def market_of(instance: Instance, graph: Graph, requests: Requests, longest: int
     return Market(graph, requests, prices, charges, ways, usage, scratch, 0, 1, instance.after_goal == "park")
 
 
-def _moves_back(instance: Instance) -> Mapping[int, int]:
+def moves_back(instance: Instance) -> Mapping[int, int]:
     """For each move that has a move back, the number of that."""
     moves = [(source, target) for source in instance.graph.index for target in instance.graph.successors[source]]
     number = {move: position for position, move in enumerate(moves)}

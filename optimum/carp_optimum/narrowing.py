@@ -1,17 +1,21 @@
 """A lower bound and plans that come ever closer, searched for beside the core-guided search (`carp_optimum.optimum`).
 
-First an annealing gives plans, and prices a lower bound (`carp_optimum.bound`). From there up, a few totals at a time,
-the formula of all plans of at most such a total (`carp_optimum.priced_formula`) either has no model, which raises the
-bound, or one, which gives better plans, until the bound is the total of the best plans. Where the bound is too far from
-the total for such formulas, only the plans get better.
+First an annealing gives plans. Then plans of a total of at most a few ticks above the bound are searched for, again and
+again: there are none, which raises the bound, or the cheapest ones are found, and these are the optimum. For a crowd
+this is a search by branching (`carp_optimum.branching`). For other instances, prices give a lower bound
+(`carp_optimum.bound`), and it is a formula (`carp_optimum.priced_formula`). Where the bound is too far from the total
+for such formulas, only the plans get better.
 
 Each stage gives the work of the next one before it begins. So one who asks for the results of less work need not wait.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 from carp_optimum import heuristics
+from carp_optimum.branching import Branching, is_crowded
 from carp_optimum.priced_formula import priced_formula
 from carp_optimum.reduced_costs import PricedBound
 from carp_optimum.solver import Solver
@@ -20,13 +24,13 @@ from carp_spec import Instance, Plan, Refusal, total_cost
 PRICE_STEPS = 1600
 LARGEST_GAP = 12  # ticks
 STRIDE = 2
-"""A formula's largest total is this far above the lower bound: one for each total would take twice the time."""
+"""The largest total of a search is this far above the lower bound: one for each total would take twice the time."""
 CONFLICTS = 300
 """After this many conflicts a formula's search gives the work that it has done."""
 WORK_OF_STEP, WORK_OF_STEP_BY_TEN_RESOURCES = 120, 6
 """The propagations of a step of the search for prices, for each robot, and more on a larger graph."""
 WORK_OF_PAIR = 2500
-"""The propagations of making a formula with prices, for each robot and each other one."""
+"""The propagations of making a formula or a branching, for each robot and each other one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,20 +71,44 @@ def narrowed(instance: Instance, look: Callable[[], None]) -> Iterator[tuple[int
         known = known.with_plans(plans)
         break
     yield work, known
-    work_of_step = WORK_OF_STEP + WORK_OF_STEP_BY_TEN_RESOURCES * len(instance.graph.resources) // 10
-    work += PRICE_STEPS * work_of_step * robots
-    yield work, known
-    bound = _priced_bound(instance, look)
-    known = replace(known, lower=bound.certificate.bound)
-    while not known.is_optimum and bound.gap(known.lower) <= LARGEST_GAP * bound.scale:
+    if known.total is not None and is_crowded(instance):
+        known = replace(known, lower=_crowd_bound(instance, known.total, look))
+        work, known = yield from _raised(known, work, lambda _: True, lambda most: Branching(instance, most, look))
+    if not known.is_optimum:
+        work_of_step = WORK_OF_STEP + WORK_OF_STEP_BY_TEN_RESOURCES * len(instance.graph.resources) // 10
+        work += PRICE_STEPS * work_of_step * robots
         yield work, known
-        work += WORK_OF_PAIR * robots**2
+        bound = _priced_bound(instance, look)
+        known = replace(known, lower=max(known.lower, bound.certificate.bound))
+        work, known = yield from _raised(
+            known,
+            work,
+            lambda lower: bound.gap(lower) <= LARGEST_GAP * bound.scale,
+            lambda most: _Formula(instance, bound, most, look),
+        )
+    yield work, known
+    if not known.is_optimum:
+        for further, plans in better:
+            known = known.with_plans(plans)
+            yield work + further, known
+
+
+def _raised(
+    known: Between, work: int, is_near: Callable[[int], bool], search_for: Callable[[int], "_Search"]
+) -> Generator[tuple[int, Between], None, tuple[int, Between]]:
+    """The results of searches for plans of at most ever larger totals, as long as the bound is near enough for them.
+
+    It ends where a search is refused. Returns the work and the last result.
+    """
+    while not known.is_optimum and is_near(known.lower):
+        yield work, known
+        work += WORK_OF_PAIR * len(known.instance.robots) ** 2
         yield work, known
         most = known.lower + STRIDE
         if known.total is not None:
             most = min(most, known.total - 1)
         try:
-            search = _Formula(instance, bound, most, look)
+            search = search_for(most)
         except Refusal:
             break
         for further in search.run():
@@ -89,11 +117,26 @@ def narrowed(instance: Instance, look: Callable[[], None]) -> Iterator[tuple[int
             yield work + further, known
         work += search.work
         known = replace(known, lower=search.least)
-    yield work, known
-    if not known.is_optimum:
-        for further, plans in better:
-            known = known.with_plans(plans)
-            yield work + further, known
+    return work, known
+
+
+class _Search(Protocol):
+    """The search for the cheapest plans of at most a total; after it, no plans cost less than `least`."""
+
+    plans: Sequence[Plan] | None
+    least: int
+    work: int
+
+    def run(self) -> Iterator[int]:
+        """Search, and give the work so far now and then, and where `plans` are better."""
+        ...
+
+
+def _crowd_bound(instance: Instance, total: int, look: Callable[[], None]) -> int:
+    """The bound of all parts together, where plans of this total are known; 0 if its tables would be too large."""
+    with suppress(Refusal):
+        return Branching(instance, total - 1, look).least_of_all()
+    return 0
 
 
 def _priced_bound(instance: Instance, look: Callable[[], None]) -> PricedBound:
@@ -103,7 +146,7 @@ def _priced_bound(instance: Instance, look: Callable[[], None]) -> PricedBound:
 
 
 class _Formula:
-    """The search for the cheapest plans of at most a total; after it, no plans cost less than `least`."""
+    """A search by a formula with prices."""
 
     def __init__(self, instance: Instance, bound: PricedBound, most: int, look: Callable[[], None]) -> None:
         self.priced = priced_formula(instance, bound, most, look)
@@ -113,7 +156,7 @@ class _Formula:
         self.work = 0
 
     def run(self) -> Iterator[int]:
-        """Search, and give the work so far now and then, and where `plans` are better."""
+        """Search: see `_Search`."""
         encoding = self.priced.encoding
         solver = Solver(encoding.formula, self.look, glucose=True)
         try:

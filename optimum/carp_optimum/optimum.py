@@ -164,10 +164,11 @@ class _Search:
     def start_beside(self) -> None:
         """Start the search beside where the compiled search for prices is at hand."""
         from carp_optimized.compiling import is_cached  # noqa: PLC0415 - slow to load
+        from carp_optimum.crowd_bounds import bound_part  # noqa: PLC0415
         from carp_optimum.priced_ways import find_ways  # noqa: PLC0415
 
         self.priced = False
-        if is_cached(find_ways):
+        if is_cached(find_ways) and is_cached(bound_part):
             self.work_before = self.solver.work
             self.beside = Beside(lambda look: narrowed(self.instance, look), self.look)
 

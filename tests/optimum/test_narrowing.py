@@ -14,6 +14,7 @@ from tests.verify.tiny import TINY
 
 import carproof
 from carp_optimum.beside import Beside
+from carp_optimum.bound import lower_bound
 from carp_optimum.narrowing import Between, narrowed
 from carp_optimum.optimum import optimum
 from carp_optimum.priced_formula import PricedFormula, priced_formula
@@ -22,6 +23,7 @@ from carp_optimum.reduced_costs import PricedBound
 from carp_spec import AfterGoal, Carp, Instance, Robot, judge, total_cost
 from carp_verify.joint_search import least_total_cost
 from carp_verify.proof import solution_of, verify_proof
+from carproof.generate import Fleet, Grid, grid_instance
 from carproof.strategies import instances
 
 SECONDS = 60
@@ -117,6 +119,27 @@ def test_formulas_end_below_the_total_of_the_best_plans_known(monkeypatch: pytes
     assert results(instance)[-1] == Between(instance, least.cost, plans)
     assert searched
     assert max(searched) == least.cost - 1
+
+
+@pytest.mark.usefixtures("beside_at_once")
+def test_a_crowd_is_searched_by_branching(monkeypatch: pytest.MonkeyPatch) -> None:
+    instance = grid_instance(Grid(4, 4, 20), Fleet(16, 2))
+    least = optimum(instance, SECONDS, priced=False).cost
+    monkeypatch.setattr("carp_optimum.narrowing.priced_formula", None)
+    found = results(instance)
+    assert (found[-1].lower, found[-1].total) == (least, least)
+    assert len({known.lower for known in found}) > 2
+
+
+@pytest.mark.usefixtures("beside_at_once")
+def test_a_crowd_whose_tables_would_be_too_large_is_searched_by_formulas(monkeypatch: pytest.MonkeyPatch) -> None:
+    instance = grid_instance(Grid(4, 4, 20), Fleet(16, 2))
+    least = optimum(instance, SECONDS, priced=False).cost
+    prices = PricedBound(instance, lower_bound(instance, steps=100, seen=False))
+    monkeypatch.setattr("carp_optimum.narrowing._priced_bound", lambda *_: prices)
+    monkeypatch.setattr("carp_optimum.market.LARGEST_TABLE", 200)
+    found = results(instance)
+    assert (found[-1].lower, found[-1].total) == (least, least)
 
 
 @pytest.mark.usefixtures("beside_at_once")

@@ -1,0 +1,102 @@
+"""Branching over first moves finds the least total of a crowd, and refutes each total below it."""
+
+import itertools
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from tests.profiles import draws
+
+from carp_optimum.branching import Branching, is_crowded
+from carp_optimum.optimum import optimum
+from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, judge
+from carp_verify.encoding import Encoding
+from carp_verify.joint_search import least_total_cost
+from carp_verify.proof import solution_of
+from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
+
+SECONDS = 60
+
+
+def nothing() -> None:
+    """Look at no clock."""
+
+
+def searched(instance: Instance, most: int) -> Branching:
+    """The search at its end; its plans must be lawful, and cost as it says."""
+    search = Branching(instance, most, nothing)
+    works = list(search.run())
+    assert all(work <= later for work, later in itertools.pairwise([*works, search.work]))
+    if search.plans is None:
+        assert search.least == most + 1
+    else:
+        verdict = judge(instance, solution_of(list(search.plans)))
+        assert (verdict.violations, verdict.unplanned, verdict.cost) == ((), 0, search.least)
+    return search
+
+
+@st.composite
+def crowds(draw: st.DrawFn) -> Instance:
+    """Two to four robots on four or five resources, with moves that may lead one way only."""
+    ids = "abcde"[: draw(st.integers(4, 5))]
+    moves = draw(st.lists(st.sampled_from(list(itertools.permutations(ids, 2))), min_size=4, unique=True))
+    graph = ResourceGraph(tuple(map(Resource, ids)), tuple(moves), directed=True)
+    starts = draw(st.permutations(ids))
+    goals = draw(st.lists(st.sampled_from(ids), min_size=2, max_size=4))
+    return Instance(graph, tuple(Robot(number, starts[number], goal) for number, goal in enumerate(goals)), "vanish")
+
+
+@settings(max_examples=draws(300))
+@given(crowds())
+def test_the_cheapest_plans_are_found_and_no_cheaper_ones(instance: Instance) -> None:
+    if Encoding(instance).wayless:
+        return
+    least = least_total_cost(instance)
+    if least is None:
+        assert searched(instance, 20).plans is None
+        return
+    assert searched(instance, least).least == least
+    assert searched(instance, least + 3).least == least
+    refuted = searched(instance, least - 1)
+    assert (refuted.plans, refuted.least) == (None, least)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_full_grid_is_searched_as_far_as_its_optimum(seed: int) -> None:
+    instance = grid_instance(Grid(4, 4, 20), Fleet(16, seed))
+    least = optimum(instance, SECONDS, priced=False).cost
+    assert least is not None
+    assert searched(instance, least + 1).least == least
+    assert searched(instance, least - 1).plans is None
+
+
+def test_the_bound_of_all_parts_together_is_below_the_optimum_and_above_the_shortest_paths() -> None:
+    instance = grid_instance(Grid(4, 4, 20), Fleet(16, 2))
+    least = optimum(instance, SECONDS, priced=False)
+    assert least.cost is not None
+    assert least.shortest is not None
+    assert least.shortest + 2 < Branching(instance, least.cost + 5, nothing).least_of_all() <= least.cost
+    assert Branching(instance, least.shortest, nothing).least_of_all() == least.shortest + 1
+
+
+def test_robots_that_must_turn_in_a_ring_are_planned_together() -> None:
+    """All four corners move on by one, which no two robots can do alone; the fifth robot is in nobody's way."""
+    ring = [("a", "b"), ("b", "c"), ("c", "d"), ("d", "a"), ("d", "e")]
+    graph = ResourceGraph(tuple(map(Resource, "abcde")), tuple(ring))
+    robots = [Robot(start, start, goal) for start, goal in (("a", "b"), ("b", "c"), ("c", "d"), ("d", "a"), ("e", "e"))]
+    search = searched(Instance(graph, tuple(robots), "vanish"), 9)
+    assert search.least == 4
+    assert search.plans is not None
+    assert [plan.visits[-1].enter for plan in search.plans] == [1, 1, 1, 1, 0]
+
+
+def test_crowds_are_robots_that_vanish_and_stand_on_most_resources() -> None:
+    assert is_crowded(grid_instance(Grid(6, 6, 20), Fleet(25, 0)))
+    assert not is_crowded(grid_instance(Grid(6, 6, 20), Fleet(24, 0)))
+    assert not is_crowded(grid_instance(Grid(6, 6, 20), Fleet(30, 0, "park")))
+    assert not is_crowded(grid_instance(Grid(4, 4, 20), Fleet(16, 0), Traits(duration=Range(2, 2))))
+
+
+def test_tables_that_would_be_too_large_are_refused() -> None:
+    with pytest.raises(Refusal, match="robots times ticks times resources must be at most"):
+        Branching(grid_instance(Grid(30, 30, 20), Fleet(700, 0)), 100_000, nothing)
