@@ -36,13 +36,15 @@ from carp_optimum.steps import is_stepwise
 from carp_spec import Instance, Plan, Visit
 from carp_verify.robot_clauses import least_rests, predecessors
 
-FIRST_STEPS, STEPS = 1000, 45
+FIRST_STEPS, STEPS = 1000, 75
 """The steps of the prices for all parts together, and for each part."""
 FIRST_AIM, AIM = 4 * SCALE, SCALE
 PARTS_BETWEEN_RESULTS = 64
 MOST_RISE = 8 * SCALE
-ARCS_OF_PROPAGATION = 24
-"""How many rows and arcs take as long as a propagation of a solver."""
+"""A choice counts as if it raised the bound by no more, also where it leaves nothing to search."""
+MOST_NODES = 1 << 21
+ARCS_OF_PROPAGATION = 64
+"""The rows and arcs that count as a propagation of a solver, so that the search beside this one seldom waits for it."""
 
 
 def is_crowded(instance: Instance) -> bool:
@@ -183,7 +185,7 @@ def _nodes_within(instance: Instance, most: int) -> npt.NDArray[np.bool_]:
     ticks = [rest[robot.start] + 1 for robot, rest in zip(instance.robots, rests, strict=True)]
     spare = most - sum(ticks)
     last = max(max(ticks) + spare, 0)
-    refuse_table("$.robots", "robots times ticks times resources", len(ticks) * (last + 1) * len(index))
+    refuse_table("$.robots", "robots times ticks times resources", len(ticks) * (last + 1) * len(index), MOST_NODES)
     kept = np.zeros((len(ticks), last + 1, len(index)), np.bool_)
     for robot, rest in enumerate(rests):
         for resource, further in rest.items():

@@ -4,7 +4,7 @@ All stays take a tick and all resources hold one robot. A node says that a robot
 of a robot is a path of nodes from its start to its goal. A part of the search is the nodes that are still `alive`.
 Robots pay prices, as in `carp_optimum.market_arrays`: a row is a resource, or a move and the stays before it, at a
 tick. The bound is the sum of the cheapest ways, less all prices. As it takes microseconds, parts are bounded by the
-thousand; so only what is alive is looked at, in arrays that are made anew for each part.
+thousand; so only what is alive is looked at, in arrays that are made for each part.
 """
 
 from typing import NamedTuple
@@ -16,7 +16,7 @@ from carp_optimized.references import Native, dereference
 SCALE = 1 << 16  # parts of a tick
 ENDLESS = 1 << 60
 UNIT = 64  # of a course
-KEPT, PARTS = 15, 16  # of the course before
+KEPT, KEPT_BITS = 15, 4  # of the course before, by its sixteenths
 LESS_BITS = 2  # rows of moves take a quarter of the step, as in `carp_optimum.price_steps`
 FACTOR_BITS = 16  # of the step, a factor of the course
 LEAST_AIM = SCALE // 10
@@ -109,7 +109,7 @@ def rows_of_tick(part: Part) -> int:
 def bound_part(native: Native[Part], most: int, steps: int, aim: int) -> int:
     """The bound of the part, in parts of a tick, or `ENDLESS` if it has no plans of at most this total.
 
-    The prices climb for so many steps, with this aim at first, or until the bound is beyond the total. If `used`
+    The prices climb for this number of steps, with this aim at first, or until the bound is beyond the total. If `used`
     exceeds 1 nowhere, the ways taken last are lawful plans. Nodes that no plans of at most the total have are alive no
     more.
     """
@@ -172,7 +172,8 @@ def gather(part: Part) -> bool:
 @compiled
 def climb(part: Part, limit: int, steps: int, aim: int) -> int:
     """Take steps of the prices that aim closer and closer to the best bound; it, or one beyond the limit."""
-    rows = part.rows
+    price = part.rows.price
+    kept = part.rows.best
     width = rows_of_tick(part)
     last = begin(part)
     best = -ENDLESS
@@ -188,7 +189,7 @@ def climb(part: Part, limit: int, steps: int, aim: int) -> int:
         if bound > best:
             best = bound
             for row in range((last + 1) * width):
-                rows.best[row] = rows.price[row]
+                kept[row] = price[row]
         if best > limit or is_lawful(part):
             return best
         if failures >= PATIENCE:
@@ -197,8 +198,8 @@ def climb(part: Part, limit: int, steps: int, aim: int) -> int:
             if aim < LEAST_AIM:
                 return best
             for row in range((last + 1) * width):
-                rows.price[row] = rows.best[row]
-                rows.course[row] = 0
+                price[row] = kept[row]
+                part.rows.course[row] = 0
         elif not step(part, last, best + aim - bound):
             return best
     return best
@@ -207,17 +208,16 @@ def climb(part: Part, limit: int, steps: int, aim: int) -> int:
 @compiled
 def begin(part: Part) -> int:
     """Clear the courses, and give the last tick that has a price."""
-    rows = part.rows
+    price, best, paid, course = part.rows.price, part.rows.best, part.rows.paid, part.rows.course
     last = 0
-    width = rows_of_tick(part)
-    for row in range(rows.price.size):
-        rows.course[row] = 0
-        rows.best[row] = 0
-        rows.paid[row] = 0
-        if rows.price[row] > 0:
-            last = row // width
+    for row in range(price.size):
+        course[row] = 0
+        best[row] = 0
+        paid[row] = 0
+        if price[row] > 0:
+            last = row
     part.counters[STEPS] = 0
-    return last
+    return last // rows_of_tick(part)
 
 
 @compiled
@@ -251,29 +251,37 @@ def find_ways(part: Part) -> int:
     """Find the cheapest way of each robot, and its use of the rows: what they cost together."""
     nodes = part.nodes
     live = part.live
-    for row in range(part.rows.used.size):
-        part.rows.used[row] = 0
-    part.counters[LAST] = 0
+    node, arc, to, row, least = live.node, live.arc, live.to, live.row, live.least
+    place, tick, paid, choice = nodes.place, nodes.tick, part.rows.paid, live.choice
+    clear_use(part)
     total = 0
     for robot in range(nodes.goal.size):
         first = int(live.of_robot[robot])
+        goal = int(nodes.goal[robot])
         for each in range(int(live.of_robot[robot + 1]) - 1, first - 1, -1):
-            node = int(live.node[each])
-            least = ENDLESS
-            if nodes.place[node] == nodes.goal[robot]:
-                least = int(nodes.tick[node]) * SCALE
-            for arc in range(int(live.arc[each]), int(live.arc[each + 1])):
-                cost = int(part.rows.paid[int(live.row[arc])]) + int(live.least[int(live.to[arc])])
-                if cost < least:
-                    least = cost
-                    live.choice[each] = arc
-            live.least[each] = least
-        if live.least[first] >= ENDLESS:
+            here = int(node[each])
+            cheapest = int(tick[here]) * SCALE if place[here] == goal else ENDLESS
+            for way in range(int(arc[each]), int(arc[each + 1])):
+                cost = int(paid[int(row[way])]) + int(least[int(to[way])])
+                if cost < cheapest:
+                    cheapest = cost
+                    choice[each] = way
+            least[each] = cheapest
+        if least[first] >= ENDLESS:
             return ENDLESS
-        total += int(live.least[first]) + int(part.rows.price[int(nodes.place[int(live.node[first])])])
+        total += int(least[first]) + int(part.rows.price[int(place[int(node[first])])])
         use_way(part, robot)
-    part.counters[WORK] = int(part.counters[WORK]) + int(live.arc[int(live.of_robot[nodes.goal.size])])
+    part.counters[WORK] = int(part.counters[WORK]) + int(arc[int(live.of_robot[nodes.goal.size])])
     return total
+
+
+@compiled
+def clear_use(part: Part) -> None:
+    """Take all ways from the rows."""
+    used = part.rows.used
+    for row in range(used.size):
+        used[row] = 0
+    part.counters[LAST] = 0
 
 
 @compiled
@@ -289,8 +297,8 @@ def use_way(part: Part, robot: int) -> None:
     used[int(nodes.place[node])] += 1
     while nodes.place[node] != nodes.goal[robot]:
         arc = int(live.choice[each])
-        move = int(live.row[arc]) % width - resources
-        begin_of_tick = int(live.row[arc]) - int(live.row[arc]) % width
+        begin_of_tick = (int(nodes.tick[node]) + 1) * width
+        move = int(live.row[arc]) - begin_of_tick - resources
         if move < 0:
             here = int(nodes.place[node])
             for stayed in range(int(nodes.first[here]), int(nodes.first[here + 1])):
@@ -308,8 +316,9 @@ def use_way(part: Part, robot: int) -> None:
 @compiled
 def is_lawful(part: Part) -> bool:
     """Whether the ways use no row more than once."""
+    used = part.rows.used
     for row in range((int(part.counters[LAST]) + 1) * rows_of_tick(part)):  # noqa: SIM110 - compiled
-        if part.rows.used[row] > 1:
+        if used[row] > 1:
             return False
     return True
 
@@ -318,25 +327,27 @@ def is_lawful(part: Part) -> bool:
 def step(part: Part, last: int, gain: int) -> bool:
     """Change the prices up to a tick along their courses, to gain so much; false if nothing is to be gained."""
     count_ways(part)
-    rows = part.rows
+    price = part.rows.price
+    course = part.rows.course
+    used = part.rows.used
     resources = part.nodes.first.size - 1
     width = rows_of_tick(part)
     square = 0
     for tick in range(last + 1):
         for row in range(tick * width, (tick + 1) * width):
-            course = int(rows.course[row]) * KEPT // PARTS + UNIT * (int(rows.used[row]) - 1)
-            if course < 0 and rows.price[row] == 0:
-                course = 0
-            rows.course[row] = course
-            square += course * course if row < tick * width + resources else course * course >> LESS_BITS
+            turned = (int(course[row]) * KEPT >> KEPT_BITS) + UNIT * (int(used[row]) - 1)
+            if turned < 0 and price[row] == 0:
+                turned = 0
+            course[row] = turned
+            square += turned * turned if row < tick * width + resources else turned * turned >> LESS_BITS
     if square == 0:
         return False
     factor = (max(gain, 0) * UNIT << FACTOR_BITS) // square
     for tick in range(last + 1):
         for row in range(tick * width, (tick + 1) * width):
-            if rows.course[row] != 0:
+            if course[row] != 0:
                 bits = FACTOR_BITS if row < tick * width + resources else FACTOR_BITS + LESS_BITS
-                rows.price[row] = max(int(rows.price[row]) + (factor * int(rows.course[row]) >> bits), 0)
+                price[row] = max(int(price[row]) + (factor * int(course[row]) >> bits), 0)
     return True
 
 

@@ -10,10 +10,10 @@ from carp_spec import Instance, Refusal
 from carp_verify.bound_rules import LARGEST_TABLE, size_fits
 
 
-def refuse_table(path: str, what: str, entries: int) -> None:
+def refuse_table(path: str, what: str, entries: int, most: int = LARGEST_TABLE) -> None:
     """Raise `Refusal` if a table would be too large."""
-    if not size_fits(entries, LARGEST_TABLE):
-        message = f"{what} must be at most {LARGEST_TABLE}, the limit, and would be {entries}"
+    if not size_fits(entries, most):
+        message = f"{what} must be at most {most}, the limit, and would be {entries}"
         raise Refusal("limit", path, size_fits.id, message)
 
 

@@ -99,4 +99,4 @@ def test_crowds_are_robots_that_vanish_and_stand_on_most_resources() -> None:
 
 def test_tables_that_would_be_too_large_are_refused() -> None:
     with pytest.raises(Refusal, match="robots times ticks times resources must be at most"):
-        Branching(grid_instance(Grid(30, 30, 20), Fleet(700, 0)), 100_000, nothing)
+        Branching(grid_instance(Grid(10, 10, 20), Fleet(100, 0)), 1000, nothing)

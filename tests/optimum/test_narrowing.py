@@ -137,7 +137,7 @@ def test_a_crowd_whose_tables_would_be_too_large_is_searched_by_formulas(monkeyp
     least = optimum(instance, SECONDS, priced=False).cost
     prices = PricedBound(instance, lower_bound(instance, steps=100, seen=False))
     monkeypatch.setattr("carp_optimum.narrowing._priced_bound", lambda *_: prices)
-    monkeypatch.setattr("carp_optimum.market.LARGEST_TABLE", 200)
+    monkeypatch.setattr("carp_optimum.branching.MOST_NODES", 200)
     found = results(instance)
     assert (found[-1].lower, found[-1].total) == (least, least)
 
