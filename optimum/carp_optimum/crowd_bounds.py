@@ -407,15 +407,15 @@ def options(part: Part, robot: int, tick: int) -> int:
 
 
 @compiled
-def sure_place(part: Part, robot: int, tick: int) -> int:
-    """The resource in which the robot is for sure at the tick, or `NONE`."""
+def only_place(part: Part, robot: int, tick: int) -> int:
+    """The only resource in which the robot may be at the tick, if it is not gone, or `NONE`."""
     place = NONE
     for resource in range(part.nodes.first.size - 1):
         if is_alive(part, robot, tick, resource):
             if place != NONE:
                 return NONE
             place = resource
-    return NONE if has_arrived(part, robot, tick) else place
+    return place
 
 
 @compiled
@@ -429,7 +429,7 @@ def settle(part: Part) -> bool:
                 count = options(part, robot, tick)
                 if count == 0:
                     return False
-                place = sure_place(part, robot, tick) if count == 1 else NONE
+                place = only_place(part, robot, tick) if count == 1 else NONE
                 if place != NONE and keep_others_off(part, robot, tick, place):
                     changes = True
     return True
@@ -438,13 +438,13 @@ def settle(part: Part) -> bool:
 @compiled
 def keep_others_off(part: Part, robot: int, tick: int, place: int) -> bool:
     """Drop the nodes of others in the place, and in the one before if they would exchange; whether there were any."""
-    before = sure_place(part, robot, tick - 1)
+    before = only_place(part, robot, tick - 1)
     changes = False
     for other in range(part.nodes.goal.size):
         if other != robot:
             changes |= drop(part, other, tick, place)
             exchanges = before not in (NONE, place) and is_alive(part, other, tick, before)
-            if exchanges and sure_place(part, other, tick - 1) == place:
+            if exchanges and only_place(part, other, tick - 1) == place:
                 changes |= drop(part, other, tick, before)
     return changes
 
@@ -539,14 +539,8 @@ def put(native: Native[Part], robot: int, tick: int, resource: int) -> bool:
             keep = now < tick
         elif now == tick:
             keep = node == chosen
-        elif now < tick:
-            keep = nodes.place[node] != nodes.goal[robot]
         else:
-            keep = resource != nodes.goal[robot]
+            keep = now > tick or nodes.place[node] != nodes.goal[robot]
         if not keep:
             part.alive[node] = 0
-    if resource != NONE:
-        for other in range(nodes.goal.size):
-            if other != robot:
-                drop(part, other, tick, resource)
     return settle(part)

@@ -3,7 +3,7 @@
 import itertools
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from tests.profiles import draws
 
@@ -46,11 +46,27 @@ def crowds(draw: st.DrawFn) -> Instance:
     return Instance(graph, tuple(Robot(number, starts[number], goal) for number, goal in enumerate(goals)), "vanish")
 
 
-@settings(max_examples=draws(300))
-@given(crowds())
-def test_the_cheapest_plans_are_found_and_no_cheaper_ones(instance: Instance) -> None:
+def directed(moves: str, *ends: str) -> Instance:
+    """Robots with these starts and goals, on resources a to d with these moves."""
+    graph = ResourceGraph(tuple(map(Resource, "abcd")), tuple((a, b) for a, b in moves.split()), directed=True)
+    return Instance(graph, tuple(Robot(number, a, b) for number, (a, b) in enumerate(ends)), "vanish")
+
+
+@settings(max_examples=draws(600))
+@given(crowds(), st.sampled_from([1, 3, 75]))
+@example(directed("ab ac ad ba bc bd ca", "ba", "ca"), 1)  # a robot may be gone
+@example(directed("dc ab ac ad cb", "dc", "cb", "ab"), 1)  # dear nodes leave each robot one way
+def test_the_cheapest_plans_are_found_and_no_cheaper_ones(instance: Instance, steps: int) -> None:
+    """With few steps the bounds are weak, so that there is much to split."""
     if Encoding(instance).wayless:
         return
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr("carp_optimum.branching.FIRST_STEPS", steps)
+        patched.setattr("carp_optimum.branching.STEPS", steps)
+        _the_optimum_is_found(instance)
+
+
+def _the_optimum_is_found(instance: Instance) -> None:
     least = least_total_cost(instance)
     if least is None:
         assert searched(instance, 20).plans is None
