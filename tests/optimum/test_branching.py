@@ -48,8 +48,11 @@ def crowds(draw: st.DrawFn) -> Instance:
 
 def directed(moves: str, *ends: str) -> Instance:
     """Robots with these starts and goals, on resources a to d with these moves."""
-    graph = ResourceGraph(tuple(map(Resource, "abcd")), tuple((a, b) for a, b in moves.split()), directed=True)
-    return Instance(graph, tuple(Robot(number, a, b) for number, (a, b) in enumerate(ends)), "vanish")
+    graph = ResourceGraph(
+        tuple(map(Resource, "abcd")), tuple((move[0], move[1]) for move in moves.split()), directed=True
+    )
+    robots = (Robot(number, start_and_goal[0], start_and_goal[1]) for number, start_and_goal in enumerate(ends))
+    return Instance(graph, tuple(robots), "vanish")
 
 
 @settings(max_examples=draws(600))
