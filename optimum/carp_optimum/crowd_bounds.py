@@ -24,10 +24,9 @@ PATIENCE = 30  # steps
 SURE_TICKS = 3  # ticks after the start at which it is asked where robots surely are
 FEW = 32  # one part of the steps: a node in fewer ways, or in nearly all, is no choice
 GUESS = SCALE // 2  # what a choice raises the bound by, before it was tried
-WORK, STEPS, LAST, LATE = range(
-    4
-)  # the counters: rows and arcs looked at, steps, last ticks of the ways and of the nodes
 COUNTERS = 4
+WORK, STEPS, LAST, LATE = range(COUNTERS)
+"""The counters: rows and arcs looked at, steps, the last tick of the ways and that of the nodes."""
 
 
 class Nodes(NamedTuple):
