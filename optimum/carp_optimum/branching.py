@@ -18,19 +18,9 @@ import numpy.typing as npt
 from carp_optimized.arrays import NONE, Ints, Longs
 from carp_optimized.encoding import encode_graph
 from carp_optimized.references import Native
-from carp_optimum.crowd_bounds import (
-    COUNTERS,
-    ENDLESS,
-    SCALE,
-    WORK,
-    Live,
-    Nodes,
-    Part,
-    Rows,
-    bound_part,
-    choose,
-    put,
-)
+from carp_optimum.crowd_arrays import COUNTERS, ENDLESS, SCALE, WORK, Live, Nodes, Part, Rows
+from carp_optimum.crowd_bounds import bound_part
+from carp_optimum.crowd_choices import choose, put
 from carp_optimum.market import moves_back, refuse_table
 from carp_optimum.steps import is_stepwise
 from carp_spec import Instance, Plan, Visit
