@@ -40,6 +40,11 @@ class Beside(Generic[Result]):
         else:
             self._steps = _changes(search(look))
 
+    @property
+    def has_ended(self) -> bool:
+        """Whether all results of the search are known."""
+        return self._ended
+
     def result(self, work: int) -> Result | None:
         """The last result before the search has done more than this work; `None` if it had none."""
         while self._work <= work and not self._ended:

@@ -20,7 +20,7 @@ from carp_optimized.encoding import encode_graph
 from carp_optimized.references import Native
 from carp_optimum.crowd_arrays import COUNTERS, ENDLESS, SCALE, WORK, Live, Nodes, Part, Rows
 from carp_optimum.crowd_bounds import bound_part
-from carp_optimum.crowd_choices import choose, put
+from carp_optimum.crowd_choices import put, robot_of_choice, tick_of_choice
 from carp_optimum.market import moves_back, refuse_table
 from carp_optimum.steps import is_stepwise
 from carp_spec import Instance, Plan, Visit
@@ -28,8 +28,10 @@ from carp_verify.robot_clauses import least_rests, predecessors
 
 FIRST_STEPS, STEPS = 1000, 75
 """The steps of the prices for all parts together, and for each part."""
-FIRST_AIM, AIM = 4 * SCALE, SCALE
+FIRST_AIM, AIM = 4 * SCALE, 3 * SCALE // 2
 PARTS_BETWEEN_RESULTS = 64
+PARTS_TO_SHARE = 64
+"""Two searches that take half of the parts each begin with the same splits, until there are this many parts."""
 MOST_RISE = 8 * SCALE
 """A choice counts as if it raised the bound by no more, also where it leaves nothing to search."""
 MOST_NODES = 1 << 21
@@ -44,24 +46,25 @@ def is_crowded(instance: Instance) -> bool:
 
 
 class _Open(NamedTuple):
-    """A part that is to be split: its bound, nodes and prices, and the robot and tick whose choices split it."""
+    """A part that is to be split: its bound, nodes and prices, and the tick whose choices split it."""
 
     bound: int
     alive: Ints
     price: Longs
-    robot: int
     tick: int
 
 
 class Branching:
     """The search for the cheapest plans of at most a total; after it, no plans cost less than `least`.
 
+    With a `half`, 0 or 1, that is true of half of the parts: of all, where both halves are searched for the same total.
     Each robot needs a way. `look` is called before each part is bounded, and may end the search by an exception.
     Raises `Refusal` where the tables would be too large.
     """
 
-    def __init__(self, instance: Instance, most: int, look: Callable[[], None]) -> None:
+    def __init__(self, instance: Instance, most: int, look: Callable[[], None], half: int | None = None) -> None:
         self.instance = instance
+        self.half = half
         self.look = look
         self.plans: Sequence[Plan] | None = None
         self.least = most + 1
@@ -78,6 +81,8 @@ class Branching:
             self._make_part(self._kept())
             self._part.rows.price[:] = price[: len(self._part.rows.price)]
             open_parts = self._bounded(STEPS, AIM)
+        if self.half is not None:
+            open_parts = self._shared(open_parts, self.half)
         for count in itertools.count():
             self.work = (before + int(self._part.counters[WORK])) // ARCS_OF_PROPAGATION
             if not open_parts:
@@ -87,6 +92,14 @@ class Branching:
                 open_parts += sorted(self._split(part), key=lambda each: -each.bound)
             if self.plans is not plans or count % PARTS_BETWEEN_RESULTS == 0:
                 yield self.work
+
+    def _shared(self, parts: list[_Open], half: int) -> list[_Open]:
+        """Half of the parts, after those of the lowest bound are split until there are enough of them."""
+        while 0 < len(parts) < PARTS_TO_SHARE:
+            parts.sort(key=lambda each: -each.bound)
+            parts += self._split(parts.pop())
+        parts.sort(key=lambda each: -each.bound)
+        return parts[half::2]
 
     def least_of_all(self) -> int:
         """The bound before anything is split: no plans cost less than this, or than `least`."""
@@ -113,30 +126,48 @@ class Branching:
         if bound == ENDLESS:
             return []
         self._take_ways()
-        chosen = choose(self._native)
-        if chosen == NONE:  # all robots have one way left: plans, or against a rule
+        tick = tick_of_choice(self._native)
+        if tick == NONE:  # all robots have one way left: plans, or against a rule
             if bound_part(self._native, self.least - 1, 1, aim) < ENDLESS:
                 self._take_ways()
             return []
-        tick, robot = divmod(chosen, len(self._goals))
-        return [_Open(bound, self._part.alive.copy(), self._part.rows.price.copy(), robot, tick)]
+        return [_Open(bound, self._part.alive.copy(), self._part.rows.price.copy(), tick)]
 
     def _split(self, part: _Open) -> Iterator[_Open]:
-        """The parts that the choices of a robot at a tick make, bounded."""
-        at = self._part.nodes.at[part.robot].reshape(-1, len(self.instance.graph.resources))
-        nodes = [int(node) for node in at[part.tick] if node != NONE and part.alive[node] > 0]
-        if any(node != NONE and part.alive[node] > 0 for node in at[: part.tick, self._goals[part.robot]]):
-            nodes.append(NONE)
-        for node in nodes:
-            self._part.alive[:] = part.alive
+        """The parts that the choices of a robot at a tick make, bounded; choices that were never tried are tried."""
+        nodes = self._part.nodes
+        for untried in np.flatnonzero((nodes.tick == part.tick) & (nodes.tries == 0) & (part.alive > 0)):
+            robot = int(np.searchsorted(nodes.of_robot, untried, "right")) - 1
+            if len(self._choices(part, robot)) > 1 and not self._try(part, robot, int(untried)):
+                part.alive[untried] = 0
+        self._part.alive[:] = part.alive
+        robot = robot_of_choice(self._native, part.tick)
+        if robot == NONE:
             self._part.rows.price[:] = part.price
-            place = NONE if node == NONE else int(self._part.nodes.place[node])
-            bounded = self._bounded(STEPS, AIM) if put(self._native, part.robot, part.tick, place) else []
-            if node != NONE:
-                rise = min(bounded[0].bound - part.bound, MOST_RISE) if bounded else MOST_RISE
-                self._part.nodes.gain[node] += max(rise, 0)
-                self._part.nodes.tries[node] += 1
-            yield from bounded
+            yield from self._bounded(STEPS, AIM)
+            return
+        for node in self._choices(part, robot):
+            yield from self._try(part, robot, node)
+
+    def _choices(self, part: _Open, robot: int) -> Sequence[int]:
+        """The nodes that the robot may have at the part's tick, and `NONE` if it may be gone."""
+        at = self._part.nodes.at[robot].reshape(-1, len(self.instance.graph.resources))
+        nodes = [int(node) for node in at[part.tick] if node != NONE and part.alive[node] > 0]
+        if any(node != NONE and part.alive[node] > 0 for node in at[: part.tick, self._goals[robot]]):
+            nodes.append(NONE)
+        return nodes
+
+    def _try(self, part: _Open, robot: int, node: int) -> list[_Open]:
+        """The part that a choice makes, bounded; what the bound rises by is noted."""
+        self._part.alive[:] = part.alive
+        self._part.rows.price[:] = part.price
+        place = NONE if node == NONE else int(self._part.nodes.place[node])
+        bounded = self._bounded(STEPS, AIM) if put(self._native, robot, part.tick, place) else []
+        if node != NONE:
+            rise = min(bounded[0].bound - part.bound, MOST_RISE) if bounded else MOST_RISE
+            self._part.nodes.gain[node] += max(rise, 0)
+            self._part.nodes.tries[node] += 1
+        return bounded
 
     def _take_ways(self) -> None:
         """Take the cheapest ways if they are plans that cost less than all before."""

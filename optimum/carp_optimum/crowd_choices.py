@@ -90,27 +90,29 @@ def drop(part: Part, robot: int, tick: int, resource: int) -> bool:
 
 
 @entry
-def choose(native: Native[Part]) -> int:
-    """The robot and tick to branch on, as tick times robots plus robot; `NONE` if all robots have one way left.
+def tick_of_choice(native: Native[Part]) -> int:
+    """The first tick at which a robot was in different places in the steps, and may be; `NONE`: all have one way left.
 
-    The tick is the first one at which a robot was in different places in the steps. Of the robots that have a choice
-    then, it is the one whose choices are likely to leave the least to search: each is guessed to leave a part that
-    falls as the square of the rise of the bound.
+    If no robot has a choice there, it is a later one, or the first of all.
     """
     part = part_at(native)
     first = first_choice(part)
     last = int(part.counters[LATE])
     for offset in range(last):
         tick = (first - 1 + offset) % last + 1
-        robot = choice_at(part, tick)
-        if robot != NONE:
-            return tick * part.nodes.goal.size + robot
+        for robot in range(part.nodes.goal.size):
+            if options(part, robot, tick) > 1:
+                return tick
     return NONE
 
 
-@compiled
-def choice_at(part: Part, tick: int) -> int:
-    """The robot to branch on at the tick, or `NONE` if none has a choice there."""
+@entry
+def robot_of_choice(native: Native[Part], tick: int) -> int:
+    """The robot whose choices at the tick are likely to leave the least to search, or `NONE` if none has a choice.
+
+    Each is guessed to leave a part that falls as the square of the rise of the bound.
+    """
+    part = part_at(native)
     chosen = NONE
     least = ENDLESS
     for robot in range(part.nodes.goal.size):

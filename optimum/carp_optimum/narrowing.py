@@ -1,10 +1,10 @@
 """A lower bound and plans that come ever closer, searched for beside the core-guided search (`carp_optimum.optimum`).
 
 First an annealing gives plans. Then plans of a total of at most a few ticks above the bound are searched for, again and
-again: there are none, which raises the bound, or the cheapest ones are found, and these are the optimum. For a crowd
-this is a search by branching (`carp_optimum.branching`). For other instances, prices give a lower bound
-(`carp_optimum.bound`), and it is a formula (`carp_optimum.priced_formula`). Where the bound is too far from the total
-for such formulas, only the plans get better.
+again: there are none, which raises the bound, or the cheapest ones are found, and these are the optimum. Prices give a
+lower bound (`carp_optimum.bound`), and such a search is a formula (`carp_optimum.priced_formula`). Where the bound is
+too far from the total for formulas, only the plans get better. For a crowd it is a search by branching
+(`carp_optimum.branching`), of which two can do half each.
 
 Each stage gives the work of the next one before it begins. So one who asks for the results of less work need not wait.
 """
@@ -12,10 +12,11 @@ Each stage gives the work of the next one before it begins. So one who asks for 
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from typing import Protocol
+from functools import partial
+from typing import Protocol, TypeAlias
 
 from carp_optimum import heuristics
-from carp_optimum.branching import Branching, is_crowded
+from carp_optimum.branching import Branching
 from carp_optimum.priced_formula import priced_formula
 from carp_optimum.reduced_costs import PricedBound
 from carp_optimum.solver import Solver
@@ -23,8 +24,11 @@ from carp_spec import Instance, Plan, Refusal, total_cost
 
 PRICE_STEPS = 1600
 LARGEST_GAP = 12  # ticks
-STRIDE = 2
-"""The largest total of a search is this far above the lower bound: one for each total would take twice the time."""
+STRIDE, STRIDE_OF_CROWD = 2, 1
+"""The largest total of a search is this far above the lower bound: one for each total would take twice the time.
+
+For a crowd each tick more takes two to three times as long, so a search that goes too far costs more.
+"""
 CONFLICTS = 300
 """After this many conflicts a formula's search gives the work that it has done."""
 WORK_OF_STEP, WORK_OF_STEP_BY_TEN_RESOURCES = 120, 6
@@ -51,41 +55,43 @@ class Between:
         """Whether no plans cost less than these."""
         return self.total is not None and self.total <= self.lower
 
-    def with_plans(self, plans: Sequence[Plan]) -> "Between":
+    def with_plans(self, plans: Sequence[Plan] | None) -> "Between":
         """These plans instead, if they cost less."""
-        better = self.total is None or total_cost(self.instance, plans) < self.total
+        better = plans is not None and (self.total is None or total_cost(self.instance, plans) < self.total)
         return replace(self, plans=plans) if better else self
 
+    def sharpened(self, other: "Between") -> "Between":
+        """What is known where both hold."""
+        return replace(self.with_plans(other.plans), lower=max(self.lower, other.lower))
 
-def narrowed(instance: Instance, look: Callable[[], None]) -> Iterator[tuple[int, Between]]:
-    """The bound and plans so far, with the work for them in propagations of a solver, up to an optimum.
+    def of_all(self, other: "Between") -> "Between":
+        """What is known of all plans where this bound holds for half of them, and the other one for the other half."""
+        return replace(self.with_plans(other.plans), lower=min(self.lower, other.lower))
+
+
+Results: TypeAlias = Iterator[tuple[int, Between]]
+"""The bound and plans so far, with the work for them in propagations of a solver, up to an optimum."""
+
+
+def narrowed(instance: Instance, look: Callable[[], None]) -> Results:
+    """What is known between annealing and optimum.
 
     `look` is called now and then, and may end it by an exception. Raises `Refusal` for numbers that are too large.
     """
-    known = Between(instance)
-    better = heuristics.ever_better(instance, look)
+    work, known, better = yield from _planned(instance, look)
     robots = len(instance.robots)
-    work = heuristics.ROUNDS * heuristics.WORK_OF_ROUND * robots
+    work_of_step = WORK_OF_STEP + WORK_OF_STEP_BY_TEN_RESOURCES * len(instance.graph.resources) // 10
+    work += PRICE_STEPS * work_of_step * robots
     yield work, known
-    for _, plans in better:
-        known = known.with_plans(plans)
-        break
-    yield work, known
-    if known.total is not None and is_crowded(instance):
-        known = replace(known, lower=_crowd_bound(instance, known.total, look))
-        work, known = yield from _raised(known, work, lambda _: True, lambda most: Branching(instance, most, look))
-    if not known.is_optimum:
-        work_of_step = WORK_OF_STEP + WORK_OF_STEP_BY_TEN_RESOURCES * len(instance.graph.resources) // 10
-        work += PRICE_STEPS * work_of_step * robots
-        yield work, known
-        bound = _priced_bound(instance, look)
-        known = replace(known, lower=max(known.lower, bound.certificate.bound))
-        work, known = yield from _raised(
-            known,
-            work,
-            lambda lower: bound.gap(lower) <= LARGEST_GAP * bound.scale,
-            lambda most: _Formula(instance, bound, most, look),
-        )
+    bound = _priced_bound(instance, look)
+    known = replace(known, lower=bound.certificate.bound)
+    work, known = yield from _raised(
+        known,
+        work,
+        STRIDE,
+        lambda most: _Formula(instance, bound, most, look),
+        lambda lower: bound.gap(lower) <= LARGEST_GAP * bound.scale,
+    )
     yield work, known
     if not known.is_optimum:
         for further, plans in better:
@@ -93,8 +99,39 @@ def narrowed(instance: Instance, look: Callable[[], None]) -> Iterator[tuple[int
             yield work + further, known
 
 
+def half_narrowed(instance: Instance, look: Callable[[], None], half: int) -> Results:
+    """The same for a crowd, but the bound is that of half of the parts: see `Branching` and `Between.of_all`.
+
+    It ends at once without plans, and where its tables would be too large.
+    """
+    work, known, _ = yield from _planned(instance, look)
+    if known.total is not None:
+        known = replace(known, lower=_crowd_bound(instance, known.total, look))
+        branching = partial(Branching, instance, look=look, half=half)
+        work, known = yield from _raised(known, work, STRIDE_OF_CROWD, branching)
+        yield work, known
+
+
+def _planned(
+    instance: Instance, look: Callable[[], None]
+) -> Generator[tuple[int, Between], None, tuple[int, Between, Iterator[tuple[int, Sequence[Plan]]]]]:
+    """The plans of a first annealing, if any: the work, what is known, and where better plans come from."""
+    known = Between(instance)
+    better = heuristics.ever_better(instance, look)
+    work = heuristics.ROUNDS * heuristics.WORK_OF_ROUND * len(instance.robots)
+    yield work, known
+    _, plans = next(better, (work, None))
+    known = known.with_plans(plans)
+    yield work, known
+    return work, known, better
+
+
 def _raised(
-    known: Between, work: int, is_near: Callable[[int], bool], search_for: Callable[[int], "_Search"]
+    known: Between,
+    work: int,
+    stride: int,
+    search_for: Callable[[int], "_Search"],
+    is_near: Callable[[int], bool] = lambda _: True,
 ) -> Generator[tuple[int, Between], None, tuple[int, Between]]:
     """The results of searches for plans of at most ever larger totals, as long as the bound is near enough for them.
 
@@ -104,7 +141,7 @@ def _raised(
         yield work, known
         work += WORK_OF_PAIR * len(known.instance.robots) ** 2
         yield work, known
-        most = known.lower + STRIDE
+        most = known.lower + stride
         if known.total is not None:
             most = min(most, known.total - 1)
         try:
@@ -112,11 +149,10 @@ def _raised(
         except Refusal:
             break
         for further in search.run():
-            if search.plans is not None:
-                known = known.with_plans(search.plans)
+            known = known.with_plans(search.plans)
             yield work + further, known
         work += search.work
-        known = replace(known, lower=search.least)
+        known = replace(known.with_plans(search.plans), lower=search.least)
     return work, known
 
 

@@ -7,7 +7,8 @@ model's plans have a total of just the lower bound; the conflicts among them are
 continues, until none is left. Source: the OLL algorithm of Andres, Kaufmann, Matheis and Schaub 2012, over delays.
 
 After many conflicts a second search, for plans and for a lower bound (`carp_optimum.narrowing`), begins in another
-process (`carp_optimum.beside`). The search ends where the best plans cost no more than the better bound.
+process (`carp_optimum.beside`). The search ends where the best plans cost no more than the better bound. For a crowd
+this search instead takes half of the parts of a search by branching, and the other process the other half.
 
 Where no plan set exists, the search finds one of these obstacles (`carp_verify.unsolvable` says why each is one):
 
@@ -26,7 +27,7 @@ from time import monotonic_ns
 
 from carp_optimum.beside import Beside
 from carp_optimum.heuristics import plans_of_all
-from carp_optimum.narrowing import Between, narrowed
+from carp_optimum.narrowing import Between, half_narrowed, narrowed
 from carp_optimum.solver import Deadline, Solver, TimeOver
 from carp_spec import Instance, Plan, Refusal, Solution, judge, total_cost
 from carp_verify.bound_rules import ContradictionError, require_kept
@@ -41,6 +42,8 @@ CONFLICTS_BEFORE_BESIDE = 60_000
 """Most searches that end within a minute end before these, and faster while nothing uses the memory beside them."""
 CONFLICTS_BETWEEN_RESULTS = 2000
 """After this many conflicts the search asks for what was found beside it."""
+WORK_OF_WAITING = 1_000_000
+"""The work after which it is asked for what was found in the other half of a crowd, once this one has ended."""
 DELAY_OF_DOUBT = 20
 PARTS = 5
 PARTS_BEFORE_HEURISTICS = (1, 3)
@@ -96,6 +99,7 @@ class _Search:
         self.horizon = 0
         self.best: Sequence[Plan] | None = None
         self.known = Between(self.instance)
+        self.here: Between | None = None
         self.beside: Beside[Between] | None = None
         self.work_before = 0
         self.tries_of_heuristics = 0
@@ -135,7 +139,7 @@ class _Search:
             answer = None
             while answer is None:
                 self.read_beside()
-                if self.known.plans is not None and self.known.total == self.lower:
+                if self.known.plans is not None and self.is_met:
                     return self.optimal_beside(self.known.plans)
                 answer = self.solver.satisfiable(assumptions, CONFLICTS_BETWEEN_RESULTS)
             if answer:
@@ -157,20 +161,48 @@ class _Search:
         """Ask for what was found beside at an amount of work, so that the answer does not depend on the clock."""
         if self.beside is not None:
             work = (self.solver.work - self.work_before) * 3 // 4  # the two slow each other down, the other one more
-            self.known = self.beside.result(work) or self.known
+            self.take(self.beside.result(work))
         elif self.priced and self.solver.conflicts > CONFLICTS_BEFORE_BESIDE:
             self.start_beside()
 
+    def take(self, found: Between | None) -> None:
+        """Take in what was found beside, of all plans or of the half that is not searched here."""
+        if self.here is not None:
+            found = self.here.of_all(found or Between(self.instance))
+        if found is not None:
+            self.known = self.known.sharpened(found)
+
     def start_beside(self) -> None:
-        """Start the search beside where the compiled search for prices is at hand."""
+        """Start the search beside where the compiled search for prices is at hand; a crowd is searched by halves."""
         from carp_optimized.compiling import is_cached  # noqa: PLC0415 - slow to load
+        from carp_optimum.branching import is_crowded  # noqa: PLC0415
         from carp_optimum.crowd_bounds import bound_part  # noqa: PLC0415
         from carp_optimum.priced_ways import find_ways  # noqa: PLC0415
 
         self.priced = False
-        if is_cached(find_ways) and is_cached(bound_part):
+        if not (is_cached(find_ways) and is_cached(bound_part)):
+            return
+        if is_crowded(self.instance):
+            self.search_halves()
+        if not self.is_met:
             self.work_before = self.solver.work
             self.beside = Beside(lambda look: narrowed(self.instance, look), self.look)
+
+    def search_halves(self) -> None:
+        """Search one half of a crowd here and the other one beside, until bound and plans meet or both have ended."""
+        self.here = Between(self.instance)
+        self.beside = Beside(lambda look: half_narrowed(self.instance, look, 1), self.look)
+        work = 0
+        for work, found in half_narrowed(self.instance, self.look, 0):
+            self.here = found
+            self.take(self.beside.result(work))
+            if self.is_met:
+                break
+        while not (self.is_met or self.beside.has_ended):
+            work += WORK_OF_WAITING
+            self.take(self.beside.result(work))
+        self.beside.close()
+        self.here = self.beside = None
 
     def has_no_end(self) -> bool:
         """Whether the states of all robots together are few, and none is the end of a plan set."""
@@ -243,6 +275,11 @@ class _Search:
     def lower(self) -> int:
         return max(self.encoding.shortest + self.delay, self.known.lower)
 
+    @property
+    def is_met(self) -> bool:
+        """Whether the best plans known cost no more than the bound."""
+        return self.known.total is not None and self.known.total == self.lower
+
     def optimal(self, plans: Sequence[Plan]) -> Optimum:
         cost = total_cost(self.instance, plans)
         require_kept(self.lower, cost)
@@ -259,7 +296,7 @@ class _Search:
 
     def undecided(self) -> Optimum:
         if self.beside is not None:
-            self.known = self.beside.latest() or self.known
+            self.take(self.beside.latest())
         known = self.known if self.best is None else self.known.with_plans(self.best)
         cost = known.total
         if known.plans is None or cost is None:

@@ -22,9 +22,9 @@ def nothing() -> None:
     """Look at no clock."""
 
 
-def searched(instance: Instance, most: int) -> Branching:
+def searched(instance: Instance, most: int, half: int | None = None) -> Branching:
     """The search at its end; its plans must be lawful, and cost as it says."""
-    search = Branching(instance, most, nothing)
+    search = Branching(instance, most, nothing, half)
     works = list(search.run())
     assert all(work <= later for work, later in itertools.pairwise([*works, search.work]))
     if search.plans is None:
@@ -55,17 +55,25 @@ def directed(moves: str, *ends: str) -> Instance:
     return Instance(graph, tuple(robots), "vanish")
 
 
+def searched_by_halves(instance: Instance, most: int) -> int:
+    """The least total of the two halves, if it is at most this, or one more than this."""
+    return min(searched(instance, most, half).least for half in (0, 1))
+
+
 @settings(max_examples=draws(600))
-@given(crowds(), st.sampled_from([1, 3, 75]))
-@example(directed("ab ac ad ba bc bd ca", "ba", "ca"), 1)  # a robot may be gone
-@example(directed("dc ab ac ad cb", "dc", "cb", "ab"), 1)  # dear nodes leave each robot one way
-def test_the_cheapest_plans_are_found_and_no_cheaper_ones(instance: Instance, steps: int) -> None:
+@given(crowds(), st.sampled_from([1, 3, 75]), st.sampled_from([1, 2, 5]))
+@example(directed("ab ac ad ba bc bd ca", "ba", "ca"), 1, 1)  # a robot may be gone
+@example(directed("dc ab ac ad cb", "dc", "cb", "ab"), 1, 1)  # dear nodes leave each robot one way
+@example(directed("ab ac ad ba bc bd ca", "ab", "ba", "cb"), 1, 1)  # where all is tried, no robot has a choice left
+@example(directed("ab ac ad ba bc bd ca cb cd da db dc", "bd", "ab", "cb", "db"), 75, 2)  # a third part is the best
+def test_the_cheapest_plans_are_found_and_no_cheaper_ones(instance: Instance, steps: int, parts: int) -> None:
     """With few steps the bounds are weak, so that there is much to split."""
     if Encoding(instance).wayless:
         return
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr("carp_optimum.branching.FIRST_STEPS", steps)
         patched.setattr("carp_optimum.branching.STEPS", steps)
+        patched.setattr("carp_optimum.branching.PARTS_TO_SHARE", parts)
         _the_optimum_is_found(instance)
 
 
@@ -76,6 +84,8 @@ def _the_optimum_is_found(instance: Instance) -> None:
         return
     assert searched(instance, least).least == least
     assert searched(instance, least + 3).least == least
+    assert searched_by_halves(instance, least + 3) == least
+    assert searched_by_halves(instance, least - 1) == least
     refuted = searched(instance, least - 1)
     assert (refuted.plans, refuted.least) == (None, least)
 
@@ -85,8 +95,21 @@ def test_a_full_grid_is_searched_as_far_as_its_optimum(seed: int) -> None:
     instance = grid_instance(Grid(4, 4, 20), Fleet(16, seed))
     least = optimum(instance, SECONDS, priced=False).cost
     assert least is not None
-    assert searched(instance, least + 1).least == least
+    assert searched(instance, least + 1).least == searched_by_halves(instance, least + 1) == least
     assert searched(instance, least - 1).plans is None
+    assert searched_by_halves(instance, least - 1) == least
+
+
+@pytest.mark.parametrize("parts", [3, 8, 64])
+@pytest.mark.parametrize("seed", range(4))
+def test_two_halves_have_all_parts(seed: int, parts: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    instance = grid_instance(Grid(4, 4, 20), Fleet(16, seed))
+    least = optimum(instance, SECONDS, priced=False).cost
+    assert least is not None
+    for name in ("FIRST_STEPS", "STEPS"):
+        monkeypatch.setattr(f"carp_optimum.branching.{name}", 3)
+    monkeypatch.setattr("carp_optimum.branching.PARTS_TO_SHARE", parts)
+    assert searched_by_halves(instance, least) == searched_by_halves(instance, least - 1) == least
 
 
 def test_the_bound_of_all_parts_together_is_below_the_optimum_and_above_the_shortest_paths() -> None:

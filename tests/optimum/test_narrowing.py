@@ -1,7 +1,7 @@
 """Bounds and plans meet at the optimum, whatever runs beside whatever and on however many cores."""
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from itertools import islice, pairwise
 from pathlib import Path
 
@@ -14,13 +14,14 @@ from tests.verify.tiny import TINY
 
 import carproof
 from carp_optimum.beside import Beside
-from carp_optimum.bound import lower_bound
-from carp_optimum.narrowing import Between, narrowed
+from carp_optimum.joint_repair import repair
+from carp_optimum.narrowing import Between, half_narrowed, narrowed
 from carp_optimum.optimum import optimum
 from carp_optimum.priced_formula import PricedFormula, priced_formula
 from carp_optimum.proving import write_proof
 from carp_optimum.reduced_costs import PricedBound
-from carp_spec import AfterGoal, Carp, Instance, Robot, judge, total_cost
+from carp_optimum.solver import TimeOver
+from carp_spec import AfterGoal, Carp, Instance, Plan, Robot, judge, total_cost
 from carp_verify.joint_search import least_total_cost
 from carp_verify.proof import solution_of, verify_proof
 from carproof.generate import Fleet, Grid, grid_instance
@@ -37,9 +38,24 @@ def beside_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("carp_optimized.compiling.is_cached", lambda _: True)
 
 
+def nothing() -> None:
+    """Look at no clock."""
+
+
+def crowd_with_plans() -> tuple[Instance, tuple[Plan, ...], tuple[Plan, ...]]:
+    """A crowd with its cheapest plans, in an order of their own, and with dearer ones."""
+    instance = grid_instance(Grid(4, 4, 20), Fleet(16, 2))
+    cheap = optimum(instance, SECONDS, priced=False).solution
+    assert cheap is not None
+    dear = repair(instance, carproof.plan(instance, Carp())).plans
+    assert len(dear) == len(cheap.plans)
+    assert total_cost(instance, dear) > total_cost(instance, cheap.plans)
+    return instance, cheap.plans[::-1], dear
+
+
 def results(instance: Instance) -> list[Between]:
     """The first results, whose works must not fall: all up to an optimum, but for those that only try to get there."""
-    steps = list(islice(narrowed(instance, lambda: None), 1000))
+    steps = list(islice(narrowed(instance, nothing), 1000))
     assert all(work <= later for (work, _), (later, _) in pairwise(steps))
     return [known for _, known in steps]
 
@@ -122,24 +138,104 @@ def test_formulas_end_below_the_total_of_the_best_plans_known(monkeypatch: pytes
 
 
 @pytest.mark.usefixtures("beside_at_once")
-def test_a_crowd_is_searched_by_branching(monkeypatch: pytest.MonkeyPatch) -> None:
-    instance = grid_instance(Grid(4, 4, 20), Fleet(16, 2))
+@pytest.mark.parametrize("parts", [1, 2, 64])
+@pytest.mark.parametrize("seed", range(4))
+def test_the_halves_of_a_crowd_meet_at_the_optimum(seed: int, parts: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("carp_optimum.branching.PARTS_TO_SHARE", parts)
+    instance = grid_instance(Grid(4, 4, 20), Fleet(16, seed))
     least = optimum(instance, SECONDS, priced=False).cost
-    monkeypatch.setattr("carp_optimum.narrowing.priced_formula", None)
-    found = results(instance)
-    assert (found[-1].lower, found[-1].total) == (least, least)
-    assert len({known.lower for known in found}) > 2
+    assert least is not None
+    one, other = (list(half_narrowed(instance, nothing, half)) for half in (0, 1))
+    assert all(work <= later and known.lower <= next.lower for (work, known), (later, next) in pairwise(one))
+    assert len({known.lower for _, known in one}) > 1
+    for _, known in one:
+        for _, beside in other:
+            together = known.of_all(beside)
+            assert together.total is None or together.lower <= least <= together.total
+    together = one[-1][1].of_all(other[-1][1])
+    assert (together.lower, together.total) == (least, least)
 
 
 @pytest.mark.usefixtures("beside_at_once")
-def test_a_crowd_whose_tables_would_be_too_large_is_searched_by_formulas(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("seed", range(4))
+def test_a_crowd_has_the_same_optimum_on_one_core_and_on_two(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Beside, "latest", None)  # depends on the clock
+    monkeypatch.setattr("carp_optimum.optimum.narrowed", None)
+    instance = grid_instance(Grid(4, 4, 20), Fleet(16, seed))
+    found = []
+    for cores in (1, 2):
+        monkeypatch.setattr(os, "sched_getaffinity", lambda _, cores=cores: {*range(cores)})
+        found.append(optimum(instance, SECONDS))
+    assert found[0] == found[1]
+    assert found[0].decided
+    assert found[0].cost == optimum(instance, SECONDS, priced=False).cost
+
+
+def found_in_halves(
+    monkeypatch: pytest.MonkeyPatch, here: Iterable[tuple[int, Between]], beside: Iterable[tuple[int, Between]]
+) -> None:
+    """Have the two halves of a crowd give these results."""
+    halves = {0: here, 1: beside}
+    monkeypatch.setattr("carp_optimum.optimum.half_narrowed", lambda _, __, half: iter(halves.pop(half)))
+
+
+@pytest.mark.usefixtures("beside_at_once")
+@pytest.mark.parametrize("cores", [1, 2])
+def test_one_half_of_a_crowd_waits_for_the_other(cores: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {*range(cores)})
+    monkeypatch.setattr("carp_optimum.optimum.narrowed", None)
+    instance, cheap, dear = crowd_with_plans()
+    cost, more = total_cost(instance, cheap), total_cost(instance, dear)
+    met_beside = (9_000_000, Between(instance, cost, cheap))
+    found_in_halves(monkeypatch, [(0, Between(instance, more, dear))], [(0, Between(instance)), met_beside])
+    best = optimum(instance, SECONDS)
+    assert best.solution is not None
+    assert (best.decided, best.cost, best.solution.plans) == (True, cost, cheap)
+
+
+@pytest.mark.usefixtures("beside_at_once")
+@pytest.mark.parametrize("half", [0, 1])
+def test_a_bound_of_one_half_is_none_of_all_plans(half: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The time is over before the other half gives a bound."""
+    instance, _, dear = crowd_with_plans()
+
+    def over() -> tuple[int, Between]:
+        raise TimeOver
+
+    late = (over() for _ in range(1))
+    ahead = [(100, Between(instance, total_cost(instance, dear), dear))]
+    found_in_halves(monkeypatch, *([ahead, []] if half == 0 else [late, ahead]))
+    monkeypatch.setattr("carp_optimum.optimum.narrowed", lambda *_: late)
+    monkeypatch.setattr(Beside, "latest", lambda _: ahead[0][1] if half else None)
+    best = optimum(instance, SECONDS)
+    assert best.lower < total_cost(instance, dear)
+
+
+@pytest.mark.usefixtures("beside_at_once")
+def test_a_crowd_is_searched_whole_after_halves_that_end_early(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Their plans are kept, and the bound of the search beside is one of all plans again."""
+    instance, cheap, dear = crowd_with_plans()
+    least = total_cost(instance, cheap)
+    found_in_halves(monkeypatch, [(0, Between(instance, 0, cheap))], [])
+    monkeypatch.setattr("carp_optimum.optimum.narrowed", lambda *_: iter([(0, Between(instance, least, dear))]))
+    slices = iter([None] * 10)
+    monkeypatch.setattr("carp_optimum.optimum.Solver.satisfiable", lambda *_: next(slices))
+    best = optimum(instance, SECONDS)
+    assert best.solution is not None
+    assert (best.decided, best.solution.plans) == (True, cheap)
+
+
+@pytest.mark.usefixtures("beside_at_once")
+def test_a_crowd_without_plans_or_with_too_large_tables_is_searched_whole(monkeypatch: pytest.MonkeyPatch) -> None:
     instance = grid_instance(Grid(4, 4, 20), Fleet(16, 2))
     least = optimum(instance, SECONDS, priced=False).cost
-    prices = PricedBound(instance, lower_bound(instance, steps=100, seen=False))
-    monkeypatch.setattr("carp_optimum.narrowing._priced_bound", lambda *_: prices)
-    monkeypatch.setattr("carp_optimum.branching.MOST_NODES", 200)
-    found = results(instance)
-    assert (found[-1].lower, found[-1].total) == (least, least)
+    with monkeypatch.context() as patched:
+        patched.setattr("carp_optimum.branching.MOST_NODES", 200)
+        assert {known.lower for _, known in half_narrowed(instance, nothing, 0)} == {0}
+        assert optimum(instance, SECONDS).cost == least
+    monkeypatch.setattr("carp_optimum.heuristics.ever_better", lambda *_: iter(()))
+    assert [known for _, known in half_narrowed(instance, nothing, 0)] == [Between(instance)] * 2
+    assert optimum(instance, SECONDS).cost == least
 
 
 @pytest.mark.usefixtures("beside_at_once")
@@ -147,7 +243,7 @@ def test_plans_get_better_where_the_bound_is_too_far_for_formulas(monkeypatch: p
     instance = town(7, "park")
     monkeypatch.setattr("carp_optimum.narrowing.LARGEST_GAP", -1)
     least = optimum(instance, SECONDS, priced=False).cost
-    totals = (known.total for _, known in narrowed(instance, lambda: None))
+    totals = (known.total for _, known in narrowed(instance, nothing))
     assert least in islice(totals, 1000)
 
 
