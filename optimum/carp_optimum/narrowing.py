@@ -3,8 +3,8 @@
 First an annealing gives plans. Then plans of a total of at most a few ticks above the bound are searched for, again and
 again: there are none, which raises the bound, or the cheapest ones are found, and these are the optimum. Prices give a
 lower bound (`carp_optimum.bound`), and such a search is a formula (`carp_optimum.priced_formula`). Where the bound is
-too far from the total for formulas, only the plans get better. For a crowd it is a search by branching
-(`carp_optimum.branching`), of which two can do half each.
+too far from the total for formulas, only the plans get better. For a crowd it is half of a search by branching
+(`carp_optimum.branching`); another one does the other half.
 
 Each stage gives the work of the next one before it begins. So one who asks for the results of less work need not wait.
 """
@@ -61,11 +61,11 @@ class Between:
         return replace(self, plans=plans) if better else self
 
     def sharpened(self, other: "Between") -> "Between":
-        """What is known where both hold."""
+        """The better bound and the better plans."""
         return replace(self.with_plans(other.plans), lower=max(self.lower, other.lower))
 
     def of_all(self, other: "Between") -> "Between":
-        """What is known of all plans where this bound holds for half of them, and the other one for the other half."""
+        """The bound of all plans, where this one is of half of them and the other of the rest; the better plans."""
         return replace(self.with_plans(other.plans), lower=min(self.lower, other.lower))
 
 
@@ -74,7 +74,7 @@ Results: TypeAlias = Iterator[tuple[int, Between]]
 
 
 def narrowed(instance: Instance, look: Callable[[], None]) -> Results:
-    """What is known between annealing and optimum.
+    """The results of annealing, prices and formulas.
 
     `look` is called now and then, and may end it by an exception. Raises `Refusal` for numbers that are too large.
     """
@@ -100,9 +100,10 @@ def narrowed(instance: Instance, look: Callable[[], None]) -> Results:
 
 
 def half_narrowed(instance: Instance, look: Callable[[], None], half: int) -> Results:
-    """The same for a crowd, but the bound is that of half of the parts: see `Branching` and `Between.of_all`.
+    """The results of annealing and branching for a crowd; the bound is that of half of the parts (`Between.of_all`).
 
-    It ends at once without plans, and where its tables would be too large.
+    Both halves begin with the same plans and bound. So they ask for the same totals, and share the same parts. It ends
+    at once without plans, and where its tables would be too large.
     """
     work, known, _ = yield from _planned(instance, look)
     if known.total is not None:
