@@ -65,7 +65,7 @@ class Between:
         return replace(self.with_plans(other.plans), lower=max(self.lower, other.lower))
 
     def of_all(self, other: "Between") -> "Between":
-        """The bound of all plans, where this one is of half of them and the other of the rest; the better plans."""
+        """The better plans, and the bound of all, where each of the two holds for one half of the plans."""
         return replace(self.with_plans(other.plans), lower=min(self.lower, other.lower))
 
 
