@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, given, settings
+from tests.optimum.test_branching import nothing
 from tests.optimum.test_priced_formula import town
 from tests.profiles import draws
 from tests.spec.making import grid
@@ -36,10 +37,6 @@ def beside_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("carp_optimum.narrowing.PRICE_STEPS", 5)
     monkeypatch.setattr("carp_optimum.heuristics.ROUNDS", 40)
     monkeypatch.setattr("carp_optimized.compiling.is_cached", lambda _: True)
-
-
-def nothing() -> None:
-    """Look at no clock."""
 
 
 def crowd_with_plans() -> tuple[Instance, tuple[Plan, ...], tuple[Plan, ...]]:
