@@ -25,6 +25,7 @@ BLOCK = 8  # windows are looked at in blocks
 
 UNREACHABLE = -1  # a guide: the goal cannot be reached from the resource
 TOO_FAR = -2  # a guide: it can, in more than LARGEST ticks
+FURTHER = -3  # a guide: the resource is further from the goal than any that the guide has reached
 
 ASKED, KEPT, UNCHANGED, PREFIX, SHARED, BOUND = range(6)  # the counters of queries, see `carp_optimized.reuse`
 COUNTERS = 6
@@ -93,11 +94,12 @@ class Robots(NamedTuple):
 class Guides(NamedTuple):
     """The h of A*, made when first asked for: `ticks[slot]` is the guide of the destination `holds[slot]`.
 
-    A guide holds, for each resource, its ticks to the goal. The toll of a resource is that times 2^32 plus its place in
-    the order of (ticks to the goal, index). With t * 2^32 added it is the key of `query/ties` of a window entered at t:
-    f first, then the largest g, which is the smallest h, then the smallest index. Where ticks times a power of two plus
-    the index fit into 32 bits, they are the place; elsewhere it is kept in `rank`. The last slots to be used are the
-    first to be given away.
+    A guide holds, for each resource, its ticks to the goal. Until more of it is asked for, it ends `detour` of the
+    longest durations behind the start of the robot that asked first; what it does not reach is `FURTHER`. The toll of
+    a resource is its ticks times 2^32 plus its place in the order of (ticks to the goal, index). With t * 2^32 added it
+    is the key of `query/ties` of a window entered at t: f first, then the largest g, which is the smallest h, then the
+    smallest index. Where ticks times a power of two plus the index fit into 32 bits, they are the place; elsewhere it
+    is kept in `rank`. The last slots to be used are the first to be given away.
     """
 
     ticks: IntTable
@@ -107,6 +109,7 @@ class Guides(NamedTuple):
     next: Longs
     goal: Ints
     pace: Ints
+    detour: int
 
 
 class Search(NamedTuple):

@@ -32,7 +32,8 @@ from carp_optimized.arrays import (
 )
 from carp_spec import Fault, Instance, Refusal
 
-GUIDE_PLACES = 1 << 25  # how many entries all guides together have at most, if that is room for 64 of them
+DETOUR = 8  # of the durations by which a guide goes further than to the start: seldom more are needed on large maps
+GUIDE_PLACES = 1 << 26  # how many entries all guides together have at most, if that is room for 64 of them
 ROOTS = 1024
 STRIPS = 7  # its square is the number of regions; a number of 64 bits has room for 63
 LARGEST_COORDINATE = 2**29
@@ -152,6 +153,7 @@ def no_guides(resources: int, goals: Ints, paces: Ints, has_ranks: bool) -> Guid
         next=np.zeros(1, np.int64),
         goal=goals,
         pace=paces,
+        detour=DETOUR,
     )
 
 

@@ -155,7 +155,7 @@ class PlannedFleet:
 
     def _guide(self, robot: int) -> Ints:
         """The guide of the robot's destination: ticks to the goal."""
-        self.ticks_to_goal(robot)  # makes it
+        self._call(lambda: passes.reach_from_everywhere(self._native, robot))
         guides = self._state.guides
         guide: Ints = guides.ticks[int(guides.slot[self._state.robots.destination[robot]])]
         return guide

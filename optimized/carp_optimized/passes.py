@@ -2,7 +2,7 @@
 
 from carp_optimized.arrays import NEVER, NONE, TOO_FAR, UNCHANGED, UNKNOWN, Ints, State
 from carp_optimized.compiling import RecordsExhausted, TicksExhausted, entry
-from carp_optimized.guides import shortest_of
+from carp_optimized.guides import guide_slot, shortest_of
 from carp_optimized.natives import state_at
 from carp_optimized.records import close_record, cost_of, start_record
 from carp_optimized.references import Native
@@ -27,6 +27,14 @@ def shortest(native: Native[State], robot: int) -> int:
     if ticks == TOO_FAR:
         raise TicksExhausted
     return max(ticks, 0)
+
+
+@entry
+def reach_from_everywhere(native: Native[State], robot: int) -> None:
+    """Make the guide of the robot's destination as far as any resource."""
+    state = state_at(native)
+    for resource in range(state.graph.duration.size):
+        guide_slot(state, robot, resource)
 
 
 @entry

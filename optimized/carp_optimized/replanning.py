@@ -173,7 +173,7 @@ def matters(state: State, record: int, k: int, target: int, entry: int, last_ent
     Exchanges are allowed, and windows of resources with room for several not looked at: no harm but a query.
     """
     robot = int(state.records.robot[record])
-    toll = toll_of(state, guide_slot(state, int(state.robots.destination[robot])), target)
+    toll = toll_of(state, guide_slot(state, robot, target), target)
     largest = int(state.records.largest[k])
     if toll < 0 or (entry << 32) + toll > largest:
         return False

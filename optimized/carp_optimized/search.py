@@ -1,9 +1,9 @@
 """The CARP query, a relative of SIPP: A* over free windows in the order of `query/ties`."""
 
-from carp_optimized.arrays import ASKED, BLOCK, LARGEST, NEVER, NO_LIMIT, NONE, TOO_FAR, State
+from carp_optimized.arrays import ASKED, BLOCK, FURTHER, LARGEST, NEVER, NO_LIMIT, NONE, TOO_FAR, State
 from carp_optimized.blocks import below, lowest, width
 from carp_optimized.compiling import RoomExhausted, TicksExhausted, compiled
-from carp_optimized.guides import guide_slot, toll_of
+from carp_optimized.guides import guide_slot, reach_all, toll_of
 from carp_optimized.heap import push, replace_root
 from carp_optimized.records import start_record, write_record
 from carp_optimized.windows import end_of_run, fits, is_exchange, last_by, plan_fits, skip_below, start_of_run
@@ -52,8 +52,11 @@ def find_plan_by(state: State, robot: int, before: int, now: int, behind: int, l
     ready = max(enter + int(request.pace[robot]) * int(state.graph.duration[resource]), now)
     if not fits(state, resource, enter, ready, NONE, behind):
         return NONE
-    slot = guide_slot(state, int(request.destination[robot]))
+    slot = guide_slot(state, robot, resource)
     expansions = search(state, robot, slot, resource, enter, ready, behind, latest)
+    if expansions == FURTHER:
+        reach_all(state, slot)
+        expansions = search(state, robot, slot, resource, enter, ready, behind, latest)
     if expansions == 0:
         return NONE
     record = start_record(state, robot, first, max(history - 1, 0))
@@ -77,7 +80,7 @@ def find_plan_alone(empty: State, robot: int, now: int) -> int:
     goal = int(empty.robots.goal[robot])
     pace = int(empty.robots.pace[robot])
     enter = int(empty.robots.release[robot])
-    slot = guide_slot(empty, int(empty.robots.destination[robot]))
+    slot = guide_slot(empty, robot, resource)
     toll = toll_of(empty, slot, resource)
     ready = max(enter + pace * int(graph.duration[resource]), now)
     if resource == goal or toll < 0 or ready + (toll >> 32) > LARGEST:
@@ -132,6 +135,10 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
 ) -> int:
     """A* from the resource, entered at `enter` and left from `ready` on; the number of expansions, 0: no plan.
 
+    It is `FURTHER` where a window that the guide does not reach might have been expanded too. As the guide reaches all
+    that is as near to the goal as the resource expanded, the f of such a window is at least `ready` plus its h; with an
+    f above that of the plan it would have waited in the queue to the end, so nothing else would have come of it.
+
     A window of a larger f than `latest` is in no plan that arrives by then, nor is one expanded before the goal of such
     a plan is: no window of that kind is put into the queue, and the windows expanded stay the same.
     The window in which the plan ends is then `goal[0]`. The window in which the robot stands can be entered again
@@ -176,6 +183,7 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
     size = 0
     expansions = 0
     beyond = False
+    unseen = NO_LIMIT
     while True:
         if size > 0 and keys[0] < best_key:
             key = int(keys[0])
@@ -207,6 +215,8 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
         state.search.popped[expansions] = key
         expansions += 1
         if resource == goal and (end == NEVER if parks else not (overstayed and node == STANDING)):
+            if unseen <= enter:
+                return FURTHER
             state.search.goal[0] = node
             state.search.expansions[0] = expansions
             return expansions
@@ -217,6 +227,10 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
             toll = toll_of(state, slot, target)
             if toll < 0:
                 beyond |= toll == TOO_FAR
+                if toll == FURTHER:
+                    least = ready + (toll_of(state, slot, resource) >> 32)
+                    if least <= latest or not is_bounded:
+                        unseen = min(unseen, least)
                 continue
             if is_bounded and (ready << 32) + toll > largest_key:
                 continue
@@ -276,6 +290,8 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
                 else:
                     push(keys, nodes, size, key, window)
                     size += 1
+    if unseen < NO_LIMIT:
+        return FURTHER
     if beyond and not is_bounded:
         raise TicksExhausted
     state.search.expansions[0] = expansions

@@ -89,6 +89,23 @@ TESTS: Sequence[tuple[str, str, tuple[object, ...]]] = (
         ("test_limits", "test_a_goal_behind_resources_that_are_too_far_is_refused_and_not_called_out_of_reach", (last,))
         for last in (2**29, 1)
     ),
+    *(
+        (
+            "test_limits",
+            "test_a_detour_that_is_too_far_is_refused_where_no_other_way_is_free",
+            (pytest.MonkeyPatch(), detour),
+        )
+        for detour in (0, 2**30 - 1)
+    ),
+    *(
+        (
+            "test_corners",
+            "test_a_guide_ends_a_detour_behind_the_start_until_more_of_it_is_asked_for",
+            (pytest.MonkeyPatch(), last, pace),
+        )
+        for last in (1, 2)
+        for pace in (1, 3)
+    ),
     ("test_limits", "test_a_plan_that_would_pass_the_largest_tick_is_refused_while_planning", ()),
     *(
         (
@@ -177,11 +194,12 @@ def ask(plan: Callable[..., Solution], add: Callable[..., Solution], subject: ob
 
 
 def load(module: str, source: str) -> None:
-    """Have the planner loaded again when it is asked for, with another source of one module; "" is its own."""
+    """Load the planner again, with another source of one module; "" is its own. Guides end where they can."""
     for name in [name for name in sys.modules if name.startswith(("carp_optimized", "tests.optimized.test_"))]:
         del sys.modules[name]
     if source:
         sys.meta_path.insert(0, Changed(f"carp_optimized.{module}", source))
+    import_module("carp_optimized.encoding").DETOUR = 0  # type: ignore[attr-defined]
 
 
 def main(arguments: Sequence[str]) -> int:

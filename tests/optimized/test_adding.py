@@ -208,7 +208,7 @@ def test_tolls_are_in_the_order_of_the_ticks_to_the_goal_and_then_of_the_indices
     if ranked:
         monkeypatch.setattr(encoding, "scale_of_tolls", lambda *_: 0)
     state = PlannedFleet(grid_instance(Grid(5, 5, 10), Fleet(1), Traits(duration=durations)))._state
-    slot = guide_slot(state, 0)
+    slot = guide_slot(state, 0, 0)
     ticks = [int(each) for each in state.guides.ticks[slot]]
     tolls = [toll_of(state, slot, resource) for resource in range(len(ticks))]
     able = [resource for resource, each in enumerate(ticks) if each >= 0]

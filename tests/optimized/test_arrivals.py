@@ -1,8 +1,10 @@
 """Robots that are added one after the other to a fleet that stays up get the reference's plans, whatever is reused."""
 
 import pytest
-from tests.optimized.arrivals import ROOMS, arrivals, convoy, scaled
+from tests.optimized.arrivals import CROWDED, ROOMS, arrivals, convoy, scaled
 from tests.profiles import rest_in
+
+from carp_optimized import encoding
 
 QUESTIONS = 600
 PARTS = 6
@@ -19,6 +21,15 @@ def test_robots_that_arrive_while_time_passes_are_planned_alike(part: int) -> No
 def test_more_robots_than_resources_are_planned_alike(part: int) -> None:
     for number in range(part, QUESTIONS, PARTS):
         question = arrivals(number, ROOMS)
+        assert question.by_fleet()[0] == question.by_reference(), number
+
+
+@pytest.mark.parametrize("detour", [0, 1])
+@pytest.mark.parametrize("part", rest_in("ci", range(PARTS), 0))
+def test_guides_that_end_early_change_no_plan(monkeypatch: pytest.MonkeyPatch, part: int, detour: int) -> None:
+    monkeypatch.setattr(encoding, "DETOUR", detour)
+    for number in range(part, QUESTIONS, PARTS):
+        question = arrivals(number, ROOMS if number % 2 else CROWDED)
         assert question.by_fleet()[0] == question.by_reference(), number
 
 

@@ -1,7 +1,7 @@
 """Cases that random instances seldom reach: full arrays, far goals, ended plans, too many plans to remember."""
 
-from dataclasses import fields
-from itertools import count
+from dataclasses import fields, replace
+from itertools import count, pairwise
 from math import isqrt, sqrt
 
 import numba
@@ -12,7 +12,7 @@ import carp_optimized
 import carp_reference
 from carp_optimized import Queries, Reuse, encoding
 from carp_optimized.__main__ import compile_all
-from carp_optimized.arrays import Search
+from carp_optimized.arrays import FURTHER, Search
 from carp_optimized.distances import term
 from carp_optimized.fleet import PlannedFleet
 from carp_spec import (
@@ -123,6 +123,37 @@ def test_guides_that_do_not_all_fit_are_made_again(monkeypatch: pytest.MonkeyPat
     instance = grid_instance(Grid(9, 9), Fleet(70, distinct="goals"))
     for planner in (Carp(), Greedy()):
         assert_alike(instance, planner)
+
+
+@pytest.mark.parametrize(("last", "pace"), [(1, 1), (1, 3), (2, 1), (2, 3)])
+def test_a_guide_ends_a_detour_behind_the_start_until_more_of_it_is_asked_for(
+    monkeypatch: pytest.MonkeyPatch, last: int, pace: int
+) -> None:
+    """On a line, whose far end makes the durations alike or not."""
+    monkeypatch.setattr(encoding, "DETOUR", 3)
+    cells = (*(Resource(str(k)) for k in range(19)), Resource("19", duration=last))
+    line = ResourceGraph(cells, tuple((str(k), str(k + 1)) for k in range(19)))
+    fleet = PlannedFleet(Instance(line, (Robot("r", "4", "2", pace=pace), Robot("s", "17", "2", pace=pace))))
+    to_goal = [*(pace * abs(k - 2) for k in range(19)), pace * (16 + last)]
+    reached = 4 + 3 * last
+    assert fleet.ticks_to_goal(0) == 2 * pace
+    assert fleet._state.guides.ticks[0].tolist() == [*to_goal[: reached + 1], *(FURTHER,) * (19 - reached)]
+    assert fleet.ticks_to_goal(1) == 15 * pace
+    assert fleet.potential(0) == dict(enumerate(to_goal))
+
+
+@pytest.mark.parametrize("planner", PLANNERS, ids=str)
+def test_a_detour_longer_than_that_of_a_guide_is_found(monkeypatch: pytest.MonkeyPatch, planner: Planner) -> None:
+    """The short way from a to d is blocked by a robot that stays; the long one has eleven cells."""
+    long = tuple(f"l{k}" for k in range(11))
+    cells = tuple(Resource(cell) for cell in ("a", "b", "d", "side", *long))
+    around = ("a", *long, "d")
+    graph = ResourceGraph(cells, (("a", "b"), ("b", "d"), ("b", "side"), *pairwise(around)))
+    robots = (Robot("stays", "b", "b"), Robot("r", "a", "d", release=2))
+    for detour in (0, 1, 8, LARGEST):
+        monkeypatch.setattr(encoding, "DETOUR", detour)
+        assert_alike(Instance(graph, robots), planner)
+        assert_alike(Instance(replace(graph, edges=graph.edges[:-1]), robots), planner)
 
 
 @pytest.mark.parametrize(

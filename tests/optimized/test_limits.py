@@ -6,6 +6,7 @@ import pytest
 
 import carp_optimized
 import carp_reference
+from carp_optimized import encoding
 from carp_spec import Carp, FixedPaths, Instance, Neighbourhood, Plan, Refusal, Resource, ResourceGraph, Robot, Visit
 
 LARGEST = 2**30 - 1
@@ -68,3 +69,16 @@ def test_a_goal_behind_resources_that_are_too_far_is_refused_and_not_called_out_
         with pytest.raises(Refusal) as refused:
             carp_optimized.query(Instance(graph, (Robot("r", start, "f"),)), [], "r")
         assert refused.value.rule == "limit/ticks"
+
+
+@pytest.mark.parametrize("detour", [0, LARGEST])
+def test_a_detour_that_is_too_far_is_refused_where_no_other_way_is_free(
+    monkeypatch: pytest.MonkeyPatch, detour: int
+) -> None:
+    monkeypatch.setattr(encoding, "DETOUR", detour)
+    cells = (Resource("a"), Resource("b"), Resource("x", duration=2**29), Resource("y", duration=2**29))
+    graph = ResourceGraph(cells, (("a", "b"), ("a", "x"), ("x", "y"), ("y", "b")), directed=True)
+    instance = Instance(graph, (Robot("stays", "b", "b"), Robot("r", "a", "b")))
+    with pytest.raises(Refusal) as refused:
+        carp_optimized.query(instance, [Plan("stays", (Visit("b", 0, None),))], "r")
+    assert refused.value.rule == "limit/ticks"
