@@ -290,8 +290,9 @@ class Answers(NamedTuple):
     `found` is the plan's record as the query for just this answer made it: its readings depend on the set. Its cost is
     at least `least`, which is all that is known where the plan is `LATE`. Plans are numbered; `record[plan]` is the
     plan's record, `clashes[plan]` the set of plans that it clashes with, of those with which it has been `compared`.
-    The answers of a member are chained from `oldest[member]` to `newest[member]` by `newer`. `used` counts plans and
-    answers. Answers that do not fit are forgotten, which costs time alone.
+    The answers of a member are chained from `oldest[member]` to `newest[member]` by `newer`. `read[resource]` is what
+    the query summed up last read there (`carp_optimized.reasons`). `used` counts plans, answers, and queries summed up.
+    Answers that do not fit are forgotten, which costs time alone.
     """
 
     record: Ints
@@ -305,6 +306,7 @@ class Answers(NamedTuple):
     newer: Ints
     oldest: Ints
     newest: Ints
+    read: LongTable
     used: Longs
 
 

@@ -382,7 +382,7 @@ def no_polish(wishes: Records, alone: Ints, least: Longs, resources: int) -> Pol
     )
 
 
-def no_answers(members: int) -> Answers:
+def no_answers(members: int, resources: int) -> Answers:
     """Room for the answers of a round."""
     return Answers(
         record=np.zeros(PLANS, np.int32),
@@ -396,5 +396,6 @@ def no_answers(members: int) -> Answers:
         newer=np.zeros(ANSWERS, np.int32),
         oldest=np.zeros(members, np.int32),
         newest=np.zeros(members, np.int32),
-        used=np.zeros(2, np.int64),
+        read=np.zeros((resources, 8), np.int64),
+        used=np.zeros(3, np.int64),
     )

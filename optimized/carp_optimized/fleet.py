@@ -276,7 +276,7 @@ class PlannedFleet:
         encoded = Options(members, sample, options.baseline, *kinds)
         if self._adding is None or self._adding.fields.options != encoded:
             work = encoding.no_work(len(self._records), members, sample)
-            answers = encoding.no_answers(members)
+            answers = encoding.no_answers(members, self._state.graph.duration.size)
             self._adding = Native(Adding(self._state, self._empty.fields, encoded, work, answers))
         return self._adding
 

@@ -6,7 +6,9 @@ Three kinds of reuse; each leaves the best order and its plans as they are:
 - Shared answers. A query of a robot against `given` plans is answered by one asked against fewer of them, if the plan
   found then clashes with none of the others: stays that leave room for it do not change it (see
   `carp_optimized.replanning`). No plan against fewer is no plan against more. So two prefixes with the same plans share
-  their answers, too. An answer keeps the record of its own query, even if another query has found the same plan: the
+  their answers, too. An answer remembers only those of the given plans on which it depends (`carp_optimized.reasons`),
+  so that it holds for more prefixes. On a single one it always depends: a query is asked only where that clashes with
+  the plan found alone. An answer keeps the record of its own query, even if another query has found the same plan: the
   readings of the other do not count, because it may have been asked against different plans.
 - Bounds. The cost of a robot is at least that against the robots outside alone, or against some of the plans of the
   prefix: more plans leave fewer ways. If the cost of a prefix and the least costs of the robots still to come are not
@@ -32,6 +34,7 @@ from carp_optimized.arrays import (
 )
 from carp_optimized.compiling import compiled
 from carp_optimized.orders import next_permutation, next_row, queries_after, queries_of_rows, take_row
+from carp_optimized.reasons import reasons
 from carp_optimized.records import cost_of
 from carp_optimized.search import find_plan_by
 from carp_optimized.windows import reserve, withdraw
@@ -179,7 +182,10 @@ def plan_member(
         hold_members(state, work, place, count)
         robot = int(work.members[member])
         latest = min(spare - 1 + int(state.robots.release[robot]), NEVER)
+        state.search.expansions[0] = 0
         record = find_plan_by(state, robot, int(work.before[robot]), now, NEVER, latest)
+        if shared and place > 1 and state.search.expansions[0] > 0:
+            given = reasons(state, answers, robot, record, latest, given)
         if shared and record != NONE:
             plan = number_plan(state, answers, member, record)
             learn(answers, member, given, plan, record, cost_of(state, record))
@@ -187,7 +193,7 @@ def plan_member(
             learn(answers, member, given, NONE, NONE, NO_LIMIT)
         elif shared:
             learn(answers, member, given, LATE, NONE, spare)
-    work.given[place + 1] = given if plan == NONE else given | (1 << plan)
+    work.given[place + 1] = work.given[place] if plan == NONE else int(work.given[place]) | (1 << plan)
     return record
 
 

@@ -1,6 +1,6 @@
 """The CARP query, a relative of SIPP: A* over free windows in the order of `query/ties`."""
 
-from carp_optimized.arrays import ASKED, BLOCK, FURTHER, LARGEST, NEVER, NO_LIMIT, NONE, TOO_FAR, State
+from carp_optimized.arrays import ASKED, BLOCK, FURTHER, LARGEST, NEVER, NO_LIMIT, NONE, TOO_FAR, UNREACHABLE, State
 from carp_optimized.blocks import below, lowest, width
 from carp_optimized.compiling import RoomExhausted, TicksExhausted, compiled
 from carp_optimized.guides import guide_slot, reach_all, toll_of
@@ -130,14 +130,31 @@ def stand(state: State, resource: int, enter: int, behind: int) -> int:
 
 
 @compiled
+def is_unseen(state: State, slot: int, expansions: int, latest: int) -> bool:
+    """Whether a resource that the guide does not reach might be entered with an f up to `latest`.
+
+    The guide reaches all that is as near to the goal as the resource from which it is entered, so f is no less than if
+    that were all that is left to go. With an f above that of the plan, its windows would have waited in the queue to
+    the end, and nothing else would have come of them.
+    """
+    graph = state.graph
+    ticks = state.guides.ticks[slot]
+    for k in range(expansions):
+        resource = int(state.search.expanded[k])
+        if int(state.search.ready[k]) + int(ticks[resource]) <= latest:
+            for edge in range(int(graph.first[resource]), int(graph.first[resource + 1])):
+                if ticks[graph.target[edge]] == FURTHER:
+                    return True
+    return False
+
+
+@compiled
 def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
     state: State, robot: int, slot: int, resource: int, enter: int, ready: int, behind: int, latest: int
 ) -> int:
     """A* from the resource, entered at `enter` and left from `ready` on; the number of expansions, 0: no plan.
 
-    It is `FURTHER` where a window that the guide does not reach might have been expanded too. As the guide reaches all
-    that is as near to the goal as the resource expanded, the f of such a window is at least `ready` plus its h; with an
-    f above that of the plan it would have waited in the queue to the end, so nothing else would have come of it.
+    It is `FURTHER` where a window that the guide does not reach might have been expanded too: see `is_unseen`.
 
     A window of a larger f than `latest` is in no plan that arrives by then, nor is one expanded before the goal of such
     a plan is: no window of that kind is put into the queue, and the windows expanded stay the same.
@@ -183,7 +200,6 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
     size = 0
     expansions = 0
     beyond = False
-    unseen = NO_LIMIT
     while True:
         if size > 0 and keys[0] < best_key:
             key = int(keys[0])
@@ -215,7 +231,7 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
         state.search.popped[expansions] = key
         expansions += 1
         if resource == goal and (end == NEVER if parks else not (overstayed and node == STANDING)):
-            if unseen <= enter:
+            if beyond and is_unseen(state, slot, expansions, enter):
                 return FURTHER
             state.search.goal[0] = node
             state.search.expansions[0] = expansions
@@ -226,11 +242,7 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
             target = int(graph.target[edge])
             toll = toll_of(state, slot, target)
             if toll < 0:
-                beyond |= toll == TOO_FAR
-                if toll == FURTHER:
-                    least = ready + (toll_of(state, slot, resource) >> 32)
-                    if least <= latest or not is_bounded:
-                        unseen = min(unseen, least)
+                beyond |= toll != UNREACHABLE
                 continue
             if is_bounded and (ready << 32) + toll > largest_key:
                 continue
@@ -290,7 +302,7 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
                 else:
                     push(keys, nodes, size, key, window)
                     size += 1
-    if unseen < NO_LIMIT:
+    if beyond and is_unseen(state, slot, expansions, latest):
         return FURTHER
     if beyond and not is_bounded:
         raise TicksExhausted

@@ -3,9 +3,9 @@
 `python -m tests.mutation.planner` lists the mutants that no check notices; with names of modules, of these alone, and
 with a name and lines, `windows:89:91`, of these lines alone. The checks are those of tests/optimized that fit into a
 few seconds: random small questions and fleets to which robots are added, whose answers by the reference are known
-before the first fork; test_replanning.py, test_reuse.py and test_adding.py. Beside a mutant that survives stands how
-many queries it asks of the fleets, where it asks other ones: more cost time alone, fewer want a reason. Starting pytest
-and numba for each mutant would take ten times as long.
+before the first fork; test_replanning.py, test_reasons.py, test_reuse.py and test_adding.py. Beside a mutant that
+survives stands how many queries it asks of the fleets, where it asks other ones: more cost time alone, fewer want a
+reason. Starting pytest and numba for each mutant would take ten times as long.
 """
 
 import os
@@ -41,6 +41,7 @@ FOLDER = ROOT / "optimized" / "carp_optimized"
 MODULES = (
     "replanning",
     "order_search",
+    "reasons",
     "answers",
     "neighbourhood",
     "orders",
@@ -66,6 +67,30 @@ TESTS: Sequence[tuple[str, str, tuple[object, ...]]] = (
     ),
     ("test_replanned_robots", "test_orders_are_drawn_in_a_round_too_in_which_a_member_has_no_plan", ()),
     ("test_replanning", "test_a_query_is_repeated_only_where_the_lemma_says_and_else_finds_the_same", ()),
+    ("test_reasons", "test_a_query_does_the_same_without_plans_that_are_no_reasons", ()),
+    (
+        "test_reasons",
+        "test_a_plan_in_the_way_is_a_reason_and_one_that_has_passed_or_is_elsewhere_is_none",
+        (),
+    ),
+    (
+        "test_reasons",
+        "test_a_plan_that_passes_the_goal_later_is_a_reason_for_a_robot_that_parks_there",
+        (),
+    ),
+    *(
+        (
+            "test_reasons",
+            "test_a_plan_that_leaves_as_the_robot_comes_is_a_reason_where_following_is_forbidden",
+            case,
+        )
+        for case in (("allowed", 0), ("forbidden", 1))
+    ),
+    (
+        "test_reasons",
+        "test_a_plan_that_comes_as_the_robot_leaves_is_a_reason_where_following_is_forbidden",
+        (),
+    ),
     ("test_reuse", "test_orders_that_begin_alike_share_the_queries_of_their_beginning", (4, 64, 96)),
     ("test_reuse", "test_without_reuse_every_query_is_asked", ()),
     *(("test_reuse", "test_each_kind_avoids_queries_and_counts_them", (kind,)) for kind in KINDS),

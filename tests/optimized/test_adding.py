@@ -191,7 +191,7 @@ def test_a_plan_must_cost_less_than_what_is_known_of_the_members_behind_leaves()
     """In the order 2, 0, 1: alone each costs 10; beside plan 5, 0 costs 12 and 1 costs 13; beside 6 too, 1 costs 17."""
     work = no_work(3, 3, 0)
     work.order[:], work.least[:], work.given[:] = (2, 0, 1), 10, (1 << 5, 1 << 5 | 1 << 6, 0, 0)
-    answers = no_answers(3)
+    answers = no_answers(3, 1)
     start_answers(answers, 3)
     known = ((0, 1 << 5, 12), (1, 1 << 5, 13), (1, 1 << 5 | 1 << 6, 17), (2, 0, 19))
     for member, beside, least in (*((member, 0, 10) for member in range(3)), *known):

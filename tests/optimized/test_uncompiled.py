@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-UNCOMPILED = ("test_replanning", "test_sorting", "test_little_memory", "test_adding")
+UNCOMPILED = ("test_replanning", "test_reasons", "test_sorting", "test_little_memory", "test_adding")
 CROSSCHECK = "from carproof.crosscheck import first_difference; print(first_difference(60, seed=3))"
 
 

@@ -1,0 +1,135 @@
+"""A query does the same without the plans that are no reasons for its answer: see test_uncompiled.py."""
+
+import os
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from tests.profiles import draws
+
+from carp_optimized import passes
+from carp_optimized.answers import number_plan, start_answers
+from carp_optimized.arrays import NEVER, NONE, PLANS
+from carp_optimized.encoding import no_answers
+from carp_optimized.fleet import PlannedFleet
+from carp_optimized.reasons import reasons
+from carp_optimized.search import find_plan_by
+from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Visit
+from carp_spec.model import Following
+from carproof.strategies import FleetUnderWay, Sizes, fleets_under_way
+
+pytestmark = pytest.mark.skipif(os.environ.get("NUMBA_DISABLE_JIT") != "1", reason="it runs uncompiled")
+
+SIZES = Sizes(resources=6, robots=5)
+
+
+def fleet_of(instance: Instance, plans: Sequence[Plan]) -> PlannedFleet:
+    fleet = PlannedFleet(instance)
+    fleet.commit(plans)
+    return fleet
+
+
+def asked(fleet: PlannedFleet, robot: int, before: Plan | None, now: int, latest: int) -> tuple[int, list[list[int]]]:
+    """The record found by then, and what the query has expanded."""
+    state = fleet._state
+    state.search.expansions[0] = 0
+    record = find_plan_by(state, robot, NONE if before is None else fleet.record(before), now, NEVER, latest)
+    count = int(state.search.expansions[0])
+    return record, [each[:count].tolist() for each in (state.search.expanded, state.search.ready, state.search.popped)]
+
+
+def reasons_among(fleet: PlannedFleet, robot: int, record: int, latest: int, plans: Sequence[Plan]) -> list[Plan]:
+    """The reasons for the answer that the last query of the fleet found."""
+    answers = no_answers(len(plans), fleet._state.graph.duration.size)
+    start_answers(answers, len(plans))
+    for member, plan in enumerate(plans):
+        held = int(fleet._records[fleet.index(plan.robot)])
+        assert number_plan(fleet._state, answers, member, held) == member
+    all_plans = (1 << len(plans)) - 1 | 1 << PLANS
+    found = reasons(fleet._state, answers, robot, record, latest, all_plans)
+    assert found >> PLANS == 1
+    return [plan for member, plan in enumerate(plans) if found >> member & 1 == 1]
+
+
+@settings(max_examples=draws(100))
+@given(fleets_under_way(SIZES), st.data())
+def test_a_query_does_the_same_without_plans_that_are_no_reasons(under_way: FleetUnderWay, data: st.DataObject) -> None:
+    instance, plans = under_way.instance, under_way.solution.plans
+    name = data.draw(st.sampled_from([under_way.robot, *under_way.solution.order]))
+    followed = {plan.robot: plan for plan in plans}.get(name)
+    others = [plan for plan in plans if plan.robot != name]
+    assume(others)
+    fleet = fleet_of(instance, others)
+    robot = fleet.index(name)
+    before = NONE if followed is None else fleet.record(followed)
+    best = passes.find_one(fleet._native, robot, before, under_way.now)
+    assume(best != NONE)
+    latest = data.draw(st.sampled_from([NEVER, int(fleet._state.records.arrival[best]) - 1]))
+    record, expanded = asked(fleet, robot, followed, under_way.now, latest)
+    assume(expanded[0])
+    given_plans = data.draw(st.lists(st.sampled_from(others), min_size=1, unique_by=lambda plan: plan.robot))
+    kept = reasons_among(fleet, robot, record, latest, given_plans)
+    again = fleet_of(instance, [plan for plan in others if plan in kept or plan not in given_plans])
+    repeated, expanded_again = asked(again, robot, followed, under_way.now, latest)
+    assert expanded_again == expanded
+    assert (record == NONE) == (repeated == NONE)
+    assert record == NONE or again._plan(repeated) == fleet._plan(record)
+
+
+def test_a_plan_in_the_way_is_a_reason_and_one_that_has_passed_or_is_elsewhere_is_none() -> None:
+    line = tuple(Resource(cell) for cell in "abcdxy")
+    graph = ResourceGraph(line, (("a", "b"), ("b", "c"), ("c", "d"), ("x", "c"), ("x", "y")))
+    robots = (
+        Robot("r", "a", "d", 4),
+        Robot("in the way", "c", "x"),
+        Robot("passed", "c", "b"),
+        Robot("elsewhere", "x", "y"),
+    )
+    plans = (
+        Plan("passed", (Visit("c", 0, 1), Visit("b", 1, 2))),
+        Plan("in the way", (Visit("c", 5, 9), Visit("x", 9, 10))),
+        Plan("elsewhere", (Visit("x", 0, 1), Visit("y", 1, 2))),
+    )
+    fleet = fleet_of(Instance(graph, robots, "vanish"), plans)
+    for latest in (NEVER, 9, 7):
+        record, _ = asked(fleet, 0, None, 0, latest)
+        assert (record == NONE) == (latest < NEVER)
+        assert reasons_among(fleet, 0, record, latest, plans) == [plans[1]]
+    assert np.array_equal(fleet._records >= 0, [False, True, True, True])
+
+
+def test_a_plan_that_passes_the_goal_later_is_a_reason_for_a_robot_that_parks_there() -> None:
+    graph = ResourceGraph(tuple(Resource(cell) for cell in "abcy"), (("a", "b"), ("b", "c"), ("c", "y")))
+    instance = Instance(graph, (Robot("r", "a", "c"), Robot("passes", "y", "y")), "park")
+    plan = Plan("passes", (Visit("y", 0, 20), Visit("c", 20, 21), Visit("y", 21, None)))
+    fleet = fleet_of(instance, [plan])
+    for latest in (NEVER, 15, 2):
+        record, _ = asked(fleet, 0, None, 0, latest)
+        assert (record == NONE) == (latest < NEVER)
+        assert reasons_among(fleet, 0, record, latest, [plan]) == [plan]
+
+
+@pytest.mark.parametrize(("following", "waits"), [("allowed", 0), ("forbidden", 1)])
+def test_a_plan_that_leaves_as_the_robot_comes_is_a_reason_where_following_is_forbidden(
+    following: Following, waits: int
+) -> None:
+    graph = ResourceGraph(tuple(Resource(cell) for cell in "abcx"), (("a", "b"), ("b", "c"), ("c", "x")))
+    instance = Instance(graph, (Robot("r", "a", "c"), Robot("ahead", "c", "x")), following=following)
+    plan = Plan("ahead", (Visit("c", 0, 2), Visit("x", 2, 3)))
+    fleet = fleet_of(instance, [plan])
+    record, _ = asked(fleet, 0, None, 0, NEVER)
+    assert fleet._plan(record).visits[-1].enter == 2 + waits
+    assert reasons_among(fleet, 0, record, NEVER, [plan]) == [plan] * waits
+
+
+def test_a_plan_that_comes_as_the_robot_leaves_is_a_reason_where_following_is_forbidden() -> None:
+    graph = ResourceGraph(tuple(Resource(cell) for cell in "abcxy"), (("a", "b"), ("b", "c"), ("b", "x"), ("b", "y")))
+    instance = Instance(graph, (Robot("r", "a", "c"), Robot("behind", "x", "y")), following="forbidden")
+    plan = Plan("behind", (Visit("x", 0, 2), Visit("b", 2, 3), Visit("y", 3, 4)))
+    fleet = fleet_of(instance, [plan])
+    for latest in (NEVER, 2):
+        record, _ = asked(fleet, 0, None, 0, latest)
+        assert (record == NONE) == (latest < NEVER)
+        assert reasons_among(fleet, 0, record, latest, [plan]) == [plan]
