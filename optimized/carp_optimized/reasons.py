@@ -11,9 +11,10 @@ could lead into it, with the largest key popped afterwards, and when it could be
 from carp_optimized.arrays import FURTHER, NEVER, NONE, PLANS, Answers, Longs, State
 from carp_optimized.compiling import compiled, inlined
 from carp_optimized.guides import toll_of
+from carp_optimized.search import LOW
 
-QUERY, READY, UNTIL, LARGEST_KEY, LEFT_BY, LEFT_READY, LEFT_UNTIL = range(7)  # of a row of `Answers.read`
-LOW = (1 << 32) - 1
+QUERY, READY, UNTIL, LARGEST_KEY = range(4)
+ENTERED, LEFT = 0, 4  # where these four begin in a row of `Answers.read`
 
 
 @compiled
@@ -47,36 +48,24 @@ def sum_up(state: State, answers: Answers, robot: int, record: int, latest: int)
         ready = int(search.ready[k])
         until = f - int(ticks[resource]) + pace * int(graph.duration[resource])
         could_end = state.parks and resource == goal and record == NONE  # if no stay came later, at whatever tick
-        note_left(answers.read[resource], query, ready, NEVER if could_end else until)
+        note(answers.read[resource], LEFT, query, ready, NEVER if could_end else until, largest)
         for edge in range(int(graph.first[resource]), int(graph.first[resource + 1])):
-            note_entered(answers.read[graph.target[edge]], query, ready, until, largest)
+            note(answers.read[graph.target[edge]], ENTERED, query, ready, until, largest)
         largest = max(largest, int(search.popped[k]))
 
 
 @inlined
-def note_left(read: Longs, query: int, ready: int, until: int) -> None:
-    """Note that the resource of the row could be left between two ticks."""
-    if read[LEFT_BY] != query:
-        read[LEFT_BY] = query
-        read[LEFT_READY] = ready
-        read[LEFT_UNTIL] = until
+def note(read: Longs, kind: int, query: int, ready: int, until: int, largest: int) -> None:
+    """Note that the resource of the row could be entered, or left, between two ticks, with a key up to the largest."""
+    if read[kind + QUERY] != query:
+        read[kind + QUERY] = query
+        read[kind + READY] = ready
+        read[kind + UNTIL] = until
+        read[kind + LARGEST_KEY] = largest
     else:
-        read[LEFT_READY] = min(int(read[LEFT_READY]), ready)
-        read[LEFT_UNTIL] = max(int(read[LEFT_UNTIL]), until)
-
-
-@inlined
-def note_entered(read: Longs, query: int, ready: int, until: int, largest: int) -> None:
-    """Note that the resource of the row could be entered between two ticks, with a key up to the largest."""
-    if read[QUERY] != query:
-        read[QUERY] = query
-        read[READY] = ready
-        read[UNTIL] = until
-        read[LARGEST_KEY] = largest
-    else:
-        read[READY] = min(int(read[READY]), ready)
-        read[UNTIL] = max(int(read[UNTIL]), until)
-        read[LARGEST_KEY] = max(int(read[LARGEST_KEY]), largest)
+        read[kind + READY] = min(int(read[kind + READY]), ready)
+        read[kind + UNTIL] = max(int(read[kind + UNTIL]), until)
+        read[kind + LARGEST_KEY] = max(int(read[kind + LARGEST_KEY]), largest)
 
 
 @compiled
@@ -93,12 +82,12 @@ def could_be_used(state: State, answers: Answers, robot: int, plan: int) -> bool
         read = answers.read[resource]
         enter = int(records.enter[k]) - state.gap
         leave = int(records.enter[k + 1] if k < last else records.leave[plan]) + state.gap
-        if read[LEFT_BY] == query and enter <= read[LEFT_UNTIL] and leave > read[LEFT_READY]:
+        if read[LEFT + QUERY] == query and enter <= read[LEFT + UNTIL] and leave > read[LEFT + READY]:
             return True
-        if read[QUERY] == query:
-            entry = max(int(read[READY]), enter - pace * int(state.graph.duration[resource]) + 1)
-            if entry <= read[UNTIL] and entry < leave:
+        if read[ENTERED + QUERY] == query:
+            entry = max(int(read[ENTERED + READY]), enter - pace * int(state.graph.duration[resource]) + 1)
+            if entry <= read[ENTERED + UNTIL] and entry < leave:
                 toll = toll_of(state, slot, resource)
-                if toll == FURTHER or (toll >= 0 and (entry << 32) + toll <= read[LARGEST_KEY]):
+                if toll == FURTHER or (toll >= 0 and (entry << 32) + toll <= read[ENTERED + LARGEST_KEY]):
                     return True
     return False

@@ -4,6 +4,7 @@ The functions are called one by one, so these tests run uncompiled: see test_unc
 """
 
 import os
+from collections.abc import Sequence
 from functools import cache
 
 import numpy as np
@@ -68,7 +69,7 @@ def may_differ(fleet: PlannedFleet, robot: RobotId, record: int, freed: Hulls) -
     )
 
 
-def fleet_of(instance: Instance, plans: tuple[Plan, ...]) -> PlannedFleet:
+def fleet_of(instance: Instance, plans: Sequence[Plan]) -> PlannedFleet:
     fleet = PlannedFleet(instance)
     fleet.commit(plans)
     return fleet
