@@ -220,10 +220,12 @@ class Work(NamedTuple):
 
     `queue` holds the robots in planning order, the new one last. `stream[0]` is the state of the random numbers.
     By robot: `before`, the plans followed until now; `ended`, whether they have ended by now; `held`, the plans of the
-    robots outside the neighbourhood; `trajectories`, for distances. By position: `outside`, the robots outside the
-    neighbourhood in planning order; the order and the plans of the best candidate. By place in the neighbourhood:
-    the members, their plans `alone` against the robots outside, the best order of the round and its plans, and the
-    scratch of the search for it. `rows[row_index[k]]` are the orders drawn, `row_key` their first places.
+    robots outside the neighbourhood; `trajectories`, the plans by which distances are measured, and in the columns of
+    `spots` what their records have under that name, so that several are compared at once; the scratch `away` and
+    `near`. By position: `outside`, the robots outside the neighbourhood in planning order; the order and the plans of
+    the best candidate. By place in the neighbourhood: the members, their plans `alone` against the robots outside, the
+    best order of the round and its plans, and the scratch of the search for it. `rows[row_index[k]]` are the orders
+    drawn, `row_key` their first places.
     """
 
     queue: Ints
@@ -232,6 +234,9 @@ class Work(NamedTuple):
     ended: Ints
     held: Ints
     trajectories: Ints
+    spots: LongTable
+    away: Longs
+    near: Longs
     outside: Ints
     best_order: Ints
     best_plans: Ints

@@ -40,37 +40,67 @@ def term(dx: int, dy: int) -> int:
     return root - 1 if (squared << 32) - root * root < 0 else root
 
 
+@inlined
+def summed(first: int, end: int, sums: int, starts: int, goals: int) -> int:
+    """The sum of the differences of two plans' places in x, or in y, at all ticks from `first` to before `end`.
+
+    Given are the differences of what `Records.spots` holds of them. Neither plan begins before the first, nor arrives
+    at the end or later.
+    """
+    return sums + goals * end - starts * first
+
+
 @compiled
 def difference(state: State, one: int, other: int, first: int, end: int) -> tuple[int, int]:
-    """The sum of the differences of two plans' places, in x and in y, at all ticks from `first` to before `end`.
-
-    Neither plan begins before the first, nor arrives at the end or later.
-    """
+    """That sum in x, and in y."""
     a = state.records.spots[one]
     b = state.records.spots[other]
-    x = int(a[2]) - int(b[2]) + (int(a[6]) - int(b[6])) * end - (int(a[4]) - int(b[4])) * first
-    y = int(a[3]) - int(b[3]) + (int(a[7]) - int(b[7])) * end - (int(a[5]) - int(b[5])) * first
+    x = summed(first, end, int(a[2]) - int(b[2]), int(a[4]) - int(b[4]), int(a[6]) - int(b[6]))
+    y = summed(first, end, int(a[3]) - int(b[3]), int(a[5]) - int(b[5]), int(a[7]) - int(b[7]))
     return x, y
+
+
+@inlined
+def are_apart(x: int, y: int, ticks: int, whole: int) -> bool:
+    """Whether the mean positions of two plans alone show that their distance is at least whole + 1.
+
+    The mean of distances is no less than the distance of the means, and each term is less than 1 below what it rounds.
+    Both sides are multiplied by the ticks, and do not count where their squares might not fit.
+    """
+    limit = ((whole + 2) * ticks >> 16) + 1
+    return (max(abs(x), abs(y), limit) < 1 << 31) & (x * x + y * y >= limit * limit)
 
 
 @compiled
 def is_apart(state: State, one: int, other: int, whole: int) -> bool:
-    """Whether the mean positions of two plans alone show that their distance is at least whole + 1.
-
-    The mean of distances is no less than the distance of the means, and each term is less than 1 below what it rounds.
-    Both sides are multiplied by the ticks, and not compared where their squares might not fit.
-    """
-    if state.split > 0:
-        return False
+    """The same of two plans; never where terms are split."""
     a = state.records.spots[one]
     b = state.records.spots[other]
     first = min(int(a[0]), int(b[0]))
     end = max(int(a[1]), int(b[1])) + 1
     x, y = difference(state, one, other, first, end)
-    limit = ((whole + 2) * (end - first) >> 16) + 1
-    if max(abs(x), abs(y), limit) >= 1 << 31:
-        return False
-    return x * x + y * y >= limit * limit
+    return state.split == 0 and are_apart(x, y, end - first, whole)
+
+
+@compiled
+def mark_near(state: State, work: Work, record: int, whole: int) -> None:
+    """Mark as near the robots whose trajectories are not apart from a plan; without a branch, for several at once."""
+    b = state.records.spots[record]
+    first_tick = int(b[0])
+    arrival = int(b[1])
+    sum_x, sum_y, start_x, start_y, goal_x, goal_y = int(b[2]), int(b[3]), int(b[4]), int(b[5]), int(b[6]), int(b[7])
+    spots = work.spots
+    first_ticks, arrivals = spots[0], spots[1]
+    sums_x, sums_y, starts_x, starts_y, goals_x, goals_y = spots[2], spots[3], spots[4], spots[5], spots[6], spots[7]
+    near = work.near
+    for robot in range(near.size):
+        first = min(int(first_ticks[robot]), first_tick)
+        end = max(int(arrivals[robot]), arrival) + 1
+        start = int(starts_x[robot]) - start_x
+        x = summed(first, end, int(sums_x[robot]) - sum_x, start, int(goals_x[robot]) - goal_x)
+        start = int(starts_y[robot]) - start_y
+        y = summed(first, end, int(sums_y[robot]) - sum_y, start, int(goals_y[robot]) - goal_y)
+        near[robot] |= 1 - int(are_apart(x, y, end - first, whole))
 
 
 @compiled
@@ -142,15 +172,22 @@ def nearest(state: State, work: Work, size: int, count: int) -> int:
     """The position in `outside` of the robot least distant from the members, the first of such; `NONE`: none is left.
 
     A robot whose plan had ended by now before any was replanned is left alone. The distance of one that is likely to be
-    near comes first, which saves most walks.
+    near comes first. Those of most others need no walk: what is apart by more than that distance is so by more than any
+    smaller one.
     """
     likely = likely_nearest(state, work, size, count)
     if likely == NONE:
         return NONE
     best = distance_to_members(state, work, likely, count, Mean(1 << (31 + state.split), 0, 1))
     chosen = likely
+    for robot in range(work.near.size):
+        work.near[robot] = int(state.split > 0)
+    if state.split == 0:
+        for member in range(count):
+            mark_near(state, work, int(work.trajectories[work.members[member]]), best.whole)
     for position in range(size):
-        if position == likely or work.ended[work.outside[position]]:
+        robot = int(work.outside[position])
+        if work.near[robot] == 0 or work.ended[robot] or position == likely:
             continue
         mean = distance_to_members(state, work, position, count, best)
         if is_less(mean, best) or (position < chosen and not is_less(best, mean)):
@@ -176,17 +213,29 @@ def distance_to_members(state: State, work: Work, position: int, count: int, bes
 @compiled
 def likely_nearest(state: State, work: Work, size: int, count: int) -> int:
     """The position of the robot that is nearest to the newest member by start, goal and first tick; `NONE`: none."""
+    b = state.records.spots[int(work.trajectories[work.members[count - 1]])]
+    first_tick, start_x, start_y, goal_x, goal_y = int(b[0]), int(b[4]), int(b[5]), int(b[6]), int(b[7])
+    spots = work.spots
+    first_ticks, starts_x, starts_y, goals_x, goals_y = spots[0], spots[4], spots[5], spots[6], spots[7]
+    away = work.away
+    for robot in range(away.size):
+        start = abs(int(starts_x[robot]) - start_x) + abs(int(starts_y[robot]) - start_y)
+        goal = abs(int(goals_x[robot]) - goal_x) + abs(int(goals_y[robot]) - goal_y)
+        away[robot] = start + goal + abs(int(first_ticks[robot]) - first_tick)
     likely = NONE
     least = NEVER << 3
-    b = state.records.spots[int(work.trajectories[work.members[count - 1]])]
     for position in range(size):
         robot = int(work.outside[position])
-        if work.ended[robot]:
-            continue
-        a = state.records.spots[int(work.trajectories[robot])]
-        away = abs(int(a[4]) - int(b[4])) + abs(int(a[5]) - int(b[5]))
-        away += abs(int(a[6]) - int(b[6])) + abs(int(a[7]) - int(b[7])) + abs(int(a[0]) - int(b[0]))
-        if away < least:
-            least = away
+        if away[robot] < least and not work.ended[robot]:
+            least = int(away[robot])
             likely = position
     return likely
+
+
+@compiled
+def follow(state: State, work: Work, robot: int, record: int) -> None:
+    """Make a plan the robot's trajectory, by which distances are measured."""
+    if work.trajectories[robot] != record:
+        work.trajectories[robot] = record
+        for k in range(8):
+            work.spots[k][robot] = state.records.spots[record][k]

@@ -15,7 +15,7 @@ from carp_optimized.arrays import (
     Work,
 )
 from carp_optimized.compiling import compiled, entry
-from carp_optimized.distances import nearest
+from carp_optimized.distances import follow, nearest
 from carp_optimized.guides import shortest_of
 from carp_optimized.natives import adding_at
 from carp_optimized.order_search import hold_members, search_orders
@@ -58,7 +58,7 @@ def add_robot(  # noqa: C901 - Algorithm 1 from its first line to its last
         take_out(state, work, taken, size, turn)
         size -= 1
         with_plan = replan(state, work, size, min(taken, with_plan), now, options)
-        cost_outside = follow(state, work.trajectories, work.outside, work.held, with_plan)
+        cost_outside = follow_plans(state, work, with_plan)
         if with_plan < size:
             for member in range(turn + 1):
                 work.alone[member] = NONE
@@ -68,7 +68,7 @@ def add_robot(  # noqa: C901 - Algorithm 1 from its first line to its last
         if cost == NONE:
             continue
         for k in range(turn + 1):
-            work.trajectories[work.found_order[k]] = work.found_plans[k]
+            follow(state, work, int(work.found_order[k]), int(work.found_plans[k]))
         if cost_outside + cost < best:
             best = cost_outside + cost
             keep_candidate(work, size, turn + 1)
@@ -93,7 +93,8 @@ def begin(state: State, work: Work, queue: Ints, new: int, shortest: int, now: i
     give_ranks(state, work.queue, size + 1)
     under_way = 0
     work.before[new] = NONE
-    work.trajectories[new] = shortest
+    work.trajectories[new] = NONE
+    follow(state, work, new, shortest)
     work.members[0] = new
     work.alone[0] = NONE
     for k in range(size):
@@ -102,7 +103,8 @@ def begin(state: State, work: Work, queue: Ints, new: int, shortest: int, now: i
         work.outside[k] = robot
         work.before[robot] = record
         work.held[robot] = record
-        work.trajectories[robot] = record
+        work.trajectories[robot] = NONE
+        follow(state, work, robot, record)
         work.ended[robot] = state.records.leave[record] <= now
         if not work.ended[robot]:
             under_way += 1
@@ -160,13 +162,13 @@ def take_out(state: State, work: Work, taken: int, size: int, turn: int) -> None
 
 
 @compiled
-def follow(state: State, trajectories: Ints, robots: Ints, plans: Ints, count: int) -> int:
-    """Make the plans of the first robots, given by robot, their trajectories; the sum of their costs."""
+def follow_plans(state: State, work: Work, count: int) -> int:
+    """Make the plans of the first robots outside their trajectories; the sum of their costs."""
     cost = 0
     for k in range(count):
-        robot = int(robots[k])
-        trajectories[robot] = plans[robot]
-        cost += cost_of(state, int(plans[robot]))
+        robot = int(work.outside[k])
+        follow(state, work, robot, int(work.held[robot]))
+        cost += cost_of(state, int(work.held[robot]))
     return cost
 
 

@@ -4,6 +4,8 @@ Numba passes an array as seven words, and a named tuple of sixty arrays as sixty
 objects takes longer than a query, and so does compiling functions that hand them on. A `Native` keeps a table of the
 addresses and sizes of the arrays, and a compiled function gets the address of the table. `state.windows.start[slot]`
 then means what it means in Python, except that no index counts from the end. With NUMBA_BOUNDSCHECK=1 each is checked.
+
+No two fields may share an array: the compiled code reads again only what a write to the same field can have changed.
 """
 
 # mypy: disable-error-code="misc, no-untyped-call, untyped-decorator, override"
@@ -52,22 +54,26 @@ class Native(Generic[F]):
     __slots__ = ("address", "fields", "table")
 
     def __init__(self, fields: F) -> None:
-        """Raises `TypeError` for an array that is not as its field says: numba would not notice."""
+        """Raises `TypeError` for an array that is not as its field says, or is that of two: numba would not notice."""
         self.fields = fields
-        self.table = np.array([*_words(fields)], np.int64)
+        self.table = np.array([*_words(fields, {})], np.int64)
         self.address = self.table.ctypes.data
 
 
-def _words(fields: tuple[Any, ...]) -> Iterator[int]:
+def _words(fields: tuple[Any, ...], known: dict[int, str]) -> Iterator[int]:
+    """The words of the table; `known` are the fields by the addresses of their arrays."""
     for (name, array), value in zip(_arrays(type(fields)), fields, strict=True):
         if array is not None:
             dtype, dimensions = array
+            field = f"{type(fields).__qualname__}.{name}"
             if value.dtype != dtype or value.ndim != dimensions or not value.flags.c_contiguous:
-                raise TypeError(f"{type(fields).__name__}.{name} is an array of another kind")
+                raise TypeError(f"{field} is an array of another kind")
+            if value.size > 0 and known.setdefault(value.ctypes.data, field) != field:
+                raise TypeError(f"{field} is also the array of {known[value.ctypes.data]}")
             yield value.ctypes.data
             yield from value.shape
         elif isinstance(value, tuple):
-            yield from _words(value)
+            yield from _words(value, known)
         else:
             yield int(value)
 
@@ -85,18 +91,19 @@ def _arrays(kind: type) -> tuple[tuple[str, tuple[type[np.generic], int] | None]
 
 
 class View(types.Type):
-    """An array known by its address and its sizes alone."""
+    """An array of a field, known by its address and its sizes alone."""
 
-    def __init__(self, dtype: types.Type, dimensions: int) -> None:
+    def __init__(self, dtype: types.Type, dimensions: int, field: str) -> None:
         self.dtype = dtype
         self.dimensions = dimensions
-        super().__init__(name=f"View({dtype}, {dimensions})")
+        self.field = field
+        super().__init__(name=f"View({dtype}, {dimensions}, {field})")
 
     @property
     def item(self) -> types.Type:
         """The value at an index: a row, or a number with as many bits as sums have."""
         if self.dimensions > 1:
-            return View(self.dtype, self.dimensions - 1)
+            return View(self.dtype, self.dimensions - 1, self.field)
         return types.uint64 if self.dtype == types.uint64 else types.int64
 
     @property
@@ -122,7 +129,7 @@ class Reference(types.Type):
             field: types.Type = types.boolean if hint is bool else types.int64
             if hint in ARRAYS:
                 dtype, dimensions = ARRAYS[hint]
-                field = View(numba.from_dtype(np.dtype(dtype)), dimensions)
+                field = View(numba.from_dtype(np.dtype(dtype)), dimensions, f"{kind.__qualname__}.{name}")
             elif hint not in {bool, int}:
                 field = Reference(hint)
             self.fields[name] = field, self.words
@@ -223,12 +230,21 @@ def place_in(context: Any, builder: Any, kind: View, value: Any, index: Any) -> 
     return builder.gep(view.data, [index])
 
 
+def _of_field(builder: Any, kind: View, access: Any) -> Any:
+    """The access, marked as one to an array of that field, which no write to an array of another field changes."""
+    add = builder.module.add_metadata
+    field = add([kind.field, add(["field"]), WORD(0)])
+    access.set_metadata("tbaa", add([field, field, WORD(0)]))
+    return access
+
+
 @lower_builtin(operator.getitem, View, types.intp)
 def _lower_read(context: Any, builder: Any, signed: Any, arguments: Any) -> Any:
     kind = signed.args[0]
     place = place_in(context, builder, kind, arguments[0], arguments[1])
     if kind.dimensions == 1:
-        return context.cast(builder, builder.load(place), kind.dtype, kind.item)
+        number = _of_field(builder, kind, builder.load(place))
+        return context.cast(builder, number, kind.dtype, kind.item)
     view = cgutils.create_struct_proxy(kind)(context, builder, arguments[0])
     row = cgutils.create_struct_proxy(kind.item)(context, builder)
     row.data = place
@@ -241,5 +257,5 @@ def _lower_read(context: Any, builder: Any, signed: Any, arguments: Any) -> Any:
 def _lower_write(context: Any, builder: Any, signed: Any, arguments: Any) -> Any:
     kind = signed.args[0]
     place = place_in(context, builder, kind, arguments[0], arguments[1])
-    builder.store(context.cast(builder, arguments[2], kind.item, kind.dtype), place)
+    _of_field(builder, kind, builder.store(context.cast(builder, arguments[2], kind.item, kind.dtype), place))
     return context.get_dummy_value()

@@ -12,7 +12,7 @@ import carp_reference
 from carp_optimized import distances, encoding, neighbourhood
 from carp_optimized.answers import learn, start_answers
 from carp_optimized.arrays import LATE, NEVER, NO_LIMIT, NONE, Records, Work
-from carp_optimized.distances import Mean, distance_below, least_sum, likely_nearest, nearest, term
+from carp_optimized.distances import Mean, distance_below, follow, least_sum, likely_nearest, nearest, term
 from carp_optimized.encoding import no_answers, no_work
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.guides import guide_slot, toll_of
@@ -64,7 +64,8 @@ def test_a_distance_is_that_of_the_law_or_larger_than_the_best_as_it_should_be(f
 def split(fleet: PlannedFleet, members: int) -> Work:
     """The last robots are members, and the others outside."""
     work = no_work(len(fleet._records), members, 0)
-    work.trajectories[:] = fleet._records
+    for robot in fleet._order:
+        follow(fleet._state, work, int(robot), int(fleet._records[robot]))
     outside = len(fleet.order) - members
     work.outside[:outside] = fleet._order[:outside]
     work.members[:] = fleet._order[outside:]
@@ -85,7 +86,7 @@ def test_the_nearest_robot_is_that_of_the_law(fleet: PlannedFleet, data: st.Data
     assert nearest(fleet._state, work, outside, members) == expected
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(distances, "least_sum", lambda _x, _y, _ticks: 0)
-        patch.setattr(distances, "is_apart", lambda *_: False)
+        patch.setattr(distances, "are_apart", lambda *_: False)
         assert nearest(fleet._state, work, outside, members) == expected
     work.ended[work.outside[expected]] = 1
     if outside == 1:
