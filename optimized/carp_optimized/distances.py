@@ -173,7 +173,7 @@ def nearest(state: State, work: Work, size: int, count: int) -> int:
 
     A robot whose plan had ended by now before any was replanned is left alone. The distance of one that is likely to be
     near comes first. Those of most others need no walk: what is apart by more than that distance is so by more than any
-    smaller one.
+    smaller one. Where terms are split, all count as near.
     """
     likely = likely_nearest(state, work, size, count)
     if likely == NONE:
@@ -181,7 +181,7 @@ def nearest(state: State, work: Work, size: int, count: int) -> int:
     best = distance_to_members(state, work, likely, count, Mean(1 << (31 + state.split), 0, 1))
     chosen = likely
     for robot in range(work.near.size):
-        work.near[robot] = int(state.split > 0)
+        work.near[robot] = state.split
     if state.split == 0:
         for member in range(count):
             mark_near(state, work, int(work.trajectories[work.members[member]]), best.whole)
