@@ -1,53 +1,75 @@
 """Verdicts on certificates and proofs, by the checkers in Python or by the proved kernel."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from carp_spec import Instance, Refusal, Solution
 from carp_spec.query_certificates import QueryCertificateDocument
-from carp_verify.bound_rules import ContradictionError
+from carp_verify.bound_rules import ContradictionError, is_about
+from carp_verify.bound_rules import size_fits as bound_size_fits
 from carp_verify.bounds import BoundDocument
 from carp_verify.documents import read_instance, solution_document
-from carp_verify.kernel import UndecidedError, ask, find_program, request
+from carp_verify.kernel import KernelVerdict, UndecidedError, ask, find_program, is_answer, request
 from carp_verify.kernel import verify_proof as ask_about_proof
+from carp_verify.query_certificate_rules import size_fits as query_size_fits
 from carproof.audit import CHECKER
 from carproof.results import VerifiedBoundDocument, VerifiedQueryDocument
 
 if TYPE_CHECKING:
     from carp_verify.proof import ProofFiles, Verified
 
+SIZES = {bound_size_fits.id, query_size_fits.id}
+
 
 def verify_query(
     instance: Instance, solution: Solution, certificate: QueryCertificateDocument, kernel: bool
 ) -> VerifiedQueryDocument:
-    """Whether a query certificate proves its bound."""
-    if kernel:
-        question = request("verify-query", instance, solution=solution_document(solution), certificate=certificate)
-        (answer,) = ask([question])
-        if answer.accepted:
-            return VerifiedQueryDocument(True, certificate.bound, None, None, None, answer.by)
-        return VerifiedQueryDocument(False, None, answer.path, answer.rule, answer.message, answer.by)
+    """Whether a query certificate proves its bound; raises `ContradictionError` if the kernel decides otherwise."""
+    plans = solution_document(solution)
+    answer = ask([request("verify-query", instance, solution=plans, certificate=certificate)])[0] if kernel else None
     from carp_verify.verify_query import verify_query as verify  # noqa: PLC0415 - only for those who ask
 
-    try:
-        return VerifiedQueryDocument(True, verify(instance, solution, certificate), None, None, None, CHECKER)
-    except Refusal as refusal:
-        return VerifiedQueryDocument(False, None, refusal.path, refusal.rule, refusal.message, CHECKER)
+    refusal, by = _decided(lambda: verify(instance, solution, certificate), certificate.bound, answer)
+    if refusal is not None:
+        return VerifiedQueryDocument(False, None, refusal.path, refusal.rule, refusal.message, by)
+    return VerifiedQueryDocument(True, certificate.bound, None, None, None, by)
 
 
 def verify_bound(instance: Instance, certificate: BoundDocument, kernel: bool) -> VerifiedBoundDocument:
-    """Whether a certificate proves its lower bound."""
-    if kernel:
-        (answer,) = ask([request("verify-bound", instance, certificate=certificate)])
-        if answer.accepted:
-            return VerifiedBoundDocument(certificate.bound, None, None, None, answer.by)
-        return VerifiedBoundDocument(None, answer.path, answer.rule, answer.message, answer.by)
+    """Whether a certificate proves its lower bound; raises `ContradictionError` if the kernel decides otherwise."""
+    answer = ask([request("verify-bound", instance, certificate=certificate)])[0] if kernel else None
     from carp_verify.verify_bound import verify_bound as verify  # noqa: PLC0415 - only for those who ask
 
+    refusal, by = _decided(lambda: verify(instance, certificate), certificate.bound, answer)
+    if refusal is not None:
+        return VerifiedBoundDocument(None, refusal.path, refusal.rule, refusal.message, by)
+    return VerifiedBoundDocument(certificate.bound, None, None, None, by)
+
+
+def _decided(
+    verify: Callable[[], int | None], bound: int | None, answer: KernelVerdict | None
+) -> tuple[Refusal | None, str]:
+    """Why a certificate is refused, if it is, and who decided: the kernel, if there is an answer of it.
+
+    A refusal for a size is no contradiction: the kernel and the checkers in Python need not have the same limits. The
+    kernel does not look at the instance that a certificate names.
+    """
+    refusal = None
     try:
-        return VerifiedBoundDocument(verify(instance, certificate), None, None, None, CHECKER)
-    except Refusal as refusal:
-        return VerifiedBoundDocument(None, refusal.path, refusal.rule, refusal.message, CHECKER)
+        verify()
+    except Refusal as found:
+        refusal = found
+    if answer is None or (refusal is not None and refusal.rule == is_about.id):
+        return refusal, CHECKER
+    refused = None
+    if not answer.accepted:
+        refused = Refusal("document", answer.path, answer.rule or is_answer.id, answer.message or "it is refused")
+    elif answer.bound != bound:
+        raise ContradictionError(f"{answer.by} proves {answer.bound}, and the certificate says {bound}")
+    if (refused is None) != (refusal is None) and SIZES.isdisjoint(each.rule for each in (refused, refusal) if each):
+        raise ContradictionError(f"{CHECKER} and {answer.by} differ: only one of them finds {refused or refusal}")
+    return refused, answer.by
 
 
 def verify_proof(folder: Path, instance: Instance | None, kernel: bool) -> "tuple[Verified, str | None]":

@@ -56,7 +56,7 @@ COMMANDS = [
 def test_what_the_kernel_accepts_is_accepted_in_its_name(
     carproof: Run, monkeypatch: pytest.MonkeyPatch, command: str
 ) -> None:
-    stand_in(monkeypatch, verdict="accepted", cost=5, unplanned=0, bound=5)
+    stand_in(monkeypatch, verdict="accepted", cost=5, unplanned=0, bound=proved_by(command))
     outcome = carproof(command)
     assert (outcome.code, outcome.stderr) == (0, "")
     assert f"{PROGRAM} 7" in outcome.stdout
@@ -64,10 +64,68 @@ def test_what_the_kernel_accepts_is_accepted_in_its_name(
     assert "7" in document.get("by", document.get("kernel"))
 
 
+def proved_by(command: str) -> int:
+    """What the certificate of the command proves: robot r1 arrives at tick 2, and the least total cost is 5."""
+    return 2 if "verify-query" in command else 5
+
+
+def forge(command: str) -> None:
+    """Let the certificate of the command claim a tick more."""
+    for name in ("query.json", "bound.json"):
+        if name in command:
+            honest = json.loads(Path(name).read_text())
+            Path(name).write_text(json.dumps({**honest, "bound": honest["bound"] + 1}))
+
+
 @pytest.mark.parametrize("command", COMMANDS[3:])
 def test_what_the_kernel_refuses_is_refused(carproof: Run, monkeypatch: pytest.MonkeyPatch, command: str) -> None:
     stand_in(monkeypatch, verdict="refused", rule="some/rule", message="it is wrong")
+    forge(command)
     assert carproof(command) == Outcome(1, "not proved: $: it is wrong [some/rule]\n", "")
+
+
+@pytest.mark.parametrize("command", COMMANDS[3:])
+def test_a_forged_certificate_that_the_kernel_accepts_is_a_contradiction(
+    carproof: Run, monkeypatch: pytest.MonkeyPatch, command: str
+) -> None:
+    forge(command)
+    stand_in(monkeypatch, verdict="accepted", bound=proved_by(command) + 1)
+    outcome = carproof(command)
+    assert (outcome.code, outcome.stdout) == (70, "")
+    assert "Internal contradiction: " in outcome.stderr
+
+
+@pytest.mark.parametrize("command", COMMANDS[3:])
+def test_a_kernel_that_proves_another_bound_is_a_contradiction(
+    carproof: Run, monkeypatch: pytest.MonkeyPatch, command: str
+) -> None:
+    stand_in(monkeypatch, verdict="accepted", bound=proved_by(command) - 1)
+    assert carproof(command).code == 70
+
+
+@pytest.mark.parametrize("command", COMMANDS[3:])
+def test_a_size_that_only_the_kernel_refuses_is_no_contradiction(
+    carproof: Run, monkeypatch: pytest.MonkeyPatch, command: str
+) -> None:
+    rule = "query-certificate/size" if "verify-query" in command else "bound/size"
+    stand_in(monkeypatch, verdict="refused", rule=rule, message="it is too large")
+    assert carproof(command) == Outcome(1, f"not proved: $: it is too large [{rule}]\n", "")
+
+
+def test_a_size_that_only_python_refuses_is_no_contradiction(carproof: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    far = 10**9
+    save(bound={**json.loads(Path("bound.json").read_text()), "horizon": far, "resources": [["a", far - 1, 1]]})
+    stand_in(monkeypatch, verdict="accepted", bound=5)
+    assert carproof(COMMANDS[4]).code == 0
+
+
+def test_a_certificate_of_another_instance_is_refused_whatever_the_kernel_says(
+    carproof: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    save(bound={**json.loads(Path("bound.json").read_text()), "instance": "0" * 64})
+    stand_in(monkeypatch, verdict="accepted", bound=5)
+    outcome = carproof(COMMANDS[4])
+    assert (outcome.code, "[bound/instance]" in outcome.stdout) == (1, True)
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -97,18 +155,18 @@ def test_without_a_kernel_one_sentence_says_how_to_build_it(
     assert outcome.stderr.startswith(f"Error: --kernel: there is no program {PROGRAM}; `make kernel` builds it, with")
     monkeypatch.setenv(VARIABLE, str(folder / "elsewhere"))
     assert carproof(command).code == 2
-    stand_in(monkeypatch, verdict="accepted", cost=5, unplanned=0, bound=5)
+    stand_in(monkeypatch, verdict="accepted", cost=5, unplanned=0, bound=proved_by(command))
     monkeypatch.delenv(VARIABLE)
     assert carproof(command).code == 0, "the program is on the PATH"
 
 
-@pytest.mark.parametrize("command", ["check town.json plans.json", "check town.json broken.json", *COMMANDS[1:3]])
+@pytest.mark.parametrize("command", ["check town.json broken.json", *COMMANDS])
 def test_a_kernel_that_differs_is_a_contradiction(carproof: Run, monkeypatch: pytest.MonkeyPatch, command: str) -> None:
     if "broken" in command:
         stand_in(monkeypatch, verdict="accepted", cost=6, unplanned=0)
     else:
         stand_in(monkeypatch, verdict="refused", rule="some/rule", message="it is wrong")
-    outcome = carproof(command, "--kernel")
+    outcome = carproof(command.removesuffix(" --kernel"), "--kernel")
     assert outcome.code == 70
     assert "Internal contradiction: " in outcome.stderr
 
