@@ -24,8 +24,8 @@ VERDICTS: dict[str, tuple[tuple[str, ...], str]] = {
         ("kernel", "bounds", "limits"),
         "[the proved kernel](#the-proved-kernel), and not the law in Python",
     ),
-    "`verify-proof`, an optimum": (("proof", *ENCODER, "refutation"), ""),
-    "`verify-proof`, unsolvable by clauses": (("proof", "unsolvable", *ENCODER, "refutation"), ""),
+    "`verify-proof`, an optimum": (("proof", "plain_files", *ENCODER, "refutation"), ""),
+    "`verify-proof`, unsolvable by clauses": (("proof", "plain_files", "unsolvable", *ENCODER, "refutation"), ""),
     "`verify-proof`, unsolvable otherwise": (("proof", "unsolvable", "joint_search", "optimum_rules", "limits"), ""),
     "`certify`: z3 agrees on capacity and exchange": (("certificate", "smt", "limits"), "z3"),
     "`theorems`: a lemma holds": (

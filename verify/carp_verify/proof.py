@@ -16,7 +16,7 @@ instance. If the obstacle is the clauses, it also has `beat.cnf`, for any total,
 
 `verify_proof` trusts none of them. It makes both formulas again from the instance and compares, evaluates the model,
 lets carp_spec judge the plans, checks the refutation (`carp_verify.refutation`), and asks z3 about both formulas too.
-It accepts formulas of at most `LARGEST_PROOF` clauses each, none larger than its file, and files of at most
+It accepts formulas of at most `LARGEST_PROOF` clauses each, none larger than its file, and plain files of at most
 `LARGEST_FILE` bytes.
 """
 
@@ -35,6 +35,7 @@ from carp_verify.clauses import dimacs
 from carp_verify.documents import decode, has_format, read_instance, write_instance
 from carp_verify.encoding import Encoding, Evidence, beat_formula, reach_formula
 from carp_verify.optimum_rules import LARGEST_PROOF
+from carp_verify.plain_files import PlainFileError, read_plain_file
 from carp_verify.refutation import NotRefutedError, require_refutation
 from carp_verify.unsolvable import Clauses, Obstacle, describe, why_no_obstacle
 
@@ -44,7 +45,7 @@ FILES = ("instance.json", "reach.cnf", "reach.model", "variables.json", "beat.cn
 FILES_OF_CLAUSES = ("instance.json", "beat.cnf", "beat.lrat")
 FILES_OF_OBSTACLE = ("instance.json",)
 LONGEST_Z3_MS = 60_000
-LARGEST_FILE = 1 << 30
+LARGEST_FILE = 1 << 28
 _LITERAL = re.compile(b"-?[1-9][0-9]{0,17}")
 
 
@@ -203,13 +204,10 @@ def _read_files(directory: Path, manifest: Manifest | UnsolvableManifest) -> Map
 
 
 def _read_file(directory: Path, name: str) -> bytes:
-    path = directory / name
     try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise ProofError(name, f"it has more than {LARGEST_FILE} bytes")
-        return path.read_bytes()
-    except OSError as error:
-        raise ProofError(name, f"it cannot be read: {error.strerror}") from error
+        return read_plain_file(directory, name, LARGEST_FILE)
+    except PlainFileError as error:
+        raise ProofError(name, str(error)) from error
 
 
 def _evidence(instance: Instance, manifest: Manifest) -> Evidence:
