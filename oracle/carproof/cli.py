@@ -6,7 +6,8 @@ import os
 import sys
 import traceback
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
+from errno import EBADF
 from importlib import import_module
 from typing import TYPE_CHECKING
 
@@ -20,7 +21,7 @@ from carproof.answer import INTERNAL_ERROR, INTERRUPTED, PIPE_CLOSED, Answer
 from carproof.commands import COMMANDS, GROUPS
 from carproof.extras import advice
 from carproof.supervising import supervised
-from carproof.tables import printable
+from carproof.tables import printable, remark
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoints
@@ -113,7 +114,8 @@ def _run(arguments: Sequence[str]) -> int:
         return _tell("Interrupted.", INTERRUPTED)
     except OSError as error:
         _forget_output()
-        return _complain(f"the output cannot be written: {error.strerror}")
+        reason = "standard output is closed" if error.errno == EBADF else error.strerror
+        return _complain(f"the output cannot be written: {reason}")
     except ContradictionError as error:
         report = "A checker of carproof is wrong; please report both."
         return _tell(f"Internal contradiction: {error}. {report}", INTERNAL_ERROR)
@@ -175,17 +177,20 @@ def _complain(sentence: str) -> int:
 
 
 def _tell(text: str, code: int) -> int:
-    """Print why a command ends, if standard error is open, and return its exit code."""
-    with suppress(OSError):
-        click.echo(text, err=True)
+    """Print why a command ends, and return its exit code."""
+    remark(text)
     return code
 
 
 def _open_closed_streams() -> None:
-    """Give a process that was started without standard streams, as by `>&-`, empty ones."""
+    """Give a process that was started without standard streams, as by `>&-`, an empty input, and an output that fails.
+
+    Messages are lost without standard error, and nothing else.
+    """
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:
-            setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: PTH123, SIM115 - as long as the process
+            nowhere = os.open(os.devnull, os.O_WRONLY if name == "stderr" else os.O_RDONLY)
+            setattr(sys, name, open(nowhere, mode, encoding="utf-8"))  # noqa: PTH123, SIM115 - as long as the process
 
 
 def _forget_output() -> None:

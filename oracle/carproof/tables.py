@@ -1,6 +1,7 @@
 """Output for people: tables and lines of text on standard output."""
 
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from textwrap import wrap
 
 import click
@@ -18,7 +19,16 @@ def printable(value: object) -> str:
 def say(text: str = "") -> None:
     """Print text for people: on standard error where a document has standard output, as with `-o -`."""
     context = click.get_current_context(silent=True)
-    click.echo(text, err=context is not None and TAKEN in context.meta)
+    if context is not None and TAKEN in context.meta:
+        remark(text)
+    else:
+        click.echo(text)
+
+
+def remark(text: str) -> None:
+    """Print text for people on standard error, if it can be written: the answer does not depend on it."""
+    with suppress(OSError):
+        click.echo(text, err=True)
 
 
 def print_line(text: str) -> None:

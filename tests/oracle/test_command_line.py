@@ -86,18 +86,51 @@ def test_a_closed_pipe_ends_a_command_quietly(arguments: str) -> None:
     assert done.stderr == ""
 
 
-def test_a_full_disk_is_bad_output_and_not_the_answer_no() -> None:
-    shell = f"{CARPROOF} rules > /dev/full"
-    done = subprocess.run(["/bin/sh", "-c", shell], check=False, capture_output=True, text=True)
-    assert done.returncode == 2
-    assert done.stderr == "Error: the output cannot be written: No space left on device\n"
+@pytest.mark.usefixtures("folder")
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        "rules",
+        "--help",
+        "--version",
+        "plan --help",
+        "plan town.json",
+        "plan town.json --json",
+        "plan town.json -o -",
+        "plan town.json -o new.json",
+        "check town.json plans.json",
+        "check town.json broken.json --json",
+        "view town.json plans.json -o -",
+        "theorems",
+    ],
+)
+def test_output_that_is_lost_is_no_answer(arguments: str) -> None:
+    for where, reason in ((">&-", "standard output is closed"), (">/dev/full", "No space left on device")):
+        shell = f"{CARPROOF} {arguments} {where}"
+        done = subprocess.run(["/bin/sh", "-c", shell], check=False, capture_output=True, text=True)
+        assert (done.returncode, done.stderr) == (2, f"Error: the output cannot be written: {reason}\n")
 
 
+@pytest.mark.usefixtures("folder")
+@pytest.mark.parametrize("where", ["2>&-", "2>/dev/full"])
 @pytest.mark.parametrize(
     ("arguments", "code"),
-    [("rules >&-", 0), ("rules >&- 2>&-", 0), ("check - x <&- 2>&-", 2), ("plan - <&-", 2), ("serve <&-", 0)],
+    [
+        ("check town.json plans.json", 0),
+        ("check town.json broken.json", 1),
+        ("check town.json none.json", 2),
+        ("plan town.json -o -", 0),
+        ("rules >&-", 2),
+        ("rules >/dev/full", 2),
+    ],
 )
-def test_closed_standard_streams_are_empty_ones(arguments: str, code: int) -> None:
+def test_messages_that_are_lost_change_no_answer(arguments: str, code: int, where: str) -> None:
+    shell = f"{CARPROOF} {arguments} {where}"
+    assert subprocess.run(["/bin/sh", "-c", shell], check=False, stdout=subprocess.PIPE).returncode == code
+
+
+@pytest.mark.parametrize(("arguments", "code"), [("check - x <&- 2>&-", 2), ("plan - <&-", 2), ("serve <&-", 0)])
+def test_a_closed_standard_input_is_an_empty_one(arguments: str, code: int) -> None:
     done = subprocess.run(["/bin/sh", "-c", f"{CARPROOF} {arguments}"], check=False, capture_output=True, text=True)
     assert done.returncode == code
     assert "Traceback" not in done.stderr

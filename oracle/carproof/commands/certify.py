@@ -12,7 +12,7 @@ from carproof.files import print_document, require_following_in
 from carproof.foreign import Problem, solution_files
 from carproof.options import examples, json_option
 from carproof.progress import progress
-from carproof.tables import print_line
+from carproof.tables import print_line, remark
 
 if TYPE_CHECKING:
     from carp_verify.certificate import Certificate
@@ -49,7 +49,7 @@ def command(problem: Problem, as_json: bool) -> Answer:
         with progress("certifying", len(visited)) as advance:
             certificate = certify(instance, solution, advance)
     except Undecided as undecided:
-        click.echo(f"Undecided: {undecided}.", err=True)
+        remark(f"Undecided: {undecided}.")
         return Answer.UNDECIDED
     if as_json:
         print_document(document(certificate))

@@ -23,7 +23,7 @@ from carproof.files import OutputFile, hypothesis_elsewhere, print_document, wri
 from carproof.ops.published import op_list
 from carproof.options import examples, json_option, kernel_option
 from carproof.progress import progress
-from carproof.tables import print_line, print_table, printable
+from carproof.tables import print_line, print_table, printable, remark
 
 if TYPE_CHECKING:
     from carproof.conform.child import Limits
@@ -173,7 +173,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     origin = _origin(program, level, one_shot, executor, seed)
     before = read_saved(save, origin.judged, one_shot)
     if before.stale is not None:
-        click.echo(printable(before.stale), err=True)
+        remark(printable(before.stale))
     with progress("asking", number) as advance, hypothesis_elsewhere():
         report = conform(subject, options, advance, before.cases)
     saved = _saved(report, save, origin)
@@ -232,7 +232,7 @@ def _saved(report: "Report", folder: Path, origin: "Origin") -> list[Path]:
     try:
         return save_all(report.failures, folder, origin)
     except click.ClickException as error:
-        click.echo(f"Nothing is saved: {printable(error.message)}", err=True)
+        remark(f"Nothing is saved: {printable(error.message)}")
         return []
 
 

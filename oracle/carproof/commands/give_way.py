@@ -19,7 +19,7 @@ from carproof.giving_way import give_way
 from carproof.options import asks_for_a_robot, examples, gives_plans
 from carproof.requests import require_tick, robot_called
 from carproof.results import write_result
-from carproof.tables import print_line, print_table
+from carproof.tables import print_line, print_table, remark
 
 
 @click.command(
@@ -57,9 +57,9 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     visits = None if route is None else read_route(route)
     found = give_way(problem, sound, id, now, engine_named(engine), visits)
     for each in found.stuck:
-        click.echo(f"Robot {each} finds no plan around the earliest one of robot {id}.", err=True)
+        remark(f"Robot {each} finds no plan around the earliest one of robot {id}.")
     if found.solution is None:
-        click.echo(f"Robot {id} gets no plan, and no other plan has changed.", err=True)
+        remark(f"Robot {id} gets no plan, and no other plan has changed.")
         return Answer.NO
     write_result(write_solution(found.solution), output, as_json)
     if not as_json:

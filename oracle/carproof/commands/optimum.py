@@ -13,7 +13,7 @@ from carproof.extras import require
 from carproof.files import print_document, read_instance_file, require_following_in, write_whole
 from carproof.optima import optimum_document
 from carproof.options import examples, instance_argument, json_option, limit_option, output_option
-from carproof.tables import print_line, print_table
+from carproof.tables import print_line, print_table, remark
 from carproof.verdicts import verify_proof
 
 if TYPE_CHECKING:
@@ -91,7 +91,7 @@ def _prove(folder: Path, instance: Instance, best: "Optimum", limit: int) -> boo
     try:
         write_proof(instance, best, folder, limit)
     except TimeOver:
-        click.echo(f"The proof takes longer than the limit of {limit} s; nothing was written.", err=True)
+        remark(f"The proof takes longer than the limit of {limit} s; nothing was written.")
         return False
     except OSError as error:
         raise click.ClickException(f"{folder}: it cannot be written: {error.strerror}") from error

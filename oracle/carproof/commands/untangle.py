@@ -11,7 +11,7 @@ from carproof.engines import engine_named
 from carproof.files import read_sound
 from carproof.options import examples, gives_plans, instance_argument, solution_argument
 from carproof.results import write_result
-from carproof.tables import print_table
+from carproof.tables import print_table, remark
 from carproof.untangling import untangle
 
 
@@ -33,7 +33,7 @@ def command(*, instance: str, solution: str, engine: str | None, output: Path | 
     found = untangle(problem, sound, engine_named(engine))
     if found.rotation:
         names = ", ".join(map(str, found.rotation))
-        click.echo(f"Out of the rotation of the robots {names} none finds another plan.", err=True)
+        remark(f"Out of the rotation of the robots {names} none finds another plan.")
         return Answer.NO
     write_result(write_solution(found.solution), output, as_json)
     if not as_json:
