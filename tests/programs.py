@@ -13,6 +13,7 @@ DEBIAN_PACKAGES = {
     "coqc": "coq",
     "ocamlfind": "ocaml-findlib",
     "bash": "bash",
+    "rsvg-convert": "librsvg2-bin",
 }
 
 

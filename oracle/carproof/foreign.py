@@ -95,7 +95,8 @@ class Problem:
     def title(self) -> str:
         """The names of instance and solution as people know them."""
         first = self.instance or (self.benchmark.scen if self.benchmark else "")
-        return f"{Path(shown(first)).name} · {Path(shown(self.solution or '')).name}"
+        names = [first] if self.solution is None else [first, self.solution]
+        return " · ".join(Path(shown(name)).name for name in names)
 
     def read_instance(self) -> Instance:
         """Read the instance or the benchmark."""
@@ -115,7 +116,15 @@ class Problem:
 
 def solution_files(function: F) -> F:
     """[INSTANCE] SOLUTION, and the options of benchmarks and formats; the command gets them as a `Problem`."""
+    return _with_files(function, needs_solution=True)
 
+
+def instance_and_perhaps_solution(function: F) -> F:
+    """The same, where the solution may be left out."""
+    return _with_files(function, needs_solution=False)
+
+
+def _with_files(function: F, *, needs_solution: bool) -> F:
     @wraps(function)
     def command(
         *,
@@ -126,12 +135,14 @@ def solution_files(function: F) -> F:
         format: str | None,
         **others: Any,  # noqa: ANN401 - the command's own
     ) -> object:
-        *instances, solution = files
         benchmark = MovingAI.of(map, scen, agents)
-        if len(instances) != (benchmark is None):
-            raise click.UsageError("Give INSTANCE and SOLUTION, or --map, --scen and SOLUTION.")
-        problem = Problem(instances[0] if instances else None, benchmark, solution, format)
+        instances, solutions = files[: benchmark is None], files[benchmark is None :]
+        if len(instances) != (benchmark is None) or not needs_solution <= len(solutions) <= 1:
+            wanted = "SOLUTION" if needs_solution else "if you have one SOLUTION"
+            raise click.UsageError(f"Give INSTANCE and {wanted}, or --map, --scen and {wanted}.")
+        problem = Problem(instances[0] if instances else None, benchmark, solutions[0] if solutions else None, format)
         return function(problem=problem, **others)
 
-    files = click.argument("files", metavar="[INSTANCE] SOLUTION", nargs=-1, required=True, type=InputFile())
+    metavar = "[INSTANCE] SOLUTION" if needs_solution else "[INSTANCE] [SOLUTION]"
+    files = click.argument("files", metavar=metavar, nargs=-1, required=needs_solution, type=InputFile())
     return cast("F", files(movingai_options(from_option(command))))

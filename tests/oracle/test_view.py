@@ -2,22 +2,29 @@
 
 import json
 import re
+from collections import Counter
 from pathlib import Path
+from subprocess import run
 
 import pytest
+from PIL import Image
 from tests.oracle.running import BEHIND, EAST, EAST_PLAN, TWO_PLANNED, Document, Run, corridor, solution
 from tests.oracle.viewing import COLLIDING, CORRIDOR, HOSTILE, SVG, drawn, picture_of, scene_of, without_positions
+from tests.programs import require_programs
 
 from carp_spec import Resource, ResourceGraph, judge
 from carp_verify.documents import read_instance, read_solution
 from carproof.viewer import limits
 from carproof.viewer.chart_picture import TimeScale
-from carproof.viewer.lanes import lanes, spots
+from carproof.viewer.colours import LIGHT, LOOKS
+from carproof.viewer.lanes import area, lanes, spots
+from carproof.viewer.names import common_start, fitted, short_labels
 from carproof.viewer.placement import UNIT, placement
 from carproof.viewer.samples import FOLDER, sample_pictures
-from carproof.viewer.staging import short_labels
 
+FEWEST_PIXELS = 30
 OUTSIDE = re.compile(r"""(?:src|href|url|action)\s*[=(]\s*["']?(?!#|data:)[a-z]*:?//""", re.IGNORECASE)
+WHOLE = area(is_named=False, has_traits=False)
 PARKED = solution({"r1": [*EAST_PLAN[:2], ["c", 2, None]]}, ["r2"])
 
 
@@ -58,7 +65,7 @@ def test_every_violation_of_the_checker_is_in_the_scene(carproof: Run, tmp_path:
     assert [each["message"] for each in scene["violations"]] == [each.message for each in verdict.violations]
     assert [(each["start"], each["end"]) for each in scene["violations"]] == [(1, 2), (2, 3)]
     assert scene["rules"] == [{"id": "joint/capacity", "statement": scene["rules"][0]["statement"], "count": 2}]
-    assert [scene["places"][each["place"]]["label"] for each in scene["violations"]] == ["b", "c"]
+    assert [scene["places"][place]["label"] for each in scene["violations"] for place in each["places"]] == ["b", "c"]
     assert all(each["tracks"] == [0, 1] for each in scene["violations"])
 
 
@@ -115,9 +122,9 @@ def test_the_still_of_the_map_shows_each_robot_where_it_is(carproof: Run, tmp_pa
         picture = picture_of(drawn(carproof, tmp_path, CORRIDOR, COLLIDING, "--at", str(tick)))
         return {each.findtext(f"{SVG}title"): each.get("transform") for each in picture[-1]}
 
-    assert robots(0) == {"r1": "translate(26 26) scale(130e-2)", "r2": "translate(66 26) scale(130e-2)"}
-    assert robots(4) == {"r2": "translate(186 26) scale(130e-2)"}
-    assert robots(9) == {}
+    assert robots(0) == {"r1": "translate(26 30) scale(110e-2)", "r2": "translate(66 30) scale(110e-2)"}
+    assert robots(4) == {"r2": "translate(186 30) scale(110e-2)"}
+    assert robots(5) == {}
 
 
 def test_the_still_of_the_map_marks_the_violations_of_its_tick(carproof: Run, tmp_path: Path) -> None:
@@ -134,8 +141,8 @@ def test_robots_park_for_ever_or_vanish(carproof: Run, tmp_path: Path) -> None:
             picture_of(drawn(carproof, tmp_path, corridor([EAST, BEHIND], "park"), plans, "--at", str(tick)))[-1]
         )
 
-    assert robots(PARKED, 9999) == 1
-    assert robots(solution({"r1": EAST_PLAN}, ["r2"]), 9999) == 0
+    assert robots(PARKED, 2) == 1
+    assert robots(solution({"r1": EAST_PLAN}, ["r2"]), 3) == 0
 
 
 def test_the_still_of_the_chart_has_rows_windows_stays_and_violations(carproof: Run, tmp_path: Path) -> None:
@@ -155,7 +162,7 @@ def test_one_way_moves_are_arrows(carproof: Run, tmp_path: Path) -> None:
     paths = {each.get("class"): each.get("d", "") for each in picture.iter(f"{SVG}path")}
     assert "edge" not in paths
     assert paths["joint"].count("M") == 4
-    assert paths["one-way"].count("M") == paths["head"].count("z") == 3
+    assert paths["one-way"].count("M") == paths["one-way head"].count("z") == 3
 
 
 def square(*lacking: str) -> Document:
@@ -190,13 +197,13 @@ def test_what_lies_between_the_squares_of_a_grid_is_a_wall(carproof: Run, tmp_pa
 
 def test_robots_that_share_a_resource_stand_side_by_side() -> None:
     assert list(lanes([(0, 4), (1, 2), (2, None), (4, 5), (9, 10)])) == [0, 1, 1, 0, 0]
-    roomy = spots(Resource("a", capacity=4), 4)
+    roomy = spots(Resource("a", capacity=4), 4, WHOLE)
     assert len({(spot.dx, spot.dy) for spot in roomy}) == 4
     assert all(max(abs(spot.dx), abs(spot.dy)) + spot.radius <= 16 for spot in roomy)
-    collision = spots(Resource("a", capacity=1), 2)
+    collision = spots(Resource("a", capacity=1), 2, WHOLE)
     assert (collision[0].dx, collision[0].dy, collision[0].radius) == (0, 0, 13)
     assert 0 < collision[1].dx < 13
-    crowd = spots(Resource("a", capacity=1), 5)
+    crowd = spots(Resource("a", capacity=1), 5, WHOLE)
     assert len({(spot.dx, spot.dy) for spot in crowd}) == 5
 
 
@@ -229,6 +236,85 @@ def test_large_graphs_without_positions_are_laid_out_in_rows() -> None:
     assert (placed.width, placed.height) == (29 * UNIT + 52, 29 * UNIT + 52)
 
 
+def test_names_are_shown_without_what_all_begin_with() -> None:
+    names = [f"warehouse/aisle{aisle}/pick{pick}" for aisle in (10, 11) for pick in (1, 2)]
+    assert common_start(names) == "warehouse/aisle"
+    assert common_start(["hall/a", "hall/a/north", "hall/a/south"]) == "hall/"
+    assert common_start(["r1", "r2"]) == common_start(["north-gate", "south-gate"]) == common_start([]) == ""
+    assert fitted(["one-long-name", "another-long-name", "a"], 6) == ["one-l…", "anoth…", "a"]
+    assert fitted(["long/name/1", "long/name/2"], 6) == ["…ame/1", "…ame/2"]
+
+
+def test_all_goals_and_starts_of_one_resource_are_drawn_apart(carproof: Run, tmp_path: Path) -> None:
+    instance = corridor([{**EAST, "id": f"r{number}"} for number in range(5)])
+    picture = picture_of(drawn(carproof, tmp_path, instance, solution({}, [f"r{n}" for n in range(5)]), "--at", "0"))
+    goals = {each.get("d") for each in picture.findall(f".//{SVG}path[@class='goal']")}
+    starts = {(each.get("cx"), each.get("cy")) for each in picture.findall(f".//{SVG}circle[@class='start']")}
+    assert (len(goals), len(starts)) == (5, 5)
+
+
+def test_both_resources_of_an_exchange_are_marked(carproof: Run, tmp_path: Path) -> None:
+    west = {"id": "r2", "start": "b", "goal": "a"}
+    plans = solution({"r1": [["a", 0, 1], ["b", 1, 2]], "r2": [["b", 0, 1], ["a", 1, 2]]})
+    instance = corridor([{**EAST, "goal": "b"}, west])
+    still = picture_of(drawn(carproof, tmp_path, instance, plans, "--at", "1"))
+    assert len(still.findall(f".//{SVG}path[@class='violation']")) == 2
+    chart = picture_of(drawn(carproof, tmp_path, instance, plans, "--chart"))
+    assert len(chart.findall(f".//{SVG}path[@class='violation']")) == 2
+
+
+def test_the_rows_of_the_chart_follow_the_robots(carproof: Run, tmp_path: Path) -> None:
+    plans = solution({"r2": [["b", 0, 1], ["c", 1, 2]], "r1": [["d", 0, 1], ["a", 1, 2]]})
+    chart = picture_of(drawn(carproof, tmp_path, CORRIDOR, plans, "--chart"))
+    assert [each.text for each in chart.findall(f".//{SVG}text[@class='row-name']")] == ["d", "a", "b", "c"]
+
+
+def test_eighteen_robots_look_different() -> None:
+    assert len({(look.fill, look.edge) for look in LOOKS}) == len(LOOKS) == 18
+
+
+def test_an_instance_alone_is_shown_with_its_starts_and_goals(carproof: Run, tmp_path: Path) -> None:
+    town = tmp_path / "town.json"
+    town.write_text(json.dumps(CORRIDOR))
+    outcome = carproof("view", town)
+    scene = scene_of(outcome.stdout)
+    assert (outcome.code, scene["alone"], scene["violations"]) == (0, True, [])
+    assert all(track["start_mark"] and track["goal_mark"] for track in scene["tracks"])
+    assert carproof("view", town, "-o", tmp_path / "town.svg").code == 0
+    picture = picture_of((tmp_path / "town.svg").read_text())
+    assert len(picture.findall(f".//{SVG}circle[@class='start']")) == 2
+    refused = carproof("view", town, "--at", "0")
+    assert (refused.code, "give SOLUTION" in refused.stderr) == (2, True)
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "named"),
+    [
+        ("x.pdf", (), (".html", ".svg")),
+        ("x.svg", (), (".html", "--at", "--chart")),
+        ("x.html", ("--at", "1"), (".svg",)),
+        ("x.PNG", ("--chart",), (".svg",)),
+    ],
+)
+def test_a_file_that_promises_another_format_is_refused(
+    carproof: Run, tmp_path: Path, name: str, options: tuple[str, ...], named: tuple[str, ...]
+) -> None:
+    (tmp_path / "town.json").write_text(json.dumps(CORRIDOR))
+    (tmp_path / "plans.json").write_text(json.dumps(COLLIDING))
+    outcome = carproof("view", tmp_path / "town.json", tmp_path / "plans.json", *options, "-o", tmp_path / name)
+    assert outcome.code == 2
+    assert all(each in outcome.stderr for each in named)
+    assert not (tmp_path / name).exists()
+
+
+def test_a_tick_after_all_plans_is_refused_with_the_last_one(carproof: Run, tmp_path: Path) -> None:
+    (tmp_path / "town.json").write_text(json.dumps(CORRIDOR))
+    (tmp_path / "plans.json").write_text(json.dumps(COLLIDING))
+    outcome = carproof("view", tmp_path / "town.json", tmp_path / "plans.json", "--at", "900")
+    assert outcome.code == 2
+    assert "from tick 0 to tick 5" in outcome.stderr
+
+
 def test_an_instance_without_resources_or_robots_is_drawn(carproof: Run, tmp_path: Path) -> None:
     instance = {**corridor([]), "graph": {"nodes": [], "edges": []}}
     for options in ((), ("--at", "0"), ("--chart",)):
@@ -236,10 +322,14 @@ def test_an_instance_without_resources_or_robots_is_drawn(carproof: Run, tmp_pat
 
 
 def test_the_chart_marks_round_ticks() -> None:
-    assert list(TimeScale(0, 10).marks()) == list(range(11))
-    assert list(TimeScale(0, 100).marks()) == list(range(0, 101, 5))
-    assert list(TimeScale(-3, 10_000).marks())[:3] == [0, 500, 1000]
-    assert len(list(TimeScale(0, 10**7).marks())) == 21
+    def marks(first: int, last: int) -> list[int]:
+        return list(TimeScale.beside(["a"], first, last).marks())
+
+    assert marks(0, 10) == list(range(11))
+    assert marks(0, 100) == list(range(0, 101, 5))
+    assert marks(0, 102) == [*range(0, 100, 5), 102]
+    assert marks(-3, 10_000)[:3] == [0, 500, 1000]
+    assert (len(marks(0, 10**7)), marks(0, 10**7)[-1]) == (21, 10**7)
 
 
 @pytest.mark.parametrize(
@@ -313,3 +403,26 @@ def test_only_the_first_of_very_many_violations_are_listed(
 @pytest.mark.parametrize("name", ["map.svg", "chart.svg", "dependencies.svg"])
 def test_the_pictures_of_the_project_are_drawn_by_it(name: str) -> None:
     assert (FOLDER / name).read_bytes() == sample_pictures()[name], "run: make generated"
+
+
+@pytest.mark.parametrize(
+    ("name", "robots", "ground"),
+    [("map.svg", 8, ("wall", "floor")), ("chart.svg", 8, ("window",)), ("dependencies.svg", 8, ("way", "line"))],
+)
+def test_pictures_have_their_colours_outside_a_browser(
+    tmp_path: Path, name: str, robots: int, ground: tuple[str, ...]
+) -> None:
+    seen = rendered(sample_pictures()[name], tmp_path)
+    wanted = {LIGHT[each] for each in ("paper", *ground)} | {look.fill for look in LOOKS[:robots]}
+    assert {each for each in wanted if seen[each] < FEWEST_PIXELS} == set()
+    assert seen["#000000"] < sum(seen.values()) // 20
+
+
+def rendered(still: bytes, folder: Path) -> Counter[str]:
+    """How many pixels of each colour the picture has where `rsvg-convert` draws it."""
+    require_programs("rsvg-convert")
+    (folder / "still.svg").write_bytes(still)
+    run(["rsvg-convert", "-z", "2", folder / "still.svg", "-o", folder / "still.png"], check=True, timeout=60)  # noqa: S607
+    with Image.open(folder / "still.png") as image:
+        pixels = image.convert("RGB").tobytes()
+    return Counter(f"#{pixels[at : at + 3].hex()}" for at in range(0, len(pixels), 3))

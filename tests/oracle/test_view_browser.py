@@ -173,6 +173,31 @@ def test_a_planted_collision_is_counted_listed_and_marked_at_its_tick(collision:
     assert collision.robots()
 
 
+def test_both_resources_of_an_exchange_are_red_while_robots_pass_each_other(driver: Chrome, tmp_path: Path) -> None:
+    resources, edges = (Resource("a", x=0, y=0), Resource("b", x=1, y=0)), (("a", "b"),)
+    robots = (Robot("r1", "a", "b"), Robot("r2", "b", "a"))
+    plans = tuple(Plan(each.id, (Visit(each.start, 0, 1), Visit(each.goal, 1, 2))) for each in robots)
+    shown = opened(driver, tmp_path, Instance(ResourceGraph(resources, edges), robots), Solution(plans, ("r1", "r2")))
+
+    def red(time: float) -> object:
+        shown.script(f"viewer.clock.set({time})")
+        return shown.number("[...new Set(viewer.map.broken.flatMap((each) => each.places))].sort()")
+
+    assert [red(time) for time in (0, 0.5, 1, 1.5, 2)] == [[], [0, 1], [0, 1], [0, 1], []]
+
+
+def test_an_instance_alone_is_a_map_without_a_clock(
+    driver: Chrome, tmp_path: Path, town: tuple[Instance, Solution]
+) -> None:
+    file = tmp_path / "page.html"
+    file.write_bytes(page(town[0], None, "town.json"))
+    shown = Page(driver, file)
+    assert shown.text("verdict") == "an instance without plans"
+    assert shown.script("return document.querySelector('footer').clientHeight") == 0
+    assert shown.count("#robots button") == 100
+    assert logged(driver, "browser") == []
+
+
 def test_a_click_on_a_violation_goes_to_its_tick_and_robots(collision: Page) -> None:
     collision.click("#violations button", "resource c")
     assert collision.tick == "tick 2 of 5"

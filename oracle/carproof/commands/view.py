@@ -7,12 +7,15 @@ import click
 from carp_verify.documents import read_trace
 from carproof.answer import Answer
 from carproof.files import InputFile, naming, read_file, refuse_two_standard_inputs
-from carproof.foreign import Problem, solution_files
+from carproof.foreign import Problem, instance_and_perhaps_solution
 from carproof.options import examples, output_option
 from carproof.results import write_result
 from carproof.tables import print_table
 from carproof.viewer.page import page
+from carproof.viewer.staging import span
 from carproof.viewer.stills import chart_still, map_still
+
+PAGE, PICTURE = (".html", ".htm"), ".svg"
 
 
 @click.command(
@@ -21,12 +24,13 @@ from carproof.viewer.stills import chart_still, map_still
         "carproof view town.json plans.json -o plans.html",
         "carproof view town.json plans.json --at 12 -o tick-12.svg",
         "carproof view town.json plans.json --chart -o chart.svg",
+        "carproof view town.json -o town.svg",
         "carproof view town.json plans.json --trace trace.json -o executed.html",
         "carproof plan town.json --json | carproof view town.json - -o plans.html",
         "carproof view --map town.map --scen town.scen result.txt -o result.html",
     ),
 )
-@solution_files
+@instance_and_perhaps_solution
 @click.option("--at", type=int, metavar="TICK", help="Draw the map at this tick, as a still SVG.")
 @click.option("--chart", is_flag=True, help="Draw the chart of resources by time, as a still SVG.")
 @click.option("--trace", type=InputFile(), help="Show what has happened beside the plans; page only.")
@@ -40,20 +44,34 @@ def command(problem: Problem, at: int | None, chart: bool, trace: str | None, ou
     the rules that the trace breaks are listed if SOLUTION breaks none. Resources without positions are laid out
     automatically. The file goes to standard output, or with -o to a file.
 
+    Without SOLUTION, the map of INSTANCE is shown with the starts and goals of its robots, as a page or, in a file that
+    ends in .svg, as a picture.
+
     Exit codes: 0 the picture is drawn, 2 bad input, or too large for a picture.
     """
     if at is not None and chart:
         raise click.UsageError("Only one of --at and --chart can be drawn.")
     if trace is not None and (chart or at is not None):
         raise click.UsageError("--trace is for the page, without --at and --chart.")
+    is_still = chart or at is not None
+    if problem.solution is None and (is_still or trace is not None):
+        raise click.UsageError("--at, --chart and --trace show plans: give SOLUTION too.")
+    refuse_suffix(output, is_still=is_still, is_alone=problem.solution is None)
     refuse_two_standard_inputs(*problem.names, *([] if trace is None else [trace]))
-    instance, solution = problem.read(as_named=True)
+    if problem.solution is None:
+        instance, solution = problem.read_instance(), None
+    else:
+        instance, solution = problem.read(as_named=True)
     happened = None if trace is None else read_file(trace, read_trace)
     title = problem.title
-    with naming(problem.solution or ""):
-        if chart:
+    with naming(problem.solution or problem.instance or problem.names[0]):
+        if solution is None:
+            is_picture = output is not None and output.suffix.lower() == PICTURE
+            drawn = map_still(instance, None, 0, title) if is_picture else page(instance, None, title)
+        elif chart:
             drawn = chart_still(instance, solution, title)
         elif at is not None:
+            refuse_tick_without_plans(at, *span(instance, solution))
             drawn = map_still(instance, solution, at, title)
         else:
             drawn = page(instance, solution, title, happened)
@@ -61,3 +79,22 @@ def command(problem: Problem, at: int | None, chart: bool, trace: str | None, ou
     if output is not None:
         print_table(["written", "bytes"], [[output, len(drawn)]], numbers=["bytes"])
     return Answer.YES
+
+
+def refuse_suffix(output: Path | None, *, is_still: bool, is_alone: bool) -> None:
+    """Refuse a file name that promises another format than it gets; one without a suffix promises none."""
+    suffix = "" if output is None else output.suffix.lower()
+    allowed = (PICTURE,) if is_still else (*PAGE, PICTURE) if is_alone else PAGE
+    if suffix and suffix not in allowed:
+        if is_still:
+            raise click.UsageError(f"{output}: --at and --chart draw a picture, in a file that ends in .svg.")
+        how = "" if is_alone else " with --at TICK or --chart"
+        raise click.UsageError(f"{output}: view writes a page, .html, or a picture, .svg{how}.")
+
+
+def refuse_tick_without_plans(at: int, first: int, last: int) -> None:
+    """Refuse a tick before or after all plans."""
+    if not first <= at <= last:
+        raise click.BadParameter(
+            f"the plans are from tick {first} to tick {last}; {at} is not among them.", param_hint="--at"
+        )

@@ -1,12 +1,14 @@
 """Small pictures in text: the map with starts and goals, and which robot is in which resource at which tick."""
 
 from collections.abc import Mapping, Sequence
-from string import ascii_uppercase
+from string import ascii_letters, ascii_uppercase, digits
 
 from carp_spec import Instance, Plan, ResourceId
 
 MOST_TICKS = 60
 MOST_CELLS = 60
+SYMBOLS = digits + ascii_letters
+MANY, NOBODY, UNKNOWN = "*", ".", "?"
 
 
 def map_drawing(instance: Instance) -> str:
@@ -43,22 +45,31 @@ def _rows(cells: Mapping[tuple[int, int], str]) -> list[str]:
 
 
 def drawing(instance: Instance, plans: Sequence[Plan]) -> str:
-    """Resources as rows, ticks as columns, robots by their number in the instance; `*` where several are."""
-    numbers = {robot.id: str(position % 10) for position, robot in enumerate(instance.robots)}
+    """Resources as rows, ticks as columns, a symbol for each robot, and above them a legend."""
+    symbols = dict(zip(instance.robot, SYMBOLS, strict=False))
     ticks = [tick for plan in plans for visit in plan.visits for tick in (visit.enter, visit.leave) if tick is not None]
-    end = max(1, min(MOST_TICKS, max(ticks, default=0) + 1))
+    last = max(ticks, default=0)
+    end = max(1, min(MOST_TICKS, last + 1))
     width = max((len(str(id)) for id in instance.graph.index), default=0)
-    lines = [f"{number}: robot {robot}" for robot, number in numbers.items()]
+    lines = [
+        "A row is a resource and a column a tick, headed by its last digit.",
+        f"{NOBODY} is nobody, {MANY} is several robots, and the robots are:",
+        *(f"{symbol}: robot {robot}" for robot, symbol in symbols.items()),
+    ]
+    if len(symbols) < len(instance.robots) or any(plan.robot not in instance.robot for plan in plans):
+        lines.append(f"{UNKNOWN}: any other robot")
+    if end <= last:
+        lines.append(f"The ticks from {end} to {last} are left out.")
     lines += ["", " " * (width + 1) + "".join(str(tick % 10) for tick in range(end))]
     for resource in instance.graph.resources:
         row = []
         for tick in range(end):
             inside = [
-                numbers.get(plan.robot, "?")
+                symbols.get(plan.robot, UNKNOWN)
                 for plan in plans
                 for visit in plan.visits
                 if visit.resource == resource.id and visit.enter <= tick and (visit.leave is None or tick < visit.leave)
             ]
-            row.append(inside[0] if len(inside) == 1 else "*" if inside else ".")
+            row.append(inside[0] if len(inside) == 1 else MANY if inside else NOBODY)
         lines.append(f"{resource.id!s:>{width}} {''.join(row)}")
     return "\n".join(lines) + "\n"

@@ -18,8 +18,8 @@ from carproof.conform.run import Report
 from carproof.conform.saving import Origin, about_case, filled, judged_solution
 from carproof.conform.wording import verdict
 from carproof.rules import ALL_RULES
+from carproof.viewer.colours import variables
 from carproof.viewer.page import page
-from carproof.viewer.stills import page_file
 
 COLUMNS = "passed", "gave up", "skipped", "not asked", "wrong answer", "crash", "timeout", "protocol error"
 POLICY = "base-uri 'none'; form-action 'none'; connect-src 'none'; object-src 'none'; font-src 'none'; img-src data:"
@@ -33,7 +33,7 @@ def html_document(report: Report, saved: Sequence[Path], origin: Origin) -> byte
     found = [*map(_fault, report.faults), *failures, *(f"<p>{escape(each)}</p>" for each in report.shortfalls)]
     filled_in = Template(files("carproof.conform").joinpath("report.html").read_text(encoding="utf-8")).substitute(
         policy=POLICY,
-        colours=page_file("colours.css"),
+        colours=variables(),
         title=escape(f"{report.program}: level {level.label}"),
         answer={True: "yes", False: "no", None: "undecided"}[report.conforms],
         verdict=escape(verdict(report)),

@@ -7,11 +7,14 @@ from carp_reference.execution import Order
 from carp_spec import RobotId
 from carp_spec.dependencies import Dependency, Node, shortest_cycle
 from carproof.delays import slack
-from carproof.viewer.chart_picture import AXIS, GAP, LABEL_LENGTH, LABELS, LANE, TimeScale, draw_axis
+from carproof.viewer.chart_picture import AXIS, GAP, LANE, TimeScale, draw_axis
+from carproof.viewer.colours import LOOKS
+from carproof.viewer.legend import write_legend
 from carproof.viewer.limits import refuse_large_pictures, refuse_more
+from carproof.viewer.names import common_start, fitted, label
 from carproof.viewer.placement import Point
 from carproof.viewer.shapes import box, drawing, group, head, path, text
-from carproof.viewer.staging import TINTS, cut, label
+from carproof.viewer.staging import LONGEST_NAME
 from carproof.viewer.stills import still
 
 ROW = 30
@@ -31,27 +34,40 @@ def dependency_still(order: Order, title: str) -> bytes:
     visits = [visit for plan in order.solution.plans for visit in plan.visits]
     first = min((visit.enter for visit in visits), default=0)
     last = max([first + 1, *(visit.enter + 1 if visit.leave is None else visit.leave for visit in visits)])
-    scale = TimeScale(first, last)
     cycle = shortest_cycle(order.edges)
     robots = dict.fromkeys([*(edge.after[0] for edge in cycle), *(plan.robot for plan in order.solution.plans)])
+    names = dict(zip(robots, fitted([label(robot) for robot in robots], LONGEST_NAME), strict=True))
+    scale = TimeScale.beside(names.values(), first, last)
     tops = {robot: AXIS + at * ROW for at, robot in enumerate(robots)}
     height = AXIS + len(tops) * ROW
-    picture = drawing(scale.at(scale.end) + AXIS, height + GAP, **{"class": "chart"})
+    picture = drawing(scale.at(scale.end) + AXIS, height, "chart")
     draw_axis(picture, scale, height)
     waits = [edge for edge in order.edges if edge.kind == "order" and edge not in cycle]
     draw_arrows(group(picture, "waits"), waits, order, scale, tops)
-    draw_visits(picture, order, scale, tops)
+    start = common_start([label(id) for id in order.instance.graph.index])
+    draw_visits(picture, order, scale, tops, names, start)
     draw_arrows(group(picture, "cycle"), cycle, order, scale, tops)
+    legend = [("visit", "visit of a robot"), ("waits", "the visit at the head waits until the other begins")]
+    legend += [("cycle", "each waits for the next: nobody can go first")] if cycle else []
+    write_legend(picture, [*legend, *([("", f"names without {start}")] if start else [])])
     return still(picture, f"{title}: which visits wait for which")
 
 
-def draw_visits(picture: Element, order: Order, scale: TimeScale, tops: Mapping[RobotId, int]) -> None:
+def draw_visits(
+    picture: Element,
+    order: Order,
+    scale: TimeScale,
+    tops: Mapping[RobotId, int],
+    names: Mapping[RobotId, str],
+    start: str,
+) -> None:
     """Draw the row of each robot with its visits; each says its ticks and its slack."""
     spare = slack(order)
     rows = group(picture, "stays")
     for at, plan in enumerate(order.solution.plans):
-        row, top = group(rows, f"stay tint{at % TINTS}"), tops[plan.robot]
-        text(row, "row-name", LABELS - GAP, top + LANE // 2, cut(label(plan.robot), LABEL_LENGTH), 10)
+        look, top = LOOKS[at % len(LOOKS)], tops[plan.robot]
+        row = group(rows, "stay", fill=look.fill, stroke=look.edge)
+        text(row, "row-name", (scale.left - 2 * GAP, top + LANE // 2), names[plan.robot], 10, stroke="none")
         for place, visit in enumerate(plan.visits):
             x, width = scale.span(visit.enter, visit.leave)
             name, late = label(visit.resource), spare[plan.robot, place]
@@ -59,8 +75,9 @@ def draw_visits(picture: Element, order: Order, scale: TimeScale, tops: Mapping[
             bar = group(row, "visit")
             SubElement(bar, "title").text = f"{name} [{visit.enter}, {leave}), slack {'any' if late is None else late}"
             path(bar, "bar", [box(x, top, max(1, width - 1), LANE)])
+            name = name.removeprefix(start)
             if width >= LETTER * len(name):
-                text(bar, "short", x + width // 2, top + LANE // 2, name, 9)
+                text(bar, "short", (x + width // 2, top + LANE // 2), name, 9, fill=look.text)
 
 
 def draw_arrows(

@@ -12,6 +12,8 @@ from carp_spec.windows import Occupation
 SIDE = 32
 """Drawing units of a resource's side."""
 RADIUS = 13
+STRIP = 8
+"""The height of a line of text above or below the robots in a resource."""
 NUDGES = ((0, 0), (1, 1), (-1, -1), (1, -1), (-1, 1))
 """The shifts of robots beyond the capacity, in halves of a radius: each is seen, and all stay near the resource."""
 
@@ -26,6 +28,14 @@ class Spot:
     dx: int
     dy: int
     radius: int
+
+
+@dataclass(frozen=True, slots=True)
+class Area:
+    """The part of a resource's square that robots are drawn in: how far down its centre is, and half its height."""
+
+    down: int
+    half: int
 
 
 def lasts(enter: int, leave: int | None) -> bool:
@@ -60,18 +70,36 @@ def lanes(stays: Sequence[Occupation]) -> Iterator[int]:
         yield lane
 
 
-def spots(resource: Resource | None, lane_count: int) -> tuple[Spot, ...]:
+def area(*, is_named: bool, has_traits: bool) -> Area:
+    """The part of a resource's square for robots and marks: names are above it, capacities and durations below."""
+    top = STRIP - SIDE // 2 if is_named else -SIDE // 2
+    end = SIDE // 2 - STRIP if has_traits else SIDE // 2
+    return Area((top + end) // 2, (end - top) // 2)
+
+
+def slots(count: int, area: Area, largest: int) -> tuple[Spot, ...]:
+    """As many circles of equal size, side by side; `largest` is the radius of one alone if there is room for it."""
+    columns = isqrt(max(1, count) - 1) + 1
+    rows = -(-max(1, count) // columns)
+    radius = max(1, min(largest // columns, (area.half - 1) // rows))
+    places = (divmod(at, columns) for at in range(count))
+    return tuple(
+        Spot(
+            SIDE * (2 * column + 1) // (2 * columns) - SIDE // 2,
+            area.down + area.half * (2 * row + 1) // rows - area.half,
+            radius,
+        )
+        for row, column in places
+    )
+
+
+def spots(resource: Resource | None, lane_count: int, area: Area) -> tuple[Spot, ...]:
     """The places of as many lanes: within the capacity side by side, beyond it over the others, a little shifted."""
-    beside = max(1, lane_count if resource is None else min(resource.capacity, lane_count))
-    columns = isqrt(beside - 1) + 1
-    rows = -(-beside // columns)
-    radius = max(1, RADIUS // columns)
+    beside = slots(max(1, lane_count if resource is None else min(resource.capacity, lane_count)), area, RADIUS)
 
     def spot(lane: int) -> Spot:
-        row, column = divmod(lane % beside, columns)
-        right, down = NUDGES[lane // beside % len(NUDGES)]
-        dx = SIDE * (2 * column + 1) // (2 * columns) - SIDE // 2
-        dy = SIDE * (2 * row + 1) // (2 * rows) - SIDE // 2
-        return Spot(dx + right * radius // 2, dy + down * radius // 2, radius)
+        first = beside[lane % len(beside)]
+        right, down = NUDGES[lane // len(beside) % len(NUDGES)]
+        return Spot(first.dx + right * first.radius // 2, first.dy + down * first.radius // 2, first.radius)
 
     return tuple(spot(lane) for lane in range(lane_count))

@@ -7,28 +7,29 @@ script, which shows it as text only. The page's content security policy lets no 
 from base64 import b64encode
 from hashlib import sha256
 from html import escape
+from importlib.resources import files
 from string import Template
 
 import msgspec
 
 from carp_spec import Instance, Solution
 from carp_spec.traces import Trace
+from carproof.viewer.colours import variables
 from carproof.viewer.limits import refuse_more
 from carproof.viewer.map_picture import map_picture
 from carproof.viewer.scene import Scene
 from carproof.viewer.shapes import svg_text
 from carproof.viewer.staging import make_scene
-from carproof.viewer.stills import STYLES, page_file
 
 SCRIPTS = ("scene.js", "clock.js", "waits.js", "map.js", "chart.js", "lists.js", "main.js")
 UNSAFE_IN_HTML = {ord(c): f"\\u{ord(c):04x}" for c in "<>&\u2028\u2029"}
 
 
-def page(instance: Instance, solution: Solution, title: str, trace: Trace | None = None) -> bytes:
-    """The page of a solution, and of what has happened if there is a trace."""
+def page(instance: Instance, solution: Solution | None, title: str, trace: Trace | None = None) -> bytes:
+    """The page of a solution, and of what has happened if there is a trace; without a solution, of the instance."""
     scene = make_scene(instance, solution, title, trace)
     picture = map_picture(instance.graph, scene)
-    style = "\n".join(map(page_file, (*STYLES, "page.css")))
+    style = variables() + page_file("page.css")
     script = "\n".join(map(page_file, SCRIPTS))
     filled = Template(page_file("page.html")).substitute(
         title=escape(scene.title),
@@ -41,6 +42,11 @@ def page(instance: Instance, solution: Solution, title: str, trace: Trace | None
     data = filled.encode()
     refuse_more("bytes", len(data))
     return data
+
+
+def page_file(name: str) -> str:
+    """A file of the page, as text."""
+    return files("carproof.viewer").joinpath("web", name).read_text(encoding="utf-8")
 
 
 def scene_text(scene: Scene) -> str:

@@ -7,16 +7,18 @@ robots are numbered; those that only a broken solution names come last.
 from dataclasses import dataclass
 
 from carp_spec.windows import Occupation
+from carproof.viewer.colours import Look
 
 
 @dataclass(frozen=True, slots=True)
 class Place:
     """A resource: where its centre is drawn, if it has a place at all, and its lanes and free windows over time.
 
-    `lanes_done` are those of the visits that have happened.
+    `name` is its label without the `start` of the scene; `lanes_done` are those of the visits that have happened.
     """
 
     label: str
+    name: str
     capacity: str
     duration: str
     at: tuple[int, int] | None
@@ -36,17 +38,28 @@ class Stand:
 
 
 @dataclass(frozen=True, slots=True)
+class Mark:
+    """Where a start or a goal is drawn: its centre, and half its width."""
+
+    x: int
+    y: int
+    half: int
+
+
+@dataclass(frozen=True, slots=True)
 class Track:
     """A robot with one of its plans, or with none; a stay is (stand, enter, leave), and `note` what is odd.
 
-    `stays` are planned, and `done` have happened.
+    `look` is the number of its look; `stays` are planned, and `done` have happened.
     """
 
     label: str
     short: str
-    tint: int
+    look: int
     start: int | None
     goal: int | None
+    start_mark: Mark | None
+    goal_mark: Mark | None
     release: int
     pace: str
     cost: int | None
@@ -57,11 +70,14 @@ class Track:
 
 @dataclass(frozen=True, slots=True)
 class Broken:
-    """A violation: its rule, tracks and place by number, and the ticks [start, end)."""
+    """A violation: its rule, tracks and places by number, and the ticks [start, end).
+
+    An exchange has the places between which robots move, all others at most one.
+    """
 
     rule: int
     tracks: tuple[int, ...]
-    place: int | None
+    places: tuple[int, ...]
     start: int | None
     end: int | None
     message: str
@@ -78,11 +94,12 @@ class BrokenRule:
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """All that a picture shows.
+    """All that a picture shows; without plans, the instance `alone`.
 
     `first` and `last` are the ticks between which something happens, and `now` is the tick of the trace, if there is
     one; `gap` is how many ticks a resource is empty before it is entered again; `computed` says that the places are
-    not the instance's own positions.
+    not the instance's own positions, and `named` that there are few enough to write their names on the map. `start` is
+    what the labels of all resources begin with, if that is left out.
     """
 
     title: str
@@ -92,9 +109,13 @@ class Scene:
     gap: int
     cost: str
     unplanned: int
+    alone: bool
     computed: bool
+    named: bool
+    start: str
     width: int
     height: int
+    looks: tuple[Look, ...]
     places: tuple[Place, ...]
     stands: tuple[Stand, ...]
     tracks: tuple[Track, ...]

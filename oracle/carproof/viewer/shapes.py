@@ -1,33 +1,48 @@
-"""SVG elements and path data; text is escaped by the standard library's XML writer."""
+"""SVG elements and path data; text is escaped by the standard library's XML writer.
+
+The kind of a shape or group is its class, and decides how it is painted (`colours.PAINT`).
+"""
 
 from collections.abc import Iterable
 from math import isqrt
 from xml.etree.ElementTree import Element, SubElement, tostring
 
+from carproof.viewer.colours import PAINT
+
 NAMESPACE = "http://www.w3.org/2000/svg"
+FONTS = "system-ui, 'Segoe UI', 'Helvetica Neue', Arial, 'DejaVu Sans', sans-serif"
+LOWER = "0.35em"
+"""From the middle of a line of text down to its base; not all renderers know `dominant-baseline`."""
 
 
-def drawing(width: int, height: int, **attributes: str) -> Element:
+def drawing(width: int, height: int, kind: str) -> Element:
     """An empty drawing."""
-    return Element("svg", {"xmlns": NAMESPACE, "viewBox": f"0 0 {width} {height}", **attributes})
+    box = f"0 0 {width} {height}"
+    return Element("svg", {"xmlns": NAMESPACE, "viewBox": box, "class": kind, "font-family": FONTS})
 
 
-def group(parent: Element, kind: str) -> Element:
-    """A group whose class is its kind."""
-    return SubElement(parent, "g", {"class": kind})
+def group(parent: Element, kind: str, **attributes: str) -> Element:
+    """A group; attributes that its kind does not decide are given."""
+    return SubElement(parent, "g", {"class": kind, **PAINT.get(kind, {}), **attributes})
 
 
-def path(parent: Element, kind: str, data: Iterable[str]) -> None:
-    """A path of the class; nothing where there is nothing to draw."""
+def path(parent: Element, kind: str, data: Iterable[str], **attributes: str) -> None:
+    """A path; nothing where there is nothing to draw."""
     joined = "".join(data)
     if joined:
-        SubElement(parent, "path", {"class": kind, "d": joined})
+        SubElement(parent, "path", {"class": kind, "d": joined, **PAINT.get(kind, {}), **attributes})
 
 
-def text(parent: Element, kind: str, x: int, y: int, content: str, size: int = 0) -> None:
-    """A text of the class; without a size the style says how large it is."""
-    sized = {"font-size": str(size)} if size else {}
-    SubElement(parent, "text", {"class": kind, "x": str(x), "y": str(y), **sized}).text = content
+def text(parent: Element, kind: str, at: tuple[int, int], content: str, size: int, **attributes: str) -> None:
+    """A text whose middle line is at the height of the point."""
+    place = {"x": str(at[0]), "y": str(at[1]), "dy": LOWER, "font-size": str(size)}
+    SubElement(parent, "text", {"class": kind, **place, **PAINT.get(kind, {}), **attributes}).text = content
+
+
+def circle(parent: Element, kind: str, at: tuple[int, int], radius: int, **attributes: str) -> None:
+    """A circle around a point."""
+    place = {"cx": str(at[0]), "cy": str(at[1]), "r": str(radius)}
+    SubElement(parent, "circle", {"class": kind, **place, **PAINT.get(kind, {}), **attributes})
 
 
 def box(x: int, y: int, width: int, height: int) -> str:
@@ -67,4 +82,4 @@ def hatch_definition(picture: Element) -> None:
             "patternTransform": "rotate(45)",
         },
     )
-    SubElement(pattern, "rect", {"class": "hatch", "width": "2", "height": "6"})
+    SubElement(pattern, "rect", {"width": "2", "height": "6", **PAINT["hatch"]})

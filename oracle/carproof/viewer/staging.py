@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from carp_spec import Instance, Plan, ResourceId, RobotId, Solution, Violation, judge, plan_cost
 from carp_spec.execution_rules import trace_violations
@@ -10,15 +11,17 @@ from carp_spec.traces import Trace
 from carp_spec.windows import free_windows
 from carproof.registry import RULES
 from carproof.tables import printable
-from carproof.viewer.lanes import Stays, lanes, occupations, spots
+from carproof.viewer.colours import LOOKS
+from carproof.viewer.lanes import Area, Stays, area, lanes, occupations, slots, spots
 from carproof.viewer.limits import MOST_LISTED, refuse_large_pictures
+from carproof.viewer.names import common_start, cut, fitted, label, short_labels
 from carproof.viewer.placement import Placement, placement
-from carproof.viewer.scene import Broken, BrokenRule, Place, Scene, Stand, Track
+from carproof.viewer.scene import Broken, BrokenRule, Mark, Place, Scene, Stand, Track
 
-LONGEST_LABEL = 60
 LONGEST_MESSAGE = 400
-LONGEST_SHORT = 4
-TINTS = 6
+LONGEST_NAME = 24
+MOST_NAMED = 200
+LARGEST_MARK = 10
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,12 +53,25 @@ class Stage:
     done: Laid
     stand: Mapping[tuple[ResourceId, int], int]
 
+    def area(self, id: ResourceId) -> Area:
+        """The part of a resource's square that robots are drawn in."""
+        resource = self.instance.graph.resource.get(id)
+        has_traits = resource is not None and (resource.capacity, resource.duration) != (1, 1)
+        return area(is_named=is_named(self.instance), has_traits=has_traits)
 
-def make_scene(instance: Instance, solution: Solution, title: str, trace: Trace | None = None) -> Scene:
+
+def is_named(instance: Instance) -> bool:
+    """Whether the map has few enough resources for their names."""
+    return len(instance.graph.resources) <= MOST_NAMED
+
+
+def make_scene(instance: Instance, plans: Solution | None, title: str, trace: Trace | None = None) -> Scene:
     """Judge a solution and work out its scene; raises `Refusal` where it is too large to show.
 
-    With a trace of what has happened, a solution that breaks no rule is shown with the rules that the trace breaks.
+    Without a solution the scene has the starts and goals alone. With a trace of what has happened, a solution that
+    breaks no rule is shown with the rules that the trace breaks.
     """
+    solution = Solution((), (), tuple(instance.robot)) if plans is None else plans
     refuse_large_pictures(instance, solution, trace)
     stage = make_stage(instance, solution, trace)
     verdict = judge(instance, solution, most=None)
@@ -63,7 +79,8 @@ def make_scene(instance: Instance, solution: Solution, title: str, trace: Trace 
     if trace is not None and verdict.valid:
         broken = trace_violations(instance, solution, trace, most=None)
     robots = tuple(robots_with_plans(stage))
-    first, last = span(stage)
+    first, last = span(instance, solution, trace)
+    start = common_start([label(id) for id in instance.graph.index])
     return Scene(
         title=label(title),
         first=first,
@@ -72,12 +89,16 @@ def make_scene(instance: Instance, solution: Solution, title: str, trace: Trace 
         gap=instance.gap,
         cost=str(verdict.cost),
         unplanned=verdict.unplanned,
+        alone=plans is None,
         computed=stage.placed.computed,
+        named=is_named(instance),
+        start=start,
         width=stage.placed.width,
         height=stage.placed.height,
-        places=tuple(places(stage)),
+        looks=LOOKS,
+        places=tuple(places(stage, start)),
         stands=tuple(stands(stage)),
-        tracks=tuple(tracks(stage, robots)),
+        tracks=tuple(tracks(stage, robots, is_alone=plans is None)),
         rules=broken_rules(broken),
         violations=tuple(violations(stage, broken, [robot for robot, _ in robots])),
     )
@@ -103,21 +124,24 @@ def laid(plans: tuple[Plan, ...]) -> Laid:
     return Laid(plans, stays, lane)
 
 
-def span(stage: Stage) -> tuple[int, int]:
+def span(instance: Instance, solution: Solution, trace: Trace | None = None) -> tuple[int, int]:
     """The first and the last tick at which something happens; tick 0 is always shown."""
-    visits = [visit for plan in stage.planned.plans + stage.done.plans for visit in plan.visits]
-    ticks = [0, *(robot.release for robot in stage.instance.robots), *(visit.enter for visit in visits)]
+    plans = solution.plans if trace is None else solution.plans + trace.plans
+    visits = [visit for plan in plans for visit in plan.visits]
+    ticks = [0, *(robot.release for robot in instance.robots), *(visit.enter for visit in visits)]
     ticks.extend(visit.leave for visit in visits if visit.leave is not None)
-    return min(ticks), max(*ticks, 1, 0 if stage.trace is None else stage.trace.now)
+    return min(ticks), max(*ticks, 1, 0 if trace is None else trace.now)
 
 
-def places(stage: Stage) -> Iterator[Place]:
+def places(stage: Stage, start: str) -> Iterator[Place]:
     """The resources as they are drawn, with their free windows."""
-    for id in stage.number:
+    names = fitted([label(id).removeprefix(start) for id in stage.number], LONGEST_NAME)
+    for id, name in zip(stage.number, names, strict=True):
         resource = stage.instance.graph.resource.get(id)
         stays = stage.planned.stays.get(id, [])
         yield Place(
             label=label(id),
+            name=name,
             capacity="" if resource is None else label(resource.capacity),
             duration="" if resource is None else label(resource.duration),
             at=stage.placed.points.get(id),
@@ -138,7 +162,7 @@ def stands(stage: Stage) -> Iterator[Stand]:
     counts = Counter(id for id, _ in stage.stand)
     for id, count in counts.items():
         centre = stage.placed.points.get(id)
-        for lane, spot in enumerate(spots(stage.instance.graph.resource.get(id), count)):
+        for lane, spot in enumerate(spots(stage.instance.graph.resource.get(id), count, stage.area(id))):
             at = None if centre is None else (centre[0] + spot.dx, centre[1] + spot.dy)
             yield Stand(stage.number[id], lane, at, spot.radius)
 
@@ -154,8 +178,27 @@ def robots_with_plans(stage: Stage) -> Iterator[tuple[RobotId, int | None]]:
         yield from ((robot, at) for at in plans.get(robot, [None]))
 
 
-def tracks(stage: Stage, robots: tuple[tuple[RobotId, int | None], ...]) -> Iterator[Track]:
+def marks(stage: Stage, robots: Sequence[RobotId], *, is_alone: bool) -> Mapping[tuple[RobotId, bool], Mark]:
+    """Where the starts of the robots are drawn and, as `True`, their goals; those of one resource are side by side."""
+    of_place: dict[ResourceId, list[tuple[RobotId, bool]]] = {}
+    for id in dict.fromkeys(robots):
+        if id in stage.instance.robot:
+            of_place.setdefault(stage.instance.robot[id].goal, []).append((id, True))
+            of_place.setdefault(stage.instance.robot[id].start, []).append((id, False))
+    found: dict[tuple[RobotId, bool], Mark] = {}
+    for place, here in of_place.items():
+        if place in stage.placed.points:
+            x, y = stage.placed.points[place]
+            around = slots(len(here), stage.area(place), LARGEST_MARK)
+            for (id, is_goal), spot in zip(here, around, strict=True):
+                half = spot.radius if is_goal or is_alone else max(1, spot.radius * 3 // 5)
+                found[id, is_goal] = Mark(x + spot.dx, y + spot.dy, half)
+    return found
+
+
+def tracks(stage: Stage, robots: tuple[tuple[RobotId, int | None], ...], *, is_alone: bool) -> Iterator[Track]:
     """The robots as they are drawn and listed."""
+    found = marks(stage, [robot for robot, _ in robots], is_alone=is_alone)
     shorts = short_labels([label(robot) for robot, _ in robots])
     plan_count = Counter(plan.robot for plan in stage.solution.plans)
     happened = {plan.robot: at for at, plan in enumerate(stage.done.plans)}
@@ -168,13 +211,15 @@ def tracks(stage: Stage, robots: tuple[tuple[RobotId, int | None], ...]) -> Iter
         yield Track(
             label=label(id),
             short=shorts[at],
-            tint=at % TINTS,
+            look=at % len(LOOKS),
             start=None if robot is None else stage.number[robot.start],
             goal=None if robot is None else stage.number[robot.goal],
+            start_mark=found.get((id, False)),
+            goal_mark=found.get((id, True)),
             release=0 if robot is None else robot.release,
             pace="" if robot is None else label(robot.pace),
             cost=plan_cost(stage.instance, plan) if known and plan is not None else None,
-            note=note(robot is not None, plan, plan_count[id], done),
+            note="" if is_alone else note(robot is not None, plan, plan_count[id], done),
             stays=tuple(stays_of(stage, stage.planned, at_plan)),
             done=tuple(stays_of(stage, stage.done, at_done)),
         )
@@ -214,31 +259,26 @@ def violations(stage: Stage, broken: Sequence[Violation], robots: list[RobotId])
     numbers: dict[RobotId, list[int]] = {}
     for at, robot in enumerate(robots):
         numbers.setdefault(robot, []).append(at)
+    plans: dict[RobotId, list[Plan]] = {}
+    for plan in stage.solution.plans:
+        plans.setdefault(plan.robot, []).append(plan)
     for each in broken[:MOST_LISTED]:
         yield Broken(
             rule=rules.index(each.rule),
             tracks=tuple(number for robot in each.robots for number in numbers[robot]),
-            place=None if each.resource is None else stage.number[each.resource],
+            places=tuple(dict.fromkeys(stage.number[id] for id in places_of(each, plans))),
             start=each.start,
             end=each.end,
             message=cut(printable(each.message), LONGEST_MESSAGE),
         )
 
 
-def label(value: object) -> str:
-    """A value as one short line that can be shown."""
-    return cut(printable(value), LONGEST_LABEL)
-
-
-def cut(text: str, longest: int) -> str:
-    """The text, without its middle if it is too long."""
-    half = longest // 2
-    return text if len(text) <= longest else f"{text[:half]}…{text[-half:]}"
-
-
-def short_labels(labels: list[str]) -> list[str]:
-    """Labels that fit on a robot: the number at the end of one, if no other has it, or the end of a long one."""
-    numbers = [each[len(each.rstrip("0123456789")) :][-LONGEST_SHORT:] for each in labels]
-    count = Counter(numbers)
-    tails = [each if len(each) <= LONGEST_SHORT else f"…{each[-LONGEST_SHORT + 1 :]}" for each in labels]
-    return [number if number and count[number] == 1 else tails[at] for at, number in enumerate(numbers)]
+def places_of(broken: Violation, plans: Mapping[RobotId, Sequence[Plan]]) -> Iterator[ResourceId]:
+    """The resource of a violation; of an exchange all between which its robots move at its tick."""
+    if broken.resource is not None:
+        yield broken.resource
+    if broken.rule == "joint/exchange":
+        for plan in (plan for robot in broken.robots for plan in plans.get(robot, [])):
+            for one, other in pairwise(plan.visits):
+                if one.leave == other.enter == broken.start:
+                    yield from (one.resource, other.resource)

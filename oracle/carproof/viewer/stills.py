@@ -1,29 +1,22 @@
-"""Still pictures as SVG files: they carry their colours, for a light and for a dark page."""
+"""Still pictures as SVG files, with plain attributes that every renderer knows."""
 
-from importlib.resources import files
 from xml.etree.ElementTree import Element
 
 from carp_spec import Instance, Solution
 from carproof.viewer.chart_picture import chart_picture
+from carproof.viewer.colours import PAINT, fixed
 from carproof.viewer.limits import refuse_more, refuse_tick
 from carproof.viewer.map_picture import still_map
 from carproof.viewer.shapes import svg_text
 from carproof.viewer.staging import make_scene
 
-STYLES = ("colours.css", "pictures.css")
-GROUND = "\nsvg {\n  background: var(--paper);\n}\n"
 
-
-def page_file(name: str) -> str:
-    """A file of the page, as text."""
-    return files("carproof.viewer").joinpath("web", name).read_text(encoding="utf-8")
-
-
-def map_still(instance: Instance, solution: Solution, tick: int, title: str) -> bytes:
-    """The map at a tick."""
+def map_still(instance: Instance, solution: Solution | None, tick: int, title: str) -> bytes:
+    """The map at a tick, or without a solution with starts and goals alone."""
     refuse_tick(tick, "--at")
     scene = make_scene(instance, solution, title)
-    return still(still_map(instance.graph, scene, tick), f"{scene.title} at tick {tick}")
+    when = "starts and goals" if scene.alone else f"at tick {tick}"
+    return still(still_map(instance.graph, scene, tick), f"{scene.title} {when}")
 
 
 def chart_still(instance: Instance, solution: Solution, title: str) -> bytes:
@@ -33,14 +26,15 @@ def chart_still(instance: Instance, solution: Solution, title: str) -> bytes:
 
 
 def still(picture: Element, title: str) -> bytes:
-    """The picture as a file, with a title and its styles."""
-    for name, content in (("style", "\n".join(map(page_file, STYLES)) + GROUND), ("title", title)):
-        added = Element(name)
-        added.text = content
-        picture.insert(0, added)
+    """The picture as a file, with a title and a ground."""
     _, _, width, height = picture.get("viewBox", "").split()
     picture.set("width", width)
     picture.set("height", height)
+    picture.insert(0, Element("rect", {"width": width, "height": height, **PAINT["paper"]}))
+    heading = Element("title")
+    heading.text = title
+    picture.insert(0, heading)
+    fixed(picture)
     data = svg_text(picture).encode() + b"\n"
     refuse_more("bytes", len(data))
     return data

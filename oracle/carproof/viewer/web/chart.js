@@ -3,7 +3,7 @@
 const LANE = 13;
 const LANE_DONE = 6;
 const GAP = 4;
-const LABELS = 78;
+const LABELS = 16 + 7 * Math.max(6, ...scene.places.map(({ name }) => name.length));
 const AXIS = 22;
 const TEXT_WIDTH = 7;
 const LEAST_LABEL_DISTANCE = 46;
@@ -32,7 +32,7 @@ class Chart {
     });
     this.violations = scene.places.map(() => []);
     for (const violation of scene.violations) {
-      if (violation.place !== null && violation.start !== null) this.violations[violation.place].push(violation);
+      if (violation.start !== null) for (const place of violation.places) this.violations[place].push(violation);
     }
     this.showRows("visited");
     view.addEventListener("scroll", () => this.drawSoon());
@@ -44,15 +44,14 @@ class Chart {
     });
   }
 
-  /** Show the rows of all resources, of those visited, or of those that the chosen robots visit, in their order. */
+  /** Show the rows of all resources, of those visited, or of those that the chosen robots visit, robot by robot. */
   showRows(which) {
     this.which = which;
     const everyPlace = scene.places.map((_, place) => place);
-    const visited = everyPlace.filter((place) => this.stays[place].length || this.done[place].length);
-    const ofChosen = this.chosen.flatMap((number) =>
-      scene.tracks[number].stays.map(([stand]) => scene.stands[stand].place),
-    );
-    const places = { all: everyPlace, visited, selected: [...new Set(ofChosen)] }[which];
+    const visitedBy = ({ stays, done }) => [...stays, ...done].map(([stand]) => scene.stands[stand].place);
+    const visited = [...new Set(scene.tracks.flatMap(visitedBy))];
+    const selected = [...new Set(this.chosen.flatMap((number) => visitedBy(scene.tracks[number])))];
+    const places = { all: everyPlace, visited, selected }[which];
     let top = AXIS;
     this.rows = places.map((place) => {
       const { lanes, lanes_done: done } = scene.places[place];
@@ -71,7 +70,7 @@ class Chart {
   }
 
   resize() {
-    const room = Math.max(1, this.view.clientWidth - LABELS - 2 * GAP);
+    const room = Math.max(1, this.view.clientWidth - LABELS - 4 * GAP);
     this.least = room / (this.end - scene.first);
     this.pixels = Math.max(this.least, Math.min(this.pixels ?? NARROWEST_TICK, WIDEST_TICK));
     this.size.style.width = `${LABELS + this.pixels * (this.end - scene.first)}px`;
@@ -171,12 +170,14 @@ class Chart {
     const part = this.span(enter, leave, width);
     if (!part) return;
     const [left, wide] = part;
-    const { tint, short } = scene.tracks[number];
+    const { look: kind, short } = scene.tracks[number];
+    const look = scene.looks[kind];
     const isChosen = this.chosen.includes(number);
     this.pen.globalAlpha = this.chosen.length && !isChosen ? 0.35 : 1;
-    this.fill(this.colours.tints[tint].fill, left, y + 1, Math.max(1, wide - 1), high - 2);
+    this.fill(look.edge, left, y + 1, Math.max(1, wide - 1), high - 2);
+    if (wide > 4) this.fill(look.fill, left + 1, y + 2, wide - 3, high - 4);
     if (high === LANE && wide > short.length * TEXT_WIDTH + 2) {
-      this.pen.fillStyle = this.colours.tints[tint].text;
+      this.pen.fillStyle = look.text;
       this.pen.textAlign = "center";
       this.pen.fillText(short, left + wide / 2, y + high / 2 + 0.5);
     }
@@ -193,20 +194,18 @@ class Chart {
     this.pen.textAlign = "right";
     this.pen.fillStyle = this.colours.ink;
     for (const { place, top, height: rowHeight } of rows) {
-      const { label } = scene.places[place];
-      const room = label.length > 10 ? `${label.slice(0, 9)}…` : label;
-      this.pen.fillText(room, LABELS - 8, top - scrollTop + rowHeight / 2, LABELS - 12);
+      this.pen.fillText(scene.places[place].name, LABELS - 8, top - scrollTop + rowHeight / 2, LABELS - 12);
     }
   }
 
-  /** Round ticks in sight, far enough from each other. */
+  /** Round ticks in sight, far enough from each other and from the last one, which is among them. */
   roundTicks(width) {
     const step = ROUND_STEPS.find((each) => each * this.pixels >= LEAST_LABEL_DISTANCE);
     const from = scene.first + this.view.scrollLeft / this.pixels;
     const to = Math.min(this.end, from + (width - LABELS) / this.pixels);
     const ticks = [];
     for (let tick = Math.ceil(from / step) * step; tick <= to; tick += step) ticks.push(tick);
-    return ticks;
+    return [...ticks.filter((tick) => (scene.last - tick) * this.pixels >= LEAST_LABEL_DISTANCE), scene.last];
   }
 
   drawGrid(width, height) {
@@ -216,8 +215,8 @@ class Chart {
   drawAxis(width) {
     this.fill(this.colours.panel, 0, 0, width, AXIS - 3);
     this.pen.fillStyle = this.colours.faint;
-    this.pen.textAlign = "left";
-    for (const tick of this.roundTicks(width)) this.pen.fillText(tick, Math.round(this.x(tick)) + 3, AXIS / 2 - 1);
+    this.pen.textAlign = "center";
+    for (const tick of this.roundTicks(width)) this.pen.fillText(tick, Math.round(this.x(tick)), AXIS / 2 - 1);
     this.fill(this.colours.panel, 0, 0, LABELS - 3, AXIS - 3);
     this.pen.fillStyle = this.colours.faint;
     this.pen.textAlign = "right";

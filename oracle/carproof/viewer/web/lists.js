@@ -34,14 +34,17 @@ class RobotList {
       const button = make("button");
       button.type = "button";
       const name = (place) => (place === null ? "?" : scene.places[place].label);
-      button.append(make("span", `swatch tint${track.tint}`), make("strong", "", track.label));
+      const swatch = make("span", "swatch");
+      const { fill, edge, width } = scene.looks[track.look];
+      Object.assign(swatch.style, { background: fill, border: `${width}px solid ${edge}` });
+      button.append(swatch, make("strong", "", track.label));
       button.append(make("small", "", ` ${name(track.start)} → ${name(track.goal)}`));
       const notes = [track.note, track.cost === null ? "" : `cost ${track.cost}`].filter((each) => each);
       button.append(make("small", "", notes.length ? ` · ${notes.join(" · ")}` : ""));
       button.addEventListener("click", () => jump(number));
       return button;
     });
-    const unplanned = this.buttons.filter((_, number) => !scene.tracks[number].stays.length);
+    const unplanned = this.buttons.filter((_, number) => !scene.alone && !scene.tracks[number].stays.length);
     if (unplanned.length) list.append(this.group("without a plan", unplanned));
     list.append(...this.buttons.filter((button) => !unplanned.includes(button)));
   }

@@ -15,6 +15,7 @@ function arrange() {
   document.body.classList.toggle("wide", scene.width > WIDE * scene.height);
   document.body.classList.toggle("no-chart", byId("chart-panel").hidden);
   document.body.classList.toggle("no-lists", byId("lists").hidden);
+  document.body.classList.toggle("alone", scene.alone);
 }
 
 arrange();
@@ -57,9 +58,10 @@ function jumpToRobot(number) {
 function jumpToViolation(violation) {
   choose(violation.tracks, violation);
   if (violation.start !== null) clock.stopAt(violation.start);
-  if (violation.place === null) return;
-  if (scene.places[violation.place].at) map.focus(scene.places[violation.place].at);
-  revealInChart(violation.place);
+  const [place] = violation.places;
+  if (place === undefined) return;
+  if (scene.places[place].at) map.focus(scene.places[place].at);
+  revealInChart(place);
 }
 
 function nextViolation(step) {
@@ -96,8 +98,10 @@ function draw() {
 function about() {
   if (state.violation) return `${scene.rules[state.violation.rule].id}: ${state.violation.message}`;
   if (state.chosen.length) return aboutRobot(scene.tracks[state.chosen[0]], clock.tick);
+  const start = scene.start ? ` Names on the map and in the chart are without “${scene.start}”.` : "";
+  const places = (scene.computed ? " The map's positions are laid out, not given." : "") + start;
+  if (scene.alone) return `Rings are starts, squares are goals.${places}`;
   const there = counted(map.poses.filter((pose) => pose).length, "robot");
-  const places = scene.computed ? " The map's positions are laid out, not given." : "";
   return `${there} on the map. ${aboutTrace()}${aboutWaits()}${places}`;
 }
 
@@ -129,6 +133,11 @@ function drawStrip() {
 function writeFacts() {
   const broken = scene.rules.reduce((sum, rule) => sum + rule.count, 0);
   const verdict = byId("verdict");
+  if (scene.alone) {
+    verdict.textContent = "an instance without plans";
+    byId("facts").textContent = `${counted(scene.tracks.length, "robot")} · ${counted(scene.places.length, "resource")}`;
+    return;
+  }
   verdict.textContent = broken ? `✗ ${counted(broken, "violation")}` : "✓ no rule is broken";
   verdict.className = broken ? "wrong" : "right";
   const names = new Set(scene.tracks.map((track) => track.label)).size;
@@ -205,6 +214,8 @@ const CLICKS = {
 };
 for (const [id, action] of Object.entries(CLICKS)) byId(id).addEventListener("click", action);
 
+byId("from").textContent = scene.first;
+byId("to").textContent = scene.last;
 Object.assign(byId("slider"), { min: scene.first, max: scene.last, step: 1 });
 byId("slider").addEventListener("input", (event) => clock.stopAt(Number(event.target.value)));
 byId("rows").addEventListener("change", (event) => chart.showRows(event.target.value));

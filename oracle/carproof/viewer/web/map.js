@@ -2,12 +2,11 @@
 
 const UNIT = 40;
 const HALF_SIDE = 16;
-const HALF_GOAL = 12;
 const SMALLEST_RADIUS = [2, 3.5];
 const SMALLEST_MARK = 5;
 const SMALLEST_GOAL = 2;
 const SMALLEST_WITH_NAME = 6;
-const SIZE_OF_LENGTH = [0, 1.3, 1.2, 1, 0.8];
+const SIZE_OF_LENGTH = [0, 1.3, 1.1, 0.8, 0.6];
 const READABLE = 0.75;
 const LARGEST = 4;
 const LARGEST_WHOLE = 2.5;
@@ -61,9 +60,10 @@ class MapView {
     this.poses = scene.tracks.map(({ stays, done }) => poseAt(isKnown ? done : stays, time));
     this.ghosts = isKnown ? scene.tracks.map(({ stays }) => poseAt(stays, time)) : [];
     const tick = Math.floor(time);
-    if (tick !== this.tick) {
-      this.tick = tick;
-      this.broken = scene.violations.filter((violation) => isBrokenAt(violation, tick));
+    const half = Math.ceil(time) + tick;
+    if (half !== this.half) {
+      Object.assign(this, { tick, half });
+      this.broken = scene.violations.filter((violation) => isBrokenAt(violation, time));
       this.blamed = new Set(this.broken.flatMap((violation) => violation.tracks));
       this.waits = null;
     }
@@ -198,38 +198,42 @@ class MapView {
   }
 
   drawViolations() {
-    const places = new Set(this.broken.map((violation) => violation.place));
+    const places = new Set(this.broken.flatMap((violation) => violation.places));
     const half = Math.max(SMALLEST_MARK, HALF_SIDE * this.scale);
     for (const place of places) {
-      const at = place === null ? null : scene.places[place].at;
+      const { at } = scene.places[place];
       if (at)
         drawHatched(this.pen, this.colours.wrong, this.px(at[0]) - half, this.py(at[1]) - half, 2 * half, 2 * half);
     }
   }
 
-  /** Starts as small rings and goals as squares, those of chosen robots stronger; drawn only where that changes. */
+  /** Starts as rings and goals as squares, those of chosen robots stronger; drawn only where that changes. */
   drawGoals() {
     this.hasGoals = true;
     this.pen = clearedPen(this.back, this.size.width, this.size.height);
     if (!this.shown.goals) return;
     const { pen } = this;
-    Object.assign(pen, { fillStyle: this.colours.faint, textAlign: "center", textBaseline: "middle" });
-    scene.tracks.forEach(({ start, goal, tint, short }, number) => {
+    Object.assign(pen, { textAlign: "center", textBaseline: "middle" });
+    scene.tracks.forEach((track, number) => {
       const isChosen = this.chosen.includes(number);
-      pen.globalAlpha = isChosen ? 1 : this.chosen.length ? 0.2 : this.scale < READABLE / 2 ? 0.5 : 0.75;
-      pen.strokeStyle = this.colours.tints[tint].fill;
+      pen.globalAlpha = isChosen ? 1 : this.chosen.length ? 0.2 : this.scale < READABLE / 2 ? 0.5 : 0.85;
+      pen.strokeStyle = scene.looks[track.look].hue;
+      pen.fillStyle = this.colours.faint;
       pen.lineWidth = isChosen ? 3 : this.scale < READABLE ? 1.25 : 2;
-      const half = Math.max(SMALLEST_GOAL, HALF_GOAL * this.scale);
-      const goalAt = goal === null ? null : scene.places[goal].at;
-      if (goalAt) pen.strokeRect(this.px(goalAt[0]) - half, this.py(goalAt[1]) - half, 2 * half, 2 * half);
-      if (goalAt && half > SMALLEST_WITH_NAME) {
-        pen.font = `${Math.round(0.8 * half)}px system-ui, sans-serif`;
-        pen.fillText(short, this.px(goalAt[0]), this.py(goalAt[1]) + 0.5);
-      }
-      const startAt = start === null ? null : scene.places[start].at;
-      if (startAt) this.ring(this.px(startAt[0]), this.py(startAt[1]), half / 2);
+      if (track.start_mark) this.drawMark(track.start_mark, track.short, (x, y, half) => this.ring(x, y, half));
+      if (track.goal_mark)
+        this.drawMark(track.goal_mark, track.short, (x, y, half) => pen.strokeRect(x - half, y - half, 2 * half, 2 * half));
     });
     pen.globalAlpha = 1;
+  }
+
+  /** The mark of a start or a goal, with the robot's name where there is room for it. */
+  drawMark(mark, short, outline) {
+    const [x, y, half] = [this.px(mark.x), this.py(mark.y), Math.max(SMALLEST_GOAL, mark.half * this.scale)];
+    outline(x, y, half);
+    if (half <= SMALLEST_WITH_NAME) return;
+    this.pen.font = `${Math.round(0.8 * half * SIZE_OF_LENGTH[Math.min(short.length, 4)])}px system-ui, sans-serif`;
+    this.pen.fillText(short, x, y + 0.5);
   }
 
   ring(x, y, radius) {
@@ -286,7 +290,7 @@ class MapView {
       const pose = this.poses[number];
       if (!ghost || (pose && pose.x === ghost.x && pose.y === ghost.y)) return;
       pen.globalAlpha = this.chosen.length && !this.chosen.includes(number) ? 0.2 : 1;
-      Object.assign(pen, { strokeStyle: this.colours.tints[scene.tracks[number].tint].fill, lineWidth: 2 });
+      Object.assign(pen, { strokeStyle: scene.looks[scene.tracks[number].look].hue, lineWidth: 2 });
       this.ring(this.px(ghost.x), this.py(ghost.y), this.radius(ghost));
       if (!pose) return;
       pen.beginPath();
@@ -299,12 +303,13 @@ class MapView {
   }
 
   /** The picture of a robot that is too small for a name, drawn once for each size. */
-  dot(tint, half) {
-    const key = `${tint} ${half.toFixed(1)}`;
+  dot(number, half) {
+    const key = `${number} ${half.toFixed(1)}`;
+    const look = scene.looks[number];
     if (!this.dots.has(key)) {
       const canvas = make("canvas");
       const pen = clearedPen(canvas, 2 * half, 2 * half);
-      Object.assign(pen, { fillStyle: this.colours.tints[tint].fill, strokeStyle: this.colours.paper });
+      Object.assign(pen, { fillStyle: look.fill, strokeStyle: look.edge });
       pen.arc(half, half, half - 1, 0, 2 * Math.PI);
       pen.fill();
       pen.stroke();
@@ -322,25 +327,26 @@ class MapView {
       if (!pose) return;
       const [x, y, radius] = [this.px(pose.x), this.py(pose.y), this.radius(pose)];
       if (x < -radius || y < -radius || x > width + radius || y > height + radius) return;
-      const { tint, short } = scene.tracks[number];
+      const { look: kind, short } = scene.tracks[number];
+      const look = scene.looks[kind];
       const isChosen = this.chosen.includes(number);
       const isBlamed = this.blamed.has(number);
       pen.globalAlpha = this.chosen.length && !isChosen ? 0.45 : 1;
       if (radius < SMALLEST_WITH_NAME && !isChosen && !isBlamed) {
         const half = radius + 1;
-        pen.drawImage(this.dot(tint, half), x - half, y - half, 2 * half, 2 * half);
+        pen.drawImage(this.dot(kind, half), x - half, y - half, 2 * half, 2 * half);
         return;
       }
-      pen.fillStyle = this.colours.tints[tint].fill;
+      pen.fillStyle = look.fill;
       pen.beginPath();
       pen.arc(x, y, radius, 0, 2 * Math.PI);
       pen.fill();
-      pen.strokeStyle = isChosen ? this.colours.ink : isBlamed ? this.colours.wrong : this.colours.paper;
-      pen.lineWidth = isChosen ? 3 : isBlamed ? 2.5 : 1;
+      pen.strokeStyle = isChosen ? this.colours.ink : isBlamed ? this.colours.wrong : look.edge;
+      pen.lineWidth = isChosen || isBlamed ? 3 : look.width;
       pen.stroke();
       if (radius < SMALLEST_WITH_NAME) return;
       pen.font = `600 ${Math.round(radius * SIZE_OF_LENGTH[Math.min(short.length, 4)])}px system-ui, sans-serif`;
-      pen.fillStyle = this.colours.tints[tint].text;
+      pen.fillStyle = look.text;
       pen.fillText(short, x, y + 0.5);
     });
     pen.globalAlpha = 1;

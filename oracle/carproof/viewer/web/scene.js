@@ -34,10 +34,13 @@ function stayAt(stays, time) {
   return low && holds(stays[low - 1][1], stays[low - 1][2], time) ? low - 1 : -1;
 }
 
-/** Whether the violation is to be seen at the time; one that takes no time is seen for one tick. */
+/** Whether the violation is to be seen at the time; one that takes no time is seen for one tick, an exchange also during
+ * the move before. */
 function isBrokenAt(violation, time) {
-  const { start, end } = violation;
-  return start !== null && holds(start, end === null ? null : Math.max(end, start + 1), time);
+  const { start, end, places } = violation;
+  if (start === null) return false;
+  if (places.length > 1 && start - 1 < time && time < start) return true;
+  return holds(start, end === null ? null : Math.max(end, start + 1), Math.floor(time));
 }
 
 function interval(enter, leave) {
@@ -54,13 +57,6 @@ function colours() {
   const named = (name) => style.getPropertyValue(`--${name}`).trim();
   const plain = ["paper", "panel", "ink", "faint", "line", "window", "wrong", "accent"];
   const found = Object.fromEntries(plain.map((name) => [name, named(name)]));
-  found.tints = [...Array(6).keys()].map((number) => {
-    const probe = document.body.appendChild(make("i", `tint${number}`));
-    const tint = getComputedStyle(probe);
-    const pair = { fill: tint.getPropertyValue("--fill").trim(), text: tint.getPropertyValue("--text").trim() };
-    probe.remove();
-    return pair;
-  });
   return found;
 }
 
