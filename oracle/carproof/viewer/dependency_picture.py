@@ -18,7 +18,8 @@ from carproof.viewer.staging import LONGEST_NAME
 from carproof.viewer.stills import still
 
 ROW = 30
-LETTER = 6
+SIZES = ((9, 6), (7, 5))
+"""Sizes of a name in a bar, and the width of a letter of each."""
 LEAST_BEND, MOST_BEND = 5, 40
 HEAD = 6
 
@@ -76,8 +77,9 @@ def draw_visits(
             SubElement(bar, "title").text = f"{name} [{visit.enter}, {leave}), slack {'any' if late is None else late}"
             path(bar, "bar", [box(x, top, max(1, width - 1), LANE)])
             name = name.removeprefix(start)
-            if width >= LETTER * len(name):
-                text(bar, "short", (x + width // 2, top + LANE // 2), name, 9, fill=look.text)
+            size = next((size for size, letter in SIZES if width >= letter * len(name)), None)
+            if size is not None:
+                text(bar, "short", (x + width // 2, top + LANE // 2), name, size, fill=look.text)
 
 
 def draw_arrows(
