@@ -138,8 +138,8 @@ def _with_files(function: F, *, needs_solution: bool) -> F:
         benchmark = MovingAI.of(map, scen, agents)
         instances, solutions = files[: benchmark is None], files[benchmark is None :]
         if len(instances) != (benchmark is None) or not needs_solution <= len(solutions) <= 1:
-            wanted = "SOLUTION" if needs_solution else "if you have one SOLUTION"
-            raise click.UsageError(f"Give INSTANCE and {wanted}, or --map, --scen and {wanted}.")
+            perhaps = "" if needs_solution else ", which may be left out"
+            raise click.UsageError(f"Give INSTANCE and SOLUTION, or --map, --scen and SOLUTION{perhaps}.")
         problem = Problem(instances[0] if instances else None, benchmark, solutions[0] if solutions else None, format)
         return function(problem=problem, **others)
 

@@ -11,6 +11,7 @@ from carproof.foreign import Problem, instance_and_perhaps_solution
 from carproof.options import examples, output_option
 from carproof.results import write_result
 from carproof.tables import print_table
+from carproof.viewer.limits import refuse_tick
 from carproof.viewer.page import page
 from carproof.viewer.staging import span
 from carproof.viewer.stills import chart_still, map_still
@@ -71,6 +72,7 @@ def command(problem: Problem, at: int | None, chart: bool, trace: str | None, ou
         elif chart:
             drawn = chart_still(instance, solution, title)
         elif at is not None:
+            refuse_tick(at, "--at")
             refuse_tick_without_plans(at, *span(instance, solution))
             drawn = map_still(instance, solution, at, title)
         else:

@@ -26,7 +26,7 @@ def cut(text: str, longest: int) -> str:
 
 
 def common_start(names: Sequence[str]) -> str:
-    """What all names begin with, if some are long: it is left out where there is little room. No number is divided."""
+    """The beginning of all names, if some are long: it is left out where there is little room. No number is divided."""
     if len(names) <= 1 or max(map(len, names)) <= LONGEST_WHOLE:
         return ""
     first, last = min(names), max(names)
