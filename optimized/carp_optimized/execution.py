@@ -19,6 +19,7 @@ from carp_optimized.encoding import refuse_tick, refuse_what_is_too_large
 from carp_optimized.trace_check import follows
 from carp_spec import Instance, Plan, RobotId, Solution, Visit
 from carp_spec.execution_rules import require_followed, require_lawful_ends
+from carp_spec.inputs.requests import require_trace
 from carp_spec.traces import Trace
 
 Flags: TypeAlias = npt.NDArray[np.bool_]
@@ -159,6 +160,7 @@ class Timetable:
 
 def retime(instance: Instance, solution: Solution, trace: Trace) -> Solution:
     """The plans for the rest of the way, as `carp_reference.retime` makes them; also refuses too large numbers."""
+    require_trace(instance, solution, trace)
     if not follows(instance, solution, trace):
         require_followed(instance, solution, trace)
     refuse_tick("$.now", trace.now)

@@ -33,6 +33,7 @@ from carp_optimized.records import keep_records
 from carp_optimized.references import Native
 from carp_optimized.reuse import Queries, Reuse
 from carp_spec import Instance, Neighbourhood, Plan, Refusal, RobotId, Shuffled
+from carp_spec.inputs.values import require_instance
 from carp_spec.permutations import shuffle, splitmix64
 
 T = TypeVar("T")
@@ -51,6 +52,7 @@ class PlannedFleet:
 
     def __init__(self, instance: Instance, reuse: Reuse | None = None) -> None:
         """Begin without plans. Raises `Refusal` if the instance has numbers that are too large."""
+        require_instance(instance)
         encoding.refuse_what_is_too_large(instance)
         self.instance = instance
         self.reuse = reuse or Reuse()

@@ -21,8 +21,11 @@ from carp_spec import (
     Shuffled,
     Solution,
 )
+from carp_spec.inputs.options import require_planner, require_polish_options
+from carp_spec.inputs.requests import known, require_addition, require_query, sound_solution
+from carp_spec.inputs.values import require_instance
 from carp_spec.planners import BY_DEFAULT
-from carp_spec.polish_rules import last_round, polishable, require_polish_options
+from carp_spec.polish_rules import last_round
 
 if TYPE_CHECKING:
     from carp_optimized.certifying import Certifier
@@ -44,6 +47,7 @@ def query(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: in
 
     A plan of the robot itself among those committed is what it has followed until the tick `now`.
     """
+    require_query(instance, committed, robot, now)
     own = [plan for plan in committed if plan.robot == robot]
     fleet = _fleet(instance)
     fleet.commit([plan for plan in committed if plan.robot != robot])
@@ -54,6 +58,7 @@ def certifier(instance: Instance) -> "Certifier":
     """A certifying planner with no committed plans yet."""
     from carp_optimized.certifying import Certifier  # noqa: PLC0415 - numba is slow to load
 
+    require_instance(instance)
     return Certifier(instance)
 
 
@@ -83,12 +88,14 @@ def plan_with_fleet(
     instance: Instance, planner: Planner, advance: Callable[[], None], reuse: Reuse | None = None
 ) -> tuple[Solution, "PlannedFleet"]:
     """The same solution, and the fleet that made it, which answers further questions."""
+    require_instance(instance)
     if not isinstance(planner, PLANNERS):
         names = ", ".join(each.__name__ for each in PLANNERS)
         message = (
             f"the optimised engine has no {planner!r}, only values of {names}; the reference engine has all planners"
         )
         raise Refusal("option", "$.planner", "planner/options", message)
+    require_planner(planner)
     fleet = _fleet(instance, reuse)
     everyone = range(len(instance.robots))
     match planner:
@@ -124,6 +131,7 @@ def add(
 
     If no plan is found, the robot is unplanned and all other plans stay as they are.
     """
+    require_addition(instance, solution, robot, now, options)
     by_robot = {each.robot: each for each in solution.plans}
     fleet = _fleet(instance, reuse)
     fleet.commit([by_robot[each] for each in solution.order])
@@ -148,7 +156,7 @@ def polish(
     Raises `Refusal` for wrong options, for a solution that breaks a rule, and for numbers that are too large.
     """
     require_polish_options(iterations, seconds, seed)
-    whole = polishable(instance, solution)
+    whole = sound_solution(instance, solution)
     last = last_round(iterations, seconds)
     by_robot = {each.robot: each for each in whole.plans}
     fleet = _fleet(instance)
@@ -171,4 +179,4 @@ def _solution(instance: Instance, plans: tuple[Plan, ...], named: set[RobotId]) 
     order = tuple(each.robot for each in plans)
     planned = set(order)
     unplanned = (robot.id for robot in instance.robots if robot.id in named and robot.id not in planned)
-    return Solution(plans, order, tuple(unplanned))
+    return known(instance, Solution(plans, order, tuple(unplanned)))

@@ -19,7 +19,8 @@ from carp_optimized.fleet import PlannedFleet
 from carp_optimized.polishing import CHANCE, SURE
 from carp_optimum.joint_repair import repair
 from carp_spec import Instance, Refusal, Solution
-from carp_spec.polish_rules import polishable, require_polish_options
+from carp_spec.inputs.options import require_polish_options
+from carp_spec.inputs.requests import sound_solution
 
 ROUNDS = 50
 """The rounds of one compiled call."""
@@ -81,7 +82,7 @@ def anneal(
         with suppress(Refusal):
             solution = repair(instance, solution)
     seconds = max(seconds - (clock() - started), BRIEF)
-    whole = polishable(instance, solution)
+    whole = sound_solution(instance, solution)
     by_robot = {each.robot: each for each in whole.plans}
     fleet = PlannedFleet(instance)
     fleet.commit([by_robot[each] for each in whole.order])

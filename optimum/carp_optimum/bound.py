@@ -18,6 +18,8 @@ from msgspec.structs import replace
 
 from carp_optimum.solver import Deadline, TimeOver
 from carp_spec import Instance
+from carp_spec.inputs.options import require_limits
+from carp_spec.inputs.values import require_instance
 from carp_verify.bounds import BOUND_FORMAT, BoundDocument, digest
 from carp_verify.limits import require_following
 
@@ -64,7 +66,7 @@ def lower_bound(
     then while cuts are searched for; `clock` gives nanoseconds. `seen` is whether robots with deadlines may be seen at
     ticks, for which the search for an optimum has no literals. Raises `Refusal` for numbers that are too large.
     """
-    require_following(instance)
+    _require(instance, seconds=seconds, steps=steps)
     from carp_optimum.cut_search import CutSearch  # noqa: PLC0415 - numba is slow to load
     from carp_optimum.deadline_search import DeadlineSearch  # noqa: PLC0415
     from carp_optimum.price_search import PriceSearch  # noqa: PLC0415
@@ -121,6 +123,12 @@ def lower_bound(
         search.climb(max(ROUGH_AIM, search.best // FINAL_AIM), FINE_AIM, lambda: end(search.count), report)
     search.finish()
     return _certificate(search, cuts)
+
+
+def _require(instance: Instance, **limits: float | None) -> None:
+    require_instance(instance)
+    require_limits(**limits)
+    require_following(instance)
 
 
 def _limit(seconds: float | None, steps: int | None, parts: int, clock: Callable[[], int]) -> Callable[[int], None]:

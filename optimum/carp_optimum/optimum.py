@@ -30,6 +30,8 @@ from carp_optimum.heuristics import plans_of_all
 from carp_optimum.narrowing import Between, half_narrowed, narrowed
 from carp_optimum.solver import Deadline, Solver, TimeOver
 from carp_spec import Instance, Plan, Refusal, Solution, judge, total_cost
+from carp_spec.inputs.options import require_limits
+from carp_spec.inputs.values import require_instance
 from carp_verify.bound_rules import ContradictionError, require_kept
 from carp_verify.clauses import Literal, Unary
 from carp_verify.encoding import Encoding, Evidence, violated
@@ -75,6 +77,8 @@ def optimum(instance: Instance, limit: float, clock: Callable[[], int] = monoton
 
     The result does not depend on the clock, which gives nanoseconds: the same instance gives the same solution.
     """
+    require_instance(instance)
+    require_limits(limit=limit)
     require_following(instance)
     deadline = Deadline(limit, clock)
     try:

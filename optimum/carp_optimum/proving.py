@@ -10,6 +10,7 @@ from carp_optimum.hints import NoHintsError, refutation_with_hints
 from carp_optimum.optimum import Optimum
 from carp_optimum.solver import Deadline, Solver
 from carp_spec import Instance, Refusal
+from carp_spec.inputs.values import require_instance
 from carp_verify.bound_rules import ContradictionError
 from carp_verify.clauses import Formula, dimacs
 from carp_verify.documents import write_instance
@@ -21,6 +22,7 @@ from carp_verify.unsolvable import Clauses
 
 def write_proof(instance: Instance, best: Optimum, directory: Path, limit: float) -> None:
     """Write the proof directory of an answer; raises `TimeOver` if that takes more than `limit` seconds."""
+    require_instance(instance)
     if not is_provable(best.decided):
         message = "there is a proof directory only for an answer that the search has found"
         raise Refusal("request", "$.proof", is_provable.id, message)

@@ -12,9 +12,9 @@ import click
 from click.shell_completion import CompletionItem
 
 from carp_spec import Instance, Refusal, Solution
+from carp_spec.inputs.requests import sound_solution
 from carp_verify.documents import read_instance, read_solution
 from carp_verify.limits import require_following
-from carproof.requests import sound_solution
 
 T = TypeVar("T")
 STANDARD_INPUT = "-"

@@ -3,6 +3,7 @@
 from typing import Any
 
 from carp_spec.execution_rules import EXECUTION_RULES, TRACE_RULES, is_acyclic
+from carp_spec.inputs.options import options_are_right
 from carp_spec.instance_rules import INSTANCE_RULES
 from carp_spec.joint_rules import JOINT_RULES, SOLUTION_RULES
 from carp_spec.neighbourhood_rules import (
@@ -21,7 +22,6 @@ from carp_spec.rule import Rule
 from carp_spec.windows import stay_fits, windows_are_free
 from carp_verify.documents import has_format, has_shape, is_json
 from carproof.giving_way import robot_is_first
-from carproof.planner_options import options_are_right
 
 RULES: tuple[Rule[..., Any], ...] = (
     is_json,

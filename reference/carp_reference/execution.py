@@ -8,6 +8,7 @@ from itertools import groupby
 from carp_spec import Instance, Plan, RobotId, Solution, Visit
 from carp_spec.dependencies import Dependency, Node, dependencies
 from carp_spec.execution_rules import require_followed, require_lawful_ends
+from carp_spec.inputs.requests import require_trace
 from carp_spec.traces import Trace
 
 
@@ -71,6 +72,7 @@ def retime(instance: Instance, solution: Solution, trace: Trace) -> Solution:
 
     Raises `Refusal` if the trace does not follow the solution, and where no lawful plan has the history.
     """
+    require_trace(instance, solution, trace)
     require_followed(instance, solution, trace)
     order = order_of(instance, solution)
     least = {(robot.id, 0): robot.release for robot in instance.robots}

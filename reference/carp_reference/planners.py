@@ -23,6 +23,9 @@ from carp_spec import (
     Shuffled,
     Solution,
 )
+from carp_spec.inputs.options import require_planner
+from carp_spec.inputs.requests import known, require_addition, require_query
+from carp_spec.inputs.values import require_instance
 from carp_spec.planners import BY_DEFAULT
 
 
@@ -31,6 +34,7 @@ def query(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: in
 
     Its own plan among those committed is what it has followed until the tick `now`.
     """
+    require_query(instance, committed, robot, now)
     before = {plan.robot: plan for plan in committed if plan.robot == robot}
     others = [plan for plan in committed if plan.robot != robot]
     problem = Problem(instance, {robot: ticks_to_goal(instance, instance.robot[robot])}, now, before)
@@ -39,22 +43,26 @@ def query(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: in
 
 def certifier(instance: Instance) -> Certifier:
     """A certifying planner with no committed plans yet."""
+    require_instance(instance)
     return Certifier(instance)
 
 
 def plan(instance: Instance, planner: Planner = BY_DEFAULT) -> Solution:
     """Plan all robots of the instance at tick 0."""
-    return Solution.of(instance, _plans(prepare(instance, 0), planner))
+    require_instance(instance)
+    require_planner(planner)
+    return known(instance, Solution.of(instance, _plans(prepare(instance, 0), planner)))
 
 
 def add(instance: Instance, solution: Solution, robot: RobotId, now: int, options: Neighbourhood) -> Solution:
     """Add a robot to a solution of the others at the tick `now`; if it finds no plan, the other plans stay."""
+    require_addition(instance, solution, robot, now, options)
     by_robot = {each.robot: each for each in solution.plans}
     committed = tuple(by_robot[each] for each in solution.order)
     plans = add_robot(prepare(instance, now), committed, robot, options) or committed
     named = {*by_robot, *solution.unplanned, robot}
     after = Solution.of(instance, plans)
-    return replace(after, unplanned=tuple(each for each in after.unplanned if each in named))
+    return known(instance, replace(after, unplanned=tuple(each for each in after.unplanned if each in named)))
 
 
 def _plans(problem: Problem, planner: Planner) -> Plans:  # noqa: PLR0911 - one return a planner

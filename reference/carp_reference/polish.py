@@ -11,6 +11,8 @@ from carp_reference.problem import Problem, prepare
 from carp_reference.query import find_plan
 from carp_spec import Instance, Plan, RobotId, Solution, plan_cost, total_cost
 from carp_spec import polish_rules as rules
+from carp_spec.inputs.options import require_polish_options
+from carp_spec.inputs.requests import known, sound_solution
 from carp_spec.neighbourhood_rules import distance
 from carp_spec.permutations import splitmix64
 
@@ -40,8 +42,8 @@ def polish(
     The polish ends earlier if no plan can be shorter. Equal iterations and seed give an equal solution. Raises
     `Refusal` for wrong options or a broken rule.
     """
-    rules.require_polish_options(iterations, seconds, seed)
-    whole = rules.polishable(instance, solution)
+    require_polish_options(iterations, seconds, seed)
+    whole = sound_solution(instance, solution)
     last = rules.last_round(iterations, seconds)
     started = perf_counter()
     problem = prepare(instance, 0)
@@ -57,7 +59,7 @@ def polish(
         plans = better
         turn += 1
         advance(turn, *_worth(instance, plans))
-    return Solution.of(instance, plans.values())
+    return known(instance, Solution.of(instance, plans.values()))
 
 
 def _round(polishing: Polish, plans: Plans, turn: int) -> Plans | None:

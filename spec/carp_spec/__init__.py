@@ -1,6 +1,7 @@
 """The specification of context-aware route planning: model, rules, checker."""
 
 from carp_spec.check import Verdict, check, check_update, judge
+from carp_spec.inputs.costs import plan_cost, total_cost
 from carp_spec.model import (
     AfterGoal,
     Instance,
@@ -14,7 +15,7 @@ from carp_spec.model import (
     Solution,
     Visit,
 )
-from carp_spec.plan_rules import has_ended, plan_cost, total_cost
+from carp_spec.plan_rules import has_ended
 from carp_spec.planners import (
     Carp,
     FixedPaths,

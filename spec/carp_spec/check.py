@@ -4,6 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import islice
 
+from carp_spec.inputs.shapes import require_shape
+from carp_spec.inputs.values import require_instance, require_known, require_plans
 from carp_spec.joint_rules import JOINT_RULES, SOLUTION_RULES
 from carp_spec.model import Instance, Plan, Solution
 from carp_spec.plan_rules import PLAN_RULES, plan_keeps_history, total_cost
@@ -29,8 +31,14 @@ class Verdict:
 def check(instance: Instance, plans: Sequence[Plan], most: int | None = MOST_LISTED) -> tuple[Violation, ...]:
     """The violations of plans, at most the first `most` of each rule (`None`: all).
 
-    The instance must have no faults and know every plan's robot.
+    Raises `Refusal` for malformed input and unknown robots.
     """
+    require_instance(instance)
+    require_known(instance, require_plans(plans))
+    return _violations(instance, plans, most)
+
+
+def _violations(instance: Instance, plans: Sequence[Plan], most: int | None) -> tuple[Violation, ...]:
     violations: list[Violation] = []
     for each in PLAN_RULES:
         violations += islice((violation for plan in plans for violation in each(instance, plan)), most)
@@ -41,18 +49,23 @@ def check(instance: Instance, plans: Sequence[Plan], most: int | None = MOST_LIS
 
 def judge(instance: Instance, solution: Solution, most: int | None = MOST_LISTED) -> Verdict:
     """Check a whole solution; plans of robots that the instance does not have break `solution/covers` alone."""
+    require_instance(instance)
+    require_shape(solution, Solution)
     plans = [plan for plan in solution.plans if plan.robot in instance.robot]
     of_solution = [violation for each in SOLUTION_RULES for violation in islice(each(instance, solution), most)]
     planned = {plan.robot for plan in plans}
     return Verdict(
         cost=total_cost(instance, [plan for plan in plans if plan.visits]),
         unplanned=sum(robot.id not in planned for robot in instance.robots),
-        violations=(*of_solution, *check(instance, plans, most)),
+        violations=(*of_solution, *_violations(instance, plans, most)),
     )
 
 
 def check_update(before: Sequence[Plan], after: Sequence[Plan], now: int) -> tuple[Violation, ...]:
     """All violations of `fleet/history` by plans made again at the tick now; a robot without one breaks nothing."""
+    require_plans(before, "$.before")
+    require_plans(after, "$.after")
+    require_shape(now, int, "$.now")
     again = {plan.robot: plan for plan in after}
     return tuple(
         violation

@@ -7,10 +7,13 @@ The classes may hold nonsense, which `instance_rules` and `check` find. Source: 
 section II; ter Mors 2010 for capacities and durations.
 """
 
+from collections import deque
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Literal, TypeAlias
+
+from carp_spec.inputs.shapes import require_shape
 
 ResourceId: TypeAlias = str | int
 RobotId: TypeAlias = str | int
@@ -52,7 +55,14 @@ class ResourceGraph:
     moves: frozenset[Move] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        """Make the look-ups; an edge to or from an unknown resource is left to the rules."""
+        """Make the look-ups; raises `Refusal` if there are none."""
+        try:
+            self._look_up()
+        except (AttributeError, TypeError, ValueError):
+            require_shape(self, type(self), "$.graph")
+            raise
+
+    def _look_up(self) -> None:
         index = {each.id: position for position, each in enumerate(self.resources)}
         backward = () if self.directed else ((target, source) for source, target in self.edges)
         moves = [move for move in (*self.edges, *backward) if move[0] in index and move[1] in index]
@@ -86,7 +96,8 @@ class Instance:
     """A resource graph, robots in the order of their arrival, and what a robot does after its goal.
 
     `vanish`: it leaves the system one duration after it enters its goal for the last time. `park`: it stays. Where
-    `following` is forbidden, a robot enters a resource only after a free tick. `robot` is a look-up by id.
+    `following` is forbidden, a robot enters a resource only after a free tick. `robot` is a look-up by id, `sound`
+    a memory of `inputs`.
     """
 
     graph: ResourceGraph
@@ -94,10 +105,16 @@ class Instance:
     after_goal: AfterGoal = "vanish"
     following: Following = "allowed"
     robot: Mapping[RobotId, Robot] = field(init=False, repr=False, compare=False)
+    sound: deque[tuple["Plan", ...]] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        """Make the look-up."""
-        object.__setattr__(self, "robot", MappingProxyType({each.id: each for each in self.robots}))
+        """Make the look-up; raises `Refusal` if there is none."""
+        object.__setattr__(self, "sound", deque(maxlen=8))
+        try:
+            object.__setattr__(self, "robot", MappingProxyType({each.id: each for each in self.robots}))
+        except (AttributeError, TypeError):
+            require_shape(self, type(self))
+            raise
 
     def __reduce__(self) -> tuple[type["Instance"], tuple[object, ...]]:
         """Pickle the fields alone."""

@@ -6,17 +6,14 @@ candidates, its members, and their order. No robot is under way.
 
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from fractions import Fraction
 from itertools import accumulate, islice
 from math import inf
 from typing import Any, Literal, TypeAlias, TypeVar, cast
 
-from carp_spec.check import judge
-from carp_spec.model import Instance, Plan, ResourceId, Solution, Visit
+from carp_spec.model import Plan, ResourceId, Visit
 from carp_spec.permutations import shuffle
 from carp_spec.planners import LARGEST_SEED
-from carp_spec.refusal import Refusal
 from carp_spec.rule import DESIGN, Found, Rule, fault_rule, is_between, rule
 
 T = TypeVar("T")
@@ -181,22 +178,6 @@ def options_are_right(iterations: object, seconds: object, seed: object) -> Foun
 def last_round(iterations: int | None, seconds: float | None) -> int | None:
     """The rounds of a polish; `None`: the time decides."""
     return ITERATIONS if iterations is None and seconds is None else iterations
-
-
-def require_polish_options(iterations: object, seconds: object, seed: object) -> None:
-    """Raise `Refusal` for wrong options."""
-    for fault in options_are_right(iterations, seconds, seed):
-        raise Refusal("option", fault.path, fault.rule, fault.message)
-
-
-def polishable(instance: Instance, solution: Solution) -> Solution:
-    """The solution, robots not named unplanned; raises `Refusal` with the first rule that it breaks."""
-    named = {*solution.unplanned, *(plan.robot for plan in solution.plans)}
-    missing = (robot for robot in instance.robot if robot not in named)
-    whole = replace(solution, unplanned=(*solution.unplanned, *missing))
-    for violation in judge(instance, whole).violations:
-        raise Refusal("request", "$.plans", violation.rule, violation.message)
-    return whole
 
 
 POLISH_RULES: tuple[Rule[..., Any], ...] = (

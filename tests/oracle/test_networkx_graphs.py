@@ -3,12 +3,13 @@
 from typing import Any
 
 import networkx as nx
+import numpy as np
 import pytest
 
 import carp_reference
 from carp_spec import Carp, Refusal, Resource, Robot, judge
+from carp_verify.documents import read_instance, write_instance
 from carproof.adapters import instance_from_networkx
-from carproof.adapters.networkx_graphs import node_is_right
 
 
 def test_nodes_are_resources_and_edges_moves() -> None:
@@ -38,26 +39,82 @@ def test_a_graph_from_networkx_can_be_planned() -> None:
 
 
 @pytest.mark.parametrize(
-    ("node", "attributes"),
+    ("node", "attributes", "attribute", "right"),
     [
-        ((0, 1), {}),
-        (True, {}),
-        (1.0, {}),
-        ("a", {"capacity": 1.0}),
-        ("a", {"duration": True}),
-        ("a", {"x": "1", "y": 1}),
-        ("a", {"pos": (0.5, 1)}),
-        ("a", {"pos": (1, 2, 3)}),
-        ("a", {"pos": "12"}),
+        ((0, None), {}, "", "a string, a whole number or a tuple of these"),
+        ((), {}, "", "a string, a whole number or a tuple of these"),
+        (True, {}, "", "a string, a whole number or a tuple of these"),
+        (1.0, {}, "", "a string, a whole number or a tuple of these"),
+        ("a", {"capacity": 1.0}, ".capacity", "a whole number"),
+        ("a", {"duration": True}, ".duration", "a whole number"),
+        ("a", {"duration": np.float64(2)}, ".duration", "a whole number"),
+        ("a", {"x": "1", "y": 1}, ".x", "a whole number"),
+        ("a", {"x": 1, "y": 0.5}, ".y", "a scale, such as scale=100"),
+        ("a", {"pos": (0.5, 1)}, ".pos", "a scale, such as scale=100"),
+        ("a", {"pos": (1, 2, 3)}, ".pos", "a pair"),
+        ("a", {"pos": "12"}, ".pos", "a pair"),
+        ("a", {"pos": None}, ".pos", "a pair"),
     ],
 )
-def test_a_node_that_is_no_resource_is_refused(node: Any, attributes: dict[str, Any]) -> None:  # noqa: ANN401 - nonsense too
+def test_a_node_that_is_no_resource_is_refused(
+    node: Any,  # noqa: ANN401 - nonsense too
+    attributes: dict[str, Any],
+    attribute: str,
+    right: str,
+) -> None:
     graph: nx.Graph[Any] = nx.Graph()
     graph.add_node(node, **attributes)
-    assert not node_is_right(node, attributes)
     with pytest.raises(Refusal, match="adapter/networkx") as refused:
         instance_from_networkx(graph, [])
-    assert refused.value.path == f"node {node!r}"
+    assert refused.value.path == f"node {node!r}{attribute}"
+    assert right in refused.value.message
+
+
+def test_tuples_and_numbers_of_numpy_are_taken() -> None:
+    graph = nx.grid_2d_graph(2, 2)
+    graph.add_node((0, 0), capacity=np.int64(2), duration=np.uint8(3), pos=np.array([4, 5]))
+    graph.add_edge((0, 0), np.int32(7))
+    robot = Robot(np.int64(1), (1, 1), np.int64(7), release=np.int16(2))  # type: ignore[arg-type]
+    instance = instance_from_networkx(graph, [robot])
+    assert instance.graph.resource["0,0"] == Resource("0,0", 2, 3, 4, 5)
+    assert instance.robots == (Robot(1, "1,1", 7, release=2),)
+    assert read_instance(write_instance(instance)) == instance
+    assert carp_reference.plan(instance, Carp()).unplanned == ()
+
+
+def test_metric_positions_are_taken_with_a_scale() -> None:
+    graph: nx.Graph[Any] = nx.Graph()
+    graph.add_node("a", pos=(0.125, -1.996))
+    graph.add_node("b", x=np.float32(0.5), y=2)
+    instance = instance_from_networkx(graph, [], scale=100)
+    assert [(each.x, each.y) for each in instance.graph.resources] == [(12, -200), (50, 200)]
+
+
+@pytest.mark.parametrize("position", [float("nan"), float("inf"), "1", None, True])
+def test_what_is_no_number_is_refused_with_a_scale_too(position: object) -> None:
+    graph: nx.Graph[Any] = nx.Graph()
+    graph.add_node("a", x=position, y=1)
+    with pytest.raises(Refusal, match="x must be a number") as refused:
+        instance_from_networkx(graph, [], scale=100)
+    assert refused.value.path == "node 'a'.x"
+
+
+@pytest.mark.parametrize("scale", [0, -1, 0.5, True])
+def test_a_scale_is_a_whole_number_of_at_least_1(scale: Any) -> None:  # noqa: ANN401 - nonsense too
+    with pytest.raises(Refusal, match="at least 1") as refused:
+        instance_from_networkx(nx.Graph(), [], scale=scale)
+    assert refused.value.path == "$.scale"
+
+
+def test_a_broken_rule_of_instances_names_the_node_or_the_edge() -> None:
+    graph: nx.Graph[Any] = nx.Graph([((0, 0), (0, 1))])
+    graph.add_node("0,1")
+    with pytest.raises(Refusal, match="instance/resource-id") as refused:
+        instance_from_networkx(graph, [])
+    assert refused.value.path == "node '0,1'.id"
+    with pytest.raises(Refusal, match="instance/edge") as refused:
+        instance_from_networkx(nx.Graph([(1, 2), (2, 2)]), [])
+    assert refused.value.path == "edge (2, 2)"
 
 
 def test_parallel_edges_are_refused() -> None:

@@ -13,8 +13,9 @@ from carp_spec import (
     Shuffled,
     TimeExpanded,
 )
+from carp_spec.inputs.options import LARGEST_SAMPLE, options_are_right
 from carp_spec.planners import LARGEST_SEED
-from carproof.planner_options import LARGEST_SAMPLE, PLANNERS, options_are_right, planner_named
+from carproof.planner_options import PLANNERS, planner_named
 
 
 @pytest.mark.parametrize(

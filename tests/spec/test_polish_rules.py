@@ -12,6 +12,8 @@ from tests.spec.making import SOLVED, VANISHING, instance_on, line, plan_of
 from tests.spec.strategies import FEWER
 
 from carp_spec import Plan, Refusal, Robot, Solution, Visit
+from carp_spec.inputs.options import require_polish_options
+from carp_spec.inputs.requests import sound_solution
 from carp_spec.permutations import splitmix64
 from carp_spec.planners import LARGEST_SEED
 from carp_spec.polish_rules import (
@@ -29,8 +31,6 @@ from carp_spec.polish_rules import (
     options_are_right,
     order_of,
     pivot_of,
-    polishable,
-    require_polish_options,
     spans,
     ticks_apart,
 )
@@ -199,7 +199,7 @@ def test_there_are_rounds_or_a_time() -> None:
 def test_robots_that_are_not_named_are_unplanned_and_broken_rules_are_refused() -> None:
     instance = instance_on(ROW, Robot("r1", "a", "b"), Robot("r2", "d", "e"))
     plan = plan_of("r1", ("a", 0, 1), ("b", 1, 2))
-    assert polishable(instance, Solution((plan,), ("r1",))).unplanned == ("r2",)
-    assert polishable(VANISHING, Solution(SOLVED, tuple(each.robot for each in SOLVED))).unplanned == ()
+    assert sound_solution(instance, Solution((plan,), ("r1",))).unplanned == ("r2",)
+    assert sound_solution(VANISHING, Solution(SOLVED, tuple(each.robot for each in SOLVED))).unplanned == ()
     with pytest.raises(Refusal, match="plan/goal"):
-        polishable(instance, Solution((plan_of("r1", ("a", 0, 1), ("b", 1, 3)),), ("r1",)))
+        sound_solution(instance, Solution((plan_of("r1", ("a", 0, 1), ("b", 1, 3)),), ("r1",)))

@@ -13,7 +13,8 @@ from typing import Annotated, Final, Literal, TypeAlias, TypeVar
 import msgspec
 
 from carp_spec.check import Verdict
-from carp_spec.instance_rules import instance_faults
+from carp_spec.inputs.shapes import SHAPE, require_shape
+from carp_spec.inputs.values import require_instance
 from carp_spec.model import (
     AfterGoal,
     Following,
@@ -230,7 +231,7 @@ def _shape_error(data: bytes, kind: type[D]) -> tuple[str, str] | None:
 
 
 @rule(
-    "document/shape",
+    SHAPE,
     "A document has exactly the fields and types of its JSON Schema; true, 1.0 and 1e3 are no whole numbers.",
     DESIGN,
 )
@@ -274,8 +275,7 @@ def read_instance(data: bytes) -> Instance:
         after_goal=document.after_goal,
         following="allowed" if document.following is msgspec.UNSET else document.following,
     )
-    for fault in instance_faults(instance):
-        raise Refusal("document", fault.path, fault.rule, fault.message)
+    require_instance(instance)
     return instance
 
 
@@ -284,7 +284,8 @@ def _unset(value: int | None) -> int | msgspec.UnsetType:
 
 
 def instance_document(instance: Instance) -> InstanceDocument:
-    """The document of an instance."""
+    """The document of an instance; raises `Refusal` with its first fault."""
+    require_instance(instance)
     graph = instance.graph
     return InstanceDocument(
         format=INSTANCE_FORMAT,
@@ -339,12 +340,14 @@ def _plan_documents(plans: Sequence[Plan]) -> tuple[PlanDocument, ...]:
 
 
 def solution_document(solution: Solution) -> SolutionDocument:
-    """The document of a solution."""
+    """The document of a solution; raises `Refusal` if it is malformed."""
+    require_shape(solution, Solution)
     return SolutionDocument(SOLUTION_FORMAT, _plan_documents(solution.plans), solution.order, solution.unplanned)
 
 
 def trace_document(trace: Trace) -> TraceDocument:
-    """The document of a trace."""
+    """The document of a trace; raises `Refusal` if it is malformed."""
+    require_shape(trace, Trace)
     return TraceDocument(TRACE_FORMAT, trace.now, _plan_documents(trace.plans))
 
 

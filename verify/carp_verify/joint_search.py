@@ -12,6 +12,7 @@ from itertools import product
 from typing import Literal, TypeAlias
 
 from carp_spec import Instance, ResourceId, Robot
+from carp_spec.inputs.values import require_instance
 from carp_verify.limits import require_following
 from carp_verify.optimum_rules import LARGEST_SEARCH, refuse_size
 
@@ -106,6 +107,7 @@ def least_total_cost(
 
     Raises `Refusal` before more than `most` joint states are looked at; `on_step` is called at each, and may raise.
     """
+    require_instance(instance)
     require_following(instance)
     search = _Search(instance)
     queue: list[tuple[int, int, int, Joint]] = [(0, 0, -1, tuple(WAITS for _ in instance.robots))]

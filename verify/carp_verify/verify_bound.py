@@ -32,6 +32,7 @@ from operator import itemgetter
 from typing import TypeAlias
 
 from carp_spec import Instance, Refusal, ResourceGraph, ResourceId, Robot, RobotId, Rule
+from carp_spec.inputs.values import require_instance
 from carp_spec.rule import is_whole
 from carp_verify.bound_rules import (
     LARGEST_FORMULA,
@@ -98,6 +99,7 @@ def verify_bound(instance: Instance, certificate: BoundDocument) -> int:
 
     No plans of all robots that can reach their goals have a smaller total cost. Where one cannot, `robots` has null.
     """
+    require_instance(instance)
     require_following(instance)
     _require(is_about, is_about(certificate.instance, digest(instance)), "$.instance", "it is about another instance")
     scale = certificate.scale

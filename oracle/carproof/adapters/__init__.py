@@ -9,6 +9,8 @@ from dataclasses import replace
 from typing import Any
 
 from carp_spec import Instance, Refusal, Rule, Solution
+from carp_spec.inputs.shapes import require_shape
+from carp_spec.inputs.values import require_instance
 from carp_spec.rule import DESIGN
 from carproof.adapters import agent_paths, carproof_documents, lacam, libmultirobotplanning, mapf_tracker
 from carproof.adapters.adapter import Adapter
@@ -62,16 +64,20 @@ def read_foreign_solution(data: bytes, instance: Instance, file: str = "file", f
 
     Raises `Refusal` with file and line, also where two formats are possible or none is.
     """
-    return ADAPTERS[format or format_of(data, instance, file)].read(_text(data), instance, file)
+    require_instance(instance)
+    return _adapter(format or format_of(data, instance, file)).read(_text(data), instance, file)
 
 
 def write_foreign_solution(instance: Instance, solution: Solution, format: str) -> bytes:
-    """Write a lawful solution in the format named."""
-    return ADAPTERS[format].write(instance, solution).encode()
+    """Write a solution in the format named; raises `Refusal` if it is malformed or breaks a rule of the format."""
+    require_instance(instance)
+    require_shape(solution, Solution)
+    return _adapter(format).write(instance, solution).encode()
 
 
 def format_of(data: bytes, instance: Instance, file: str = "file") -> str:
     """The format that a solution looks like; raises `Refusal` where two are possible or none is."""
+    require_instance(instance)
     text = _text(data)
     possible = _possible(text, instance)
     if len(possible) == 1:
@@ -83,11 +89,19 @@ def format_of(data: bytes, instance: Instance, file: str = "file") -> str:
 
 def named_as(instance: Instance, format: str) -> Instance:
     """The instance with its robots named as in files of the format, if these have names."""
-    agent = ADAPTERS[format].agent
+    require_instance(instance)
+    agent = _adapter(format).agent
     if agent is None:
         return instance
     robots = tuple(replace(robot, id=f"{agent}{number}") for number, robot in enumerate(instance.robots))
     return replace(instance, robots=robots)
+
+
+def _adapter(format: str) -> Adapter:
+    if format not in ADAPTERS:
+        message = f"there is no format {format!r}; the formats are {', '.join(ADAPTERS)}"
+        raise Refusal("option", "$.format", CLEAR_FORMAT.id, message)
+    return ADAPTERS[format]
 
 
 def looks_like_none(data: bytes) -> bool:

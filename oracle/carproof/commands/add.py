@@ -6,12 +6,13 @@ from typing import Any, cast
 import click
 
 from carp_spec import Neighbourhood
+from carp_spec.inputs.requests import require_new_robot, require_tick
 from carp_verify.documents import write_solution
 from carproof.answer import Answer
 from carproof.engines import engine_named
 from carproof.files import naming, read_sound
 from carproof.options import ADDING, asks_for_a_robot, chosen_planner, examples, gives_plans, planner_options
-from carproof.requests import require_new_robot, require_tick, robot_called
+from carproof.requests import robot_called
 from carproof.results import show_addition, write_result
 
 

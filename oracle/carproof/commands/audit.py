@@ -5,6 +5,7 @@ from time import perf_counter
 
 import click
 
+from carp_spec.inputs.requests import sound_solution
 from carp_verify.documents import write
 from carproof.adapters import format_of, read_foreign_solution
 from carproof.answer import Answer
@@ -23,7 +24,6 @@ from carproof.files import (
 from carproof.foreign import MovingAI, from_option, movingai_options, read_movingai
 from carproof.options import engine_option, examples, json_option, kernel_option
 from carproof.progress import progress
-from carproof.requests import sound_solution
 from carproof.results import arrival_of, audit_document, shown_plan
 from carproof.tables import print_line, print_table
 

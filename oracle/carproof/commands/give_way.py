@@ -6,6 +6,7 @@ import click
 import msgspec
 
 from carp_spec import Refusal, ResourceId, Visit
+from carp_spec.inputs.requests import require_tick
 from carp_verify.documents import write_solution
 from carproof.answer import Answer
 from carproof.engines import engine_named
@@ -17,7 +18,7 @@ from carproof.files import (
 )
 from carproof.giving_way import give_way
 from carproof.options import asks_for_a_robot, examples, gives_plans
-from carproof.requests import require_tick, robot_called
+from carproof.requests import robot_called
 from carproof.results import write_result
 from carproof.tables import print_line, print_table, remark
 

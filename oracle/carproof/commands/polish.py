@@ -9,7 +9,9 @@ import click
 
 from carp_optimum.many_starts import polish_many
 from carp_spec import Instance, Refusal, Solution, check, total_cost
-from carp_spec.polish_rules import ITERATIONS, last_round, require_polish_options
+from carp_spec.inputs.options import require_polish_options
+from carp_spec.inputs.requests import sound_solution
+from carp_spec.polish_rules import ITERATIONS, last_round
 from carp_verify.documents import write_solution
 from carproof.answer import Answer
 from carproof.engines import engine_named, sum_of_shortest_paths, warm
@@ -17,7 +19,6 @@ from carproof.files import InputFile, naming, read_file, refuse_two_standard_inp
 from carproof.foreign import Problem, solution_files
 from carproof.options import examples, gives_plans
 from carproof.progress import found_so_far, gap, search_progress
-from carproof.requests import sound_solution
 from carproof.results import show_unplanned, write_result
 from carproof.tables import print_table
 

@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from carp_spec import plan_cost
+from carp_spec.inputs.requests import require_tick, sound_solution
 from carp_verify.documents import write
 from carproof.answer import Answer
 from carproof.engines import engine_named
@@ -20,7 +21,7 @@ from carproof.files import (
 from carproof.ops.planning import query_document
 from carproof.options import asks_for_a_robot, examples, gives_plans
 from carproof.reasons import why_unplanned
-from carproof.requests import require_tick, robot_called, sound_solution
+from carproof.requests import robot_called
 from carproof.results import write_result
 from carproof.tables import print_line, print_table
 

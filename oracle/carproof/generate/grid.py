@@ -31,7 +31,7 @@ class Grid:
 
 def grid_instance(grid: Grid, fleet: Fleet = NO_FLEET, traits: Traits = NO_TRAITS) -> Instance:
     """Make a map and its robots; they start and end anywhere."""
-    refuse_wrong_options(grid, fleet, traits)
+    refuse_wrong_options(grid=(grid, Grid), fleet=(fleet, Fleet), traits=(traits, Traits))
     refuse_large_maps(grid.width, grid.height)
     cells = [(x, y) for y in range(grid.height) for x in range(grid.width)]
     stream = splitmix64(grid.map_seed)

@@ -70,14 +70,19 @@ def options_are_right(options: Any) -> Iterator[tuple[str, str]]:  # noqa: ANN40
     """Yield the faults of a dataclass of options, each with its path."""
     for each in fields(options):
         value = getattr(options, each.name)
-        message = _wrong(each.name, value)
+        is_range = isinstance(value, Range)
+        if is_range == (each.type is Range):
+            message = _wrong(each.name, value)
+        else:
+            message = f"it must be {'a whole number' if is_range else 'a Range'}, not {value!r}"
         if message is not None:
             yield f"$.{each.name}", message
 
 
 def _wrong(name: str, value: object) -> str | None:
     if name in CHOICES:
-        return None if value in CHOICES[name] else f"it must be one of {', '.join(CHOICES[name])}, not {value!r}"
+        is_word = isinstance(value, str) and value in CHOICES[name]
+        return None if is_word else f"it must be one of {', '.join(CHOICES[name])}, not {value!r}"
     least, most = BOUNDS.get(name, (1, LARGEST))
     ends = [value.low, value.high] if isinstance(value, Range) else [value]
     if not all(is_whole(end) and least <= end <= most for end in ends):
@@ -110,9 +115,12 @@ def ends_suffice(places: int, robots: int) -> bool:
 GENERATE_RULES: tuple[Rule[..., Any], ...] = (options_are_right, size_is_bounded, ends_suffice)
 
 
-def refuse_wrong_options(*options: object) -> None:
-    """Raise `Refusal` on the first fault."""
-    for each in options:
+def refuse_wrong_options(**options: tuple[object, type[Any]]) -> None:
+    """Raise `Refusal` on the first fault of options, each with its class."""
+    for name, (each, kind) in options.items():
+        if not isinstance(each, kind):
+            message = f"it must be a {kind.__name__}, not {each!r}"
+            raise Refusal("option", f"$.{name}", options_are_right.id, message)
         for fault in options_are_right(each):
             raise Refusal("option", fault.path, fault.rule, fault.message)
 

@@ -49,7 +49,7 @@ class Warehouse:
 
 def warehouse_instance(warehouse: Warehouse, fleet: Fleet = NO_FLEET, traits: Traits = NO_TRAITS) -> Instance:
     """Make a warehouse and its robots."""
-    refuse_wrong_options(warehouse, fleet, traits)
+    refuse_wrong_options(warehouse=(warehouse, Warehouse), fleet=(fleet, Fleet), traits=(traits, Traits))
     refuse_large_maps(warehouse.width, warehouse.height)
     bays = _station_bays(warehouse)
     aisles = [(x, y) for y in range(warehouse.height) for x in range(1, warehouse.width) if not warehouse.is_rack(x, y)]

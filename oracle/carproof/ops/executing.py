@@ -7,6 +7,7 @@ import msgspec
 from carp_reference.execution import order_of
 from carp_spec import Instance, Refusal, ResourceId, RobotId, Solution, Verdict, Visit, total_cost
 from carp_spec.execution_rules import require_followed, trace_violations
+from carp_spec.inputs.requests import require_robot, require_tick
 from carp_spec.traces import Trace
 from carp_verify.documents import (
     SolutionDocument,
@@ -21,7 +22,7 @@ from carproof.engines import Engine
 from carproof.executing import DependenciesDocument, Driver, delays_are_right, dependencies_document
 from carproof.executing import execute as executed
 from carproof.giving_way import give_way as given_way
-from carproof.requests import inside, require_robot, require_tick, sound_within
+from carproof.requests import inside, sound_within
 from carproof.untangling import untangle as untangled
 
 

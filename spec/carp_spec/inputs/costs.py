@@ -1,0 +1,40 @@
+"""Costs of plans that may be malformed."""
+
+from collections.abc import Sequence
+
+from carp_spec import plan_rules
+from carp_spec.inputs.shapes import require_shape
+from carp_spec.inputs.values import require_instance
+from carp_spec.model import Instance, Plan
+from carp_spec.refusal import Refusal
+
+
+def plan_cost(instance: Instance, plan: Plan) -> int:
+    """The ticks from the robot's release to the entry of the last visit.
+
+    Raises `Refusal` for a malformed instance or plan, for a robot that the instance does not have, and where there is
+    no visit.
+    """
+    require_instance(instance)
+    return _cost(instance, plan, "$")
+
+
+def total_cost(instance: Instance, plans: Sequence[Plan]) -> int:
+    """The sum of costs of the plans; raises `Refusal` as `plan_cost` does."""
+    require_instance(instance)
+    return sum(_cost(instance, plan, f"$.plans[{place}]") for place, plan in enumerate(plans))
+
+
+def _cost(instance: Instance, plan: Plan, path: str) -> int:
+    if (
+        type(plan) is not Plan
+        or not plan.visits
+        or type(plan.robot) not in (str, int)
+        or plan.robot not in instance.robot
+    ):
+        require_shape(plan, Plan, path)
+        if plan.visits:
+            raise Refusal("request", path, "solution/covers", "the instance has no such robot")
+        raise Refusal("request", path, plan_rules.plan_starts_at_release.id, "there is no visit")
+    require_shape(plan.visits[-1:], Plan.__annotations__["visits"], f"{path}.visits")
+    return plan_rules.plan_cost(instance, plan)

@@ -1,0 +1,109 @@
+"""Requests: a robot to plan, and the plans beside which it is planned.
+
+The rules are those of `carproof.requests`.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from carp_spec.check import check, judge
+from carp_spec.inputs.options import require_planner
+from carp_spec.inputs.shapes import SHAPE, require_shape
+from carp_spec.inputs.values import require_instance, require_plans
+from carp_spec.joint_rules import SOLUTION_RULES
+from carp_spec.model import Instance, Plan, RobotId, Solution
+from carp_spec.planners import Neighbourhood
+from carp_spec.refusal import Refusal
+from carp_spec.rule import Violation, is_between
+from carp_spec.traces import Trace
+
+
+def require_robot(instance: Instance, robot: RobotId, path: str = "$.robot") -> None:
+    """Raise `Refusal` if the instance does not have the robot."""
+    require_shape(robot, RobotId, path)
+    if robot not in instance.robot:
+        raise Refusal("request", path, "request/robot", f"the instance must have the robot, and has no {robot!r}")
+
+
+def require_new_robot(instance: Instance, solution: Solution, robot: RobotId, path: str = "$.robot") -> None:
+    """Raise `Refusal` if the instance does not have the robot, or the solution a plan of it."""
+    require_robot(instance, robot, path)
+    if any(plan.robot == robot for plan in solution.plans):
+        raise Refusal("request", path, "request/robot", f"the robot to add must have no plan, and {robot!r} has one")
+
+
+def require_tick(now: object, path: str = "$.now") -> None:
+    """Raise `Refusal` if it is no tick."""
+    if not is_between(now, 0):
+        raise Refusal("request", path, "request/now", f"it must be a whole number of at least 0, not {now!r}")
+
+
+def require_query(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int) -> None:
+    """Raise `Refusal` unless the robot can be asked for beside the plans at the tick now."""
+    require_instance(instance)
+    plans = require_plans(committed)
+    require_tick(now)
+    require_robot(instance, robot)
+    sound_solution(instance, Solution(plans, tuple(plan.robot for plan in plans)), robot)
+
+
+def require_addition(instance: Instance, solution: Solution, robot: RobotId, now: int, options: Neighbourhood) -> None:
+    """Raise `Refusal` unless the robot can be added to the solution at the tick now."""
+    require_instance(instance)
+    require_shape(solution, Solution)
+    require_planner(options, Neighbourhood)
+    require_tick(now)
+    require_new_robot(instance, solution, robot)
+    sound_solution(instance, solution)
+
+
+def sound_solution(instance: Instance, solution: Solution, asked: RobotId | None = None) -> Solution:
+    """The solution, robots not named unplanned; raises `Refusal` with the first rule that it breaks.
+
+    The plan of the robot that is asked for is its history until now. The rest of that plan may be in the way of others,
+    so it is not checked against them. Plans that the instance remembers as sound are not checked again.
+    """
+    require_instance(instance)
+    require_shape(solution, Solution)
+    named = {*solution.unplanned, *(plan.robot for plan in solution.plans)}
+    missing = (robot for robot in instance.robot if robot not in named)
+    whole = replace(solution, unplanned=(*solution.unplanned, *missing))
+    if any(plans is whole.plans for plans in instance.sound):
+        found = [violation for each in SOLUTION_RULES for violation in each(instance, whole)]
+    else:
+        found = [*judge(instance, whole).violations]
+    of_all = [each for each in found if asked not in each.robots or not each.rule.startswith("joint/")]
+    of_others = check(instance, [plan for plan in whole.plans if plan.robot != asked]) if found and not of_all else ()
+    for violation in (*of_all, *of_others):
+        raise Refusal("request", path_to(violation, solution), violation.rule, violation.message)
+    return whole if found else known(instance, whole)
+
+
+def require_trace(instance: Instance, solution: Solution, trace: Trace) -> None:
+    """Raise `Refusal` unless the solution breaks no rule, and the trace is well-formed."""
+    require_instance(instance)
+    require_shape(solution, Solution)
+    require_shape(trace, Trace)
+    if trace.now < 0:
+        raise Refusal("document", "$.now", SHAPE, f"it must be at least 0, not {trace.now}")
+    sound_solution(instance, solution)
+
+
+def known(instance: Instance, solution: Solution) -> Solution:
+    """The solution, the plans of which the instance remembers: they were checked, or its planner made them."""
+    instance.sound.append(solution.plans)
+    return solution
+
+
+def path_to(violation: Violation, solution: Solution) -> str:
+    """The path of a violation in the solution's document: the first visit to blame, else the plan, else all of it."""
+    for number, plan in enumerate(solution.plans):
+        if plan.robot != violation.robots[0]:
+            continue
+        for position, visit in enumerate(plan.visits):
+            begins_by_then = violation.start is not None and visit.enter <= violation.start
+            lasts_until_then = visit.leave is None or (violation.start or 0) < max(visit.leave, visit.enter + 1)
+            if visit.resource == violation.resource and begins_by_then and lasts_until_then:
+                return f"$.plans[{number}].visits[{position}]"
+        return f"$.plans[{number}]"
+    return "$"

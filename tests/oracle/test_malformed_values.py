@@ -1,0 +1,332 @@
+"""Every public function refuses what the reader of its document refuses, by the same rule and at the same path."""
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import reduce
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import carp_optimized
+import carp_reference
+import carp_spec
+import carproof
+from carp_optimum.gap import gap
+from carp_optimum.proving import write_proof
+from carp_spec import (
+    Carp,
+    FixedPaths,
+    Instance,
+    Neighbourhood,
+    Plan,
+    Refusal,
+    Resource,
+    ResourceGraph,
+    Robot,
+    Shuffled,
+    Solution,
+    Visit,
+)
+from carp_spec.query_certificates import QUERY_FORMAT, QueryCertificateDocument
+from carp_spec.traces import Trace
+from carp_verify.bounds import digest
+from carp_verify.certificate import certify
+from carp_verify.documents import read_instance, read_solution, write_instance, write_solution, write_trace
+from carp_verify.joint_search import least_total_cost
+from carp_verify.verify_query import verify_query
+from carproof.adapters import named_as, read_foreign_solution, write_foreign_solution
+from carproof.generate import Fleet, Grid, Range, Traits, Warehouse, grid_instance, warehouse_instance
+from carproof.viewer.page import page
+from carproof.viewer.stills import chart_still, map_still
+
+RIGHT = Instance(
+    ResourceGraph((Resource("a"), Resource("b", 2), Resource("c", x=1, y=2)), (("a", "b"), ("b", "c"))),
+    (Robot("r", "a", "c"), Robot("s", "a", "b", release=2)),
+)
+OF_R = Plan("r", (Visit("a", 0, 1), Visit("b", 1, 2), Visit("c", 2, 3)))
+OF_S = Plan("s", (Visit("a", 2, 3), Visit("b", 3, 4)))
+SOLVED = Solution((OF_R, OF_S), ("r", "s"))
+ALONE = Solution((OF_R,), ("r",), ("s",))
+NOTHING = Trace(0, ())
+CERTIFICATE = QueryCertificateDocument(QUERY_FORMAT, "r", 0, 2, (), ())
+
+
+def with_node(**values: object) -> Instance:
+    graph = RIGHT.graph
+    changed = replace(graph.resources[1], **values)  # type: ignore[arg-type] # nonsense is what is asked
+    return replace(RIGHT, graph=replace(graph, resources=(graph.resources[0], changed, graph.resources[2])))
+
+
+def with_robot(**values: object) -> Instance:
+    return replace(RIGHT, robots=(RIGHT.robots[0], replace(RIGHT.robots[1], **values)))  # type: ignore[arg-type]
+
+
+def with_graph(**values: object) -> Instance:
+    return replace(RIGHT, graph=replace(RIGHT.graph, **values))  # type: ignore[arg-type]
+
+
+def with_visit(*visit: object) -> Solution:
+    visits = (OF_R.visits[0], Visit(*visit), OF_R.visits[2])  # type: ignore[arg-type]
+    return replace(SOLVED, plans=(replace(OF_R, visits=visits), OF_S))
+
+
+NODE, ROBOT = ("graph", "nodes", 1), ("robots", 1)
+INSTANCES: Mapping[str, tuple[Callable[[], Instance], tuple[str | int, ...], object]] = {
+    "duration 0.5": (lambda: with_node(duration=0.5), (*NODE, "duration"), 0.5),
+    "duration 1.0": (lambda: with_node(duration=1.0), (*NODE, "duration"), 1.0),
+    "duration 0": (lambda: with_node(duration=0), (*NODE, "duration"), 0),
+    "duration -1": (lambda: with_node(duration=-1), (*NODE, "duration"), -1),
+    "duration True": (lambda: with_node(duration=True), (*NODE, "duration"), True),
+    "duration '1'": (lambda: with_node(duration="1"), (*NODE, "duration"), "1"),
+    "capacity 0": (lambda: with_node(capacity=0), (*NODE, "capacity"), 0),
+    "capacity -3": (lambda: with_node(capacity=-3), (*NODE, "capacity"), -3),
+    "capacity None": (lambda: with_node(capacity=None), (*NODE, "capacity"), None),
+    "x alone": (lambda: with_node(x=1), (*NODE, "x"), 1),
+    "x '1'": (lambda: with_node(x="1", y=1), (*NODE, "x"), "1"),
+    "node id True": (lambda: with_node(id=True), (*NODE, "id"), True),
+    "node id twice": (lambda: with_node(id="a"), (*NODE, "id"), "a"),
+    "edge to nowhere": (lambda: with_graph(edges=(("a", "b"), ("b", "z"))), ("graph", "edges", 1, "target"), "z"),
+    "edge from 0.5": (lambda: with_graph(edges=(("a", "b"), (0.5, "c"))), ("graph", "edges", 1, "source"), 0.5),
+    "edge loop": (lambda: with_graph(edges=(("a", "b"), ("b", "b"))), ("graph", "edges", 1, "target"), "b"),
+    "nodes in no tuple": (lambda: with_graph(resources=[*RIGHT.graph.resources]), ("graph", "nodes"), None),
+    "directed 1": (lambda: with_graph(directed=1), ("graph", "directed"), 1),
+    "robot id twice": (lambda: with_robot(id="r"), (*ROBOT, "id"), "r"),
+    "robot id None": (lambda: with_robot(id=None), (*ROBOT, "id"), None),
+    "unknown goal": (lambda: with_robot(goal="z"), (*ROBOT, "goal"), "z"),
+    "release -1": (lambda: with_robot(release=-1), (*ROBOT, "release"), -1),
+    "release 0.0": (lambda: with_robot(release=0.0), (*ROBOT, "release"), 0.0),
+    "pace 0": (lambda: with_robot(pace=0), (*ROBOT, "pace"), 0),
+    "pace True": (lambda: with_robot(pace=True), (*ROBOT, "pace"), True),
+    "robots in no tuple": (lambda: replace(RIGHT, robots=[*RIGHT.robots]), ("robots",), None),  # type: ignore[arg-type]
+    "after_goal stay": (lambda: replace(RIGHT, after_goal="stay"), ("after_goal",), "stay"),  # type: ignore[arg-type]
+    "following None": (lambda: replace(RIGHT, following=None), ("following",), None),  # type: ignore[arg-type]
+}
+"""A malformed instance, and the place and value that make its document malformed."""
+
+FIRST = ("plans", 0)
+VISIT = (*FIRST, "visits", 1)
+SOLUTIONS: Mapping[str, tuple[Callable[[], Solution], tuple[str | int, ...], object]] = {
+    "enter 1.0": (lambda: with_visit("b", 1.0, 2), (*VISIT, 1), 1.0),
+    "enter None": (lambda: with_visit("b", None, 2), (*VISIT, 1), None),
+    "leave True": (lambda: with_visit("b", 1, True), (*VISIT, 2), True),
+    "resource 0.5": (lambda: with_visit(0.5, 1, 2), (*VISIT, 0), 0.5),
+    "robot None": (
+        lambda: replace(SOLVED, plans=(replace(OF_R, robot=None), OF_S)),  # type: ignore[arg-type]
+        (*FIRST, "robot"),
+        None,
+    ),
+    "visits in no tuple": (
+        lambda: replace(SOLVED, plans=(replace(OF_R, visits=[*OF_R.visits]), OF_S)),  # type: ignore[arg-type]
+        (*FIRST, "visits"),
+        None,
+    ),
+    "order of 1.5": (lambda: replace(SOLVED, order=("r", 1.5)), ("order", 1), 1.5),  # type: ignore[arg-type]
+    "unplanned None": (lambda: replace(SOLVED, unplanned=None), ("unplanned",), None),  # type: ignore[arg-type]
+}
+
+OF_INSTANCES: Mapping[str, Callable[[Instance], object]] = {
+    "check": lambda instance: carproof.check(instance, SOLVED),
+    "carp_spec.check": lambda instance: carp_spec.check(instance, SOLVED.plans),
+    "plan_cost": lambda instance: carproof.plan_cost(instance, OF_R),
+    "total_cost": lambda instance: carproof.total_cost(instance, SOLVED.plans),
+    "plan": carproof.plan,
+    "query": lambda instance: carproof.query(instance, (), "r"),
+    "add": lambda instance: carproof.add(instance, ALONE, "s", 0, Neighbourhood()),
+    "polish": lambda instance: carproof.polish(instance, SOLVED, iterations=1),
+    "polish for a time": lambda instance: carproof.polish(instance, SOLVED, seconds=0.1),
+    "carp_optimized.polish": lambda instance: carp_optimized.polish(instance, SOLVED, iterations=1),
+    "carp_optimized.certifier": carp_optimized.certifier,
+    "carp_optimized.retime": lambda instance: carp_optimized.retime(instance, SOLVED, NOTHING),
+    "carp_reference.plan": carp_reference.plan,
+    "carp_reference.query": lambda instance: carp_reference.query(instance, (), "r"),
+    "carp_reference.add": lambda instance: carp_reference.add(instance, ALONE, "s", 0, Neighbourhood()),
+    "carp_reference.polish": lambda instance: carp_reference.polish(instance, SOLVED, iterations=1),
+    "carp_reference.certifier": carp_reference.certifier,
+    "carp_reference.retime": lambda instance: carp_reference.retime(instance, SOLVED, NOTHING),
+    "bound": lambda instance: carproof.bound(instance, steps=1),
+    "optimum": lambda instance: carproof.optimum(instance, 1),
+    "gap": lambda instance: gap(instance, [Carp()], 1),
+    "write_proof": lambda instance: write_proof(instance, carproof.optimum(RIGHT, 1), Path("nowhere"), 1),
+    "verify_bound": lambda instance: carproof.verify_bound(instance, carproof.bound(RIGHT, steps=1)),
+    "verify_query": lambda instance: verify_query(instance, SOLVED, CERTIFICATE),
+    "certify": lambda instance: certify(instance, SOLVED),
+    "least_total_cost": least_total_cost,
+    "digest": digest,
+    "write_instance": write_instance,
+    "read_foreign_solution": lambda instance: read_foreign_solution(write_solution(SOLVED), instance),
+    "write_foreign_solution": lambda instance: write_foreign_solution(instance, SOLVED, "carproof"),
+    "named_as": lambda instance: named_as(instance, "carproof"),
+    "page": lambda instance: page(instance, SOLVED, "title"),
+    "map_still": lambda instance: map_still(instance, SOLVED, 0, "title"),
+    "chart_still": lambda instance: chart_still(instance, SOLVED, "title"),
+}
+OF_SOLUTIONS: Mapping[str, Callable[[Solution], object]] = {
+    "check": lambda solution: carproof.check(RIGHT, solution),
+    "add": lambda solution: carproof.add(RIGHT, solution, "s", 0, Neighbourhood()),
+    "polish": lambda solution: carproof.polish(RIGHT, solution, iterations=1),
+    "polish for a time": lambda solution: carproof.polish(RIGHT, solution, seconds=0.1),
+    "carp_optimized.polish": lambda solution: carp_optimized.polish(RIGHT, solution, iterations=1),
+    "carp_optimized.retime": lambda solution: carp_optimized.retime(RIGHT, solution, NOTHING),
+    "carp_reference.add": lambda solution: carp_reference.add(RIGHT, solution, "s", 0, Neighbourhood()),
+    "carp_reference.polish": lambda solution: carp_reference.polish(RIGHT, solution, iterations=1),
+    "carp_reference.retime": lambda solution: carp_reference.retime(RIGHT, solution, NOTHING),
+    "verify_query": lambda solution: verify_query(RIGHT, solution, CERTIFICATE),
+    "certify": lambda solution: certify(RIGHT, solution),
+    "write_solution": write_solution,
+    "write_foreign_solution": lambda solution: write_foreign_solution(RIGHT, solution, "carproof"),
+    "page": lambda solution: page(RIGHT, solution, "title"),
+    "map_still": lambda solution: map_still(RIGHT, solution, 0, "title"),
+    "chart_still": lambda solution: chart_still(RIGHT, solution, "title"),
+}
+
+
+def refused(call: Callable[[], object]) -> tuple[str, str, str]:
+    with pytest.raises(Refusal) as caught:
+        call()
+    return caught.value.kind, caught.value.rule, caught.value.path
+
+
+def refused_document(
+    document: bytes, place: tuple[str | int, ...], value: object, read: Callable[[bytes], object]
+) -> tuple[str, str, str]:
+    """The refusal of the document with another value at a place."""
+    whole = json.loads(document)
+    *way, last = place
+    reduce(lambda inside, step: inside[step], way, whole)[last] = value
+    return refused(lambda: read(json.dumps(whole).encode()))
+
+
+@pytest.mark.parametrize("function", OF_INSTANCES)
+@pytest.mark.parametrize("fault", INSTANCES)
+def test_a_malformed_instance_is_refused_like_its_document(function: str, fault: str) -> None:
+    make, place, value = INSTANCES[fault]
+    by_document = refused_document(write_instance(RIGHT), place, value, read_instance)
+    assert refused(lambda: OF_INSTANCES[function](make())) == by_document
+
+
+@pytest.mark.parametrize("function", OF_SOLUTIONS)
+@pytest.mark.parametrize("fault", SOLUTIONS)
+def test_a_malformed_solution_is_refused_like_its_document(function: str, fault: str) -> None:
+    make, place, value = SOLUTIONS[fault]
+    by_document = refused_document(write_solution(SOLVED), place, value, read_solution)
+    assert refused(lambda: OF_SOLUTIONS[function](make())) == by_document
+
+
+@pytest.mark.parametrize("engine", [carp_optimized, carp_reference])
+@pytest.mark.parametrize("fault", [fault for fault in SOLUTIONS if "plans" in SOLUTIONS[fault][1]])
+def test_malformed_plans_are_refused_like_their_document(engine: Any, fault: str) -> None:  # noqa: ANN401 - a module
+    make, place, value = SOLUTIONS[fault]
+    by_document = refused_document(write_solution(SOLVED), place, value, read_solution)
+    assert refused(lambda: engine.query(RIGHT, make().plans, "r")) == by_document
+    assert refused(lambda: carp_spec.check(RIGHT, make().plans)) == by_document
+
+
+def test_an_instance_of_which_no_look_ups_can_be_made_is_refused() -> None:
+    for nodes, edges in (((Resource([]),), ()), ((None,), ()), ((Resource("a"),), (("a",),))):  # type: ignore[arg-type]
+        assert refused(lambda: ResourceGraph(nodes, edges))[1] == "document/shape"  # type: ignore[arg-type] # noqa: B023
+    assert refused(lambda: replace(RIGHT, robots=(None,))) == ("document", "document/shape", "$.robots[0]")  # type: ignore[arg-type]
+
+
+ENGINES = [carp_optimized, carp_reference]
+SAME = Neighbourhood()
+PAST = Plan("r", OF_R.visits[:2])
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize(
+    ("ask", "rule", "path"),
+    [
+        (lambda engine: engine.add(RIGHT, SOLVED, "s", 0, SAME), "request/robot", "$.robot"),
+        (lambda engine: engine.add(RIGHT, ALONE, "t", 0, SAME), "request/robot", "$.robot"),
+        (lambda engine: engine.add(RIGHT, ALONE, "s", -1, SAME), "request/now", "$.now"),
+        (lambda engine: engine.add(RIGHT, ALONE, "s", True, SAME), "request/now", "$.now"),
+        (lambda engine: engine.add(RIGHT, replace(ALONE, order=()), "s", 0, SAME), "solution/order", "$.plans[0]"),
+        (lambda engine: engine.add(RIGHT, ALONE, "s", 0, Neighbourhood(m=0)), "planner/options", "$.m"),
+        (lambda engine: engine.add(RIGHT, ALONE, "s", 0, Carp()), "planner/options", "$.planner"),
+        (lambda engine: engine.query(RIGHT, (), "t"), "request/robot", "$.robot"),
+        (lambda engine: engine.query(RIGHT, (), "r", 0.5), "request/now", "$.now"),
+        (lambda engine: engine.query(RIGHT, (PAST,), "r", 9), "plan/goal", "$.plans[0].visits[1]"),
+        (lambda engine: engine.query(RIGHT, (PAST,), "s", 9), "plan/goal", "$.plans[0].visits[1]"),
+        (lambda engine: engine.query(RIGHT, (OF_R, OF_R), "s"), "solution/covers", "$.plans[0]"),
+        (lambda engine: engine.plan(RIGHT, Shuffled(attempts=True)), "planner/options", "$.attempts"),
+        (lambda engine: engine.plan(RIGHT, Shuffled(seed=1.0)), "planner/options", "$.seed"),  # type: ignore[arg-type]
+        (lambda engine: engine.plan(RIGHT, Neighbourhood(baseline=1)), "planner/options", "$.baseline"),  # type: ignore[arg-type]
+        (lambda engine: engine.plan(RIGHT, "carp"), "planner/options", "$.planner"),
+        (lambda engine: engine.polish(RIGHT, SOLVED, iterations=True), "polish/options", "$.iterations"),
+        (lambda engine: engine.polish(RIGHT, SOLVED, seconds=0), "polish/options", "$.seconds"),
+    ],
+)
+def test_a_malformed_request_is_refused_like_its_op(
+    ask: Callable[[Any], object],
+    rule: str,
+    path: str,
+    engine: Any,  # noqa: ANN401 - a module
+) -> None:
+    assert refused(lambda: ask(engine))[1:] == (rule, path)
+
+
+def test_the_reference_refuses_options_of_planners_that_it_alone_has() -> None:
+    assert refused(lambda: carp_reference.plan(RIGHT, FixedPaths(k=0))) == ("option", "planner/options", "$.k")
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_plans_that_collide_are_refused(engine: Any) -> None:  # noqa: ANN401 - a module
+    crossing = replace(RIGHT, robots=(Robot("r", "a", "b"), Robot("s", "a", "c"), Robot("t", "b", "c")))
+    plans = (Plan("r", (Visit("a", 0, 1), Visit("b", 1, 2))), Plan("s", (Visit("a", 0, 1), *OF_R.visits[1:])))
+    expected = ("request", "joint/capacity", "$.plans[0].visits[0]")
+    assert refused(lambda: engine.query(crossing, plans, "t")) == expected
+    assert refused(lambda: engine.add(crossing, Solution(plans, ("r", "s"), ("t",)), "t", 0, SAME)) == expected
+    assert engine.query(crossing, plans, "s") is None  # its own plan is its history, for which there is no room
+
+
+@pytest.mark.parametrize(
+    ("search", "path"),
+    [
+        (lambda: carproof.optimum(RIGHT, 0), "$.limit"),
+        (lambda: carproof.optimum(RIGHT, True), "$.limit"),
+        (lambda: carproof.bound(RIGHT, seconds=-1), "$.seconds"),
+        (lambda: carproof.bound(RIGHT, steps=0), "$.steps"),
+    ],
+)
+def test_a_malformed_limit_is_refused_like_its_op(search: Callable[[], object], path: str) -> None:
+    assert refused(search)[1:] == ("request/limit", path)
+
+
+@pytest.mark.parametrize(
+    ("make", "path"),
+    [
+        (lambda: grid_instance(Grid(width=2.0)), "$.width"),  # type: ignore[arg-type]
+        (lambda: grid_instance(Grid(height=True)), "$.height"),
+        (lambda: grid_instance(Grid(), Fleet(robots=Range(1, 2))), "$.robots"),  # type: ignore[arg-type]
+        (lambda: grid_instance(Grid(), Fleet(pace=2)), "$.pace"),  # type: ignore[arg-type]
+        (lambda: grid_instance(Grid(), Fleet(release=Range(0.5, 1))), "$.release"),  # type: ignore[arg-type]
+        (lambda: warehouse_instance(Warehouse(), Fleet(after_goal="stay")), "$.after_goal"),  # type: ignore[arg-type]
+        (lambda: warehouse_instance(Warehouse(), traits=Traits(capacity=2)), "$.capacity"),  # type: ignore[arg-type]
+        (lambda: warehouse_instance(Grid()), "$.warehouse"),  # type: ignore[arg-type]
+    ],
+)
+def test_malformed_options_of_a_generator_are_refused(make: Callable[[], object], path: str) -> None:
+    assert refused(make)[1:] == ("generate/options", path)
+
+
+def test_the_format_of_a_foreign_solution_must_exist() -> None:
+    assert refused(lambda: write_foreign_solution(RIGHT, SOLVED, "csv"))[1:] == ("adapter/format", "$.format")
+
+
+def test_costs_need_a_known_robot_and_a_visit() -> None:
+    assert refused(lambda: carproof.plan_cost(RIGHT, replace(OF_R, robot="t")))[1:] == ("solution/covers", "$")
+    assert refused(lambda: carproof.total_cost(RIGHT, [OF_R, Plan("s", ())]))[1:] == ("plan/start", "$.plans[1]")
+
+
+def test_a_malformed_trace_is_not_written() -> None:
+    trace = Trace(0.5, ())  # type: ignore[arg-type]
+    assert refused(lambda: write_trace(trace)) == ("document", "document/shape", "$.now")
+
+
+def test_an_instance_that_was_found_right_is_not_looked_at_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    instance = replace(RIGHT)
+    carproof.check(instance, SOLVED)
+    monkeypatch.setattr("carp_spec.inputs.values.instance_faults", lambda _: pytest.fail("it was looked at again"))
+    assert carproof.check(instance, SOLVED).valid
