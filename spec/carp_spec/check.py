@@ -4,8 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import islice
 
-from carp_spec.inputs.shapes import require_shape
-from carp_spec.inputs.values import require_instance, require_known, require_plans
+from carp_spec.inputs.values import require_known, require_plans, require_solution, require_update
 from carp_spec.joint_rules import JOINT_RULES, SOLUTION_RULES
 from carp_spec.model import Instance, Plan, Solution
 from carp_spec.plan_rules import PLAN_RULES, plan_keeps_history, total_cost
@@ -33,8 +32,7 @@ def check(instance: Instance, plans: Sequence[Plan], most: int | None = MOST_LIS
 
     Raises `Refusal` for malformed input and unknown robots.
     """
-    require_instance(instance)
-    require_known(instance, require_plans(plans))
+    require_known(instance, require_plans(instance, plans).plans)
     return _violations(instance, plans, most)
 
 
@@ -49,8 +47,7 @@ def _violations(instance: Instance, plans: Sequence[Plan], most: int | None) -> 
 
 def judge(instance: Instance, solution: Solution, most: int | None = MOST_LISTED) -> Verdict:
     """Check a whole solution; plans of robots that the instance does not have break `solution/covers` alone."""
-    require_instance(instance)
-    require_shape(solution, Solution)
+    require_solution(instance, solution)
     plans = [plan for plan in solution.plans if plan.robot in instance.robot]
     of_solution = [violation for each in SOLUTION_RULES for violation in islice(each(instance, solution), most)]
     planned = {plan.robot for plan in plans}
@@ -63,9 +60,7 @@ def judge(instance: Instance, solution: Solution, most: int | None = MOST_LISTED
 
 def check_update(before: Sequence[Plan], after: Sequence[Plan], now: int) -> tuple[Violation, ...]:
     """All violations of `fleet/history` by plans made again at the tick now; a robot without one breaks nothing."""
-    require_plans(before, "$.before")
-    require_plans(after, "$.after")
-    require_shape(now, int, "$.now")
+    require_update(before, after, now)
     again = {plan.robot: plan for plan in after}
     return tuple(
         violation

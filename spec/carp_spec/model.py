@@ -96,7 +96,7 @@ class Instance:
     """A resource graph, robots in the order of their arrival, and what a robot does after its goal.
 
     `vanish`: it leaves the system one duration after it enters its goal for the last time. `park`: it stays. Where
-    `following` is forbidden, a robot enters a resource only after a free tick. `robot` is a look-up by id, `sound`
+    `following` is forbidden, a robot enters a resource only after a free tick. `robot` is a look-up by id, `seen`
     a memory of `inputs`.
     """
 
@@ -105,11 +105,11 @@ class Instance:
     after_goal: AfterGoal = "vanish"
     following: Following = "allowed"
     robot: Mapping[RobotId, Robot] = field(init=False, repr=False, compare=False)
-    sound: deque[tuple["Plan", ...]] = field(init=False, repr=False, compare=False)
+    seen: deque[tuple["Solution", "Solution | None"]] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Make the look-up; raises `Refusal` if there is none."""
-        object.__setattr__(self, "sound", deque(maxlen=8))
+        object.__setattr__(self, "seen", deque(maxlen=8))
         try:
             object.__setattr__(self, "robot", MappingProxyType({each.id: each for each in self.robots}))
         except (AttributeError, TypeError):

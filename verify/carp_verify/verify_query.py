@@ -20,8 +20,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from carp_spec import Instance, Plan, Refusal, ResourceId, Robot, Rule, Solution, Visit, has_ended
-from carp_spec.inputs.shapes import require_shape
-from carp_spec.inputs.values import require_instance
+from carp_spec.inputs.values import require_solution
 from carp_spec.query_certificates import QueryCertificateDocument
 from carp_spec.windows import Window
 from carp_verify.limits import require_following
@@ -108,8 +107,7 @@ def verify_query(instance: Instance, solution: Solution, certificate: QueryCerti
     A plan of the robot itself in the solution is what it has followed until the tick `now`. Raises `Refusal` with what
     is wrong with the certificate.
     """
-    require_instance(instance)
-    require_shape(solution, Solution)
+    require_solution(instance, solution)
     message = "the plans must each break no rule, and be of different robots of the instance"
     _require(plans_are_lawful, plans_are_lawful(instance, solution.plans), "$", message)
     robot = certificate.robot

@@ -9,8 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 from carp_spec import Instance, Refusal, Rule, Solution
-from carp_spec.inputs.shapes import require_shape
-from carp_spec.inputs.values import require_instance
+from carp_spec.inputs.values import require_instance, require_solution
 from carp_spec.rule import DESIGN
 from carproof.adapters import agent_paths, carproof_documents, lacam, libmultirobotplanning, mapf_tracker
 from carproof.adapters.adapter import Adapter
@@ -70,8 +69,7 @@ def read_foreign_solution(data: bytes, instance: Instance, file: str = "file", f
 
 def write_foreign_solution(instance: Instance, solution: Solution, format: str) -> bytes:
     """Write a solution in the format named; raises `Refusal` if it is malformed or breaks a rule of the format."""
-    require_instance(instance)
-    require_shape(solution, Solution)
+    require_solution(instance, solution)
     return _adapter(format).write(instance, solution).encode()
 
 

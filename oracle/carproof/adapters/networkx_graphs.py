@@ -38,7 +38,7 @@ def _is_name(node: object) -> bool:
 @fault_rule(
     "adapter/networkx",
     "A node of a networkx graph is a string, a whole number, or a tuple of these; its capacity and duration, if it has "
-    "them, are whole numbers, and so are its x and y, or the pair pos. With a scale, the steps of a unit, positions are "
+    "them, are whole numbers, and so are its x and y, or the pair pos. With a scale, the steps of a unit, they are "
     "any numbers. The graph has no parallel edges.",
     DESIGN,
 )

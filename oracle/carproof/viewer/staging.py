@@ -8,7 +8,7 @@ from itertools import pairwise
 from carp_spec import Instance, Plan, ResourceId, RobotId, Solution, Violation, judge, plan_cost
 from carp_spec.execution_rules import trace_violations
 from carp_spec.inputs.shapes import require_shape
-from carp_spec.inputs.values import require_instance
+from carp_spec.inputs.values import require_solution
 from carp_spec.traces import Trace
 from carp_spec.windows import free_windows
 from carproof.registry import RULES
@@ -73,9 +73,10 @@ def make_scene(instance: Instance, plans: Solution | None, title: str, trace: Tr
     Without a solution the scene has the starts and goals alone. With a trace of what has happened, a solution that
     breaks no rule is shown with the rules that the trace breaks.
     """
-    require_instance(instance)
-    if plans is not None:
-        require_shape(plans, Solution)
+    if plans is None:
+        require_instance(instance)
+    else:
+        require_solution(instance, plans)
     if trace is not None:
         require_shape(trace, Trace)
     solution = Solution((), (), tuple(instance.robot)) if plans is None else plans

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from carp_spec import plan_rules
 from carp_spec.inputs.shapes import require_shape
 from carp_spec.inputs.values import require_instance
-from carp_spec.model import Instance, Plan
+from carp_spec.model import Instance, Plan, RobotId, Visit
 from carp_spec.refusal import Refusal
 
 
@@ -26,15 +26,15 @@ def total_cost(instance: Instance, plans: Sequence[Plan]) -> int:
 
 
 def _cost(instance: Instance, plan: Plan, path: str) -> int:
-    if (
-        type(plan) is not Plan
-        or not plan.visits
-        or type(plan.robot) not in (str, int)
-        or plan.robot not in instance.robot
-    ):
+    if type(plan) is not Plan or type(plan.visits) is not tuple or not all(map(_is_entered, plan.visits[-1:])):
         require_shape(plan, Plan, path)
-        if plan.visits:
-            raise Refusal("request", path, "solution/covers", "the instance has no such robot")
+    if not plan.visits:
         raise Refusal("request", path, plan_rules.plan_starts_at_release.id, "there is no visit")
-    require_shape(plan.visits[-1:], Plan.__annotations__["visits"], f"{path}.visits")
+    if type(plan.robot) not in (str, int) or plan.robot not in instance.robot:
+        require_shape(plan.robot, RobotId, f"{path}.robot")
+        raise Refusal("request", path, "solution/covers", "the instance has no such robot")
     return plan_rules.plan_cost(instance, plan)
+
+
+def _is_entered(visit: object) -> bool:
+    return type(visit) is Visit and type(visit.enter) is int

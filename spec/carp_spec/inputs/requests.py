@@ -9,8 +9,7 @@ from dataclasses import replace
 from carp_spec.check import check, judge
 from carp_spec.inputs.options import require_planner
 from carp_spec.inputs.shapes import SHAPE, require_shape
-from carp_spec.inputs.values import require_instance, require_plans
-from carp_spec.joint_rules import SOLUTION_RULES
+from carp_spec.inputs.values import require_plans, require_solution
 from carp_spec.model import Instance, Plan, RobotId, Solution
 from carp_spec.planners import Neighbourhood
 from carp_spec.refusal import Refusal
@@ -40,20 +39,27 @@ def require_tick(now: object, path: str = "$.now") -> None:
 
 def require_query(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int) -> None:
     """Raise `Refusal` unless the robot can be asked for beside the plans at the tick now."""
-    require_instance(instance)
-    plans = require_plans(committed)
+    solution = require_plans(instance, committed)
     require_tick(now)
     require_robot(instance, robot)
-    sound_solution(instance, Solution(plans, tuple(plan.robot for plan in plans)), robot)
+    sound_solution(instance, solution, robot)
 
 
 def require_addition(instance: Instance, solution: Solution, robot: RobotId, now: int, options: Neighbourhood) -> None:
     """Raise `Refusal` unless the robot can be added to the solution at the tick now."""
-    require_instance(instance)
-    require_shape(solution, Solution)
+    require_solution(instance, solution)
     require_planner(options, Neighbourhood)
     require_tick(now)
     require_new_robot(instance, solution, robot)
+    sound_solution(instance, solution)
+
+
+def require_trace(instance: Instance, solution: Solution, trace: Trace) -> None:
+    """Raise `Refusal` unless the solution breaks no rule, and the trace is well-formed."""
+    require_solution(instance, solution)
+    require_shape(trace, Trace)
+    if trace.now < 0:
+        raise Refusal("document", "$.now", SHAPE, f"it must be at least 0, not {trace.now}")
     sound_solution(instance, solution)
 
 
@@ -61,37 +67,29 @@ def sound_solution(instance: Instance, solution: Solution, asked: RobotId | None
     """The solution, robots not named unplanned; raises `Refusal` with the first rule that it breaks.
 
     The plan of the robot that is asked for is its history until now. The rest of that plan may be in the way of others,
-    so it is not checked against them. Plans that the instance remembers as sound are not checked again.
+    so it is not checked against them. A solution that the instance remembers as sound is not checked again.
     """
-    require_instance(instance)
-    require_shape(solution, Solution)
+    require_solution(instance, solution)
+    for each, sound in (*instance.seen,):
+        if each is solution and sound is not None:
+            instance.seen.append((solution, sound))
+            return sound
     named = {*solution.unplanned, *(plan.robot for plan in solution.plans)}
     missing = (robot for robot in instance.robot if robot not in named)
     whole = replace(solution, unplanned=(*solution.unplanned, *missing))
-    if any(plans is whole.plans for plans in instance.sound):
-        found = [violation for each in SOLUTION_RULES for violation in each(instance, whole)]
-    else:
-        found = [*judge(instance, whole).violations]
+    found = judge(instance, whole).violations
     of_all = [each for each in found if asked not in each.robots or not each.rule.startswith("joint/")]
     of_others = check(instance, [plan for plan in whole.plans if plan.robot != asked]) if found and not of_all else ()
     for violation in (*of_all, *of_others):
         raise Refusal("request", path_to(violation, solution), violation.rule, violation.message)
-    return whole if found else known(instance, whole)
-
-
-def require_trace(instance: Instance, solution: Solution, trace: Trace) -> None:
-    """Raise `Refusal` unless the solution breaks no rule, and the trace is well-formed."""
-    require_instance(instance)
-    require_shape(solution, Solution)
-    require_shape(trace, Trace)
-    if trace.now < 0:
-        raise Refusal("document", "$.now", SHAPE, f"it must be at least 0, not {trace.now}")
-    sound_solution(instance, solution)
+    if not found:
+        instance.seen.append((solution, whole))
+    return whole
 
 
 def known(instance: Instance, solution: Solution) -> Solution:
-    """The solution, the plans of which the instance remembers: they were checked, or its planner made them."""
-    instance.sound.append(solution.plans)
+    """The solution, which the instance remembers: its planner made the plans, beside plans that broke no rule."""
+    instance.seen.append((solution, solution))
     return solution
 
 

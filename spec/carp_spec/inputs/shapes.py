@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import is_dataclass
+from functools import cache
 from reprlib import repr as shown
 from types import NoneType
 from typing import Any, get_args, get_origin
@@ -12,7 +13,7 @@ SHAPE = "document/shape"
 PATHS = {"resources": ".nodes", "resource": "[0]", "enter": "[1]", "leave": "[2]"}
 """The fields of which the path is not the name."""
 ENDS = (".source", ".target")
-WORDS = {str: "a string", int: "a whole number", bool: "true or false", tuple: "a tuple", NoneType: "None"}
+WORDS = {str: "a string", int: "a whole number", bool: "true or false", NoneType: "None"}
 
 
 def require_shape(value: object, kind: Any, path: str = "$") -> None:  # noqa: ANN401 - any type
@@ -20,16 +21,16 @@ def require_shape(value: object, kind: Any, path: str = "$") -> None:  # noqa: A
 
     Lists are no tuples, because what has been looked at must not change.
     """
-    kinds = get_args(kind) or (kind,)
+    kinds, is_tuple, given = _parts(kind)
     is_list = ... in kinds
-    if is_dataclass(kind) and type(value) is kind:
-        for name, of in _given(kind).items():
+    if given is not None and type(value) is kind:
+        for name, of in given.items():
             require_shape(getattr(value, name), of, path + PATHS.get(name, f".{name}"))
-    elif get_origin(kind) is tuple and type(value) is tuple and (is_list or len(value) == len(kinds)):
+    elif is_tuple and type(value) is tuple and (is_list or len(value) == len(kinds)):
         for place, each in enumerate(() if _are(value, kinds[0]) else value):
             require_shape(each, kinds[0], path + (f"[{place}]" if is_list else ENDS[place]))
-    elif get_origin(kind) is tuple or not (type(value) in kinds or (type(value) is str and value in kinds)):
-        right = "a tuple" if get_origin(kind) is tuple else " or ".join(_word(each) for each in kinds)
+    elif is_tuple or not (type(value) in kinds or (type(value) is str and value in kinds)):
+        right = "a tuple" if is_tuple else " or ".join(_word(each) for each in kinds)
         raise Refusal("document", path, SHAPE, f"it must be {right}, not {shown(value)}")
 
 
@@ -37,14 +38,20 @@ def _word(kind: Any) -> str:  # noqa: ANN401 - a type, or a value of a `Literal`
     return WORDS.get(kind) or (f'"{kind}"' if isinstance(kind, str) else f"of the class {kind.__name__}")
 
 
-def _given(kind: Any) -> Mapping[str, Any]:  # noqa: ANN401 - a class
-    """The fields of a class that its maker gives, with their types."""
-    return {name: kind.__annotations__[name] for name in kind.__match_args__}
+@cache
+def _parts(kind: Any) -> tuple[tuple[Any, ...], bool, Mapping[str, Any] | None]:  # noqa: ANN401 - any type
+    """The types that a type is made of, whether it is a tuple, and the fields that the maker of a class gives."""
+    given = {name: kind.__annotations__[name] for name in kind.__match_args__} if is_dataclass(kind) else None
+    return get_args(kind) or (kind,), get_origin(kind) is tuple, given
 
 
-def _are(values: Sequence[object], kind: Any) -> bool:  # noqa: ANN401 - any type
+def _are(values: Sequence[Any], kind: Any) -> bool:  # noqa: ANN401 - any type
     """Whether all values are of the type, as far as that is seen quickly."""
-    if is_dataclass(kind):
+    kinds, is_tuple, given = _parts(kind)
+    if is_tuple:
+        same = {*map(type, values)} <= {tuple} and (... in kinds or {*map(len, values)} <= {len(kinds)})
+        return same and _are([each for value in values for each in value], kinds[0])
+    if given is not None:
         same = {*map(type, values)} <= {kind}
-        return same and all(_are([getattr(each, name) for each in values], of) for name, of in _given(kind).items())
-    return {*map(type, values)} <= {*(get_args(kind) or (kind,))}
+        return same and all(_are([getattr(each, name) for each in values], of) for name, of in given.items())
+    return {*map(type, values)} <= {*kinds}

@@ -1,38 +1,61 @@
-"""Instances and plans.
+"""Instances, solutions and plans.
 
-`Instance.sound` is empty until the instance is known to be right. From then on it has the plans last known to break no
-rule together, the empty ones first.
+An instance remembers in `seen` what was looked at beside it: solutions, each with what is known to break no rule of it,
+all its robots named. It is empty until the instance itself is known to be right.
 """
 
 from collections.abc import Sequence
-from typing import Any, cast
+from typing import Any
 
 from carp_spec.inputs.shapes import require_shape
 from carp_spec.instance_rules import instance_faults
-from carp_spec.model import Instance, Plan
+from carp_spec.model import Instance, Plan, Solution
 from carp_spec.refusal import Refusal
+
+NOTHING = Solution((), ())
 
 
 def require_instance(instance: Instance) -> None:
     """Raise `Refusal` with the first fault, unless the instance is known to be right."""
-    if type(instance) is not Instance or not instance.sound:
+    if type(instance) is not Instance or not instance.seen:
         require_shape(instance, Instance)
         for fault in instance_faults(instance):
             raise Refusal("document", fault.path, fault.rule, fault.message)
-        instance.sound.append(())
+        instance.seen.append((NOTHING, None))
 
 
-def require_plans(plans: Sequence[Plan], path: str = "$.plans") -> tuple[Plan, ...]:
-    """The plans of any sequence; raises `Refusal` if it has something else."""
+def require_solution(instance: Instance, solution: Solution) -> None:
+    """Raise `Refusal` with the first fault of the instance, or if the solution is malformed."""
+    require_instance(instance)
+    if not any(each is solution for each, _ in (*instance.seen,)):
+        require_shape(solution, Solution)
+        instance.seen.append((solution, None))
+
+
+def require_plans(instance: Instance, plans: Sequence[Plan]) -> Solution:
+    """The solution that has these plans; raises `Refusal` with the first fault of the instance, or of a plan."""
+    require_instance(instance)
+    for each, _ in (*instance.seen,):
+        if each.plans is plans:
+            return each
     found: Any = plans
     if isinstance(found, Sequence):
         found = tuple(found)
-    require_shape(found, tuple[Plan, ...], path)
-    return cast("tuple[Plan, ...]", found)
+    require_shape(found, tuple[Plan, ...], "$.plans")
+    solution = Solution(found, tuple(plan.robot for plan in found))
+    instance.seen.append((solution, None))
+    return solution
 
 
-def require_known(instance: Instance, plans: Sequence[Plan], path: str = "$.plans") -> None:
+def require_update(before: Sequence[Plan], after: Sequence[Plan], now: int) -> None:
+    """Raise `Refusal` if plans made again at a tick, or those before, are malformed."""
+    require_shape(tuple(before), tuple[Plan, ...], "$.before")
+    require_shape(tuple(after), tuple[Plan, ...], "$.after")
+    require_shape(now, int, "$.now")
+
+
+def require_known(instance: Instance, plans: Sequence[Plan]) -> None:
     """Raise `Refusal` for a plan of a robot that the instance does not have."""
     for place, plan in enumerate(plans):
         if plan.robot not in instance.robot:
-            raise Refusal("request", f"{path}[{place}]", "solution/covers", "the instance has no such robot")
+            raise Refusal("request", f"$.plans[{place}]", "solution/covers", "the instance has no such robot")
