@@ -4,7 +4,7 @@
 Importing this page loads neither numpy nor numba.
 """
 
-from carp_optimized.planners import PLANNERS, add, certifier, plan, polish, query, retime, steps
+from carp_optimized.planners import PLANNERS, add, certifier, find, plan, polish, query, retime, steps
 from carp_optimized.reuse import Queries, Reuse
 
 __all__ = [
@@ -13,6 +13,7 @@ __all__ = [
     "Reuse",
     "add",
     "certifier",
+    "find",
     "plan",
     "polish",
     "query",

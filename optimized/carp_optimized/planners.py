@@ -48,6 +48,11 @@ def query(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: in
     A plan of the robot itself among those committed is what it has followed until the tick `now`.
     """
     require_query(instance, committed, robot, now)
+    return find(instance, committed, robot, now)
+
+
+def find(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0) -> Plan | None:
+    """The same, beside plans that may be parts of plans; neither these nor the request are looked at."""
     own = [plan for plan in committed if plan.robot == robot]
     fleet = _fleet(instance)
     fleet.commit([plan for plan in committed if plan.robot != robot])

@@ -35,6 +35,9 @@ class Engine(Protocol):
     def query(self, instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0) -> Plan | None:
         """The plan of one robot against committed plans."""
 
+    def find(self, instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0) -> Plan | None:
+        """The same beside parts of plans, which are not looked at."""
+
     def certifier(self, instance: Instance) -> Certifier:
         """A certifying planner with no committed plans yet."""
 

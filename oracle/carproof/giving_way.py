@@ -94,7 +94,7 @@ def give_way(
     least: int | None = None
     while True:
         fixed = [plan if plan.robot in kept else history(instance, plan, now) for plan in others]
-        first = engine.query(instance, [*fixed, *own], robot, now) if route is None else Plan(robot, tuple(route))
+        first = engine.find(instance, [*fixed, *own], robot, now) if route is None else Plan(robot, tuple(route))
         if route is not None:
             refuse_route(instance, fixed, own, Plan(robot, tuple(route)), now)
         if first is None:
@@ -140,7 +140,7 @@ def plan_around(
         failed: RobotId | None = None
         for robot in moving:
             waiting = waiting[1:]
-            plan = engine.query(instance, [first, *plans.values(), *waiting, before[robot]], robot, now)
+            plan = engine.find(instance, [first, *plans.values(), *waiting, before[robot]], robot, now)
             if plan is None:
                 failed = robot
                 break
@@ -150,7 +150,7 @@ def plan_around(
         if failed in kept:
             return failed
         histories = [history(instance, plan, now) for robot, plan in before.items() if robot != failed]
-        wished = engine.query(instance, [first, *histories, before[failed]], failed, now)
+        wished = engine.find(instance, [first, *histories, before[failed]], failed, now)
         if wished is None:
             return failed
         in_way = colliding(instance, [first, wished], [plan for robot, plan in before.items() if robot != failed])

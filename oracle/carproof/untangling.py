@@ -80,4 +80,4 @@ def query_kept_out(
         *instance.robots,
         *(Robot(guard.robot, guard.visits[0].resource, guard.visits[0].resource) for guard in guards),
     )
-    return engine.query(replace(instance, robots=robots), [*others, *guards], robot)
+    return engine.find(replace(instance, robots=robots), [*others, *guards], robot)

@@ -35,6 +35,11 @@ def query(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: in
     Its own plan among those committed is what it has followed until the tick `now`.
     """
     require_query(instance, committed, robot, now)
+    return find(instance, committed, robot, now)
+
+
+def find(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0) -> Plan | None:
+    """`query` beside parts of plans; refuses nothing."""
     before = {plan.robot: plan for plan in committed if plan.robot == robot}
     others = [plan for plan in committed if plan.robot != robot]
     problem = Problem(instance, {robot: ticks_to_goal(instance, instance.robot[robot])}, now, before)

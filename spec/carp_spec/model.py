@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Literal, TypeAlias
 
-from carp_spec.inputs.shapes import require_shape
+from carp_spec.inputs.shapes import of_shape
 
 ResourceId: TypeAlias = str | int
 RobotId: TypeAlias = str | int
@@ -54,15 +54,9 @@ class ResourceGraph:
     successors: Mapping[ResourceId, tuple[ResourceId, ...]] = field(init=False, repr=False, compare=False)
     moves: frozenset[Move] = field(init=False, repr=False, compare=False)
 
+    @of_shape("$.graph")
     def __post_init__(self) -> None:
-        """Make the look-ups; raises `Refusal` if there are none."""
-        try:
-            self._look_up()
-        except (AttributeError, TypeError, ValueError):
-            require_shape(self, type(self), "$.graph")
-            raise
-
-    def _look_up(self) -> None:
+        """Make the look-ups; an edge to or from an unknown resource is left to the rules."""
         index = {each.id: position for position, each in enumerate(self.resources)}
         backward = () if self.directed else ((target, source) for source, target in self.edges)
         moves = [move for move in (*self.edges, *backward) if move[0] in index and move[1] in index]
@@ -96,8 +90,8 @@ class Instance:
     """A resource graph, robots in the order of their arrival, and what a robot does after its goal.
 
     `vanish`: it leaves the system one duration after it enters its goal for the last time. `park`: it stays. Where
-    `following` is forbidden, a robot enters a resource only after a free tick. `robot` is a look-up by id, `seen`
-    a memory of `inputs`.
+    `following` is forbidden, a robot enters a resource only after a free tick. `robot` is a look-up by id,
+    `seen` of `inputs`.
     """
 
     graph: ResourceGraph
@@ -107,14 +101,11 @@ class Instance:
     robot: Mapping[RobotId, Robot] = field(init=False, repr=False, compare=False)
     seen: deque[tuple["Solution", "Solution | None"]] = field(init=False, repr=False, compare=False)
 
+    @of_shape("$")
     def __post_init__(self) -> None:
-        """Make the look-up; raises `Refusal` if there is none."""
+        """Make the look-up."""
         object.__setattr__(self, "seen", deque(maxlen=8))
-        try:
-            object.__setattr__(self, "robot", MappingProxyType({each.id: each for each in self.robots}))
-        except (AttributeError, TypeError):
-            require_shape(self, type(self))
-            raise
+        object.__setattr__(self, "robot", MappingProxyType({each.id: each for each in self.robots}))
 
     def __reduce__(self) -> tuple[type["Instance"], tuple[object, ...]]:
         """Pickle the fields alone."""

@@ -23,12 +23,12 @@ if TYPE_CHECKING:
 _PAIR = 2
 
 
-def _is_whole(value: object) -> bool:
+def _is_whole(value: Any) -> bool:  # noqa: ANN401 - whatever stands in a graph
     return isinstance(value, Integral) and not isinstance(value, bool)
 
 
-def _is_number(value: object) -> bool:
-    return _is_whole(value) or (isinstance(value, Real) and not isinstance(value, bool) and isfinite(value))
+def _is_number(value: Any) -> bool:  # noqa: ANN401 - whatever stands in a graph
+    return not isinstance(value, bool) and isinstance(value, Real) and isfinite(value)
 
 
 def _is_name(node: object) -> bool:
@@ -102,8 +102,8 @@ def _named(node: Any) -> Any:  # noqa: ANN401 - a node; if it is none, a rule of
     return ",".join(map(str, node)) if isinstance(node, tuple) else _plain(node)
 
 
-def _robot(robot: Robot) -> Robot:
-    if not isinstance(robot, Robot):
+def _robot(robot: Any) -> Any:  # noqa: ANN401 - if it is no robot, `document/shape` says so
+    if type(robot) is not Robot:
         return robot
     numbers = {name: _plain(getattr(robot, name)) for name in ("id", "release", "pace")}
     return replace(robot, start=_named(robot.start), goal=_named(robot.goal), **numbers)

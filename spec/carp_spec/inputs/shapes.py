@@ -1,14 +1,15 @@
 """The types of values: where a value departs from the annotations of its class, at the path of its document."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import is_dataclass
-from functools import cache
+from functools import cache, wraps
 from reprlib import repr as shown
 from types import NoneType
-from typing import Any, get_args, get_origin
+from typing import Any, TypeVar, cast, get_args, get_origin
 
 from carp_spec.refusal import Refusal
 
+T = TypeVar("T")
 SHAPE = "document/shape"
 PATHS = {"resources": ".nodes", "resource": "[0]", "enter": "[1]", "leave": "[2]"}
 """The fields of which the path is not the name."""
@@ -34,6 +35,23 @@ def require_shape(value: object, kind: Any, path: str = "$") -> None:  # noqa: A
         raise Refusal("document", path, SHAPE, f"it must be {right}, not {shown(value)}")
 
 
+def of_shape(path: str) -> Callable[[Callable[[T], None]], Callable[[T], None]]:
+    """Make a method of a class raise `Refusal` where it fails because the fields are malformed."""
+
+    def decorate(method: Callable[[T], None]) -> Callable[[T], None]:
+        @wraps(method)
+        def refusing(self: T) -> None:
+            try:
+                method(self)
+            except (AttributeError, TypeError, ValueError):
+                require_shape(self, type(self), path)
+                raise
+
+        return refusing
+
+    return decorate
+
+
 def _word(kind: Any) -> str:  # noqa: ANN401 - a type, or a value of a `Literal`
     return WORDS.get(kind) or (f'"{kind}"' if isinstance(kind, str) else f"of the class {kind.__name__}")
 
@@ -41,7 +59,10 @@ def _word(kind: Any) -> str:  # noqa: ANN401 - a type, or a value of a `Literal`
 @cache
 def _parts(kind: Any) -> tuple[tuple[Any, ...], bool, Mapping[str, Any] | None]:  # noqa: ANN401 - any type
     """The types that a type is made of, whether it is a tuple, and the fields that the maker of a class gives."""
-    given = {name: kind.__annotations__[name] for name in kind.__match_args__} if is_dataclass(kind) else None
+    given = None
+    if is_dataclass(kind):
+        names = cast("tuple[str, ...]", cast("Any", kind).__match_args__)
+        given = {name: kind.__annotations__[name] for name in names}
     return get_args(kind) or (kind,), get_origin(kind) is tuple, given
 
 
