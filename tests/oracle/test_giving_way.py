@@ -79,7 +79,7 @@ def test_an_update_is_lawful_keeps_histories_and_is_first_where_it_says_so(
     assert found.arrival is not None
     assert found.arrival <= before[robot].visits[-1].enter
     others = [history(instance, plan, now) for plan in solution.plans if plan.robot != robot]
-    least = carp_reference.query(instance, [*others, before[robot]], robot, now)
+    least = carp_reference.find(instance, [*others, before[robot]], robot, now)
     assert least is not None
     assert found.least == least.visits[-1].enter <= found.arrival
     assert found.is_first == (found.arrival == found.least)

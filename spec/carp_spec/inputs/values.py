@@ -43,7 +43,8 @@ def require_plans(instance: Instance, plans: Sequence[Plan]) -> Solution:
         found = tuple(found)
     require_shape(found, tuple[Plan, ...], "$.plans")
     solution = Solution(found, tuple(plan.robot for plan in found))
-    instance.seen.append((solution, None))
+    if found is plans:
+        instance.seen.append((solution, None))
     return solution
 
 
