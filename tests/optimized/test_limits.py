@@ -80,5 +80,5 @@ def test_a_detour_that_is_too_far_is_refused_where_no_other_way_is_free(
     graph = ResourceGraph(cells, (("a", "b"), ("a", "x"), ("x", "y"), ("y", "b")), directed=True)
     instance = Instance(graph, (Robot("stays", "b", "b"), Robot("r", "a", "b")))
     with pytest.raises(Refusal) as refused:
-        carp_optimized.query(instance, [Plan("stays", (Visit("b", 0, None),))], "r")
+        carp_optimized.find(instance, [Plan("stays", (Visit("b", 0, None),))], "r")
     assert refused.value.rule == "limit/ticks"

@@ -284,10 +284,10 @@ def test_plans_that_collide_are_refused(engine: Any) -> None:  # noqa: ANN401 - 
 @pytest.mark.parametrize(
     ("search", "path"),
     [
-        (lambda: carproof.optimum(RIGHT, 0), "$.limit"),
+        (lambda: carproof.optimum(RIGHT, -1), "$.limit"),
         (lambda: carproof.optimum(RIGHT, True), "$.limit"),
         (lambda: carproof.bound(RIGHT, seconds=-1), "$.seconds"),
-        (lambda: carproof.bound(RIGHT, steps=0), "$.steps"),
+        (lambda: carproof.bound(RIGHT, steps=0.5), "$.steps"),  # type: ignore[arg-type]
     ],
 )
 def test_a_malformed_limit_is_refused_like_its_op(search: Callable[[], object], path: str) -> None:

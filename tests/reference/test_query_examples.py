@@ -130,4 +130,4 @@ def test_a_certifier_gives_the_plan_of_a_query() -> None:
     committed = (plan_of("r0", ("b", 0, 2)),)
     certifier = carp_reference.certifier(two)
     certifier.commit(committed)
-    assert certifier.certify("r1")[0] == carp_reference.query(two, committed, "r1")
+    assert certifier.certify("r1")[0] == carp_reference.find(two, committed, "r1")

@@ -50,8 +50,12 @@ def require_polish_options(iterations: object, seconds: object, seed: object) ->
 
 
 def require_limits(**limits: object) -> None:
-    """Raise `Refusal` unless each limit of a search, by its name, is a number above 0, or `None`: there is none."""
+    """Raise `Refusal` unless each limit of a search, by its name, is a number of at least 0, or `None`: there is none.
+
+    Steps are whole numbers. With a limit of 0, which the protocol refuses, a search ends at once.
+    """
     for name, limit in limits.items():
-        is_number = isinstance(limit, int | float) and not isinstance(limit, bool)
-        if not (limit is None or (is_number and 0 < cast("float", limit) < inf)):
-            raise Refusal("request", f"$.{name}", "request/limit", f"it must be a number above 0, not {limit!r}")
+        kinds = (int,) if name == "steps" else (int, float)
+        if not (limit is None or (type(limit) in kinds and 0 <= cast("float", limit) < inf)):
+            right = "whole number" if name == "steps" else "number"
+            raise Refusal("request", f"$.{name}", "request/limit", f"it must be a {right} of at least 0, not {limit!r}")
