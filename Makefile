@@ -6,7 +6,7 @@ export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 .DELETE_ON_ERROR:
-.PHONY: bench install compiled demo quick quick-tests test checked ci thorough paper-sized nightly coverage mutation conform lint format docs gap optimum-figures gap-figures executions generated kernel kernel-mutants clean
+.PHONY: bench install compiled demo quick quick-tests test checked ci thorough paper-sized nightly coverage mutation conform lint format docs gap optimum-figures gap-figures executions texts generated kernel kernel-mutants clean
 
 install: .venv/installed
 
@@ -93,6 +93,10 @@ gap-figures: install
 # A million delayed executions in order without a rotation, about a minute; continues where the store ends.
 executions: install
 	nice $(BIN)/carproof experiment executions --store executions.sqlite
+
+# Let the kernel and Python read the same million texts, nearly right ones; continues where the store ends.
+texts: install kernel
+	nice $(BIN)/carproof experiment texts --store texts.sqlite
 
 generated: install
 	$(BIN)/python -m carproof.schema

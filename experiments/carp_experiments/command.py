@@ -9,6 +9,7 @@ import click
 from carp_experiments.crosscheck import FULL_QUESTIONS, QUICK_QUESTIONS, crosscheck_cases, crosscheck_report
 from carp_experiments.executions import FULL_EXECUTIONS, QUICK_EXECUTIONS, executions_cases, executions_report
 from carp_experiments.experiments import EXPERIMENTS, Experiment, Profile
+from carp_experiments.kernel_texts import FULL_TEXTS, QUICK_TEXTS, text_cases, text_report
 from carp_experiments.kernel_verdicts import FULL_VERDICTS, QUICK_VERDICTS, kernel_cases, kernel_report
 from carp_experiments.map_cases import WAREHOUSE
 from carp_verify.kernel import program
@@ -37,6 +38,7 @@ F = TypeVar("F", bound=Callable[..., Any])
         "carproof experiment quality --store full.sqlite --report report",
         "carproof experiment crosscheck --questions 50000 --seed 7",
         "carproof experiment kernel --verdicts 100000",
+        "carproof experiment texts --store texts.sqlite",
         "carproof experiment executions --executions 100000",
     )
 )
@@ -169,6 +171,23 @@ def kernel(quick: bool, verdicts: int, seed: int, **campaign: Any) -> Answer:  #
     cases = kernel_cases(size, seed)
     command = f"carproof experiment kernel --verdicts {size} --seed {seed}"
     return go("kernel", "kernel", command, f"{size} verdicts", cases, kernel_report, **campaign)
+
+
+@command.command("texts")
+@click.option("--quick", is_flag=True, help=f"{QUICK_TEXTS} texts.")
+@click.option("--texts", type=click.IntRange(min=1), default=FULL_TEXTS, help="The number of random texts.")
+@click.option("--seed", type=click.IntRange(0, 2**64 - 1), default=0, help="The seed of the texts.")
+@campaign_options
+def texts(quick: bool, texts: int, seed: int, **campaign: Any) -> Answer:  # noqa: ANN401 - click's
+    """Let the proved kernel and Python read the same texts, nearly right ones, and decide on those that they can read.
+
+    Exit codes: 0 no difference, 1 a difference, 2 bad usage, or no kernel.
+    """
+    program()  # before the store is there
+    size = QUICK_TEXTS if quick else texts
+    cases = text_cases(size, seed)
+    command = f"carproof experiment texts --texts {size} --seed {seed}"
+    return go("texts", "texts", command, f"{size} texts", cases, text_report, **campaign)
 
 
 def go(  # noqa: PLR0913 - the campaign's options

@@ -101,10 +101,21 @@ def request(op: str, instance: Instance, **documents: object) -> bytes:
 
 def ask(requests: Sequence[bytes]) -> list[KernelVerdict]:
     """Send requests to one run of the kernel; raises `Refusal` if there is no program, or no answer to a request."""
+    lines = replies(requests)
+    return [verdict_of(lines[number] if number < len(lines) else "") for number in range(len(requests))]
+
+
+def replies(requests: Sequence[bytes], seconds: float | None = None) -> list[str]:
+    """The lines with which one run of the kernel answers requests: fewer if it ends early, or after these seconds."""
     command = [program(), "serve"]
-    done = subprocess.run(command, input=b"".join(requests), stdout=subprocess.PIPE, check=False)  # noqa: S603 - ours
-    lines = done.stdout.decode(errors="replace").split("\n")
-    return [_verdict(lines[number] if number < len(lines) else "") for number in range(len(requests))]
+    try:
+        done = subprocess.run(  # noqa: S603 - ours
+            command, input=b"".join(requests), stdout=subprocess.PIPE, check=False, timeout=seconds
+        )
+    except subprocess.TimeoutExpired as expired:
+        return (expired.stdout or b"").decode(errors="replace").split("\n")[:-1]
+    text = done.stdout.decode(errors="replace")
+    return text.removesuffix("\n").split("\n") if text else []
 
 
 def version() -> str:
@@ -119,10 +130,11 @@ def verify_proof(files: Mapping[str, bytes]) -> KernelVerdict:
             (Path(name) / file).write_bytes(content)
         command = [program(), "verify-proof", name]
         done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - ours
-        return _verdict(done.stdout)
+        return verdict_of(done.stdout)
 
 
-def _verdict(line: str) -> KernelVerdict:
+def verdict_of(line: str) -> KernelVerdict:
+    """The verdict in a line; raises `Refusal` if it is none."""
     if not is_answer(line):
         raise Refusal("limit", "$.kernel", is_answer.id, f"{PROGRAM} ended without an answer")
     return msgspec.json.decode(line, type=KernelVerdict)

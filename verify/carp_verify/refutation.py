@@ -66,7 +66,8 @@ def require_refutation(clauses: Sequence[Clause], text: str) -> None:
 
 def read_steps(text: str) -> list[Step]:
     """The lines of a refutation; raises `NotRefutedError` for one that is malformed."""
-    return [_step(line, content) for line, content in enumerate(text.splitlines(), start=1)]
+    lines = text.removesuffix("\n").split("\n") if text else []
+    return [_step(line, content) for line, content in enumerate(lines, start=1)]
 
 
 def _step(line: int, content: str) -> Step:

@@ -1,0 +1,233 @@
+"""A campaign of random texts: the kernel and Python must read and refuse the same ones, and decide alike on the others.
+
+A text is a request to the kernel, of a test vector or about a random fleet, changed in up to three places. Of each text
+it is asked whether it is read, and if so, whether it is accepted. Sizes are no difference: each may have limits of its
+own. A case is a block of texts, put to one run of the kernel.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import msgspec
+
+from carp_experiments.kernel_verdicts import certified, fleet_questions
+from carp_experiments.report import ExperimentReport, Table
+from carp_experiments.store import Row
+from carp_experiments.texts import changed, vector_requests
+from carp_spec import Instance, Plan, Refusal, Solution, judge
+from carp_spec.permutations import splitmix64
+from carp_spec.query_certificates import QueryCertificateDocument
+from carp_verify.bounds import digest, read_bound
+from carp_verify.documents import read_instance, read_query_certificate, read_solution, require_json, solution_document
+from carp_verify.kernel import KernelVerdict, is_answer, replies, request, verdict_of
+from carp_verify.limits import require_following
+from carp_verify.verify_bound import verify_bound
+from carp_verify.verify_query import Traffic, require_certificate, verify_query
+from carproof.questions import Draw, draw_fleet, draw_instance
+
+BLOCK = 1000
+FULL_TEXTS = 1_000_000
+QUICK_TEXTS = 20_000
+FLEETS = 4
+SHOWN = 3
+LONGEST = 30
+"""The seconds in which the kernel must answer a block."""
+VERDICTS = ("accepted", "refused", "bad input")
+SIZES = {"bound/size", "query-certificate/size"}
+ABSENT = msgspec.Raw()
+
+
+@dataclass(frozen=True, slots=True)
+class TextCase:
+    """The texts of a seed numbered from `first` on."""
+
+    first: int
+    texts: int = BLOCK
+    seed: int = 0
+
+    @property
+    def key(self) -> str:
+        """Blocks in their order."""
+        return f"seed {self.seed} texts {self.first:09} to {self.first + self.texts - 1:09}"
+
+    def run(self) -> Row:
+        """The number of texts of each verdict, and the texts on which the verdicts differ."""
+        block = compared(self.first, drawn_texts(self.seed, self.first, self.texts))
+        return msgspec.to_builtins(block)  # type: ignore[no-any-return] # a struct becomes a dict
+
+
+class Texts(msgspec.Struct):
+    """A row of the campaign: how often which verdict was Python's, and the texts on which the kernel's is another."""
+
+    texts: int
+    verdicts: dict[str, int]
+    differences: list[dict[str, Any]]
+
+
+class Request(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A request to the kernel, its documents not read."""
+
+    op: str
+    instance: msgspec.Raw
+    solution: msgspec.Raw = ABSENT
+    certificate: msgspec.Raw = ABSENT
+    certificates: msgspec.Raw = ABSENT
+
+
+@dataclass(frozen=True, slots=True)
+class Decided:
+    """The verdict of Python on a text: figures if it is accepted, broken rules if it is refused."""
+
+    verdict: Literal["accepted", "refused", "bad input"]
+    figures: tuple[int | None, int | None, int | None] = (None, None, None)
+    rules: Collection[str] = ()
+
+    def agrees(self, answer: KernelVerdict | None) -> bool:
+        """Whether the kernel says the same. A size is no difference: each may have limits of its own."""
+        if answer is None:
+            return False
+        if answer.rule in SIZES or not SIZES.isdisjoint(self.rules):
+            return True
+        return (answer.verdict, answer.cost, answer.unplanned, answer.bound) == (self.verdict, *self.figures)
+
+
+def decided(text: bytes) -> Decided:
+    """Read a request as the kernel must, and decide it."""
+    try:
+        require_json(text)
+        asked = msgspec.json.decode(text, type=Request)
+        decide = QUESTIONS[asked.op, tuple(name for name in DOCUMENTS if getattr(asked, name) is not ABSENT)]
+        instance = read_instance(bytes(asked.instance))
+        require_following(instance)
+        answer = decide(instance, asked)
+    except (Refusal, msgspec.DecodeError, KeyError):
+        return Decided("bad input")
+    return answer()
+
+
+def _check(instance: Instance, asked: Request) -> Callable[[], Decided]:
+    solution = read_solution(bytes(asked.solution))
+    return lambda: _judged(instance, solution)
+
+
+def _verify_query(instance: Instance, asked: Request) -> Callable[[], Decided]:
+    solution = read_solution(bytes(asked.solution))
+    certificate = read_query_certificate(bytes(asked.certificate))
+    return lambda: _proved(lambda: verify_query(instance, solution, certificate))
+
+
+def _verify_bound(instance: Instance, asked: Request) -> Callable[[], Decided]:
+    """The kernel does not look at the digest of the instance."""
+    certificate = msgspec.structs.replace(read_bound(bytes(asked.certificate)), instance=digest(instance))
+    return lambda: _proved(lambda: verify_bound(instance, certificate))
+
+
+def _audit(instance: Instance, asked: Request) -> Callable[[], Decided]:
+    solution = read_solution(bytes(asked.solution))
+    documents = msgspec.json.decode(asked.certificates, type=list[msgspec.Raw])
+    certificates = [read_query_certificate(bytes(each)) for each in documents]
+    return lambda: _audited(instance, solution, certificates)
+
+
+DOCUMENTS = ("solution", "certificate", "certificates")
+QUESTIONS: Mapping[tuple[str, tuple[str, ...]], Callable[[Instance, Request], Callable[[], Decided]]] = {
+    ("check", ("solution",)): _check,
+    ("verify-query", ("solution", "certificate")): _verify_query,
+    ("verify-bound", ("certificate",)): _verify_bound,
+    ("audit", ("solution", "certificates")): _audit,
+}
+
+
+def _judged(instance: Instance, solution: Solution) -> Decided:
+    verdict = judge(instance, solution)
+    return Decided("accepted", (verdict.cost, verdict.unplanned, None)) if verdict.valid else Decided("refused")
+
+
+def _proved(verify: Callable[[], int | None]) -> Decided:
+    try:
+        return Decided("accepted", (None, None, verify()))
+    except Refusal as refusal:
+        return Decided("refused", rules=(refusal.rule,))
+
+
+def _audited(instance: Instance, solution: Solution, certificates: Sequence[QueryCertificateDocument]) -> Decided:
+    """Whether the plans are lawful together, and each, in their order, has a certificate of its arrival."""
+    judged = _judged(instance, solution)
+    plans = {plan.robot: plan for plan in solution.plans}
+    traffic = Traffic(instance)
+    for robot in solution.order if judged.verdict == "accepted" else ():
+        if not any(_is_of(traffic, certificate, plans[robot]) for certificate in certificates):
+            return Decided("refused")
+        traffic.commit(plans[robot])
+    return judged
+
+
+def _is_of(traffic: Traffic, certificate: QueryCertificateDocument, plan: Plan) -> bool:
+    """Whether the certificate shows that the plan's robot, if asked at tick 0, arrives no earlier."""
+    if certificate.robot != plan.robot or (certificate.bound is not None and certificate.bound < plan.visits[-1].enter):
+        return False
+    return (
+        _proved(lambda: require_certificate(traffic, msgspec.structs.replace(certificate, now=0))).verdict == "accepted"
+    )
+
+
+def compared(first: int, texts: Sequence[bytes]) -> Texts:
+    """How often each verdict was given, and the texts on which the kernel differs."""
+    found = [decided(text) for text in texts]
+    block = Texts(len(texts), dict(Counter(each.verdict for each in found)), [])
+    for number, (text, mine, kernel) in enumerate(zip(texts, found, answers(texts), strict=True), first):
+        if not mine.agrees(kernel):
+            difference = {"number": number, "text": text.decode("latin-1"), "python": mine, "kernel": kernel}
+            block.differences.append(msgspec.to_builtins(difference))
+    return block
+
+
+def answers(texts: Sequence[bytes]) -> list[KernelVerdict | None]:
+    """The kernel's answer to each text, none where it ends without one or thinks for too long."""
+    found: list[KernelVerdict | None] = []
+    while len(found) < len(texts):
+        lines = replies([text + b"\n" for text in texts[len(found) :]], LONGEST)
+        found += [verdict_of(line) if is_answer(line) else None for line in lines]
+        if len(found) < len(texts):
+            found.append(None)
+    return found
+
+
+def drawn_texts(seed: int, first: int, number: int) -> list[bytes]:
+    """Texts from `first` on, each of a test vector or about a fleet of the block."""
+    fleets = [each.request.rstrip() for fleet in range(FLEETS) for each in fleet_questions(seed, first + fleet)]
+    audits = [audit_of(Draw(splitmix64(next(splitmix64(seed)) + first + fleet))) for fleet in range(FLEETS)]
+    of_vectors = vector_requests()
+    draws = (Draw(splitmix64(next(splitmix64(seed)) + number)) for number in range(first, first + number))
+    return [changed(draw, draw.one_of(draw.one_of([fleets, audits, of_vectors, of_vectors]))) for draw in draws]
+
+
+def audit_of(draw: Draw) -> bytes:
+    """A request to audit a fleet, with a certificate for each plan."""
+    instance = draw_instance(draw)
+    solution = draw_fleet(draw, instance).solution
+    plans = {plan.robot: plan for plan in solution.plans}
+    before = [Solution.of(instance, [plans[each] for each in solution.order[:k]]) for k in range(len(solution.order))]
+    certificates = [
+        certified(instance, committed, robot, 0) for committed, robot in zip(before, solution.order, strict=True)
+    ]
+    return request("audit", instance, solution=solution_document(solution), certificates=certificates).rstrip()
+
+
+def text_cases(texts: int, seed: int) -> tuple[TextCase, ...]:
+    """That many texts, in blocks."""
+    return tuple(TextCase(first, min(BLOCK, texts - first), seed) for first in range(0, texts, BLOCK))
+
+
+def text_report(rows: Iterable[Row]) -> ExperimentReport:
+    """The number of texts of each verdict, and those on which the verdicts differ."""
+    blocks = [msgspec.convert(row, Texts) for row in rows]
+    differences = [each for block in blocks for each in block.differences]
+    columns = ("texts", *VERDICTS, "differences")
+    sums = [sum(block.verdicts.get(verdict, 0) for block in blocks) for verdict in VERDICTS]
+    counts = (sum(block.texts for block in blocks), *sums, len(differences))
+    shown = tuple(f"A DIFFERENCE: {msgspec.json.encode(each).decode()}" for each in differences[:SHOWN])
+    table = Table("texts", "Texts read by the kernel and by Python", columns, (tuple(map(str, counts)),), columns)
+    return ExperimentReport({"differences": differences}, (table,), shown, holds=not differences)
