@@ -65,7 +65,7 @@ def test_what_the_kernel_accepts_is_accepted_in_its_name(
 
 
 def proved_by(command: str) -> int:
-    """The bound that the certificate of the command proves: robot r1 arrives at tick 2, and the least total cost is 5."""
+    """The bound that its certificate proves: robot r1 arrives at tick 2, and the least total cost is 5."""
     return 2 if "verify-query" in command else 5
 
 

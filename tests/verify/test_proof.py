@@ -122,6 +122,14 @@ def test_a_file_is_read_up_to_the_limit_alone(proof: Path, monkeypatch: pytest.M
         verify_proof(proof)
 
 
+def test_an_instance_is_searched_up_to_the_limit_alone(proof: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("carp_verify.proof.LARGEST_TABLE", 4 * 9)
+    assert verify_proof(proof).cost == 13
+    monkeypatch.setattr("carp_verify.proof.LARGEST_TABLE", 4 * 9 - 1)
+    with pytest.raises(ProofError, match="^instance.json: its pairs of a robot and a resource are 36"):
+        verify_proof(proof)
+
+
 @pytest.mark.parametrize("name", ["manifest.json", *FILES])
 def test_a_missing_file_is_refused(proof: Path, name: str) -> None:
     (proof / name).unlink()

@@ -34,7 +34,7 @@ from carp_spec.model import ResourceId, RobotId
 from carp_verify.clauses import dimacs
 from carp_verify.documents import decode, has_format, read_instance, write_instance
 from carp_verify.encoding import Encoding, Evidence, beat_formula, reach_formula
-from carp_verify.optimum_rules import LARGEST_PROOF
+from carp_verify.optimum_rules import LARGEST_PROOF, LARGEST_TABLE
 from carp_verify.plain_files import PlainFileError, read_plain_file
 from carp_verify.refutation import NotRefutedError, require_refutation
 from carp_verify.unsolvable import Clauses, Obstacle, describe, why_no_obstacle
@@ -151,9 +151,19 @@ def verify_proof(proof: Path | ProofFiles, instance: Instance | None = None) -> 
     proved = read_instance(read.contents["instance.json"])
     if instance is not None and write_instance(instance) != write_instance(proved):
         raise ProofError("instance.json", "it is another instance than the one given")
+    if not isinstance(read.manifest, UnsolvableManifest) or isinstance(read.manifest.obstacle, Clauses):
+        _require_table(proved)
     if isinstance(read.manifest, UnsolvableManifest):
         return _verify_obstacle(proved, read.manifest.obstacle, read.contents)
     return _verify_optimum(proved, read.manifest, read.contents)
+
+
+def _require_table(instance: Instance) -> None:
+    """Refuse an instance whose robots would be searched for in too many resources."""
+    size = len(instance.robots) * len(instance.graph.resources)
+    if size > LARGEST_TABLE:
+        reason = f"its pairs of a robot and a resource are {size}, and at most {LARGEST_TABLE} are allowed"
+        raise ProofError("instance.json", reason)
 
 
 def _verify_obstacle(instance: Instance, obstacle: Obstacle, files: Mapping[str, bytes]) -> Verified:
