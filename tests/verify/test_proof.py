@@ -126,7 +126,7 @@ def test_an_instance_is_searched_up_to_the_limit_alone(proof: Path, monkeypatch:
     monkeypatch.setattr("carp_verify.proof.LARGEST_TABLE", 4 * 9)
     assert verify_proof(proof).cost == 13
     monkeypatch.setattr("carp_verify.proof.LARGEST_TABLE", 4 * 9 - 1)
-    with pytest.raises(ProofError, match="^instance.json: its pairs of a robot and a resource are 36"):
+    with pytest.raises(ProofError, match=r"^instance\.json: its pairs of a robot and a resource are 36"):
         verify_proof(proof)
 
 
