@@ -28,7 +28,7 @@ install: .venv/installed
 compiled: install
 	$(BIN)/python -m carp_optimum
 
-# The first time, the demo compiles the part of the planner that it uses.
+# The first time, the demo compiles the planner.
 demo: .venv/base
 	$(BIN)/carproof demo
 

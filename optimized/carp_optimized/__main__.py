@@ -1,7 +1,10 @@
 """`python -m carp_optimized` compiles the planner, so that no later call has to; once done, it does nothing."""
 
+from carp_optimized.compiling import note_that_it_is_compiled
+from carp_optimized.execution import retime
 from carp_optimized.fleet import PlannedFleet
-from carp_spec import Instance, Neighbourhood, Resource, ResourceGraph, Robot, Shuffled
+from carp_spec import Instance, Neighbourhood, Plan, Resource, ResourceGraph, Robot, Shuffled, Solution, Visit
+from carp_spec.traces import Trace
 
 
 def compile_all() -> None:
@@ -22,6 +25,9 @@ def compile_all() -> None:
     fleet.commit(plans)
     fleet.polish(fleet.polishing(0), 1)
     fleet.forget()
+    here = Plan("t", (Visit("c", 9, 10),))
+    retime(instance, Solution((here,), ("t",), ("r", "s")), Trace(0, (Plan("t", ()),)))
+    note_that_it_is_compiled("carp_optimized")
 
 
 if __name__ == "__main__":

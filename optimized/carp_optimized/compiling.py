@@ -2,9 +2,11 @@
 
 import os
 import sys
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from functools import cache, wraps
+from hashlib import sha256
+from importlib.util import find_spec
 from inspect import unwrap
 from pathlib import Path
 from stat import S_ISDIR
@@ -12,6 +14,8 @@ from tempfile import gettempdir
 from typing import Any, ParamSpec, TypeVar, cast
 
 import numba
+from numba.core import event
+from numba.core.registry import cpu_target
 
 from carp_optimized.references import Native
 
@@ -23,8 +27,8 @@ R = TypeVar("R")
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "_nrt": False}
 INNER: dict[str, Any] = {**OPTIONS, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
-_ENTRIES: list[Callable[..., object]] = []
-"""The entries of the modules that are loaded."""
+_FUNCTIONS: list[Callable[..., object]] = []
+"""The functions to compile of the modules that are loaded."""
 
 
 class RoomExhausted(Exception):  # noqa: N818 - nothing went wrong: the caller makes larger arrays and asks again
@@ -41,11 +45,13 @@ class TicksExhausted(Exception):  # noqa: N818 - the caller refuses the input
 
 def compiled(function: F) -> F:
     """Compile a function that other compiled functions call, once for all whole numbers, whatever their types there."""
+    _FUNCTIONS.append(function)
     return cast("F", _with_whole_numbers(numba.njit(**INNER)(function)))
 
 
 def inlined(function: F) -> F:
     """The same for a function called often, and in few places: it becomes a part of those that call it."""
+    _FUNCTIONS.append(function)
     return cast("F", _with_whole_numbers(numba.njit(forceinline=True, **INNER)(function)))
 
 
@@ -83,7 +89,7 @@ def entry(function: Callable[P, R]) -> Callable[P, R]:
 
     kept_in = dispatcher.stats.cache_path
     call.cache = None if kept_in is None else Path(kept_in)  # type: ignore[attr-defined]
-    _ENTRIES.append(call)
+    _FUNCTIONS.append(function)
     return call
 
 
@@ -112,9 +118,63 @@ def _temporary_cache() -> Path | None:
     return folder if is_own else None
 
 
-def is_compiled() -> bool:
-    """Whether the machine code of all entries that are loaded is on disk."""
-    return all(map(is_cached, _ENTRIES))
+def is_compiled(package: str) -> bool:
+    """Whether all that a package calls was compiled on such a machine, from these sources, and the code is kept."""
+    if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
+        return True
+    record = _record(package)
+    sources = (source for name in {"carp_optimized", package} for source in _folder(name).glob("*.py"))
+    return record is not None and record.exists() and record.stat().st_mtime >= max(s.stat().st_mtime for s in sources)
+
+
+def note_that_it_is_compiled(package: str) -> None:
+    """Note this beside the machine code, if that is kept."""
+    record = _record(package)
+    if record is not None:
+        with suppress(OSError):
+            record.parent.mkdir(parents=True, exist_ok=True)
+            record.touch()
+
+
+def is_kept() -> bool:
+    """Whether there is machine code, and a folder in which to keep it."""
+    return _record("carp_optimized") is not None
+
+
+@cache
+def _record(package: str) -> Path | None:
+    """The file that is as old as the machine code of a package for this processor, numba and Python."""
+    kept_in = getattr(getattr(_dispatcher(_folder), "stats", None), "cache_path", None)
+    machine = (package, numba.__version__, sys.version, *cpu_target.target_context.codegen().magic_tuple())
+    return None if kept_in is None else Path(kept_in) / f"compiled-{sha256(repr(machine).encode()).hexdigest()[:16]}"
+
+
+def _folder(package: str) -> Path:
+    found = find_spec(package)
+    assert found is not None  # noqa: S101 - one of ours
+    assert found.origin is not None  # noqa: S101 - which has an `__init__`
+    return Path(found.origin).parent
+
+
+@contextmanager
+def watched(advance: Callable[[], None]) -> Iterator[None]:
+    """Call a function each time that a function of ours has been compiled; there are `to_compile()`."""
+
+    class Listener(event.Listener):
+        def on_start(self, event: Any) -> None:  # noqa: ANN401 - numba is untyped
+            """Wait for the end."""
+
+        def on_end(self, event: Any) -> None:  # noqa: ANN401 - numba is untyped
+            if event.data["dispatcher"].py_func in _FUNCTIONS:
+                advance()
+
+    with event.install_listener("numba:compile", Listener()):
+        yield
+
+
+def to_compile() -> int:
+    """How many functions there are to compile in the modules that are loaded."""
+    return len(_FUNCTIONS)
 
 
 def is_cached(function: Callable[..., object]) -> bool:

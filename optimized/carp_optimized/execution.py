@@ -52,30 +52,6 @@ def propagate(ranked: Longs, enter: Longs, first: Longs, before: Longs, ticks: L
         start = end
 
 
-@entry
-def settle(first: Longs, before: Longs, missing: Longs, ready: Longs) -> int:
-    """How many nodes have no circle before them, counted off in `ready`; the edges out of node n are from `first[n]`.
-
-    `before` then are the ends of the edges. `missing` has for each node the number of edges into it.
-    """
-    count = 0
-    for node in range(missing.size):
-        if missing[node] == 0:
-            ready[count] = node
-            count += 1
-    done = 0
-    while done < count:
-        node = ready[done]
-        done += 1
-        for edge in range(first[node], first[node + 1]):
-            after = before[edge]
-            missing[after] -= 1
-            if missing[after] == 0:
-                ready[count] = after
-                count += 1
-    return count
-
-
 @dataclass(frozen=True, slots=True)
 class Timetable:
     """A lawful solution as arrays: its visits are numbered plan by plan, plan p from `starts[p]` on.
@@ -107,17 +83,6 @@ class Timetable:
         times = least.copy()
         propagate(self.ranked, self.enter, self.first, self.before, ticks, times)
         return times
-
-    def stuck(self) -> Flags:
-        """The visits in a circle of dependencies, and those that wait for one."""
-        by_before = np.argsort(self.before, kind="stable")
-        first = np.searchsorted(self.before[by_before], np.arange(self.enter.size + 1))
-        missing = np.bincount(self.after, minlength=self.enter.size)
-        ready = np.zeros(self.enter.size, np.int64)
-        count = settle(first, self.after[by_before], missing, ready)
-        never = np.ones(self.enter.size, np.bool_)
-        never[ready[:count]] = False
-        return never
 
     def releases(self) -> Longs:
         """The least tick of each visit as its robot's release has it."""

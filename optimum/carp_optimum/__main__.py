@@ -1,6 +1,7 @@
 """`python -m carp_optimum` compiles what bounds and planners run, so that no later call has to."""
 
 from carp_optimized.__main__ import compile_all as compile_planner
+from carp_optimized.compiling import note_that_it_is_compiled
 from carp_optimum.bound import lower_bound
 from carp_optimum.branching import Branching
 from carp_optimum.deadlines import Deadlines, Member
@@ -23,6 +24,7 @@ def compile_all() -> None:
     list(Branching(instance, 12, lambda: None).run())
     search.finish()
     search.least_costs()
+    note_that_it_is_compiled("carp_optimum")
 
 
 if __name__ == "__main__":

@@ -69,13 +69,16 @@ class FastestEngine:
     @property
     def polish(self) -> "Polish":
         """Better plans; with `seconds`, by simulated annealing."""
+        compile_what_is_kept()
         from carp_optimum.annealing import polish  # noqa: PLC0415 - loaded when it is first used
 
         return polish
 
 
 def engine_named(name: str | None) -> Engine:
-    """Load an engine; without a name, the fastest that has the planner."""
+    """Load an engine, compiled if it is to be; without a name, the fastest that has the planner."""
+    if name == "optimized":
+        compile_what_is_kept()
     return cast("Engine", FastestEngine() if name is None else import_module(f"carp_{name}"))
 
 
@@ -84,14 +87,31 @@ def warm() -> bool:
 
     This is one step, which is announced on standard error. Commands with a time limit do it before the limit starts.
     """
-    package = "carp_optimized" if find_spec("pysat") is None else "carp_optimum"
-    compile_all = import_module(f"{package}.__main__").compile_all
-    from carp_optimized.compiling import is_compiled  # noqa: PLC0415 - loaded when it is first used
+    from carp_optimized import compiling  # noqa: PLC0415 - loaded when it is first used
 
-    if is_compiled():
+    package = "carp_optimized" if find_spec("pysat") is None else "carp_optimum"
+    if compiling.is_compiled(package):
         return False
-    compile_all()
-    return True
+    compile_all = import_module(f"{package}.__main__").compile_all
+    was_needed = False
+    with progress("compiling", compiling.to_compile()) as show:
+
+        def advance() -> None:
+            nonlocal was_needed
+            was_needed = True
+            show()
+
+        with compiling.watched(advance):
+            compile_all()
+    return was_needed
+
+
+def compile_what_is_kept() -> None:
+    """Compile everything in one step where it is kept; elsewhere each process compiles what it calls."""
+    from carp_optimized.compiling import is_kept  # noqa: PLC0415 - loaded when it is first used
+
+    if is_kept():
+        warm()
 
 
 def plan_showing(
@@ -100,6 +120,7 @@ def plan_showing(
     """Plans of all robots; if the optimised planner makes them, with its fleet, and a terminal shows its progress."""
     if (engine or _fastest_with(planner)) == "reference":
         return engine_named("reference").plan(instance, planner), None
+    compile_what_is_kept()
     from carp_optimized.planners import plan_with_fleet, steps  # noqa: PLC0415 - loaded when it is first used
 
     with progress(label, steps(instance, planner)) as advance:
@@ -146,6 +167,7 @@ def have_plans_beside(
 
 
 def _fleet(instance: Instance, committed: Sequence[Plan] = ()) -> "PlannedFleet":
+    compile_what_is_kept()
     from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415 - numba is slow to load
 
     fleet = PlannedFleet(instance)

@@ -97,17 +97,15 @@ def test_a_function_that_is_not_compiled_is_not_cached() -> None:
 
 
 def entries() -> set[str]:
-    """The names of all functions that Python calls."""
+    """All functions that Python calls, each with its file."""
     folders = (Path(module.__file__ or "").parent for module in (carp_optimized, carp_optimum))
-    functions = (
-        node
+    return {
+        f"{source}:{node.name}"
         for folder in folders
         for source in folder.glob("*.py")
         for node in ast.walk(ast.parse(source.read_text()))
         if isinstance(node, ast.FunctionDef)
-    )
-    return {
-        node.name for node in functions if any(isinstance(d, ast.Name) and d.id == "entry" for d in node.decorator_list)
+        and any(isinstance(each, ast.Name) and each.id == "entry" for each in node.decorator_list)
     }
 
 
@@ -115,14 +113,17 @@ def test_the_installation_compiles_every_entry() -> None:
     watched = """
 import sys
 called = set()
-sys.setprofile(lambda frame, event, _: called.add(frame.f_code.co_name) if event == "call" else None)
+def watch(frame, event, _):
+    if event == "call":
+        called.add(f"{frame.f_code.co_filename}:{frame.f_code.co_name}")
+sys.setprofile(watch)
 from carp_optimum.__main__ import compile_all
 compile_all()
 sys.setprofile(None)
-print(*called)
+print(*called, sep="\\n")
 """
     environment = {**os.environ, "NUMBA_DISABLE_JIT": "1"}
     command = [sys.executable, "-W", "ignore", "-c", watched]
-    called = subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout.split()
+    called = subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout.splitlines()
     assert len(entries()) > 13
     assert entries() <= set(called)

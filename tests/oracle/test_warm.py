@@ -1,6 +1,9 @@
 """Compilation is one step that is announced, and no limit of time counts it."""
 
+import os
+import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from tests.oracle.running import Run
@@ -11,20 +14,69 @@ def test_warm_says_that_the_planner_is_compiled(carproof: Run) -> None:
     assert (outcome.code, outcome.stdout, outcome.stderr) == (0, "carproof's planner is compiled already\n", "")
 
 
+@pytest.fixture
+def uncompiled(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """As if nothing were compiled: a list that gets longer when it would be."""
+    steps: list[str] = []
+    monkeypatch.setattr("carp_optimum.__main__.compile_all", lambda: steps.append("compiled"))
+    monkeypatch.setattr("carp_optimized.compiling.is_compiled", lambda _: bool(steps))
+    return steps
+
+
+@pytest.mark.usefixtures("folder")
+@pytest.mark.parametrize(
+    ("command", "timed"),
+    [
+        ("polish town.json plans.json --seconds 0.1", "carp_optimum.annealing.polish"),
+        ("bound town.json --seconds 1", "carp_optimum.bound.lower_bound"),
+        ("optimum town.json", "carp_optimum.optimum.optimum"),
+        ("gap town.json", "carp_optimum.gap.gap"),
+        ("gap --size 2 --count 1", "carproof.gap_family.measured"),
+        (f"conform --examples 0 --one-shot -- {sys.executable} -c 0 {{instance}}", "carproof.conform.run.conform"),
+    ],
+)
+def test_a_limit_of_time_begins_when_the_planner_is_compiled(
+    carproof: Run, monkeypatch: pytest.MonkeyPatch, uncompiled: list[str], command: str, timed: str
+) -> None:
+    class Begins(Exception):  # noqa: N818 - nothing is wrong
+        """The limit begins."""
+
+    def begin(*_: object, **__: object) -> None:
+        assert uncompiled == ["compiled"]
+        raise Begins
+
+    monkeypatch.setattr(timed, begin)
+    assert "Begins" in carproof(command).stderr
+
+
 @pytest.mark.usefixtures("folder")
 @pytest.mark.parametrize(
     "command",
     [
-        "polish town.json plans.json --seconds 0.1",
-        "bound town.json --seconds 1",
-        f"conform --examples 0 --one-shot -- {sys.executable} -c 0 {{instance}}",
+        "demo",
+        "plan town.json",
+        "query town.json one.json r2",
+        "add town.json one.json r2",
+        "polish town.json plans.json --iterations 3",
+        "audit town.json plans.json",
+        "give-way town.json plans.json r1",
     ],
 )
-def test_a_limit_of_time_begins_when_the_planner_is_compiled(
-    carproof: Run, monkeypatch: pytest.MonkeyPatch, command: str
+def test_every_command_that_plans_compiles_everything_at_once(
+    carproof: Run, uncompiled: list[str], command: str
 ) -> None:
-    compiled: list[str] = []
-    monkeypatch.setattr("carp_optimum.__main__.compile_all", lambda: compiled.append(command))
-    monkeypatch.setattr("carp_optimized.compiling.is_compiled", lambda: False)
-    assert carproof(command).code in (0, 1)
-    assert compiled == [command]
+    carproof(command)
+    assert uncompiled == ["compiled"]
+
+
+@pytest.mark.nightly
+def test_the_first_command_compiles_and_announces_it_and_no_later_one_does(folder: Path) -> None:
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(folder / "cache")}
+
+    def told(*words: str) -> str:
+        command = [sys.executable, "-m", "carproof", *words]
+        return subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stderr
+
+    assert told("plan", "town.json").count("compiles") == 1
+    for later in ("demo", "polish town.json plans.json --seconds 0.1", "bound town.json --seconds 1", "warm"):
+        assert told(*later.split()) == ""

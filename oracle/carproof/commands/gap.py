@@ -8,6 +8,7 @@ from carp_spec import AfterGoal
 from carp_spec.planners import LARGEST_SEED
 from carp_verify.documents import write
 from carproof.answer import Answer
+from carproof.engines import warm
 from carproof.extras import require
 from carproof.files import InputFile, print_document, read_instance_file, require_following_in
 from carproof.generate import Range
@@ -102,6 +103,7 @@ def _gap_of(path: str, limit: int, as_json: bool) -> Answer:
 
     problem = read_instance_file(path)
     require_following_in(path, problem)
+    warm()
     measured = gap(problem, PLANNERS, limit)
     best = measured.optimum
     if as_json:
@@ -121,6 +123,7 @@ def _gaps_of(family: "Family", limit: int, as_json: bool) -> Answer:
     from carproof.gap_family import measured  # noqa: PLC0415 - loads the planners
     from carproof.gap_report import PLANNERS, cell_rows, family_document  # noqa: PLC0415
 
+    warm()
     with progress("measuring gaps", len(family.cells) * family.count) as advance:
         cells = list(measured(family, PLANNERS, limit, advance))
     if as_json:

@@ -9,6 +9,7 @@ import click
 from carp_spec import Instance
 from carp_verify.documents import write, write_solution
 from carproof.answer import Answer
+from carproof.engines import warm
 from carproof.extras import require
 from carproof.files import print_document, read_instance_file, require_following_in, write_whole
 from carproof.optima import optimum_document
@@ -53,6 +54,7 @@ def command(instance: str, limit: int, proof: Path | None, output: Path | None, 
 
     problem = read_instance_file(instance)
     require_following_in(instance, problem)
+    warm()
     started = perf_counter()
     best = optimum(problem, limit)
     seconds = perf_counter() - started

@@ -28,6 +28,7 @@ def optimum(request: OptimumRequest, engine: Engine) -> OptimumDocument:
     if request.limit <= 0:
         message = f"the limit must be a number of seconds above 0, not {request.limit}"
         raise Refusal("request", "$.limit", POSITIVE_LIMIT.id, message)
+    warm()
     with inside("$.instance"):
         return optimum_document(search(request.instance, request.limit))
 
