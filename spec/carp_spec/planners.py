@@ -14,7 +14,7 @@ PathKind: TypeAlias = Literal["shortest", "disjoint"]
 class Carp:
     """Prioritized planning: each robot in the order given, against the plans before it. Source: ter Mors 2010."""
 
-    name: ClassVar = "carp"
+    name: ClassVar[str] = "carp"
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +25,7 @@ class Shuffled:
     Fewer unplanned robots are better, then a smaller total cost, then the earlier pass.
     """
 
-    name: ClassVar = "shuffled"
+    name: ClassVar[str] = "shuffled"
     attempts: int = 10
     seed: int = 0
 
@@ -34,14 +34,14 @@ class Shuffled:
 class LongestFirst:
     """CARP with the longest shortest path first; a tie goes to the earlier robot (the paper's LF)."""
 
-    name: ClassVar = "longest-first"
+    name: ClassVar[str] = "longest-first"
 
 
 @dataclass(frozen=True, slots=True)
 class Greedy:
     """In each round, the robot whose plan costs least is planned; a tie goes to the earlier robot."""
 
-    name: ClassVar = "greedy"
+    name: ClassVar[str] = "greedy"
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +52,7 @@ class Neighbourhood:
     is paper mode), `fallback` the attempts of `Shuffled`, with the same seed, without a candidate (`None`: none).
     """
 
-    name: ClassVar = "neighbourhood"
+    name: ClassVar[str] = "neighbourhood"
     m: int = 4
     sample: int | None = None
     seed: int = 0
@@ -72,7 +72,7 @@ class FixedPaths:
     empty graph. Source: ter Mors' comparison, as the paper cites it.
     """
 
-    name: ClassVar = "fixed-paths"
+    name: ClassVar[str] = "fixed-paths"
     k: int = 3
     paths: PathKind = "shortest"
 
@@ -81,7 +81,7 @@ class FixedPaths:
 class TimeExpanded:
     """Like `Carp`, with A* on a table of occupied ticks in place of windows (the paper's [spatioTempA*])."""
 
-    name: ClassVar = "time-expanded"
+    name: ClassVar[str] = "time-expanded"
 
 
 Planner: TypeAlias = Carp | Shuffled | LongestFirst | Greedy | Neighbourhood | FixedPaths | TimeExpanded

@@ -4,12 +4,20 @@ import os
 import re
 import subprocess
 import sys
+from collections import defaultdict
+from collections.abc import Iterator
+from html import unescape
+from inspect import Parameter, isclass, signature
 from pathlib import Path
+from types import ModuleType
 
 import click
 import pytest
 
 import carproof
+import carproof.adapters
+import carproof.generate
+import carproof.strategies
 from carproof.cli import carproof as command
 from carproof.rules import ALL_RULES
 
@@ -53,3 +61,42 @@ def test_every_command_has_its_place(site: Path) -> None:
 def test_every_public_name_is_on_the_page_of_the_api(site: Path) -> None:
     text = (site / "reference" / "python.html").read_text()
     assert [name for name in carproof.__all__ if f'id="carproof.{name}"' not in text] == []
+
+
+def public() -> Iterator[tuple[str, object]]:
+    """All public names, those of public modules too."""
+    for module in (carproof, carproof.adapters, carproof.generate, carproof.strategies):
+        for name in module.__all__:
+            if not isinstance(getattr(module, name), ModuleType):
+                yield f"{module.__name__}.{name}", getattr(module, name)
+
+
+def test_the_page_of_the_api_shows_each_class_with_its_parameters_and_defaults(site: Path) -> None:
+    sections = re.split(r'(?=<h\d id="carproof\.)', (site / "reference" / "python.html").read_text())
+    texts = defaultdict[str, str](str)
+    for section in sections:
+        parts = section.partition('id="')[2].partition('"')[0].split(".")
+        for length in range(2, len(parts) + 1):
+            texts[".".join(parts[:length])] += unescape(re.sub(r"<[^>]+>", "", section))
+    classes = {name: value for name, value in public() if isclass(value)}
+    assert len(classes) > 20
+    missing = [
+        f"{name}: {parameter}"
+        for name, kind in classes.items()
+        for parameter in signature(kind).parameters.values()
+        if not re.search(rf"\b{parameter.name}\b(: [^\n]+)?{_default_of(parameter)}", texts[name])
+    ]
+    assert missing == []
+    assert [name for name, text in texts.items() if "ClassVar" in text] == []
+
+
+def _default_of(parameter: Parameter) -> str:
+    """The sign of a default: the value, or the name of a constant."""
+    is_plain = isinstance(parameter.default, int | str | None)
+    return rf"\s*=\s*(['\"]?{re.escape(str(parameter.default))}\b|[A-Z_]+\b)" if is_plain else ""
+
+
+def test_the_page_of_the_api_has_every_name_of_public_modules_and_no_private_one(site: Path) -> None:
+    ids = set(re.findall(r'id="(carproof\.[^"]+)"', (site / "reference" / "python.html").read_text()))
+    assert [name for name, _ in public() if name not in ids] == []
+    assert [each for each in ids if "._" in each] == []

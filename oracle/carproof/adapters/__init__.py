@@ -39,6 +39,7 @@ ADAPTERS: Mapping[str, Adapter] = {
         agent_paths.X_Y,
     )
 }
+"""The formats by name."""
 
 
 CLEAR_FORMAT = Code(
@@ -56,6 +57,7 @@ ADAPTER_RULES: tuple[Rule[..., Any] | Code, ...] = (
     agent_paths.RIGHT_PATHS,
     node_is_right,
 )
+"""The rules of the formats."""
 
 
 def read_foreign_solution(data: bytes, instance: Instance, file: str = "file", format: str | None = None) -> Solution:
