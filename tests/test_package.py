@@ -75,3 +75,11 @@ def test_the_version_is_that_of_the_newest_changes() -> None:
     number, _, state = heading.removeprefix("## ").partition(", ")
     assert PROJECT["version"].startswith(f"{number}.")
     assert ("dev" in PROJECT["version"]) == (state == "not released yet")
+
+
+def test_the_page_of_versions_names_the_systems_that_an_index_shows() -> None:
+    page = (ROOT / "docs" / "reference" / "versions.md").read_text()
+    supported = page.partition("## Supported systems\n")[2].partition("\n## ")[0]
+    systems = {each.rpartition(":: ")[2] for each in PROJECT["classifiers"] if each.startswith("Operating System")}
+    assert systems == {system for system in ("Linux", "MacOS", "Windows") if system.lower() in supported.lower()}
+    assert f"Python {PROJECT['requires-python'].removeprefix('>=')} or later" in supported
