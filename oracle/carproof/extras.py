@@ -2,6 +2,9 @@
 
 from importlib.util import find_spec
 
+from carp_spec.rule import DESIGN
+from carproof.codes import Code
+
 EXTRAS = {
     "distributed": ("distributed", "experiments"),
     "hypothesis": ("hypothesis", "test"),
@@ -13,13 +16,20 @@ EXTRAS = {
 """By module: the distribution that has it, and the extra."""
 
 
+INSTALLED = Code(
+    "limit/extra",
+    "The libraries that an op needs are installed; an extra of carproof brings those of some ops.",
+    DESIGN,
+)
+
+
 def advice(error: ModuleNotFoundError) -> str | None:
     """Advice for a missing module, as the end of a sentence; `None` if no extra has it."""
     module = (error.name or "").partition(".")[0]
     if module not in EXTRAS:
         return None
     distribution, extra = EXTRAS[module]
-    return f"needs {distribution}: install carproof[{extra}]"
+    return f"needs {distribution} of the extra {extra}: run pip install '.[{extra}]' in a copy of carproof"
 
 
 def require(*modules: str) -> None:

@@ -15,6 +15,7 @@ from carp_spec import Instance, Refusal, Solution
 from carp_spec.inputs.requests import sound_solution
 from carp_verify.documents import read_instance, read_solution
 from carp_verify.limits import require_following
+from carproof.layouts import layout_named
 
 T = TypeVar("T")
 STANDARD_INPUT = "-"
@@ -94,6 +95,11 @@ def read_bytes(name: str) -> bytes:
         data = sys.stdin.buffer.read() if name == STANDARD_INPUT else Path(name).read_bytes()
     except OSError as error:
         raise click.ClickException(f"{name}: it cannot be read: {error.strerror}") from error
+    if (layout := layout_named(data)) is not None:
+        message = (
+            f"{shown(name)}: this is {layout}, which carproof does not read; an instance can be made of it in Python."
+        )
+        raise click.ClickException(message)
     return data.removeprefix(BYTE_ORDER_MARK)
 
 

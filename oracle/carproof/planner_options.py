@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import fields
+from difflib import get_close_matches
 from typing import Any, cast, get_args
 
 from carp_spec import Planner, Refusal
@@ -16,7 +17,9 @@ def planner_named(name: object, options: Mapping[str, object]) -> Planner:
     Raises `Refusal` on an unknown name, an option that the planner does not have, or a value out of range.
     """
     if not isinstance(name, str) or name not in PLANNERS:
-        message = f"there is no planner {name!r}; the planners are {', '.join(PLANNERS)}"
+        near = get_close_matches(str(name), PLANNERS, 1)
+        meant = f"did you mean {near[0]}? The" if near else "the"
+        message = f"there is no planner {name!r}; {meant} planners are {', '.join(PLANNERS)}"
         raise Refusal("option", "$.planner", options_are_right.id, message)
     known = [field.name for field in fields(PLANNERS[name])]
     for option in options:

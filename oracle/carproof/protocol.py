@@ -6,9 +6,8 @@ or `{"id": same, "error": {"kind", "path", "rule", "message"}}`. The kinds of er
 - `document`: a document in the request is malformed, or the line is no JSON;
 - `request`: the request makes no sense (its fields, its robot, its tick, plans that break a rule);
 - `option`: a planner's option;
-- `limit`: the line is too long, or a number or the work is larger than carproof takes;
-- `internal`: carproof has a fault, or its installation lacks a library that the op needs; `rule` is null, and the next
-  request is answered normally.
+- `limit`: the line is too long, a number or the work is larger than carproof takes, or its installation lacks an extra;
+- `internal`: carproof has a fault; `rule` is null, and the next request is answered normally.
 """
 
 from collections.abc import Callable
@@ -18,7 +17,7 @@ import msgspec
 
 from carp_spec import Refusal
 from carp_spec.rule import DESIGN
-from carp_verify.documents import require_json, uncapitalized
+from carp_verify.documents import require_json, uncapitalized, with_values
 from carproof.codes import Code
 from carproof.requests import inside
 
@@ -103,7 +102,8 @@ def value_of(kind: Any) -> Callable[[bytes], Any]:  # noqa: ANN401 - msgspec's o
             return msgspec.json.decode(data, type=kind)
         except msgspec.ValidationError as error:
             message, _, path = str(error).replace("`", "").partition(" - at ")
-            raise Refusal("request", path or "$", RIGHT_FIELDS.id, uncapitalized(message)) from error
+            reason = uncapitalized(with_values(message, kind, path))
+            raise Refusal("request", path or "$", RIGHT_FIELDS.id, reason) from error
 
     return decode
 

@@ -111,6 +111,7 @@ class Conformance:
     def _told(self, report: "Report") -> str:
         """The finding, the size of the instance, and the folder in which it was saved."""
         from carproof.conform.saving import picture_of  # noqa: PLC0415
+        from carproof.tables import counted  # noqa: PLC0415
 
         level = report.options.level
         head = f"{report.program} does not conform to level {level.label}: {level.statement}"
@@ -120,7 +121,7 @@ class Conformance:
         smallest, *others = report.failures
         finding, instance = smallest.finding, smallest.case.instance
         assert finding is not None  # noqa: S101 - a failure has a finding
-        size = f"{len(instance.robots)} robots and {len(instance.graph.resources)} resources"
+        size = f"{counted(len(instance.robots), 'robot')} and {counted(len(instance.graph.resources), 'resource')}"
         lines = [
             head,
             f"{finding.category}: {finding.message} [{finding.rule}]",

@@ -13,6 +13,7 @@ from carproof.adapters import ADAPTER_RULES
 from carproof.codes import Code
 from carproof.conform.findings import PROGRAM_RULES
 from carproof.executing import delays_are_right
+from carproof.extras import INSTALLED
 from carproof.generate.options import GENERATE_RULES
 from carproof.movingai import MOVINGAI_RULES
 from carproof.protocol import PROTOCOL_RULES
@@ -24,6 +25,7 @@ ALL_RULES: tuple[Rule[..., Any] | Code, ...] = (
     *RULES,
     ticks_are_held,
     following_is_allowed,
+    INSTALLED,
     *REQUEST_RULES,
     delays_are_right,
     *GENERATE_RULES,

@@ -7,7 +7,7 @@ from typing import BinaryIO
 from carp_spec import Refusal
 from carp_verify.documents import write
 from carproof.engines import Engine
-from carproof.extras import advice
+from carproof.extras import INSTALLED, advice
 from carproof.ops import answer
 from carproof.protocol import LONGEST_LINE, MISSING, NULL, SHORT_LINE, ErrorDocument, Request, Response, refused
 
@@ -40,11 +40,10 @@ def respond(line: bytes, engine: Engine) -> tuple[Response, bool]:
         return Response(id, error=refused(refusal)), True
     except Exception as fault:  # noqa: BLE001 - whatever goes wrong with one request, the next is answered
         advised = advice(fault) if isinstance(fault, ModuleNotFoundError) else None
-        if advised is None:
-            traceback.print_exc(file=sys.stderr)
-            message = f"carproof failed by a fault of its own: {type(fault).__name__}: {fault}"
-        else:
-            message = f"the op {op} {advised}"
+        if advised is not None:
+            return Response(id, error=refused(Refusal("limit", "$.op", INSTALLED.id, f"the op {op} {advised}"))), True
+        traceback.print_exc(file=sys.stderr)
+        message = f"carproof failed by a fault of its own: {type(fault).__name__}: {fault}"
         return Response(id, error=ErrorDocument("internal", "$", None, message)), True
 
 

@@ -16,6 +16,11 @@ def printable(value: object) -> str:
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in str(value))
 
 
+def counted(number: int, noun: str) -> str:
+    """A number of things: `1 robot`, `2 robots`."""
+    return f"{number} {noun}" + ("" if number == 1 else "s")
+
+
 def say(text: str = "") -> None:
     """Print text for people: on standard error where a document has standard output, as with `-o -`."""
     context = click.get_current_context(silent=True)

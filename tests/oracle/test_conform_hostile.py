@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from tests.oracle.running import Run
 
 from carproof.conform.cases import Case
 from carproof.conform.child import Child, Limits
@@ -171,3 +172,18 @@ def test_an_interruption_leaves_no_child_and_ends_with_what_was_found(stop: sign
         stdout, stderr = process.communicate(timeout=GENEROUS)
     assert (process.returncode, stderr) == (128 + stop, "Interrupted.\n")
     assert "UNDECIDED" in stdout
+
+
+@pytest.mark.parametrize(
+    ("at_start", "limit"), [(True, "within 1.25 s, 5 times the 0.25 s of an answer"), (False, "within 0.25 s [")]
+)
+def test_the_message_says_which_limit_of_time_was_given(
+    carproof: Run, elsewhere: Path, at_start: bool, limit: str
+) -> None:
+    program = [*HOSTILE, "silence", *(["--at-start"] if at_start else [])]
+    options = ["--timeout", "0.25", "--examples", "1", "--shrinking", "0", "--save", elsewhere / "kept"]
+    outcome = carproof("conform", *options, "--", *program)
+    assert outcome.code == 1
+    assert limit in outcome.stdout
+    assert "1 robots" not in outcome.stdout
+    assert "1 resources" not in outcome.stdout

@@ -17,15 +17,15 @@ WITHOUT_EXTRAS = f"import sys\nsys.modules.update(dict.fromkeys({[*EXTRAS]}))\n"
 COMMAND = "from carproof.cli import main\nsys.exit(main(sys.argv[1:]))"
 COMMANDS = "import json\nfrom carproof.cli import main\nprint(any([main(each) for each in json.loads(sys.argv[1])]))"
 FINDS = {
-    "certify town.json plans.json": "z3-solver: install carproof[prove]",
-    "theorems": "z3-solver: install carproof[prove]",
-    "verify-proof .": "z3-solver: install carproof[prove]",
-    "optimum town.json": "python-sat: install carproof[prove]",
-    "bound town.json": "python-sat: install carproof[prove]",
-    "gap town.json": "python-sat: install carproof[prove]",
-    "conform true": "hypothesis: install carproof[test]",
-    "crosscheck": "hypothesis: install carproof[test]",
-    "experiment quality --quick": "joblib: install carproof[experiments]",
+    "certify town.json plans.json": "z3-solver",
+    "theorems": "z3-solver",
+    "verify-proof .": "z3-solver",
+    "optimum town.json": "python-sat",
+    "bound town.json": "python-sat",
+    "gap town.json": "python-sat",
+    "conform true": "hypothesis",
+    "crosscheck": "hypothesis",
+    "experiment quality --quick": "joblib",
 }
 DEPOT = ROOT / "oracle/carproof/examples/depot"
 BASE = [
@@ -73,7 +73,9 @@ def test_a_command_without_its_extra_names_it_and_does_nothing(command: str, fol
     before = sorted(folder.iterdir())
     done = run(COMMAND, folder, *command.split())
     assert (done.returncode, done.stdout) == (2, b"")
-    assert done.stderr.decode() == f"Error: carproof {command.split(maxsplit=1)[0]} needs {FINDS[command]}\n"
+    extra = dict(EXTRAS.values())[FINDS[command]]
+    assert done.stderr.decode().startswith(f"Error: carproof {command.split(maxsplit=1)[0]} needs {FINDS[command]}")
+    assert f"pip install '.[{extra}]'" in done.stderr.decode()
     assert sorted(folder.iterdir()) == before
 
 
@@ -81,7 +83,8 @@ def test_an_op_without_its_extra_names_it_and_the_server_goes_on(folder: Path) -
     requests = line(id=1, op="optimum", instance=TWO) + line(id=2, op="stop")
     done = run(COMMAND, folder, "serve", stdin=requests)
     refused, stopped = map(json.loads, done.stdout.splitlines())
-    assert refused["error"]["message"] == "the op optimum needs python-sat: install carproof[prove]"
+    assert (refused["error"]["kind"], refused["error"]["rule"]) == ("limit", "limit/extra")
+    assert "the op optimum needs python-sat of the extra prove" in refused["error"]["message"]
     assert stopped == {"id": 2, "result": {}}
     assert done.stderr == b""
 
@@ -97,4 +100,10 @@ def test_another_projects_tests_run_without_hypothesis_and_a_judgement_names_it(
         folder,
     )
     assert b"1 failed, 1 passed" in done.stdout, done.stdout.decode()
-    assert b"carproof.conforms needs hypothesis: install carproof[test]" in done.stdout
+    assert b"carproof.conforms needs hypothesis" in done.stdout
+
+
+def test_no_page_and_no_message_installs_an_extra_from_an_index_that_there_is_not() -> None:
+    sources = [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("oracle/**/*.py")]
+    told = [source for source in sources if re.search(r"install\s+carproof\[", source.read_text())]
+    assert told == []

@@ -20,6 +20,7 @@ DOCUMENTS: dict[str, object] = {
     "nothing": {},
     "extra": {**TWO, "extra": 1},
     "astray": corridor([{**EAST, "goal": "q"}]),
+    "stays": corridor([EAST], "stay"),
     "fraction": corridor([{**EAST, "release": 1.0}]),
     "three": corridor([EAST, BEHIND, HEAD_ON]),
     "numbered": corridor([{**EAST, "id": 7}, {**BEHIND, "id": "7"}]),
@@ -50,7 +51,8 @@ CAPACITY = "$.plans[0].visits[1]: resource b in [1,2): robots r1, r2 (capacity 1
 NO_FORMAT = "$.format: the format must be carproof-instance/1"
 MAPS = "--map m.map --scen m.scen"
 USAGE = (
-    ("chek", "No such command 'chek'"),
+    ("chek", "No such command 'chek'", "Did you mean check?"),
+    ("zzz", "No such command 'zzz'", "carproof --help lists them"),
     ("check", "Missing argument"),
     ("check --jsn", "No such option"),
     ("rules joint/capacty", "the nearest are joint/capacity"),
@@ -67,11 +69,15 @@ USAGE = (
     ),
 )
 FILES = (
-    ("plan empty.json", "empty.json: $: the document must be JSON in UTF-8: Input data was truncated [document/json]"),
+    ("plan empty.json", "empty.json: $: ", "line 1, column 1", "[document/json]"),
+    ("plan comma.json", "comma.json: $: ", "line 2, column 9", "[document/json]"),
+    ("plan latin.json", "latin.json: $: ", "line 2, column 3", "[document/json]"),
+    ("plan stays.json", "$.after_goal: ", "'stay'", "park or vanish", "[document/shape]"),
     ("plan verdict.json", f"verdict.json: {NO_FORMAT}, and is carproof-verdict/1 [document/format]"),
     (
         "plan mark.json",
-        "$: the document must be JSON in UTF-8: JSON is malformed: invalid character (byte 0) [document/j",
+        "$: the document must be JSON in UTF-8",
+        "line 1, column 1",
     ),
     ("plan nothing.json", f"nothing.json: {NO_FORMAT} [document/format]"),
     ("plan plans.json", f"plans.json: {NO_FORMAT}, and is carproof-solution/1 [document/format]"),
@@ -91,6 +97,7 @@ FILES = (
 )
 PLANNING = (
     ("plan town.json --planner best", "--planner: there is no planner 'best'; the planners are carp, shuffled"),
+    ("plan town.json --planner neighborhood", "did you mean neighbourhood? The planners are carp, shuffled"),
     ("plan town.json --planner carp --m 3", "--m: the planner carp has no option m; it has none"),
     ("plan town.json --planner greedy --seed 3", "--seed: the planner greedy has no option seed"),
     ("plan town.json --m 0", "--m: "),
@@ -198,15 +205,38 @@ EXPERIMENTS = (
     ("experiment quality --backend dask --store st", "needs the address of its --scheduler"),
     ("experiment crosscheck --questions many --store st", "'many' is not a valid integer"),
 )
+LAYOUTS = {
+    "plant.xml": '<?xml version="1.0"?>\n<model version="0.0.4" name="Plant">\n<point name="P1"/>\n</model>\n',
+    "office.building.yaml": "levels:\n  L1:\n    lanes:\n      - [0, 1]\n    vertices:\n      - [1.0, 2.0, 0, a]\n",
+    "graph.yaml": "building_name: b\nlevels:\n  L1:\n    lanes:\n    - [0, 1]\n    vertices:\n    - [1.0, 2.0]\n",
+    "lif.json": '{"metaInformation": {}, "layouts": [{"layoutId": "1", "nodes": [], "edges": []}]}',
+    "site.json": '{"type": "FeatureCollection", "features": []}',
+    "room.yaml": "image: room.pgm\nresolution: 0.05\norigin: [0.0, 0.0, 0.0]\n",
+}
+KINDS = {
+    "plant.xml": "an openTCS plant model",
+    "office.building.yaml": "an Open-RMF building",
+    "graph.yaml": "navigation graph",
+    "lif.json": "LIF",
+    "site.json": "GeoJSON",
+    "room.yaml": "a map for ROS",
+}
+OTHERS = tuple(
+    (command.replace("FILE", file), f"{file}: this is ", kind, "which carproof does not read")
+    for file, kind in KINDS.items()
+    for command in ("plan FILE", "check FILE plans.json", "check town.json FILE", "convert FILE m.scen")
+)
 WRITES = ("plan", "polish", "retime", "give-way", "view")
 
 
 @pytest.fixture(name="many")
 def many_documents(folder: Path) -> Path:
     save(**DOCUMENTS)
-    files = {"empty.json": "", "mark.json": "?", "m.map": MAP, "m.scen": SCENARIO, "lacam": LACAM}
+    files = {"empty.json": "", "mark.json": "?", "m.map": MAP, "m.scen": SCENARIO, "lacam": LACAM} | LAYOUTS
     for name, text in files.items():
         (folder / name).write_text(text)
+    (folder / "comma.json").write_text('{\n "a": 1,,\n}')
+    (folder / "latin.json").write_bytes(b'{\n "\xe9": 1}')
     (folder / "m.json").write_bytes(write_instance(INSTANCE))
     return folder
 
@@ -216,7 +246,7 @@ def many_documents(folder: Path) -> Path:
     [
         pytest.param(command, messages, id=f"{command}-{number}")
         for number, (command, *messages) in enumerate(
-            (*USAGE, *FILES, *PLANNING, *EXECUTING, *PROOFS, *MAKING, *FORMATS, *EXPERIMENTS)
+            (*USAGE, *FILES, *OTHERS, *PLANNING, *EXECUTING, *PROOFS, *MAKING, *FORMATS, *EXPERIMENTS)
         )
     ],
 )

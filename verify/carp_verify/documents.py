@@ -5,8 +5,9 @@ rule, and names the path and the rule. A value that is written and read again st
 """
 
 import json
+import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from typing import Annotated, Final, Literal, TypeAlias, TypeVar
 
@@ -178,13 +179,28 @@ def _parsed(data: bytes) -> object:
     return json.loads(data.decode(), object_pairs_hook=_members, parse_int=_whole_number)
 
 
+def _place(data: bytes, error: str) -> str:
+    """Line and column of a syntax error, each counted from 1, as a part of a sentence."""
+    position = re.search(r"\(byte (\d+)\)", error)
+    try:
+        data.decode()
+    except UnicodeDecodeError as undecoded:
+        end = undecoded.start
+    else:
+        if position is None and "truncated" not in error:
+            return ""
+        end = len(data) if position is None else int(position[1])
+    lines = data[:end].decode(errors="replace").split("\n")
+    return f", and is not at line {len(lines)}, column {len(lines[-1]) + 1}"
+
+
 def require_json(data: bytes) -> None:
     """Raise `Refusal` if the data is no JSON."""
     try:
         msgspec.json.decode(data)
         _parsed(data)
     except (*UNREADABLE, ValueError) as error:
-        message = f"the document must be JSON in UTF-8: {error}"
+        message = f"the document must be JSON in UTF-8{_place(data, str(error))}: {error}"
         raise Refusal("document", "$", is_json.id, message) from error
 
 
@@ -219,13 +235,36 @@ def uncapitalized(sentence: str) -> str:
     return sentence if sentence[1:2].isupper() else sentence[:1].lower() + sentence[1:]
 
 
+def with_values(message: str, kind: object, path: str) -> str:
+    """Msgspec's message about a value of the kind; about one of a few allowed values, it lists these."""
+    if not message.startswith("Invalid enum value"):
+        return message
+    from msgspec import inspect  # noqa: PLC0415 - most documents are right
+
+    def values(kind: inspect.Type, names: Sequence[str]) -> Iterator[object]:
+        if isinstance(kind, inspect.LiteralType):
+            yield from kind.values
+        elif isinstance(kind, inspect.UnionType):
+            for each in kind.types:
+                yield from values(each, names)
+        elif isinstance(kind, inspect.VarTupleType):
+            yield from values(kind.item_type, names)
+        elif isinstance(kind, inspect.StructType):
+            for field in kind.fields:
+                if names and field.encode_name == names[0]:
+                    yield from values(field.type, names[1:])
+
+    allowed = " or ".join(map(str, values(inspect.type_info(kind), re.findall(r"\.(\w+)", path))))
+    return f"{message}, it must be {allowed}" if allowed else message
+
+
 def _shape_error(data: bytes, kind: type[D]) -> tuple[str, str] | None:
     """Where the document departs from its kind: the path, and what would be right there."""
     try:
         msgspec.json.decode(data, type=kind)
     except UNREADABLE as error:
         message, found, path = str(error).rpartition(" - at `")
-        reason = message if found else path
+        reason = with_values(message if found else path, kind, path if found else "$")
         return (path.rstrip("`") if found else "$", uncapitalized(reason).replace("`", ""))
     return None
 

@@ -95,7 +95,7 @@ def walks_of_solution(instance: Instance, solution: Solution, *, partial: bool) 
     require_walks(instance)
     if not solution_has_walks(instance, solution, partial):
         wrong = [str(each) for each in judge(instance, solution).violations]
-        what = f"it breaks a rule: {wrong[0]}" if wrong else f"it leaves {len(solution.unplanned)} robots unplanned"
+        what = f"it breaks a rule: {wrong[0]}" if wrong else f"it leaves robots unplanned: {len(solution.unplanned)}"
         raise Refusal("document", "SOLUTION", solution_has_walks.id, f"the format cannot hold it: {what}")
     plans = {plan.robot: plan for plan in solution.plans}
     return {

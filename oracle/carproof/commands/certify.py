@@ -12,7 +12,7 @@ from carproof.files import print_document, require_following_in
 from carproof.foreign import Problem, solution_files
 from carproof.options import examples, json_option
 from carproof.progress import progress
-from carproof.tables import print_line, remark
+from carproof.tables import counted, print_line, remark
 
 if TYPE_CHECKING:
     from carp_verify.certificate import Certificate
@@ -67,7 +67,7 @@ def summary(certificate: "Certificate") -> str:
         return f"certified: check finds no rule broken, and z3 no tick too full and no exchange in {asked}"
     if certificate.violations:
         return "REFUSED: check finds a rule broken, and z3 was not asked"
-    return f"REFUSED: z3 finds {len(certificate.breaches)} ticks at which a rule is broken in {asked}"
+    return f"REFUSED: z3 finds {counted(len(certificate.breaches), 'tick')} at which a rule is broken in {asked}"
 
 
 def document(certificate: "Certificate") -> bytes:

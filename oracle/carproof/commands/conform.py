@@ -23,7 +23,7 @@ from carproof.files import OutputFile, hypothesis_elsewhere, print_document, wri
 from carproof.ops.published import op_list
 from carproof.options import examples, json_option, kernel_option
 from carproof.progress import progress
-from carproof.tables import print_line, print_table, printable, remark
+from carproof.tables import counted, print_line, print_table, printable, remark
 
 if TYPE_CHECKING:
     from carproof.conform.child import Limits
@@ -268,7 +268,7 @@ def _show(report: "Report", saved: Sequence[Path]) -> None:
     for outcome in report.failures:
         assert outcome.finding is not None  # noqa: S101 - a failure has a finding
         instance = outcome.case.instance
-        size = f"{len(instance.robots)} robots, {len(instance.graph.resources)} resources"
+        size = f"{counted(len(instance.robots), 'robot')}, {counted(len(instance.graph.resources), 'resource')}"
         finding = outcome.finding
         print_line(f"{finding.category} ({outcome.case.name}; {size}): {finding.message} [{finding.rule}]")
     for shortfall in report.shortfalls:

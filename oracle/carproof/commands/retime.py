@@ -19,7 +19,7 @@ from carproof.options import (
     trace_argument,
 )
 from carproof.results import write_result
-from carproof.tables import print_line
+from carproof.tables import counted, print_line
 
 
 @click.command(
@@ -55,5 +55,7 @@ def command(
         for plan in after.plans:
             ticks = plan.visits[-1].enter - arrivals[plan.robot]
             if ticks:
-                print_line(f"robot {plan.robot} arrives {abs(ticks)} ticks {'later' if ticks > 0 else 'earlier'}")
+                print_line(
+                    f"robot {plan.robot} arrives {counted(abs(ticks), 'tick')} {'later' if ticks > 0 else 'earlier'}"
+                )
     return Answer.YES

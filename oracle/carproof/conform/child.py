@@ -29,6 +29,13 @@ class Limits:
     memory: int = 4096
     output: int = 16 * 2**20
 
+    def shown(self, seconds: float) -> str:
+        """The seconds that something may take, and how they come from those for an answer."""
+        share = (
+            "" if seconds <= self.seconds else f", {seconds / self.seconds:g} times the {self.seconds:g} s of an answer"
+        )
+        return f"{seconds:g} s{share}"
+
 
 def environment() -> Mapping[str, str]:
     """The environment of a process; it does not reveal which case is asked."""
@@ -132,7 +139,7 @@ class Child:
             if remaining <= 0 and exit_code(self._process, 0) is not None:
                 raise self._death()
             if remaining <= 0:
-                message = f"no complete answer within {seconds:g} s"
+                message = f"no complete answer within {self._limits.shown(seconds)}"
                 raise self._fault(Category.TIMEOUT, IN_TIME.id, message)
             for key, _ in selector.select(remaining):
                 if key.fileobj is self._stdin:

@@ -18,6 +18,7 @@ from carproof.conform.run import Report
 from carproof.conform.saving import Origin, about_case, filled, judged_solution
 from carproof.conform.wording import verdict
 from carproof.rules import ALL_RULES
+from carproof.tables import counted
 from carproof.viewer.colours import variables
 from carproof.viewer.page import page
 
@@ -61,9 +62,9 @@ def _asked(report: Report, origin: Origin) -> Mapping[str, str]:
     unasked = Counter(outcome.skipped for outcome in report.outcomes if not outcome.asked)
     return {
         "level": f"{options.level.label}: {options.statement}",
-        "tested": f"{report.tested} answers to {', '.join(options.ops)}",
+        "tested": f"{counted(report.tested, 'answer')} to {', '.join(options.ops)}",
         "left out": ", ".join(options.claims.left_out) or "nothing",
-        "not asked": "; ".join(f"{count} cases: {why}" for why, count in unasked.items()),
+        "not asked": "; ".join(f"{counted(count, 'case')}: {why}" for why, count in unasked.items()),
         "seed": str(options.seed),
         "decided by": options.by,
         "again": origin.again,
@@ -82,7 +83,8 @@ def _fault(finding: Finding) -> str:
 def _failure(outcome: Outcome, folder: Path | None, origin: Origin) -> str:
     finding, case = outcome.finding, outcome.case
     assert finding is not None  # noqa: S101 - a failure has a finding
-    size = f"{len(case.instance.robots)} robots, {len(case.instance.graph.resources)} resources"
+    instance = case.instance
+    size = f"{counted(len(instance.robots), 'robot')}, {counted(len(instance.graph.resources), 'resource')}"
     entries = {**_explained(finding), "about the case": about_case(case)}
     if folder is not None:
         entries |= {"saved in": str(folder), "this case alone": filled(origin.one, case, folder)}

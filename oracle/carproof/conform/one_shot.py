@@ -81,7 +81,8 @@ class OneShot:
             code = self._wait(command, stdout.fileno(), stderr.fileno(), seconds)
         ending_of_errors = self._beginning(errors)[-_KEPT_STDERR:].decode("utf-8", "backslashreplace")
         if code is None:
-            raise Fault(Finding(Category.TIMEOUT, IN_TIME.id, f"no answer within {seconds:g} s", ending_of_errors))
+            message = f"no answer within {self._limits.shown(seconds)}"
+            raise Fault(Finding(Category.TIMEOUT, IN_TIME.id, message, ending_of_errors))
         answer = solution if names(self._template, SOLUTION) else output
         written = self._beginning(answer) if answer.is_file() else b""
         if code not in (0, 1) or (code == 1 and not written):

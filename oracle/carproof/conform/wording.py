@@ -2,12 +2,14 @@
 
 from carproof.conform.findings import LEAST_ANSWERED
 from carproof.conform.run import Report
+from carproof.tables import counted
 
 
 def verdict(report: Report) -> str:
     """The verdict, with the answers that decided it."""
     level = report.options.level
-    tested = f"{report.program}, level {level.label} ({report.options.statement}), tested on {report.tested} answers"
+    answers = counted(report.tested, "answer")
+    tested = f"{report.program}, level {level.label} ({report.options.statement}), tested on {answers}"
     if report.conforms:
         return f"CONFORMS: {tested}; {_answered(report)}"
     if report.conforms is None:

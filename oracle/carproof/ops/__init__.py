@@ -6,6 +6,7 @@ the handler into `OPS`. `make generated` then writes the schema and the document
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from difflib import get_close_matches
 from importlib.metadata import version
 from typing import Any
 
@@ -88,7 +89,10 @@ OPS: Mapping[str, Op] = {op.name: op for op in map(op_of, _HANDLERS)}
 def answer(request: Request, name: str, engine: Engine) -> object:
     """The result of a request, as JSON holds it."""
     if name not in OPS:
-        raise Refusal("request", "$.op", RIGHT_FIELDS.id, f"the op must be one of {', '.join(OPS)}, not {name!r}")
+        near = get_close_matches(name, OPS, 1)
+        meant = f"did you mean {near[0]}? The" if near else "the"
+        message = f"there is no op {name!r}; {meant} op start lists all"
+        raise Refusal("request", "$.op", RIGHT_FIELDS.id, message)
     try:
         return OPS[name].answer(request, engine)
     except UndecidedError as error:
