@@ -83,12 +83,12 @@ gap: install
 
 # Measure how long the search for an optimum takes, and put the table into docs/results/gaps.md; takes up to half an hour.
 optimum-figures: install
-	$(BIN)/python -m carproof.optimum_table
+	$(BIN)/python -m carp_experiments.measuring.optimum_table
 
 # Measure how far polished plans are above the bound on the paper's maps, and put the tables into docs/results/gaps.md: four
-# hours. `python -m carproof.gap_table --seeds 2` measures two assignments a map, `--quick` prints the tables of a few seconds.
+# hours. `python -m carp_experiments.measuring.gap_table --seeds 2` measures two assignments a map, `--quick` prints the tables of a few seconds.
 gap-figures: install
-	$(BIN)/python -m carproof.gap_table
+	$(BIN)/python -m carp_experiments.measuring.gap_table
 
 # A million delayed executions in order without a rotation, about a minute; continues where the store ends.
 executions: install
@@ -102,7 +102,7 @@ generated: install
 	$(BIN)/python -m carproof.schema
 	$(BIN)/python -m tests.oracle.test_readme
 	$(BIN)/python -m tests.vectors.writing
-	$(BIN)/python -m carproof.ops.published
+	$(BIN)/python -m carproof.protocol.ops.published
 	$(BIN)/python -m carproof.viewer.samples
 	$(BIN)/python -m tests.test_surface
 

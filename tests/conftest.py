@@ -26,7 +26,7 @@ for name in ("CI", "BUILD_NUMBER", "COLUMNS", "LINES", "NO_COLOR", "FORCE_COLOR"
 @pytest.fixture
 def carproof() -> Run:
     """Run `carproof` in this process: its first argument is split into words."""
-    from carproof.cli import main
+    from carproof.entry.cli import main
 
     def run(words: str = "", *arguments: object, stdin: bytes = b"") -> Outcome:
         with CliRunner().isolation(input=stdin) as (stdout, stderr, _):

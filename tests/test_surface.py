@@ -11,8 +11,8 @@ from pathlib import Path
 import click
 import pytest
 
-from carproof.cli import carproof
-from carproof.ops import OPS
+from carproof.entry.cli import carproof
+from carproof.protocol.ops import OPS
 from carproof.rules import ALL_RULES
 from carproof.schema import FOLDER
 

@@ -4,22 +4,22 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import product
 
-from carp_experiments.adding_time import PAPERS_MAP, time_report, time_row
-from carp_experiments.delayed import execution_report, execution_row
-from carp_experiments.following import following_report, following_row
-from carp_experiments.left_out import left_out_report, left_out_row
-from carp_experiments.map_cases import FULL_MAP, WAREHOUSE, MapCase
-from carp_experiments.people import people_report, people_row
-from carp_experiments.polishing import polish_report, polish_row
-from carp_experiments.quality import quality_row
-from carp_experiments.quality_report import quality_report
-from carp_experiments.related_work import related_report, related_row
+from carp_experiments.beyond.delayed import execution_report, execution_row
+from carp_experiments.beyond.following import following_report, following_row
+from carp_experiments.beyond.left_out import left_out_report, left_out_row
+from carp_experiments.beyond.people import people_report, people_row
+from carp_experiments.beyond.streams import stream_report, stream_row
+from carp_experiments.beyond.unplanned import unplanned_report, unplanned_row
+from carp_experiments.paper.adding_time import PAPERS_MAP, time_report, time_row
+from carp_experiments.paper.map_cases import FULL_MAP, WAREHOUSE, MapCase
+from carp_experiments.paper.polishing import polish_report, polish_row
+from carp_experiments.paper.quality import quality_row
+from carp_experiments.paper.quality_report import quality_report
+from carp_experiments.paper.related_work import related_report, related_row
+from carp_experiments.paper.reuse_counts import reuse_report, reuse_row
+from carp_experiments.paper.small_gaps import SIDE, gap_report, gap_row
 from carp_experiments.report import ExperimentReport
-from carp_experiments.reuse_counts import reuse_report, reuse_row
-from carp_experiments.small_gaps import SIDE, gap_report, gap_row
 from carp_experiments.store import Row
-from carp_experiments.streams import stream_report, stream_row
-from carp_experiments.unplanned import unplanned_report, unplanned_row
 from carp_spec import Refusal
 
 ALL_MAPS = tuple(range(FULL_MAP + 1))

@@ -5,7 +5,7 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
-from carproof.statistics import Interval
+from carproof.gap.statistics import Interval
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

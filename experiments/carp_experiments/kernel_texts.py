@@ -12,20 +12,20 @@ from typing import Any, Literal
 
 import msgspec
 
-from carp_experiments.kernel_verdicts import certified, fleet_questions
+from carp_experiments.measuring.kernel_verdicts import certified, fleet_questions
 from carp_experiments.report import ExperimentReport, Table
 from carp_experiments.store import Row
 from carp_experiments.texts import changed, vector_requests
 from carp_spec import Instance, Plan, Refusal, Solution, judge
 from carp_spec.permutations import splitmix64
 from carp_spec.query_certificates import QueryCertificateDocument
+from carp_verify.bound.verify import verify_bound
 from carp_verify.bounds import digest, read_bound
 from carp_verify.documents import read_instance, read_query_certificate, read_solution, require_json, solution_document
 from carp_verify.kernel import KernelVerdict, is_answer, replies, request, verdict_of
 from carp_verify.limits import require_following
-from carp_verify.verify_bound import verify_bound
-from carp_verify.verify_query import Traffic, require_certificate, verify_query
-from carproof.questions import Draw, draw_fleet, draw_instance
+from carp_verify.query.verify import Traffic, require_certificate, verify_query
+from carproof.testing.random_instances import Draw, draw_fleet, draw_instance
 
 BLOCK = 1000
 FULL_TEXTS = 1_000_000

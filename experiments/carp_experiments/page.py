@@ -9,11 +9,11 @@ from typing import TypeVar
 
 import msgspec
 
-from carp_experiments.adding_time import Time
-from carp_experiments.claims import Claim, quality_claims, related_claims, reuse_claims, time_claims
-from carp_experiments.quality import QualitySummary
-from carp_experiments.related_work import Related
-from carp_experiments.reuse_counts import ReuseOf
+from carp_experiments.paper.adding_time import Time
+from carp_experiments.paper.claims import Claim, quality_claims, related_claims, reuse_claims, time_claims
+from carp_experiments.paper.quality import QualitySummary
+from carp_experiments.paper.related_work import Related
+from carp_experiments.paper.reuse_counts import ReuseOf
 
 T = TypeVar("T")
 RESULTS = Path(__file__).parents[1] / "results"

@@ -3,19 +3,19 @@
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
-from carp_experiments.adding_time import Time, time_figures
-from carp_experiments.delayed import DriverOf, execution_figures
+from carp_experiments.beyond.delayed import DriverOf, execution_figures
+from carp_experiments.beyond.following import FollowingOf, following_figures
+from carp_experiments.beyond.people import PeopleOf, people_figures
+from carp_experiments.beyond.streams import StreamOf, stream_figures
 from carp_experiments.figures import line_figure
-from carp_experiments.following import FollowingOf, following_figures
 from carp_experiments.page import RESULTS, Run, read_run, summary_of
-from carp_experiments.people import PeopleOf, people_figures
-from carp_experiments.polishing import PolishSummary, polish_figures
-from carp_experiments.quality import QualitySummary
-from carp_experiments.quality_report import quality_figures
-from carp_experiments.related_work import Related, related_figures
+from carp_experiments.paper.adding_time import Time, time_figures
+from carp_experiments.paper.polishing import PolishSummary, polish_figures
+from carp_experiments.paper.quality import QualitySummary
+from carp_experiments.paper.quality_report import quality_figures
+from carp_experiments.paper.related_work import Related, related_figures
+from carp_experiments.paper.small_gaps import GapOf, gap_figures
 from carp_experiments.report import Figure
-from carp_experiments.small_gaps import GapOf, gap_figures
-from carp_experiments.streams import StreamOf, stream_figures
 
 FIGURES: Mapping[str, Callable[[Run], Sequence[Figure]]] = {
     "quality": lambda run: quality_figures(summary_of(run, QualitySummary)),

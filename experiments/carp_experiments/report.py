@@ -7,7 +7,7 @@ from typing import Any
 
 import msgspec
 
-from carproof.statistics import Interval
+from carproof.gap.statistics import Interval
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 import msgspec
 
 from carp_spec.permutations import shuffle
-from carproof.questions import Draw
-from carproof.vectors import vectors
+from carproof.testing.random_instances import Draw
+from carproof.testing.vectors import vectors
 
 OPS = ("check", "verify-bound", "verify-query", "audit")
 MOST_CHANGES = 3

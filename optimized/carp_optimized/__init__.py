@@ -4,8 +4,8 @@
 Importing this page loads neither numpy nor numba.
 """
 
+from carp_optimized.neighbourhood.reuse import Queries, Reuse
 from carp_optimized.planners import PLANNERS, add, certifier, find, plan, polish, query, retime, steps
-from carp_optimized.reuse import Queries, Reuse
 
 __all__ = [
     "PLANNERS",

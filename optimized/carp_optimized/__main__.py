@@ -1,8 +1,8 @@
 """`python -m carp_optimized` compiles the planner, so that no later call has to; once done, it does nothing."""
 
-from carp_optimized.compiling import note_that_it_is_compiled
-from carp_optimized.execution import retime
+from carp_optimized.execution.following import retime
 from carp_optimized.fleet import PlannedFleet
+from carp_optimized.jit.compiling import note_that_it_is_compiled
 from carp_spec import Instance, Neighbourhood, Plan, Resource, ResourceGraph, Robot, Shuffled, Solution, Visit
 from carp_spec.traces import Trace
 

@@ -6,8 +6,15 @@ from typing import TypeAlias, TypeVar
 
 import numpy as np
 
-from carp_optimized import encoding, passes
-from carp_optimized.arrays import (
+from carp_optimized import passes
+from carp_optimized.jit.compiling import RecordsExhausted, RoomExhausted, TicksExhausted
+from carp_optimized.jit.references import Native
+from carp_optimized.neighbourhood.adding import add_robot
+from carp_optimized.neighbourhood.polishing import QUEUED, TURN, play_rounds
+from carp_optimized.neighbourhood.reuse import Queries, Reuse
+from carp_optimized.recording import copied, enlarged, read_plan, write_plan
+from carp_optimized.state import encoding
+from carp_optimized.state.arrays import (
     ASKED,
     BOUND,
     KEPT,
@@ -25,13 +32,7 @@ from carp_optimized.arrays import (
     Records,
     State,
 )
-from carp_optimized.compiling import RecordsExhausted, RoomExhausted, TicksExhausted
-from carp_optimized.neighbourhood import add_robot
-from carp_optimized.polishing import QUEUED, TURN, play_rounds
-from carp_optimized.recording import copied, enlarged, read_plan, write_plan
-from carp_optimized.records import keep_records
-from carp_optimized.references import Native
-from carp_optimized.reuse import Queries, Reuse
+from carp_optimized.state.records import keep_records
 from carp_spec import Instance, Neighbourhood, Plan, Refusal, RobotId, Shuffled
 from carp_spec.inputs.values import require_instance
 from carp_spec.permutations import shuffle, splitmix64

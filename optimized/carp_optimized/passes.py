@@ -1,13 +1,13 @@
 """Prioritized planning of many robots: CARP, and greedy best-first."""
 
-from carp_optimized.arrays import NEVER, NONE, TOO_FAR, UNCHANGED, UNKNOWN, Ints, State
-from carp_optimized.compiling import RecordsExhausted, TicksExhausted, entry
-from carp_optimized.guides import guide_slot, shortest_of
-from carp_optimized.natives import state_at
-from carp_optimized.records import close_record, cost_of, start_record
-from carp_optimized.references import Native
-from carp_optimized.search import find_plan
-from carp_optimized.windows import plan_fits, reserve, withdraw
+from carp_optimized.jit.compiling import RecordsExhausted, TicksExhausted, entry
+from carp_optimized.jit.references import Native
+from carp_optimized.query.guides import guide_slot, shortest_of
+from carp_optimized.query.search import find_plan
+from carp_optimized.query.windows import plan_fits, reserve, withdraw
+from carp_optimized.state.arrays import NEVER, NONE, TOO_FAR, UNCHANGED, UNKNOWN, Ints, State
+from carp_optimized.state.natives import state_at
+from carp_optimized.state.records import close_record, cost_of, start_record
 
 UNASKED = -2
 
@@ -94,7 +94,8 @@ def greedy(native: Native[State], waiting: Ints, found: Ints, order: Ints, plans
     """Plan, in each round, the waiting robot with the cheapest plan; returns how many have one, in `order`.
 
     `found` holds what the robots waiting found last, `UNASKED` at first. Later rounds only have more reservations. So a
-    plan that still fits is found again (see `carp_optimized.replanning`), and a robot without a plan stays without one.
+    plan that still fits is found again (see `carp_optimized.neighbourhood.replanning`), and a robot without a plan
+    stays without one.
     """
     state = state_at(native)
     for count in range(waiting.size):

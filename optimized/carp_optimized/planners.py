@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from time import perf_counter
 from typing import TYPE_CHECKING
 
-from carp_optimized.reuse import Reuse
+from carp_optimized.neighbourhood.reuse import Reuse
 from carp_spec import (
     Carp,
     Greedy,
@@ -69,7 +69,7 @@ def certifier(instance: Instance) -> "Certifier":
 
 def retime(instance: Instance, solution: Solution, trace: "Trace") -> Solution:
     """The plans for the rest of the way after a trace, in the same order and as early as possible."""
-    from carp_optimized.execution import retime as compiled  # noqa: PLC0415 - numba is slow to load
+    from carp_optimized.execution.following import retime as compiled  # noqa: PLC0415 - numba is slow to load
 
     return compiled(instance, solution, trace)
 

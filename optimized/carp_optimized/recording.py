@@ -5,9 +5,9 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from carp_optimized.arrays import NEVER, Records, State
+from carp_optimized.jit.references import Native
 from carp_optimized.passes import record_plan
-from carp_optimized.references import Native
+from carp_optimized.state.arrays import NEVER, Records, State
 from carp_spec import Instance, Plan, Visit
 
 T = TypeVar("T", bound=np.generic)

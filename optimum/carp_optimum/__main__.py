@@ -1,12 +1,12 @@
 """`python -m carp_optimum` compiles what bounds and planners run, so that no later call has to."""
 
 from carp_optimized.__main__ import compile_all as compile_planner
-from carp_optimized.compiling import note_that_it_is_compiled
+from carp_optimized.jit.compiling import note_that_it_is_compiled
 from carp_optimum.bound import lower_bound
-from carp_optimum.branching import Branching
-from carp_optimum.deadlines import Deadlines, Member
-from carp_optimum.price_search import PriceSearch
-from carp_optimum.sight_search import SightSearch
+from carp_optimum.branching.branching import Branching
+from carp_optimum.claims.pair_search import SightSearch
+from carp_optimum.lagrangian.deadlines import Deadlines, Member
+from carp_optimum.lagrangian.price_search import PriceSearch
 from carp_spec import Instance, Resource, ResourceGraph, Robot
 from carp_verify.bounds import DeadlinesDocument
 

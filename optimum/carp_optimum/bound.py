@@ -1,11 +1,11 @@
-"""Finds a good lower bound on the total cost, with a certificate that `carp_verify.verify_bound` checks.
+"""Finds a good lower bound on the total cost, with a certificate that `carp_verify.bound.verify` checks.
 
 This is Lagrangian relaxation. Step by step, prices rise where the robots' cheapest ways exceed a capacity, and fall
-where they use less than it (`carp_optimum.price_steps`). When that gains nothing more, deadlines are added
-(`carp_optimum.sight_search`, `carp_optimum.deadline_search`), and where these gain nothing either, cuts
-(`carp_optimum.cut_search`). The search aims a little above the best bound known, and closer to it after each failure.
-Source: the target level method of Goffin and Kiwiel 1999, over the Lagrangian relaxation of all rules of plans
-together.
+where they use less than it (`carp_optimum.lagrangian.price_steps`). When that gains nothing more, deadlines are added
+(`carp_optimum.claims.pair_search`, `carp_optimum.claims.deadline_search`), and where these gain nothing either, cuts
+(`carp_optimum.claims.cut_search`). The search aims a little above the best bound known, and closer to it after each
+failure. Source: the target level method of Goffin and Kiwiel 1999, over the Lagrangian relaxation of all rules of
+plans together.
 """
 
 from collections.abc import Callable
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
-from carp_optimum.solver import Deadline, TimeOver
+from carp_optimum.sat.solver import Deadline, TimeOver
 from carp_spec import Instance
 from carp_spec.inputs.options import require_limits
 from carp_spec.inputs.values import require_instance
@@ -24,8 +24,8 @@ from carp_verify.bounds import BOUND_FORMAT, BoundDocument, digest
 from carp_verify.limits import require_following
 
 if TYPE_CHECKING:
-    from carp_optimum.cut_search import CutSearch
-    from carp_optimum.price_search import PriceSearch
+    from carp_optimum.claims.cut_search import CutSearch
+    from carp_optimum.lagrangian.price_search import PriceSearch
 
 SCALE = 1 << 16
 FIRST_AIM, NEXT_AIM, FINAL_AIM = 10, 50, 1024
@@ -67,10 +67,10 @@ def lower_bound(
     ticks, for which the search for an optimum has no literals. Raises `Refusal` for numbers that are too large.
     """
     _require(instance, seconds=seconds, steps=steps)
-    from carp_optimum.cut_search import CutSearch  # noqa: PLC0415 - numba is slow to load
-    from carp_optimum.deadline_search import DeadlineSearch  # noqa: PLC0415
-    from carp_optimum.price_search import PriceSearch  # noqa: PLC0415
-    from carp_optimum.sight_search import SightSearch  # noqa: PLC0415
+    from carp_optimum.claims.cut_search import CutSearch  # noqa: PLC0415 - numba is slow to load
+    from carp_optimum.claims.deadline_search import DeadlineSearch  # noqa: PLC0415
+    from carp_optimum.claims.pair_search import SightSearch  # noqa: PLC0415
+    from carp_optimum.lagrangian.price_search import PriceSearch  # noqa: PLC0415
 
     first = _limit(seconds, steps, FIRST_PARTS, clock)
     rough = _limit(seconds, steps, ROUGH_PARTS, clock)

@@ -9,13 +9,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from carp_optimum.optimum import Optimum, optimum
-from carp_optimum.solver import Deadline, TimeOver
+from carp_optimum.sat.solver import Deadline, TimeOver
 from carp_reference import plan, query
 from carp_spec import Instance, Plan, Planner, RobotId, plan_cost, total_cost
-from carp_verify.bound_rules import require_kept
-from carp_verify.encoding import Encoding
+from carp_verify.bound.rules import require_kept
 from carp_verify.limits import require_following
-from carp_verify.optimum_rules import MOST_ORDERED, refuse_size
+from carp_verify.optimum.encoding import Encoding
+from carp_verify.optimum.rules import MOST_ORDERED, refuse_size
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,9 +2,9 @@
 
 First an annealing gives plans. Then plans of a total of at most a few ticks above the bound are searched for, again and
 again: there are none, which raises the bound, or the cheapest ones are found, and these are the optimum. Prices give a
-lower bound (`carp_optimum.bound`), and such a search is a formula (`carp_optimum.priced_formula`). Where the bound is
-too far from the total for formulas, only the plans get better. For a crowd it is half of a search by branching
-(`carp_optimum.branching`); another one does the other half.
+lower bound (`carp_optimum.bound`), and such a search is a formula (`carp_optimum.sat.priced_formula`). Where the bound
+is too far from the total for formulas, only the plans get better. For a crowd it is half of a search by branching
+(`carp_optimum.branching.branching`); another one does the other half.
 
 Each stage gives the work of the next one before it begins. So one who asks for the results of less work need not wait.
 """
@@ -15,11 +15,11 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Protocol, TypeAlias
 
-from carp_optimum import heuristics
-from carp_optimum.branching import Branching
-from carp_optimum.priced_formula import priced_formula
-from carp_optimum.reduced_costs import PricedBound
-from carp_optimum.solver import Solver
+from carp_optimum.branching.branching import Branching
+from carp_optimum.lagrangian.reduced_costs import PricedBound
+from carp_optimum.sat import heuristics
+from carp_optimum.sat.priced_formula import priced_formula
+from carp_optimum.sat.solver import Solver
 from carp_spec import Instance, Plan, Refusal, total_cost
 
 PRICE_STEPS = 1600

@@ -7,17 +7,18 @@ model's plans have a total of just the lower bound; the conflicts among them are
 continues, until none is left. Source: the OLL algorithm of Andres, Kaufmann, Matheis and Schaub 2012, over delays.
 
 After many conflicts a second search, for plans and for a lower bound (`carp_optimum.narrowing`), begins in another
-process (`carp_optimum.beside`). The search ends where the best plans cost no more than the better bound. For a crowd
-this search instead takes half of the parts of a search by branching, and the other process the other half.
+process (`carp_optimum.background`). The search ends where the best plans cost no more than the better bound. For a
+crowd this search instead takes half of the parts of a search by branching, and the other process the other half.
 
-Where no plan set exists, the search finds one of these obstacles (`carp_verify.unsolvable` says why each is one):
+Where no plan set exists, the search finds one of these obstacles (`carp_verify.optimum.unsolvable` says why each is
+one):
 
 - `no-way`: a robot has no way to its goal;
 - `full-goal`: with `park`, a resource is the goal of more robots than its capacity;
 - `clauses`: a core is empty, so robots break a rule however late they may be;
 - `states`: the joint states of all robots are few, and a search over all of them finds no end.
 
-The answer is not proved: it rests on this module and on the solver. `carp_optimum.proving` writes a proof of it.
+The answer is not proved: it rests on this module and on the solver. `carp_optimum.sat.proving` writes a proof of it.
 """
 
 from collections import Counter
@@ -25,19 +26,19 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from time import monotonic_ns
 
-from carp_optimum.beside import Beside
-from carp_optimum.heuristics import plans_of_all
+from carp_optimum.background import Beside
 from carp_optimum.narrowing import Between, half_narrowed, narrowed
-from carp_optimum.solver import Deadline, Solver, TimeOver
+from carp_optimum.sat.heuristics import plans_of_all
+from carp_optimum.sat.solver import Deadline, Solver, TimeOver
 from carp_spec import Instance, Plan, Refusal, Solution, judge, total_cost
 from carp_spec.inputs.options import require_limits
 from carp_spec.inputs.values import require_instance
-from carp_verify.bound_rules import ContradictionError, require_kept
-from carp_verify.clauses import Literal, Unary
-from carp_verify.encoding import Encoding, Evidence, violated
-from carp_verify.joint_search import least_total_cost
+from carp_verify.bound.rules import ContradictionError, require_kept
 from carp_verify.limits import require_following
-from carp_verify.unsolvable import Clauses, FullGoal, NoWay, Obstacle, States, is_searched
+from carp_verify.optimum.clauses import Literal, Unary
+from carp_verify.optimum.encoding import Encoding, Evidence, violated
+from carp_verify.optimum.joint_search import least_total_cost
+from carp_verify.optimum.unsolvable import Clauses, FullGoal, NoWay, Obstacle, States, is_searched
 
 CONFLICTS_TO_SHRINK = 300
 CONFLICTS_BEFORE_BESIDE = 60_000
@@ -178,10 +179,10 @@ class _Search:
 
     def start_beside(self) -> None:
         """Start the search beside where the compiled search for prices is at hand; a crowd is searched by halves."""
-        from carp_optimized.compiling import is_cached  # noqa: PLC0415 - slow to load
-        from carp_optimum.branching import is_crowded  # noqa: PLC0415
-        from carp_optimum.crowd_bounds import bound_part  # noqa: PLC0415
-        from carp_optimum.priced_ways import find_ways  # noqa: PLC0415
+        from carp_optimized.jit.compiling import is_cached  # noqa: PLC0415 - slow to load
+        from carp_optimum.branching.bounds import bound_part  # noqa: PLC0415
+        from carp_optimum.branching.branching import is_crowded  # noqa: PLC0415
+        from carp_optimum.lagrangian.priced_paths import find_ways  # noqa: PLC0415
 
         self.priced = False
         if not (is_cached(find_ways) and is_cached(bound_part)):

@@ -8,8 +8,8 @@
 It has the model (`Instance`, `ResourceGraph`, `Resource`, `Robot`, `Solution`, `Plan`, `Visit`) and its documents
 (`read_...`, `write_...`); the checker (`check`, with a `Verdict` of `Violation`s by the rules in `RULES`); the planners
 (`plan`, `query`, `add`, `polish`) with their options (`Carp`, `Neighbourhood`, ...); and bounds and optima (`bound`,
-`verify_bound`, `optimum`). `carproof.adapters` reads and writes other tools' formats, `carproof.generate` makes
-instances, and `carproof.strategies` draws them for hypothesis.
+`verify_bound`, `optimum`). `carproof.formats` reads and writes other tools' formats, `carproof.generate` makes
+instances, and `carproof.testing.strategies` draws them for hypothesis.
 
 A name is loaded when it is first used, so that importing this page costs nothing.
 """
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from carp_optimized import add, plan, query
-    from carp_optimum.annealing import polish
+    from carp_optimized.improve.annealing import polish
     from carp_optimum.bound import lower_bound as bound
     from carp_optimum.optimum import Optimum, optimum
     from carp_spec import (
@@ -54,9 +54,9 @@ if TYPE_CHECKING:
         total_cost,
     )
     from carp_spec import judge as check
+    from carp_verify.bound.verify import verify_bound
     from carp_verify.bounds import BoundDocument, read_bound
     from carp_verify.documents import read_instance, read_solution, write_instance, write_solution, write_verdict
-    from carp_verify.verify_bound import verify_bound
     from carproof.planner_options import planner_named
     from carproof.registry import RULES
 
@@ -64,7 +64,7 @@ _DOCUMENTS = ("read_instance", "read_solution", "write_instance", "write_solutio
 _ELSEWHERE = {
     "add": "carp_optimized",
     "plan": "carp_optimized",
-    "polish": "carp_optimum.annealing",
+    "polish": "carp_optimized.improve.annealing",
     "query": "carp_optimized",
     "check": "carp_spec:judge",
     "BoundDocument": "carp_verify.bounds",
@@ -75,7 +75,7 @@ _ELSEWHERE = {
     "bound": "carp_optimum.bound:lower_bound",
     "Optimum": "carp_optimum.optimum",
     "optimum": "carp_optimum.optimum",
-    "verify_bound": "carp_verify.verify_bound",
+    "verify_bound": "carp_verify.bound.verify",
 }
 """The module of each name and its name there; all other names come from `carp_spec`."""
 

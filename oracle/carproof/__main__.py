@@ -2,7 +2,7 @@
 
 import sys
 
-from carproof.start import main
+from carproof.entry.start import main
 
 if __name__ == "__main__":
     sys.exit(main())

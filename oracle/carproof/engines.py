@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any, Protocol, cast
 from carp_spec import Instance, Neighbourhood, Plan, Planner, Refusal, RobotId, Solution, total_cost
 from carp_spec.query_certificates import QueryCertificateDocument
 from carp_spec.traces import Trace
-from carproof.progress import progress
+from carproof.command_line.progress import progress
 
 if TYPE_CHECKING:
     from carp_optimized.fleet import PlannedFleet
-    from carp_optimum.many_starts import Polish
+    from carp_optimized.improve.many_starts import Polish
 
 ENGINES = ("optimized", "reference")
 
@@ -70,7 +70,7 @@ class FastestEngine:
     def polish(self) -> "Polish":
         """Better plans; with `seconds`, by simulated annealing."""
         compile_what_is_kept()
-        from carp_optimum.annealing import polish  # noqa: PLC0415 - loaded when it is first used
+        from carp_optimized.improve.annealing import polish  # noqa: PLC0415 - loaded when it is first used
 
         return polish
 
@@ -87,7 +87,7 @@ def warm() -> bool:
 
     This is one step, which is announced on standard error. Commands with a time limit do it before the limit starts.
     """
-    from carp_optimized import compiling  # noqa: PLC0415 - loaded when it is first used
+    from carp_optimized.jit import compiling  # noqa: PLC0415 - loaded when it is first used
 
     package = "carp_optimized" if find_spec("pysat") is None else "carp_optimum"
     if compiling.is_compiled(package):
@@ -108,7 +108,7 @@ def warm() -> bool:
 
 def compile_what_is_kept() -> None:
     """Compile everything in one step where it is kept; elsewhere each process compiles what it calls."""
-    from carp_optimized.compiling import is_kept  # noqa: PLC0415 - loaded when it is first used
+    from carp_optimized.jit.compiling import is_kept  # noqa: PLC0415 - loaded when it is first used
 
     if is_kept():
         warm()

@@ -3,7 +3,7 @@
 from importlib.util import find_spec
 
 from carp_spec.rule import DESIGN
-from carproof.codes import Code
+from carproof.input_rules import Code
 
 EXTRAS = {
     "distributed": ("distributed", "experiments"),

@@ -8,7 +8,7 @@ from carp_verify.documents import SolutionDocument, solution_document
 
 if TYPE_CHECKING:
     from carp_optimum.optimum import Optimum
-    from carp_verify.proof import Verified
+    from carp_verify.optimum.proof import Verified
 
 
 class OptimumDocument(msgspec.Struct, frozen=True, omit_defaults=True, forbid_unknown_fields=True):

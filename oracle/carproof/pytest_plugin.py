@@ -110,8 +110,8 @@ class Conformance:
 
     def _told(self, report: "Report") -> str:
         """The finding, the size of the instance, and the folder in which it was saved."""
+        from carproof.command_line.tables import counted  # noqa: PLC0415
         from carproof.conform.saving import picture_of  # noqa: PLC0415
-        from carproof.tables import counted  # noqa: PLC0415
 
         level = report.options.level
         head = f"{report.program} does not conform to level {level.label}: {level.statement}"

@@ -21,7 +21,7 @@ from carp_spec.query_rules import absence_is_true, expansion_key, plan_is_optima
 from carp_spec.rule import Rule
 from carp_spec.windows import stay_fits, windows_are_free
 from carp_verify.documents import has_format, has_shape, is_json
-from carproof.giving_way import robot_is_first
+from carproof.execution.giving_way import robot_is_first
 
 RULES: tuple[Rule[..., Any], ...] = (
     is_json,

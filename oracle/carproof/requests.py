@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from carp_spec import Instance, Refusal, RobotId, Solution
 from carp_spec.inputs.requests import require_robot, sound_solution
 from carp_spec.rule import DESIGN
-from carproof.codes import Code
+from carproof.input_rules import Code
 
 KNOWN_ROBOT = Code(
     "request/robot", "The robot asked for is one of the instance, and one to be added has no plan yet.", DESIGN

@@ -4,19 +4,19 @@ from typing import Any
 
 from carp_spec import Rule
 from carp_spec.planners import ticks_are_held
-from carp_verify.bound_rules import BOUND_RULES
+from carp_verify.bound.rules import BOUND_RULES
 from carp_verify.kernel import KERNEL_RULES
 from carp_verify.limits import following_is_allowed
-from carp_verify.optimum_rules import OPTIMUM_RULES
-from carp_verify.query_certificate_rules import QUERY_CERTIFICATE_RULES
-from carproof.adapters import ADAPTER_RULES
-from carproof.codes import Code
+from carp_verify.optimum.rules import OPTIMUM_RULES
+from carp_verify.query.rules import QUERY_CERTIFICATE_RULES
 from carproof.conform.findings import PROGRAM_RULES
-from carproof.executing import delays_are_right
+from carproof.execution.simulation import delays_are_right
 from carproof.extras import INSTALLED
+from carproof.formats import ADAPTER_RULES
+from carproof.formats.movingai import MOVINGAI_RULES
 from carproof.generate.options import GENERATE_RULES
-from carproof.movingai import MOVINGAI_RULES
-from carproof.protocol import PROTOCOL_RULES
+from carproof.input_rules import Code
+from carproof.protocol.lines import PROTOCOL_RULES
 from carproof.registry import RULES
 from carproof.requests import REQUEST_RULES
 from carproof.viewer.limits import VIEW_RULES

@@ -15,7 +15,7 @@ import carp_spec
 from carp_spec.query_certificates import QueryCertificateDocument
 from carp_verify.bounds import BoundDocument
 from carp_verify.documents import InstanceDocument, SolutionDocument, TraceDocument, VerdictDocument
-from carproof.vectors import VectorsDocument
+from carproof.testing.vectors import VectorsDocument
 
 FOLDER = Path(carp_spec.__file__).with_name("schemas")
 DRAFT = "https://json-schema.org/draft/2020-12/schema"

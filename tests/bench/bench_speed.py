@@ -9,10 +9,10 @@ import pytest
 from tests.programs import require_programs
 
 import carp_reference
+from carp_experiments.measuring.bench import ROBOTS
 from carp_optimized import passes
-from carp_optimized.arrays import NEVER
 from carp_optimized.fleet import PlannedFleet
-from carproof.bench import ROBOTS
+from carp_optimized.state.arrays import NEVER
 from carproof.generate import Fleet, Grid, grid_instance
 
 HERE = Path(__file__).parent

@@ -15,10 +15,10 @@ import click
 import pytest
 
 import carproof
-import carproof.adapters
+import carproof.formats
 import carproof.generate
-import carproof.strategies
-from carproof.cli import carproof as command
+import carproof.testing.strategies
+from carproof.entry.cli import carproof as command
 from carproof.rules import ALL_RULES
 
 ROOT = Path(__file__).parents[2]
@@ -65,7 +65,7 @@ def test_every_public_name_is_on_the_page_of_the_api(site: Path) -> None:
 
 def public() -> Iterator[tuple[str, object]]:
     """All public names, those of public modules too."""
-    for module in (carproof, carproof.adapters, carproof.generate, carproof.strategies):
+    for module in (carproof, carproof.formats, carproof.generate, carproof.testing.strategies):
         for name in module.__all__:
             if not isinstance(getattr(module, name), ModuleType):
                 yield f"{module.__name__}.{name}", getattr(module, name)

@@ -3,10 +3,10 @@
 import pytest
 
 import carp_optimized
-from carp_experiments.crosscheck import CrosscheckCase, crosscheck_cases, crosscheck_report
+from carp_experiments.measuring.crosscheck_campaign import CrosscheckCase, crosscheck_cases, crosscheck_report
 from carp_spec import Instance, Neighbourhood, Planner, Refusal, Solution, judge
 from carp_spec.instance_rules import instance_faults
-from carproof.questions import question
+from carproof.testing.random_instances import question
 
 
 def test_questions_are_sound_and_the_same_every_time() -> None:

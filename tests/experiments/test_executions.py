@@ -5,8 +5,8 @@ from collections.abc import Iterable
 import msgspec
 import pytest
 
-from carp_experiments import people
-from carp_experiments.delayed import (
+from carp_experiments.beyond import people
+from carp_experiments.beyond.delayed import (
     PLANNERS,
     DriverOf,
     ExecutionRow,
@@ -14,13 +14,13 @@ from carp_experiments.delayed import (
     execution_report,
     execution_row,
 )
-from carp_experiments.following import FollowingOf, following_figures, following_report, following_row
-from carp_experiments.map_cases import FULL_MAP, STATIONS, WAREHOUSE, MapCase, instance_of
-from carp_experiments.people import PeopleOf, PeopleRow, people_report, people_row
+from carp_experiments.beyond.following import FollowingOf, following_figures, following_report, following_row
+from carp_experiments.beyond.people import PeopleOf, PeopleRow, people_report, people_row
+from carp_experiments.paper.map_cases import FULL_MAP, STATIONS, WAREHOUSE, MapCase, instance_of
 from carp_experiments.store import Row, digest_of
 from carp_spec import Instance, RobotId, Solution
 from carproof.engines import Engine
-from carproof.giving_way import GivenWay, give_way
+from carproof.execution.giving_way import GivenWay, give_way
 
 
 def test_late_robots_collide_on_the_clock_alone_and_nobody_stands() -> None:

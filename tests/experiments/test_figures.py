@@ -17,9 +17,9 @@ from carp_experiments.figures import (
     without_outliers,
 )
 from carp_experiments.page import RESULTS
-from carp_experiments.quality import ALGORITHMS
+from carp_experiments.paper.quality import ALGORITHMS
 from carp_experiments.redrawing import FIGURES, draw_figures
-from carproof.statistics import Interval
+from carproof.gap.statistics import Interval
 
 
 def at(value: float) -> Interval:

@@ -1,7 +1,7 @@
 """The robots that a plan leaves out are counted before and after the repair."""
 
-from carp_experiments.left_out import left_out_report, left_out_row
-from carp_experiments.map_cases import MapCase
+from carp_experiments.beyond.left_out import left_out_report, left_out_row
+from carp_experiments.paper.map_cases import MapCase
 
 
 def test_a_robot_that_the_planner_leaves_out_is_planned_by_the_repair() -> None:

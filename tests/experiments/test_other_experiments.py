@@ -7,17 +7,17 @@ import pytest
 
 import carp_optimized
 import carp_reference
-from carp_experiments import polishing
-from carp_experiments.adding_time import PAPER, time_report, time_row
-from carp_experiments.claims import related_claims, reuse_claims
 from carp_experiments.experiments import EXPERIMENTS, Experiment, Profile
-from carp_experiments.map_cases import MapCase, instance_of
-from carp_experiments.related_work import FIXED, METHODS, Related, related_report, related_row
-from carp_experiments.reuse_counts import ReuseOf, reuse_report, reuse_row
-from carp_experiments.small_gaps import COMPARED, POLISHED, GapRow, gap_report, gap_row
+from carp_experiments.paper import polishing
+from carp_experiments.paper.adding_time import PAPER, time_report, time_row
+from carp_experiments.paper.claims import related_claims, reuse_claims
+from carp_experiments.paper.map_cases import MapCase, instance_of
+from carp_experiments.paper.related_work import FIXED, METHODS, Related, related_report, related_row
+from carp_experiments.paper.reuse_counts import ReuseOf, reuse_report, reuse_row
+from carp_experiments.paper.small_gaps import COMPARED, POLISHED, GapRow, gap_report, gap_row
 from carp_experiments.store import digest_of
 from carp_spec import Carp, FixedPaths, Greedy, LongestFirst, Planner, plan_cost
-from carproof.statistics import Interval
+from carproof.gap.statistics import Interval
 
 
 def test_times_are_measured_and_do_not_count_in_the_digest() -> None:

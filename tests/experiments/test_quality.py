@@ -4,9 +4,9 @@ import pytest
 
 import carp_optimized
 from carp_experiments.experiments import EXPERIMENTS, Profile
-from carp_experiments.map_cases import MapCase, instance_of
-from carp_experiments.quality import ALGORITHMS, QualityRow, quality_row, seeded, summarise
-from carp_experiments.quality_report import quality_report
+from carp_experiments.paper.map_cases import MapCase, instance_of
+from carp_experiments.paper.quality import ALGORITHMS, QualityRow, quality_row, seeded, summarise
+from carp_experiments.paper.quality_report import quality_report
 from carp_experiments.store import Row
 from carp_spec import Refusal, total_cost
 

@@ -3,10 +3,8 @@
 import msgspec
 import pytest
 
-from carp_experiments import streams
-from carp_experiments.map_cases import FULL_MAP, WAREHOUSE, MapCase
-from carp_experiments.store import digest_of
-from carp_experiments.streams import (
+from carp_experiments.beyond import streams
+from carp_experiments.beyond.streams import (
     PLANNERS,
     RATES,
     StreamOf,
@@ -18,6 +16,8 @@ from carp_experiments.streams import (
     stream_row,
     streamed,
 )
+from carp_experiments.paper.map_cases import FULL_MAP, WAREHOUSE, MapCase
+from carp_experiments.store import digest_of
 from carp_optimized.fleet import PlannedFleet
 from carp_spec import Neighbourhood, Plan, Visit, check_update
 from carp_spec.instance_rules import instance_faults

@@ -2,8 +2,7 @@
 
 import pytest
 
-from carp_experiments.map_cases import MapCase, instance_of
-from carp_experiments.unplanned import (
+from carp_experiments.beyond.unplanned import (
     ROUNDS,
     blocking_group,
     blocking_groups,
@@ -14,6 +13,7 @@ from carp_experiments.unplanned import (
     unplanned_report,
     unplanned_row,
 )
+from carp_experiments.paper.map_cases import MapCase, instance_of
 from carp_spec import Instance, Resource, ResourceGraph, Robot, Solution, judge
 
 BLOCKED = ("r3", "r22", "r42", "r66")

@@ -1,10 +1,10 @@
 """Mutants of the modules that call something proved, verified or conforming, against their own tests.
 
 `python -m tests.mutation.checkers` lists the mutants that no test notices; with names of modules, of these alone, and
-with a name and lines, `carp_verify.refutation:89:91`, of these lines alone. The tests are the gate's, but random ones
-draw at most `EXAMPLES`, and tests that take more than `LONGEST` seconds or start programs are left out. A mutant takes
-the place of its module in a process forked after all tests have passed once, so that what they remember, certificates
-for one, was made by the module as it is.
+with a name and lines, `carp_verify.optimum.refutation:89:91`, of these lines alone. The tests are the gate's, but
+random ones draw at most `EXAMPLES`, and tests that take more than `LONGEST` seconds or start programs are left out. A
+mutant takes the place of its module in a process forked after all tests have passed once, so that what they remember,
+certificates for one, was made by the module as it is.
 """
 
 import ast
@@ -43,31 +43,31 @@ TESTS: Mapping[str, Sequence[str]] = {
     "carp_spec.polish_rules": ("spec/test_polish_rules",),
     "carp_spec.windows": ("spec/test_windows",),
     "carp_verify.documents": ("verify/test_documents",),
-    "carp_verify.verify_bound": BOUNDS,
-    "carp_verify.bound_rules": (*BOUNDS, "verify/test_gap", "oracle/test_bound"),
-    "carp_verify.bound_cuts": BOUNDS,
-    "carp_verify.refutation": ("verify/test_refutation", "verify/test_forgery"),
-    "carp_verify.proof": (
+    "carp_verify.bound.verify": BOUNDS,
+    "carp_verify.bound.rules": (*BOUNDS, "verify/test_gap", "oracle/test_bound"),
+    "carp_verify.bound.cuts": BOUNDS,
+    "carp_verify.optimum.refutation": ("verify/test_refutation", "verify/test_forgery"),
+    "carp_verify.optimum.proof": (
         "verify/test_proof",
         PIN,
         "verify/test_forgery",
         "verify/test_unsolvable",
         "oracle/test_optimum",
     ),
-    "carp_verify.unsolvable": ("verify/test_unsolvable", "verify/test_optimum"),
+    "carp_verify.optimum.unsolvable": ("verify/test_unsolvable", "verify/test_optimum"),
     "carp_verify.certificate": ("verify/test_certificate",),
-    "carp_verify.smt": (*LEMMAS, "verify/test_certificate"),
-    "carp_verify.engine": ("verify/test_lemmas",),
-    "carp_verify.vocabulary": LEMMAS,
-    "carp_verify.derivation": LEMMAS,
+    "carp_verify.lemmas.smt": (*LEMMAS, "verify/test_certificate"),
+    "carp_verify.lemmas.engine": ("verify/test_lemmas",),
+    "carp_verify.lemmas.vocabulary": LEMMAS,
+    "carp_verify.lemmas.derivation": LEMMAS,
     "carp_verify.kernel": ("verify/test_asking_the_kernel",),
-    "carp_verify.verify_query": QUERIES,
-    "carp_verify.query_certificate_rules": QUERIES,
-    "carp_verify.joint_search": SEARCH,
-    "carp_verify.optimum_rules": ("verify/test_proof", "verify/test_unsolvable", "verify/test_joint_search"),
-    "carp_verify.clauses": FORMULAS,
-    "carp_verify.encoding": FORMULAS,
-    "carp_verify.robot_clauses": FORMULAS,
+    "carp_verify.query.verify": QUERIES,
+    "carp_verify.query.rules": QUERIES,
+    "carp_verify.optimum.joint_search": SEARCH,
+    "carp_verify.optimum.rules": ("verify/test_proof", "verify/test_unsolvable", "verify/test_joint_search"),
+    "carp_verify.optimum.clauses": FORMULAS,
+    "carp_verify.optimum.encoding": FORMULAS,
+    "carp_verify.optimum.robot_clauses": FORMULAS,
     "carproof.conform.judges": ANSWERS,
     "carproof.conform.optimum": ANSWERS,
     "carproof.conform.effort": ANSWERS,
@@ -87,15 +87,15 @@ TESTS: Mapping[str, Sequence[str]] = {
 TINY = 80
 """The number of instances of test_tiny_optima.py, one by one, for modules that make or check formulas."""
 PLANTED: Mapping[str, Sequence[tuple[str, str]]] = {
-    "carp_verify.verify_bound": (
+    "carp_verify.bound.verify": (
         ("is_weight(0, -left[robot])", "is_weight(certificate.scale, cut.multiplier)"),  # per cut, not per robot
         ("is_weight(0, -left[robot])", "True"),
         ("price * instance.graph.resource[source].capacity", "price"),
         ("(self.across.get(resource), enter + 1)", "(None, 0)"),  # only movers pay for exchanges
         ("max(self.horizon, tick + 1)", "max(self.horizon, tick)"),
     ),
-    "carp_verify.bound_cuts": (("0 <= horizon <= cut.least", "0 <= horizon"),),
-    "carp_verify.refutation": (
+    "carp_verify.bound.cuts": (("0 <= horizon <= cut.least", "0 <= horizon"),),
+    "carp_verify.optimum.refutation": (
         (
             "for literal in known[hint] if -literal not in true]",
             "for literal in known[hint] if -literal not in true][:1]",
@@ -103,13 +103,13 @@ PLANTED: Mapping[str, Sequence[tuple[str, str]]] = {
         ("    last = len(known)\n", "    last = 0\n"),
         ("        last = step.number\n        known[last]", "        known[step.number]"),
     ),
-    "carp_verify.proof": (
+    "carp_verify.optimum.proof": (
         ("if answer == wrong:", 'if answer == wrong and name == "reach.cnf":'),  # z3's verdict on the other is ignored
         ("if answer == wrong:", 'if answer == wrong and name == "beat.cnf":'),
         ("!= manifest.sha256[name]", "is None"),
         ("if verdict.violations:", "if not verdict:"),
     ),
-    "carp_verify.robot_clauses": (
+    "carp_verify.optimum.robot_clauses": (
         (
             "if target in self._rest and (self._drives_on or target != self.robot.goal)",
             "if target in self._rest and target != self.robot.goal",

@@ -35,7 +35,7 @@ from tests.optimized.towns import TOWNS
 import carp_reference
 from carp_spec import Instance, Neighbourhood, Planner, Solution
 from carproof.generate import Range
-from carproof.questions import question
+from carproof.testing.random_instances import question
 
 FOLDER = ROOT / "optimized" / "carp_optimized"
 MODULES = (
@@ -224,7 +224,7 @@ def load(module: str, source: str) -> None:
         del sys.modules[name]
     if source:
         sys.meta_path.insert(0, Changed(f"carp_optimized.{module}", source))
-    import_module("carp_optimized.encoding").DETOUR = 0  # type: ignore[attr-defined]
+    import_module("carp_optimized.state.encoding").DETOUR = 0  # type: ignore[attr-defined]
 
 
 def main(arguments: Sequence[str]) -> int:

@@ -11,7 +11,7 @@ import carp_reference
 from carp_optimized import Queries, Reuse
 from carp_spec import Instance, Neighbourhood, Plan, ResourceId, RobotId, Solution, Visit
 from carp_spec.permutations import shuffle, splitmix64
-from carproof.questions import Draw, Mix, draw_instance, draw_plan
+from carproof.testing.random_instances import Draw, Mix, draw_instance, draw_plan
 
 CROWDED = Mix(
     sizes=range(4, 17),

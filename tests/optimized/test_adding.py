@@ -9,21 +9,31 @@ from hypothesis import strategies as st
 from tests.profiles import draws
 
 import carp_reference
-from carp_optimized import distances, encoding, neighbourhood
-from carp_optimized.answers import learn, start_answers
-from carp_optimized.arrays import LATE, NEVER, NO_LIMIT, NONE, Records, Work
-from carp_optimized.distances import Mean, distance_below, follow, least_sum, likely_nearest, nearest, term
-from carp_optimized.encoding import no_answers, no_work
 from carp_optimized.fleet import PlannedFleet
-from carp_optimized.guides import guide_slot, toll_of
-from carp_optimized.neighbourhood import plan_alone
-from carp_optimized.order_search import spare_for
+from carp_optimized.neighbourhood import adding as neighbourhood
+from carp_optimized.neighbourhood import distances
+from carp_optimized.neighbourhood.adding import plan_alone
+from carp_optimized.neighbourhood.answers import learn, start_answers
+from carp_optimized.neighbourhood.distances import (
+    Mean,
+    distance_below,
+    follow,
+    least_sum,
+    likely_nearest,
+    nearest,
+    term,
+)
+from carp_optimized.neighbourhood.order_search import spare_for
 from carp_optimized.passes import withdraw_all
-from carp_optimized.records import cost_of
-from carp_optimized.search import find_plan, find_plan_alone
+from carp_optimized.query.guides import guide_slot, toll_of
+from carp_optimized.query.search import find_plan, find_plan_alone
+from carp_optimized.state import encoding
+from carp_optimized.state.arrays import LATE, NEVER, NO_LIMIT, NONE, Records, Work
+from carp_optimized.state.encoding import no_answers, no_work
+from carp_optimized.state.records import cost_of
 from carp_spec import Instance, Neighbourhood, Resource, ResourceGraph, Robot, neighbourhood_rules
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
-from carproof.strategies import FleetUnderWay, Sizes, fleets_under_way
+from carproof.testing.strategies import FleetUnderWay, Sizes, fleets_under_way
 
 pytestmark = pytest.mark.skipif(os.environ.get("NUMBA_DISABLE_JIT") != "1", reason="it runs uncompiled")
 

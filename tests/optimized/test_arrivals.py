@@ -4,7 +4,7 @@ import pytest
 from tests.optimized.arrivals import CROWDED, ROOMS, arrivals, convoy, scaled
 from tests.profiles import rest_in
 
-from carp_optimized import encoding
+from carp_optimized.state import encoding
 
 QUESTIONS = 600
 PARTS = 6

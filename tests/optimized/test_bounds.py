@@ -13,7 +13,7 @@ CROSSCHECK = """
 from carp_optimized import passes
 from carp_optimized.fleet import PlannedFleet
 from carp_spec import Instance, Resource, ResourceGraph, Robot
-from carproof.crosscheck import first_difference
+from carp_experiments.measuring.crosscheck import first_difference
 
 fleet = PlannedFleet(Instance(ResourceGraph((Resource("a"),), ()), (Robot("r", "a", "a"),)))
 try:

@@ -10,11 +10,11 @@ import pytest
 
 import carp_optimized
 import carp_optimum
-from carp_optimized.compiling import is_cached
-from carp_optimized.neighbourhood import add_robot
+from carp_optimized.jit.compiling import is_cached
+from carp_optimized.neighbourhood.adding import add_robot
 
 ENTRIES = """
-from carp_optimized.compiling import entry
+from carp_optimized.jit.compiling import entry
 
 @entry
 def twice(number: int) -> int:

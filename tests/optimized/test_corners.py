@@ -10,11 +10,12 @@ from tests.optimized.towns import TOWNS
 
 import carp_optimized
 import carp_reference
-from carp_optimized import Queries, Reuse, encoding
+from carp_optimized import Queries, Reuse
 from carp_optimized.__main__ import compile_all
-from carp_optimized.arrays import FURTHER, Search
-from carp_optimized.distances import term
 from carp_optimized.fleet import PlannedFleet
+from carp_optimized.neighbourhood.distances import term
+from carp_optimized.state import encoding
+from carp_optimized.state.arrays import FURTHER, Search
 from carp_spec import (
     Carp,
     Greedy,

@@ -3,8 +3,8 @@
 import pytest
 
 import carp_optimized
+from carp_experiments.measuring.crosscheck import first_difference
 from carp_spec import Instance, Planner, Solution
-from carproof.crosscheck import first_difference
 
 
 def test_a_planted_difference_is_found_and_made_small(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,15 +10,15 @@ import pytest
 
 import carp_reference
 from carp_optimized import retime as compiled
-from carp_optimized.execution import Timetable, timetable
+from carp_optimized.execution.following import Timetable, timetable
 from carp_reference.execution import earliest as read_earliest
 from carp_reference.execution import order_of, retime
 from carp_spec import Carp, Instance, Plan, Refusal, Solution
 from carp_spec.dependencies import Node
 from carp_spec.permutations import splitmix64
 from carp_spec.traces import Trace
-from carproof.delays import Delay, delayed, executed, in_order, planned
-from carproof.questions import Draw, draw_instance
+from carproof.execution.delays import Delay, delayed, executed, in_order, planned
+from carproof.testing.random_instances import Draw, draw_instance
 
 Engine: TypeAlias = Callable[[Instance, Solution, Trace], Solution]
 

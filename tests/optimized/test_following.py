@@ -10,7 +10,7 @@ import carp_reference
 from carp_optimized import Reuse
 from carp_spec import Carp, Instance, Solution, check, check_update, judge, plan_cost
 from carp_spec.permutations import splitmix64
-from carproof.questions import Draw, draw_instance, draw_neighbourhood, draw_planner
+from carproof.testing.random_instances import Draw, draw_instance, draw_neighbourhood, draw_planner
 
 QUESTIONS = range(150)
 REUSES = (Reuse(), Reuse(kept=False, unchanged=False, prefixes=False, shared=False, bounds=False))

@@ -6,7 +6,7 @@ import pytest
 
 import carp_optimized
 import carp_reference
-from carp_optimized import encoding
+from carp_optimized.state import encoding
 from carp_spec import Carp, FixedPaths, Instance, Neighbourhood, Plan, Refusal, Resource, ResourceGraph, Robot, Visit
 
 LARGEST = 2**30 - 1

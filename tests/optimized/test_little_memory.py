@@ -5,7 +5,7 @@ import os
 import pytest
 from tests.optimized.arrivals import ROOMS, arrivals
 
-from carp_optimized import answers
+from carp_optimized.neighbourhood import answers
 
 pytestmark = pytest.mark.skipif(os.environ.get("NUMBA_DISABLE_JIT") != "1", reason="it runs uncompiled")
 

@@ -7,12 +7,12 @@ from hypothesis import strategies as st
 import carp_optimized
 import carp_optimized.fleet
 import carp_reference
-from carp_optimized import encoding
-from carp_optimized.arrays import Records
 from carp_optimized.recording import enlarged
+from carp_optimized.state import encoding
+from carp_optimized.state.arrays import Records
 from carp_spec import Carp, Instance, Refusal, Solution, judge, total_cost
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
-from carproof.strategies import PlannedInstance, Sizes, planned_instances
+from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances
 
 SIZES = Sizes(resources=8, robots=12)
 SEEDS = st.integers(0, 2**64 - 1)

@@ -10,15 +10,15 @@ from tests.optimized.test_replanning import fleet_of
 from tests.profiles import draws
 
 from carp_optimized import passes
-from carp_optimized.answers import number_plan, start_answers
-from carp_optimized.arrays import NEVER, NONE, PLANS
-from carp_optimized.encoding import no_answers
 from carp_optimized.fleet import PlannedFleet
-from carp_optimized.reasons import reasons
-from carp_optimized.search import find_plan_by
+from carp_optimized.neighbourhood.answers import number_plan, start_answers
+from carp_optimized.query.relevant_plans import reasons
+from carp_optimized.query.search import find_plan_by
+from carp_optimized.state.arrays import NEVER, NONE, PLANS
+from carp_optimized.state.encoding import no_answers
 from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Visit
 from carp_spec.model import Following
-from carproof.strategies import FleetUnderWay, Sizes, fleets_under_way
+from carproof.testing.strategies import FleetUnderWay, Sizes, fleets_under_way
 
 pytestmark = pytest.mark.skipif(os.environ.get("NUMBA_DISABLE_JIT") != "1", reason="it runs uncompiled")
 

@@ -14,14 +14,14 @@ from hypothesis import strategies as st
 from tests.profiles import draws
 
 from carp_optimized import passes
-from carp_optimized.arrays import NEVER, NONE, UNKNOWN
 from carp_optimized.fleet import PlannedFleet
-from carp_optimized.replanning import could_use_freed, forget_freed, note_freed
+from carp_optimized.neighbourhood.replanning import could_use_freed, forget_freed, note_freed
+from carp_optimized.state.arrays import NEVER, NONE, UNKNOWN
 from carp_reference.problem import ticks_to_goal
 from carp_spec import Instance, Plan, ResourceId, RobotId
 from carp_verify.lemmas.freed_stays_come_too_late import least_f
-from carp_verify.smt import integers, value_of
-from carproof.strategies import FleetUnderWay, Sizes, fleets_under_way
+from carp_verify.lemmas.smt import integers, value_of
+from carproof.testing.strategies import FleetUnderWay, Sizes, fleets_under_way
 
 pytestmark = pytest.mark.skipif(os.environ.get("NUMBA_DISABLE_JIT") != "1", reason="it runs uncompiled")
 

@@ -12,8 +12,8 @@ from tests.profiles import draws
 
 import carp_optimized
 from carp_optimized import Reuse
-from carp_optimized.arrays import ANSWERS, PLANS
 from carp_optimized.fleet import PlannedFleet
+from carp_optimized.state.arrays import ANSWERS, PLANS
 from carp_spec import Instance, Neighbourhood, Solution
 from carproof.generate import Fleet, Grid, grid_instance
 

@@ -15,7 +15,7 @@ from carp_spec import (
     Planner,
     Shuffled,
 )
-from carproof.strategies import FleetUnderWay, Sizes, fleets_under_way, instances
+from carproof.testing.strategies import FleetUnderWay, Sizes, fleets_under_way, instances
 
 SIZES = Sizes(resources=6, robots=6)
 SEEDS = st.integers(0, 2**64 - 1)

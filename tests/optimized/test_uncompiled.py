@@ -9,7 +9,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 UNCOMPILED = ("test_replanning", "test_reasons", "test_sorting", "test_little_memory", "test_adding")
-CROSSCHECK = "from carproof.crosscheck import first_difference; print(first_difference(60, seed=3))"
+CROSSCHECK = "from carp_experiments.measuring.crosscheck import first_difference; print(first_difference(60, seed=3))"
 
 
 def uncompiled(*arguments: str) -> subprocess.CompletedProcess[str]:

@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 from tests.profiles import draws
 
 from carp_optimized import passes
-from carp_optimized.arrays import NEVER, Rows
 from carp_optimized.fleet import PlannedFleet
+from carp_optimized.state.arrays import NEVER, Rows
 from carp_spec import Instance, Plan
 from carp_spec.windows import Occupation, Window, free_windows
-from carproof.strategies import PlannedInstance, Sizes, planned_instances
+from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances
 
 SIZES = Sizes(resources=5, robots=6)
 

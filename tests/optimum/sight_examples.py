@@ -3,8 +3,8 @@
 from contextlib import suppress
 from itertools import pairwise
 
-from carp_optimum.price_search import PriceSearch
-from carp_optimum.solver import TimeOver
+from carp_optimum.lagrangian.price_search import PriceSearch
+from carp_optimum.sat.solver import TimeOver
 from carp_spec import Instance, Resource, ResourceGraph, Robot
 from carproof.generate import Fleet, Grid, grid_instance
 

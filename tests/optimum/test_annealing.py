@@ -9,13 +9,13 @@ from hypothesis import strategies as st
 
 from carp_optimized import plan, polish
 from carp_optimized.fleet import PlannedFleet
-from carp_optimized.polishing import CHANCE, SURE
-from carp_optimum import annealing
-from carp_optimum.annealing import CYCLES_OF_LUCK, ENOUGH, PARTS, _chance, anneal
-from carp_optimum.joint_repair import repair
+from carp_optimized.improve import annealing
+from carp_optimized.improve.annealing import CYCLES_OF_LUCK, ENOUGH, PARTS, _chance, anneal
+from carp_optimized.improve.repair import repair
+from carp_optimized.neighbourhood.polishing import CHANCE, SURE
 from carp_spec import Carp, Instance, Plan, Resource, ResourceGraph, Robot, Solution, judge, total_cost
 from carproof.generate import Fleet, Grid, grid_instance
-from carproof.strategies import PlannedInstance, Sizes, planned_instances
+from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances
 
 ROUNDS = 4000
 

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from carp_optimum.beside import Beside, Look
-from carp_optimum.solver import TimeOver
+from carp_optimum.background import Beside, Look
+from carp_optimum.sat.solver import TimeOver
 from carp_spec import Refusal
 
 

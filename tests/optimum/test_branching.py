@@ -7,12 +7,12 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from tests.profiles import draws
 
-from carp_optimum.branching import Branching, is_crowded
+from carp_optimum.branching.branching import Branching, is_crowded
 from carp_optimum.optimum import optimum
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, judge
-from carp_verify.encoding import Encoding
-from carp_verify.joint_search import least_total_cost
-from carp_verify.proof import solution_of
+from carp_verify.optimum.encoding import Encoding
+from carp_verify.optimum.joint_search import least_total_cost
+from carp_verify.optimum.proof import solution_of
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 
 SECONDS = 60
@@ -71,9 +71,9 @@ def test_the_cheapest_plans_are_found_and_no_cheaper_ones(instance: Instance, st
     if Encoding(instance).wayless:
         return
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr("carp_optimum.branching.FIRST_STEPS", steps)
-        patched.setattr("carp_optimum.branching.STEPS", steps)
-        patched.setattr("carp_optimum.branching.PARTS_TO_SHARE", parts)
+        patched.setattr("carp_optimum.branching.branching.FIRST_STEPS", steps)
+        patched.setattr("carp_optimum.branching.branching.STEPS", steps)
+        patched.setattr("carp_optimum.branching.branching.PARTS_TO_SHARE", parts)
         _the_optimum_is_found(instance)
 
 
@@ -107,8 +107,8 @@ def test_two_halves_have_all_parts(seed: int, parts: int, monkeypatch: pytest.Mo
     least = optimum(instance, SECONDS, priced=False).cost
     assert least is not None
     for name in ("FIRST_STEPS", "STEPS"):
-        monkeypatch.setattr(f"carp_optimum.branching.{name}", 3)
-    monkeypatch.setattr("carp_optimum.branching.PARTS_TO_SHARE", parts)
+        monkeypatch.setattr(f"carp_optimum.branching.branching.{name}", 3)
+    monkeypatch.setattr("carp_optimum.branching.branching.PARTS_TO_SHARE", parts)
     assert searched_by_halves(instance, least) == searched_by_halves(instance, least - 1) == least
 
 

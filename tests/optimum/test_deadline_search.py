@@ -2,10 +2,10 @@
 
 import pytest
 
-from carp_optimum.deadline_search import DeadlineSearch, _Cores
-from carp_optimum.price_search import PriceSearch
+from carp_optimum.claims.deadline_search import DeadlineSearch, _Cores
+from carp_optimum.lagrangian.price_search import PriceSearch
 from carp_spec import Instance, Resource, ResourceGraph, Robot
-from carp_verify.bound_cuts import require_deadlines
+from carp_verify.bound.cuts import require_deadlines
 
 SCALE = 1 << 10
 
@@ -68,15 +68,15 @@ def test_the_same_deadlines_are_not_found_twice() -> None:
 
 
 def test_no_deadlines_are_searched_for_where_the_formula_would_be_large(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("carp_optimum.deadline_search.LARGEST_ENCODING", 3 * 64 - 1)
+    monkeypatch.setattr("carp_optimum.claims.deadline_search.LARGEST_ENCODING", 3 * 64 - 1)
     assert DeadlineSearch(PriceSearch(dead_end(), SCALE)).round(lambda: None) == 0
-    monkeypatch.setattr("carp_optimum.deadline_search.LARGEST_ENCODING", 3 * 64)
+    monkeypatch.setattr("carp_optimum.claims.deadline_search.LARGEST_ENCODING", 3 * 64)
     assert DeadlineSearch(PriceSearch(dead_end(), SCALE)).round(lambda: None) > 0
 
 
 def test_no_deadlines_are_searched_for_where_robots_wait_for_long(monkeypatch: pytest.MonkeyPatch) -> None:
     search = DeadlineSearch(PriceSearch(dead_end(), SCALE))
-    monkeypatch.setattr("carp_optimum.deadline_search.LARGEST_DELAYS", -1)
+    monkeypatch.setattr("carp_optimum.claims.deadline_search.LARGEST_DELAYS", -1)
     assert search.round(lambda: None) == 0
-    monkeypatch.setattr("carp_optimum.deadline_search.LARGEST_DELAYS", 300)
+    monkeypatch.setattr("carp_optimum.claims.deadline_search.LARGEST_DELAYS", 300)
     assert search.round(lambda: None) > 0

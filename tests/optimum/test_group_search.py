@@ -8,14 +8,14 @@ from tests.profiles import draws
 from tests.verify.tiny import TINY
 
 from carp_optimized import plan
-from carp_optimum.group_search import improved
-from carp_optimum.joint_repair import repair
+from carp_optimized.improve.repair import repair
 from carp_optimum.optimum import optimum
+from carp_optimum.sat.group_search import improved
 from carp_spec import AfterGoal, Carp, Instance, Plan, Solution, judge
-from carp_verify.encoding import Encoding
-from carp_verify.joint_search import least_total_cost
+from carp_verify.optimum.encoding import Encoding
+from carp_verify.optimum.joint_search import least_total_cost
 from carproof.generate import Fleet, Grid, grid_instance
-from carproof.strategies import instances
+from carproof.testing.strategies import instances
 
 TRIES = 30
 SECONDS = 60

@@ -4,11 +4,11 @@ import pytest
 from hypothesis import given
 
 from carp_optimized import plan
-from carp_optimum.joint_repair import plan_failed_first, repair, repair_jointly
+from carp_optimized.improve.repair import plan_failed_first, repair, repair_jointly
 from carp_spec import Carp, Instance, Resource, ResourceGraph, Robot, Solution, judge
 from carp_spec.model import Following
 from carproof.generate import Fleet, Grid, grid_instance
-from carproof.strategies import PlannedInstance, Sizes, planned_instances
+from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances
 
 
 def passage(pocket: bool, *, capacity: int = 1, others: int = 0, following: Following = "allowed") -> Instance:

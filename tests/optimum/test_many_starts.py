@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import Any
 
-from carp_optimum.many_starts import polish_many
+from carp_optimized.improve.many_starts import polish_many
 from carp_reference import plan, polish
 from carp_spec import Carp, Instance, Plan, Resource, ResourceGraph, Robot, Solution, Visit, check, total_cost
 

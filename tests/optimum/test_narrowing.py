@@ -14,19 +14,19 @@ from tests.spec.making import grid
 from tests.verify.tiny import TINY
 
 import carproof
-from carp_optimum.beside import Beside
-from carp_optimum.joint_repair import repair
+from carp_optimized.improve.repair import repair
+from carp_optimum.background import Beside
+from carp_optimum.lagrangian.reduced_costs import PricedBound
 from carp_optimum.narrowing import Between, half_narrowed, narrowed
 from carp_optimum.optimum import optimum
-from carp_optimum.priced_formula import PricedFormula, priced_formula
-from carp_optimum.proving import write_proof
-from carp_optimum.reduced_costs import PricedBound
-from carp_optimum.solver import TimeOver
+from carp_optimum.sat.priced_formula import PricedFormula, priced_formula
+from carp_optimum.sat.proving import write_proof
+from carp_optimum.sat.solver import TimeOver
 from carp_spec import AfterGoal, Carp, Instance, Plan, Robot, judge, total_cost
-from carp_verify.joint_search import least_total_cost
-from carp_verify.proof import solution_of, verify_proof
+from carp_verify.optimum.joint_search import least_total_cost
+from carp_verify.optimum.proof import solution_of, verify_proof
 from carproof.generate import Fleet, Grid, grid_instance
-from carproof.strategies import instances
+from carproof.testing.strategies import instances
 
 SECONDS = 60
 
@@ -35,8 +35,8 @@ SECONDS = 60
 def beside_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("carp_optimum.optimum.CONFLICTS_BEFORE_BESIDE", -1)
     monkeypatch.setattr("carp_optimum.narrowing.PRICE_STEPS", 5)
-    monkeypatch.setattr("carp_optimum.heuristics.ROUNDS", 40)
-    monkeypatch.setattr("carp_optimized.compiling.is_cached", lambda _: True)
+    monkeypatch.setattr("carp_optimum.sat.heuristics.ROUNDS", 40)
+    monkeypatch.setattr("carp_optimized.jit.compiling.is_cached", lambda _: True)
 
 
 def crowd_with_plans() -> tuple[Instance, tuple[Plan, ...], tuple[Plan, ...]]:
@@ -96,7 +96,7 @@ def test_the_optimum_is_the_same_on_one_core_and_on_two(instance: Instance) -> N
 def test_formulas_lead_up_from_a_weak_bound(seed: int, after_goal: AfterGoal, monkeypatch: pytest.MonkeyPatch) -> None:
     instance = town(seed, after_goal)
     least = optimum(instance, SECONDS, priced=False).cost
-    monkeypatch.setattr("carp_optimum.heuristics.ever_better", lambda *_: iter(()))
+    monkeypatch.setattr("carp_optimum.sat.heuristics.ever_better", lambda *_: iter(()))
     found = results(instance)
     assert len({known.lower for known in found}) > 2
     assert (found[-1].lower, found[-1].total) == (least, least)
@@ -106,7 +106,7 @@ def test_formulas_lead_up_from_a_weak_bound(seed: int, after_goal: AfterGoal, mo
 def test_one_formula_gives_cheaper_and_cheaper_plans_down_to_the_optimum(monkeypatch: pytest.MonkeyPatch) -> None:
     instance = town(7, "park")
     least = optimum(instance, SECONDS, priced=False).cost
-    monkeypatch.setattr("carp_optimum.heuristics.ever_better", lambda *_: iter(()))
+    monkeypatch.setattr("carp_optimum.sat.heuristics.ever_better", lambda *_: iter(()))
     monkeypatch.setattr("carp_optimum.narrowing.STRIDE", 40)
     found = results(instance)
     assert (found[-1].lower, found[-1].total) == (least, least)
@@ -127,7 +127,7 @@ def test_formulas_end_below_the_total_of_the_best_plans_known(monkeypatch: pytes
         searched.append(cost)
         return priced_formula(instance, bound, cost, look)
 
-    monkeypatch.setattr("carp_optimum.heuristics.ever_better", lambda *_: iter([(0, plans)]))
+    monkeypatch.setattr("carp_optimum.sat.heuristics.ever_better", lambda *_: iter([(0, plans)]))
     monkeypatch.setattr("carp_optimum.narrowing.priced_formula", below)
     assert results(instance)[-1] == Between(instance, least.cost, plans)
     assert searched
@@ -138,7 +138,7 @@ def test_formulas_end_below_the_total_of_the_best_plans_known(monkeypatch: pytes
 @pytest.mark.parametrize("parts", [1, 2, 64])
 @pytest.mark.parametrize("seed", range(4))
 def test_the_halves_of_a_crowd_meet_at_the_optimum(seed: int, parts: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("carp_optimum.branching.PARTS_TO_SHARE", parts)
+    monkeypatch.setattr("carp_optimum.branching.branching.PARTS_TO_SHARE", parts)
     instance = grid_instance(Grid(4, 4, 20), Fleet(16, seed))
     least = optimum(instance, SECONDS, priced=False).cost
     assert least is not None
@@ -227,10 +227,10 @@ def test_a_crowd_without_plans_or_with_too_large_tables_is_searched_whole(monkey
     instance = grid_instance(Grid(4, 4, 20), Fleet(16, 2))
     least = optimum(instance, SECONDS, priced=False).cost
     with monkeypatch.context() as patched:
-        patched.setattr("carp_optimum.branching.MOST_NODES", 200)
+        patched.setattr("carp_optimum.branching.branching.MOST_NODES", 200)
         assert {known.lower for _, known in half_narrowed(instance, nothing, 0)} == {0}
         assert optimum(instance, SECONDS).cost == least
-    monkeypatch.setattr("carp_optimum.heuristics.ever_better", lambda *_: iter(()))
+    monkeypatch.setattr("carp_optimum.sat.heuristics.ever_better", lambda *_: iter(()))
     assert [known for _, known in half_narrowed(instance, nothing, 0)] == [Between(instance)] * 2
     assert optimum(instance, SECONDS).cost == least
 

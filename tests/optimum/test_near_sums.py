@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 from pysat.solvers import Cadical195
 from tests.profiles import draws
 
-from carp_optimum.near_sums import groups_of_near, sum_of_near
-from carp_verify.clauses import Formula
-from carp_verify.robot_clauses import Node
+from carp_optimum.sat.totalizer_order import groups_of_near, sum_of_near
+from carp_verify.optimum.clauses import Formula
+from carp_verify.optimum.robot_clauses import Node
 
 NODES: Sequence[Node] = [(resource, tick) for resource in "abc" for tick in range(2)]
 

@@ -3,8 +3,8 @@
 import pytest
 from tests.verify.bound_examples import crossing
 
-from carp_optimum.price_search import SPAN, PriceSearch
-from carp_optimum.price_steps import LESS
+from carp_optimum.lagrangian.price_search import SPAN, PriceSearch
+from carp_optimum.lagrangian.price_steps import LESS
 from carp_spec import Instance, Resource, ResourceGraph, Robot
 
 TICK = 1 << 10
@@ -28,8 +28,8 @@ def test_large_aims_fall_to_a_tick_in_each_span_and_the_next_begins_with_half(mo
 
 def test_many_robots_have_smaller_tables_of_charges(monkeypatch: pytest.MonkeyPatch) -> None:
     robots = len(crossing().robots)
-    monkeypatch.setattr("carp_optimum.price_search.LARGEST_TABLE", 10 * robots)
-    monkeypatch.setattr("carp_optimum.price_search.DELAYS", 1000)
+    monkeypatch.setattr("carp_optimum.lagrangian.price_search.LARGEST_TABLE", 10 * robots)
+    monkeypatch.setattr("carp_optimum.lagrangian.price_search.DELAYS", 1000)
     cost, _, row, *_ = PriceSearch(crossing(), TICK).market.charges
     assert row.size <= 10 * robots
     assert cost.size <= 11 * robots  # with a column for delays that no node has

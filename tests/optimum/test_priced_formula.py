@@ -11,19 +11,19 @@ from tests.profiles import draws
 from tests.verify.tiny import TINY
 
 from carp_optimum.bound import lower_bound
-from carp_optimum.cut_search import prove
+from carp_optimum.claims.cut_search import prove
+from carp_optimum.lagrangian.reduced_costs import PricedBound
 from carp_optimum.optimum import optimum
-from carp_optimum.priced_formula import priced_formula
-from carp_optimum.reduced_costs import PricedBound
-from carp_optimum.solver import Deadline, Solver
+from carp_optimum.sat.priced_formula import priced_formula
+from carp_optimum.sat.solver import Deadline, Solver
 from carp_spec import AfterGoal, Instance, judge
+from carp_verify.bound.verify import Budget, RobotSearch, Tariff, fees_of, predecessors, verify_bound
 from carp_verify.bounds import BOUND_FORMAT, BoundDocument, CutDocument, digest
-from carp_verify.encoding import Encoding
-from carp_verify.joint_search import least_total_cost
-from carp_verify.proof import solution_of
-from carp_verify.verify_bound import Budget, RobotSearch, Tariff, fees_of, predecessors, verify_bound
+from carp_verify.optimum.encoding import Encoding
+from carp_verify.optimum.joint_search import least_total_cost
+from carp_verify.optimum.proof import solution_of
 from carproof.generate import Fleet, Grid, grid_instance
-from carproof.strategies import instances
+from carproof.testing.strategies import instances
 
 SECONDS = 60
 SCALE = 64

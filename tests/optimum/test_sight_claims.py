@@ -10,15 +10,15 @@ from tests.optimum.sight_examples import SCALE, long_way_round, search_of, two_l
 from tests.profiles import draws
 
 from carp_optimum.bound import lower_bound
-from carp_optimum.deadlines import Member
-from carp_optimum.price_search import PriceSearch
-from carp_optimum.sight_claims import Claim, Pair, Sides
-from carp_optimum.sight_search import STEPS, SightSearch, pairs_in
-from carp_optimum.solver import TimeOver
+from carp_optimum.claims.pair_constraints import Claim, Pair, Sides
+from carp_optimum.claims.pair_search import STEPS, SightSearch, pairs_in
+from carp_optimum.lagrangian.deadlines import Member
+from carp_optimum.lagrangian.price_search import PriceSearch
+from carp_optimum.sat.solver import TimeOver
 from carp_spec import Instance
-from carp_verify.verify_bound import verify_bound
+from carp_verify.bound.verify import verify_bound
 from carproof.generate import Fleet, Grid, grid_instance
-from carproof.strategies import Sizes, instances
+from carproof.testing.strategies import Sizes, instances
 
 MIXED = Sizes(resources=5, robots=3, capacity=2, duration=3, release=3, pace=2)
 
@@ -139,5 +139,5 @@ def test_robots_that_are_seen_more_than_once_raise_the_bound(monkeypatch: pytest
     certificate = lower_bound(instance, steps=1600)
     assert verify_bound(instance, certificate) == 52
     assert sum(len(each.robots) > len(set(each.robots)) for each in certificate.deadlines) > 1
-    monkeypatch.setattr("carp_optimum.sight_claims.MOST_SIGHTS", -1)
+    monkeypatch.setattr("carp_optimum.claims.pair_constraints.MOST_SIGHTS", -1)
     assert lower_bound(instance, steps=1600).bound == 51

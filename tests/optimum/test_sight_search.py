@@ -6,11 +6,11 @@ import pytest
 from tests.optimum.sight_examples import SCALE, search_of, two_lanes
 
 from carp_optimum.bound import lower_bound
-from carp_optimum.deadlines import Deadlines, Member
-from carp_optimum.sight_claims import Sides
-from carp_optimum.sight_search import SightSearch
-from carp_optimum.solver import TimeOver
-from carp_verify.bound_cuts import require_deadlines
+from carp_optimum.claims.pair_constraints import Sides
+from carp_optimum.claims.pair_search import SightSearch
+from carp_optimum.lagrangian.deadlines import Deadlines, Member
+from carp_optimum.sat.solver import TimeOver
+from carp_verify.bound.cuts import require_deadlines
 from carp_verify.bounds import DeadlinesDocument
 
 
@@ -84,7 +84,7 @@ def test_claims_without_a_price_or_a_proof_are_dropped(monkeypatch: pytest.Monke
     assert 0 < len(prices.deadlines) == priced <= found
     search.round(lambda: None)
     prices.climb(SCALE, SCALE >> 4, lambda: None, lambda _, __: None)
-    monkeypatch.setattr("carp_optimum.sight_search.LONGEST_REFUTATION", 0)
+    monkeypatch.setattr("carp_optimum.claims.pair_search.LONGEST_REFUTATION", 0)
     search.prove(lambda: None)
     assert all(each.document.refutation for each in prices.deadlines)
 
@@ -119,8 +119,8 @@ def test_a_pair_of_much_work_has_its_turn_when_others_were_searched_in_vain(monk
 
     monkeypatch.setattr(Sides, "claim", claim)
     monkeypatch.setattr(Sides, "work", lambda _, one, other: 1 + 2 * one * other)
-    monkeypatch.setattr("carp_optimum.sight_search.pairs_in", lambda *_: {(1, 3), (0, 2)})
-    monkeypatch.setattr("carp_optimum.sight_search.MOST_WORK", 7)
+    monkeypatch.setattr("carp_optimum.claims.pair_search.pairs_in", lambda *_: {(1, 3), (0, 2)})
+    monkeypatch.setattr("carp_optimum.claims.pair_search.MOST_WORK", 7)
     search = SightSearch(search_of(two_lanes()))
     for _ in range(5):
         search.round(lambda: None)
@@ -137,7 +137,7 @@ def test_the_same_search_finds_the_same() -> None:
 
 
 def test_nothing_is_searched_for_where_tables_would_be_large(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("carp_optimum.sight_search.LARGEST_ENCODING", 0)
+    monkeypatch.setattr("carp_optimum.claims.pair_search.LARGEST_ENCODING", 0)
     prices = search_of(two_lanes())
     assert SightSearch(prices).round(lambda: None) == 0
     assert not prices.deadlines

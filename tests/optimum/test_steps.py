@@ -6,11 +6,11 @@ import pytest
 from hypothesis import given
 
 from carp_optimized import plan
-from carp_optimum.joint_repair import repair
-from carp_optimum.steps import STEPS, is_stepwise, plans_by_steps
+from carp_optimized.improve.lacam import STEPS, is_stepwise, plans_by_steps
+from carp_optimized.improve.repair import repair
 from carp_spec import AfterGoal, Carp, Instance, Resource, ResourceGraph, Robot, Solution, judge
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
-from carproof.strategies import Sizes, instances
+from carproof.testing.strategies import Sizes, instances
 
 
 def keeps_the_law(instance: Instance, steps: int = STEPS) -> bool:
@@ -64,7 +64,7 @@ def test_robots_that_cannot_pass_get_no_plans() -> None:
 
 
 def test_a_repair_moves_a_crowd_tick_by_tick_where_other_means_fail(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("carp_optimum.joint_repair.ATTEMPTS", 0)
+    monkeypatch.setattr("carp_optimized.improve.repair.ATTEMPTS", 0)
     instance = crowd(8, 32, "park")
     island = Resource("island")
     graph = ResourceGraph((*instance.graph.resources, island), instance.graph.edges)

@@ -17,7 +17,7 @@ from carproof.conform.levels import Level
 from carproof.conform.smoke import smoke_cases
 from carproof.conform.vector_cases import vector_cases
 from carproof.engines import engine_named
-from carproof.server import respond
+from carproof.protocol.server import respond
 
 Request = dict[str, Any]
 Response = dict[str, Any]

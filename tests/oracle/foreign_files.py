@@ -1,6 +1,6 @@
 """A map, a scenario and the same correct solution in every format, and broken ones."""
 
-from carproof.movingai import movingai_instance, read_map, read_scenario
+from carproof.formats.movingai import movingai_instance, read_map, read_scenario
 
 MAP = "type octile\nheight 3\nwidth 4\nmap\n....\n.@..\n....\n"
 SCENARIO = "version 1\n0\tm.map\t4\t3\t0\t0\t2\t0\t2\n0\tm.map\t4\t3\t3\t2\t3\t0\t2\n"

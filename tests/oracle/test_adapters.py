@@ -13,15 +13,15 @@ from tests.profiles import draws
 
 from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, Robot, Solution, Visit, judge
 from carp_verify.documents import write_instance, write_solution
-from carproof.adapters import (
+from carproof.formats import (
     ADAPTERS,
     read_foreign_solution,
     walks,
     write_foreign_solution,
 )
-from carproof.adapters.walks import instance_has_walks
+from carproof.formats.walks import instance_has_walks
 from carproof.generate.grid import cell_edges, cell_id
-from carproof.strategies import PlannedInstance, Sizes, instances, planned_instances
+from carproof.testing.strategies import PlannedInstance, Sizes, instances, planned_instances
 
 SOLUTION = Solution(
     (

@@ -12,12 +12,12 @@ from tests.oracle.running import EAST, EAST_PLAN, TWO_PLANNED, Run, corridor, li
 import carp_reference
 from carp_spec import Carp, Plan, RobotId, Solution, check, plan_cost
 from carp_spec.query_certificates import QueryCertificateDocument
-from carp_verify.bound_rules import ContradictionError
+from carp_verify.bound.rules import ContradictionError
 from carp_verify.documents import read_instance, read_solution
-from carproof.audit import audit_in_order, audit_in_some_order, in_order
 from carproof.engines import engine_named
 from carproof.generate import Fleet, Grid, grid_instance
-from carproof.strategies import PlannedInstance, planned_instances
+from carproof.judging.audit import audit_in_order, audit_in_some_order, in_order
+from carproof.testing.strategies import PlannedInstance, planned_instances
 
 LATE = solution({"r1": [["a", 0, 1], ["b", 1, 3], ["c", 3, 4]]})
 ALONE = corridor([EAST])

@@ -9,7 +9,7 @@ import pytest
 from tests.oracle.running import Document, Run, line, save, solution, town
 
 from carproof.engines import engine_named
-from carproof.server import respond
+from carproof.protocol.server import respond
 
 ROBOTS = [{"id": "r0", "start": "b", "goal": "c"}, {"id": "r1", "start": "a", "goal": "b"}]
 TRAIN = town("ab bc cd ae", ROBOTS)

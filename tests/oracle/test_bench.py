@@ -7,9 +7,9 @@ from types import SimpleNamespace
 import pytest
 from tests.oracle.running import Run
 
-from carproof import bench
-from carproof.bench import GROWTH, PARTS, Added, OnGrid, OnMap, on_grid, on_map, weight
-from carproof.commands import bench as command
+from carp_experiments.measuring import bench
+from carp_experiments.measuring import bench_command as command
+from carp_experiments.measuring.bench import GROWTH, PARTS, Added, OnGrid, OnMap, on_grid, on_map, weight
 
 KINDS = ("kept", "unchanged", "prefixes", "shared", "bounds")
 

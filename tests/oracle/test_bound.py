@@ -74,7 +74,7 @@ def test_plans_that_cost_less_than_the_bound_are_a_contradiction(
         keep(Progress(1, 1_000_000))
         return EMPTY
 
-    monkeypatch.setattr("carp_verify.verify_bound.verify_bound", lambda *_: 1_000_000)
+    monkeypatch.setattr("carp_verify.bound.verify.verify_bound", lambda *_: 1_000_000)
     monkeypatch.setattr("carp_optimum.bound.lower_bound", too_much)
     save(bound=to_builtins(EMPTY))
     outcome = carproof(command)

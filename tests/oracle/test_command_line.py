@@ -71,7 +71,7 @@ def test_a_document_on_standard_output_leaves_standard_error_to_people(carproof:
 @pytest.mark.usefixtures("folder")
 def test_check_loads_nothing_slow() -> None:
     program = (
-        "import sys; from carproof.cli import main; code = main(['check', 'town.json', 'plans.json', '--json']);"
+        "import sys; from carproof.entry.cli import main; code = main(['check', 'town.json', 'plans.json', '--json']);"
         f"assert code == 0; print([name for name in {SLOW_TO_LOAD} if name in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True)

@@ -20,8 +20,8 @@ from carproof.conform.findings import is_complete
 from carproof.conform.function import Function
 from carproof.conform.levels import Level
 from carproof.conform.run import Options, conform
-from carproof.movingai import movingai_instance, read_map, read_scenario
-from carproof.movingai_writer import is_classical, write_movingai
+from carproof.formats.movingai import movingai_instance, read_map, read_scenario
+from carproof.formats.movingai_writer import is_classical, write_movingai
 
 PLANNER = [sys.executable, "-I", "-S", str(Path(__file__).parent / "grid_planner.py")]
 FILES = ["{map}", "{scen}", "{agents}"]

@@ -12,7 +12,7 @@ from tests.oracle.running import Run
 from tests.oracle.test_conform_judges import Tampered, as_it_is
 
 import carp_reference
-import carp_verify.verify_bound
+import carp_verify.bound.verify
 from carp_spec import Carp, Instance, Plan, Solution, Visit
 from carproof.conform.answers import result_of
 from carproof.conform.cases import NO_PLANS, Case
@@ -88,7 +88,7 @@ def test_a_program_that_plans_robots_one_by_one_is_asked_for_the_op_that_shows_c
 
 
 def test_a_false_certificate_that_passes_the_check_is_refused_by_the_optimum(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(carp_verify.verify_bound, "verify_bound", lambda *_: 10**6)
+    monkeypatch.setattr(carp_verify.bound.verify, "verify_bound", lambda *_: 10**6)
     subject = Tampered(as_it_is)
     subject.ops = ("bound",)
     report = conform(subject, Options(Level.SOUND, examples=5, shrink_seconds=1))

@@ -30,10 +30,10 @@ from carproof.conform.run import Options, Report, conform
 from carproof.conform.saved import read_saved, save_all
 from carproof.conform.saving import Origin
 from carproof.conform.smoke import committed, row
-from carproof.delays import Delay, executed, in_order
 from carproof.engines import engine_named
-from carproof.ops.executing import DriveDocument, DriveRequest, drive
-from carproof.server import respond
+from carproof.execution.delays import Delay, executed, in_order
+from carproof.protocol.ops.executing import DriveDocument, DriveRequest, drive
+from carproof.protocol.server import respond
 
 SERVE = [sys.executable, "-m", "carproof", "serve", "--engine", "reference"]
 NEAR = row([Robot("first", "a", "b")])

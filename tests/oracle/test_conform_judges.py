@@ -19,10 +19,10 @@ from carproof.conform.levels import Level
 from carproof.conform.run import Options, Report, conform
 from carproof.conform.saving import save
 from carproof.engines import engine_named
-from carproof.ops import OPS
-from carproof.ops.planning import QueryDocument, query_document
 from carproof.optima import OptimumDocument
-from carproof.vectors import VectorsDocument
+from carproof.protocol.ops import OPS
+from carproof.protocol.ops.planning import QueryDocument, query_document
+from carproof.testing.vectors import VectorsDocument
 
 LATE = {"query/optimal", "joint/capacity", "joint/exchange", "fleet/history"}
 Tamper = Callable[[Case, Reply], Reply]

@@ -44,10 +44,10 @@ from tests.oracle.test_kernel_option import stand_in
 from tests.verify.kernel_program import program
 
 from carp_spec import Carp, judge
-from carp_verify.bound_rules import ContradictionError
+from carp_verify.bound.rules import ContradictionError
 from carp_verify.documents import VerdictDocument, read_instance, read_query_certificate, read_solution
 from carp_verify.kernel import KernelVerdict, ask, version
-from carp_verify.verify_query import verify_query
+from carp_verify.query.verify import verify_query
 from carproof.conform import by_kernel
 from carproof.conform.answers import Answer
 from carproof.conform.by_kernel import EARLY, LAWFUL, require_agreement

@@ -9,7 +9,7 @@ import msgspec
 import pytest
 from tests.oracle.test_conform_judges import later, right_reply
 
-import carp_verify.verify_bound
+import carp_verify.bound.verify
 from carp_spec import Carp, Greedy, Instance, Neighbourhood, Plan, Planner, Resource, ResourceGraph, Robot, Solution
 from carp_verify.bounds import BoundDocument
 from carp_verify.documents import VerdictDocument, solution_document
@@ -25,9 +25,9 @@ from carproof.conform.levels import Level
 from carproof.conform.optimum import cost_alone, found_cost
 from carproof.conform.smoke import EAST, FIRST, FIRST_GOES, WEST, Stay, committed, passing_place, row
 from carproof.engines import engine_named
-from carproof.ops import OPS
-from carproof.ops.planning import QueryDocument, query_document
 from carproof.optima import OptimumDocument
+from carproof.protocol.ops import OPS
+from carproof.protocol.ops.planning import QueryDocument, query_document
 
 PATIENT = 60
 """Seconds for an optimum: the machine may be busy."""
@@ -305,7 +305,7 @@ def test_carproof_and_a_plan_that_contradict_each_other_are_a_fault(monkeypatch:
 def test_a_false_certificate_that_passes_is_refused_where_plans_cost_less(
     instance: Instance, bound: int, rule: str | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(carp_verify.verify_bound, "verify_bound", lambda *_: bound)
+    monkeypatch.setattr(carp_verify.bound.verify, "verify_bound", lambda *_: bound)
     finding = first_finding(case("bound", instance), BOUND, Level.SOUND)
     assert (None if finding is None else finding.rule) == rule
 
@@ -322,7 +322,7 @@ def test_a_bound_that_robots_need_alone_is_compared_with_no_optimum(monkeypatch:
 def test_where_carproof_is_undecided_nothing_is_called_wrong_nor_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     for module in (optima, efforts):
         monkeypatch.setattr(module, "found_cost", lambda _: (False, 1))
-    monkeypatch.setattr(carp_verify.verify_bound, "verify_bound", lambda *_: 8)
+    monkeypatch.setattr(carp_verify.bound.verify, "verify_bound", lambda *_: 8)
     asked: Sequence[tuple[Case, Answer]] = (
         (OPTIMUM, claimed(9, 9, proved=True, solution=CARP)),
         (FREE, ASIDE_SECOND),

@@ -8,7 +8,7 @@ from tests.oracle.test_conform_judges import Tampered, as_it_is, no_plan
 from tests.oracle.test_conform_one_answer import BEST, OPTIMUM, PLAN, QUERY, UNDECIDED, goes
 
 from carp_spec import Instance, Solution
-from carp_verify.bound_rules import ContradictionError
+from carp_verify.bound.rules import ContradictionError
 from carproof.conform import outcome
 from carproof.conform.answers import NotAsked, Reply, Skipped
 from carproof.conform.cases import Case
@@ -18,7 +18,7 @@ from carproof.conform.function import Function, by_documents
 from carproof.conform.levels import Level
 from carproof.conform.outcome import Outcome, ask
 from carproof.conform.smoke import EAST, FIRST_GOES, committed, row
-from carproof.ops.planning import QueryDocument
+from carproof.protocol.ops.planning import QueryDocument
 
 CRASH = Finding(Category.CRASH, "program/alive", "it is gone")
 GOES, NOBODY = goes(*FIRST_GOES), QueryDocument(None)

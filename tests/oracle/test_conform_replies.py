@@ -12,8 +12,8 @@ from carp_verify.documents import VerdictDocument, solution_document
 from carproof.conform.answers import MOST_SHOWN, Skipped, decode_solution, read_result, result_of, shown
 from carproof.conform.findings import Category, Fault
 from carproof.conform.smoke import EAST, FIRST_GOES, committed, row
-from carproof.ops.planning import QueryDocument
 from carproof.optima import OptimumDocument
+from carproof.protocol.ops.planning import QueryDocument
 
 ALONE = row([EAST])
 GOES = committed(ALONE, new=FIRST_GOES)

@@ -36,8 +36,8 @@ from carproof.conform.outcome import Outcome
 from carproof.conform.run import MOST_FAULTS, Options, Report, conform, label
 from carproof.conform.smoke import EAST, row, smoke_cases
 from carproof.conform.vector_cases import vector_cases
-from carproof.movingai_writer import is_classical
-from carproof.ops.planning import QueryDocument
+from carproof.formats.movingai_writer import is_classical
+from carproof.protocol.ops.planning import QueryDocument
 
 ALONE = row([EAST])
 NOBODY = QueryDocument(None)

@@ -7,7 +7,7 @@ import pytest
 from tests.oracle.running import Run
 
 from carp_verify.documents import read_instance
-from carproof.movingai import read_map, read_scenario
+from carproof.formats.movingai import read_map, read_scenario
 
 EXAMPLES = Path(__file__).parent.parent.parent / "oracle/carproof/examples"
 MAP = "type octile\nheight 2\nwidth 3\nmap\n.G@\nS.T\n"

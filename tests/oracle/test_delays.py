@@ -12,8 +12,17 @@ from carp_reference.execution import order_of
 from carp_spec import Instance, Solution, check
 from carp_spec.dependencies import Node
 from carp_spec.execution_rules import is_acyclic, trace_violations
-from carproof.delays import Delay, executed, in_order, late_robots, on_the_clock, slack, smallest_collision, stuck
-from carproof.strategies import PlannedInstance, Sizes, planned_instances
+from carproof.execution.delays import (
+    Delay,
+    executed,
+    in_order,
+    late_robots,
+    on_the_clock,
+    slack,
+    smallest_collision,
+    stuck,
+)
+from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances
 
 SIZES = Sizes(resources=4, robots=4)
 SMALL = Sizes(resources=3, robots=3)

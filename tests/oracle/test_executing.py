@@ -12,11 +12,11 @@ from tests.profiles import draws
 from carp_spec import Solution, Visit, check, check_update, judge
 from carp_spec.execution_rules import is_acyclic, trace_violations
 from carp_verify.documents import read_instance, read_solution, read_trace
-from carproof.delays import Delay
 from carproof.engines import engine_named
-from carproof.executing import DRIVERS, execute, random_delays
-from carproof.strategies import PlannedInstance, Sizes, planned_instances
-from carproof.untangling import untangle
+from carproof.execution.delays import Delay
+from carproof.execution.simulation import DRIVERS, execute, random_delays
+from carproof.execution.untangling import untangle
+from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances
 
 SIZES = Sizes(resources=5, robots=5)
 

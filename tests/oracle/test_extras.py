@@ -14,8 +14,10 @@ from carproof.extras import EXTRAS
 
 ROOT = Path(__file__).parent.parent.parent
 WITHOUT_EXTRAS = f"import sys\nsys.modules.update(dict.fromkeys({[*EXTRAS]}))\n"
-COMMAND = "from carproof.cli import main\nsys.exit(main(sys.argv[1:]))"
-COMMANDS = "import json\nfrom carproof.cli import main\nprint(any([main(each) for each in json.loads(sys.argv[1])]))"
+COMMAND = "from carproof.entry.cli import main\nsys.exit(main(sys.argv[1:]))"
+COMMANDS = (
+    "import json\nfrom carproof.entry.cli import main\nprint(any([main(each) for each in json.loads(sys.argv[1])]))"
+)
 FINDS = {
     "certify town.json plans.json": "z3-solver",
     "theorems": "z3-solver",

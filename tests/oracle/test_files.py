@@ -7,7 +7,7 @@ import click
 import pytest
 from tests.oracle.running import Run
 
-from carproof.files import write_whole
+from carproof.command_line.files import write_whole
 
 
 def test_a_byte_order_mark_is_passed_over(carproof: Run, folder: Path) -> None:

@@ -9,7 +9,7 @@ import pytest
 from tests.oracle.running import BEHIND_PLAN, EAST_PLAN, ONE_PLANNED, TWO, Document, Run, line, save, solution
 
 from carproof.engines import engine_named
-from carproof.server import respond
+from carproof.protocol.server import respond
 
 FORBIDDING = {**TWO, "following": "forbidden"}
 APART = solution({"r1": [["a", 0, 2], ["b", 2, 3], ["c", 3, 4]], "r2": BEHIND_PLAN})

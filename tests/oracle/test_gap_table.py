@@ -4,11 +4,11 @@ from time import process_time, process_time_ns
 
 import pytest
 
+from carp_experiments.measuring import gap_table
+from carp_experiments.measuring.gap_table import Found, Task
 from carp_optimum.bound import lower_bound
 from carp_spec import Instance, Solution
 from carp_verify.bounds import BoundDocument
-from carproof import gap_table
-from carproof.gap_table import Found, Task
 
 TASK = Task(10, 100, 2, 1)
 

@@ -12,8 +12,8 @@ from tests.profiles import draws
 import carp_reference
 from carp_spec import check_update, judge
 from carproof.engines import engine_named
-from carproof.giving_way import give_way, history
-from carproof.strategies import PlannedInstance, Sizes, planned_instances
+from carproof.execution.giving_way import give_way, history
+from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances
 
 REFERENCE = engine_named("reference")
 SIZES = Sizes(resources=6, robots=5)

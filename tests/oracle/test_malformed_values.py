@@ -14,7 +14,7 @@ import carp_reference
 import carp_spec
 import carproof
 from carp_optimum.gap import gap
-from carp_optimum.proving import write_proof
+from carp_optimum.sat.proving import write_proof
 from carp_spec import (
     Carp,
     FixedPaths,
@@ -34,9 +34,9 @@ from carp_spec.traces import Trace
 from carp_verify.bounds import digest
 from carp_verify.certificate import certify
 from carp_verify.documents import read_instance, read_solution, write_instance, write_solution, write_trace
-from carp_verify.joint_search import least_total_cost
-from carp_verify.verify_query import verify_query
-from carproof.adapters import named_as, read_foreign_solution, write_foreign_solution
+from carp_verify.optimum.joint_search import least_total_cost
+from carp_verify.query.verify import verify_query
+from carproof.formats import named_as, read_foreign_solution, write_foreign_solution
 from carproof.generate import Fleet, Grid, Range, Traits, Warehouse, grid_instance, warehouse_instance
 from carproof.viewer.page import page
 from carproof.viewer.stills import chart_still, map_still

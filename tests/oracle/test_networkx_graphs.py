@@ -9,7 +9,7 @@ import pytest
 import carp_reference
 from carp_spec import Carp, Refusal, Resource, Robot, judge
 from carp_verify.documents import read_instance, write_instance
-from carproof.adapters import instance_from_networkx
+from carproof.formats import instance_from_networkx
 
 
 def test_nodes_are_resources_and_edges_moves() -> None:

@@ -17,13 +17,13 @@ from carproof.commands import conform as conform_command
 from carproof.commands import serve as serve_command
 from carproof.conform.cases import ASKED_OPS
 from carproof.engines import Engine, engine_named
-from carproof.ops import OPS
-from carproof.ops.op import Op, op_of, request_fields
-from carproof.ops.published import NAME, schema, table
-from carproof.protocol import Request
+from carproof.protocol.lines import Request
+from carproof.protocol.ops import OPS
+from carproof.protocol.ops.op import Op, op_of, request_fields
+from carproof.protocol.ops.published import NAME, schema, table
+from carproof.protocol.server import respond
 from carproof.schema import schema_file
-from carproof.server import respond
-from carproof.vectors import vectors
+from carproof.testing.vectors import vectors
 
 
 @cache

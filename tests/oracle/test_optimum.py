@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 from tests.oracle.running import HEAD_ON, TWO_PLANNED, Document, Outcome, Run, corridor, save
 
+from carp_experiments.measuring import optimum_table
 from carp_optimum.gap import Gap, PlannerGap
 from carp_optimum.optimum import Optimum
 from carp_spec import Carp
-from carp_verify.encoding import Evidence
-from carproof import optimum_table
-from carproof.gap_family import Cell
+from carp_verify.optimum.encoding import Evidence
+from carproof.gap.family import Cell
 from carproof.generate import Range
 
 UNSOLVABLE = corridor([{"id": "r1", "start": "a", "goal": "e"}, HEAD_ON])
@@ -98,7 +98,7 @@ def test_a_proof_is_written_and_checked(carproof: Run) -> None:
 
 def test_a_proof_about_which_z3_does_not_answer_is_undecided(carproof: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     assert carproof("optimum town.json --proof proof").code == 0
-    monkeypatch.setattr("carp_verify.proof._ask_z3", lambda *_: "unknown")
+    monkeypatch.setattr("carp_verify.optimum.proof._ask_z3", lambda *_: "unknown")
     outcome = carproof("verify-proof proof")
     assert outcome.code == 3
     assert outcome.stdout.splitlines()[-1] == "undecided: z3 did not answer in time about one of the formulas"

@@ -12,7 +12,7 @@ from carp_spec import Instance, Refusal, Solution
 from carp_verify.documents import read_instance, read_solution
 from carproof import polish
 from carproof.engines import engine_named
-from carproof.server import respond
+from carproof.protocol.server import respond
 
 LATE = solution({"r1": [["a", 0, 2], ["b", 2, 4], ["c", 4, 5]], "r2": TWO_PLANNED["plans"][1]["visits"]})
 INSTANCE, GIVEN = read_instance(msgspec.json.encode(TWO)), read_solution(msgspec.json.encode(LATE))
@@ -67,7 +67,7 @@ def test_for_a_time_the_command_python_and_the_op_anneal(carproof: Run, monkeypa
         times.append(seconds)
         return solution
 
-    monkeypatch.setattr("carp_optimum.annealing.anneal", anneal)
+    monkeypatch.setattr("carp_optimized.improve.annealing.anneal", anneal)
     assert carproof("polish town.json late.json --seconds 0.1").code == 0
     assert polish(INSTANCE, GIVEN, seconds=0.2) == GIVEN
     op = {"id": 1, "op": "polish", "instance": TWO, "solution": LATE, "seconds": 0.3}
@@ -89,5 +89,5 @@ def test_a_time_that_is_none_is_refused_from_python_too() -> None:
 def test_engine_and_starts_keep_to_rounds_that_never_raise_the_total(
     carproof: Run, monkeypatch: pytest.MonkeyPatch, option: str
 ) -> None:
-    monkeypatch.setattr("carp_optimum.annealing.anneal", None)
+    monkeypatch.setattr("carp_optimized.improve.annealing.anneal", None)
     assert carproof(f"polish town.json late.json --seconds 0.1 {option}").code == 0

@@ -59,7 +59,7 @@ def test_what_is_compiled_is_not_kept_and_that_is_said_once(folder: Path) -> Non
 
 def test_random_cases_are_drawn(folder: Path) -> None:
     draws = (
-        "import hypothesis as h; from carproof.files import hypothesis_elsewhere\n"
+        "import hypothesis as h; from carproof.command_line.files import hypothesis_elsewhere\n"
         "with hypothesis_elsewhere(): print(h.find(h.strategies.integers(), lambda n: n > 99))"
     )
     done = run_read_only(folder, sys.executable, "-c", draws)

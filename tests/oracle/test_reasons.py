@@ -3,7 +3,7 @@
 from tests.spec.making import instance, line, plan_of
 
 from carp_spec import Resource, ResourceGraph
-from carproof.reasons import why_unplanned
+from carproof.judging.unplanned import why_unplanned
 
 
 def test_a_goal_that_no_moves_lead_to() -> None:

@@ -29,10 +29,10 @@ from tests.oracle.running import (
 
 from carp_verify.bounds import read_bound
 from carproof.engines import engine_named
-from carproof.ops import OPS
-from carproof.protocol import LONGEST_LINE
+from carproof.protocol.lines import LONGEST_LINE
+from carproof.protocol.ops import OPS
+from carproof.protocol.server import respond, serve
 from carproof.rules import ALL_RULES
-from carproof.server import respond, serve
 
 STOP = line(id="last", op="stop")
 THREE = corridor([*TWO["robots"], HEAD_ON])

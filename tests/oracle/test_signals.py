@@ -12,8 +12,8 @@ import pytest
 from carp_optimized import plan
 from carp_spec import Carp
 from carp_verify.documents import write_instance, write_solution
+from carproof.entry.supervising import GRACE
 from carproof.generate import Fleet, Grid, grid_instance
-from carproof.supervising import GRACE
 
 CARPROOF = [sys.executable, "-m", "carproof"]
 PATIENCE = 5.0
@@ -124,7 +124,7 @@ from carproof import start
 
 class Interrupting:
     def find_spec(self, name, *_):
-        if name == "carproof.cli":
+        if name == "carproof.entry.cli":
             os.kill(os.getpid(), int(sys.argv[1]))
 
 sys.meta_path.insert(0, Interrupting())
@@ -139,16 +139,16 @@ def test_a_signal_while_the_command_is_loaded_shows_no_traceback(number: signal.
 
 
 def test_signals_are_heeded_before_anything_slow_is_loaded() -> None:
-    look = "import sys; before = {*sys.modules}; import carproof.start; print(*{*sys.modules} - before)"
+    look = "import sys; before = {*sys.modules}; import carproof.entry.start; print(*{*sys.modules} - before)"
     done = subprocess.run([sys.executable, "-S", "-c", look], capture_output=True, check=True, env=PATHS)
     loaded = set(done.stdout.decode().split())
-    assert "carproof.start" in loaded
+    assert "carproof.entry.start" in loaded
     assert not {"typing", "enum", "re", "signal", "click"} & loaded
 
 
 STUCK = """
 import os, signal, sys
-from carproof.supervising import supervised
+from carproof.entry.supervising import supervised
 
 def stuck():
     signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT, signal.SIGTERM])
@@ -184,7 +184,9 @@ def test_a_command_that_looks_at_no_signal_is_killed_with_its_workers(number: si
 
 def test_the_exit_code_is_that_of_the_command(tmp_path: Path) -> None:
     def ends(how: str) -> tuple[int, bytes]:
-        program = f"import os, sys; from carproof.supervising import supervised; sys.exit(supervised(lambda: {how}))"
+        program = (
+            f"import os, sys; from carproof.entry.supervising import supervised; sys.exit(supervised(lambda: {how}))"
+        )
         done = subprocess.run([sys.executable, "-c", program], capture_output=True, cwd=tmp_path)  # noqa: PLW1510 - looked at
         return done.returncode, done.stderr
 

@@ -8,9 +8,18 @@ from carp_reference import plan
 from carp_reference.execution import order_of
 from carp_spec import Carp, Instance, Solution, check, judge
 from carp_spec.execution_rules import trace_violations
-from carproof import switching
-from carproof.delays import Delay, executed, in_order, late_robots, on_the_clock, slack, smallest_collision, stuck
-from carproof.executing import random_delays
+from carproof.execution import switching
+from carproof.execution.delays import (
+    Delay,
+    executed,
+    in_order,
+    late_robots,
+    on_the_clock,
+    slack,
+    smallest_collision,
+    stuck,
+)
+from carproof.execution.simulation import random_delays
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 
 TOGETHER = {"joint/capacity", "joint/exchange"}

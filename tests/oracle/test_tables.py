@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from tests.oracle.running import BROKEN, TWO, TWO_PLANNED, Run
 
-from carproof.tables import print_table
+from carproof.command_line.tables import print_table
 
 WIDTH = 40
 ESCAPE = re.compile(r"\x1b\[[0-9;]*m")

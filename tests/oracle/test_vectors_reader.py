@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from carp_spec import Refusal
-from carproof.vectors import subjects, vectors
+from carproof.testing.vectors import subjects, vectors
 
 PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "vectors.md").read_text()
 
@@ -39,7 +39,7 @@ def test_without_a_subject_all_cases_come_in_the_order_of_the_subjects() -> None
 
 
 def test_importing_the_reader_reads_no_file() -> None:
-    script = "import pathlib; pathlib.Path.read_bytes = None; import carproof.vectors as v; v.subjects(); v.vectors()"
+    script = "import pathlib; pathlib.Path.read_bytes = None; import carproof.testing.vectors as v; v.subjects(); v.vectors()"
     subprocess.run([sys.executable, "-c", script], check=True)
 
 
@@ -51,7 +51,7 @@ def test_the_page_shows_a_case_as_it_is() -> None:
 
 
 def test_the_example_on_the_page_runs() -> None:
-    (example,) = re.findall(r"```python\n(from carproof.vectors.*?)```", PAGE, re.DOTALL)
+    (example,) = re.findall(r"```python\n(from carproof.testing.vectors.*?)```", PAGE, re.DOTALL)
     with contextlib.redirect_stdout(io.StringIO()) as printed:
         exec(example, {})  # noqa: S102 - the page is ours
     assert "joint-exchange.swap invalid [{'robot': 'r1'" in printed.getvalue()

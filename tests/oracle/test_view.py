@@ -394,7 +394,7 @@ def test_a_still_with_a_trace_is_refused(carproof: Run, tmp_path: Path, option: 
 def test_only_the_first_of_very_many_violations_are_listed(
     carproof: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("carproof.viewer.staging.MOST_LISTED", 1)
+    monkeypatch.setattr("carproof.viewer.scene_builder.MOST_LISTED", 1)
     scene = scene_of(drawn(carproof, tmp_path, CORRIDOR, COLLIDING))
     assert len(scene["violations"]) == 1
     assert scene["rules"][0]["count"] == 2

@@ -10,7 +10,7 @@ from tests.profiles import draws
 
 from carp_spec import Instance, Plan, Solution, Visit, judge
 from carp_spec.windows import occupancy
-from carproof.strategies import instances
+from carproof.testing.strategies import instances
 from carproof.viewer.lanes import lanes, lasts, occupations
 from carproof.viewer.page import page
 from carproof.viewer.stills import chart_still, map_still

@@ -19,7 +19,7 @@ def uncompiled(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """As if nothing were compiled: a list that gets longer when it would be."""
     steps: list[str] = []
     monkeypatch.setattr("carp_optimum.__main__.compile_all", lambda: steps.append("compiled"))
-    monkeypatch.setattr("carp_optimized.compiling.is_compiled", lambda _: bool(steps))
+    monkeypatch.setattr("carp_optimized.jit.compiling.is_compiled", lambda _: bool(steps))
     return steps
 
 
@@ -27,11 +27,11 @@ def uncompiled(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 @pytest.mark.parametrize(
     ("command", "timed"),
     [
-        ("polish town.json plans.json --seconds 0.1", "carp_optimum.annealing.polish"),
+        ("polish town.json plans.json --seconds 0.1", "carp_optimized.improve.annealing.polish"),
         ("bound town.json --seconds 1", "carp_optimum.bound.lower_bound"),
         ("optimum town.json", "carp_optimum.optimum.optimum"),
         ("gap town.json", "carp_optimum.gap.gap"),
-        ("gap --size 2 --count 1", "carproof.gap_family.measured"),
+        ("gap --size 2 --count 1", "carproof.gap.family.measured"),
         (f"conform --examples 0 --one-shot -- {sys.executable} -c 0 {{instance}}", "carproof.conform.run.conform"),
     ],
 )

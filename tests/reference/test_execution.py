@@ -12,7 +12,7 @@ from carp_reference.execution import order_of, retime, solution_at
 from carp_spec import Carp, Instance, Plan, Refusal, Solution, Visit, check_update, judge
 from carp_spec.execution_rules import trace_violations
 from carp_spec.traces import Trace
-from carproof.delays import Delay, executed, in_order, planned, stuck
+from carproof.execution.delays import Delay, executed, in_order, planned, stuck
 
 
 @settings(max_examples=draws(300))

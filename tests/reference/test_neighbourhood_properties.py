@@ -23,7 +23,7 @@ from carp_spec import (
     neighbourhood_rules,
     total_cost,
 )
-from carproof.strategies import FleetUnderWay, Sizes, fleets_under_way, instances
+from carproof.testing.strategies import FleetUnderWay, Sizes, fleets_under_way, instances
 
 CROWDED = Sizes(resources=6, robots=5, duration=2)
 

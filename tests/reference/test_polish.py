@@ -9,7 +9,7 @@ from tests.spec.making import instance_on, line
 from carp_reference import polish
 from carp_spec import Instance, Refusal, Robot, Solution, judge, total_cost
 from carproof.generate import Fleet, Grid, grid_instance
-from carproof.strategies import PlannedInstance, Sizes, planned_instances
+from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances
 
 
 def worth(instance: Instance, solution: Solution) -> tuple[int, int]:

@@ -9,7 +9,7 @@ from tests.twin import find_plan_by_ticks
 
 from carp_reference import query
 from carp_spec import Instance, Plan, RobotId, check, check_update, plan_cost
-from carproof.strategies import FleetUnderWay, fleets_under_way
+from carproof.testing.strategies import FleetUnderWay, fleets_under_way
 
 SMALL_CASES_OF_A_PATTERN = 52_198
 RICHEST = 3

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from tests.profiles import draws
 
 from carp_spec import Instance, Plan, RobotId, Solution, Visit
-from carproof.strategies import Sizes, instances
+from carproof.testing.strategies import Sizes, instances
 
 FEWER = settings(max_examples=draws(250))
 """For tests with large examples."""

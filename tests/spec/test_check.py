@@ -32,7 +32,7 @@ from carp_spec import (
     judge,
 )
 from carp_spec.check import MOST_LISTED
-from carproof.strategies import instances
+from carproof.testing.strategies import instances
 
 FEW = replace(SIZES, robots=3)
 PLANNERS: tuple[Planner, ...] = (

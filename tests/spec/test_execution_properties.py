@@ -15,7 +15,7 @@ from carp_spec.dependencies import Stay, dependencies, shortest_cycle, stays_by_
 from carp_spec.execution_rules import is_acyclic, trace_violations
 from carp_spec.joint_rules import following_is_avoided
 from carp_spec.traces import Trace
-from carproof.strategies import PlannedInstance, Sizes, instances, planned_instances
+from carproof.testing.strategies import PlannedInstance, Sizes, instances, planned_instances
 
 SIZES = Sizes(resources=4, robots=4)
 

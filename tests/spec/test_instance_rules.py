@@ -9,7 +9,7 @@ from tests.spec.strategies import FEWER, SIZES
 
 from carp_spec import Fault, Instance, Resource, ResourceGraph, Robot
 from carp_spec.instance_rules import INSTANCE_RULES, instance_faults
-from carproof.strategies import instances
+from carproof.testing.strategies import instances
 
 
 @FEWER

@@ -12,7 +12,7 @@ from tests.spec.making import VANISHING
 from tests.spec.strategies import FEWER, SIZES
 
 from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Solution
-from carproof.strategies import resource_graphs
+from carproof.testing.strategies import resource_graphs
 
 
 @FEWER

@@ -52,17 +52,17 @@ from carp_spec.polish_rules import (
 )
 from carp_spec.query_rules import expansion_key
 from carp_spec.windows import Window, free_windows, stay_fits, windows_are_free
-from carp_verify.bound_rules import BOUND_RULES
+from carp_verify.bound.rules import BOUND_RULES
+from carp_verify.bound.verify import verify_bound
 from carp_verify.bounds import read_bound
 from carp_verify.documents import is_json, read_query_certificate, read_solution, read_trace
-from carp_verify.joint_search import least_total_cost
-from carp_verify.query_certificate_rules import QUERY_CERTIFICATE_RULES, plans_are_lawful, robot_is_known
-from carp_verify.verify_bound import verify_bound
-from carp_verify.verify_query import verify_query
-from carproof.giving_way import robot_is_first
+from carp_verify.optimum.joint_search import least_total_cost
+from carp_verify.query.rules import QUERY_CERTIFICATE_RULES, plans_are_lawful, robot_is_known
+from carp_verify.query.verify import verify_query
+from carproof.execution.giving_way import robot_is_first
 from carproof.planner_options import planner_named
 from carproof.registry import RULES
-from carproof.vectors import Fields, Vector
+from carproof.testing.vectors import Fields, Vector
 
 
 @dataclass(frozen=True, slots=True)

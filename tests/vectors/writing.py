@@ -5,7 +5,7 @@ from hashlib import sha256
 
 import msgspec
 
-from carproof.vectors import DIGESTS, Vector, VectorsDocument, subjects, vector_file, vectors, vectors_document
+from carproof.testing.vectors import DIGESTS, Vector, VectorsDocument, subjects, vector_file, vectors, vectors_document
 
 
 class ChangedError(Exception):

@@ -8,13 +8,13 @@ import msgspec
 from hypothesis import strategies as st
 
 from carp_optimum.bound import lower_bound
-from carp_optimum.cut_search import prove
-from carp_optimum.proving import refutation
-from carp_optimum.solver import Deadline
+from carp_optimum.claims.cut_search import prove
+from carp_optimum.sat.proving import refutation
+from carp_optimum.sat.solver import Deadline
 from carp_spec import Instance, Plan, Resource, ResourceGraph, ResourceId, Robot, Visit
-from carp_verify.bound_cuts import formula_of_deadlines
+from carp_verify.bound.cuts import formula_of_deadlines
+from carp_verify.bound.verify import Budget, RobotSearch, Tariff, fees_of, predecessors, verify_bound
 from carp_verify.bounds import BOUND_FORMAT, BoundDocument, DeadlinesDocument, digest
-from carp_verify.verify_bound import Budget, RobotSearch, Tariff, fees_of, predecessors, verify_bound
 
 SCALE = 4
 HORIZON = 6

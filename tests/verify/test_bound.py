@@ -25,12 +25,12 @@ from tests.verify.tiny import TINY
 from carp_optimum.bound import Progress, lower_bound
 from carp_spec import Instance, Resource, ResourceGraph, Robot
 from carp_spec.plan_rules import plan_cost
-from carp_verify import verify_bound as page
+from carp_verify.bound import verify as page
+from carp_verify.bound.verify import Tariff, verify_bound
 from carp_verify.bounds import BOUND_FORMAT, BoundDocument, digest, read_bound
 from carp_verify.documents import write
-from carp_verify.joint_search import least_total_cost
-from carp_verify.verify_bound import Tariff, verify_bound
-from carproof.strategies import PlannedInstance, Sizes, instances, planned_instances
+from carp_verify.optimum.joint_search import least_total_cost
+from carproof.testing.strategies import PlannedInstance, Sizes, instances, planned_instances
 
 
 @settings(max_examples=draws(120))
@@ -115,11 +115,11 @@ def test_the_verifier_shares_nothing_with_the_finder_and_loads_nothing_compiled(
         "carp_verify.bounds",
         "carp_verify.limits",
         "carp_spec.rule",
-        "carp_verify.bound_rules",
-        "carp_verify.bound_cuts",
-        "carp_verify.refutation",
+        "carp_verify.bound.rules",
+        "carp_verify.bound.cuts",
+        "carp_verify.optimum.refutation",
     }
-    program = "import sys; own = {*sys.modules}; import carp_verify.verify_bound; print(*({*sys.modules} - own))"
+    program = "import sys; own = {*sys.modules}; import carp_verify.bound.verify; print(*({*sys.modules} - own))"
     loaded = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True).stdout.split()
     outside = {name.partition(".")[0] for name in loaded} - sys.stdlib_module_names
     assert {name for name in outside if not name.startswith("_")} <= {
@@ -128,7 +128,7 @@ def test_the_verifier_shares_nothing_with_the_finder_and_loads_nothing_compiled(
         "msgspec",
         "typing_extensions",
     }
-    assert not {"carp_optimum.bound", "carp_optimum.price_search", "carp_verify.bound_cuts"} & set(loaded)
+    assert not {"carp_optimum.bound", "carp_optimum.lagrangian.price_search", "carp_verify.bound.cuts"} & set(loaded)
 
 
 def test_a_robot_in_a_resource_pays_its_price_once_and_all_at_most_price_times_capacity() -> None:

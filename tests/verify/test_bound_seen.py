@@ -15,18 +15,18 @@ from tests.verify.test_bound_groups import sight, with_sights
 from tests.verify.tiny import case
 
 from carp_optimum.bound import lower_bound
-from carp_optimum.proving import refutation
-from carp_optimum.solver import Deadline, Solver
+from carp_optimum.sat.proving import refutation
+from carp_optimum.sat.solver import Deadline, Solver
 from carp_spec import Instance, Robot, RobotId
 from carp_spec.permutations import shuffle
-from carp_verify.bound_cuts import formula_of_deadlines
-from carp_verify.bound_rules import LARGEST_FORMULA
+from carp_verify.bound.cuts import formula_of_deadlines
+from carp_verify.bound.rules import LARGEST_FORMULA
+from carp_verify.bound.verify import verify_bound
 from carp_verify.bounds import BoundDocument, DeadlinesDocument, Sight
 from carp_verify.documents import instance_document
-from carp_verify.encoding import Encoding
-from carp_verify.joint_search import least_total_cost
-from carp_verify.verify_bound import verify_bound
-from carproof.questions import Draw
+from carp_verify.optimum.encoding import Encoding
+from carp_verify.optimum.joint_search import least_total_cost
+from carproof.testing.random_instances import Draw
 
 CASES = 300
 SCALE = 4

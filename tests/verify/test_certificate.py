@@ -12,8 +12,8 @@ from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Solution, 
 from carp_verify import certificate
 from carp_verify.certificate import Breach, certify, certify_together
 from carp_verify.documents import write_instance, write_solution
-from carp_verify.smt import Solver, Undecided
-from carproof.strategies import BrokenSolution, PlannedInstance, broken_solutions, planned_instances
+from carp_verify.lemmas.smt import Solver, Undecided
+from carproof.testing.strategies import BrokenSolution, PlannedInstance, broken_solutions, planned_instances
 
 LINE = ResourceGraph((Resource("a"), Resource("b", capacity=2), Resource("c")), (("a", "b"), ("b", "c")))
 INSTANCE = Instance(LINE, (Robot("r1", "a", "c"), Robot("r2", "c", "a"), Robot("r3", "b", "b", 1)), "vanish")

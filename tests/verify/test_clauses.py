@@ -5,7 +5,7 @@ from itertools import chain, product
 import pytest
 
 from carp_spec import Refusal
-from carp_verify.clauses import Formula, dimacs
+from carp_verify.optimum.clauses import Formula, dimacs
 
 
 def is_model(formula: Formula, values: tuple[bool, ...]) -> bool:

@@ -35,7 +35,7 @@ from carp_verify.documents import (
     write_trace,
     write_verdict,
 )
-from carproof.strategies import instances, resource_graphs
+from carproof.testing.strategies import instances, resource_graphs
 
 Json = Any
 

@@ -4,11 +4,11 @@ from tests.profiles import draws
 from tests.spec.making import row
 from tests.verify.tiny import TINY
 
-from carp_optimum.solver import Deadline, Solver
+from carp_optimum.sat.solver import Deadline, Solver
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, ResourceId, Robot, check, total_cost
-from carp_verify.encoding import Conflict, Encoding, violated
-from carp_verify.joint_search import least_total_cost
-from carproof.strategies import PlannedInstance, instances, planned_instances
+from carp_verify.optimum.encoding import Conflict, Encoding, violated
+from carp_verify.optimum.joint_search import least_total_cost
+from carproof.testing.strategies import PlannedInstance, instances, planned_instances
 
 SECONDS = 60
 HORIZON = 6

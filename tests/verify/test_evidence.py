@@ -8,7 +8,7 @@ import pytest
 
 from carp_verify.support import UNSUPPORTED, support_of_rules
 from carproof.registry import RULES
-from carproof.vectors import vectors
+from carproof.testing.vectors import vectors
 
 TESTS = Path(__file__).parent.parent
 _FAULTS = "verify/test_rules_as_properties.py::test_a_fault_planted_in_an_instance_is_found_and_no_other"

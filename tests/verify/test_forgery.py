@@ -22,19 +22,19 @@ from tests.verify.test_proof import with_digests
 import carp_reference
 from carp_optimum.bound import lower_bound
 from carp_optimum.optimum import optimum
-from carp_optimum.proving import write_proof
+from carp_optimum.sat.proving import write_proof
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
 from carp_spec.query_certificates import QueryCertificateDocument
-from carp_verify.bound_cuts import formula_of
+from carp_verify.bound.cuts import formula_of
+from carp_verify.bound.verify import verify_bound
 from carp_verify.bounds import BoundDocument, CutDocument, digest, read_bound
-from carp_verify.clauses import dimacs
 from carp_verify.documents import read_query_certificate, write
-from carp_verify.encoding import Evidence, beat_formula, reach_formula
-from carp_verify.joint_search import least_total_cost
-from carp_verify.proof import FILES, ProofError, verify_proof
-from carp_verify.refutation import NotRefutedError, read_steps, require_refutation
-from carp_verify.verify_bound import verify_bound
-from carp_verify.verify_query import verify_query
+from carp_verify.optimum.clauses import dimacs
+from carp_verify.optimum.encoding import Evidence, beat_formula, reach_formula
+from carp_verify.optimum.joint_search import least_total_cost
+from carp_verify.optimum.proof import FILES, ProofError, verify_proof
+from carp_verify.optimum.refutation import NotRefutedError, read_steps, require_refutation
+from carp_verify.query.verify import verify_query
 
 LONG = 60
 

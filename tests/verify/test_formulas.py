@@ -9,11 +9,11 @@ import pytest
 
 from carp_spec import Plan, Visit, neighbourhood_rules, plan_rules, windows
 from carp_spec.windows import Occupation, Window, free_windows, occupancy
-from carp_verify.derivation import Way, derived
-from carp_verify.engine import examine
 from carp_verify.lemmas import lemma_named
+from carp_verify.lemmas.derivation import Way, derived
+from carp_verify.lemmas.engine import examine
 from carp_verify.lemmas.reserving_splits_a_window import held_by_parts
-from carp_verify.smt import (
+from carp_verify.lemmas.smt import (
     Answer,
     Bool,
     Int,
@@ -27,7 +27,7 @@ from carp_verify.smt import (
     truth,
     value_of,
 )
-from carp_verify.vocabulary import has_ended, holds, interval, is_interval, replaces_best, stay_fits
+from carp_verify.lemmas.vocabulary import has_ended, holds, interval, is_interval, replaces_best, stay_fits
 
 TICKS = range(5)
 STAYS: Sequence[Occupation] = [(a, b) for a in TICKS for b in (*range(a + 1, 5), None)]

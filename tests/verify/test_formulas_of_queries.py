@@ -17,7 +17,7 @@ from carp_reference.query import Node, find_plan
 from carp_spec import Plan, ResourceId
 from carp_spec.windows import Window
 from carp_verify.lemmas.freed_stays_come_too_late import is_too_late, least_f
-from carp_verify.smt import Bool, Int, any_of, integer, value_of
+from carp_verify.lemmas.smt import Bool, Int, any_of, integer, value_of
 
 SEARCH = import_module("carp_reference.query")  # the name of the module is also that of a function
 FOR_EVER = 99

@@ -10,13 +10,13 @@ from hypothesis import strategies as st
 from tests.profiles import draws
 from tests.verify.bound_examples import HORIZON, left, plans_of
 
-from carp_optimum.solver import Solver
+from carp_optimum.sat.solver import Solver
 from carp_spec import AfterGoal, Instance, Plan, Resource, ResourceGraph, ResourceId, Robot
-from carp_verify.bound_cuts import formula_of_deadlines
+from carp_verify.bound.cuts import formula_of_deadlines
 from carp_verify.bounds import DeadlinesDocument
-from carp_verify.encoding import violated
-from carp_verify.refutation import NotRefutedError
-from carproof.strategies import Sizes, instances
+from carp_verify.optimum.encoding import violated
+from carp_verify.optimum.refutation import NotRefutedError
+from carproof.testing.strategies import Sizes, instances
 
 
 def keeps(plan: Plan, deadline: int, seen: int, places: frozenset[ResourceId]) -> bool:

@@ -7,11 +7,11 @@ from tests.profiles import draws
 
 from carp_optimum.gap import best_order, gap
 from carp_optimum.optimum import optimum
-from carp_optimum.solver import TimeOver
+from carp_optimum.sat.solver import TimeOver
 from carp_reference import query
 from carp_spec import Carp, Instance, Neighbourhood, Plan, Refusal, Resource, ResourceGraph, Robot, Shuffled, total_cost
-from carp_verify.bound_rules import ContradictionError
-from carproof.strategies import Sizes, instances
+from carp_verify.bound.rules import ContradictionError
+from carproof.testing.strategies import Sizes, instances
 
 SECONDS = 60
 SMALL_FLEET = Sizes(resources=5, robots=4, capacity=2, duration=2, release=2, pace=2)

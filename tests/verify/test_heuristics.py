@@ -3,14 +3,14 @@ from hypothesis import HealthCheck, assume, given, settings
 from tests.profiles import draws
 from tests.verify.test_optimum import turned_ring
 
-from carp_optimum import heuristics
-from carp_optimum.heuristics import plans_of_all
-from carp_optimum.solver import TimeOver
+from carp_optimum.sat import heuristics
+from carp_optimum.sat.heuristics import plans_of_all
+from carp_optimum.sat.solver import TimeOver
 from carp_reference import plan
 from carp_reference.problem import prepare
 from carp_spec import Carp, Instance, Plan, Resource, ResourceGraph, Robot, Solution, judge, total_cost
-from carp_verify.encoding import Encoding
-from carproof.strategies import Sizes, instances
+from carp_verify.optimum.encoding import Encoding
+from carproof.testing.strategies import Sizes, instances
 
 SMALL = Sizes(resources=6, robots=4, capacity=2, duration=3, release=3, pace=2)
 
@@ -25,7 +25,7 @@ def engine(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> N
     if request.param == "read":
         monkeypatch.setattr(heuristics, "_run", lambda *_: None)
     else:
-        monkeypatch.setattr("carp_optimized.compiling.is_cached", lambda _: True)
+        monkeypatch.setattr("carp_optimized.jit.compiling.is_cached", lambda _: True)
 
 
 def found(instance: Instance, enough: int = 0) -> tuple[Plan, ...] | None:

@@ -2,7 +2,7 @@ import pytest
 from tests.spec.making import row
 
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
-from carp_verify.joint_search import least_total_cost
+from carp_verify.optimum.joint_search import least_total_cost
 
 APART = (Robot("a", 0, 1), Robot("b", 1, 0))
 PASSING = (Robot("a", 0, 1), Robot("b", 0, 2, release=1))

@@ -7,9 +7,9 @@ from tests.verify.test_forgery import lane
 from tests.verify.test_proof import crossing
 
 from carp_spec import Instance, Robot
-from carp_verify.clauses import dimacs
-from carp_verify.encoding import Evidence, beat_formula, reach_formula
-from carp_verify.proof import variables
+from carp_verify.optimum.clauses import dimacs
+from carp_verify.optimum.encoding import Evidence, beat_formula, reach_formula
+from carp_verify.optimum.proof import variables
 
 WIDE = lane("park", Robot("r", "a", "c", pace=2), Robot("s", "d", "a"), Robot("t", "b", "b", release=2), capacity=2)
 

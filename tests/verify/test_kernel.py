@@ -9,9 +9,9 @@ from tests.verify.kernel_program import ask, check, encoded, run, served
 
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, Solution, judge
 from carp_verify.documents import instance_document, read_instance, read_solution
-from carproof.mutations import BrokenSolution
-from carproof.strategies import PlannedInstance, broken_solutions, instances, planned_instances
-from carproof.vectors import Vector, vectors
+from carproof.testing.mutations import BrokenSolution
+from carproof.testing.strategies import PlannedInstance, broken_solutions, instances, planned_instances
+from carproof.testing.vectors import Vector, vectors
 
 _kernel = pytest.fixture(scope="module", autouse=True)(served)
 

@@ -11,8 +11,8 @@ from tests.verify.kernel_program import program
 
 import carp_optimized
 import carp_reference
-from carp_experiments import kernel_verdicts
-from carp_experiments.kernel_verdicts import (
+from carp_experiments.measuring import kernel_verdicts
+from carp_experiments.measuring.kernel_verdicts import (
     BLOCK,
     KernelCase,
     Question,
@@ -26,7 +26,7 @@ from carp_experiments.kernel_verdicts import (
 from carp_spec import Carp, Instance, Solution
 from carp_verify.kernel import KernelVerdict, ask
 from carproof.generate import Fleet, Grid, Warehouse, grid_instance, warehouse_instance
-from carproof.mutations import MUTATIONS
+from carproof.testing.mutations import MUTATIONS
 
 
 @pytest.fixture(autouse=True)

@@ -17,21 +17,21 @@ from tests.verify.test_unsolvable import BORN_TOGETHER
 from tests.verify.tiny import case
 
 from carp_optimum.optimum import optimum
-from carp_optimum.proving import refutation, write_proof
-from carp_optimum.solver import Deadline, Solver
+from carp_optimum.sat.proving import refutation, write_proof
+from carp_optimum.sat.solver import Deadline, Solver
 from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot, RobotId
 from carp_spec.permutations import shuffle
-from carp_verify.bound_cuts import formula_of_deadlines, group_of
-from carp_verify.bound_rules import LARGEST_FORMULA
+from carp_verify.bound.cuts import formula_of_deadlines, group_of
+from carp_verify.bound.rules import LARGEST_FORMULA
+from carp_verify.bound.verify import verify_bound
 from carp_verify.bounds import BOUND_FORMAT, BoundDocument, CutDocument, DeadlinesDocument, digest
-from carp_verify.clauses import Clause, Formula, dimacs
 from carp_verify.documents import read_instance, write, write_instance
-from carp_verify.encoding import Encoding, Evidence, beat_formula
-from carp_verify.joint_search import least_total_cost
-from carp_verify.proof import PROOF_FORMAT
-from carp_verify.refutation import read_steps
-from carp_verify.unsolvable import Clauses
-from carp_verify.verify_bound import verify_bound
+from carp_verify.optimum.clauses import Clause, Formula, dimacs
+from carp_verify.optimum.encoding import Encoding, Evidence, beat_formula
+from carp_verify.optimum.joint_search import least_total_cost
+from carp_verify.optimum.proof import PROOF_FORMAT
+from carp_verify.optimum.refutation import read_steps
+from carp_verify.optimum.unsolvable import Clauses
 
 SECONDS = 60
 CASES = 400

@@ -8,10 +8,9 @@ from pathlib import Path
 import pytest
 from tests.oracle.running import Run
 
-from carp_verify import engine
-from carp_verify.engine import Formula, Lemma, Unproved, examine, prove, refute
-from carp_verify.lemmas import MODULES, lemma_named
-from carp_verify.smt import Undecided, equal, find_model, integers, negation
+from carp_verify.lemmas import MODULES, engine, lemma_named
+from carp_verify.lemmas.engine import Formula, Lemma, Unproved, examine, prove, refute
+from carp_verify.lemmas.smt import Undecided, equal, find_model, integers, negation
 from carp_verify.theorems import THEOREMS, Theorem
 
 KERNEL = Path(__file__).parents[2] / "verify/kernel"

@@ -10,11 +10,11 @@ from tests.verify.tiny import TINY
 
 from carp_optimum.optimum import optimum
 from carp_spec import AfterGoal, Instance, Refusal, Resource, ResourceGraph, Robot, judge
-from carp_verify.encoding import Encoding
-from carp_verify.joint_search import least_total_cost
-from carp_verify.unsolvable import describe
+from carp_verify.optimum.encoding import Encoding
+from carp_verify.optimum.joint_search import least_total_cost
+from carp_verify.optimum.unsolvable import describe
 from carproof.generate import Fleet, Grid, grid_instance
-from carproof.strategies import instances
+from carproof.testing.strategies import instances
 
 LONG = 60
 
@@ -108,7 +108,7 @@ def test_the_search_ends_with_the_first_look_at_the_clock_behind_the_limit() -> 
 def test_an_undecided_search_leaves_the_best_plans_found_and_a_bound(
     engine: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("carp_optimized.compiling.is_cached", lambda _: engine == "optimized")
+    monkeypatch.setattr("carp_optimized.jit.compiling.is_cached", lambda _: engine == "optimized")
     instance = grid_instance(Grid(8, 8, 20, map_seed=1), Fleet(32, 1, "park"))
     ticks = clock_of(0.1)
     best = optimum(instance, 20, lambda: next(ticks))
@@ -149,8 +149,8 @@ def test_far_releases_do_not_make_the_search_over_all_states_endless() -> None:
 
 
 def test_a_search_over_too_many_states_leaves_the_search_for_an_optimum_going(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("carp_verify.unsolvable.FEW_STATES", 10**9)
-    monkeypatch.setattr("carp_verify.joint_search.refuse_size", refuse_anything)
+    monkeypatch.setattr("carp_verify.optimum.unsolvable.FEW_STATES", 10**9)
+    monkeypatch.setattr("carp_verify.optimum.joint_search.refuse_size", refuse_anything)
     monkeypatch.setattr("carp_optimum.optimum.DELAY_OF_DOUBT", 1)
     instance = on_grid(
         3, Robot("a", "0,1", "2,1"), Robot("b", "2,1", "0,1"), Robot("c", "1,0", "1,2"), after_goal="park"

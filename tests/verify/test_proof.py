@@ -12,12 +12,12 @@ from tests.verify.bound_examples import UNSOUND_DRAT
 from tests.verify.tiny import TINY
 
 from carp_optimum.optimum import optimum
-from carp_optimum.proving import write_proof
+from carp_optimum.sat.proving import write_proof
 from carp_spec import AfterGoal, Instance, Refusal, Resource, ResourceGraph, Robot, Solution, Verdict, Violation, judge
-from carp_verify.bound_rules import ContradictionError
+from carp_verify.bound.rules import ContradictionError
 from carp_verify.documents import write_instance
-from carp_verify.proof import FILES, ProofError, verify_proof
-from carproof.strategies import instances
+from carp_verify.optimum.proof import FILES, ProofError, verify_proof
+from carproof.testing.strategies import instances
 
 SECONDS = 60
 
@@ -115,17 +115,17 @@ def test_every_optimum_can_be_proved(tmp_path_factory: pytest.TempPathFactory, i
 
 def test_a_file_is_read_up_to_the_limit_alone(proof: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     largest = max((proof / name).stat().st_size for name in FILES)
-    monkeypatch.setattr("carp_verify.proof.LARGEST_FILE", largest)
+    monkeypatch.setattr("carp_verify.optimum.proof.LARGEST_FILE", largest)
     assert verify_proof(proof).cost == 13
-    monkeypatch.setattr("carp_verify.proof.LARGEST_FILE", largest - 1)
+    monkeypatch.setattr("carp_verify.optimum.proof.LARGEST_FILE", largest - 1)
     with pytest.raises(ProofError, match=f"it has more than {largest - 1} bytes"):
         verify_proof(proof)
 
 
 def test_an_instance_is_searched_up_to_the_limit_alone(proof: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("carp_verify.proof.LARGEST_TABLE", 4 * 9)
+    monkeypatch.setattr("carp_verify.optimum.proof.LARGEST_TABLE", 4 * 9)
     assert verify_proof(proof).cost == 13
-    monkeypatch.setattr("carp_verify.proof.LARGEST_TABLE", 4 * 9 - 1)
+    monkeypatch.setattr("carp_verify.optimum.proof.LARGEST_TABLE", 4 * 9 - 1)
     with pytest.raises(ProofError, match=r"^instance\.json: its pairs of a robot and a resource are 36"):
         verify_proof(proof)
 
@@ -218,7 +218,7 @@ def test_plans_in_the_model_are_judged(
     proof: Path, verdict: Verdict, reason: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Whatever the clauses allow: the plans here are right, and the verdict is not."""
-    monkeypatch.setattr("carp_verify.proof.judge", lambda *_: verdict)
+    monkeypatch.setattr("carp_verify.optimum.proof.judge", lambda *_: verdict)
     with pytest.raises(ProofError, match=f"^reach.model: {reason}"):
         verify_proof(proof)
 
@@ -263,7 +263,7 @@ def test_z3_is_asked_about_the_bytes_that_were_compared_whatever_the_files_hold_
             (proof / name).write_text("p cnf 0 0\n")
         return judge(instance, solution)
 
-    monkeypatch.setattr("carp_verify.proof.judge", judged)
+    monkeypatch.setattr("carp_verify.optimum.proof.judge", judged)
     monkeypatch.setattr("z3.Solver", Noting)
     assert not verify_proof(proof).is_decided
     assert asked == compared

@@ -13,13 +13,13 @@ from tests.verify.query_examples import QUESTIONS, VANISHING, WESTWARDS, Questio
 
 import carp_optimized.certifying
 import carp_reference
-import carp_verify.query_certificate_rules
+import carp_verify.query.rules
 from carp_spec import Plan, Refusal, Robot, Visit
 from carp_spec.query_certificates import QueryCertificateDocument
 from carp_spec.windows import Window
-from carp_verify.query_certificate_rules import QUERY_CERTIFICATE_RULES
-from carp_verify.verify_query import Traffic, verify_query
-from carproof.strategies import FleetUnderWay, Sizes, fleets_under_way
+from carp_verify.query.rules import QUERY_CERTIFICATE_RULES
+from carp_verify.query.verify import Traffic, verify_query
+from carproof.testing.strategies import FleetUnderWay, Sizes, fleets_under_way
 
 SMALL_TICKS = st.integers(-1, 12)
 
@@ -176,7 +176,7 @@ def test_the_free_windows_are_those_of_counting_robots_tick_by_tick(
 def test_a_size_that_is_too_large_is_refused_before_anything_is_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
     question = QUESTIONS["head-on"]
     certificate = question.certified()[1]
-    monkeypatch.setattr(carp_verify.query_certificate_rules, "LARGEST_CHECK", 10)
+    monkeypatch.setattr(carp_verify.query.rules, "LARGEST_CHECK", 10)
     assert rule_broken(question, certificate) == "query-certificate/size"
     far = msgspec.structs.replace(certificate, labels=certificate.labels * 3_000_000)
     monkeypatch.undo()

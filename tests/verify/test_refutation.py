@@ -7,11 +7,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.verify.bound_examples import UNSOUND_DRAT
 
-from carp_optimum.hints import NoHintsError, refutation_with_hints
-from carp_optimum.solver import Solver
-from carp_verify import refutation
-from carp_verify.clauses import Clause, Formula
-from carp_verify.refutation import NotRefutedError, require_refutation
+from carp_optimum.sat.lrat_hints import NoHintsError, refutation_with_hints
+from carp_optimum.sat.solver import Solver
+from carp_verify.optimum import refutation
+from carp_verify.optimum.clauses import Clause, Formula
+from carp_verify.optimum.refutation import NotRefutedError, require_refutation
 
 SQUARE = ((1, 2), (1, -2), (-1, 2), (-1, -2))
 REFUTED = "5 1 0 1 2 0\n6 0 5 3 4 0\n"

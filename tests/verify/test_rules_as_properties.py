@@ -30,7 +30,7 @@ from carp_spec.plan_rules import is_plan_cost, is_total_cost
 from carp_spec.planners import LARGEST_SEED
 from carp_spec.query_rules import expansion_key
 from carp_verify.documents import read_instance, write_instance
-from carproof.strategies import PlannedInstance, instances, planned_instances
+from carproof.testing.strategies import PlannedInstance, instances, planned_instances
 
 Plant: TypeAlias = Callable[[Instance, st.DataObject], Instance]
 WITH_ROBOTS = instances(least_robots=1)

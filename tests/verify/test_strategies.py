@@ -11,8 +11,8 @@ from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot, has_e
 from carp_spec.instance_rules import instance_faults
 from carp_spec.joint_rules import JOINT_RULES, SOLUTION_RULES
 from carp_spec.plan_rules import PLAN_RULES
-from carproof.mutations import MUTATIONS, BrokenSolution, Mutation
-from carproof.strategies import (
+from carproof.testing.mutations import MUTATIONS, BrokenSolution, Mutation
+from carproof.testing.strategies import (
     FleetUnderWay,
     PlannedInstance,
     Sizes,

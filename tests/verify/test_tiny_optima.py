@@ -7,15 +7,15 @@ import pytest
 from tests.verify.tiny import case
 
 from carp_optimum.optimum import optimum
-from carp_optimum.solver import Deadline, Solver
+from carp_optimum.sat.solver import Deadline, Solver
 from carp_spec import Instance, Solution, judge
 from carp_spec.permutations import shuffle
-from carp_verify.encoding import Encoding, Evidence, beat_formula, reach_formula
-from carp_verify.joint_search import least_total_cost
-from carp_verify.proof import solution_of
-from carp_verify.robot_clauses import Node, RobotClauses
-from carp_verify.unsolvable import FullGoal, NoWay, Obstacle, why_no_obstacle
-from carproof.questions import Draw
+from carp_verify.optimum.encoding import Encoding, Evidence, beat_formula, reach_formula
+from carp_verify.optimum.joint_search import least_total_cost
+from carp_verify.optimum.proof import solution_of
+from carp_verify.optimum.robot_clauses import Node, RobotClauses
+from carp_verify.optimum.unsolvable import FullGoal, NoWay, Obstacle, why_no_obstacle
+from carproof.testing.random_instances import Draw
 
 NIGHTLY = os.environ.get("HYPOTHESIS_PROFILE") == "nightly"
 CASES = 50_000 if NIGHTLY else 3_000

@@ -12,15 +12,15 @@ from tests.verify.forging import FAR, changed, changed_lines
 from tests.verify.tiny import case
 
 from carp_optimum.optimum import optimum
-from carp_optimum.proving import write_proof
+from carp_optimum.sat.proving import write_proof
 from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot
-from carp_verify import unsolvable
-from carp_verify.clauses import dimacs
 from carp_verify.documents import write_instance
-from carp_verify.encoding import Evidence, beat_formula
-from carp_verify.joint_search import least_total_cost
-from carp_verify.proof import PROOF_FORMAT, ProofError, verify_proof
-from carp_verify.unsolvable import Clauses, FullGoal, NoWay, Obstacle, States, why_no_obstacle
+from carp_verify.optimum import unsolvable
+from carp_verify.optimum.clauses import dimacs
+from carp_verify.optimum.encoding import Evidence, beat_formula
+from carp_verify.optimum.joint_search import least_total_cost
+from carp_verify.optimum.proof import PROOF_FORMAT, ProofError, verify_proof
+from carp_verify.optimum.unsolvable import Clauses, FullGoal, NoWay, Obstacle, States, why_no_obstacle
 
 SECONDS = 60
 

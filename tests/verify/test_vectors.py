@@ -15,11 +15,11 @@ from tests.vectors.judging import finding
 from tests.vectors.writing import ChangedError, digests, file_text, list_text, listed
 
 from carp_spec import plan_cost
-from carp_verify.bound_rules import BOUND_RULES
-from carp_verify.query_certificate_rules import QUERY_CERTIFICATE_RULES
+from carp_verify.bound.rules import BOUND_RULES
+from carp_verify.query.rules import QUERY_CERTIFICATE_RULES
 from carproof.registry import RULES
 from carproof.schema import schema_file
-from carproof.vectors import DIGESTS, FLAGS, FOLDER, Vector, subjects, vector_file, vectors, vectors_document
+from carproof.testing.vectors import DIGESTS, FLAGS, FOLDER, Vector, subjects, vector_file, vectors, vectors_document
 
 BY_RULE = [rule.id for rule in RULES]
 KNOWN = {*BY_RULE, *(rule.id for rule in (*BOUND_RULES, *QUERY_CERTIFICATE_RULES))}
@@ -128,7 +128,7 @@ def test_a_new_case_is_laid_out_and_listed_and_a_changed_one_is_not(
 ) -> None:
     folder = tmp_path / "vectors"
     shutil.copytree(FOLDER, folder)
-    monkeypatch.setattr("carproof.vectors.FOLDER", folder)
+    monkeypatch.setattr("carproof.testing.vectors.FOLDER", folder)
     monkeypatch.setattr(writing, "DIGESTS", folder / "digests.txt")
     document = vectors_document("window/fits")
     added = msgspec.structs.replace(document.cases[0], id="window-fits.added")

@@ -2,9 +2,9 @@
 
 from carp_spec import Instance
 from carp_spec.permutations import splitmix64
-from carp_verify.joint_search import joint_states
-from carproof.questions import Draw, Mix, draw_instance
-from carproof.strategies import Sizes
+from carp_verify.optimum.joint_search import joint_states
+from carproof.testing.random_instances import Draw, Mix, draw_instance
+from carproof.testing.strategies import Sizes
 
 MOST_STATES = 15_000
 MIX = Mix(

@@ -14,8 +14,8 @@ from typing import TypeAlias
 
 from carp_spec import Instance, Plan, Resource, ResourceId, RobotId, Solution, Violation, Visit, judge
 from carp_spec.rule import named
+from carp_verify.lemmas.smt import Bool, Int, Model, Solver, any_of, at_least, between, equal, integer
 from carp_verify.limits import require_following
-from carp_verify.smt import Bool, Int, Model, Solver, any_of, at_least, between, equal, integer
 
 Stays: TypeAlias = dict[RobotId, list[Visit]]
 Ticks: TypeAlias = dict[RobotId, list[int]]

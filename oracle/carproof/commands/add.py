@@ -8,12 +8,19 @@ import click
 from carp_spec import Neighbourhood
 from carp_spec.inputs.requests import require_new_robot, require_tick
 from carp_verify.documents import write_solution
-from carproof.answer import Answer
+from carproof.command_line.answer import Answer
+from carproof.command_line.files import naming, read_sound
+from carproof.command_line.options import (
+    ADDING,
+    asks_for_a_robot,
+    chosen_planner,
+    examples,
+    gives_plans,
+    planner_options,
+)
+from carproof.command_line.output import show_addition, write_result
 from carproof.engines import engine_named
-from carproof.files import naming, read_sound
-from carproof.options import ADDING, asks_for_a_robot, chosen_planner, examples, gives_plans, planner_options
 from carproof.requests import robot_called
-from carproof.results import show_addition, write_result
 
 
 @click.command(

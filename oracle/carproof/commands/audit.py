@@ -7,11 +7,8 @@ import click
 
 from carp_spec.inputs.requests import sound_solution
 from carp_verify.documents import write
-from carproof.adapters import format_of, read_foreign_solution
-from carproof.answer import Answer
-from carproof.audit import Audit, ask_kernel, audit_in_order, audit_in_some_order
-from carproof.engines import engine_named
-from carproof.files import (
+from carproof.command_line.answer import Answer
+from carproof.command_line.files import (
     InputFile,
     naming,
     print_document,
@@ -21,11 +18,14 @@ from carproof.files import (
     require_following_in,
     shown,
 )
-from carproof.foreign import MovingAI, from_option, movingai_options, read_movingai
-from carproof.options import engine_option, examples, json_option, kernel_option
-from carproof.progress import progress
-from carproof.results import arrival_of, audit_document, shown_plan
-from carproof.tables import print_line, print_table
+from carproof.command_line.foreign import MovingAI, from_option, movingai_options, read_movingai
+from carproof.command_line.options import engine_option, examples, json_option, kernel_option
+from carproof.command_line.output import arrival_of, audit_document, shown_plan
+from carproof.command_line.progress import progress
+from carproof.command_line.tables import print_line, print_table
+from carproof.engines import engine_named
+from carproof.formats import format_of, read_foreign_solution
+from carproof.judging.audit import Audit, ask_kernel, audit_in_order, audit_in_some_order
 
 COLUMNS = ("robots", "certified", "late", "unplanned", "decided by", "time")
 OWN_FORMAT = "carproof"

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from carproof.answer import Answer
-from carproof.files import print_document, require_following_in
-from carproof.foreign import Problem, solution_files
-from carproof.options import examples, json_option
-from carproof.progress import progress
-from carproof.tables import counted, print_line, remark
+from carproof.command_line.answer import Answer
+from carproof.command_line.files import print_document, require_following_in
+from carproof.command_line.foreign import Problem, solution_files
+from carproof.command_line.options import examples, json_option
+from carproof.command_line.progress import progress
+from carproof.command_line.tables import counted, print_line, remark
 
 if TYPE_CHECKING:
     from carp_verify.certificate import Certificate
@@ -41,7 +41,7 @@ def command(problem: Problem, as_json: bool) -> Answer:
     instance, solution = problem.read(as_named=True)
     require_following_in(problem.names[0], instance)
     from carp_verify.certificate import certify  # noqa: PLC0415 - loads z3
-    from carp_verify.smt import Undecided  # noqa: PLC0415
+    from carp_verify.lemmas.smt import Undecided  # noqa: PLC0415
 
     visited = {visit.resource for plan in solution.plans for visit in plan.visits} & instance.graph.resource.keys()
     started = perf_counter()

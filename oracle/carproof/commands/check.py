@@ -7,15 +7,15 @@ import click
 
 from carp_spec import Instance, Solution, Verdict, judge
 from carp_spec.check import MOST_LISTED
-from carp_verify.bound_rules import ContradictionError
+from carp_verify.bound.rules import ContradictionError
 from carp_verify.documents import solution_document, write, write_verdict
 from carp_verify.kernel import KernelVerdict, ask, request
-from carproof.answer import Answer
-from carproof.files import print_document, require_following_in, write_whole
-from carproof.foreign import Problem, solution_files
-from carproof.options import examples, json_option, kernel_option, output_option
+from carproof.command_line.answer import Answer
+from carproof.command_line.files import print_document, require_following_in, write_whole
+from carproof.command_line.foreign import Problem, solution_files
+from carproof.command_line.options import examples, json_option, kernel_option, output_option
+from carproof.command_line.tables import print_line, print_table, say
 from carproof.registry import RULES
-from carproof.tables import print_line, print_table, say
 
 
 @click.command(

@@ -5,10 +5,10 @@ import click
 from carp_spec import Verdict, total_cost
 from carp_spec.execution_rules import trace_violations
 from carp_verify.documents import read_trace, write_verdict
-from carproof.answer import Answer
-from carproof.files import print_document, read_file, read_sound
-from carproof.options import examples, instance_argument, json_option, solution_argument, trace_argument
-from carproof.tables import print_line
+from carproof.command_line.answer import Answer
+from carproof.command_line.files import print_document, read_file, read_sound
+from carproof.command_line.options import examples, instance_argument, json_option, solution_argument, trace_argument
+from carproof.command_line.tables import print_line
 
 
 @click.command(

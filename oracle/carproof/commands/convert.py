@@ -6,9 +6,8 @@ from typing import get_args
 import click
 
 from carp_spec import AfterGoal
-from carproof.adapters import ADAPTERS, write_foreign_solution
-from carproof.answer import Answer
-from carproof.files import (
+from carproof.command_line.answer import Answer
+from carproof.command_line.files import (
     STANDARD_INPUT,
     InputFile,
     print_document,
@@ -17,9 +16,10 @@ from carproof.files import (
     refuse_two_standard_inputs,
     write_whole,
 )
-from carproof.foreign import AGENTS_HELP, MovingAI, from_option, read_movingai, read_solution_of
-from carproof.options import examples, json_option, output_option
-from carproof.results import show_instance
+from carproof.command_line.foreign import AGENTS_HELP, MovingAI, from_option, read_movingai, read_solution_of
+from carproof.command_line.options import examples, json_option, output_option
+from carproof.command_line.output import show_instance
+from carproof.formats import ADAPTERS, write_foreign_solution
 
 
 @click.command(

@@ -9,13 +9,13 @@ import click
 
 from carp_spec import Carp, Instance, Neighbourhood, Planner, judge, total_cost
 from carp_verify.documents import write_instance, write_solution
-from carproof.answer import Answer
+from carproof.command_line.answer import Answer
+from carproof.command_line.files import OutputFile, write_whole
+from carproof.command_line.options import examples
+from carproof.command_line.tables import print_line, print_table
 from carproof.engines import plan_showing, sum_of_shortest_paths
-from carproof.files import OutputFile, write_whole
+from carproof.formats.movingai import movingai_instance, read_map, read_scenario
 from carproof.generate import Fleet, Grid, grid_instance
-from carproof.movingai import movingai_instance, read_map, read_scenario
-from carproof.options import examples
-from carproof.tables import print_line, print_table
 
 COLUMNS = ("instance", "planner", "robots", "unplanned", "total\ncost", "shortest\npaths", "rules\nbroken", "time")
 PLANNERS: dict[str, Planner] = {"carp": Carp(), "neighbourhood m=4": Neighbourhood(m=4)}

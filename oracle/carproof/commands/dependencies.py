@@ -6,13 +6,13 @@ import click
 
 from carp_reference.execution import order_of
 from carp_verify.documents import write
-from carproof.answer import Answer
-from carproof.delays import late_robots
-from carproof.executing import DependenciesDocument, delay_named, dependencies_document, dot
-from carproof.files import OutputFile, naming, read_sound, shown, write_whole
-from carproof.options import examples, instance_argument, json_option, output_option, solution_argument
-from carproof.results import write_result
-from carproof.tables import print_line, print_table
+from carproof.command_line.answer import Answer
+from carproof.command_line.files import OutputFile, naming, read_sound, shown, write_whole
+from carproof.command_line.options import examples, instance_argument, json_option, output_option, solution_argument
+from carproof.command_line.output import write_result
+from carproof.command_line.tables import print_line, print_table
+from carproof.execution.delays import late_robots
+from carproof.execution.simulation import DependenciesDocument, delay_named, dependencies_document, dot
 from carproof.viewer.dependency_picture import dependency_still
 
 

@@ -6,12 +6,12 @@ import click
 
 from carp_spec.inputs.requests import require_tick
 from carp_verify.documents import write, write_solution, write_trace
-from carproof.answer import Answer
-from carproof.delays import until
-from carproof.executing import DRIVERS, Driver, Execution, delays_named, execute, execution_document
-from carproof.files import OutputFile, naming, print_document, read_sound, write_whole
-from carproof.options import examples, instance_argument, json_option, solution_argument
-from carproof.tables import print_line, print_table
+from carproof.command_line.answer import Answer
+from carproof.command_line.files import OutputFile, naming, print_document, read_sound, write_whole
+from carproof.command_line.options import examples, instance_argument, json_option, solution_argument
+from carproof.command_line.tables import print_line, print_table
+from carproof.execution.delays import until
+from carproof.execution.simulation import DRIVERS, Driver, Execution, delays_named, execute, execution_document
 
 COLUMNS = ("driver", "robots", "delays", "arrived", "late", "mean", "worst", "collisions", "standing", "switches")
 MOST_SHOWN = 3

@@ -7,17 +7,17 @@ import click
 from carp_spec import AfterGoal
 from carp_spec.planners import LARGEST_SEED
 from carp_verify.documents import write
-from carproof.answer import Answer
+from carproof.command_line.answer import Answer
+from carproof.command_line.files import InputFile, print_document, read_instance_file, require_following_in
+from carproof.command_line.options import RangeType, examples, json_option, limit_option
+from carproof.command_line.progress import progress
+from carproof.command_line.tables import print_line, print_table
 from carproof.engines import warm
 from carproof.extras import require
-from carproof.files import InputFile, print_document, read_instance_file, require_following_in
 from carproof.generate import Range
-from carproof.options import RangeType, examples, json_option, limit_option
-from carproof.progress import progress
-from carproof.tables import print_line, print_table
 
 if TYPE_CHECKING:
-    from carproof.gap_family import Family
+    from carproof.gap.family import Family
 
 COLUMNS = ("planner", "unplanned", "total", "above optimum", "price of an order", "price of the search")
 FAMILY_COLUMNS = ("grid", "map", "robots", "planner", "found", "above optimum", "price of the search")
@@ -88,7 +88,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
         raise click.UsageError("Give an INSTANCE or a --size, one of them.")
     if instance is not None:
         return _gap_of(instance, limit, as_json)
-    from carproof.gap_family import Family  # noqa: PLC0415 - loads the planners
+    from carproof.gap.family import Family  # noqa: PLC0415 - loads the planners
 
     assert size is not None  # noqa: S101 - asked above
     if not 1 <= size.low <= size.high <= WIDEST:
@@ -98,8 +98,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
 def _gap_of(path: str, limit: int, as_json: bool) -> Answer:
     from carp_optimum.gap import gap  # noqa: PLC0415
-    from carp_verify.unsolvable import describe  # noqa: PLC0415
-    from carproof.gap_report import PLANNERS, gap_document, gap_rows  # noqa: PLC0415 - loads the planners
+    from carp_verify.optimum.unsolvable import describe  # noqa: PLC0415
+    from carproof.gap.report import PLANNERS, gap_document, gap_rows  # noqa: PLC0415 - loads the planners
 
     problem = read_instance_file(path)
     require_following_in(path, problem)
@@ -120,8 +120,8 @@ def _gap_of(path: str, limit: int, as_json: bool) -> Answer:
 
 
 def _gaps_of(family: "Family", limit: int, as_json: bool) -> Answer:
-    from carproof.gap_family import measured  # noqa: PLC0415 - loads the planners
-    from carproof.gap_report import PLANNERS, cell_rows, family_document  # noqa: PLC0415
+    from carproof.gap.family import measured  # noqa: PLC0415 - loads the planners
+    from carproof.gap.report import PLANNERS, cell_rows, family_document  # noqa: PLC0415
 
     warm()
     with progress("measuring gaps", len(family.cells) * family.count) as advance:

@@ -8,11 +8,11 @@ from typing import Any, TypeVar, get_args
 import click
 
 from carp_spec import AfterGoal
-from carproof.answer import Answer
+from carproof.command_line.answer import Answer
+from carproof.command_line.options import RangeType, examples, json_option, output_option
+from carproof.command_line.output import show_instance
 from carproof.generate import Fleet, Grid, Traits, Warehouse, grid_instance, warehouse_instance
 from carproof.generate.options import JUST_ONE, Distinct, Side
-from carproof.options import RangeType, examples, json_option, output_option
-from carproof.results import show_instance
 
 T = TypeVar("T", Fleet, Grid, Traits, Warehouse)
 F = TypeVar("F", bound=Callable[..., Any])

@@ -8,19 +8,19 @@ import msgspec
 from carp_spec import Refusal, ResourceId, Visit
 from carp_spec.inputs.requests import require_tick
 from carp_verify.documents import write_solution
-from carproof.answer import Answer
-from carproof.engines import engine_named
-from carproof.files import (
+from carproof.command_line.answer import Answer
+from carproof.command_line.files import (
     InputFile,
     naming,
     read_bytes,
     read_sound,
 )
-from carproof.giving_way import give_way
-from carproof.options import asks_for_a_robot, examples, gives_plans
+from carproof.command_line.options import asks_for_a_robot, examples, gives_plans
+from carproof.command_line.output import write_result
+from carproof.command_line.tables import print_line, print_table, remark
+from carproof.engines import engine_named
+from carproof.execution.giving_way import give_way
 from carproof.requests import robot_called
-from carproof.results import write_result
-from carproof.tables import print_line, print_table, remark
 
 
 @click.command(

@@ -8,14 +8,14 @@ import click
 
 from carp_spec import Instance
 from carp_verify.documents import write, write_solution
-from carproof.answer import Answer
+from carproof.command_line.answer import Answer
+from carproof.command_line.files import print_document, read_instance_file, require_following_in, write_whole
+from carproof.command_line.options import examples, instance_argument, json_option, limit_option, output_option
+from carproof.command_line.tables import print_line, print_table, remark
 from carproof.engines import warm
 from carproof.extras import require
-from carproof.files import print_document, read_instance_file, require_following_in, write_whole
+from carproof.judging.verdicts import verify_proof
 from carproof.optima import optimum_document
-from carproof.options import examples, instance_argument, json_option, limit_option, output_option
-from carproof.tables import print_line, print_table, remark
-from carproof.verdicts import verify_proof
 
 if TYPE_CHECKING:
     from carp_optimum.optimum import Optimum
@@ -50,7 +50,7 @@ def command(instance: str, limit: int, proof: Path | None, output: Path | None, 
     """
     require("pysat")
     from carp_optimum.optimum import optimum  # noqa: PLC0415 - loads the planners
-    from carp_verify.unsolvable import describe  # noqa: PLC0415
+    from carp_verify.optimum.unsolvable import describe  # noqa: PLC0415
 
     problem = read_instance_file(instance)
     require_following_in(instance, problem)
@@ -87,8 +87,8 @@ def _undecided(best: "Optimum", limit: int) -> str:
 
 def _prove(folder: Path, instance: Instance, best: "Optimum", limit: int) -> bool:
     """Write a proof and check it; whether the limits sufficed."""
-    from carp_optimum.proving import write_proof  # noqa: PLC0415 - only for those who ask for a proof
-    from carp_optimum.solver import TimeOver  # noqa: PLC0415
+    from carp_optimum.sat.proving import write_proof  # noqa: PLC0415 - only for those who ask for a proof
+    from carp_optimum.sat.solver import TimeOver  # noqa: PLC0415
 
     try:
         write_proof(instance, best, folder, limit)

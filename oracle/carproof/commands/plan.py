@@ -9,10 +9,9 @@ import click
 
 from carp_spec import Refusal, check
 from carp_verify.documents import write_solution
-from carproof.answer import Answer
-from carproof.engines import plan_showing
-from carproof.files import naming, read_instance_file
-from carproof.options import (
+from carproof.command_line.answer import Answer
+from carproof.command_line.files import naming, read_instance_file
+from carproof.command_line.options import (
     PLANNING,
     chosen_planner,
     examples,
@@ -21,7 +20,8 @@ from carproof.options import (
     planner_option,
     planner_options,
 )
-from carproof.results import show_solution, write_result
+from carproof.command_line.output import show_solution, write_result
+from carproof.engines import plan_showing
 
 
 @click.command(
@@ -71,7 +71,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
         solution, fleet = plan_showing("planning", engine, problem, chosen)
         name = chosen.name
         if solution.unplanned and (repairs_unasked(context, options) if repair is None else repair):
-            from carp_optimum.joint_repair import repair as repaired  # noqa: PLC0415 - numba is slow to load
+            from carp_optimized.improve.repair import repair as repaired  # noqa: PLC0415 - numba is slow to load
 
             with suppress(Refusal):  # numbers that only the reference holds
                 solution, fleet = repaired(problem, solution), None

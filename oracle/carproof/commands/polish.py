@@ -7,20 +7,20 @@ from time import perf_counter
 
 import click
 
-from carp_optimum.many_starts import polish_many
+from carp_optimized.improve.many_starts import polish_many
 from carp_spec import Instance, Refusal, Solution, check, total_cost
 from carp_spec.inputs.options import require_polish_options
 from carp_spec.inputs.requests import sound_solution
 from carp_spec.polish_rules import ITERATIONS, last_round
 from carp_verify.documents import write_solution
-from carproof.answer import Answer
+from carproof.command_line.answer import Answer
+from carproof.command_line.files import InputFile, naming, read_file, refuse_two_standard_inputs
+from carproof.command_line.foreign import Problem, solution_files
+from carproof.command_line.options import examples, gives_plans
+from carproof.command_line.output import show_unplanned, write_result
+from carproof.command_line.progress import found_so_far, gap, search_progress
+from carproof.command_line.tables import print_table
 from carproof.engines import engine_named, sum_of_shortest_paths, warm
-from carproof.files import InputFile, naming, read_file, refuse_two_standard_inputs
-from carproof.foreign import Problem, solution_files
-from carproof.options import examples, gives_plans
-from carproof.progress import found_so_far, gap, search_progress
-from carproof.results import show_unplanned, write_result
-from carproof.tables import print_table
 
 COLUMNS = ("plans", "unplanned", "total cost", "bound", "gap", "rounds", "time")
 
@@ -100,7 +100,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
             improve = partial(polish_many, engine_named(engine or "optimized").polish, starts)
         after = improve(instance, before, iterations=iterations, seconds=seconds, seed=seed, advance=advance)
         if after.unplanned and seconds is None:
-            from carp_optimum.joint_repair import repair  # noqa: PLC0415 - numba is slow to load
+            from carp_optimized.improve.repair import repair  # noqa: PLC0415 - numba is slow to load
 
             with suppress(Refusal):  # numbers that only the reference holds
                 after = repair(instance, after)
@@ -119,8 +119,8 @@ def bound_of(instance: Instance, certificate: str | None) -> int:
     """A lower bound on the total cost: that of the certificate, if there is one, else the sum of shortest paths."""
     if certificate is None:
         return sum_of_shortest_paths(instance, instance.robot)
+    from carp_verify.bound.verify import verify_bound  # noqa: PLC0415
     from carp_verify.bounds import read_bound  # noqa: PLC0415 - only for those who have a certificate
-    from carp_verify.verify_bound import verify_bound  # noqa: PLC0415
 
     return read_file(certificate, lambda data: verify_bound(instance, read_bound(data)))
 

@@ -7,9 +7,8 @@ import click
 from carp_spec import plan_cost
 from carp_spec.inputs.requests import require_tick, sound_solution
 from carp_verify.documents import write
-from carproof.answer import Answer
-from carproof.engines import engine_named
-from carproof.files import (
+from carproof.command_line.answer import Answer
+from carproof.command_line.files import (
     OutputFile,
     naming,
     read_instance_file,
@@ -18,12 +17,13 @@ from carproof.files import (
     require_following_in,
     write_whole,
 )
-from carproof.ops.planning import query_document
-from carproof.options import asks_for_a_robot, examples, gives_plans
-from carproof.reasons import why_unplanned
+from carproof.command_line.options import asks_for_a_robot, examples, gives_plans
+from carproof.command_line.output import write_result
+from carproof.command_line.tables import print_line, print_table
+from carproof.engines import engine_named
+from carproof.judging.unplanned import why_unplanned
+from carproof.protocol.ops.planning import query_document
 from carproof.requests import robot_called
-from carproof.results import write_result
-from carproof.tables import print_line, print_table
 
 
 @click.command(

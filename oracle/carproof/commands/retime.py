@@ -6,10 +6,9 @@ import click
 
 from carp_spec import total_cost
 from carp_verify.documents import read_trace, write_solution
-from carproof.answer import Answer
-from carproof.engines import engine_named
-from carproof.files import naming, read_file, read_sound
-from carproof.options import (
+from carproof.command_line.answer import Answer
+from carproof.command_line.files import naming, read_file, read_sound
+from carproof.command_line.options import (
     engine_option,
     examples,
     instance_argument,
@@ -18,8 +17,9 @@ from carproof.options import (
     solution_argument,
     trace_argument,
 )
-from carproof.results import write_result
-from carproof.tables import counted, print_line
+from carproof.command_line.output import write_result
+from carproof.command_line.tables import counted, print_line
+from carproof.engines import engine_named
 
 
 @click.command(

@@ -6,11 +6,11 @@ from typing import Any
 import click
 
 from carp_spec import Rule
-from carproof.answer import Answer
-from carproof.codes import Code
-from carproof.options import examples
+from carproof.command_line.answer import Answer
+from carproof.command_line.options import examples
+from carproof.command_line.tables import print_table
+from carproof.input_rules import Code
 from carproof.rules import ALL_RULES
-from carproof.tables import print_table
 
 
 @click.command(

@@ -5,11 +5,11 @@ from contextlib import redirect_stdout
 
 import click
 
-from carproof.answer import Answer
+from carproof.command_line.answer import Answer
+from carproof.command_line.options import engine_option, examples
 from carproof.engines import engine_named
-from carproof.ops.published import op_list
-from carproof.options import engine_option, examples
-from carproof.server import serve
+from carproof.protocol.ops.published import op_list
+from carproof.protocol.server import serve
 
 
 @click.command(

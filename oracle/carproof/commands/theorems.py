@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from carproof.answer import Answer
-from carproof.files import print_document
-from carproof.options import examples, json_option
-from carproof.progress import progress
-from carproof.tables import print_line, print_table
+from carproof.command_line.answer import Answer
+from carproof.command_line.files import print_document
+from carproof.command_line.options import examples, json_option
+from carproof.command_line.progress import progress
+from carproof.command_line.tables import print_line, print_table
 
 if TYPE_CHECKING:
-    from carp_verify.engine import LemmaReport
+    from carp_verify.lemmas.engine import LemmaReport
     from carp_verify.theorems import Theorem
 
 COLUMNS = ("lemma", "rules", "formulas", "mutants refuted", "result")
@@ -45,8 +45,8 @@ def command(name: str | None, as_json: bool) -> Answer:
 
     Exit codes: 0 all are checked, 1 some fail (or z3 could not tell), 2 bad input.
     """
-    from carp_verify.engine import examine  # noqa: PLC0415 - loads z3
     from carp_verify.lemmas import MODULES, lemma_named  # noqa: PLC0415
+    from carp_verify.lemmas.engine import examine  # noqa: PLC0415 - loads z3
     from carp_verify.theorems import THEOREMS  # noqa: PLC0415
 
     asked = None if name is None else known(name, (*MODULES, *(theorem.name for theorem in THEOREMS)))

@@ -6,13 +6,13 @@ import click
 
 from carp_spec import total_cost
 from carp_verify.documents import write_solution
-from carproof.answer import Answer
+from carproof.command_line.answer import Answer
+from carproof.command_line.files import read_sound
+from carproof.command_line.options import examples, gives_plans, instance_argument, solution_argument
+from carproof.command_line.output import write_result
+from carproof.command_line.tables import print_table, remark
 from carproof.engines import engine_named
-from carproof.files import read_sound
-from carproof.options import examples, gives_plans, instance_argument, solution_argument
-from carproof.results import write_result
-from carproof.tables import print_table, remark
-from carproof.untangling import untangle
+from carproof.execution.untangling import untangle
 
 
 @click.command(

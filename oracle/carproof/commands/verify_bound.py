@@ -4,8 +4,8 @@ import click
 
 from carp_verify.bounds import read_bound
 from carp_verify.documents import write
-from carproof.answer import Answer
-from carproof.files import (
+from carproof.command_line.answer import Answer
+from carproof.command_line.files import (
     InputFile,
     print_document,
     read_file,
@@ -13,9 +13,9 @@ from carproof.files import (
     refuse_two_standard_inputs,
     require_following_in,
 )
-from carproof.options import examples, instance_argument, json_option, kernel_option
-from carproof.tables import print_line, print_table
-from carproof.verdicts import verify_bound
+from carproof.command_line.options import examples, instance_argument, json_option, kernel_option
+from carproof.command_line.tables import print_line, print_table
+from carproof.judging.verdicts import verify_bound
 
 COLUMNS = ("lower bound", "robots", "prices", "cuts", "deadlines", "horizon", "decided by")
 

@@ -5,13 +5,13 @@ from pathlib import Path
 import click
 
 from carp_verify.documents import write
-from carproof.answer import Answer
+from carproof.command_line.answer import Answer
+from carproof.command_line.files import InputFile, print_document, read_instance_file
+from carproof.command_line.options import examples, json_option, kernel_option
+from carproof.command_line.tables import print_line, print_table
 from carproof.extras import require
-from carproof.files import InputFile, print_document, read_instance_file
+from carproof.judging.verdicts import verify_proof
 from carproof.optima import ProofDocument, proof_document
-from carproof.options import examples, json_option, kernel_option
-from carproof.tables import print_line, print_table
-from carproof.verdicts import verify_proof
 
 
 @click.command(
@@ -36,7 +36,7 @@ def command(*, folder: Path, instance: str | None, kernel: bool, as_json: bool) 
     Exit codes: 0 the claim is proved, 1 it is not, 2 bad input, 3 undecided, because z3 or the kernel did not decide.
     """
     require("z3")
-    from carp_verify.proof import ProofError  # noqa: PLC0415 - loads the encoder
+    from carp_verify.optimum.proof import ProofError  # noqa: PLC0415 - loads the encoder
 
     given = None if instance is None else read_instance_file(instance)
     try:

@@ -3,8 +3,8 @@
 import click
 
 from carp_verify.documents import read_query_certificate, write
-from carproof.answer import Answer
-from carproof.files import (
+from carproof.command_line.answer import Answer
+from carproof.command_line.files import (
     InputFile,
     print_document,
     read_file,
@@ -13,9 +13,9 @@ from carproof.files import (
     refuse_two_standard_inputs,
     require_following_in,
 )
-from carproof.options import examples, instance_argument, json_option, kernel_option, solution_argument
-from carproof.tables import print_line, print_table
-from carproof.verdicts import verify_query
+from carproof.command_line.options import examples, instance_argument, json_option, kernel_option, solution_argument
+from carproof.command_line.tables import print_line, print_table
+from carproof.judging.verdicts import verify_query
 
 COLUMNS = ("robot", "now", "earliest arrival", "labels", "decided by")
 

@@ -5,15 +5,15 @@ from pathlib import Path
 import click
 
 from carp_verify.documents import read_trace
-from carproof.answer import Answer
-from carproof.files import InputFile, naming, read_file, refuse_two_standard_inputs
-from carproof.foreign import Problem, instance_and_perhaps_solution
-from carproof.options import examples, output_option
-from carproof.results import write_result
-from carproof.tables import print_table
+from carproof.command_line.answer import Answer
+from carproof.command_line.files import InputFile, naming, read_file, refuse_two_standard_inputs
+from carproof.command_line.foreign import Problem, instance_and_perhaps_solution
+from carproof.command_line.options import examples, output_option
+from carproof.command_line.output import write_result
+from carproof.command_line.tables import print_table
 from carproof.viewer.limits import refuse_tick
 from carproof.viewer.page import page
-from carproof.viewer.staging import span
+from carproof.viewer.scene_builder import span
 from carproof.viewer.stills import chart_still, map_still
 
 PAGE, PICTURE = (".html", ".htm"), ".svg"

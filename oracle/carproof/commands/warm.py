@@ -2,10 +2,10 @@
 
 import click
 
-from carproof.answer import Answer
+from carproof.command_line.answer import Answer
+from carproof.command_line.options import examples
+from carproof.command_line.tables import print_line
 from carproof.engines import warm
-from carproof.options import examples
-from carproof.tables import print_line
 
 
 @click.command(short_help="Compile the planner before it is needed.", epilog=examples("carproof warm"))

@@ -10,10 +10,10 @@ from carp_spec.traces import Trace
 from carp_verify.bounds import BoundDocument
 from carp_verify.documents import UNREADABLE, VerdictDocument, is_json, uncapitalized
 from carproof.conform.findings import RIGHT_RESULT, Category, Fault, Finding, is_accepted, is_response
-from carproof.ops import OPS
-from carproof.ops.op import reader_of
-from carproof.ops.planning import QueryDocument
 from carproof.optima import OptimumDocument
+from carproof.protocol.ops import OPS
+from carproof.protocol.ops.op import reader_of
+from carproof.protocol.ops.planning import QueryDocument
 
 MOST_SHOWN = 200
 

@@ -7,7 +7,7 @@ following.
 """
 
 from carp_spec import Carp, Instance, Plan, Solution
-from carp_verify.bound_rules import ContradictionError
+from carp_verify.bound.rules import ContradictionError
 from carp_verify.documents import VerdictDocument, solution_document
 from carp_verify.kernel import ask, request
 from carp_verify.limits import following_is_allowed
@@ -16,7 +16,7 @@ from carproof.conform.cases import Case
 from carproof.conform.findings import Finding
 from carproof.conform.levels import Level
 from carproof.engines import engine_named
-from carproof.ops.planning import QueryDocument
+from carproof.protocol.ops.planning import QueryDocument
 
 LAWFUL = ("solution/", "plan/", "joint/")
 EARLY = ("query/complete", "query/optimal")

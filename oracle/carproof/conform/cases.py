@@ -4,9 +4,9 @@ from dataclasses import dataclass, fields
 from typing import Any, Literal, TypeAlias
 
 from carp_spec import Instance, Neighbourhood, Planner, RobotId, Solution
-from carproof.ops import OPS
-from carproof.ops import op as wire
-from carproof.ops.op import PolishOptions
+from carproof.protocol.ops import OPS
+from carproof.protocol.ops import op as wire
+from carproof.protocol.ops.op import PolishOptions
 
 ASKED_OPS = ("check", "query", "plan", "add", "polish", "optimum", "bound")
 """The ops of the table that programs are asked."""

@@ -6,9 +6,9 @@ from hypothesis import strategies as st
 
 from carp_spec import Instance, Resource, ResourceGraph
 from carproof.conform.cases import Case
+from carproof.formats.movingai import BLOCKED, PASSABLE, GridMap, movingai_instance
 from carproof.generate.grid import cell_id
-from carproof.movingai import BLOCKED, PASSABLE, GridMap, movingai_instance
-from carproof.strategies import Sizes, instances
+from carproof.testing.strategies import Sizes, instances
 
 WIDTH, HEIGHT = 4, 3
 SIZES = Sizes(robots=4, release=0, pace=1)

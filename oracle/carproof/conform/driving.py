@@ -9,7 +9,7 @@ from carproof.conform.answers import Skipped
 from carproof.conform.cases import Case
 from carproof.conform.findings import Fault, Finding, all_arrive, are_ready, wrong
 from carproof.conform.levels import Level
-from carproof.ops.executing import DriveDocument, DriveRequest
+from carproof.protocol.ops.executing import DriveDocument, DriveRequest
 
 Decide = Callable[[DriveRequest], DriveDocument | Skipped]
 

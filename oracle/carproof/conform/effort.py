@@ -11,8 +11,8 @@ from carproof.conform.judges import worth
 from carproof.conform.levels import Level
 from carproof.conform.optimum import cost_alone, found_cost
 from carproof.engines import engine_named
-from carproof.ops.planning import QueryDocument
 from carproof.optima import OptimumDocument
+from carproof.protocol.ops.planning import QueryDocument
 
 
 class Effort(Enum):

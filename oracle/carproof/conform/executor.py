@@ -5,7 +5,7 @@ from carproof.conform.cases import EXECUTION, Case
 from carproof.conform.driving import execution
 from carproof.conform.findings import answers_enough
 from carproof.conform.program import Program
-from carproof.ops.op import request_fields
+from carproof.protocol.ops.op import request_fields
 
 
 class Executor:

@@ -7,7 +7,7 @@ from typing import Any
 
 from carp_spec import RobotId, Rule
 from carp_spec.rule import DESIGN, rule
-from carproof.codes import Code
+from carproof.input_rules import Code
 
 LEAST_ANSWERED = 90
 """In 100 random cases of an op. The cases are small, so a program that offers the op can answer nearly all of them. Two

@@ -9,6 +9,7 @@ from pathlib import Path
 from string import Template
 
 from carp_spec import Refusal
+from carproof.command_line.tables import counted
 from carproof.conform.advice import advice_for
 from carproof.conform.documents import counts
 from carproof.conform.drawing import map_drawing
@@ -18,7 +19,6 @@ from carproof.conform.run import Report
 from carproof.conform.saving import Origin, about_case, filled, judged_solution
 from carproof.conform.wording import verdict
 from carproof.rules import ALL_RULES
-from carproof.tables import counted
 from carproof.viewer.colours import variables
 from carproof.viewer.page import page
 

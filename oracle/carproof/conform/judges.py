@@ -19,6 +19,7 @@ from carp_spec.polish_rules import is_kept
 from carp_spec.traces import Trace
 from carp_verify.bounds import BoundDocument
 from carp_verify.documents import VerdictDocument, verdict_document
+from carproof.command_line.output import shown_plan
 from carproof.conform.answers import Answer
 from carproof.conform.cases import POLISH_ROUNDS, Case
 from carproof.conform.driving import execution_findings
@@ -26,9 +27,8 @@ from carproof.conform.findings import Finding, wrong
 from carproof.conform.levels import Level
 from carproof.conform.optimum import bound_findings, complete_findings, optimum_findings, plan_cost_findings
 from carproof.engines import engine_named
-from carproof.ops.planning import QueryDocument
 from carproof.optima import OptimumDocument
-from carproof.results import shown_plan
+from carproof.protocol.ops.planning import QueryDocument
 
 
 def first_finding(case: Case, answer: Answer, level: Level) -> Finding | None:

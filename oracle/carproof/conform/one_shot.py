@@ -8,13 +8,13 @@ from tempfile import TemporaryDirectory
 
 from carp_spec import Instance, Refusal, Robot, Solution
 from carp_verify.documents import write_instance
-from carproof.adapters import carproof_documents, format_of, looks_like_none, read_foreign_solution
 from carproof.conform.answers import NotAsked, Reply, decode_solution, protocol_error, shown
 from carproof.conform.cases import Case
 from carproof.conform.child import Limits, end_group, ending, environment, exit_code, limited
 from carproof.conform.findings import IN_TIME, RIGHT_RESULT, Category, Fault, Finding, is_alive
-from carproof.movingai import GridMap, movingai_instance
-from carproof.movingai_writer import MAP_NAME, is_classical, write_movingai
+from carproof.formats import carproof_documents, format_of, looks_like_none, read_foreign_solution
+from carproof.formats.movingai import GridMap, movingai_instance
+from carproof.formats.movingai_writer import MAP_NAME, is_classical, write_movingai
 
 INSTANCE, MAP, SCEN, AGENTS, SOLUTION = "{instance}", "{map}", "{scen}", "{agents}", "{solution}"
 PROBE = movingai_instance(GridMap(3, 2, ("...", "...")), [Robot("r1", "2,0", "0,1")], "park")

@@ -50,7 +50,7 @@ def optimum_findings(instance: Instance, answer: OptimumDocument, level: Level) 
 
 def bound_findings(instance: Instance, certificate: BoundDocument) -> Iterator[Finding]:
     """The fault of an answer to `bound`, if any: its certificate, or a bound above the optimum."""
-    from carp_verify.verify_bound import verify_bound  # noqa: PLC0415 - only programs that have bounds need it
+    from carp_verify.bound.verify import verify_bound  # noqa: PLC0415 - only programs that have bounds need it
 
     try:
         bound = verify_bound(instance, certificate)

@@ -10,7 +10,7 @@ from carproof.conform.answers import Reply, Skipped, protocol_error, read_result
 from carproof.conform.cases import Case, request_fields
 from carproof.conform.child import Child, Limits
 from carproof.conform.findings import Fault, Finding, is_response
-from carproof.protocol import VERSION
+from carproof.protocol.lines import VERSION
 
 STARTING = 5
 """A program that has just been started may take this many times as long for its first answer."""

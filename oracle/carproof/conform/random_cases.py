@@ -26,9 +26,9 @@ from carp_spec import (
 from carproof.conform.cases import EXECUTION, Case
 from carproof.conform.claims import EVERYTHING, Claims
 from carproof.conform.levels import Level
-from carproof.delays import stuck
 from carproof.engines import engine_named
-from carproof.strategies import Sizes, broken_solutions, committed_plans, fleets_under_way, instances, solutions
+from carproof.execution.delays import stuck
+from carproof.testing.strategies import Sizes, broken_solutions, committed_plans, fleets_under_way, instances, solutions
 
 SIZES = Sizes(resources=6, robots=4)
 OPTIMUM_SIZES = Sizes(resources=5, robots=3, duration=2, release=2)

@@ -9,12 +9,12 @@ from typing import Literal
 import msgspec
 
 from carp_spec import Refusal
+from carproof.command_line.files import write_whole
 from carproof.conform.cases import ASKED_OPS, EXECUTION, Case
 from carproof.conform.outcome import Outcome
 from carproof.conform.saving import FILES, Origin, save
 from carproof.conform.vector_cases import case_of
-from carproof.files import write_whole
-from carproof.vectors import VectorsDocument
+from carproof.testing.vectors import VectorsDocument
 
 RUN = "run.json"
 

@@ -12,19 +12,19 @@ import msgspec
 from carp_spec import Refusal, Solution, check
 from carp_spec.traces import Trace
 from carp_verify.documents import instance_document, solution_of, write_instance, write_solution
+from carproof.command_line.files import write_whole
 from carproof.conform.advice import advice_for
 from carproof.conform.answers import Answer
 from carproof.conform.cases import POLISH_ROUNDS, Case, case_input, request_fields
 from carproof.conform.claims import features
 from carproof.conform.drawing import drawing, map_drawing
 from carproof.conform.outcome import Outcome
-from carproof.files import write_whole
-from carproof.movingai_writer import MAP_NAME, write_movingai
-from carproof.ops.op import made
-from carproof.ops.planning import QueryDocument
+from carproof.formats.movingai_writer import MAP_NAME, write_movingai
 from carproof.optima import OptimumDocument
+from carproof.protocol.ops.op import made
+from carproof.protocol.ops.planning import QueryDocument
 from carproof.rules import ALL_RULES
-from carproof.vectors import vectors
+from carproof.testing.vectors import vectors
 from carproof.viewer.stills import chart_still, map_still
 
 SCEN_NAME = "instance.scen"

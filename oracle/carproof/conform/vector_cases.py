@@ -7,9 +7,9 @@ from carp_spec import Carp
 from carp_verify.documents import write
 from carproof.conform.cases import ASKED_OPS, Case
 from carproof.conform.levels import Level
-from carproof.ops import OPS
-from carproof.protocol import Request
-from carproof.vectors import Vector, vectors
+from carproof.protocol.lines import Request
+from carproof.protocol.ops import OPS
+from carproof.testing.vectors import Vector, vectors
 
 
 def vector_cases(ops: Sequence[str], level: Level, whole: bool) -> Iterator[Case]:

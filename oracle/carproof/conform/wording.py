@@ -1,8 +1,8 @@
 """The verdict of a run in a line: what was tested, on how many answers, and what was left out."""
 
+from carproof.command_line.tables import counted
 from carproof.conform.findings import LEAST_ANSWERED
 from carproof.conform.run import Report
-from carproof.tables import counted
 
 
 def verdict(report: Report) -> str:

@@ -6,15 +6,15 @@ from xml.etree.ElementTree import Element, SubElement
 from carp_reference.execution import Order
 from carp_spec import RobotId
 from carp_spec.dependencies import Dependency, Node, shortest_cycle
-from carproof.delays import slack
+from carproof.execution.delays import slack
 from carproof.viewer.chart_picture import AXIS, GAP, LANE, TimeScale, draw_axis
 from carproof.viewer.colours import LOOKS
 from carproof.viewer.legend import write_legend
 from carproof.viewer.limits import refuse_large_pictures, refuse_more
 from carproof.viewer.names import common_start, fitted, label
 from carproof.viewer.placement import Point
+from carproof.viewer.scene_builder import LONGEST_NAME
 from carproof.viewer.shapes import box, drawing, group, head, path, text
-from carproof.viewer.staging import LONGEST_NAME
 from carproof.viewer.stills import still
 
 ROW = 30

@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Sequence
 
-from carproof.tables import printable
+from carproof.command_line.tables import printable
 
 LONGEST_LABEL = 60
 LONGEST_SHORT = 4

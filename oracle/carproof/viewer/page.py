@@ -18,8 +18,8 @@ from carproof.viewer.colours import variables
 from carproof.viewer.limits import refuse_more
 from carproof.viewer.map_picture import map_picture
 from carproof.viewer.scene import Scene
+from carproof.viewer.scene_builder import make_scene
 from carproof.viewer.shapes import svg_text
-from carproof.viewer.staging import make_scene
 
 SCRIPTS = ("scene.js", "clock.js", "waits.js", "map.js", "chart.js", "lists.js", "main.js")
 UNSAFE_IN_HTML = {ord(c): f"\\u{ord(c):04x}" for c in "<>&\u2028\u2029"}

@@ -7,8 +7,8 @@ from carproof.viewer.chart_picture import chart_picture
 from carproof.viewer.colours import PAINT, fixed
 from carproof.viewer.limits import refuse_more, refuse_tick
 from carproof.viewer.map_picture import still_map
+from carproof.viewer.scene_builder import make_scene
 from carproof.viewer.shapes import svg_text
-from carproof.viewer.staging import make_scene
 
 
 def map_still(instance: Instance, solution: Solution | None, tick: int, title: str) -> bytes:

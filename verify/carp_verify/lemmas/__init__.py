@@ -6,7 +6,7 @@ the statement and, after "By hand:", the part that z3 does not check. To add a l
 
 from importlib import import_module
 
-from carp_verify.engine import Lemma
+from carp_verify.lemmas.engine import Lemma
 
 MODULES = (
     "reserving_splits_a_window",

@@ -11,9 +11,9 @@ comparing planners.
 
 from collections.abc import Iterator
 
-from carp_verify.engine import Formula, Lemma
-from carp_verify.smt import Bool, Int, integers, negation
-from carp_verify.vocabulary import replaces_best
+from carp_verify.lemmas.engine import Formula, Lemma
+from carp_verify.lemmas.smt import Bool, Int, integers, negation
+from carp_verify.lemmas.vocabulary import replaces_best
 
 
 def is_cut(prefix: Int, bounds: Int, best: Int) -> Bool:

@@ -8,9 +8,9 @@ By hand: the induction over the visits of a contiguous plan, from the last one t
 
 from collections.abc import Iterator, Sequence
 
-from carp_verify.engine import Formula, Lemma
-from carp_verify.smt import Bool, implies, integers, negation
-from carp_verify.vocabulary import has_ended, holds, interval, is_interval
+from carp_verify.lemmas.engine import Formula, Lemma
+from carp_verify.lemmas.smt import Bool, implies, integers, negation
+from carp_verify.lemmas.vocabulary import has_ended, holds, interval, is_interval
 
 
 def _premises() -> Sequence[Bool]:

@@ -14,8 +14,8 @@ compare searches before and after stays are freed on small graphs, and notice a 
 
 from collections.abc import Iterator, Sequence
 
-from carp_verify.engine import Formula, Lemma
-from carp_verify.smt import Bool, Int, any_of, between, equal, greater, integers, negation
+from carp_verify.lemmas.engine import Formula, Lemma
+from carp_verify.lemmas.smt import Bool, Int, any_of, between, equal, greater, integers, negation
 
 
 def least_f(ready: Int, earliest: Int, duration: Int, h: Int) -> Int:

@@ -12,9 +12,9 @@ By hand: the induction over reservations and withdrawals, and that elsewhere not
 
 from collections.abc import Iterator, Sequence
 
-from carp_verify.engine import Formula, Lemma
-from carp_verify.smt import Bool, Int, all_of, any_of, counted, equal, implies, integers, negation, never, same
-from carp_verify.vocabulary import Interval, holds, interval, is_interval, stay_fits
+from carp_verify.lemmas.engine import Formula, Lemma
+from carp_verify.lemmas.smt import Bool, Int, all_of, any_of, counted, equal, implies, integers, negation, never, same
+from carp_verify.lemmas.vocabulary import Interval, holds, interval, is_interval, stay_fits
 
 
 def parts(window: Interval, stay: Interval) -> tuple[Interval, Interval]:

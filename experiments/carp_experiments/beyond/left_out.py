@@ -1,0 +1,68 @@
+"""Robots that `carproof plan` leaves out, as a user first calls it: before and after its repair."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import msgspec
+
+from carp_experiments.paper.map_cases import MapCase, instance_of, rows_by_map
+from carp_experiments.report import ExperimentReport, Table
+from carp_experiments.store import Row
+from carp_spec import RobotId, check, total_cost
+
+
+def left_out_row(case: MapCase) -> Row:
+    """How many robots the default planner leaves out, which the repair leaves out, and the total in the end."""
+    import carp_optimized as engine  # noqa: PLC0415 - each worker loads it
+    from carp_optimized.improve.repair import repair  # noqa: PLC0415
+
+    instance = instance_of(case)
+    given = engine.plan(instance)
+    repaired = repair(instance, given)
+    for violation in check(instance, repaired.plans):
+        raise AssertionError(violation)
+    return {"before": len(given.unplanned), "left": repaired.unplanned, "total": total_cost(instance, repaired.plans)}
+
+
+class LeftOutRow(msgspec.Struct, frozen=True):
+    """A stored row of the experiment."""
+
+    map: int
+    assignment: int
+    before: int
+    left: tuple[RobotId, ...]
+    total: int
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """On a map, the assignments, and those in which somebody is left out before and after the repair."""
+
+    map: int
+    assignments: int
+    before: int
+    after: int
+
+
+def left_out_report(rows: Iterable[Row]) -> ExperimentReport:
+    """A table of the maps, and a line for each assignment in which the repair leaves somebody out."""
+    by_map = rows_by_map(rows, LeftOutRow)
+    maps = tuple(
+        LeftOut(number, len(each), sum(row.before > 0 for row in each), sum(bool(row.left) for row in each))
+        for number, each in by_map.items()
+    )
+    lines = tuple(
+        f"map {row.map}, assignment {row.assignment}: {', '.join(map(str, row.left))}"
+        for each in by_map.values()
+        for row in each
+        if row.left
+    )
+    columns = ("map", "assignments", "planner", "repaired")
+    table = Table(
+        "left-out",
+        "Assignments with a robot left out by the planner, and after the repair",
+        columns,
+        tuple((str(each.map), str(each.assignments), str(each.before), str(each.after)) for each in maps),
+        columns,
+    )
+    return ExperimentReport(maps, (table,), lines=lines, holds=not lines)

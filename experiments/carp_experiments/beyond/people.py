@@ -1,0 +1,192 @@
+"""People among robots: some travellers get priority one after the other, and the robots give way."""
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from statistics import fmean
+from time import process_time_ns
+
+import msgspec
+
+from carp_experiments.paper.map_cases import MapCase, instance_of, place_name, rows_by_map
+from carp_experiments.paper.quality import ALGORITHMS, seeded
+from carp_experiments.report import ExperimentReport, Figure, Table
+from carp_experiments.store import MEASURED, Row
+from carp_spec import Instance, Plan, RobotId, Solution, plan_cost
+from carp_spec.permutations import shuffle, splitmix64
+from carproof.execution.giving_way import GivenWay, give_way
+from carproof.gap.statistics import Interval, mean_interval
+
+GIVEN = "Proposed_4"
+PEOPLE = (1, 2, 5, 10)
+EVERY = 2
+"""The ticks between two people."""
+
+
+class Person(msgspec.Struct, frozen=True):
+    """A person who gets priority: `delay` is the arrival minus the least one, `None` without a new plan.
+
+    `replanned` robots changed their plans, and `stuck` found none around the earliest plan. Then the robots without
+    priority cost `extra` ticks more than at the beginning, and the people before arrive `pushed` ticks later in sum
+    than their own plans had it.
+    """
+
+    delay: int | None
+    proved: bool
+    replanned: int
+    stuck: int
+    extra: int
+    pushed: int
+
+
+class PeopleRow(msgspec.Struct, frozen=True):
+    """A stored row of the experiment; `measured` are the milliseconds of processor time of each person."""
+
+    map: int
+    people: tuple[Person, ...]
+    measured: tuple[int, ...]
+
+
+def people_row(case: MapCase) -> Row:
+    """Give priority to one traveller after the other."""
+    import carp_optimized as engine  # noqa: PLC0415 - each worker loads it
+
+    instance = instance_of(case)
+    solution = given = engine.plan(instance, seeded(ALGORITHMS[GIVEN], case.assignment))
+    drawn = list(shuffle([*instance.robot], splitmix64(case.assignment)))
+    promised: dict[RobotId, int] = {}
+    people: list[Person] = []
+    milliseconds: list[int] = []
+    for number in range(PEOPLE[-1]):
+        now = EVERY * (number + 1)
+        person = next((robot for robot in drawn if travels(solution, robot, now)), None)
+        if person is None:
+            break
+        drawn.remove(person)
+        started = process_time_ns()
+        given_way = give_way(instance, solution, person, now, engine)
+        milliseconds.append((process_time_ns() - started) // 1_000_000)
+        solution = given_way.solution or solution
+        after = {plan.robot: plan for plan in solution.plans}
+        pushed = sum(after[robot].visits[-1].enter - tick for robot, tick in promised.items())
+        promised[person] = after[person].visits[-1].enter
+        people.append(
+            Person(
+                delay_of(given_way),
+                given_way.is_first,
+                len(given_way.extra),
+                len(given_way.stuck),
+                extra_cost(instance, given, after, promised),
+                pushed,
+            )
+        )
+    return {"people": msgspec.to_builtins(people), MEASURED: milliseconds}
+
+
+def travels(solution: Solution, robot: RobotId, now: int) -> bool:
+    """Whether the robot has a plan and enters its goal after the tick now."""
+    return any(plan.robot == robot and plan.visits[-1].enter > now for plan in solution.plans)
+
+
+def delay_of(given_way: GivenWay) -> int | None:
+    """The ticks between the arrival and the least one; `None` without a new plan."""
+    if given_way.solution is None or given_way.arrival is None or given_way.least is None:
+        return None
+    return given_way.arrival - given_way.least
+
+
+def extra_cost(instance: Instance, given: Solution, after: Mapping[RobotId, Plan], people: Collection[RobotId]) -> int:
+    """The ticks by which the plans of all but the people cost more than the given ones."""
+    before = [plan for plan in given.plans if plan.robot not in people]
+    return sum(plan_cost(instance, after[plan.robot]) - plan_cost(instance, plan) for plan in before)
+
+
+@dataclass(frozen=True, slots=True)
+class PeopleOf:
+    """The results on one map after this many people, over the assignments with that number.
+
+    `first` of the `people` arrive in no lawful update earlier; `unserved` got no new plan; `delay` is the largest of
+    the others. The means of an assignment are: robots replanned for a person, the extra cost of all robots without
+    priority, the ticks by which people are pushed by later people, and milliseconds for a person.
+    """
+
+    map: int
+    count: int
+    people: int
+    first: int
+    unserved: int
+    delay: int
+    stuck: int
+    replanned: Interval
+    extra: Interval
+    pushed: Interval
+    milliseconds: Interval
+
+
+def people_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
+    """A table of all maps."""
+    by_map = rows_by_map(rows, PeopleRow)
+    summary = tuple(
+        people_of(map, count, enough)
+        for map, each in by_map.items()
+        for count in PEOPLE
+        if (enough := [row for row in each if len(row.people) >= count])
+    )
+    columns = (
+        "map",
+        "people",
+        "proved first",
+        "no plan",
+        "largest delay",
+        "stuck",
+        "replanned",
+        "extra cost",
+        "pushed",
+        "ms",
+    )
+    title = (
+        f"People among {robots} robots that have plans by {GIVEN}, one each {EVERY} ticks. How many arrive as early as "
+        "any lawful update allows, how many get no new plan, and the largest delay of the others; robots that find no "
+        "plan around the earliest one, in all. Means with 95 % intervals: robots replanned for a person, ticks that "
+        "all robots cost more, ticks by which people are late because of later people, processor time"
+    )
+    lines = [
+        (
+            str(each.map),
+            str(each.count),
+            f"{each.first}/{each.people}",
+            str(each.unserved),
+            str(each.delay),
+            str(each.stuck),
+            *(f"{value:.1f}" for value in (each.replanned, each.extra, each.pushed)),
+            f"{each.milliseconds:.0f}",
+        )
+        for each in summary
+    ]
+    table = Table("people", title, columns, tuple(lines), columns)
+    return ExperimentReport(summary, (table,))
+
+
+def people_figures(summary: Sequence[PeopleOf]) -> tuple[Figure, ...]:
+    """The extra cost of robots, by the number of people."""
+    lines: dict[str, list[tuple[int, Interval]]] = {}
+    for each in summary:
+        lines.setdefault(place_name(each.map), []).append((each.count, each.extra))
+    return (Figure("people", "Cost of people for the robots", ("people", "ticks more"), lines),)
+
+
+def people_of(map: int, count: int, rows: Sequence[PeopleRow]) -> PeopleOf:
+    """The results after this many people."""
+    people = [person for row in rows for person in row.people[:count]]
+    return PeopleOf(
+        map,
+        count,
+        len(people),
+        sum(person.proved for person in people),
+        sum(person.delay is None for person in people),
+        max((person.delay for person in people if person.delay is not None), default=0),
+        sum(person.stuck for person in people),
+        mean_interval([fmean(person.replanned for person in row.people[:count]) for row in rows]),
+        mean_interval([row.people[count - 1].extra for row in rows]),
+        mean_interval([row.people[count - 1].pushed for row in rows]),
+        mean_interval([fmean(row.measured[:count]) for row in rows]),
+    )

@@ -1,0 +1,171 @@
+"""A stream of robots: they come at random ticks, each is planned when it comes, and those before keep their histories.
+
+The arrivals are drawn uniformly from the ticks of the stream: a Poisson process, given how many there are. Each robot
+comes in a dock beside its start, with room for all, where it waits until its plan lets it out. So every robot gets a
+plan, and those that the map cannot take at the rate wait in the docks.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import msgspec
+
+from carp_experiments.paper.map_cases import MapCase, map_instance, place_name, rows_by_map
+from carp_experiments.paper.quality import ALGORITHMS, seeded
+from carp_experiments.report import ExperimentReport, Figure, Table
+from carp_experiments.store import Row
+from carp_spec import Instance, Neighbourhood, Plan, Resource, ResourceGraph, check, total_cost
+from carproof.gap.statistics import Interval, mean_interval
+
+PLANNERS = ("CARP", "Proposed_4 + baseline")
+TICKS = 100
+"""A rate is the number of arrivals in this time."""
+RATES = (100, 200, 400, 600, 800, 1000, 1200, 1600, 2000)
+
+
+class Streamed(msgspec.Struct, frozen=True):
+    """A stream: the ticks in which the middle half of the robots reach their goals, and ticks that all robots take.
+
+    They take so long from their arrival to their goals in sum; on shortest paths, each alone, they would take
+    `shortest`.
+    """
+
+    half: int
+    taken: int
+    shortest: int
+
+
+class StreamRow(msgspec.Struct, frozen=True):
+    """A stored row of the experiment: the streams of each planner, one for each rate."""
+
+    map: int
+    planners: dict[str, tuple[Streamed, ...]]
+
+
+def stream_row(case: MapCase) -> Row:
+    """The streams of each planner."""
+    return {
+        "planners": {name: [msgspec.to_builtins(streamed(case, name, rate)) for rate in RATES] for name in PLANNERS}
+    }
+
+
+def streamed(case: MapCase, name: str, rate: int) -> Streamed:
+    """Plan the robots of a stream, each when it comes; raises `AssertionError` if one has no plan or breaks a rule."""
+    from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415 - each worker loads it
+
+    instance = stream_instance(case, rate)
+    fleet = PlannedFleet(instance)
+    planner = seeded(ALGORITHMS[name], case.assignment)
+    if isinstance(planner, Neighbourhood):
+        for place, robot in enumerate(instance.robots):
+            fleet.add(place, robot.release, planner)
+    else:
+        fleet.carp(range(case.robots))
+    broken = check(instance, fleet.plans)
+    if broken or len(fleet.order) < case.robots:
+        raise AssertionError(broken)
+    shortest = sum(fleet.ticks_to_goal(place) for place in range(case.robots))
+    return Streamed(middle_half(fleet.plans), total_cost(instance, fleet.plans), shortest)
+
+
+def middle_half(plans: Sequence[Plan]) -> int:
+    """The ticks between the arrival of the first quarter at the goals and that of the third."""
+    arrivals = sorted(plan.visits[-1].enter for plan in plans)
+    return max(1, arrivals[3 * len(arrivals) // 4] - arrivals[len(arrivals) // 4])
+
+
+def stream_instance(case: MapCase, rate: int) -> Instance:
+    """The robots of a stream with that rate, each in the dock of its start."""
+    from carproof.generate import Fleet, Range  # noqa: PLC0415 - each worker loads it
+
+    last = max(0, case.robots * TICKS // rate - 1)
+    fleet = Fleet(robots=case.robots, seed=case.assignment, distinct="none", release=Range(0, last))
+    return docked(map_instance(case.map, fleet))
+
+
+def docked(instance: Instance) -> Instance:
+    """The instance with a dock beside each start: robots go from it to the start, and never back."""
+    graph = instance.graph
+    docks = {robot.start: f"dock of {robot.start}" for robot in instance.robots}
+    resources = [
+        Resource(dock, len(instance.robots), 1, graph.resource[start].x, graph.resource[start].y)
+        for start, dock in docks.items()
+    ]
+    moves = [(each.id, target) for each in graph.resources for target in graph.successors[each.id]]
+    ways = [(dock, start) for start, dock in docks.items()]
+    return replace(
+        instance,
+        graph=ResourceGraph((*graph.resources, *resources), (*moves, *ways), directed=True),
+        robots=tuple(replace(robot, start=docks[robot.start]) for robot in instance.robots),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class StreamOf:
+    """Means over the streams of a planner on one map at a rate of arrivals in 100 ticks.
+
+    `throughput` is how many reach their goals in 100 ticks; `taken` is how long a robot takes from its arrival to its
+    goal, and `waited` by how much this is more than its shortest path, in ticks.
+    """
+
+    map: int
+    planner: str
+    rate: int
+    streams: int
+    throughput: Interval
+    taken: Interval
+    waited: Interval
+
+
+def stream_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
+    """A table of all maps."""
+    summary = tuple(
+        stream_of(map, planner, rate, [row.planners[planner][place] for row in each], robots)
+        for map, each in rows_by_map(rows, StreamRow).items()
+        for planner in PLANNERS
+        for place, rate in enumerate(RATES)
+    )
+    columns = ("place", "planner", "rate", "throughput", "ticks taken", "waited")
+    title = (
+        f"Streams of {robots} robots, means with 95 % intervals: arrivals in {TICKS} ticks, robots that reach their "
+        "goals in as many, ticks from a robot's arrival to its goal, and how much more this is than its shortest path"
+    )
+    lines = [
+        (
+            place_name(each.map),
+            each.planner,
+            str(each.rate),
+            f"{each.throughput:.0f}",
+            *(f"{value:.1f}" for value in (each.taken, each.waited)),
+        )
+        for each in summary
+    ]
+    table = Table("stream", title, columns, tuple(lines), columns[2:])
+    return ExperimentReport(summary, (table,))
+
+
+def stream_of(map: int, planner: str, rate: int, found: Sequence[Streamed], robots: int) -> StreamOf:
+    """The means over some streams."""
+    return StreamOf(
+        map,
+        planner,
+        rate,
+        len(found),
+        mean_interval([TICKS * (3 * robots // 4 - robots // 4) / each.half for each in found]),
+        mean_interval([each.taken / robots for each in found]),
+        mean_interval([(each.taken - each.shortest) / robots for each in found]),
+    )
+
+
+def stream_figures(summary: Sequence[StreamOf]) -> tuple[Figure, ...]:
+    """Throughput and waiting by the rate, a line for each planner and map."""
+    lines: dict[str, list[StreamOf]] = {}
+    for each in summary:
+        lines.setdefault(f"{each.planner.partition(' ')[0]} + {place_name(each.map)}", []).append(each)
+    throughput = {name: [(each.rate, each.throughput) for each in line] for name, line in lines.items()}
+    waited = {name: [(each.rate, each.waited) for each in line] for name, line in lines.items()}
+    axis = f"arrivals in {TICKS} ticks"
+    return (
+        Figure("stream-throughput", "Throughput of a stream", (axis, f"at goals in {TICKS} ticks"), throughput),
+        Figure("stream-waiting", "Waiting in a stream", (axis, "ticks waited by a robot"), waited),
+    )

@@ -1,0 +1,89 @@
+"""A campaign of random small questions to both engines: the reference and the optimised planner must agree on all.
+
+A case is a block of questions, so that a row stands for a second of work. `carproof crosscheck` asks the same kind of
+questions up to the first difference, which it shrinks. This campaign can be stopped and continued, and runs on many
+machines.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import msgspec
+
+from carp_experiments.report import ExperimentReport, Table
+from carp_experiments.store import Row
+from carp_spec import total_cost
+from carproof.testing.random_instances import question
+
+BLOCK = 1000
+FULL_QUESTIONS = 1_000_000
+QUICK_QUESTIONS = 20_000
+SHOWN = 3
+
+
+@dataclass(frozen=True, slots=True)
+class CrosscheckCase:
+    """The questions of a seed numbered from `first` on."""
+
+    first: int
+    questions: int = BLOCK
+    seed: int = 0
+
+    @property
+    def key(self) -> str:
+        """Blocks in their order."""
+        return f"seed {self.seed} questions {self.first:09} to {self.first + self.questions - 1:09}"
+
+    def run(self) -> Row:
+        """The cost of all answers, the number of unplanned robots, and the questions on which the engines differ."""
+        block = Block(self.questions)
+        for number in range(self.first, self.first + self.questions):
+            ask_both(block, self.seed, number)
+        return msgspec.to_builtins(block)  # type: ignore[no-any-return] # a struct becomes a dict
+
+
+class Block(msgspec.Struct):
+    """A row of the campaign."""
+
+    questions: int
+    cost: int = 0
+    planned: int = 0
+    unplanned: int = 0
+    differences: list[dict[str, Any]] = msgspec.field(default_factory=list)
+
+
+def ask_both(block: Block, seed: int, number: int) -> None:
+    """Ask both engines one question; an engine that fails by an exception differs too."""
+    from carp_experiments.measuring.crosscheck import ask  # noqa: PLC0415
+    from carp_experiments.measuring.crosscheck_command import document  # noqa: PLC0415 - each worker loads it
+
+    asked = question(seed, number)
+    try:
+        answers = ask(asked)
+    except Exception as error:  # noqa: BLE001 - whatever it is, it is no answer
+        block.differences.append({"number": number, "error": repr(error)})
+        return
+    block.cost += total_cost(answers.instance, answers.reference.plans)
+    block.planned += len(answers.reference.plans)
+    block.unplanned += len(answers.reference.unplanned)
+    if answers.reference != answers.optimized:
+        block.differences.append({"number": number, **document(answers)})
+
+
+def crosscheck_cases(questions: int, seed: int) -> tuple[CrosscheckCase, ...]:
+    """The questions, in blocks."""
+    return tuple(CrosscheckCase(first, min(BLOCK, questions - first), seed) for first in range(0, questions, BLOCK))
+
+
+def crosscheck_report(rows: Iterable[Row]) -> ExperimentReport:
+    """The number of questions asked, and the differences."""
+    blocks = [msgspec.convert(row, Block) for row in rows]
+    differences = [each for block in blocks for each in block.differences]
+    columns = ("questions", "robots planned", "robots unplanned", "total cost", "differences")
+    sums = [sum(getattr(block, name) for block in blocks) for name in ("questions", "planned", "unplanned", "cost")]
+    lines = tuple(f"A DIFFERENCE: {msgspec.json.encode(each).decode()}" for each in differences[:SHOWN])
+    table = Table(
+        "crosscheck", "Both engines, asked the same", columns, ((*map(str, sums), str(len(differences))),), columns
+    )
+    return ExperimentReport({"differences": differences}, (table,), lines, holds=not differences)

@@ -1,0 +1,62 @@
+"""`carproof crosscheck`: the optimised planner against the reference."""
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import click
+import msgspec
+
+from carp_experiments.measuring.crosscheck import Difference, first_difference
+from carp_verify.documents import instance_document, solution_document
+from carproof.command_line.answer import Answer
+from carproof.command_line.files import hypothesis_elsewhere, print_document
+from carproof.command_line.options import examples, json_option, output_option
+from carproof.command_line.output import write_result
+from carproof.command_line.progress import progress
+from carproof.command_line.tables import print_line
+from carproof.extras import require
+
+
+@click.command(
+    short_help="Ask both engines the same random questions.",
+    epilog=examples("carproof crosscheck --examples 10000", "carproof crosscheck --seed 7 -o difference.json"),
+)
+@click.option("--examples", "count", type=click.IntRange(min=1), default=1000, help="The number of random questions.")
+@click.option("--seed", type=click.IntRange(min=0), default=0, help="The seed of the questions.")
+@output_option
+@json_option
+def command(count: int, seed: int, output: Path | None, as_json: bool) -> Answer:
+    """Ask both engines the same questions, and stop at the first difference.
+
+    Random instances are planned by every planner that both engines have, and robots are added to fleets under way. A
+    difference is shrunk; its document holds the question and both answers.
+
+    Exit codes: 0 no difference, 1 a difference, 2 bad usage.
+    """
+    require("hypothesis")
+    with hypothesis_elsewhere(), progress("asking both engines", count) as advance:
+        difference = first_difference(count, seed, advance)
+    written = msgspec.json.encode(document(difference)) + b"\n"
+    write_result(written, output, as_json)
+    if not as_json:
+        print_line(f"{count} questions: " + ("no difference" if difference is None else "A DIFFERENCE"))
+        if difference is not None and output is None:
+            print_document(written)
+    return Answer.of(difference is None)
+
+
+def document(difference: Difference | None) -> dict[str, Any]:
+    """The question and both answers; `agree` alone where there is no difference."""
+    if difference is None:
+        return {"agree": True}
+    planner = {"planner": difference.planner.name, **asdict(difference.planner)}
+    question = {"instance": instance_document(difference.instance), **planner}
+    if difference.before is not None:
+        before = solution_document(difference.before)
+        question |= {"solution": before, "robot": difference.robot, "now": difference.now}
+    answers = {
+        "reference": solution_document(difference.reference),
+        "optimized": solution_document(difference.optimized),
+    }
+    return {"agree": False, "question": question, **answers}

@@ -1,0 +1,210 @@
+"""Experiment 1 of the paper: the failures of each algorithm, and the number of actions of its plans.
+
+100 robots on 21 maps from a spanning tree to the full grid; the same assignments on every map.
+"""
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from statistics import fmean
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from carp_experiments.paper.map_cases import ROBOTS, MapCase, fleet_of, rows_by_map
+from carp_experiments.store import Row
+from carp_spec import Carp, LongestFirst, Neighbourhood, Planner, Shuffled, total_cost
+from carproof.gap.statistics import Interval, mean_interval, proportion_interval
+
+if TYPE_CHECKING:
+    from carp_optimized.fleet import PlannedFleet
+
+ALGORITHMS: Mapping[str, Planner] = {
+    "CARP": Carp(),
+    "CARP10": Shuffled(attempts=10),
+    "CARP100": Shuffled(attempts=100),
+    "LF": LongestFirst(),
+    "Proposed_4": Neighbourhood(m=4, baseline=False),
+    "Proposed_5": Neighbourhood(m=5, baseline=False),
+    "Proposed_6": Neighbourhood(m=6, baseline=False),
+    "Proposed_10": Neighbourhood(m=10, sample=150, baseline=False),
+    "Proposed_4 + baseline": Neighbourhood(m=4),
+    "Proposed_5 + baseline": Neighbourhood(m=5),
+    "Proposed_6 + baseline": Neighbourhood(m=6),
+    "Proposed_10 + baseline": Neighbourhood(m=10, sample=150),
+    "Proposed_4 + CARP100": Neighbourhood(m=4, baseline=False, fallback=100),
+}
+BEFORE_FALLBACK = {"Proposed_4 + CARP100": "Proposed_4"}
+RIVALS = ("CARP", "CARP10", "CARP100", "Proposed_10")
+
+
+def quality_row(case: MapCase) -> Row:
+    """For each algorithm the robots planned and the total cost; beside them the sum of shortest paths.
+
+    An algorithm that adds robots one by one stops at the first that stays unplanned, because the assignment is a
+    failure then.
+    """
+    fleet = fleet_of(case)
+    results: dict[str, tuple[int, int]] = {}
+    for name, planner in ALGORITHMS.items():
+        if name not in BEFORE_FALLBACK:
+            plan_all(fleet, seeded(planner, case.assignment))
+            results[name] = outcome(fleet)
+        for fallback in [other for other, before in BEFORE_FALLBACK.items() if before == name]:
+            add_until_failure(fleet, seeded(ALGORITHMS[fallback], case.assignment), results[name][0])
+            results[fallback] = outcome(fleet)
+    return {"shortest": sum(fleet.ticks_to_goal(robot) for robot in range(case.robots)), "results": results}
+
+
+def plan_all(fleet: "PlannedFleet", planner: Planner) -> None:
+    """Plan the fleet as `carp_optimized.plan` does, up to the first robot that cannot be added."""
+    everyone = range(len(fleet.instance.robots))
+    match planner:
+        case Shuffled():
+            fleet.shuffled(planner, everyone, lambda: None)
+        case LongestFirst():
+            fleet.carp(sorted(everyone, key=lambda robot: -fleet.ticks_to_goal(robot)))
+        case Neighbourhood():
+            fleet.clear()
+            add_until_failure(fleet, planner, 0)
+        case _:
+            fleet.carp(everyone)
+
+
+def add_until_failure(fleet: "PlannedFleet", planner: Planner, first: int) -> None:
+    """Add the robots from the first on, until one stays unplanned."""
+    assert isinstance(planner, Neighbourhood)  # noqa: S101 - a promise of ours
+    for robot in range(first, len(fleet.instance.robots)):
+        if not fleet.add(robot, 0, planner):
+            return
+
+
+def outcome(fleet: "PlannedFleet") -> tuple[int, int]:
+    """The number of planned robots, and the total cost of their plans."""
+    return len(fleet.order), total_cost(fleet.instance, fleet.plans)
+
+
+def seeded(planner: Planner, seed: int) -> Planner:
+    """The planner with a seed of its own, if it draws orders."""
+    return replace(planner, seed=seed) if isinstance(planner, Shuffled | Neighbourhood) else planner
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """An algorithm on one map: its failures among the assignments, and its mean total over the others.
+
+    `total` is the mean with its 95 % interval, or `None` if it failed on all.
+    """
+
+    map: int
+    algorithm: str
+    failures: int
+    assignments: int
+    failure_rate: Interval
+    total: Interval | None
+
+
+@dataclass(frozen=True, slots=True)
+class Saving:
+    """The saving of an algorithm's total over a rival's, in the cases in which neither fails.
+
+    Over all maps (`map` is `None`), the interval is that of the assignments' means over their maps. `total` is the
+    rival's mean total in these cases.
+    """
+
+    map: int | None
+    algorithm: str
+    rival: str
+    cases: int
+    saving: Interval
+    total: float
+
+
+@dataclass(frozen=True, slots=True)
+class FailureDifference:
+    """The difference between the failure rates of an algorithm and a rival, over all maps.
+
+    The interval is that of the assignments' means over their maps.
+    """
+
+    algorithm: str
+    rival: str
+    more: Interval
+
+
+@dataclass(frozen=True, slots=True)
+class QualitySummary:
+    """All numbers of the experiment."""
+
+    robots: int
+    assignments: int
+    algorithms: tuple[Summary, ...]
+    savings: tuple[Saving, ...]
+    failures: tuple[FailureDifference, ...]
+
+
+class QualityRow(msgspec.Struct, frozen=True):
+    """A stored row of the experiment."""
+
+    map: int
+    assignment: int
+    shortest: int
+    results: dict[str, tuple[int, int]]
+
+    def total(self, algorithm: str, robots: int) -> int | None:
+        """The total cost of an algorithm, or `None` if it failed."""
+        planned, total = self.results[algorithm]
+        return total if planned == robots else None
+
+
+def summarise(rows: Iterable[Row], robots: int = ROBOTS) -> QualitySummary:
+    """Summaries by map and algorithm; an assignment with an unplanned robot is a failure."""
+    maps = rows_by_map(rows, QualityRow).items()
+    everything = [row for _, each in maps for row in each]
+    algorithms = [summary_of(map, name, each, robots) for map, each in maps for name in ALGORITHMS]
+    places: list[tuple[int | None, list[QualityRow]]] = [*maps, (None, everything)]
+    savings = [saving for map, each in places for saving in savings_on(map, each, robots)]
+    failures = [failure_difference(name, rival, everything, robots) for name, rival in pairs_of_rivals()]
+    assignments = len({row.assignment for row in everything})
+    return QualitySummary(robots, assignments, tuple(algorithms), tuple(savings), tuple(failures))
+
+
+def summary_of(map: int, name: str, rows: Sequence[QualityRow], robots: int) -> Summary:
+    """An algorithm on a map."""
+    totals = [total for row in rows if (total := row.total(name, robots)) is not None]
+    failures = len(rows) - len(totals)
+    rate = proportion_interval(failures, len(rows))
+    return Summary(map, name, failures, len(rows), rate, mean_interval(totals) if totals else None)
+
+
+def pairs_of_rivals() -> Iterator[tuple[str, str]]:
+    """Each algorithm with each rival that it is compared with."""
+    for name in ALGORITHMS:
+        yield from ((name, rival) for rival in RIVALS if rival != name)
+
+
+def savings_on(map: int | None, rows: Sequence[QualityRow], robots: int) -> Iterator[Saving]:
+    """The savings on a map, or on all, where there are cases on which neither fails."""
+    for name, rival in pairs_of_rivals():
+        saved: dict[int, list[int]] = defaultdict(list)
+        totals = []
+        for row in rows:
+            ours, theirs = row.total(name, robots), row.total(rival, robots)
+            if ours is not None and theirs is not None:
+                saved[row.assignment].append(theirs - ours)
+                totals.append(theirs)
+        if saved:
+            yield Saving(map, name, rival, len(totals), interval_of_means(saved.values()), fmean(totals))
+
+
+def failure_difference(name: str, rival: str, rows: Sequence[QualityRow], robots: int) -> FailureDifference:
+    """The difference between the failure rates of an algorithm and a rival, on the same assignments."""
+    more: dict[int, list[int]] = defaultdict(list)
+    for row in rows:
+        more[row.assignment].append((row.total(name, robots) is None) - (row.total(rival, robots) is None))
+    return FailureDifference(name, rival, interval_of_means(more.values()))
+
+
+def interval_of_means(groups: Iterable[Sequence[float]]) -> Interval:
+    """The mean of the groups' means, because measurements on the same assignment are not independent."""
+    return mean_interval([fmean(group) for group in groups])

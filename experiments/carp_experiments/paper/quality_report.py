@@ -1,0 +1,73 @@
+"""The report of the quality experiment."""
+
+from collections.abc import Iterable
+
+from carp_experiments.paper.map_cases import MAP_AXIS, shown_maps
+from carp_experiments.paper.quality import ALGORITHMS, QualitySummary, Summary, summarise
+from carp_experiments.report import ExperimentReport, Figure, Table
+from carp_experiments.store import Row
+from carproof.gap.statistics import Interval
+
+FEWEST_SHOWN = 4  # a mean over less than a quarter of the assignments is no point in a figure
+
+
+def quality_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
+    """Failure rates in per cent, and mean totals over the assignments that did not fail, on some of the maps."""
+    summary = summarise(rows, robots)
+    by_place = {(each.algorithm, each.map): each for each in summary.algorithms}
+    maps = shown_maps(each.map for each in summary.algorithms)
+    columns = ("algorithm", *(f"map {map}" for map in maps))
+    rates = tuple((name, *(_percent(by_place[name, map].failure_rate) for map in maps)) for name in ALGORITHMS)
+    totals = tuple((name, *(_mean(by_place[name, map].total) for map in maps)) for name in ALGORITHMS)
+    tables = (
+        Table("quality-failures", "Failure rate in per cent, with its 95 % interval", columns, rates, columns[1:]),
+        Table(
+            "quality-totals",
+            "Mean total cost over the assignments that did not fail, with its 95 % interval",
+            columns,
+            totals,
+            columns[1:],
+        ),
+    )
+    return ExperimentReport(summary, tables)
+
+
+def quality_figures(summary: QualitySummary) -> tuple[Figure, ...]:
+    """Failures, totals, and the actions saved against CARP, over all maps."""
+    savings = {
+        name: [
+            (each.map, each.saving)
+            for each in summary.savings
+            if (each.algorithm, each.rival) == (name, "CARP") and each.cases * FEWEST_SHOWN >= summary.assignments
+        ]
+        for name in ALGORITHMS
+        if name != "CARP"
+    }
+    on_maps = {name: [(map, saved) for map, saved in line if map is not None] for name, line in savings.items()}
+    failures = {name: [(each.map, each.failure_rate) for each in of(summary, name)] for name in ALGORITHMS}
+    total = {
+        name: [
+            (each.map, each.total)
+            for each in of(summary, name)
+            if (each.assignments - each.failures) * FEWEST_SHOWN >= each.assignments
+        ]
+        for name in ALGORITHMS
+    }
+    return (
+        Figure("quality-failures", "Assignments that fail", (MAP_AXIS, "failure rate"), failures),
+        Figure("quality-totals", "Actions of all robots", (MAP_AXIS, "mean total cost"), total),
+        Figure("quality-savings", "Fewer actions than CARP, where neither fails", (MAP_AXIS, "actions"), on_maps),
+    )
+
+
+def of(summary: QualitySummary, name: str) -> list[Summary]:
+    """The summaries of one algorithm, by map."""
+    return [each for each in summary.algorithms if each.algorithm == name]
+
+
+def _percent(rate: Interval) -> str:
+    return f"{100 * rate.estimate:.1f} ({100 * rate.low:.1f} to {100 * rate.high:.1f})"
+
+
+def _mean(total: Interval | None) -> str:
+    return "all failed" if total is None else f"{total:.1f}"

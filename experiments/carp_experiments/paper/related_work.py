@@ -1,0 +1,178 @@
+"""The methods that the paper compares by citation: fixed paths, as in ter Mors' comparison, and greedy best-first.
+
+With 100 robots, fixed paths nearly always leave some without a plan. So totals are compared over the first robots, up
+to the first that one of the two methods leaves unplanned. As each robot is planned after those before it, these plans
+are those of an instance with these robots alone.
+"""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import takewhile
+
+import msgspec
+
+from carp_experiments.paper.map_cases import MAP_AXIS, MapCase, fleet_of, rows_by_map, shown_maps
+from carp_experiments.paper.quality import plan_all
+from carp_experiments.report import ExperimentReport, Figure, Table
+from carp_experiments.store import Row
+from carp_spec import Instance, LongestFirst, Plan, ResourceId, Robot, plan_cost
+from carproof.gap.statistics import Interval, mean_interval, proportion_interval
+
+Path = tuple[ResourceId, ...]
+MOST_SHORTEST = 10
+MOST_DISJOINT = 3
+FIXED: Mapping[str, tuple[str, int]] = {
+    "the shortest path": ("shortest", 1),
+    "3 shortest paths": ("shortest", 3),
+    "10 shortest paths": ("shortest", MOST_SHORTEST),
+    "3 disjoint paths": ("disjoint", MOST_DISJOINT),
+}
+ONE_BY_ONE = (*FIXED, "CARP")
+ORDERED = ("LF", "greedy")
+METHODS = (*ONE_BY_ONE, *ORDERED)
+
+
+def related_row(case: MapCase) -> Row:
+    """For each method the cost of each robot's plan, or `None` for a robot without one.
+
+    Robots are planned in the order given, but by LF and greedy.
+    """
+    fleet = fleet_of(case)
+    plans = fixed_plans(fleet.instance)
+    fleet.carp(range(case.robots))
+    plans["CARP"] = fleet.plans
+    plan_all(fleet, LongestFirst())
+    plans["LF"] = fleet.plans
+    fleet.greedy(lambda: None)
+    plans["greedy"] = fleet.plans
+    return {"costs": {name: costs_of(fleet.instance, found) for name, found in plans.items()}}
+
+
+def costs_of(instance: Instance, plans: Sequence[Plan]) -> list[int | None]:
+    """The cost of the plan of each robot, in the order of the instance."""
+    cost = {plan.robot: plan_cost(instance, plan) for plan in plans}
+    return [cost.get(robot.id) for robot in instance.robots]
+
+
+def fixed_plans(instance: Instance) -> dict[str, Sequence[Plan]]:
+    """The plans by each kind of fixed paths; the k shortest paths are the first k of the most."""
+    from carp_reference.fixed_paths import disjoint_paths, shortest_paths  # noqa: PLC0415 - each worker loads it
+    from carp_reference.problem import prepare  # noqa: PLC0415
+
+    problem = prepare(instance, 0)
+    paths: dict[str, list[list[Path]]] = {
+        "shortest": [shortest_paths(problem, robot, MOST_SHORTEST) for robot in instance.robots],
+        "disjoint": [disjoint_paths(problem, robot, MOST_DISJOINT) for robot in instance.robots],
+    }
+    return {name: schedule(instance, [of_robot[:k] for of_robot in paths[kind]]) for name, (kind, k) in FIXED.items()}
+
+
+def schedule(instance: Instance, paths: Sequence[Sequence[Path]]) -> list[Plan]:
+    """Plan each robot on the path on which it arrives first."""
+    from carp_reference.fixed_paths import find_on_path  # noqa: PLC0415
+    from carp_reference.problem import prepare  # noqa: PLC0415
+
+    problem = prepare(instance, 0)
+    plans: list[Plan] = []
+
+    def on_path(robot: Robot) -> Callable[[Path], Plan | None]:
+        return lambda path: find_on_path(problem, plans, robot, path)
+
+    for robot, of_robot in zip(instance.robots, paths, strict=True):
+        found = [plan for plan in map(on_path(robot), of_robot) if plan is not None]
+        if found:
+            plans.append(min(found, key=lambda plan: plan_cost(instance, plan)))
+    return plans
+
+
+@dataclass(frozen=True, slots=True)
+class Related:
+    """A method on one map.
+
+    `unplanned` is the mean number of robots without a plan, `more_unplanned` its excess over that of CARP, and
+    `failure_rate` the share of assignments with such a robot. `above_carp` is the excess of its total over CARP's for
+    the same robots (`same_robots`) in per cent, over the `compared` assignments that have some.
+    """
+
+    map: int
+    method: str
+    assignments: int
+    unplanned: Interval
+    more_unplanned: Interval
+    failure_rate: Interval
+    compared: int
+    above_carp: Interval | None
+
+
+class RelatedRow(msgspec.Struct, frozen=True):
+    """A stored row of the experiment."""
+
+    map: int
+    costs: dict[str, list[int | None]]
+
+
+def related_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
+    """Tables over some of the maps."""
+    by_map = rows_by_map(rows, RelatedRow)
+    summary = tuple(related_of(map, name, each) for map, each in by_map.items() for name in METHODS)
+    maps = shown_maps(by_map)
+    by_place = {(each.method, each.map): each for each in summary}
+    columns = ("method", *(f"map {map}" for map in maps))
+    unplanned = [(name, *(f"{by_place[name, map].unplanned:.1f}" for map in maps)) for name in METHODS]
+    above = [(name, *(_compared(by_place[name, map]) for map in maps)) for name in METHODS if name != "CARP"]
+    tables = (
+        Table(
+            "related-unplanned",
+            f"Robots of {robots} without a plan, means with 95 % intervals",
+            columns,
+            tuple(unplanned),
+            columns[1:],
+        ),
+        Table(
+            "related-totals",
+            "Total above CARP's for the same robots in per cent: for fixed paths, of the first robots up to the one "
+            "that either leaves without a plan; for LF and greedy, of all, in the assignments in which both plan all",
+            columns,
+            tuple(above),
+            columns[1:],
+        ),
+    )
+    return ExperimentReport(summary, tables)
+
+
+def related_figures(summary: Sequence[Related]) -> tuple[Figure, ...]:
+    """The robots that each method leaves without a plan, over the maps."""
+    lines = {name: [(each.map, each.unplanned) for each in summary if each.method == name] for name in METHODS}
+    return (Figure("related", "Robots without a plan", (MAP_AXIS, "robots"), lines),)
+
+
+def related_of(map: int, name: str, rows: Sequence[RelatedRow]) -> Related:
+    """A method on a map."""
+    missing = [row.costs[name].count(None) for row in rows]
+    above = [
+        100 * (sum(ours) - sum(carps)) / sum(carps)
+        for row in rows
+        for ours, carps in [same_robots(row.costs[name], row.costs["CARP"], name in ONE_BY_ONE)]
+        if sum(carps)
+    ]
+    rate = proportion_interval(sum(count > 0 for count in missing), len(rows))
+    interval = mean_interval(above) if above else None
+    more = mean_interval([count - row.costs["CARP"].count(None) for count, row in zip(missing, rows, strict=True)])
+    return Related(map, name, len(rows), mean_interval(missing), more, rate, len(above), interval)
+
+
+def same_robots(
+    ours: Sequence[int | None], theirs: Sequence[int | None], one_by_one: bool
+) -> tuple[list[int], list[int]]:
+    """The costs of both for the first robots, up to one without a plan; of all or of none if not `one_by_one`."""
+    both = list(takewhile(lambda pair: None not in pair, zip(ours, theirs, strict=True)))
+    if not one_by_one and len(both) < len(ours):
+        return [], []
+    return [our for our, _ in both if our is not None], [their for _, their in both if their is not None]
+
+
+def _compared(related: Related) -> str:
+    if related.above_carp is None:
+        return "-"
+    of = "" if related.compared == related.assignments else f" ({related.compared} of {related.assignments})"
+    return f"{related.above_carp:.1f}{of}"

@@ -1,0 +1,1 @@
+"""Executions of late robots on arrays, and traces compared with solutions."""

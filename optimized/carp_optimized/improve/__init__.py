@@ -1,0 +1,1 @@
+"""Better plans: repair of unplanned robots, large neighbourhood search, annealing, LaCAM."""

@@ -1,0 +1,128 @@
+"""A polish that may raise the total for a while: simulated annealing (Kirkpatrick et al. 1983) of `polish/...`.
+
+A polish ends where no small change helps any more. So each round draws by how many ticks it may raise the total: on
+average a share of the mean delay of a robot, which falls to 0 as the cube of the time left in the cycle. As long as
+rounds may raise it, every second one takes turns (`carp_optimized.neighbourhood.polishing`). One long cycle ends in a
+bad place as often as a short one does. So there are several, each from the best plans seen, which are the result.
+Nothing here is trusted: the law judges the plans.
+
+Where robots wait much, as on a tree, luck decides where a cycle ends. Then there are more of them, and some begin again
+with the plans given: each begins where the one before began if that gained, and at the other place if not.
+"""
+
+from collections.abc import Callable
+from contextlib import suppress
+from time import perf_counter
+
+import carp_optimized
+from carp_optimized.fleet import PlannedFleet
+from carp_optimized.improve.repair import repair
+from carp_optimized.neighbourhood.polishing import CHANCE, SURE
+from carp_spec import Instance, Refusal, Solution
+from carp_spec.inputs.options import require_polish_options
+from carp_spec.inputs.requests import sound_solution
+
+ROUNDS = 50
+"""The rounds of one compiled call."""
+CYCLES, CYCLES_OF_LUCK = 8, 16
+LUCK = 2
+"""Luck decides where the delays, times this, are more than the shortest paths."""
+HEAT = 64
+"""The mean raise of the first rounds, in 16ths of the mean delay of a robot."""
+REHEAT = 16
+"""The same of cycles from the best plans seen, which are not to leave their place altogether."""
+COOLER = 4
+"""If luck decides, delays are large, and raises are smaller shares of them by this."""
+ENOUGH = 32
+"""With fewer rounds a robot than this the raises are smaller by as much: there is no time to make up for them."""
+PARTS = 1 << 10
+"""The time left is counted in parts of this."""
+BRIEF = 0.01
+"""The seconds of an annealing if a repair took the time."""
+
+
+def polish(
+    instance: Instance,
+    solution: Solution,
+    *,
+    iterations: int | None = None,
+    seconds: float | None = None,
+    seed: int = 0,
+    advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
+) -> Solution:
+    """Improve a solution by large neighbourhood search; `advance` gets rounds, unplanned robots and total.
+
+    With `seconds`, robots without a plan are planned first, which may take longer, and rounds may raise the total for a
+    while (simulated annealing); the best plans seen are the result. Otherwise `iterations` rounds of `polish/...` are
+    played, 10,000 unless given. They never raise the total, and equal iterations and seed give an equal solution. All
+    robots are planned from their release on: none is under way. Raises `Refusal` for wrong options, for a solution that
+    breaks a rule, and for numbers that are too large.
+    """
+    require_polish_options(iterations, seconds, seed)
+    if seconds is None:
+        return carp_optimized.polish(instance, solution, iterations=iterations, seed=seed, advance=advance)
+    return anneal(instance, solution, seconds, seed=seed, advance=advance)
+
+
+def anneal(
+    instance: Instance,
+    solution: Solution,
+    seconds: float,
+    *,
+    seed: int = 0,
+    advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
+    clock: Callable[[], float] = perf_counter,
+) -> Solution:
+    """Improve a solution for that many seconds, the repair of robots left out included.
+
+    `advance` gets the rounds and the best so far. Raises what `polish` raises.
+    """
+    started = clock()
+    if len(solution.plans) < len(instance.robots):
+        with suppress(Refusal):
+            solution = repair(instance, solution)
+    seconds = max(seconds - (clock() - started), BRIEF)
+    whole = sound_solution(instance, solution)
+    by_robot = {each.robot: each for each in whole.plans}
+    fleet = PlannedFleet(instance)
+    fleet.commit([by_robot[each] for each in whole.order])
+    polishing = fleet.polishing(seed)
+    least = int(polishing.fields.least.sum())
+    played = fleet.polish(polishing, 0)
+    given = plans = fleet.plans
+    best = before = own = fleet.worth
+    luck = (best[1] - least) * LUCK > least
+    cycles = CYCLES_OF_LUCK if luck else CYCLES
+    current = 0
+    from_given = True
+    started = clock()
+    while (spent := int(PARTS * (clock() - started) / seconds)) < PARTS:
+        cycle, gone = divmod(cycles * spent, PARTS)
+        if cycle > current:
+            from_given = luck and played >= ENOUGH * len(instance.robots) and from_given == (best < before)
+            if from_given or fleet.worth > best:
+                fleet.clear()
+                fleet.commit(given if from_given else plans)
+            current, before, own = cycle, best, fleet.worth
+        expected = PARTS * played // max(spent, 1)
+        heated = (HEAT if from_given else REHEAT) * max(own[1] - least, 0) // (COOLER if luck else 1)
+        polishing.fields.counts[CHANCE] = _chance(heated, len(instance.robots), expected, PARTS - gone)
+        batch = fleet.polish(polishing, ROUNDS)
+        played += batch
+        own = min(own, fleet.worth)
+        if own < best:
+            best, plans = own, fleet.plans
+        advance(played, *best)
+        if batch < ROUNDS:
+            break
+    return Solution.of(instance, plans)
+
+
+def _chance(heated: int, robots: int, rounds: int, left: int) -> int:
+    """The chance of each further tick of a raise, in parts of `SURE`; it makes the mean raise what it is to be.
+
+    `heated` is the delay of all robots times the heat, and `rounds` are those expected.
+    """
+    enough = max(ENOUGH * robots, 1)
+    mean = heated * min(rounds, enough) * left**3
+    return SURE * mean // (mean + 16 * max(robots, 1) * enough * PARTS**3)

@@ -1,0 +1,1 @@
+"""Compilation: all contact with numba's internals."""

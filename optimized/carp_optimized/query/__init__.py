@@ -1,0 +1,1 @@
+"""The CARP query, a relative of SIPP: A* over free windows."""

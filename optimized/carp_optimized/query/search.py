@@ -1,0 +1,321 @@
+"""The CARP query, a relative of SIPP: A* over free windows in the order of `query/ties`."""
+
+from carp_optimized.jit.compiling import RoomExhausted, TicksExhausted, compiled
+from carp_optimized.query.blocks import below, lowest, width
+from carp_optimized.query.guides import guide_slot, reach_all, toll_of
+from carp_optimized.query.heap import push, replace_root
+from carp_optimized.query.windows import end_of_run, fits, is_exchange, last_by, plan_fits, skip_below, start_of_run
+from carp_optimized.state.arrays import (
+    ASKED,
+    BLOCK,
+    FURTHER,
+    LARGEST,
+    NEVER,
+    NO_LIMIT,
+    NONE,
+    TOO_FAR,
+    UNREACHABLE,
+    State,
+)
+from carp_optimized.state.records import start_record, write_record
+
+EVERY = (1 << BLOCK) - 1
+LOW = (1 << 32) - 1
+STANDING = 0  # the slot of no row: a copy of the window in which the robot is when it sets out
+
+
+@compiled
+def find_plan(state: State, robot: int, before: int, now: int, behind: int) -> int:
+    """The record of the robot's plan, whatever its arrival: see `find_plan_by`."""
+    return find_plan_by(state, robot, before, now, behind, NEVER)
+
+
+@compiled
+def find_plan_by(state: State, robot: int, before: int, now: int, behind: int, latest: int) -> int:
+    """The record of the robot's plan against the reservations, or `NONE`; `before` is the plan followed until now.
+
+    A plan that is to be found must arrive by the tick `latest`.
+
+    Only robots of a rank up to `behind` count. A plan that has ended stays as it is. Otherwise the visits entered by
+    now are kept, and must fit the windows; a robot without a plan stands at its start since its release.
+    """
+    state.counters[ASKED] += 1
+    request = state.robots
+    resource = int(request.start[robot])
+    enter = int(request.release[robot])
+    history = 0
+    first = 0
+    if before != NONE:
+        records = state.records
+        if records.leave[before] <= now:
+            return before if plan_fits(state, before) else NONE
+        first = int(records.visits_at[before])
+        while history < records.visits[before] and records.enter[first + history] <= now:
+            history += 1
+        if history > 0:
+            resource = int(records.resource[first + history - 1])
+            enter = int(records.enter[first + history - 1])
+            for k in range(first, first + history - 1):
+                leave = int(records.enter[k + 1])
+                target = int(records.resource[k + 1])
+                if not fits(state, int(records.resource[k]), int(records.enter[k]), leave, target, behind):
+                    return NONE
+    ready = max(enter + int(request.pace[robot]) * int(state.graph.duration[resource]), now)
+    if not fits(state, resource, enter, ready, NONE, behind):
+        return NONE
+    slot = guide_slot(state, robot, resource)
+    expansions = search(state, robot, slot, resource, enter, ready, behind, latest)
+    if expansions == FURTHER:
+        reach_all(state, slot)
+        expansions = search(state, robot, slot, resource, enter, ready, behind, latest)
+    if expansions == 0:
+        return NONE
+    record = start_record(state, robot, first, max(history - 1, 0))
+    write_record(state, record, int(state.search.goal[0]), expansions)
+    return record
+
+
+@compiled
+def find_plan_alone(empty: State, robot: int, now: int) -> int:
+    """The record of the robot's plan where nothing is reserved, or `NONE`, as `find_plan` makes it.
+
+    There A* expands just the path. As h is exact, each resource leads to one of the same f and a smaller h. Of these,
+    entered at one tick, the one of the smallest toll has the smallest key. Entries made before have no smaller f, and
+    where it is the same, no smaller h than the resource of the path that was expanded in their place, so a larger one
+    than what follows. A robot that starts at its goal, or is too far from it, is left to the search.
+    """
+    graph = empty.graph
+    windows = empty.windows
+    search = empty.search
+    resource = int(empty.robots.start[robot])
+    goal = int(empty.robots.goal[robot])
+    pace = int(empty.robots.pace[robot])
+    enter = int(empty.robots.release[robot])
+    slot = guide_slot(empty, robot, resource)
+    toll = toll_of(empty, slot, resource)
+    ready = max(enter + pace * int(graph.duration[resource]), now)
+    if resource == goal or toll < 0 or ready + (toll >> 32) > LARGEST:
+        return find_plan(empty, robot, NONE, now, NEVER)
+    empty.counters[ASKED] += 1
+    search.generation[0] += 1
+    label = int(search.generation[0]) << 32
+    before = NONE
+    expansions = 0
+    while True:
+        window = int(windows.offset[resource])
+        search.reached[window] = label - enter
+        search.parent[window] = before
+        if expansions == search.expanded.size:
+            raise RoomExhausted
+        search.expanded[expansions] = resource
+        search.ready[expansions] = ready
+        search.popped[expansions] = (enter << 32) + toll
+        expansions += 1
+        before = window
+        if resource == goal:
+            break
+        toll = NO_LIMIT
+        for edge in range(int(graph.first[resource]), int(graph.first[resource + 1])):
+            target = int(graph.target[edge])
+            if 0 <= toll_of(empty, slot, target) < toll:
+                toll = toll_of(empty, slot, target)
+                resource = target
+        enter = ready
+        ready = enter + pace * int(graph.duration[resource])
+    search.expansions[0] = expansions
+    record = start_record(empty, robot, 0, 0)
+    write_record(empty, record, before, expansions)
+    return record
+
+
+@compiled
+def stand(state: State, resource: int, enter: int, behind: int) -> int:
+    """Copy the window around the tick into the slot `STANDING`; return its own slot."""
+    windows = state.windows
+    slot = last_by(windows, resource, enter)
+    last = end_of_run(state, slot, behind)
+    windows.resource[STANDING] = resource
+    windows.end[STANDING] = windows.end[last]
+    windows.source[STANDING] = windows.source[last]
+    return start_of_run(state, slot, behind)
+
+
+@compiled
+def is_unseen(state: State, slot: int, expansions: int, latest: int) -> bool:
+    """Whether a resource that the guide does not reach might be entered with an f up to `latest`.
+
+    The guide reaches all that is as near to the goal as the resource from which it is entered, so f is no less than if
+    that were all that is left to go. With an f above that of the plan, its windows would have waited in the queue to
+    the end, and nothing else would have come of them.
+    """
+    graph = state.graph
+    ticks = state.guides.ticks[slot]
+    for k in range(expansions):
+        resource = int(state.search.expanded[k])
+        if int(state.search.ready[k]) + int(ticks[resource]) <= latest:
+            for edge in range(int(graph.first[resource]), int(graph.first[resource + 1])):
+                if ticks[graph.target[edge]] == FURTHER:
+                    return True
+    return False
+
+
+@compiled
+def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
+    state: State, robot: int, slot: int, resource: int, enter: int, ready: int, behind: int, latest: int
+) -> int:
+    """A* from the resource, entered at `enter` and left from `ready` on; the number of expansions, 0: no plan.
+
+    It is `FURTHER` where a window that the guide does not reach might have been expanded too: see `is_unseen`.
+
+    A window of a larger f than `latest` is in no plan that arrives by then, nor is one expanded before the goal of such
+    a plan is: no window of that kind is put into the queue, and the windows expanded stay the same.
+    The window in which the plan ends is then `goal[0]`. The window in which the robot stands can be entered again
+    if it has stayed at its goal for too long to end there; otherwise entering it again leads nowhere new.
+    The best of the windows reached last waits outside the heap, for it is often the next. Windows between which there
+    are only robots behind are one: from `window`, by which it is known, to `tail`.
+    """
+    graph = state.graph
+    windows = state.windows
+    reached = state.search.reached
+    parent = state.search.parent
+    keys = state.search.keys
+    nodes = state.search.nodes
+    expanded = state.search.expanded
+    goal = int(state.robots.goal[robot])
+    pace = int(state.robots.pace[robot])
+    parks = state.parks
+    counts_all = behind == NEVER
+    several = state.stays.start.size > BLOCK
+    alike = pace * state.longest if state.last_alike else 0
+    is_bounded = latest <= LARGEST
+    largest_key = (latest << 32) + LOW
+
+    toll = toll_of(state, slot, resource)
+    if toll < 0:
+        if toll == TOO_FAR:
+            raise TicksExhausted
+        return 0
+    generation = int(state.search.generation[0]) + 1
+    state.search.generation[0] = generation
+    label = generation << 32
+    own_slot = stand(state, resource, enter, behind)
+    overstayed = resource == goal and not parks and ready > enter + pace * int(graph.duration[resource])
+    if not overstayed:
+        reached[own_slot] = label - enter
+    reached[STANDING] = label - enter
+    parent[STANDING] = NONE
+    best = STANDING
+    best_key = (enter << 32) + toll
+    if best_key > largest_key:
+        return 0
+    size = 0
+    expansions = 0
+    beyond = False
+    while True:
+        if size > 0 and keys[0] < best_key:
+            key = int(keys[0])
+            node = int(nodes[0])
+            if best == NONE:
+                size -= 1
+                best_key = int(keys[size])
+                best = int(nodes[size])
+            replace_root(keys, nodes, size, best_key, best)
+        elif best == NONE:
+            break
+        else:
+            key = best_key
+            node = best
+        best = NONE
+        best_key = NO_LIMIT
+        resource = int(windows.resource[node])
+        enter = label - int(reached[node])
+        if key != (enter << 32) + toll_of(state, slot, resource):
+            continue  # entered earlier since this entry was made
+        last = node if counts_all else end_of_run(state, node, behind)
+        end = int(windows.end[last])
+        if expansions > 0:
+            ready = enter + (alike if alike > 0 else pace * int(graph.duration[resource]))
+        if expansions == expanded.size:
+            raise RoomExhausted
+        expanded[expansions] = resource
+        state.search.ready[expansions] = ready
+        state.search.popped[expansions] = key
+        expansions += 1
+        if resource == goal and (end == NEVER if parks else not (overstayed and node == STANDING)):
+            if beyond and is_unseen(state, slot, expansions, enter):
+                return FURTHER
+            state.search.goal[0] = node
+            state.search.expansions[0] = expansions
+            return expansions
+        exchanges = several and graph.capacity[resource] > 1
+        source = int(windows.source[last])
+        for edge in range(int(graph.first[resource]), int(graph.first[resource + 1])):
+            target = int(graph.target[edge])
+            toll = toll_of(state, slot, target)
+            if toll < 0:
+                beyond |= toll != UNREACHABLE
+                continue
+            if is_bounded and (ready << 32) + toll > largest_key:
+                continue
+            need = alike if alike > 0 else pace * int(graph.duration[target])
+            first = int(windows.offset[target])
+            row_end = first + int(windows.size[target])
+            is_block = row_end <= first + BLOCK
+            ends = EVERY
+            usable = 0
+            if is_block:
+                if not counts_all:
+                    ends = below(windows.rank, first, behind + 1)
+                late = EVERY - below(windows.end, first, min(ready + need, NEVER))
+                usable = late & ends & ((1 << (row_end - first)) - 1)
+                tail = first + lowest(usable) if usable > 0 else row_end
+            else:
+                tail = skip_below(windows.end, first, row_end, ready + need)
+                tail = tail if counts_all or tail == row_end else end_of_run(state, tail, behind)
+            while tail < row_end:
+                if counts_all:
+                    window = tail
+                elif is_block:
+                    window = first + width(ends & ((1 << (tail - first)) - 1))
+                else:
+                    window = start_of_run(state, tail, behind)
+                entry = max(ready, int(windows.start[window]))
+                if entry > end:
+                    break
+                until = int(windows.end[tail])
+                if is_block:
+                    usable &= usable - 1
+                    tail = first + lowest(usable) if usable > 0 else row_end
+                else:
+                    tail += 1
+                    tail = tail if counts_all or tail == row_end else end_of_run(state, tail, behind)
+                if entry + need > until or label - entry <= reached[window]:
+                    continue
+                if exchanges or (entry == end and source == target):
+                    while entry <= end and is_exchange(state, last, entry, target):
+                        entry += 1
+                    if entry > end or entry + need > until or label - entry <= reached[window]:
+                        continue
+                if entry > LARGEST or entry + (toll >> 32) > LARGEST:
+                    beyond = True
+                    continue
+                key = (entry << 32) + toll
+                if key > largest_key:
+                    break
+                reached[window] = label - entry
+                parent[window] = node
+                if key < best_key:
+                    if best != NONE:
+                        push(keys, nodes, size, best_key, best)
+                        size += 1
+                    best = window
+                    best_key = key
+                else:
+                    push(keys, nodes, size, key, window)
+                    size += 1
+    if beyond and is_unseen(state, slot, expansions, latest):
+        return FURTHER
+    if beyond and not is_bounded:
+        raise TicksExhausted
+    state.search.expansions[0] = expansions
+    return 0

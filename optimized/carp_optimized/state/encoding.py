@@ -1,0 +1,404 @@
+"""Encodes an instance as the arrays of a state; numbers that these cannot hold are refused."""
+
+import math
+from collections.abc import Iterator
+from functools import cache
+
+import numpy as np
+import numpy.typing as npt
+
+from carp_optimized.state.arrays import (
+    ANSWERS,
+    BLOCK,
+    COUNTERS,
+    LARGEST,
+    MOST_TURNS,
+    NEVER,
+    NONE,
+    PLANS,
+    Answers,
+    Freed,
+    Graph,
+    Guides,
+    Ints,
+    Longs,
+    Polish,
+    Records,
+    Robots,
+    Rows,
+    Search,
+    State,
+    Work,
+)
+from carp_spec import Fault, Instance, Refusal
+
+DETOUR = 8  # of the durations by which a guide goes further than to the start: seldom more are needed on large maps
+GUIDE_PLACES = 1 << 26  # how many entries all guides together have at most, if that is room for 64 of them
+ROOTS = 1024
+STRIPS = 7  # its square is the number of regions; a number of 64 bits has room for 63
+LARGEST_COORDINATE = 2**29
+NO_LIMIT_THERE = "the reference engine has no such limit, but finds no bounds"
+
+
+def refuse_what_is_too_large(instance: Instance) -> None:
+    """Raise `Refusal` where a number of the instance does not fit."""
+    for fault in _too_large(instance):
+        raise Refusal("limit", fault.path, fault.rule, f"{fault.message}; {NO_LIMIT_THERE}")
+
+
+def refuse_tick(path: str, tick: int) -> None:
+    """Raise `Refusal` for a tick that does not fit."""
+    if tick > LARGEST:
+        raise Refusal(
+            "limit", path, "limit/ticks", f"the tick must be at most {LARGEST}, and is {tick}; {NO_LIMIT_THERE}"
+        )
+
+
+def _too_large(instance: Instance) -> Iterator[Fault]:
+    longest = 1
+    for position, resource in enumerate(instance.graph.resources):
+        path = f"$.graph.nodes[{position}]"
+        longest = max(longest, resource.duration)
+        if resource.duration > LARGEST:
+            message = f"the duration must be at most {LARGEST}, and is {resource.duration}"
+            yield Fault("limit/ticks", f"{path}.duration", message)
+        for name, value in (("x", resource.x or 0), ("y", resource.y or 0)):
+            if abs(value) > LARGEST_COORDINATE:
+                message = f"{name} must be between -{LARGEST_COORDINATE} and {LARGEST_COORDINATE}, and is {value}"
+                yield Fault("limit/ticks", f"{path}.{name}", message)
+    for position, robot in enumerate(instance.robots):
+        path = f"$.robots[{position}]"
+        if robot.release > LARGEST:
+            yield Fault(
+                "limit/ticks", f"{path}.release", f"the release must be at most {LARGEST}, and is {robot.release}"
+            )
+        if robot.pace * longest > LARGEST:
+            message = f"the pace times {longest}, the longest duration, must be at most {LARGEST}, and is {robot.pace}"
+            yield Fault("limit/ticks", f"{path}.pace", message)
+
+
+def _edges(lists: list[list[int]]) -> tuple[Ints, Ints]:
+    """Lists of neighbours as one array, and where each list begins in it."""
+    first = np.zeros(len(lists) + 1, np.int32)
+    first[1:] = np.cumsum([len(each) for each in lists])
+    return first, np.array([neighbour for each in lists for neighbour in each], np.int32)
+
+
+def encode_graph(instance: Instance) -> Graph:
+    """The resource graph."""
+    graph = instance.graph
+    forward: list[list[int]] = [[] for _ in graph.resources]
+    backward: list[list[int]] = [[] for _ in graph.resources]
+    for resource, targets in graph.successors.items():
+        source = graph.index[resource]
+        for target in targets:
+            forward[source].append(graph.index[target])
+            backward[graph.index[target]].append(source)
+    x = np.array([each.x or 0 for each in graph.resources], np.int64)
+    y = np.array([each.y or 0 for each in graph.resources], np.int64)
+    return Graph(
+        *_edges(forward),
+        *_edges(backward),
+        duration=np.array([each.duration for each in graph.resources], np.int32),
+        capacity=np.array([min(each.capacity, NEVER) for each in graph.resources], np.int32),
+        x=x,
+        y=y,
+        region=np.left_shift(np.int64(1), strips(x) * STRIPS + strips(y)),
+    )
+
+
+def strips(places: Longs) -> Longs:
+    """Which of `STRIPS` strips of equal width each place is in."""
+    if places.size == 0:
+        return places
+    first = int(places.min())
+    width = (int(places.max()) - first) // STRIPS + 1
+    return (places - first) // width
+
+
+def encode_robots(instance: Instance) -> tuple[Robots, Ints, Ints]:
+    """The robots, and the goals and paces of their destinations."""
+    index = instance.graph.index
+    destinations: dict[tuple[int, int], int] = {}
+    destination = [
+        destinations.setdefault((index[each.goal], each.pace), len(destinations)) for each in instance.robots
+    ]
+    robots = Robots(
+        start=np.array([index[each.start] for each in instance.robots], np.int32),
+        goal=np.array([index[each.goal] for each in instance.robots], np.int32),
+        release=np.array([each.release for each in instance.robots], np.int32),
+        pace=np.array([each.pace for each in instance.robots], np.int32),
+        destination=np.array(destination, np.int32),
+    )
+    goals = np.array([goal for goal, _ in destinations], np.int32)
+    return robots, goals, np.array([pace for _, pace in destinations], np.int32)
+
+
+def scale_of_tolls(resources: int, longest: int, paces: Ints) -> int:
+    """2^32 plus the power of two above all indices; 0 if ticks to the goal times that might not fit into 32 bits."""
+    bits = resources.bit_length()
+    most = resources * longest * int(paces.max(initial=1))
+    return 0 if most >> (32 - bits) else (1 << 32) + (1 << bits)
+
+
+def no_guides(resources: int, goals: Ints, paces: Ints, has_ranks: bool) -> Guides:
+    """Guides yet to be made: for all destinations, or as many as fit."""
+    tables = 2 if has_ranks else 1
+    slots = max(1, min(goals.size, max(64, GUIDE_PLACES // max(1, resources * tables))))
+    return Guides(
+        ticks=np.empty((slots, resources), np.int32),
+        rank=np.empty((slots, resources if has_ranks else 0), np.int32),
+        slot=np.full(goals.size, NONE, np.int32),
+        holds=np.full(slots, NONE, np.int32),
+        next=np.zeros(1, np.int64),
+        goal=goals,
+        pace=paces,
+        detour=DETOUR,
+    )
+
+
+def empty_rows(has_row: npt.NDArray[np.bool_], filled: bool, places: int) -> Rows:
+    """Rows of the resources that have one, filled with one interval for ever or empty; the first block is no row's."""
+    rows = int(has_row.sum())
+    offset = np.zeros(has_row.size, np.int32)
+    offset[has_row] = BLOCK * (1 + np.arange(rows))
+    resource = np.zeros(places, np.int32)
+    resource[BLOCK : BLOCK * (1 + rows)] = np.repeat(np.flatnonzero(has_row), BLOCK)
+    start = np.full(places, NEVER, np.int32)
+    if filled:
+        start[offset[has_row]] = 0
+    return Rows(
+        offset=offset,
+        room=np.where(has_row, BLOCK, 0).astype(np.int32),
+        size=np.full(has_row.size, int(filled), np.int32),
+        start=start,
+        end=np.full(places, NEVER, np.int32),
+        source=np.full(places, NONE, np.int32),
+        robot=np.full(places, NONE, np.int32),
+        rank=np.full(places, NONE, np.int32),
+        resource=resource,
+        used=np.array([BLOCK * (1 + rows)], np.int64),
+    )
+
+
+def no_search(windows: int, edges: int) -> Search:
+    """The scratch of a query over that many window slots."""
+    entries = windows // 4 + edges + 1
+    return Search(
+        generation=np.zeros(1, np.int64),
+        goal=np.zeros(1, np.int64),
+        reached=np.zeros(windows, np.int64),
+        parent=np.zeros(windows, np.int32),
+        keys=np.zeros(entries, np.int64),
+        nodes=np.zeros(entries, np.int32),
+        expanded=np.zeros(entries, np.int32),
+        ready=np.zeros(entries, np.int32),
+        popped=np.zeros(entries, np.int64),
+        expansions=np.zeros(1, np.int64),
+    )
+
+
+def no_records(records: int, visits: int, expansions: int) -> Records:
+    """Room for records."""
+
+    def ints(size: int) -> Ints:
+        return np.zeros(size, np.int32)
+
+    def longs(size: int) -> Longs:
+        return np.zeros(size, np.int64)
+
+    return Records(
+        robot=ints(records),
+        visits_at=longs(records),
+        visits=ints(records),
+        leave=ints(records),
+        arrival=ints(records),
+        expansions_at=longs(records),
+        expansions=ints(records),
+        regions=longs(records),
+        spots=np.zeros((records, 8), np.int64),
+        resource=ints(visits),
+        enter=ints(visits),
+        expanded=ints(expansions),
+        ready=ints(expansions),
+        until=ints(expansions),
+        largest=longs(expansions),
+        used=longs(3),
+    )
+
+
+def nothing_freed(resources: int) -> Freed:
+    """No stay has been taken back."""
+    return Freed(
+        now=np.ones(1, np.int64),
+        mark=np.zeros(resources, np.int64),
+        earliest=np.zeros(resources, np.int32),
+        latest=np.zeros(resources, np.int32),
+        source=np.zeros(resources, np.int32),
+        near_earliest=np.full(resources, NEVER, np.int32),
+        near_latest=np.zeros(resources, np.int32),
+        regions=np.zeros(1, np.int64),
+    )
+
+
+@cache
+def roots_of_small_squares() -> Longs:
+    """The terms of `neighbourhood/distance` by the square of the distance."""
+    return np.array([math.isqrt(squared << 32) for squared in range(ROOTS)], np.int64)
+
+
+def split_of_terms(graph: Graph) -> int:
+    """By how many bits a term of `neighbourhood/distance` is split so that the sums fit in 64 bits."""
+    if graph.x.size == 0:
+        return 0
+    largest = (int(np.ptp(graph.x)) + int(np.ptp(graph.y))) << 16
+    return max(0, largest.bit_length() - 31)
+
+
+def encode(instance: Instance) -> State:
+    """A state in which no plan is reserved."""
+    graph = encode_graph(instance)
+    robots, goals, paces = encode_robots(instance)
+    resources = graph.duration.size
+    places = BLOCK * (1 + 2 * resources)
+    visits = 64 * max(64, robots.start.size)
+    longest = int(graph.duration.max(initial=1))
+    scale = scale_of_tolls(resources, longest, paces)
+    return State(
+        graph=graph,
+        robots=robots,
+        windows=_all_free(graph, places),
+        stays=_no_stays(graph, places),
+        guides=no_guides(resources, goals, paces, has_ranks=scale == 0),
+        search=no_search(places, graph.target.size),
+        records=no_records(max(256, 8 * robots.start.size), visits, visits),
+        freed=nothing_freed(resources),
+        reserved=np.full(robots.start.size, NONE, np.int32),
+        rank=np.zeros(robots.start.size, np.int32),
+        counters=np.zeros(COUNTERS, np.int64),
+        longest=longest,
+        last_alike=bool((graph.duration == longest).all()),
+        scale=scale,
+        roots=roots_of_small_squares(),
+        split=split_of_terms(graph),
+        parks=instance.after_goal == "park",
+        gap=instance.gap,
+    )
+
+
+def with_room(state: State, places: int, records: Records) -> State:
+    """The state with that many places for windows and with these records, and without reservations."""
+    return state._replace(
+        windows=_all_free(state.graph, places),
+        stays=_no_stays(state.graph, places),
+        search=no_search(places, state.graph.target.size),
+        records=records,
+        reserved=np.full(state.reserved.size, NONE, np.int32),
+    )
+
+
+def without_reservations(state: State) -> State:
+    """The state on the empty graph; all else is shared."""
+    return state._replace(
+        windows=_all_free(state.graph, BLOCK * (1 + state.graph.duration.size)),
+        stays=_no_stays(state.graph, BLOCK * (1 + state.graph.duration.size)),
+        reserved=np.full(state.reserved.size, NONE, np.int32),
+    )
+
+
+def _all_free(graph: Graph, places: int) -> Rows:
+    return empty_rows(np.ones(graph.capacity.size, np.bool_), filled=True, places=places)
+
+
+def _no_stays(graph: Graph, places: int) -> Rows:
+    several = graph.capacity > 1
+    return empty_rows(several, filled=False, places=places if several.any() else BLOCK)
+
+
+def no_work(robots: int, members: int, sample: int) -> Work:
+    """Room to add robots with neighbourhoods of that many members and that many orders drawn."""
+
+    def ints(size: int) -> Ints:
+        return np.full(size, NONE, np.int32)
+
+    def longs(size: int) -> Longs:
+        return np.zeros(size, np.int64)
+
+    return Work(
+        queue=ints(robots),
+        stream=np.zeros(1, np.uint64),
+        before=ints(robots),
+        ended=ints(robots),
+        held=ints(robots),
+        trajectories=ints(robots),
+        spots=np.zeros((8, robots), np.int64),
+        away=longs(robots),
+        near=longs(robots),
+        outside=ints(robots),
+        best_order=ints(robots),
+        best_plans=ints(robots),
+        members=ints(members),
+        alone=ints(members),
+        found_order=ints(members),
+        found_plans=ints(members),
+        order=ints(members),
+        chosen=ints(members),
+        least=longs(members),
+        given=longs(members + 1),
+        cost=longs(members + 1),
+        rows=np.zeros((sample, members), np.int32),
+        row_key=longs(sample),
+        row_index=ints(sample),
+        row_spare=ints(sample),
+    )
+
+
+def no_polish(wishes: Records, alone: Ints, least: Longs, resources: int) -> Polish:
+    """Room to polish, with the plans that the robots have alone."""
+
+    def ints(size: int) -> Ints:
+        return np.full(size, NONE, np.int32)
+
+    def longs(size: int) -> Longs:
+        return np.zeros(size, np.int64)
+
+    return Polish(
+        queue=ints(alone.size),
+        plans=ints(alone.size),
+        counts=longs(4),
+        stream=np.zeros(1, np.uint64),
+        wishes=wishes,
+        alone=alone,
+        least=least,
+        has_path=int((alone != NONE).sum()),
+        mark=longs(resources),
+        first=ints(resources),
+        last=ints(resources),
+        candidates=ints(max(alone.size, MOST_TURNS)),
+        whole=longs(MOST_TURNS),
+        rest=longs(MOST_TURNS),
+        ticks=longs(MOST_TURNS),
+        members=ints(MOST_TURNS),
+        before=ints(MOST_TURNS),
+        chosen=ints(MOST_TURNS),
+        others=ints(alone.size),
+    )
+
+
+def no_answers(members: int, resources: int) -> Answers:
+    """Room for the answers of a round."""
+    return Answers(
+        record=np.zeros(PLANS, np.int32),
+        owner=np.zeros(PLANS, np.int32),
+        clashes=np.zeros(PLANS, np.int64),
+        compared=np.zeros(PLANS, np.int64),
+        given=np.zeros(ANSWERS, np.int64),
+        plan=np.zeros(ANSWERS, np.int32),
+        least=np.zeros(ANSWERS, np.int64),
+        found=np.zeros(ANSWERS, np.int32),
+        newer=np.zeros(ANSWERS, np.int32),
+        oldest=np.zeros(members, np.int32),
+        newest=np.zeros(members, np.int32),
+        read=np.zeros((resources, 8), np.int64),
+        used=np.zeros(3, np.int64),
+    )

@@ -1,0 +1,208 @@
+"""The search for deadlines: delays of a group of robots that are too small for all of them together.
+
+Near the best prices, a robot's ways have different delays. Each robot is allowed a delay that only a certain share of
+its ways exceeds, and a solver is asked whether all robots can keep these delays together (the clauses are those of
+`carp_optimum.optimum`, conflict by conflict). If not, it names robots that cannot: a core. A core whose shares add up
+to less than 1 is broken near the best prices, since one of its robots is late in all plans. The core is made small, its
+delays large, and it is proved on its own: the clauses of each robot hold only where that is assumed, so nothing else
+follows from the robots outside. Source: the implicit hitting sets of Davies and Bacchus 2011, with the prices in place
+of the hitting set.
+"""
+
+from collections.abc import Callable, Iterable, Mapping
+from itertools import count
+from typing import TypeAlias
+
+import numpy as np
+
+from carp_optimized.state.arrays import Longs
+from carp_optimum.lagrangian.deadlines import Deadlines, Member
+from carp_optimum.lagrangian.price_search import PriceSearch
+from carp_optimum.sat.proving import refutation
+from carp_optimum.sat.solver import NANOSECONDS, Deadline, Solver, TimeOver
+from carp_spec import Instance, Refusal
+from carp_verify.bound.cuts import formula_of_deadlines
+from carp_verify.bounds import DeadlinesDocument
+from carp_verify.optimum.clauses import Literal
+from carp_verify.optimum.encoding import Encoding, violated
+from carp_verify.optimum.rules import LARGEST_FORMULA
+
+STEPS = 120
+SHARES = (0, 12, 24, 36, 48, 60, 80)
+"""The largest numbers of steps, of all `STEPS`, in which a robot is later than it is allowed."""
+ENOUGH = 110
+"""The most steps in which robots of a group are late: one of them would have to be in each of `STEPS`."""
+LARGEST_TO_RAISE = 2 * STEPS
+"""The most steps in which robots of a core are late whose delays are made larger, so that they are late in fewer."""
+LARGEST_ENCODING = 2_000_000
+"""Robots times resources, or times delays, beyond which no deadlines are searched for, as tables would be large."""
+LARGEST_DELAYS = 300
+"""The sum of the robots' largest delays near the best prices, beyond which no deadlines are searched for.
+
+On a spanning tree they are larger, and the formulas so much so that cuts gain more in the same time.
+"""
+CONFLICTS_TO_FIND = 3000
+CONFLICTS_TO_SHRINK = 900
+CONFLICTS_TO_RAISE = 300
+MARGIN = 4  # ticks by which a delay is raised above all that the robot has near the best prices
+LARGEST_GROUP = 16
+LOOKS = 400  # of a search for a refutation at its clock
+LONGEST_REFUTATION = 1_000_000  # characters
+
+Allowed: TypeAlias = Mapping[int, int]
+"""The largest delay that a robot is allowed, for robots by position."""
+
+
+class DeadlineSearch:
+    """Finds deadlines for a search for prices."""
+
+    def __init__(self, search: PriceSearch) -> None:
+        self.search = search
+        self.instance = search.instance
+        self.known: set[tuple[tuple[int, int], ...]] = set()
+        self.cores: _Cores | None = None
+
+    def round(self, check: Callable[[], None]) -> int:
+        """Add deadlines that the ways near the best prices break, and return by how much, in parts of a tick.
+
+        `check` may raise `TimeOver`; the deadlines found until then are added first.
+        """
+        wide = max(len(self.instance.graph.resources), self.search.market.delays)
+        if len(self.instance.robots) * wide > LARGEST_ENCODING:
+            return 0
+        delays = self.search.wander(STEPS, self.search.scale // 4, check)
+        if delays.max(axis=0).sum() > LARGEST_DELAYS:
+            return 0
+        allowed = range(int(delays.max(initial=0)) + MARGIN + 1)
+        later = np.stack([(delays > each).sum(axis=0) for each in allowed], axis=1)  # steps, by robot and delay
+        chosen: list[Deadlines] = []
+        gain = 0
+        try:
+            self.cores = self.cores or _Cores(self.instance, self.search, check)
+            self.cores.check = check
+            for share in SHARES:
+                for core in self.cores.disjoint((later <= share).argmax(axis=1).tolist()):
+                    if len(core) > LARGEST_GROUP or _steps(later, core) > LARGEST_TO_RAISE:
+                        continue
+                    oftenest_first = dict(sorted(core.items(), key=lambda each: -later[each]))
+                    raised = self.cores.raised(oftenest_first, (later == 0).argmax(axis=1) + MARGIN)
+                    if _steps(later, raised) <= ENOUGH:
+                        deadlines = self._prove(raised, check)
+                        if deadlines is not None:
+                            chosen.append(deadlines)
+                            gain += STEPS - _steps(later, raised)
+        finally:
+            self.search.add_deadlines(chosen)
+        return gain * self.search.scale // STEPS
+
+    def _prove(self, allowed: Allowed, check: Callable[[], None]) -> Deadlines | None:
+        """The deadlines with a proof, unless they are known or the proof is too long."""
+        key = tuple(sorted(allowed.items()))
+        if key in self.known:
+            return None
+        self.known.add(key)
+        requests = self.search.market.requests
+        robots = tuple(self.instance.robots[position].id for position in allowed)
+        ticks = tuple(int(requests.earliest[position]) + delay for position, delay in allowed.items())
+        looks = count()
+
+        def clock() -> int:
+            check()
+            return next(looks) * NANOSECONDS
+
+        try:
+            formula = formula_of_deadlines(self.instance, DeadlinesDocument(robots, ticks, 0, ""), LARGEST_FORMULA)
+            lines = refutation(formula, Deadline(LOOKS, clock))
+        except (TimeOver, Refusal):
+            check()
+            return None
+        if len(lines) > LONGEST_REFUTATION:
+            return None
+        members = [Member(position, tick, 0, ()) for position, tick in zip(allowed, ticks, strict=True)]
+        return Deadlines(members, DeadlinesDocument(robots, ticks, 0, lines))
+
+
+def _steps(later: Longs, allowed: Allowed) -> int:
+    """The steps in which the robots are later than they are allowed, robot by robot."""
+    return sum(int(later[each]) for each in allowed.items())
+
+
+class _Cores:
+    """Cores of the formula of all robots that have a way, with the conflicts that were found so far."""
+
+    def __init__(self, instance: Instance, search: PriceSearch, check: Callable[[], None]) -> None:
+        self.instance = instance
+        self.check = check
+        self.most = search.market.delays - 1
+        self.encoding = Encoding(instance, check)
+        self.present = [self.encoding.formula.variable() for _ in instance.robots]
+        self.solver = Solver(self.encoding.formula, self.look)
+
+    def look(self) -> None:
+        """Look at the clock of this round."""
+        self.check()
+
+    def keeps(self, position: int, delay: int) -> Literal:
+        """The literal that the robot has no larger delay; its clauses hold if it is present."""
+        robot, clauses = self.encoding.robots[position], self.encoding.formula.clauses
+        known = len(clauses)
+        while robot.horizon < delay:
+            robot.grow()
+        clauses[known:] = [(*clause, -self.present[position]) for clause in clauses[known:]]
+        return -robot.late[delay]
+
+    def core(self, allowed: Allowed, conflicts: int) -> Allowed | None:
+        """Robots that cannot all keep their delays; `None` if all can, or if the conflicts do not suffice to say."""
+        literals = {self.present[position]: position for position in allowed}
+        literals |= {self.keeps(position, delay): position for position, delay in allowed.items()}
+        while True:
+            self.look()
+            answer = self.solver.satisfiable([*literals], conflicts)
+            if answer is None:
+                return None
+            if not answer:
+                named = {literals[literal] for literal in self.solver.core()}
+                return {position: delay for position, delay in allowed.items() if position in named}
+            model = self.solver.model()
+            plans = [self.encoding.robots[position].plan(model) for position in allowed]
+            meetings = violated(self.instance, [plan for plan in plans if plan is not None])
+            if not meetings:
+                return None
+            for meeting in meetings:
+                self.encoding.forbid(meeting)
+
+    def disjoint(self, delays: Iterable[int]) -> Iterable[Allowed]:
+        """Cores that have no robot in common, of the robots with these delays."""
+        robots = self.encoding.robots
+        allowed = {at: delay for at, delay in enumerate(delays) if robots[at].shortest is not None}
+        while (core := self.core(allowed, CONFLICTS_TO_FIND)) is not None:
+            core = self.shrunk(core)
+            yield core
+            if not core:
+                return
+            allowed = {position: delay for position, delay in allowed.items() if position not in core}
+
+    def shrunk(self, core: Allowed) -> Allowed:
+        """A core within the core, from which the solver drops nothing quickly."""
+        kept: dict[int, int] = {}
+        while core:
+            position, *rest = core
+            smaller = self.core({**kept, **{other: core[other] for other in rest}}, CONFLICTS_TO_SHRINK)
+            if smaller is None:
+                kept[position] = core[position]
+                core = {other: core[other] for other in rest}
+            else:
+                core = {other: delay for other, delay in smaller.items() if other not in kept}
+                kept = {other: delay for other, delay in kept.items() if other in smaller}
+        return kept
+
+    def raised(self, core: Allowed, most: Longs) -> Allowed:
+        """The core with delays that the solver cannot quickly raise any further, up to the largest that are wanted."""
+        raised = dict(core)
+        for position in core:
+            while raised[position] < min(most[position], self.most):
+                raised[position] += 1
+                if self.core(raised, CONFLICTS_TO_RAISE) is None:
+                    raised[position] -= 1
+                    break
+        return raised

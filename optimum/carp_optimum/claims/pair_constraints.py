@@ -1,0 +1,284 @@
+"""Claims about two robots that are seen at ticks: places that they cannot all be in.
+
+Prices let robots that meet head-on pass each other by halves. Near the best prices, a robot's ways have it in several
+places at a tick. `carp_optimum.claims.pair_states` finds places of two robots that exclude each other at a tick, and
+that the ways take too often. All places that these exclude are added.
+
+Detours that no recent way makes may let the robots be in such places all the same. Then both robots are seen at earlier
+ticks too: first at all of them and where they have been, which leaves no detour. Ticks are dropped as long as the claim
+holds, in halves and then in smaller parts; mostly one or two are left. There all places are added but those that let
+the robots meet. The search follows all joint states of the two that it does not leave out, so such a claim is true.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from heapq import heappop, heappush
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from carp_optimized.jit.references import Native
+from carp_optimized.state.arrays import NONE, Graph, Ints, IntTable, Longs
+from carp_optimum.claims.pair_states import Meeting, Side, find_claim, find_meetings
+from carp_optimum.lagrangian.deadlines import Member
+from carp_optimum.lagrangian.price_search import PriceSearch
+
+MOST_SPOTS = 400
+LEAST_WEIGHT = 8  # by which ways break a claim
+MOST_SIGHTS = 8  # of a claim, beside its last tick
+
+Sight: TypeAlias = tuple[int, int]
+"""The first of two robots, 0, or the other, 1, and a tick at which it is seen."""
+Claim: TypeAlias = tuple[int, Sequence[Member]]
+"""By how many ways a claim is broken, and its members."""
+
+NOTHING: Claim = 0, ()
+
+
+def meeting_of(first: Side, second: Side) -> Meeting:
+    """Room for the search of two robots."""
+    rows, columns = first.first.size, second.first.size
+    pairs = int(first.first[-1]) * int(second.first[-1])
+    return Meeting(
+        pairs=np.zeros(pairs, np.int32),
+        later=np.zeros(pairs, np.int32),
+        mark=np.zeros(pairs, np.int32),
+        origin=np.zeros(pairs, np.int32),
+        later_origin=np.zeros(pairs, np.int32),
+        blamed=np.zeros(rows + columns, np.int32),
+        together=np.zeros((rows, columns), np.int32),
+        flow=np.zeros((rows, columns), np.int32),
+        queue=np.zeros(rows + columns, np.int32),
+        found=np.zeros(3, np.int64),
+    )
+
+
+def fewest(sights: list[Sight], is_enough: Callable[[list[Sight]], bool]) -> list[Sight]:
+    """Some of the sights that are enough: they are dropped in halves, then in smaller parts."""
+    size = len(sights)
+    while size > 0:
+        place = 0
+        while place < len(sights):
+            fewer = sights[:place] + sights[place + size :]
+            if is_enough(fewer):
+                sights = fewer
+            else:
+                place += size
+        size //= 2
+    return sights
+
+
+def member_of(side: Side, spots: npt.NDArray[np.bool_], tick: int) -> Member:
+    """The robot, seen at the tick in the spots."""
+    places = tuple(side.resource[np.flatnonzero(spots[:-1])].tolist())
+    return Member(int(side.robot[0]), tick if spots[-1] else -1, tick, places)
+
+
+class Pair:
+    """Two robots, whose joint states before the end are searched, and the ways that they took in some steps."""
+
+    def __init__(self, search: PriceSearch, sides: tuple[Side, Side], end: int, steps: int) -> None:
+        self.market = search.market
+        self.sides = sides
+        self.end = end
+        self.steps = steps
+        self.meeting = meeting_of(*sides)
+        self.natives = search.native, Native(sides[0]), Native(sides[1]), Native(self.meeting)
+
+    def at_one_tick(self) -> Claim:
+        """The heaviest claim about one tick."""
+        weight = find_claim(*self.natives, self.end, self.steps)
+        return (weight, self.last_members()) if weight >= LEAST_WEIGHT else NOTHING
+
+    def at_more_ticks(self, check: Callable[[], None]) -> Claim:
+        """A claim about one tick and earlier ones; `check` may raise `TimeOver`."""
+        for side in self.sides:
+            side.sees[:-1] = side.often.sum(axis=1) > 0
+            side.held[:-1, :-1] = side.often > 0
+        try:
+            weight = find_claim(*self.natives, self.end, self.steps)
+            if weight < LEAST_WEIGHT:
+                return NOTHING
+            needed = self.needed(check)
+            weight -= sum(self.missing(whose, tick) for whose, tick in needed)
+            if weight < LEAST_WEIGHT or len(needed) > MOST_SIGHTS:
+                return NOTHING
+            return weight, (*(self.earlier_member(*sight) for sight in needed), *self.last_members())
+        finally:
+            self.see_at(())
+
+    def see_at(self, sights: Iterable[Sight]) -> None:
+        """Let the robots be seen there, and nowhere else."""
+        for side in self.sides:
+            side.sees[:] = 0
+        for whose, tick in sights:
+            self.sides[whose].sees[tick] = 1
+
+    def meetings(self, sights: Iterable[Sight], whose: int = 0, earlier: int = NONE) -> int:
+        """In how many joint states at the claim's last tick the robots break it, when they are seen there.
+
+        `blamed` gets the spots in which one of them was at an earlier tick before these.
+        """
+        self.see_at(sights)
+        self.meeting.blamed[:] = 0
+        return find_meetings(*self.natives, whose, earlier)
+
+    def needed(self, check: Callable[[], None]) -> list[Sight]:
+        """The earlier ticks at which the robots must be seen for the claim; `held` gets where."""
+        for side in self.sides:
+            side.inside[:] = 0
+            side.inside[side.chosen[1 : 1 + side.chosen[0]]] = 1
+
+        def is_enough(sights: Sequence[Sight]) -> bool:
+            check()
+            return self.meetings(sights) == 0
+
+        last = int(self.meeting.found[1])
+        seen = [(whose, tick) for tick in range(1, last) for whose in (0, 1) if self.sides[whose].sees[tick]]
+        sights = fewest(seen, is_enough)
+        if len(sights) <= MOST_SIGHTS:
+            for whose, tick in sights:
+                check()
+                held = self.sides[whose].held[tick]
+                held[:] = 1
+                while self.meetings(sights, whose, tick) > 0:
+                    held[self.meeting.blamed[: len(held)] == 1] = 0
+        return sights
+
+    def missing(self, whose: int, tick: int) -> int:
+        """In how many steps the robot was not where it is held at the tick."""
+        side = self.sides[whose]
+        return self.steps - int(side.often[tick][side.held[tick, :-1] == 1].sum())
+
+    def last_members(self) -> tuple[Member, Member]:
+        """The robots at the claim's last tick, in all spots that cannot be taken together then."""
+        find_meetings(*self.natives, 0, NONE)
+        first, second = self.sides
+        tick = int(self.meeting.found[1])
+        together = self.meeting.together[: first.first.size - 3, : second.first.size - 3] > 0
+        chosen = first.chosen[1 : 1 + first.chosen[0]]
+        others = ~together[chosen].any(axis=0) & self.within(second, tick)
+        others &= together.any(axis=0) | np.isin(np.arange(len(others)), second.chosen[1 : 1 + second.chosen[0]])
+        ones = ~together[:, others].any(axis=1) & self.within(first, tick)
+        ones &= together.any(axis=1) | np.isin(np.arange(len(ones)), chosen)
+        return member_of(first, ones, tick), member_of(second, others, tick)
+
+    def earlier_member(self, whose: int, tick: int) -> Member:
+        """The robot where it is held at the tick, without places from which it comes too late for the last tick."""
+        side = self.sides[whose]
+        return member_of(side, (side.held[tick, :-1] == 1) & self.within(side, tick), tick)
+
+    def within(self, side: Side, tick: int) -> npt.NDArray[np.bool_]:
+        """Whether all ways of the robot that are in a spot at the tick have a delay that is looked at."""
+        requests = self.market.requests
+        robot = int(side.robot[0])
+        duration = self.market.graph.duration[side.resource].astype(np.int64) * int(requests.pace[robot])
+        late = tick - int(requests.earliest[robot])
+        within = late + duration + requests.rest[robot][side.resource] <= side.delay[0]
+        return np.append(within, late <= side.delay[0])
+
+
+def first_entries(graph: Graph, durations: Longs, start: int, release: int) -> Longs:
+    """The ticks at which a robot can enter the resources first; late where it cannot."""
+    ticks = np.full(len(durations), 1 << 30, np.int64)
+    queue = [(release, start)]
+    while queue:
+        tick, here = heappop(queue)
+        if tick < ticks[here]:
+            ticks[here] = tick
+            for target in graph.target[graph.first[here] : graph.first[here + 1]].tolist():
+                heappush(queue, (tick + int(durations[here]), target))
+    return ticks
+
+
+class Sides:
+    """The robots as `carp_optimum.claims.pair_states` sees them, each made when it is first asked for.
+
+    `entries` keeps the first entries of robots that were seen before.
+    """
+
+    def __init__(self, search: PriceSearch, at: IntTable, delays: Ints, entries: dict[int, Longs]) -> None:
+        self.search = search
+        self.at = at
+        self.delays = delays
+        self.entries = entries
+        self.known: dict[int, Side | None] = {}
+
+    def work(self, one: int, other: int) -> int:
+        """The most pairs of states, over all ticks, in a search for a claim of two robots."""
+        first, second = self.side(one), self.side(other)
+        if first is None or second is None:
+            return 0
+        return int(first.first[-1]) * int(second.first[-1]) * self.end(one, other)
+
+    def end(self, one: int, other: int) -> int:
+        """The tick before which a claim of two robots is searched for."""
+        earliest = self.search.market.requests.earliest
+        return min(int(min(earliest[at] + self.delays[at] for at in (one, other))) + 1, self.search.horizon)
+
+    def claim(self, one: int, other: int, is_about_more: bool, check: Callable[[], None]) -> Claim:
+        """The heaviest claim of two robots at a tick, or else perhaps one about more ticks.
+
+        `check` may raise `TimeOver`.
+        """
+        first, second = self.side(one), self.side(other)
+        if first is None or second is None:
+            return NOTHING
+        pair = Pair(self.search, (first, second), self.end(one, other), len(self.at))
+        claim = pair.at_one_tick()
+        return pair.at_more_ticks(check) if claim == NOTHING and is_about_more else claim
+
+    def side(self, robot: int) -> Side | None:
+        """The robot, unless it has no way or too many spots."""
+        if robot not in self.known:
+            self.known[robot] = self._side(robot)
+        return self.known[robot]
+
+    def _side(self, robot: int) -> Side | None:
+        market = self.search.market
+        requests, graph = market.requests, market.graph
+        start, goal = int(requests.start[robot]), int(requests.goal[robot])
+        if start == goal or requests.rest[robot][start] == NONE:
+            return None
+        durations = graph.duration.astype(np.int64) * int(requests.pace[robot])
+        if robot not in self.entries:
+            self.entries[robot] = first_entries(market.graph, durations, start, int(requests.release[robot]))
+        near = self.entries[robot]
+        delay = np.where(requests.rest[robot] == NONE, 1 << 30, near + durations + requests.rest[robot])
+        resource = np.flatnonzero(delay - int(requests.earliest[robot]) <= self.delays[robot]).astype(np.int32)
+        if len(resource) > MOST_SPOTS or durations[resource].sum() > MOST_SPOTS or start not in resource:
+            return None
+        spot = np.full(len(durations), NONE, np.int32)
+        spot[resource] = np.arange(len(resource))
+        lengths = [*durations[resource].tolist(), 1 if market.parks else int(durations[goal]), 1, 1]
+        first = np.cumsum([0, *lengths]).astype(np.int32)
+        spots = len(resource)
+        number = np.append(spot, [spots, NONE]).astype(np.int32)  # at the goal at the end, or nowhere
+        often = np.zeros((self.search.horizon, spots + 2), np.int32)
+        places = number[self.at[:, robot, :]]
+        ticks = np.broadcast_to(np.arange(self.search.horizon), places.shape)
+        np.add.at(often, (ticks.ravel(), places.ravel()), 1)
+        side = Side(
+            robot=np.array([robot], np.int64),
+            delay=np.array([self.delays[robot]], np.int64),
+            spot=spot,
+            resource=resource,
+            first=first,
+            often=often[:, : spots + 1].copy(),
+            spot_of=np.zeros(first[-1], np.int32),
+            place=np.zeros(first[-1], np.int32),
+            branches=np.zeros(first[-1], np.int32),
+            following=np.zeros((first[-1], int(np.diff(graph.first).max(initial=0)) + 2), np.int32),
+            sees=np.zeros(self.search.horizon + 1, np.int32),
+            held=np.ones((self.search.horizon + 1, spots + 2), np.int32),
+            used=np.zeros(spots + 4, np.int32),
+            left=np.zeros(spots + 4, np.int32),
+            before=np.zeros(spots + 4, np.int32),
+            chosen=np.zeros(spots + 4, np.int32),
+            inside=np.zeros(spots + 4, np.int32),
+        )
+        late = np.arange(self.search.horizon) - int(requests.earliest[robot])
+        within = late[:, None] + durations[resource] + requests.rest[robot][resource] <= self.delays[robot]
+        side.often[:, :spots][~within] = 0
+        side.often[late > self.delays[robot], spots] = 0
+        return side

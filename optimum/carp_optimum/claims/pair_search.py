@@ -1,0 +1,176 @@
+"""The search for deadlines of two robots that are seen at ticks: which pairs are looked at, and which claims are kept.
+
+`carp_optimum.claims.pair_constraints` finds the claims of a pair. They are true, so prices may count on them at once. A
+certificate needs their refutations, which take longer to find. So only the claims that have a price after a climb are
+proved; the others are dropped, and a later round finds them again where they are still broken.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from itertools import combinations, count
+
+import numpy as np
+from msgspec.structs import replace
+
+from carp_optimized.state.arrays import IntTable, Longs, LongTable
+from carp_optimum.claims.pair_constraints import Sides
+from carp_optimum.lagrangian.deadlines import Deadlines, Member
+from carp_optimum.lagrangian.price_search import PriceSearch
+from carp_optimum.sat.proving import refutation
+from carp_optimum.sat.solver import NANOSECONDS, Deadline, TimeOver
+from carp_spec import Refusal
+from carp_verify.bound.cuts import formula_of_deadlines
+from carp_verify.bound.rules import ContradictionError
+from carp_verify.bounds import DeadlinesDocument
+from carp_verify.optimum.rules import LARGEST_FORMULA
+
+STEPS = 120
+PERIOD = 200  # steps; ways of the last `STEPS` among them are looked at
+EVERY = 4  # step: the places in it are compared
+MARGIN = 4  # ticks of delay above the largest of a robot's ways
+LARGEST_DELAY = 30
+LARGEST_ENCODING = 2_000_000
+MOST_WORK = 150_000_000  # pairs of states by ticks, in a round
+MOST_DOUBLINGS = 6  # of a pair's work, by searches that found no claim
+MOST_FOUND = 400  # claims in a round
+LEAST_GAIN = 100  # one part of the best bound: what a round's claims must be broken by for another round
+SLOW = 500  # one part of the best bound: claims about more ticks are searched for where a period gains less
+LOOKS = 400  # of a search for a refutation at its clock
+LONGEST_REFUTATION = 300_000  # characters
+
+
+class SightSearch:
+    """Finds deadlines of pairs of robots for a search for prices."""
+
+    def __init__(self, search: PriceSearch) -> None:
+        self.search = search
+        self.instance = search.instance
+        self.most = min(LARGEST_DELAY, search.market.delays - 1)
+        self.without_proof: set[Sequence[Member]] = set()
+        self.entries: dict[int, Longs] = {}
+        self.searched: Counter[tuple[int, int]] = Counter()
+        self.before = 0
+        self.is_slow = False
+        self.watched = 0
+        self.ways: list[tuple[Longs, IntTable]] = []
+
+    def round(self, check: Callable[[], None]) -> int:
+        """Add claims that the ways near the best prices break, and return by how much, in parts of a tick; 0 if little.
+
+        `check` may raise `TimeOver`; the claims found until then are added first.
+        """
+        search = self.search
+        wide = max(len(self.instance.graph.resources), search.market.delays, search.horizon)
+        if len(self.instance.robots) * wide > LARGEST_ENCODING:
+            return 0
+        gain = self._add(*search.wander_places(STEPS, search.scale // 4, check), check)
+        gained = gain * search.scale // STEPS
+        return gained if gained * LEAST_GAIN >= search.best else 0
+
+    def watch(self, check: Callable[[], None]) -> None:
+        """Look at the ways after a step of a climb; now and then add claims that the last ones break, and drop others.
+
+        A claim that has no price after `PERIOD` steps is dropped. `check` may raise `TimeOver`.
+        """
+        search = self.search
+        self.watched = self.watched % PERIOD + 1
+        if self.watched > PERIOD - STEPS:
+            self.ways.append((search.delays(), search.places()))
+        if self.watched == PERIOD:
+            delays, at = (np.stack(each) for each in zip(*self.ways, strict=True))
+            self.ways = []
+            search.drop_idle_deadlines()
+            self.is_slow = (search.best - self.before) * SLOW < search.best
+            self.before = search.best
+            self._add(delays, at, check)
+
+    def _add(self, delays: LongTable, at: IntTable, check: Callable[[], None]) -> int:
+        """Add claims that these ways break, those that are found fastest first: by how many ways in all.
+
+        On a tree, robots whose ways are short or cannot pass each other break claims most often, and have few states.
+        A pair counts as twice the work for each search since its last claim, so that every pair has its turn.
+        """
+        search = self.search
+        sides = Sides(search, at, np.minimum(delays.max(axis=0) + MARGIN, self.most), self.entries)
+        known = {tuple(claim.members) for claim in search.deadlines} | self.without_proof
+        work = {pair: sides.work(*pair) for pair in pairs_in(at, len(self.instance.graph.resources))}
+        chosen: list[Deadlines] = []
+        gain = 0
+        left = MOST_WORK
+        try:
+            for pair in sorted(work, key=lambda each: (work[each] << min(self.searched[each], MOST_DOUBLINGS), each)):
+                check()
+                left -= work[pair]
+                if left < 0 or len(chosen) == MOST_FOUND:
+                    break
+                weight, members = sides.claim(*pair, self.is_slow, check)
+                self.searched[pair] += 1
+                if weight > 0 and members not in known:
+                    chosen.append(self._unproved(members))
+                    gain += weight
+                    del self.searched[pair]
+        finally:
+            search.add_deadlines(chosen)
+        return gain
+
+    def prove(self, check: Callable[[], None]) -> None:
+        """Prove the claims that have a price, the dearest first, and drop those without a proof.
+
+        `check` may raise `TimeOver`; the claims proved until then are kept.
+        """
+        search = self.search
+        if all(each.document.refutation for each in search.deadlines):
+            return
+        search.finish()
+        kept = [each for each in search.deadlines if each.document.refutation]
+        unproved = [
+            (fee, number)
+            for number, fee in enumerate(search.fees.tolist())
+            if fee > 0 and not search.deadlines[number].document.refutation
+        ]
+        try:
+            for _, number in sorted(unproved, key=lambda each: (-each[0], each[1])):
+                claim = search.deadlines[number]
+                lines = self._refutation(claim.document, check)
+                if lines:
+                    search.deadlines[number] = Deadlines(claim.members, replace(claim.document, refutation=lines))
+                    kept.append(search.deadlines[number])
+                else:
+                    self.without_proof.add(claim.members)
+        finally:
+            search.keep_deadlines(kept)
+
+    def _unproved(self, members: Sequence[Member]) -> Deadlines:
+        """The claim without its proof."""
+        graph = self.instance.graph
+        robots = tuple(self.instance.robots[member.robot].id for member in members)
+        seen = tuple((member.seen, tuple(graph.resources[at].id for at in member.places)) for member in members)
+        ticks = tuple(max(member.arrival, 0) for member in members)
+        return Deadlines(members, DeadlinesDocument(robots, ticks, 0, "", seen))
+
+    def _refutation(self, claim: DeadlinesDocument, check: Callable[[], None]) -> str:
+        """The refutation of the claim's contrary, or nothing if it is too long."""
+        looks = count()
+
+        def clock() -> int:
+            check()
+            return next(looks) * NANOSECONDS
+
+        try:
+            formula = formula_of_deadlines(self.instance, claim, LARGEST_FORMULA)
+            lines = refutation(formula, Deadline(LOOKS, clock))
+        except (TimeOver, Refusal, ContradictionError):
+            check()
+            return ""
+        return lines if len(lines) <= LONGEST_REFUTATION else ""
+
+
+def pairs_in(at: IntTable, resources: int) -> set[tuple[int, int]]:
+    """Pairs of robots that are in the same place at the same tick, in one step or in different ones."""
+    places = at[::EVERY]
+    _, robots, ticks = places.shape
+    _, robot, tick = np.nonzero((places >= 0) & (places < resources))
+    place = places[(places >= 0) & (places < resources)].astype(np.int64)
+    cell, robot = np.divmod(np.unique((place * ticks + tick) * robots + robot), robots)
+    groups = np.split(robot, np.flatnonzero(np.diff(cell)) + 1)
+    return {pair for group in groups for pair in combinations(group.tolist(), 2)}

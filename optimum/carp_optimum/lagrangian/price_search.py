@@ -1,0 +1,351 @@
+"""The search for good prices: the work between the compiled steps of `carp_optimum.lagrangian.price_steps`."""
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from msgspec.structs import replace
+
+from carp_optimized.jit.references import Native
+from carp_optimized.state.arrays import LARGEST, NONE, Ints, IntTable, Longs, LongTable
+from carp_optimized.state.encoding import encode_graph, refuse_tick, refuse_what_is_too_large
+from carp_optimum.lagrangian.deadlines import Deadlines, flattened
+from carp_optimum.lagrangian.multipliers import charges_of, market_of, refuse_table, requests_of, sized
+from carp_optimum.lagrangian.price_steps import KEPT, LARGEST_GAIN, PARTS, UNIT, turn_all, walk_all
+from carp_optimum.lagrangian.priced_paths import find_rests, find_ways, least_cost, see_ways
+from carp_spec import Instance, Refusal, ResourceId, RobotId
+from carp_verify.bound.rules import LARGEST_TABLE, LONGEST_STAY, stay_is_searched
+from carp_verify.bounds import DeadlinesDocument
+
+TICKS_BEYOND = 32  # of the horizon beyond the last arrival of a robot that nothing delays
+DELAYS = 64
+MOST_NODES = 1 << 21
+LAST_TICK = 20_000  # of prices, so that a step does not take long
+PATIENCE = 35
+ENOUGH, LEAST_ENOUGH = 32, 4096
+"""Parts of the aim, and of the best bound: patience begins again where both are gained.
+
+On a spanning tree the bound rises slowly and long, in steps that are small beside the aim.
+"""
+SPAN = 200  # steps
+ENOUGH_OF_SPAN = 16  # parts of the aim
+
+
+class PriceLists(NamedTuple):
+    """The prices that are not 0, as a certificate has them."""
+
+    resources: tuple[tuple[ResourceId, int, int], ...]
+    exchanges: tuple[tuple[ResourceId, ResourceId, int, int], ...]
+
+
+class Point(NamedTuple):
+    """Prices of places, multipliers of cuts, and prices of deadlines."""
+
+    resource: LongTable
+    exchange: LongTable
+    multipliers: Longs
+    fees: Longs
+
+
+class PriceSearch:
+    """Prices of an instance and multipliers of cuts; `best` is the best bound found with them, in parts of a tick.
+
+    A cut says that the costs of its members, robots by position, add up to no less than `least`. Deadlines say that one
+    of their members does not keep its own; `fees` are their prices.
+    """
+
+    def __init__(self, instance: Instance, scale: int) -> None:
+        refuse_what_is_too_large(instance)
+        robots, resources = len(instance.robots), len(instance.graph.resources)
+        refuse_table("$.robots", "robots times resources", robots * resources)
+        self.instance = instance
+        self.scale = scale
+        graph = encode_graph(instance)
+        graph = graph._replace(capacity=np.minimum(graph.capacity, robots).astype(np.int32))
+        requests = requests_of(instance, scale)
+        longest = max((robot.pace for robot in instance.robots), default=1) * int(graph.duration.max(initial=1))
+        if not stay_is_searched(longest):
+            message = f"the pace times the duration must be at most {LONGEST_STAY}, the limit, and is {longest}"
+            raise Refusal("limit", "$.graph", stay_is_searched.id, message)
+        market = market_of(instance, graph, requests, longest)
+        native = Native(market)
+        find_rests(native)
+        last = max(requests.earliest.tolist(), default=0)
+        refuse_tick("$.graph", last)
+        rows = resources + graph.target.size
+        self.horizon = min(max(last, 0) + longest + TICKS_BEYOND, LARGEST_TABLE // max(rows, robots, 1), LAST_TICK)
+        wanted = min(max(DELAYS * longest, self.horizon + longest), LARGEST_TABLE // max(robots, 1))
+        self.market = sized(market, self.horizon, max(1, min(wanted, MOST_NODES // max(resources, 1), LARGEST - last)))
+        self.native = Native(self.market)
+        self.cuts: list[Ints] = []
+        self.least = np.zeros(0, np.int64)
+        self.multipliers = np.zeros(0, np.int64)
+        self._course = np.zeros(0, np.int64)
+        self.deadlines: list[Deadlines] = []
+        self.fees = np.zeros(0, np.int64)
+        self._course_of_fees = np.zeros(0, np.int64)
+        self._flat, _ = flattened([], 0)
+        self.best = self._bound()
+        self._kept = self._point()
+        self.count = 0
+
+    def _point(self) -> Point:
+        prices = self.market.prices
+        return Point(prices.resource.copy(), prices.exchange.copy(), self.multipliers.copy(), self.fees.copy())
+
+    def _bound(self) -> int:
+        """The bound that the prices and multipliers prove; gives each robot a cheapest way."""
+        weight = self.market.requests.weight
+        weight[:] = self.scale
+        for members, multiplier in zip(self.cuts, self.multipliers, strict=True):
+            weight[members] -= multiplier
+        proved = int((self.multipliers * self.least).sum())
+        worth = int((self.fees * (self._flat.sizes - 1)).sum())
+        self._charge()
+        return proved - worth + find_ways(self.native)
+
+    def _charge(self) -> None:
+        """Fill the tables of what an arrival costs each robot, by its delay, and of what it pays on its way."""
+        requests, flat = self.market.requests, self._flat
+        cost, least, _, fee, _ = self.market.charges
+        cost[:] = 0
+        delay = np.minimum(flat.arrival - requests.earliest[flat.robot], self.market.delays)
+        can = delay >= 0
+        np.add.at(cost, (flat.robot[can], delay[can]), self.fees[flat.group[can]])
+        cost[:] = np.cumsum(cost[:, ::-1], axis=1)[:, ::-1]
+        ticks = np.arange(cost.shape[1]) + (requests.earliest - requests.release)[:, None]
+        cost += requests.weight[:, None] * ticks
+        least[:] = np.minimum.accumulate(cost[:, ::-1], axis=1)[:, ::-1]
+        fee[:] = 0
+        np.add.at(fee, (flat.row, flat.place), self.fees[flat.group_of_place])
+
+    def _restore(self) -> int:
+        """Go back to the best prices, without a course: their bound."""
+        self.market.prices.resource[:], self.market.prices.exchange[:], multipliers, fees = self._kept
+        self.multipliers, self.fees = multipliers.copy(), fees.copy()
+        self.market.usage.course[:] = 0
+        self.market.usage.course_of_exchange[:] = 0
+        self._course[:] = 0
+        self._course_of_fees[:] = 0
+        return self._bound()
+
+    def add_cuts(self, cuts: Sequence[tuple[Sequence[int], int]]) -> None:
+        """Add cuts, each its members and their least total, with multipliers of 0."""
+        self.cuts.extend(np.array(members, np.int32) for members, _ in cuts)
+        none = np.zeros(len(cuts), np.int64)
+        self.least = np.concatenate([self.least, np.array([least for _, least in cuts], np.int64)])
+        self.multipliers = np.concatenate([self.multipliers, none])
+        self._course = np.concatenate([self._course, none])
+        self._kept = self._kept._replace(multipliers=np.concatenate([self._kept.multipliers, none]))
+
+    def add_deadlines(self, deadlines: Sequence[Deadlines]) -> None:
+        """Add deadlines with prices of 0."""
+        self.deadlines.extend(deadlines)
+        robots, resources = len(self.instance.robots), len(self.instance.graph.resources)
+        self._flat, rows = flattened(self.deadlines, resources)
+        row = np.zeros((robots, self.horizon), np.int32)
+        for place, number in rows.items():
+            row[place] = number
+        fee = np.zeros((len(rows) + 1, resources), np.int64)
+        self.market = self.market._replace(charges=charges_of(row, fee, self.market.delays))
+        self.native = Native(self.market)
+        none = np.zeros(len(deadlines), np.int64)
+        self.fees = np.concatenate([self.fees, none])
+        self._course_of_fees = np.concatenate([self._course_of_fees, none])
+        self._kept = self._kept._replace(fees=np.concatenate([self._kept.fees, none]))
+
+    def keep_deadlines(self, kept: Sequence[Deadlines]) -> None:
+        """Keep these deadlines alone, with their prices; the best bound is then the one that they prove."""
+        numbers = {id(each): number for number, each in enumerate(self.deadlines)}
+        self._select([numbers[id(each)] for each in kept])
+        self.best = self._restore()
+
+    def drop_idle_deadlines(self) -> None:
+        """Drop the deadlines without proof that have no price, neither now nor among the best prices."""
+        self._select(
+            [
+                number
+                for number, each in enumerate(self.deadlines)
+                if each.document.refutation or self.fees[number] > 0 or self._kept.fees[number] > 0
+            ]
+        )
+
+    def _select(self, numbers: Sequence[int]) -> None:
+        """Keep the deadlines with these numbers alone, with their prices and courses."""
+        kept = [self.deadlines[number] for number in numbers]
+        places = np.array(numbers, np.int64)
+        fees, course, best = self.fees[places], self._course_of_fees[places], self._kept.fees[places]
+        none = self.fees[:0]
+        self.deadlines, self.fees, self._course_of_fees = [], none, none
+        self._kept = self._kept._replace(fees=none)
+        self.add_deadlines(kept)
+        self.fees, self._course_of_fees = fees, course
+        self._kept = self._kept._replace(fees=best)
+
+    def priced_deadlines(self) -> tuple[DeadlinesDocument, ...]:
+        """The deadlines that have a price, with it."""
+        priced = zip(self.deadlines, self.fees.tolist(), strict=True)
+        return tuple(replace(each.document, price=fee) for each, fee in priced if fee > 0)
+
+    def _kept_by(self) -> Longs:
+        """How many members of each deadlines keep their own in the robots' cheapest ways."""
+        flat = self._flat
+        keeps = self.delays()[flat.robot] <= flat.arrival - self.market.requests.earliest[flat.robot]
+        if flat.place.size > 0:
+            see_ways(self.native)
+            places = self.market.charges.place[flat.robot, flat.seen]
+            keeps |= flat.inside[np.arange(len(places)), places]
+        return np.bincount(flat.group, keeps, len(flat.sizes)).astype(np.int64)
+
+    def delays(self) -> Longs:
+        """The delays of the robots' cheapest ways; 0 for one that has none."""
+        requests = self.market.requests
+        return np.maximum(self.costs() - (requests.earliest - requests.release), 0)
+
+    def costs(self) -> Longs:
+        """The costs of the robots' cheapest ways, in ticks without prices."""
+        ways = self.market.ways
+        last = np.maximum(ways.length - 1, 0)
+        return np.where(ways.length > 0, ways.enter[np.arange(len(last)), last] - self.market.requests.release, 0)
+
+    def _step(self, gain: int) -> bool:
+        """Change prices and multipliers to gain so much; false if there is nothing to be gained."""
+        costs = self.costs()
+        lacking = self.least - np.array([costs[members].sum() for members in self.cuts], np.int64)
+        self._course = self._course * KEPT // PARTS + UNIT * lacking
+        self._course[(self._course < 0) & (self.multipliers == 0)] = 0
+        surplus = self._kept_by() - self._flat.sizes + 1
+        self._course_of_fees = self._course_of_fees * KEPT // PARTS + UNIT * surplus
+        self._course_of_fees[(self._course_of_fees < 0) & (self.fees == 0)] = 0
+        square = turn_all(self.native) + int((self._course * self._course).sum() + (self._course_of_fees**2).sum())
+        if square == 0:
+            return False
+        walk_all(self.native, gain, square)
+        self.multipliers = np.maximum(self.multipliers + gain * UNIT * self._course // square, 0)
+        self._limit_multipliers()
+        self.fees = np.maximum(self.fees + gain * UNIT * self._course_of_fees // square, 0)
+        self.count += 1
+        return True
+
+    def _limit_multipliers(self) -> None:
+        """Lower the multipliers of robots whose cuts would outweigh their costs."""
+        total = np.zeros(len(self.instance.robots), np.int64)
+        for members, multiplier in zip(self.cuts, self.multipliers, strict=True):
+            total[members] += multiplier
+        if (total > self.scale).any():
+            for number, members in enumerate(self.cuts):
+                self.multipliers[number] = self.multipliers[number] * self.scale // max(self.scale, *total[members])
+
+    def climb(
+        self, first_aim: int, last_aim: int, check: Callable[[], None], on_step: Callable[[int, int], None]
+    ) -> None:
+        """Take steps that aim closer and closer to the best bound, from the first aim to the last, in parts of a tick.
+
+        `check` is called before each and may raise `TimeOver`; `on_step` gets the steps and the best bound.
+        """
+        bound = self._restore()
+        self.best = max(self.best, bound)
+        aim = max(first_aim, last_aim)
+        failures = 0
+        before = self.best
+        while aim >= last_aim:
+            check()
+            if not self._step(min(max(self.best + aim - bound, 0), LARGEST_GAIN)):
+                break
+            bound = self._bound()
+            failures += 1
+            if bound > self.best:
+                self.best = bound
+                self._kept = self._point()
+            if self.best - before > max(aim // ENOUGH, self.best // LEAST_ENOUGH):
+                failures = 0
+                before = self.best
+            if failures > PATIENCE:
+                failures = 0
+                before = self.best
+                aim = aim * 3 // 4
+                bound = self._restore()
+            on_step(self.count, self.best)
+
+    def roam(
+        self, first_aim: int, last_aim: int, check: Callable[[], None], on_step: Callable[[int, int], None]
+    ) -> None:
+        """Take steps as `climb` does, but never back to the best prices, while `on_step` may add deadlines.
+
+        New deadlines would lose the prices that they have gained since. In each span of `SPAN` steps an aim above a
+        tick falls to a tick, as the square of the steps left: large aims bring the prices far, and small ones find the
+        best bound near there. The next span begins with twice the aim if enough of it was gained, and with half if
+        not; the steps end when that is below the last aim.
+        """
+        bound = self._restore()
+        aim = max(first_aim, last_aim)
+        while aim >= last_aim:
+            before = self.best
+            for left in range(SPAN, 0, -1):
+                check()
+                near = max(aim * left * left // (SPAN * SPAN), min(aim, self.scale))
+                if not self._step(min(max(self.best + near - bound, 0), LARGEST_GAIN)):
+                    return
+                bound = self._bound()
+                if bound > self.best:
+                    self.best = bound
+                    self._kept = self._point()
+                on_step(self.count, self.best)
+            aim = aim * 2 if (self.best - before) * ENOUGH_OF_SPAN > aim else aim // 2
+
+    def finish(self) -> None:
+        """Go back to the best prices."""
+        self._restore()
+
+    def wander(self, steps: int, aim: int, on_step: Callable[[], None]) -> LongTable:
+        """Take this many steps near the best prices: the robots' delays, by step and robot."""
+        bound = self._restore()
+        delays = np.zeros((steps, len(self.instance.robots)), np.int64)
+        for number in range(steps):
+            self._step(min(max(self.best + aim - bound, 0), LARGEST_GAIN))
+            bound = self._bound()
+            delays[number] = self.delays()
+            on_step()
+        return delays
+
+    def wander_places(self, steps: int, aim: int, on_step: Callable[[], None]) -> tuple[LongTable, IntTable]:
+        """As `wander`, with the places of all robots, by step, robot and tick."""
+        places: list[IntTable] = []
+
+        def look() -> None:
+            on_step()
+            places.append(self.places())
+
+        delays = self.wander(steps, aim, look)
+        return delays, np.stack(places)
+
+    def places(self) -> IntTable:
+        """Where the cheapest ways have the robots, by robot and tick."""
+        see_ways(self.native)
+        return self.market.charges.place.astype(np.int16)
+
+    def prices(self) -> PriceLists:
+        """The prices that are not 0."""
+        graph = self.instance.graph
+        ids = [resource.id for resource in graph.resources]
+        moves = [(source, target) for source in ids for target in graph.successors[source]]
+        resource, exchange = self.market.prices.resource, self.market.prices.exchange
+        return PriceLists(
+            tuple((ids[here], int(tick), int(resource[here, tick])) for here, tick in np.argwhere(resource)),
+            tuple((*moves[move], int(tick), int(exchange[move, tick])) for move, tick in np.argwhere(exchange)),
+        )
+
+    @property
+    def worth(self) -> int:
+        """The prices times the capacities."""
+        prices = self.market.prices
+        of_resource = prices.stay[:, self.horizon] + prices.across[:, self.horizon]
+        return int((of_resource * self.market.graph.capacity).sum())
+
+    def least_costs(self) -> tuple[tuple[RobotId, int | None], ...]:
+        """The least priced cost of each robot, `None` where it cannot reach its goal."""
+        earliest = self.market.requests.earliest
+        return tuple(
+            (robot.id, None if earliest[position] == NONE else least_cost(self.native, position))
+            for position, robot in enumerate(self.instance.robots)
+        )

@@ -1,0 +1,355 @@
+"""The cheapest way of each robot under prices, compiled: a plan costs its prices, and what its arrival costs.
+
+A node is a resource r and a tick t: the robot is in r, free to leave it at t. Its delay is what the best way through it
+comes later than the earliest arrival. Every way through a node arrives with the node's delay or more, so a node is left
+out where what was paid and the least of its delay are no cheaper than the best known. Ways may pass through the goal:
+with deadlines to be late can pay. Nodes are settled tick by tick. They are numbered by tick and resource, and what was
+paid is kept for the next ticks alone: so it stays in the processor's cache. Source: Dijkstra over the time-expanded
+graph, as in `carp_verify.optimum.robot_clauses`.
+"""
+
+from carp_optimized.jit.compiling import compiled, entry
+from carp_optimized.jit.references import Native
+from carp_optimized.query.heap import push, replace_root
+from carp_optimized.state.arrays import NONE
+from carp_optimum.lagrangian.state import (
+    Market,
+    Scratch,
+    add_up,
+    duration_of,
+    further_price,
+    goal_price,
+    market_at,
+    move_between,
+    move_price,
+    stay_price,
+)
+
+ENDLESS = 1 << 62
+
+
+@entry
+def find_rests(native: Native[Market]) -> None:
+    """Fill `rest` and `earliest` of all robots, by Dijkstra from the goals backwards."""
+    market = market_at(native)
+    requests = market.requests
+    for robot in range(requests.start.size):
+        settle_rests(market, robot)
+        start = int(requests.start[robot])
+        requests.earliest[robot] = NONE
+        if start == requests.goal[robot]:
+            requests.earliest[robot] = int(requests.release[robot])
+        elif requests.rest[robot][start] != NONE:
+            ticks = duration_of(market, robot, start) + int(requests.rest[robot][start])
+            requests.earliest[robot] = int(requests.release[robot]) + ticks
+
+
+@compiled
+def settle_rests(market: Market, robot: int) -> None:
+    """Fill the rests of one robot."""
+    graph = market.graph
+    rest = market.requests.rest[robot]
+    keys = market.scratch.keys
+    nodes = market.scratch.nodes
+    for here in range(graph.duration.size):
+        rest[here] = NONE
+    size = 0
+    goal = int(market.requests.goal[robot])
+    for edge in range(int(graph.backward_first[goal]), int(graph.backward_first[goal + 1])):
+        push(keys, nodes, size, 0, int(graph.source[edge]))
+        size += 1
+    while size > 0:
+        ticks = int(keys[0])
+        here = int(nodes[0])
+        size -= 1
+        replace_root(keys, nodes, size, int(keys[size]), int(nodes[size]))
+        if rest[here] != NONE:
+            continue
+        rest[here] = ticks
+        further = ticks + duration_of(market, robot, here)
+        for edge in range(int(graph.backward_first[here]), int(graph.backward_first[here + 1])):
+            if rest[int(graph.source[edge])] == NONE:
+                push(keys, nodes, size, further, int(graph.source[edge]))
+                size += 1
+
+
+@entry
+def find_ways(native: Native[Market]) -> int:
+    """Give each robot a cheapest way: the sum of their least priced costs, less the prices times the capacities."""
+    market = market_at(native)
+    total = -add_up(market)
+    for robot in range(market.requests.start.size):
+        if market.requests.earliest[robot] != NONE:
+            count_way(market, robot, -1)
+            total += find_way(market, robot)
+            count_way(market, robot, 1)
+    return total
+
+
+@entry
+def least_cost(native: Native[Market], robot: int) -> int:
+    """The least priced cost of a robot, once the prices have been added up."""
+    return find_way(market_at(native), robot)
+
+
+@compiled
+def find_way(market: Market, robot: int) -> int:
+    """Give the robot a cheapest way: the least priced cost of all its ways, or less where a delay has no nodes."""
+    requests = market.requests
+    start = int(requests.start[robot])
+    release = int(requests.release[robot])
+    best = way_price(market, robot)
+    if start == requests.goal[robot]:
+        at_once = goal_price(market, robot, release) + int(market.charges.cost[robot][0])
+        if at_once < best:
+            best = at_once
+            market.ways.length[robot] = 1
+            market.ways.resource[robot][0] = start
+            market.ways.enter[robot][0] = release
+    if requests.rest[robot][start] != NONE:
+        best = settle(market, robot, best)
+        best = min(best, int(market.charges.least[robot][market.delays]))
+    return best
+
+
+@compiled
+def way_price(market: Market, robot: int) -> int:
+    """The priced cost of the way that the robot has; endless if it has none."""
+    resources = market.ways.resource[robot]
+    enters = market.ways.enter[robot]
+    last = int(market.ways.length[robot]) - 1
+    if last < 0:
+        return ENDLESS
+    paid = 0
+    for visit in range(last):
+        here = int(resources[visit])
+        leaves = int(enters[visit + 1])
+        paid += price_on_way(market, robot, here, int(enters[visit]), leaves)
+        paid += move_price(market, move_between(market, here, int(resources[visit + 1])), leaves)
+    arrival = int(enters[last])
+    delay = arrival - int(market.requests.earliest[robot])
+    return paid + goal_price(market, robot, arrival) + int(market.charges.cost[robot][delay])
+
+
+@compiled
+def fee_of(market: Market, robot: int, here: int, tick: int) -> int:
+    """The payment of a robot that is seen in the resource at the tick, which is before the horizon."""
+    return int(market.charges.fee[int(market.charges.row[robot][tick])][here])
+
+
+@compiled
+def price_on_way(market: Market, robot: int, here: int, enter: int, leave: int) -> int:
+    """The price of a stay in [enter, leave) on the way, where the robot is seen included."""
+    paid = stay_price(market, here, enter, leave)
+    for tick in range(enter, min(leave, market.horizon)):
+        paid += fee_of(market, robot, here, tick)
+    return paid
+
+
+@compiled
+def settle(market: Market, robot: int, best: int) -> int:
+    """Search for a way that costs less than the best known, and take it; the least priced cost."""
+    requests = market.requests
+    scratch = market.scratch
+    start = int(requests.start[robot])
+    release = int(requests.release[robot])
+    earliest = int(requests.earliest[robot])
+    rest = requests.rest[robot]
+    least = market.charges.least[robot]
+    tick = release + duration_of(market, robot, start)
+    delay = tick + int(rest[start]) - earliest
+    if delay >= market.delays:
+        return best
+    pending = begin(market, robot, tick, price_on_way(market, robot, start, release, tick))
+    size = market.graph.duration.size
+    found = NONE
+    while pending > 0:
+        place = tick % scratch.head.size
+        slot = int(scratch.head[place])
+        scratch.head[place] = NONE
+        while slot != NONE:
+            pending -= 1
+            here = slot - place * size
+            node = (tick - release) * size + here
+            paid = int(scratch.paid[slot])
+            following = int(scratch.following[slot])
+            if paid + int(least[tick + int(rest[here]) - earliest]) < best:
+                if rest[here] == 0:  # a move from here enters the goal
+                    price = arrival_price(market, robot, here, tick, paid)
+                    if price < best:
+                        best = price
+                        found = node
+                pending += leave(market, robot, node, tick, paid)
+            slot = following
+        tick += 1
+    if found != NONE:
+        take_way(market, robot, found)
+    return best
+
+
+@compiled
+def begin(market: Market, robot: int, tick: int, paid: int) -> int:
+    """Begin a search at the node of the robot's start; returns 1."""
+    scratch = market.scratch
+    size = market.graph.duration.size
+    start = int(market.requests.start[robot])
+    place = tick % scratch.head.size
+    node = (tick - int(market.requests.release[robot])) * size + start
+    scratch.generation[0] = int(scratch.generation[0]) + scratch.parent.size
+    return reach(scratch, place, place * size + start, node, paid, NONE)
+
+
+@compiled
+def place_after(scratch: Scratch, place: int, ticks: int) -> int:
+    """The place of the tick that comes these ticks after one with a place; no more ticks than the longest stay."""
+    after = place + ticks
+    return after if after < scratch.head.size else after - scratch.head.size
+
+
+@compiled
+def reach(scratch: Scratch, place: int, slot: int, node: int, paid: int, parent: int) -> int:
+    """Reach a node at this price; returns 1 if it was not reached before, else 0."""
+    mark = int(scratch.generation[0]) + node
+    if scratch.mark[slot] == mark:
+        if paid < scratch.paid[slot]:
+            scratch.paid[slot] = paid
+            scratch.parent[node] = parent
+        return 0
+    scratch.mark[slot] = mark
+    scratch.paid[slot] = paid
+    scratch.parent[node] = parent
+    scratch.following[slot] = int(scratch.head[place])
+    scratch.head[place] = slot
+    return 1
+
+
+@compiled
+def leave(market: Market, robot: int, node: int, tick: int, paid: int) -> int:
+    """Wait or move from a node, also through the goal, to come late: how many new nodes are reached."""
+    graph = market.graph
+    rest = market.requests.rest[robot]
+    earliest = int(market.requests.earliest[robot])
+    waiting = market.prices.waiting[min(tick, market.horizon)]
+    entering = market.prices.entering[min(tick, market.horizon)]
+    fee = market.charges.fee[int(market.charges.row[robot][tick]) if tick < market.horizon else 0]
+    scratch = market.scratch
+    size = graph.duration.size
+    here = node - (tick - int(market.requests.release[robot])) * size
+    now = tick % scratch.head.size
+    reached = 0
+    if tick + int(rest[here]) - earliest + 1 < market.delays:
+        place = place_after(scratch, now, 1)
+        waited = paid + int(waiting[here]) + int(fee[here])
+        reached += reach(scratch, place, place * size + here, node + size, waited, node)
+    for move in range(int(graph.first[here]), int(graph.first[here + 1])):
+        target = int(graph.target[move])
+        if rest[target] != NONE:
+            ready = tick + duration_of(market, robot, target)
+            delay = ready + int(rest[target]) - earliest
+            if delay < market.delays:
+                moved = paid + int(entering[move]) + int(fee[target])
+                moved += further_price(market, target, tick + 1, ready)
+                for later in range(tick + 1, min(ready, market.horizon)):
+                    moved += fee_of(market, robot, target, later)
+                place = place_after(scratch, now, ready - tick)
+                after = node - here + (ready - tick) * size + target
+                reached += reach(scratch, place, place * size + target, after, moved, node)
+    return reached
+
+
+@compiled
+def arrival_price(market: Market, robot: int, here: int, tick: int, paid: int) -> int:
+    """The priced cost of moving to the goal now; endless if no move leads there."""
+    graph = market.graph
+    goal = int(market.requests.goal[robot])
+    for move in range(int(graph.first[here]), int(graph.first[here + 1])):
+        if graph.target[move] == goal:
+            delay = tick - int(market.requests.earliest[robot])
+            arrived = paid + move_price(market, move, tick) + goal_price(market, robot, tick)
+            return arrived + int(market.charges.cost[robot][delay])
+    return ENDLESS
+
+
+@compiled
+def begins_stay(market: Market, node: int) -> bool:
+    """Whether the way enters the node's resource there, rather than waits in it."""
+    parent = int(market.scratch.parent[node])
+    return parent == NONE or (node - parent) % market.graph.duration.size != 0
+
+
+@compiled
+def tick_of(market: Market, robot: int, node: int) -> int:
+    """The tick of a node of the robot."""
+    return int(market.requests.release[robot]) + node // market.graph.duration.size
+
+
+@compiled
+def take_way(market: Market, robot: int, last: int) -> None:
+    """Write the way that arrives from the node."""
+    resources = market.ways.resource[robot]
+    enters = market.ways.enter[robot]
+    parent = market.scratch.parent
+    visits = 1
+    node = last
+    while node != NONE:
+        visits += 1 if begins_stay(market, node) else 0
+        node = int(parent[node])
+    market.ways.length[robot] = visits
+    resources[visits - 1] = int(market.requests.goal[robot])
+    enters[visits - 1] = tick_of(market, robot, last)
+    visit = visits - 2
+    node = last
+    while node != NONE:
+        if begins_stay(market, node):
+            here = node % market.graph.duration.size
+            resources[visit] = here
+            enters[visit] = tick_of(market, robot, node) - duration_of(market, robot, here)
+            visit -= 1
+        node = int(parent[node])
+
+
+@compiled
+def count_way(market: Market, robot: int, sign: int) -> None:
+    """Add what the robot's way uses, or take it off again."""
+    usage = market.usage
+    resources = market.ways.resource[robot]
+    enters = market.ways.enter[robot]
+    last = int(market.ways.length[robot]) - 1
+    for visit in range(last + 1):
+        here = int(resources[visit])
+        enter = int(enters[visit])
+        end = market.horizon
+        if visit < last:
+            end = int(enters[visit + 1])
+            if end < market.horizon:
+                moving = usage.moving[move_between(market, here, int(resources[visit + 1]))]
+                moving[end] = int(moving[end]) + sign
+        elif not market.parks:
+            end = enter + duration_of(market, robot, here)
+        present = usage.present[here]
+        staying = usage.staying[here]
+        for tick in range(enter, min(end, market.horizon)):
+            present[tick] = int(present[tick]) + sign
+            if tick > enter:
+                staying[tick] = int(staying[tick]) + sign
+
+
+@entry
+def see_ways(native: Native[Market]) -> None:
+    """Fill in where the ways have the robots at each tick."""
+    market = market_at(native)
+    place = market.charges.place
+    for robot in range(market.requests.start.size):
+        tick = 0
+        here = NONE
+        for visit in range(int(market.ways.length[robot])):
+            enter = min(int(market.ways.enter[robot][visit]), market.horizon)
+            while tick < enter:
+                place[robot][tick] = here
+                tick += 1
+            here = int(market.ways.resource[robot][visit])
+        if market.ways.length[robot] > 0:
+            here = market.graph.duration.size
+        while tick < market.horizon:
+            place[robot][tick] = here
+            tick += 1

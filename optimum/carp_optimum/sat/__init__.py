@@ -1,0 +1,1 @@
+"""Formulas for a SAT solver, and the proofs of its answers."""

@@ -1,0 +1,1 @@
+"""What all commands share: options, files, tables, progress, exit codes."""

@@ -1,0 +1,153 @@
+"""The output of commands: documents for programs, tables for people."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from carp_spec import Instance, Plan, ResourceId, RobotId, Solution, total_cost
+from carp_spec.rule import interval
+from carp_verify.documents import visits_document, write_instance
+from carproof.command_line.answer import Answer
+from carproof.command_line.files import print_document, write_whole
+from carproof.command_line.tables import print_line, print_table
+from carproof.engines import have_plans_beside, sum_of_shortest_paths
+from carproof.judging.audit import Audit
+from carproof.judging.unplanned import why_unplanned
+
+if TYPE_CHECKING:
+    from carp_optimized.fleet import PlannedFleet
+
+COLUMNS = ("planner", "robots", "unplanned", "total cost", "shortest paths", "ratio", "time")
+NOT_FOUND = "the planner found no plan for it, though there is one beside the plans of the others"
+
+
+def show_instance(instance: Instance, output: Path | None, as_json: bool) -> Answer:
+    """Write an instance to the file, or print its document; tell people what was written."""
+    document = write_instance(instance)
+    if output is not None:
+        write_whole(output, document)
+    if output is None or as_json:
+        print_document(document)
+    else:
+        columns = ["written", "resources", "edges", "robots", "after goal"]
+        row = [output, len(instance.graph.resources), len(instance.graph.edges), len(instance.robots)]
+        print_table(columns, [[*row, instance.after_goal]], numbers=columns[1:4])
+    return Answer.YES
+
+
+def write_result(document: bytes, output: Path | None, as_json: bool) -> None:
+    """Write a document to the file, if one is given, and to standard output, if it is asked for."""
+    if output is not None:
+        write_whole(output, document)
+    if as_json:
+        print_document(document)
+
+
+def show_solution(
+    instance: Instance, solution: Solution, planner: str, seconds: float, fleet: "PlannedFleet | None"
+) -> None:
+    """Print a table of the result, and the reasons why robots are unplanned; a fleet holds the plans."""
+    total = total_cost(instance, solution.plans)
+    shortest = sum_of_shortest_paths(instance, (plan.robot for plan in solution.plans), fleet)
+    ratio = f"{total / shortest:.4f}" if shortest else "-"
+    unplanned = len(instance.robots) - len(solution.plans)
+    row = (planner, len(instance.robots), unplanned, total, shortest, ratio, f"{seconds:.2f} s")
+    print_table(COLUMNS, [row], numbers=COLUMNS[1:])
+    show_unplanned(instance, solution, solution.unplanned, fleet=fleet)
+
+
+def show_unplanned(
+    instance: Instance,
+    solution: Solution,
+    robots: Sequence[RobotId],
+    now: int = 0,
+    fleet: "PlannedFleet | None" = None,
+) -> None:
+    """Print the reasons why robots have no plan, one a line; a fleet, if one is given, holds the plans."""
+    if not robots:
+        return
+    plannable = have_plans_beside(instance, solution.plans, robots, now, fleet)
+    for robot, is_plannable in zip(robots, plannable, strict=True):
+        reason = NOT_FOUND if is_plannable else why_unplanned(instance, solution.plans, robot, now)
+        print_line(f"unplanned: robot {robot}: {reason}")
+
+
+def show_addition(instance: Instance, before: Solution, after: Solution, robot: RobotId, now: int) -> None:
+    """Print the result for a robot that was to be added, and for the others."""
+    plans = {plan.robot: plan for plan in after.plans}
+    if robot not in plans:
+        show_unplanned(instance, after, [robot], now)
+        return
+    changed = [str(plan.robot) for plan in before.plans if plans[plan.robot] != plan]
+    print_line(f"robot {robot} arrives at tick {plans[robot].visits[-1].enter}")
+    print_line(f"plans of other robots that changed: {', '.join(changed) or 'none'}")
+    print_line(f"total cost {total_cost(instance, before.plans)} before, {total_cost(instance, after.plans)} now")
+
+
+def shown_plan(plan: Plan) -> str:
+    """A plan in one line."""
+    return " ".join(f"{visit.resource}{interval(visit.enter, visit.leave)}" for visit in plan.visits)
+
+
+class VerifiedBoundDocument(msgspec.Struct, frozen=True):
+    """The bound that a certificate proves, or null with the path, the rule and the reason why it proves none.
+
+    `by` is the checker that decided; `assumed` lists the facts that it did not check: none.
+    """
+
+    bound: int | None
+    path: str | None
+    rule: str | None
+    reason: str | None
+    by: str
+    assumed: tuple[str, ...] = ()
+
+
+class VerifiedQueryDocument(msgspec.Struct, frozen=True):
+    """Whether a certificate proves its bound (null: no plan); if not, the path, the rule and the reason."""
+
+    proved: bool
+    bound: int | None
+    path: str | None
+    rule: str | None
+    reason: str | None
+    by: str
+
+
+class LateDocument(msgspec.Struct, frozen=True):
+    """A robot with the arrival of its plan, and a plan with which it arrives earlier."""
+
+    robot: RobotId
+    arrival: int
+    earliest: int
+    plan: tuple[tuple[ResourceId, int, int | None], ...]
+
+
+class AuditDocument(msgspec.Struct, frozen=True):
+    """The robots whose plans are certified, in order, those whose plans are late, and the checker that decided."""
+
+    certified: tuple[RobotId, ...]
+    late: tuple[LateDocument, ...]
+    unplanned: int
+    by: str
+
+
+def audit_document(audit: Audit, solution: Solution) -> AuditDocument:
+    """The document of an audit."""
+    late = (
+        LateDocument(each.plan.robot, arrival_of(each.plan), arrival_of(each.earlier), visits_document(each.earlier))
+        for each in audit.late
+    )
+    return AuditDocument(
+        certified=tuple(plan.robot for plan in audit.certified),
+        late=tuple(late),
+        unplanned=len(solution.unplanned),
+        by=audit.by,
+    )
+
+
+def arrival_of(plan: Plan) -> int:
+    """The tick at which a plan enters its goal for the last time."""
+    return plan.visits[-1].enter

@@ -1,0 +1,1 @@
+"""The way into the command: signals, the named command, exit codes."""

@@ -1,0 +1,211 @@
+"""The command `carproof`: loads the named command and turns its result into an exit code."""
+
+import gc
+import io
+import os
+import sys
+import traceback
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from difflib import get_close_matches
+from errno import EBADF
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+import click
+from click.shell_completion import shell_complete
+
+from carp_spec import Refusal
+from carp_verify.bound.rules import ContradictionError
+from carp_verify.kernel import UndecidedError
+from carproof.command_line.answer import INTERNAL_ERROR, INTERRUPTED, PIPE_CLOSED, Answer
+from carproof.command_line.tables import printable, remark
+from carproof.commands import COMMANDS, GROUPS
+from carproof.entry.supervising import supervised
+from carproof.extras import advice
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoints
+
+WIDEST_SUMMARY = 200
+ALLOCATIONS = 50_000
+"""After how many objects a process of our own looks for garbage: documents are many objects, and hold no cycles."""
+COMPLETION = "_CARPROOF_COMPLETE"
+SETTINGS = {"help_option_names": ["-h", "--help"], "show_default": True}
+EPILOG = """\b
+Examples:
+  carproof generate grid -o town.json             20 x 20 grid, 100 robots
+  carproof plan town.json -o plans.json           plan them
+  carproof check town.json plans.json             judge the plans
+  carproof rules joint/capacity                   explain a rule
+  carproof plan town.json --json | carproof check town.json -
+
+\b
+Exit codes: 0 yes, 1 no (a broken rule; of commands that plan, and of
+check --require-all, a robot without a plan), 2 bad input or usage,
+3 undecided within the limit given.
+"""
+
+
+class LazyCommands(click.Group):
+    """A group whose commands are the modules of `carproof.commands`, and those that other packages add."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """The commands in the order in which they are listed."""
+        del ctx
+        return [*COMMANDS, *_added_commands().names]
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Load a command."""
+        del ctx
+        if cmd_name in COMMANDS:
+            command = import_module(f"carproof.commands.{cmd_name.replace('-', '_')}").command
+        elif cmd_name in _added_commands().names:
+            command = _added_commands()[cmd_name].load()
+        else:
+            return None
+        assert isinstance(command, click.Command)  # noqa: S101 - a promise of ours, not of the user's
+        return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Find the command; for one that there is not, the nearest is suggested."""
+        name = args[0]
+        if name[:1] != "-" and self.get_command(ctx, name) is None and not ctx.resilient_parsing:
+            near = get_close_matches(name, self.list_commands(ctx), 1)
+            hint = f"Did you mean {near[0]}?" if near else "carproof --help lists them."
+            raise click.UsageError(f"No such command {name!r}. {hint}", ctx)
+        return super().resolve_command(ctx, args)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """List the commands group by group, each with its whole summary; commands of other packages come last."""
+        for group, names in GROUPS.items():
+            shown = names if group != "Run" else (*names, *_added_commands().names)
+            with formatter.section(group):
+                formatter.write_dl([(name, self._summary(ctx, name)) for name in shown])
+
+    def _summary(self, ctx: click.Context, name: str) -> str:
+        command = self.get_command(ctx, name)
+        assert command is not None  # noqa: S101 - a listed command exists
+        return command.get_short_help_str(limit=WIDEST_SUMMARY)
+
+
+def _added_commands() -> "EntryPoints":
+    from importlib.metadata import entry_points  # noqa: PLC0415 - slow to load, and most commands are ours
+
+    return entry_points(group="carproof.commands")
+
+
+@click.group(cls=LazyCommands, epilog=EPILOG, context_settings=SETTINGS)
+@click.version_option(package_name="carproof", message="carproof %(version)s")
+def carproof() -> None:
+    """Plan robots in an automated warehouse, and judge any planner's plans by stable rules."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command line, by default that of this process, and return its exit code."""
+    _open_closed_streams()
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+    if arguments is not None:
+        return _run(arguments)
+    gc.set_threshold(ALLOCATIONS)
+    return supervised(lambda: _run(sys.argv[1:]))
+
+
+def _run(arguments: Sequence[str]) -> int:
+    try:
+        answer = _answer(arguments) if COMPLETION not in os.environ else _complete()
+        sys.stdout.flush()
+    except BrokenPipeError:
+        _forget_output()
+        return PIPE_CLOSED
+    except KeyboardInterrupt:
+        return _tell("Interrupted.", INTERRUPTED)
+    except OSError as error:
+        _forget_output()
+        reason = "standard output is closed" if error.errno == EBADF else error.strerror
+        return _complain(f"the output cannot be written: {reason}")
+    except ContradictionError as error:
+        report = "A checker of carproof is wrong; please report both."
+        return _tell(f"Internal contradiction: {error}. {report}", INTERNAL_ERROR)
+    except Exception:  # noqa: BLE001 - a fault of ours must not look like the answer no
+        text = f"{traceback.format_exc()}carproof failed by a fault of its own; the lines above say where."
+        return _tell(text, INTERNAL_ERROR)
+    return answer
+
+
+def _complete() -> int:
+    """Print what a shell can complete a command line to."""
+    return shell_complete(carproof, {}, "carproof", COMPLETION, os.environ[COMPLETION])
+
+
+def _answer(arguments: Sequence[str]) -> int:
+    try:
+        with carproof.make_context("carproof", list(arguments)) as context, _naming_extras(context):
+            answer = carproof.invoke(context)
+    except click.exceptions.Exit as done:
+        return done.exit_code
+    except click.exceptions.NoArgsIsHelpError as error:
+        click.echo(error.format_message())
+        return Answer.YES
+    except click.ClickException as error:
+        return _complain(_sentence(error))
+    except (UndecidedError, MemoryError) as error:
+        return _tell(f"Undecided: {printable(error) or 'the memory does not suffice.'}", Answer.UNDECIDED)
+    except Refusal as refusal:
+        return _complain(f"{_option(refusal.path)}: {refusal.message} [{refusal.rule}]")
+    return Answer(answer)
+
+
+@contextmanager
+def _naming_extras(context: click.Context) -> Iterator[None]:
+    """Name the extra that has a missing library."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        advised = advice(error)
+        if advised is None:
+            raise
+        raise click.ClickException(f"carproof {context.invoked_subcommand} {advised}") from error
+
+
+def _option(path: str) -> str:
+    """The command line's name of an option that Python and documents call `$.map_seed`."""
+    return "--" + path[2:].replace("_", "-") if path.startswith("$.") else path
+
+
+def _sentence(error: click.ClickException) -> str:
+    if not isinstance(error, click.UsageError):
+        return error.format_message()
+    asked = error.ctx.command_path if error.ctx else "carproof"
+    return f"{error.format_message()} (See {asked} --help.)"
+
+
+def _complain(sentence: str) -> int:
+    return _tell(f"Error: {printable(sentence)}", Answer.BAD_INPUT)
+
+
+def _tell(text: str, code: int) -> int:
+    """Print why a command ends, and return its exit code."""
+    remark(text)
+    return code
+
+
+def _open_closed_streams() -> None:
+    """Give a process that was started without standard streams, as by `>&-`, an empty input, and an output that fails.
+
+    Messages are lost without standard error, and nothing else.
+    """
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            nowhere = os.open(os.devnull, os.O_WRONLY if name == "stderr" else os.O_RDONLY)
+            setattr(sys, name, open(nowhere, mode, encoding="utf-8"))  # noqa: PTH123, SIM115 - as long as the process
+
+
+def _forget_output() -> None:
+    """Discard buffered output, so that the interpreter's last flush finds an open file."""
+    with open(os.devnull, "w", encoding="utf-8") as nowhere:  # noqa: PTH123 - a device, not a path
+        os.dup2(nowhere.fileno(), sys.__stdout__.fileno() if sys.__stdout__ else 1)

@@ -1,0 +1,1 @@
+"""Executions of plans by late robots: delays, drivers, switching, giving way."""

@@ -1,0 +1,84 @@
+"""Writes classical instances as MovingAI `.map` and `.scen` files, which `movingai` reads.
+
+The files do not have the ids of resources and robots; cells identify resources, and the order of robots is kept. The
+lengths, which are for octile moves, are written as 0.
+"""
+
+from dataclasses import dataclass
+
+from carp_spec import Instance, ResourceId
+from carproof.formats.movingai import GridMap
+from carproof.generate.options import size_is_bounded
+
+MAP_NAME = "instance.map"
+
+
+@dataclass(frozen=True, slots=True)
+class MovingAIFiles:
+    """The contents of both files."""
+
+    map: bytes
+    scen: bytes
+
+
+def is_classical(instance: Instance) -> bool:
+    """Whether the files can express the instance, and it is one of classical multi-agent path finding.
+
+    It has robots, which all start in different cells, end in different cells and park. They are present from tick 0,
+    and paces, durations and capacities are one. Cells are joined exactly to those beside them.
+    """
+    resources, robots = instance.graph.resources, instance.robots
+    starts, goals = {robot.start for robot in robots}, {robot.goal for robot in robots}
+    return (
+        instance.after_goal == "park"
+        and len(starts) == len(goals) == len(robots) > 0
+        and all((robot.release, robot.pace) == (0, 1) for robot in robots)
+        and all((resource.capacity, resource.duration) == (1, 1) for resource in resources)
+        and _is_grid(instance)
+    )
+
+
+def _is_grid(instance: Instance) -> bool:
+    graph = instance.graph
+    places = [(each.x, each.y) for each in graph.resources if each.x is not None and each.y is not None]
+    cells = {(x, y) for x, y in places if x >= 0 and y >= 0}
+    if len(cells) < len(graph.resources) or not size_is_bounded(*_size(cells)):
+        return False
+    moves = {
+        (_cell(instance, source), _cell(instance, target))
+        for source in graph.index
+        for target in graph.successors[source]
+    }
+    beside = {((x, y), other) for x, y in cells for other in ((x + 1, y), (x - 1, y), (x, y + 1), (x, y - 1))}
+    return moves == {(cell, other) for cell, other in beside if other in cells}
+
+
+def _size(cells: set[tuple[int, int]]) -> tuple[int, int]:
+    """The width and height of the least map with the cells."""
+    return (max((x for x, _ in cells), default=-1) + 1, max((y for _, y in cells), default=-1) + 1)
+
+
+def _cell(instance: Instance, resource: ResourceId) -> tuple[int, int]:
+    place = instance.graph.resource[resource]
+    return (place.x or 0, place.y or 0)
+
+
+def write_movingai(instance: Instance) -> MovingAIFiles:
+    """Write a classical instance."""
+    cells = {_cell(instance, id) for id in instance.graph.index}
+    width, height = _size(cells)
+    rows = tuple("".join("." if (x, y) in cells else "@" for x in range(width)) for y in range(height))
+    return MovingAIFiles(_map_file(GridMap(width, height, rows)), _scenario_file(instance, width, height))
+
+
+def _map_file(grid: GridMap) -> bytes:
+    lines = ["type octile", f"height {grid.height}", f"width {grid.width}", "map", *grid.rows]
+    return ("\n".join(lines) + "\n").encode()
+
+
+def _scenario_file(instance: Instance, width: int, height: int) -> bytes:
+    lines = ["version 1"]
+    for robot in instance.robots:
+        ends = (*_cell(instance, robot.start), *_cell(instance, robot.goal))
+        lines.append("\t".join(map(str, (0, MAP_NAME, width, height, *ends, 0))))
+    return ("\n".join(lines) + "\n").encode()

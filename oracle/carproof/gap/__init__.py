@@ -1,0 +1,1 @@
+"""The distance of planners from the optimum, over families of instances."""

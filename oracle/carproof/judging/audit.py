@@ -1,0 +1,161 @@
+"""Audits a solution: whether each plan is optimal beside those before it in the planning order.
+
+The audit's planner is not trusted. A plan counts as optimal if a certificate that none arrives earlier is accepted
+(`carp_verify.query.verify`). It counts as late if an earlier plan breaks no rule. If neither holds, carproof has a
+fault. An audit does not judge the choice between plans that arrive at the same tick, the order itself, or robots
+without a plan.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+
+import msgspec
+
+from carp_spec import Instance, Plan, Refusal, Solution
+from carp_verify.bound.rules import ContradictionError
+from carp_verify.documents import solution_document
+from carp_verify.kernel import ask, request
+from carp_verify.limits import require_following
+from carp_verify.query.rules import plans_are_lawful, size_fits
+from carp_verify.query.verify import Traffic, require_certificate
+from carproof.engines import Engine
+
+CHECKER = "carp_verify"
+
+
+@dataclass(frozen=True, slots=True)
+class Late:
+    """A plan, and one with which its robot arrives earlier, both beside the plans before it."""
+
+    plan: Plan
+    earlier: Plan
+    before: tuple[Plan, ...]
+
+
+@dataclass(slots=True)
+class Audit:
+    """The findings of an audit, in the order in which it looked at the plans, and the checker that decided.
+
+    The certificates are in JSON: those of 1,000 robots may have millions of potentials.
+    """
+
+    certified: list[Plan] = field(default_factory=list)
+    certificates: list[msgspec.Raw] = field(default_factory=list)
+    late: list[Late] = field(default_factory=list)
+    by: str = CHECKER
+
+    @property
+    def holds(self) -> bool:
+        """Whether each plan is certified."""
+        return not self.late
+
+
+class Auditor:
+    """Compares plans with the best ones beside those committed so far."""
+
+    def __init__(self, instance: Instance, engine: Engine) -> None:
+        require_following(instance)
+        self._instance = instance
+        self._certifier = engine.certifier(instance)
+        self._traffic = Traffic(instance)
+        self._committed: list[Plan] = []
+        self.audit = Audit()
+
+    def commit(self, plan: Plan) -> None:
+        """Commit a plan; the next ones are compared beside it."""
+        self._certifier.commit([plan])
+        self._traffic.commit(plan)
+        self._committed.append(plan)
+
+    def earlier_plan(self, plan: Plan) -> Plan | None:
+        """A plan that arrives earlier; if none exists, the plan is certified."""
+        best, certificate = self._certifier.certify(plan.robot)
+        if best is not None and best.visits[-1].enter < plan.visits[-1].enter:
+            if not self.has_room(best) or not plans_are_lawful(self._instance, [best]):
+                raise ContradictionError(f"an earlier plan was found for robot {plan.robot}, and it breaks a rule")
+            return best
+        if best is None or best.visits[-1].enter > plan.visits[-1].enter:
+            raise ContradictionError(f"robot {plan.robot} has a plan that was not found")
+        try:
+            require_certificate(self._traffic, certificate)
+        except Refusal as refusal:
+            if refusal.rule == size_fits.id:
+                raise
+            raise ContradictionError(f"the certificate of robot {plan.robot} was refused: {refusal}") from refusal
+        self.audit.certified.append(plan)
+        self.audit.certificates.append(msgspec.Raw(msgspec.json.encode(certificate)))
+        return None
+
+    def has_room(self, plan: Plan) -> bool:
+        """Whether the committed plans leave room for the plan."""
+        return self._traffic.allows(plan.visits)
+
+    def is_late(self, plan: Plan, earlier: Plan) -> None:
+        """Note that a plan is late."""
+        self.audit.late.append(Late(plan, earlier, tuple(self._committed)))
+
+
+def audit_in_order(
+    instance: Instance, solution: Solution, engine: Engine, advance: Callable[[], None] = lambda: None
+) -> Audit:
+    """Audit a solution that breaks no rule in its planning order."""
+    auditor = Auditor(instance, engine)
+    for plan in in_order(solution):
+        earlier = auditor.earlier_plan(plan)
+        if earlier is not None:
+            auditor.is_late(plan, earlier)
+        auditor.commit(plan)
+        advance()
+    return auditor.audit
+
+
+def audit_in_some_order(
+    instance: Instance, solution: Solution, engine: Engine, advance: Callable[[], None] = lambda: None
+) -> Audit:
+    """Audit a solution that breaks no rule in an order in which each plan is optimal, if there is one.
+
+    A plan that is optimal beside some plans stays optimal beside more of them, which leave less room. So every plan can
+    be committed as soon as it is optimal. If none of the rest is optimal, no such order exists: the first of the rest
+    would be late in it. A plan stays late as long as there is room for the earlier one that was found.
+    """
+    auditor = Auditor(instance, engine)
+    waiting: list[tuple[Plan, Plan | None]] = [(plan, None) for plan in in_order(solution)]
+    is_moving = True
+    while is_moving:
+        is_moving, asked, waiting = False, waiting, []
+        for plan, known in asked:
+            earlier = known if known is not None and auditor.has_room(known) else auditor.earlier_plan(plan)
+            if earlier is None:
+                auditor.commit(plan)
+                is_moving = True
+                advance()
+            else:
+                waiting.append((plan, earlier))
+    for plan, earlier in waiting:
+        if earlier is not None:
+            auditor.is_late(plan, earlier)
+    return auditor.audit
+
+
+def in_order(solution: Solution) -> Iterator[Plan]:
+    """The plans in planning order."""
+    plans = {plan.robot: plan for plan in solution.plans}
+    return (plans[robot] for robot in solution.order)
+
+
+def ask_kernel(instance: Instance, solution: Solution, audit: Audit) -> None:
+    """Let the kernel decide: the certificates of all plans, or that each earlier plan found breaks no rule.
+
+    Raises `ContradictionError` if it decides otherwise.
+    """
+    if audit.holds:
+        order = tuple(plan.robot for plan in audit.certified)
+        document = solution_document(replace(solution, order=order))
+        requests = [request("audit", instance, solution=document, certificates=audit.certificates)]
+    else:
+        solutions = [Solution.of(instance, (*late.before, late.earlier)) for late in audit.late]
+        requests = [request("check", instance, solution=solution_document(each)) for each in solutions]
+    for answer in ask(requests):
+        if not answer.accepted:
+            raise ContradictionError(f"{CHECKER} and {answer.by} differ: {answer.message} [{answer.rule}]")
+        audit.by = answer.by

@@ -1,0 +1,1 @@
+"""The protocol: requests and answers as lines of JSON."""

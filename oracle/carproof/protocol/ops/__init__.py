@@ -1,0 +1,99 @@
+"""The ops of the protocol, in one table from which server, `conform`, schema, documentation and help are made.
+
+To add an op, write a dataclass of its request, a class of its result and a handler in a module of this package, and put
+the handler into `OPS`. `make generated` then writes the schema and the documentation again.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+from importlib.metadata import version
+from typing import Any
+
+import msgspec
+
+from carp_spec import Refusal
+from carp_verify.kernel import UndecidedError, is_answer
+from carproof.engines import Engine
+from carproof.protocol.lines import RIGHT_FIELDS, SPOKEN_VERSION, VERSION, Request
+from carproof.protocol.ops.executing import check_trace, dependencies, drive, execute, give_way, retime, untangle
+from carproof.protocol.ops.judging import audit, check, verify_bound, verify_query
+from carproof.protocol.ops.op import Op, op_of
+from carproof.protocol.ops.planning import add, plan, polish, query
+from carproof.protocol.ops.searching import bound, optimum
+
+
+@dataclass(frozen=True, slots=True)
+class StartRequest:
+    """The version of the protocol that is spoken."""
+
+    version: int
+
+
+class StartDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The name and version of the program, and the ops that it offers."""
+
+    name: str
+    version: str
+    ops: tuple[str, ...]
+
+
+def start(request: StartRequest, engine: Engine) -> StartDocument:
+    """Agree on the version of the protocol, and list the ops that may be asked."""
+    del engine
+    if request.version != VERSION:
+        message = f"the version must be {VERSION}, not {request.version}"
+        raise Refusal("request", "$.version", SPOKEN_VERSION.id, message)
+    return StartDocument("carproof", version("carproof"), tuple(OPS))
+
+
+@dataclass(frozen=True, slots=True)
+class StopRequest:
+    """Nothing."""
+
+
+class StopDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """An empty object."""
+
+
+def stop(request: StopRequest, engine: Engine) -> StopDocument:
+    """End the process after this response."""
+    del request, engine
+    return StopDocument()
+
+
+_HANDLERS: tuple[Callable[[Any, Engine], object], ...] = (
+    start,
+    check,
+    query,
+    plan,
+    add,
+    polish,
+    optimum,
+    bound,
+    verify_bound,
+    verify_query,
+    audit,
+    check_trace,
+    dependencies,
+    execute,
+    drive,
+    retime,
+    untangle,
+    give_way,
+    stop,
+)
+OPS: Mapping[str, Op] = {op.name: op for op in map(op_of, _HANDLERS)}
+
+
+def answer(request: Request, name: str, engine: Engine) -> object:
+    """The result of a request, as JSON holds it."""
+    if name not in OPS:
+        near = get_close_matches(name, OPS, 1)
+        meant = f"did you mean {near[0]}? The" if near else "the"
+        message = f"there is no op {name!r}; {meant} op start lists all"
+        raise Refusal("request", "$.op", RIGHT_FIELDS.id, message)
+    try:
+        return OPS[name].answer(request, engine)
+    except UndecidedError as error:
+        raise Refusal("limit", "$.kernel", is_answer.id, str(error)) from error

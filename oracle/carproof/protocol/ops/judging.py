@@ -1,0 +1,78 @@
+"""The ops that judge: solutions, and certificates."""
+
+from dataclasses import dataclass
+
+from carp_spec import Instance, Solution, judge
+from carp_spec.query_certificates import QueryCertificateDocument
+from carp_verify.bounds import BoundDocument
+from carp_verify.documents import VerdictDocument, verdict_document
+from carproof.command_line.output import AuditDocument, VerifiedBoundDocument, VerifiedQueryDocument, audit_document
+from carproof.engines import Engine
+from carproof.judging.audit import ask_kernel, audit_in_order
+from carproof.judging.verdicts import verify_bound as bound_verdict
+from carproof.judging.verdicts import verify_query as query_verdict
+from carproof.requests import inside, sound_within
+
+
+@dataclass(frozen=True, slots=True)
+class CheckRequest:
+    """A solution to judge."""
+
+    instance: Instance
+    solution: Solution
+
+
+def check(request: CheckRequest, engine: Engine) -> VerdictDocument:
+    """Judge a solution, and list the first 100 violations of each rule."""
+    del engine
+    return verdict_document(judge(request.instance, request.solution))
+
+
+@dataclass(frozen=True, slots=True)
+class VerifyBoundRequest:
+    """The certificate of a lower bound, and whether the proved kernel is to decide."""
+
+    instance: Instance
+    certificate: BoundDocument
+    kernel: bool = False
+
+
+def verify_bound(request: VerifyBoundRequest, engine: Engine) -> VerifiedBoundDocument:
+    """Check the certificate of a lower bound."""
+    del engine
+    return bound_verdict(request.instance, request.certificate, request.kernel)
+
+
+@dataclass(frozen=True, slots=True)
+class VerifyQueryRequest:
+    """The certificate of a query beside the plans of a solution, and whether the proved kernel is to decide."""
+
+    instance: Instance
+    solution: Solution
+    certificate: QueryCertificateDocument
+    kernel: bool = False
+
+
+def verify_query(request: VerifyQueryRequest, engine: Engine) -> VerifiedQueryDocument:
+    """Check the certificate of a query."""
+    del engine
+    return query_verdict(request.instance, request.solution, request.certificate, request.kernel)
+
+
+@dataclass(frozen=True, slots=True)
+class AuditRequest:
+    """A solution, and whether the proved kernel is to decide."""
+
+    instance: Instance
+    solution: Solution
+    kernel: bool = False
+
+
+def audit(request: AuditRequest, engine: Engine) -> AuditDocument:
+    """Certify that no robot can arrive earlier beside the plans before its own in planning order."""
+    sound = sound_within(request.instance, request.solution)
+    with inside("$.instance"):
+        found = audit_in_order(request.instance, sound, engine)
+    if request.kernel:
+        ask_kernel(request.instance, sound, found)
+    return audit_document(found, sound)

@@ -1,0 +1,198 @@
+"""An op of the protocol: its request, its result and its handler, and the JSON of the first two.
+
+A request is a dataclass. Each of its fields is a field of the request, or several if it holds options (`OPTIONS`). A
+type in `DOCUMENTS` stands in JSON as its document; any other type is one that msgspec reads and writes.
+"""
+
+import dataclasses
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import MISSING, asdict, dataclass
+from types import NoneType
+from typing import Any, Literal, Union, get_args, get_type_hints
+
+import msgspec
+
+from carp_spec import Instance, Neighbourhood, Planner, Refusal, Solution
+from carp_spec.inputs.options import require_polish_options
+from carp_spec.query_certificates import QueryCertificateDocument
+from carp_spec.traces import Trace
+from carp_verify.bounds import BoundDocument, read_bound
+from carp_verify.documents import (
+    InstanceDocument,
+    SolutionDocument,
+    TraceDocument,
+    instance_document,
+    read_instance,
+    read_query_certificate,
+    read_solution,
+    read_trace,
+    solution_document,
+    trace_document,
+)
+from carproof.engines import Engine
+from carproof.planner_options import PLANNERS, planner_named
+from carproof.protocol.lines import RIGHT_FIELDS, Request, value_of
+
+
+@dataclass(frozen=True, slots=True)
+class Form:
+    """The JSON form of a type: the document's class, its reader, and its writer."""
+
+    document: type[msgspec.Struct]
+    read: Callable[[bytes], Any]
+    make: Callable[[Any], Any] = lambda document: document
+
+
+DOCUMENTS: Mapping[Any, Form] = {
+    Instance: Form(InstanceDocument, read_instance, instance_document),
+    Solution: Form(SolutionDocument, read_solution, solution_document),
+    BoundDocument: Form(BoundDocument, read_bound),
+    Trace: Form(TraceDocument, read_trace, trace_document),
+    QueryCertificateDocument: Form(QueryCertificateDocument, read_query_certificate),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class PolishOptions:
+    """The rounds or seconds of a polish, and the seed."""
+
+    iterations: int | None = None
+    seconds: float | None = None
+    seed: int = 0
+
+
+def _neighbourhood(request: Request) -> Planner:
+    return planner_named(Neighbourhood.name, request.options())
+
+
+def _planner(request: Request) -> Planner:
+    name = request.take("planner", value_of(str)) if "planner" in request else Neighbourhood.name
+    return planner_named(name, request.options())
+
+
+def _polish_options(request: Request) -> PolishOptions:
+    given = request.options()
+    for name in given.keys() - {field.name for field in dataclasses.fields(PolishOptions)}:
+        raise Refusal("request", f"$.{name}", RIGHT_FIELDS.id, "the op has no such field")
+    options = PolishOptions(**given)
+    require_polish_options(options.iterations, options.seconds, options.seed)
+    return options
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """Options that stand in a request beside its other fields: their classes, and the function that reads them.
+
+    Where there are several classes, the field `planner` names one.
+    """
+
+    kinds: tuple[type[Any], ...]
+    take: Callable[[Request], Any]
+
+
+OPTIONS: Mapping[Any, Options] = {
+    Neighbourhood: Options((Neighbourhood,), _neighbourhood),
+    Planner | None: Options(tuple(PLANNERS.values()), _planner),
+    PolishOptions: Options((PolishOptions,), _polish_options),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """A field of a request in JSON; a field without default is required."""
+
+    name: str
+    type: Any
+    default: Any = MISSING
+
+
+@dataclass(frozen=True, slots=True)
+class Op:
+    """An op: `request` is a dataclass, `result` what the handler returns."""
+
+    name: str
+    request: type[Any]
+    result: Any
+    handle: Callable[[Any, Engine], Any]
+
+    def read(self, request: Request) -> Any:  # noqa: ANN401 - the op's own request
+        """Read the fields of a request; raises `Refusal` for the first wrong one, and for an unknown one."""
+        values = {}
+        for field, hint in _hints(self.request):
+            if hint in OPTIONS:
+                values[field.name] = OPTIONS[hint].take(request)
+            elif field.default is MISSING or field.name in request:
+                values[field.name] = request.take(field.name, reader_of(hint))
+        request.end()
+        return self.request(**values)
+
+    def answer(self, request: Request, engine: Engine) -> object:
+        """The result of a request, as JSON holds it."""
+        return made(self.handle(self.read(request), engine))
+
+    @property
+    def statement(self) -> str:
+        """The description of the op, from its handler."""
+        return " ".join((self.handle.__doc__ or "").split())
+
+    @property
+    def fields(self) -> Iterator[Field]:
+        """The fields of its request besides id and op."""
+        for field, hint in _hints(self.request):
+            if hint not in OPTIONS:
+                yield Field(field.name, document_of(hint), field.default)
+                continue
+            kinds = OPTIONS[hint].kinds
+            if len(kinds) > 1:
+                yield Field("planner", Literal[tuple(PLANNERS)], Neighbourhood.name)
+            options = (each for kind in kinds for each in _hints(kind))
+            yield from {each.name: Field(each.name, of, each.default) for each, of in options}.values()
+
+
+def op_of(handle: Callable[[Any, Engine], Any]) -> Op:
+    """The op of a handler, by its annotations; `_` in the handler's name is `-` in the op's."""
+    hints = get_type_hints(handle)
+    return Op(handle.__name__.replace("_", "-"), hints["request"], hints["return"], handle)
+
+
+def _hints(kind: type[Any]) -> Iterator[tuple[dataclasses.Field[Any], Any]]:
+    hints = get_type_hints(kind)
+    return ((field, hints[field.name]) for field in dataclasses.fields(kind))
+
+
+def _required(hint: Any) -> Any:  # noqa: ANN401 - a type hint
+    """The type of a field that is present; a field that may be left out must not be null."""
+    kinds = tuple(kind for kind in get_args(hint) if kind is not NoneType)
+    return Union[kinds] if NoneType in get_args(hint) else hint  # noqa: UP007 - made of a tuple
+
+
+def document_of(hint: Any) -> Any:  # noqa: ANN401 - a type hint
+    """The type of what JSON holds."""
+    kind = _required(hint)
+    return DOCUMENTS[kind].document if kind in DOCUMENTS else kind
+
+
+def reader_of(hint: Any) -> Callable[[bytes], Any]:  # noqa: ANN401 - a type hint
+    """The decoder of a field or a result."""
+    kind = _required(hint)
+    return DOCUMENTS[kind].read if kind in DOCUMENTS else value_of(kind)
+
+
+def made(value: object) -> Any:  # noqa: ANN401 - whatever msgspec writes
+    """The JSON value of a field or a result."""
+    return DOCUMENTS[type(value)].make(value) if type(value) in DOCUMENTS else value
+
+
+def request_fields(request: Any) -> dict[str, Any]:  # noqa: ANN401 - the request of any op
+    """The fields of a request besides id and op; what is `None` is left out."""
+    fields: dict[str, Any] = {}
+    for field, hint in _hints(type(request)):
+        value = getattr(request, field.name)
+        if value is None:
+            continue
+        if hint in OPTIONS:
+            name = {"planner": value.name} if len(OPTIONS[hint].kinds) > 1 else {}
+            fields |= {**name, **asdict(value)}
+        else:
+            fields[field.name] = made(value)
+    return {name: value for name, value in fields.items() if value is not None}

@@ -1,0 +1,103 @@
+"""The ops that plan."""
+
+from dataclasses import asdict, dataclass, field
+
+import msgspec
+
+from carp_spec import Instance, Neighbourhood, Plan, Planner, ResourceId, RobotId, Solution, Visit
+from carp_spec.inputs.requests import require_new_robot, require_robot, require_tick
+from carp_verify.documents import visits_document
+from carproof.engines import Engine, warm
+from carproof.protocol.ops.op import PolishOptions
+from carproof.requests import inside, sound_within
+
+
+@dataclass(frozen=True, slots=True)
+class QueryRequest:
+    """A robot to plan at the tick `now`."""
+
+    instance: Instance
+    solution: Solution
+    robot: RobotId
+    now: int = 0
+
+
+class QueryDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The visits of the plan, or null if none exists."""
+
+    plan: tuple[tuple[ResourceId, int, int | None], ...] | None
+
+    def plan_of(self, robot: RobotId) -> Plan | None:
+        """The plan of the robot that was asked for."""
+        return None if self.plan is None else Plan(robot, tuple(Visit(*visit) for visit in self.plan))
+
+
+def query_document(plan: Plan | None) -> QueryDocument:
+    """The document of a query's result."""
+    return QueryDocument(None if plan is None else visits_document(plan))
+
+
+def query(request: QueryRequest, engine: Engine) -> QueryDocument:
+    """Plan one robot beside the plans of the others.
+
+    A plan of the robot itself in `solution` is its history: its visits before `now` stay, and the rest of the plan is
+    in no robot's way.
+    """
+    require_tick(request.now, "$.now")
+    require_robot(request.instance, request.robot, "$.robot")
+    committed = sound_within(request.instance, request.solution, request.robot)
+    with inside("$.instance"):
+        return query_document(engine.query(request.instance, committed.plans, request.robot, request.now))
+
+
+@dataclass(frozen=True, slots=True)
+class PlanRequest:
+    """An instance to plan, by the planner named or, without one, by the program's first choice."""
+
+    instance: Instance
+    planner: Planner | None = None
+
+
+def plan(request: PlanRequest, engine: Engine) -> Solution:
+    """Plan all robots."""
+    with inside("$.instance"):
+        return engine.plan(request.instance, request.planner or Neighbourhood())
+
+
+@dataclass(frozen=True, slots=True)
+class AddRequest:
+    """A robot to add at the tick `now`."""
+
+    instance: Instance
+    solution: Solution
+    robot: RobotId
+    now: int = 0
+    options: Neighbourhood = field(default_factory=Neighbourhood)
+
+
+def add(request: AddRequest, engine: Engine) -> Solution:
+    """Add one robot by the neighbourhood planner; robots near it may get new plans from `now` on."""
+    instance = request.instance
+    require_tick(request.now, "$.now")
+    require_new_robot(instance, request.solution, request.robot, "$.robot")
+    before = sound_within(instance, request.solution)
+    with inside("$.instance"):
+        return engine.add(instance, before, request.robot, request.now, request.options)
+
+
+@dataclass(frozen=True, slots=True)
+class PolishRequest:
+    """A solution to improve."""
+
+    instance: Instance
+    solution: Solution
+    options: PolishOptions = field(default_factory=PolishOptions)
+
+
+def polish(request: PolishRequest, engine: Engine) -> Solution:
+    """Improve a solution, for a number of rounds or for a time."""
+    before = sound_within(request.instance, request.solution)
+    if request.options.seconds is not None:
+        warm()
+    with inside("$.instance"):
+        return engine.polish(request.instance, before, **asdict(request.options))

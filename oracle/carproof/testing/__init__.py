@@ -1,0 +1,1 @@
+"""Drawing random instances and broken solutions, for tests of planners."""

@@ -1,0 +1,201 @@
+"""Random questions for both engines, small and fast to draw; equal numbers, equal question."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import TypeAlias, TypeVar
+
+from carp_spec import (
+    AfterGoal,
+    Carp,
+    Greedy,
+    Instance,
+    LongestFirst,
+    Neighbourhood,
+    Plan,
+    Planner,
+    Resource,
+    ResourceGraph,
+    Robot,
+    RobotId,
+    Shuffled,
+    Solution,
+)
+from carp_spec.permutations import shuffle, splitmix64
+from carp_spec.planners import LARGEST_SEED
+from carproof.testing.timing import path_between, timed_plan
+
+T = TypeVar("T")
+
+MOST_MEMBERS = 4
+SIMPLE_PLANNERS: tuple[Planner, ...] = (Carp(), LongestFirst(), Greedy())
+
+
+@dataclass(frozen=True, slots=True)
+class FleetUnderWay:
+    """A solution that is being followed at the tick `now`, and a robot to add that has no plan yet."""
+
+    instance: Instance
+    solution: Solution
+    robot: RobotId
+    now: int
+
+
+@dataclass(frozen=True, slots=True)
+class Mix:
+    """The values that instances are made of; one that stands twice is drawn twice as often.
+
+    Graphs are trees with at most `more` further edges. A directed one has each edge in one direction or, with
+    `both_ways`, three in four edges in both. With `goals_apart`, the goals of most instances are as distinct as the
+    starts.
+    """
+
+    sizes: Sequence[int] = (1, 2, 3, 4, 4, 5, 5, 6)
+    robots: Sequence[int] = (1, 2, 3, 4, 5)
+    capacities: Sequence[int] = (2, 1, 1, 1)
+    durations: Sequence[int] = (1, 2, 3)
+    releases: Sequence[int] = (0, 1, 2, 3, 4)
+    paces: Sequence[int] = (1, 2)
+    more: int = 6
+    both_ways: bool = False
+    goals_apart: bool = False
+
+
+SMALL = Mix()
+
+
+Question: TypeAlias = tuple[Instance, Planner] | tuple[FleetUnderWay, Neighbourhood]
+
+
+@dataclass(frozen=True, slots=True)
+class Draw:
+    """Numbers of a stream, as choices."""
+
+    stream: Iterator[int]
+
+    def between(self, least: int, most: int) -> int:
+        """A whole number from the least to the most, both included."""
+        return least + next(self.stream) % (most - least + 1)
+
+    def one_of(self, choices: Sequence[T]) -> T:
+        """One of the choices."""
+        return choices[next(self.stream) % len(choices)]
+
+    def happens(self, one_in: int) -> bool:
+        """True once in this many times."""
+        return next(self.stream) % one_in == 0
+
+
+def question(seed: int, number: int) -> Question:
+    """The question of that number."""
+    return draw_question(Draw(splitmix64(next(splitmix64(seed)) + number)))
+
+
+def draw_question(draw: Draw) -> Question:
+    """An instance and a planner, or a fleet under way and a robot to add.
+
+    Durations, capacities, releases, paces, both kinds of ids and graphs, both policies and all options are mixed.
+    Starts and goals may be shared, the same, or out of reach of each other.
+    """
+    instance = draw_instance(draw)
+    if draw.happens(4):
+        return draw_fleet(draw, instance), draw_neighbourhood(draw)
+    return instance, draw_planner(draw)
+
+
+def draw_instance(draw: Draw, mix: Mix = SMALL) -> Instance:
+    """An instance of a few resources and robots."""
+    size = draw.one_of(mix.sizes)
+    ids = draw_ids(draw, size)
+    simple = draw.happens(3)
+    resources = tuple(
+        Resource(
+            id,
+            1 if simple else draw.one_of(mix.capacities),
+            1 if simple else draw.one_of(mix.durations),
+            *((None, None) if draw.happens(8) else (draw.between(-2, 3), draw.between(-2, 3))),
+        )
+        for id in ids
+    )
+    graph = draw_graph(draw, resources, mix)
+    count = draw.one_of(mix.robots)
+    starts = [draw.one_of(ids) for _ in range(count)] if draw.happens(3) else [*shuffle(ids, draw.stream), *ids]
+    goals = [*shuffle(ids, draw.stream), *ids] if mix.goals_apart and not draw.happens(4) else None
+    robots = tuple(
+        Robot(
+            id,
+            start,
+            goals[place] if goals else draw.one_of(ids),
+            0 if simple or draw.happens(2) else draw.one_of(mix.releases),
+            1 if simple or draw.happens(2) else draw.one_of(mix.paces),
+        )
+        for place, (id, start) in enumerate(zip(draw_ids(draw, count), starts, strict=False))
+    )
+    policies: tuple[AfterGoal, ...] = ("vanish", "park")
+    return Instance(graph, robots, draw.one_of(policies))
+
+
+def draw_ids(draw: Draw, count: int) -> Sequence[str | int]:
+    """Distinct ids, among them 1 beside "1"."""
+    pool: list[str | int] = [*range(count), *map(str, range(count))]
+    return shuffle(pool, draw.stream)[:count]
+
+
+def draw_graph(draw: Draw, resources: tuple[Resource, ...], mix: Mix) -> ResourceGraph:
+    """A tree, which seldom lacks an edge, and some more edges."""
+    ids = [resource.id for resource in resources]
+    edges = [(draw.one_of(ids[:place]), ids[place]) for place in range(1, len(ids)) if not draw.happens(12)]
+    pairs = list(combinations(ids, 2))
+    more = [draw.one_of(pairs) for _ in range(draw.between(0, min(mix.more, len(ids))))] if pairs else []
+    present = {frozenset(edge): edge for edge in (*more, *edges)}
+    moves = [(target, source) if draw.happens(2) else (source, target) for source, target in present.values()]
+    directed = draw.happens(4)
+    if directed and mix.both_ways:
+        moves += [(target, source) for source, target in moves if not draw.happens(4)]
+    return ResourceGraph(resources, tuple(moves), directed)
+
+
+def draw_planner(draw: Draw) -> Planner:
+    """A planner that both engines have."""
+    if draw.happens(2):
+        return draw_neighbourhood(draw)
+    if draw.happens(4):
+        return Shuffled(draw.between(1, 3), draw.between(0, LARGEST_SEED))
+    return draw.one_of(SIMPLE_PLANNERS)
+
+
+def draw_neighbourhood(draw: Draw) -> Neighbourhood:
+    """Options of the neighbourhood planner; large neighbourhoods are seldom, as they take the reference long."""
+    m = draw.one_of((1, 2, 2, 3, 3, 3, 3, MOST_MEMBERS))
+    return Neighbourhood(
+        m=m,
+        sample=draw.between(1, 6) if m == MOST_MEMBERS or draw.happens(2) else None,
+        seed=draw.between(0, LARGEST_SEED),
+        baseline=draw.happens(2),
+        fallback=draw.between(1, 3) if draw.happens(3) else None,
+    )
+
+
+def draw_fleet(draw: Draw, instance: Instance) -> FleetUnderWay:
+    """A fleet under way; its plans make detours and wait, as those of any planner might."""
+    new, *others = shuffle(instance.robots, draw.stream)
+    plans: list[Plan] = []
+    for robot in others:
+        plan = draw_plan(draw, instance, plans, robot)
+        if plan is not None:
+            plans.append(plan)
+    solution = Solution.of(instance, plans)
+    last = max((visit.leave or visit.enter for plan in plans for visit in plan.visits), default=0)
+    return FleetUnderWay(instance, solution, new.id, draw.between(0, last))
+
+
+def draw_plan(draw: Draw, instance: Instance, committed: Sequence[Plan], robot: Robot) -> Plan | None:
+    """A plan over some resource that stays longer than needed in each; `None` if there is no way, or none is free."""
+    over = draw.one_of(instance.graph.resources).id
+    there, back = path_between(instance.graph, robot.start, over), path_between(instance.graph, over, robot.goal)
+    path = (*there[:-1], *back) if there and back else path_between(instance.graph, robot.start, robot.goal)
+    if not path:
+        return None
+    waits = [draw.between(0, 2) if draw.happens(2) else 0 for _ in path[1:]] + [0]
+    stays = [instance.duration(robot.id, resource) + wait for resource, wait in zip(path, waits, strict=True)]
+    return timed_plan(instance, committed, robot.id, path, stays)

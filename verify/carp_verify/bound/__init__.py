@@ -1,0 +1,1 @@
+"""Lower bounds: their rules, and the checker of their certificates."""

@@ -1,0 +1,1 @@
+"""Optima: the formula of a smaller total, refutations, and proof directories."""

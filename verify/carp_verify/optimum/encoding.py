@@ -1,0 +1,213 @@
+"""The one encoding of an instance into clauses, and of a bound on the total cost.
+
+Each robot has the clauses of `carp_verify.optimum.robot_clauses` up to its own horizon, which are a relaxation. The
+rules `joint/capacity` and `joint/exchange` are added for chosen places and ticks, or for all. So with any horizons:
+
+- if the clauses with `delays < k` have no model, no plan set costs less than the sum of shortest paths + k;
+- a model of the clauses in which no robot is later than its horizon and in which all conflicts are forbidden
+  holds a plan set of at most that cost (and the checker of carp_spec is asked anyway).
+"""
+
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise, zip_longest
+
+from carp_spec import Instance, Move, Plan, ResourceId, Robot
+from carp_verify.limits import require_following
+from carp_verify.optimum.clauses import Clause, Formula, Literal
+from carp_verify.optimum.robot_clauses import RobotClauses, predecessors
+from carp_verify.optimum.rules import LARGEST_FORMULA, LARGEST_PROOF
+
+
+@dataclass(frozen=True, slots=True)
+class Conflict:
+    """A capacity at a tick, or with a `target` an exchange of the two resources at a tick."""
+
+    tick: int
+    resource: ResourceId
+    target: ResourceId | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """The horizons and the order of adding delays with which the encoding proves the bound."""
+
+    horizons: tuple[int, ...]
+    order: tuple[int, ...]
+
+
+class Encoding:
+    """The clauses of all robots of an instance, without a horizon at first; every robot must have a way.
+
+    `check` is called before each robot, whose distances on a large map take a while; it may raise `TimeOver`. A formula
+    of more than `most` clauses is refused. `seen` has the tick at which each robot is seen, if they are.
+    """
+
+    def __init__(
+        self,
+        instance: Instance,
+        check: Callable[[], None] = lambda: None,
+        most: int = LARGEST_FORMULA,
+        seen: Sequence[int] = (),
+    ) -> None:
+        self.instance = instance
+        self.formula = Formula(most)
+        before = predecessors(instance)
+        self.robots: list[RobotClauses] = []
+        for robot, tick in zip_longest(instance.robots, seen):
+            check()
+            self.robots.append(RobotClauses(instance, robot, before, self.formula, tick))
+        self._presence: dict[tuple[int, ResourceId, int], tuple[Literal, set[Clause]]] = {}
+
+    @property
+    def wayless(self) -> list[Robot]:
+        """The robots from whose start no way leads to their goal."""
+        return [robot.robot for robot in self.robots if robot.shortest is None]
+
+    @property
+    def shortest(self) -> int:
+        """The sum of the robots' costs on the empty graph."""
+        return sum(robot.shortest or 0 for robot in self.robots)
+
+    def presence(self, position: int, resource: ResourceId, tick: int) -> Literal | None:
+        """A literal that holds if the robot is in the resource at the tick; `None` if it cannot be there."""
+        stays = list(self.robots[position].stays(resource, tick))
+        if not stays:
+            return None
+        if len(stays) == 1 and len(stays[0]) == 1:
+            return stays[0][0]
+        key = (position, resource, tick)
+        if key not in self._presence:
+            self._presence[key] = (self.formula.variable(), set())
+        literal, known = self._presence[key]
+        for stay in stays:
+            if stay not in known:
+                known.add(stay)
+                self.formula.add(*(-each for each in stay), literal)
+        return literal
+
+    def moves(self, position: int, source: ResourceId, target: ResourceId, tick: int) -> Clause | None:
+        """Literals that hold together if the robot makes the move at the tick; `None` if it cannot."""
+        leaves = self.robots[position].node.get((source, tick))
+        enters = None if leaves is None else self.presence(position, target, tick)
+        return None if leaves is None or enters is None else (leaves, enters)
+
+    def forbid(self, conflict: Conflict) -> None:
+        """Add the clauses that forbid a conflict to all robots, as far as their horizons reach."""
+        if conflict.target is None:
+            visitors = self._visitors(conflict.resource)
+            present = [self.presence(each, conflict.resource, conflict.tick) for each in visitors]
+            literals = [literal for literal in present if literal is not None]
+            self.formula.at_most(literals, self.instance.graph.resource[conflict.resource].capacity)
+            return
+        source, target, tick = conflict.resource, conflict.target, conflict.tick
+        there = [(each, self.moves(each, source, target, tick)) for each in self._visitors(source)]
+        back = [(each, self.moves(each, target, source, tick)) for each in self._visitors(target)]
+        for one, first in there:
+            for other, second in back:
+                if one != other and first is not None and second is not None:
+                    self.formula.add(*(-literal for literal in (*first, *second)))
+
+    def _visitors(self, resource: ResourceId) -> list[int]:
+        return [position for position, robot in enumerate(self.robots) if robot.may_visit(resource)]
+
+    def conflicts(self) -> Iterator[Conflict]:
+        """All conflicts that can happen within the horizons: capacities wherever a robot may enter, exchanges."""
+        entries = dict.fromkeys(entry for robot in self.robots for entry in robot.entries())
+        for resource, tick in entries:
+            yield Conflict(tick, resource)
+        movers: dict[tuple[int, Move], set[int]] = defaultdict(set)
+        for position, robot in enumerate(self.robots):
+            for source, tick in robot.node:
+                for target in self.instance.graph.successors[source]:
+                    if any(self.robots[position].stays(target, tick)):
+                        movers[tick, (source, target)].add(position)
+        index = self.instance.graph.index
+        for (tick, (source, target)), there in movers.items():
+            back = movers.get((tick, (target, source)), set())
+            if index[source] < index[target] and back and len(there | back) > 1:
+                yield Conflict(tick, source, target)
+
+    def forbid_all(self) -> None:
+        """Forbid all conflicts."""
+        for conflict in list(self.conflicts()):
+            self.forbid(conflict)
+
+    def grow_to(self, horizons: Sequence[int]) -> None:
+        """Give each robot its horizon; raises `Refusal` at once if the nodes alone need too many clauses."""
+        nodes = sum(robot.nodes_within(horizon) for robot, horizon in zip(self.robots, horizons, strict=True))
+        self.formula.require(nodes + sum(horizons))
+        for robot, horizon in zip(self.robots, horizons, strict=True):
+            while robot.horizon < horizon:
+                robot.grow()
+
+    def bound_delays(self, bound: int, order: Sequence[int]) -> None:
+        """Demand that the delays of all robots add up to less than the bound; any order of adding them will do."""
+        if bound <= 0:
+            self.formula.add()  # the empty clause: no delay is below zero
+            return
+        delays = self.formula.at_least([self.robots[position].late for position in order], bound)
+        if len(delays) >= bound:
+            self.formula.add(-delays[bound - 1])
+
+    def close(self) -> None:
+        """Demand that no robot is later than its horizon."""
+        for robot in self.robots:
+            self.formula.add(-robot.late[robot.horizon])
+
+    def plans(self, model: Sequence[bool]) -> list[Plan | None]:
+        """The plans in a model, which is the truth of each variable; `None` for a robot later than its horizon."""
+        return [robot.plan(model) for robot in self.robots]
+
+
+def reach_formula(instance: Instance, cost: int, evidence: Evidence, most: int = LARGEST_PROOF) -> Encoding:
+    """The encoding of plans whose total is at most `cost`, each within its robot's horizon.
+
+    Raises `Refusal` beyond `most` clauses.
+    """
+    encoding = _bounded(instance, cost + 1, evidence, most)
+    encoding.close()
+    return encoding
+
+
+def beat_formula(instance: Instance, cost: int | None, evidence: Evidence, most: int = LARGEST_PROOF) -> Encoding:
+    """The relaxed encoding of plans whose total is less than `cost`, or of any plans where it is `None`.
+
+    Raises `Refusal` beyond `most` clauses.
+    """
+    return _bounded(instance, cost, evidence, most)
+
+
+def _bounded(instance: Instance, bound: int | None, evidence: Evidence, most: int) -> Encoding:
+    require_following(instance)
+    encoding = Encoding(instance, most=most)
+    encoding.grow_to(evidence.horizons)
+    encoding.forbid_all()
+    if bound is not None:
+        encoding.bound_delays(bound - encoding.shortest, evidence.order)
+    return encoding
+
+
+def violated(instance: Instance, plans: Sequence[Plan]) -> list[Conflict]:
+    """The conflicts among the plans, by tick: at each entry that exceeds a capacity, and at each exchange."""
+    stays: dict[ResourceId, list[tuple[int, int | None]]] = defaultdict(list)
+    movers: dict[tuple[int, Move], int] = defaultdict(int)
+    for plan in plans:
+        for visit in plan.visits:
+            stays[visit.resource].append((visit.enter, visit.leave))
+        for visit, following in pairwise(plan.visits):
+            movers[following.enter, (visit.resource, following.resource)] += 1
+    found = []
+    for resource, intervals in stays.items():
+        capacity = instance.graph.resource[resource].capacity
+        if len(intervals) > capacity:
+            for tick in dict.fromkeys(enter for enter, _ in intervals):
+                present = sum(enter <= tick and (leave is None or tick < leave) for enter, leave in intervals)
+                if present > capacity:
+                    found.append(Conflict(tick, resource))
+    index = instance.graph.index
+    for tick, (source, target) in movers:
+        if index[source] < index[target] and (tick, (target, source)) in movers:
+            found.append(Conflict(tick, source, target))
+    return found

@@ -1,0 +1,132 @@
+"""Ground truth for tiny instances: the least total cost, by Dijkstra over the states of all robots together.
+
+It moves all robots tick by tick, straight from the rules, and shares nothing with the encoding. Its states are finite
+in number, because the tick counts only up to the last release. So the search also ends where no plan set exists.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from heapq import heappop, heappush
+from itertools import product
+from typing import Literal, TypeAlias
+
+from carp_spec import Instance, ResourceId, Robot
+from carp_spec.inputs.values import require_instance
+from carp_verify.limits import require_following
+from carp_verify.optimum.rules import LARGEST_SEARCH, refuse_size
+
+Phase: TypeAlias = Literal["waits", "moves", "arrived"]
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """The state of one robot at a tick.
+
+    It waits for its release (in no resource), moves (in a resource that it must not leave for `ticks` ticks, this one
+    counted), or has arrived (it stays for `ticks` more ticks, or for ever with `None`; then it is in no resource).
+    """
+
+    phase: Phase
+    resource: ResourceId | None
+    ticks: int | None
+
+
+Joint: TypeAlias = tuple[State, ...]
+WAITS = State("waits", None, None)
+GONE = State("arrived", None, 0)
+
+
+class _Search:
+    def __init__(self, instance: Instance) -> None:
+        self.instance = instance
+        self.last_release = max((robot.release for robot in instance.robots), default=0)
+
+    def entering(self, robot: Robot, resource: ResourceId) -> Iterator[State]:
+        """The states of a robot that enters a resource now: on its way, and at its goal also arrived."""
+        duration = self.instance.duration(robot.id, resource)
+        yield State("moves", resource, duration)
+        if resource == robot.goal:
+            yield State("arrived", resource, None if self.instance.after_goal == "park" else duration)
+
+    def at(self, robot: Robot, tick: int, before: State) -> Iterator[State]:
+        """The states in which a robot can be at the tick, after its state at the tick before."""
+        if before.phase == "waits":
+            if robot.release == tick:
+                yield from self.entering(robot, robot.start)
+            else:
+                yield WAITS
+        elif before.phase == "arrived":
+            stays = before.ticks is None or before.ticks > 1
+            yield State("arrived", before.resource, before.ticks and before.ticks - 1) if stays else GONE
+        elif before.ticks is not None and before.ticks > 1:
+            yield State("moves", before.resource, before.ticks - 1)
+        elif before.resource is not None:
+            yield State("moves", before.resource, 1)
+            for target in self.instance.graph.successors[before.resource]:
+                yield from self.entering(robot, target)
+
+    def is_allowed(self, before: Sequence[State], after: Sequence[State]) -> bool:
+        """Whether `joint/capacity` holds now and `joint/exchange` on the way here."""
+        present = Counter(state.resource for state in after if state.resource is not None)
+        resource = self.instance.graph.resource
+        if any(count > resource[each].capacity for each, count in present.items()):
+            return False
+        moves = [
+            (old.resource, new.resource)
+            for old, new in zip(before, after, strict=True)
+            if old.resource is not None and new.resource is not None and old.resource != new.resource
+        ]
+        return not any((target, source) in moves for source, target in moves)
+
+    def following(self, tick: int, before: Joint) -> Iterator[Joint]:
+        """The joint states at the tick after one at the tick before."""
+        choices = [
+            list(self.at(*each)) for each in zip(self.instance.robots, [tick] * len(before), before, strict=True)
+        ]
+        for after in product(*choices):
+            if self.is_allowed(before, after):
+                yield after
+
+
+def joint_states(instance: Instance) -> int:
+    """An upper bound on the number of joint states of all robots, apart from the tick.
+
+    A robot is in a resource, with a number of ticks to stay, or waits for its release, or is gone or parked.
+    """
+    states = 1
+    for robot in instance.robots:
+        states *= 2 + sum(instance.duration(robot.id, resource.id) + 1 for resource in instance.graph.resources)
+    return states
+
+
+def least_total_cost(
+    instance: Instance, most: int = LARGEST_SEARCH, on_step: Callable[[], None] | None = None
+) -> int | None:
+    """The least total cost of plans for all robots, or `None` if there are none.
+
+    Raises `Refusal` before more than `most` joint states are looked at; `on_step` is called at each, and may raise.
+    """
+    require_instance(instance)
+    require_following(instance)
+    search = _Search(instance)
+    queue: list[tuple[int, int, int, Joint]] = [(0, 0, -1, tuple(WAITS for _ in instance.robots))]
+    settled: set[tuple[int, Joint]] = set()
+    queued = 1
+    while queue:
+        cost, _, tick, joint = heappop(queue)
+        if (tick, joint) in settled:
+            continue
+        settled.add((tick, joint))
+        if on_step is not None:
+            on_step()
+        if all(state.phase == "arrived" for state in joint):
+            return cost
+        ahead = min(tick + 1, search.last_release + 1)
+        step = sum(state.phase == "moves" for state in joint)
+        for after in search.following(ahead, joint):
+            if (ahead, after) not in settled:
+                queued += 1
+                refuse_size("the joint states that the search looks at", queued, most)
+                heappush(queue, (cost + step, queued, ahead, after))
+    return None

@@ -1,0 +1,1 @@
+"""Queries: the rules of their certificates, and the checker."""

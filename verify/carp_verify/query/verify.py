@@ -1,0 +1,251 @@
+"""Checks the certificate of a query: whole numbers, the standard library, and nothing of the planners' search.
+
+Why the bound holds: take any plan of the robot that breaks no rule, alone or together with the plans of the others.
+Follow it from the start, which is where the robot is at the tick `now`. As long as t + potential is before the bound,
+the window that the plan enters at t has a label no later than t: from the start or a label, every window that can be
+entered has one, and who is ready earlier can enter every window as early. The plan cannot end at such a label, so it
+comes to a window at which t + potential has reached the bound. From there on that sum never falls, as the potential
+grows along no move by more than the robot needs, and at the goal it is the arrival.
+
+A plan that has ended stays as it is. Where the plans of the others leave no room for what the robot has done, it has no
+plan at all, and every claim about its plans is true.
+
+The same conditions are proved sufficient in `kernel/QueryCertificate.v`.
+"""
+
+from bisect import bisect_left, bisect_right
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from carp_spec import Instance, Plan, Refusal, ResourceId, Robot, Rule, Solution, Visit, has_ended
+from carp_spec.inputs.values import require_solution
+from carp_spec.query_certificates import QueryCertificateDocument
+from carp_spec.windows import Window
+from carp_verify.limits import require_following
+from carp_verify.query.rules import (
+    LARGEST_CHECK,
+    is_closed,
+    is_no_later,
+    is_potential,
+    plans_are_lawful,
+    robot_is_known,
+    size_fits,
+)
+
+
+class Traffic:
+    """The committed plans by resource and tick: it takes plans one by one, and gives the free windows."""
+
+    def __init__(self, instance: Instance) -> None:
+        self.instance = instance
+        self._changes: dict[ResourceId, list[int]] = defaultdict(lambda: [0])
+        self._inside: dict[ResourceId, list[int]] = defaultdict(lambda: [0])
+        self._moves: set[tuple[int, ResourceId, ResourceId]] = set()
+
+    def commit(self, plan: Plan) -> None:
+        """Add the stays and the moves of a plan."""
+        for visit in plan.visits:
+            first = self._cut(visit.resource, visit.enter)
+            inside = self._inside[visit.resource]
+            last = len(inside) if visit.leave is None else self._cut(visit.resource, visit.leave)
+            for position in range(first, last):
+                inside[position] += 1
+        for visit, following in pairwise(plan.visits):
+            self._moves.add((following.enter, visit.resource, following.resource))
+
+    def _cut(self, resource: ResourceId, tick: int) -> int:
+        """The position of the tick among those at which something changes; the tick is inserted if it is missing."""
+        changes, inside = self._changes[resource], self._inside[resource]
+        position = bisect_left(changes, tick)
+        if position == len(changes) or changes[position] != tick:
+            changes.insert(position, tick)
+            inside.insert(position, inside[position - 1])
+        return position
+
+    def size(self, resource: ResourceId) -> int:
+        """The number of ticks at which the number of robots in the resource may change."""
+        return len(self._changes[resource])
+
+    def windows(self, resource: ResourceId, tick: int) -> Iterator[Window]:
+        """The free windows of the resource that end after the tick, in order of time."""
+        changes, inside = self._changes[resource], self._inside[resource]
+        capacity = self.instance.graph.resource[resource].capacity
+        position = bisect_right(changes, tick) - 1
+        while position > 0 and inside[position] < capacity and inside[position - 1] < capacity:
+            position -= 1
+        opened: int | None = None
+        for place in range(position, len(changes)):
+            if opened is None and inside[place] < capacity:
+                opened = changes[place]
+            elif opened is not None and inside[place] >= capacity:
+                yield Window(opened, changes[place])
+                opened = None
+        if opened is not None:
+            yield Window(opened, None)
+
+    def window_at(self, resource: ResourceId, tick: int) -> Window | None:
+        """The free window that holds the tick."""
+        window = next(self.windows(resource, tick), None)
+        return window if window is not None and window.start <= tick else None
+
+    def is_exchange(self, tick: int, source: ResourceId, target: ResourceId) -> bool:
+        """Whether a committed robot makes the opposite move at the tick."""
+        return (tick, target, source) in self._moves
+
+    def allows(self, visits: Sequence[Visit]) -> bool:
+        """Whether one more robot can make these visits."""
+        around = [(visit, self.window_at(visit.resource, visit.enter)) for visit in visits]
+        free = all(window is not None and window.lasts_until(visit.leave) for visit, window in around)
+        return free and not any(self.is_exchange(to.enter, at.resource, to.resource) for at, to in pairwise(visits))
+
+
+def verify_query(instance: Instance, solution: Solution, certificate: QueryCertificateDocument) -> int | None:
+    """The bound that the certificate proves, beside the plans of the other robots in the solution; `None`: no plan.
+
+    A plan of the robot itself in the solution is what it has followed until the tick `now`. Raises `Refusal` with what
+    is wrong with the certificate.
+    """
+    require_solution(instance, solution)
+    message = "the plans must each break no rule, and be of different robots of the instance"
+    _require(plans_are_lawful, plans_are_lawful(instance, solution.plans), "$", message)
+    robot = certificate.robot
+    message = f"the instance must have the robot, and has no {robot!r}"
+    _require(robot_is_known, robot_is_known(instance, robot), "$.robot", message)
+    traffic = Traffic(instance)
+    for plan in solution.plans:
+        if plan.robot != robot:
+            traffic.commit(plan)
+    require_certificate(traffic, certificate, next((plan for plan in solution.plans if plan.robot == robot), None))
+    return certificate.bound
+
+
+def require_certificate(traffic: Traffic, certificate: QueryCertificateDocument, followed: Plan | None = None) -> None:
+    """Raise `Refusal` unless the certificate shows its bound beside the plans committed.
+
+    The plan followed until now, and the plans committed, must be lawful.
+    """
+    require_following(traffic.instance)
+    if followed is not None and has_ended(followed, certificate.now):
+        if traffic.allows(followed.visits):
+            arrival = followed.visits[-1].enter
+            message = f"the plan that has ended arrives at {arrival}, so the bound must be no later"
+            _require(is_no_later, is_no_later(certificate.bound, arrival), "$.bound", message)
+        return
+    *past, current = history(traffic.instance, certificate, followed)
+    if traffic.allows((*past, current)):
+        Check(traffic, certificate).require(current)
+
+
+def history(instance: Instance, certificate: QueryCertificateDocument, followed: Plan | None) -> tuple[Visit, ...]:
+    """The visits that the robot has entered by now; the last is the current one, left as early as possible."""
+    robot = instance.robot[certificate.robot]
+    visits = () if followed is None else followed.visits
+    entered = [visit for visit in visits if visit.enter <= certificate.now]
+    *past, current = entered or [Visit(robot.start, robot.release, None)]
+    ready = max(current.enter + instance.duration(robot.id, current.resource), certificate.now)
+    return (*past, Visit(current.resource, current.enter, ready))
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A window that the robot is in, and the tick from which it may leave."""
+
+    resource: ResourceId
+    window: Window
+    ready: int
+    path: str
+
+
+class Check:
+    """The conditions on one certificate beside committed plans."""
+
+    def __init__(self, traffic: Traffic, certificate: QueryCertificateDocument) -> None:
+        self.traffic = traffic
+        self.instance = traffic.instance
+        self.robot: Robot = self.instance.robot[certificate.robot]
+        self.certificate = certificate
+        self.potential: Mapping[ResourceId, int] = dict(certificate.potential)
+        self.entries: dict[ResourceId, list[int]] = defaultdict(list)
+        for resource, tick in sorted(certificate.labels, key=lambda label: label[1]):
+            self.entries[resource].append(tick)
+
+    def require(self, current: Visit) -> None:
+        """Raise `Refusal` unless the certificate shows its bound for a robot in its current visit."""
+        self._require_size()
+        self._require_potential()
+        ready = current.leave
+        window = self.traffic.window_at(current.resource, current.enter)
+        assert window is not None  # noqa: S101 - the traffic allows the visit
+        assert ready is not None  # noqa: S101 - the history has it
+        if not self._is_late(current.resource, current.enter):
+            overstayed = current.enter + self._ticks(current.resource) < self.certificate.now
+            self._require_closed(Place(current.resource, window, ready, "$.labels"), overstayed)
+        for number, (resource, tick) in enumerate(self.certificate.labels):
+            if resource in self.instance.graph.resource and tick >= 0 and not self._is_late(resource, tick):
+                around = self.traffic.window_at(resource, tick)
+                if around is not None:
+                    place = Place(resource, around, tick + self._ticks(resource), f"$.labels[{number}]")
+                    self._require_closed(place, overstayed=False)
+
+    def _ticks(self, resource: ResourceId) -> int:
+        return self.instance.duration(self.robot.id, resource)
+
+    def _is_late(self, resource: ResourceId, tick: int) -> bool:
+        """Whether the robot, if it enters the resource at the tick, enters its goal no earlier than the bound."""
+        if resource not in self.potential:
+            return True
+        bound = self.certificate.bound
+        return bound is not None and bound <= tick + self.potential[resource]
+
+    def _require_size(self) -> None:
+        graph, size = self.instance.graph, self.traffic.size
+        resources: Iterable[ResourceId] = {each for each, _ in self.certificate.labels if each in graph.resource}
+        steps = {each: sum(size(each) + size(target) for target in graph.successors[each]) for each in resources}
+        total = len(self.certificate.labels) + sum(steps.get(resource, 0) for resource, _ in self.certificate.labels)
+        message = f"there would be {total} windows and moves to look at, and at most {LARGEST_CHECK} are allowed"
+        _require(size_fits, size_fits(total), "$.labels", message)
+
+    def _require_potential(self) -> None:
+        graph, pace = self.instance.graph, self.robot.pace
+        moves = ((each.id, graph.successors[each.id], pace * each.duration) for each in graph.resources)
+        for fault in is_potential(self.potential, self.robot.goal, moves):
+            raise Refusal("document", "$.potential", is_potential.id, fault)
+
+    def _require_closed(self, place: Place, overstayed: bool) -> None:
+        """Require that the plan cannot end in the place, and that all that can be entered from it is labelled."""
+        parks = self.instance.after_goal == "park"
+        can_end = place.window.end is None if parks else not overstayed
+        message = f"the robot can end its plan in {place.resource}, before the bound"
+        _require(is_closed, is_closed(place.resource == self.robot.goal and can_end, []), place.path, message)
+        for target in self.instance.graph.successors[place.resource]:
+            if target in self.potential:
+                self._require_labels(place, target)
+
+    def _require_labels(self, place: Place, target: ResourceId) -> None:
+        """Require a label for every window of the target that can be entered early enough."""
+        ticks = self._ticks(target)
+        for window in self.traffic.windows(target, place.ready):
+            if not place.window.lasts_until(window.start):
+                return
+            tick = max(place.ready, window.start)
+            while self._is_possible(place, window, tick, ticks) and self.traffic.is_exchange(
+                tick, place.resource, target
+            ):
+                tick += 1
+            if self._is_possible(place, window, tick, ticks) and not self._is_late(target, tick):
+                entries = self.entries[target]
+                position = bisect_left(entries, window.start)
+                first = entries[position] if position < len(entries) else None
+                message = f"{target} can be entered at {tick} from {place.resource}, and must have a label by then"
+                _require(is_closed, is_closed(False, [(tick, first)]), place.path, message)
+
+    def _is_possible(self, place: Place, window: Window, tick: int, ticks: int) -> bool:
+        """Whether the robot can move into the window at the tick and stay there, exchanges aside."""
+        return place.window.lasts_until(tick) and window.lasts_until(tick + ticks)
+
+
+def _require(rule: Rule[..., bool], kept: bool, path: str, message: str) -> None:
+    if not kept:
+        raise Refusal("document", path, rule.id, message)
