@@ -12,24 +12,31 @@ from carproof.markdown import markdown_table
 ROOT = Path(__file__).parents[1]
 KERNEL = ROOT / "verify" / "kernel"
 LAW = ("check", "joint_rules", "plan_rules", "instance_rules", "model", "rule", "refusal")
-BOUND = ("verify_bound", "bound_rules", "bounds", "limits")
-ENCODER = ("encoding", "robot_clauses", "clauses", "optimum_rules", "limits")
+BOUND = ("bound/verify", "bound/rules", "bounds", "limits")
+ENCODER = ("optimum/encoding", "optimum/robot_clauses", "optimum/clauses", "optimum/rules", "limits")
+UNSOLVABLE = ("optimum/proof", "optimum/unsolvable")
 CHECK = "`check`: no rule is broken"
 VERDICTS: dict[str, tuple[tuple[str, ...], str]] = {
     CHECK: (("documents",), ""),
     "`verify-bound`, without cuts": (BOUND, ""),
-    "`verify-bound`, with cuts": ((*BOUND, "bound_cuts", *ENCODER[:-1], "refutation"), ""),
-    "`verify-query` and `audit`": (("verify_query", "query_certificate_rules", "limits"), ""),
+    "`verify-bound`, with cuts": ((*BOUND, "bound/cuts", *ENCODER[:-1], "optimum/refutation"), ""),
+    "`verify-query` and `audit`": (("query/verify", "query/rules", "limits"), ""),
     "with `--kernel`": (
         ("kernel", "bounds", "limits"),
         "[the proved kernel](#the-proved-kernel), and not the law in Python",
     ),
-    "`verify-proof`, an optimum": (("proof", "plain_files", *ENCODER, "refutation"), ""),
-    "`verify-proof`, unsolvable by clauses": (("proof", "plain_files", "unsolvable", *ENCODER, "refutation"), ""),
-    "`verify-proof`, unsolvable otherwise": (("proof", "unsolvable", "joint_search", "optimum_rules", "limits"), ""),
-    "`certify`: z3 agrees on capacity and exchange": (("certificate", "smt", "limits"), "z3"),
+    "`verify-proof`, an optimum": (("optimum/proof", "plain_files", *ENCODER, "optimum/refutation"), ""),
+    "`verify-proof`, unsolvable by clauses": (
+        ("optimum/proof", "plain_files", "optimum/unsolvable", *ENCODER, "optimum/refutation"),
+        "",
+    ),
+    "`verify-proof`, unsolvable otherwise": (
+        ("optimum/proof", "optimum/unsolvable", "optimum/joint_search", "optimum/rules", "limits"),
+        "",
+    ),
+    "`certify`: z3 agrees on capacity and exchange": (("certificate", "lemmas/smt", "limits"), "z3"),
     "`theorems`: a lemma holds": (
-        ("engine", "smt", "vocabulary", "derivation"),
+        ("lemmas/engine", "lemmas/smt", "lemmas/vocabulary", "lemmas/derivation"),
         "z3, the argument by hand in the docstring",
     ),
 }

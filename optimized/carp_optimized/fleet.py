@@ -8,6 +8,7 @@ import numpy as np
 
 from carp_optimized import passes
 from carp_optimized.jit.compiling import RecordsExhausted, RoomExhausted, TicksExhausted
+from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
 from carp_optimized.neighbourhood.adding import add_robot
 from carp_optimized.neighbourhood.polishing import QUEUED, TURN, play_rounds
@@ -26,7 +27,6 @@ from carp_optimized.state.arrays import (
     UNCHANGED,
     UNREACHABLE,
     Adding,
-    Ints,
     Options,
     Polish,
     Records,

@@ -8,7 +8,8 @@ is below zero if the planner does better than any order, as one that replans rob
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from carp_optimum.optimum import Optimum, optimum
+from carp_optimum.optimum import optimum
+from carp_optimum.sat.core_guided import Optimum
 from carp_optimum.sat.solver import Deadline, TimeOver
 from carp_reference import plan, query
 from carp_spec import Instance, Plan, Planner, RobotId, plan_cost, total_cost

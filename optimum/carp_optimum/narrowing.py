@@ -1,4 +1,4 @@
-"""A lower bound and plans that come ever closer, searched for beside the core-guided search (`carp_optimum.optimum`).
+"""A lower bound and plans that come ever closer, searched for beside the core-guided search.
 
 First an annealing gives plans. Then plans of a total of at most a few ticks above the bound are searched for, again and
 again: there are none, which raises the bound, or the cheapest ones are found, and these are the optimum. Prices give a
@@ -11,13 +11,14 @@ Each stage gives the work of the next one before it begins. So one who asks for 
 
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Protocol, TypeAlias
 
 from carp_optimum.branching.branching import Branching
 from carp_optimum.lagrangian.reduced_costs import PricedBound
 from carp_optimum.sat import heuristics
+from carp_optimum.sat.between import Between
 from carp_optimum.sat.priced_formula import priced_formula
 from carp_optimum.sat.solver import Solver
 from carp_spec import Instance, Plan, Refusal, total_cost
@@ -35,38 +36,6 @@ WORK_OF_STEP, WORK_OF_STEP_BY_TEN_RESOURCES = 120, 6
 """The propagations of a step of the search for prices, for each robot, and more on a larger graph."""
 WORK_OF_PAIR = 2500
 """The propagations of making a formula or a branching, for each robot and each other one."""
-
-
-@dataclass(frozen=True, slots=True)
-class Between:
-    """No plans of all robots cost less than `lower` ticks, and `plans`, if any, are the best known."""
-
-    instance: Instance
-    lower: int = 0
-    plans: Sequence[Plan] | None = None
-
-    @property
-    def total(self) -> int | None:
-        """The total cost of the plans."""
-        return None if self.plans is None else total_cost(self.instance, self.plans)
-
-    @property
-    def is_optimum(self) -> bool:
-        """Whether no plans cost less than these."""
-        return self.total is not None and self.total <= self.lower
-
-    def with_plans(self, plans: Sequence[Plan] | None) -> "Between":
-        """These plans instead, if they cost less."""
-        better = plans is not None and (self.total is None or total_cost(self.instance, plans) < self.total)
-        return replace(self, plans=plans) if better else self
-
-    def sharpened(self, other: "Between") -> "Between":
-        """The better bound and the better plans."""
-        return replace(self.with_plans(other.plans), lower=max(self.lower, other.lower))
-
-    def of_all(self, other: "Between") -> "Between":
-        """The better plans, and the bound of all, where each of the two holds for one half of the plans."""
-        return replace(self.with_plans(other.plans), lower=min(self.lower, other.lower))
 
 
 Results: TypeAlias = Iterator[tuple[int, Between]]

@@ -1,319 +1,63 @@
-"""The least total cost of plans for all robots, by a core-guided search over one encoding.
+"""The least total cost of plans for all robots: a core-guided search, and beside it one for bounds and plans.
 
-Each robot is assumed to have no delay at first. As long as the assumptions cannot hold together, the solver names
-a core of them, and one of these must be given up: the lower bound rises by one, the robots in the core get a longer
-horizon, and the next assumption is that no other one of the core is given up. Once the assumptions hold, the
-model's plans have a total of just the lower bound; the conflicts among them are forbidden and the search
-continues, until none is left. Source: the OLL algorithm of Andres, Kaufmann, Matheis and Schaub 2012, over delays.
-
-After many conflicts a second search, for plans and for a lower bound (`carp_optimum.narrowing`), begins in another
-process (`carp_optimum.background`). The search ends where the best plans cost no more than the better bound. For a
-crowd this search instead takes half of the parts of a search by branching, and the other process the other half.
-
-Where no plan set exists, the search finds one of these obstacles (`carp_verify.optimum.unsolvable` says why each is
-one):
-
-- `no-way`: a robot has no way to its goal;
-- `full-goal`: with `park`, a resource is the goal of more robots than its capacity;
-- `clauses`: a core is empty, so robots break a rule however late they may be;
-- `states`: the joint states of all robots are few, and a search over all of them finds no end.
-
-The answer is not proved: it rests on this module and on the solver. `carp_optimum.sat.proving` writes a proof of it.
+The core-guided search (`carp_optimum.sat.core_guided`) decides most instances. After many conflicts a second search,
+for plans and for a lower bound (`carp_optimum.narrowing`), begins in another process (`carp_optimum.background`). For
+a dense instance the first search instead takes half of the parts of a search by branching, and the other process the
+other half.
 """
 
-from collections import Counter
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable
 from time import monotonic_ns
 
 from carp_optimum.background import Beside
-from carp_optimum.narrowing import Between, half_narrowed, narrowed
-from carp_optimum.sat.heuristics import plans_of_all
-from carp_optimum.sat.solver import Deadline, Solver, TimeOver
-from carp_spec import Instance, Plan, Refusal, Solution, judge, total_cost
-from carp_spec.inputs.options import require_limits
-from carp_spec.inputs.values import require_instance
-from carp_verify.bound.rules import ContradictionError, require_kept
-from carp_verify.limits import require_following
-from carp_verify.optimum.clauses import Literal, Unary
-from carp_verify.optimum.encoding import Encoding, Evidence, violated
-from carp_verify.optimum.joint_search import least_total_cost
-from carp_verify.optimum.unsolvable import Clauses, FullGoal, NoWay, Obstacle, States, is_searched
+from carp_optimum.narrowing import half_narrowed, narrowed
+from carp_optimum.sat.between import Between
+from carp_optimum.sat.core_guided import CoreGuided, Optimum, core_guided
+from carp_spec import Instance
 
-CONFLICTS_TO_SHRINK = 300
-CONFLICTS_BEFORE_BESIDE = 60_000
-"""Most searches that end within a minute end before these, and faster while nothing uses the memory beside them."""
-CONFLICTS_BETWEEN_RESULTS = 2000
-"""After this many conflicts the search asks for what was found beside it."""
 WORK_OF_WAITING = 1_000_000
 """The work after which it is asked for what was found in the other half of a crowd, once this one has ended."""
-DELAY_OF_DOUBT = 20
-PARTS = 5
-PARTS_BEFORE_HEURISTICS = (1, 3)
 
 
-@dataclass(frozen=True, slots=True)
-class Optimum:
-    """The least total cost.
-
-    `decided`: by the search, `cost` is the optimum and `solution` has it, or, where `cost` is `None`, no plan set
-    exists because of the `obstacle`. Otherwise `solution` is the best known, if any, `cost` its total, and `lower` a
-    bound that no plan set beats. `shortest` is the sum of the robots' costs if each were alone, a robot without a
-    way left out; `None` if the limit did not suffice to find them.
-    """
-
-    shortest: int | None
-    cost: int | None
-    lower: int
-    decided: bool
-    solution: Solution | None
-    evidence: Evidence
-    obstacle: Obstacle | None = None
-
-
-def optimum(instance: Instance, limit: float, clock: Callable[[], int] = monotonic_ns, priced: bool = True) -> Optimum:
+def optimum(instance: Instance, limit: float, clock: Callable[[], int] = monotonic_ns) -> Optimum:
     """Search for the optimum for at most `limit` seconds. Raises `Refusal` if the formula outgrows the memory.
 
-    A long search continues with prices if `priced`, where the compiled search for them is at hand.
+    A long search continues with prices, where the compiled search for them is at hand.
 
     The result does not depend on the clock, which gives nanoseconds: the same instance gives the same solution.
     """
-    require_instance(instance)
-    require_limits(limit=limit)
-    require_following(instance)
-    deadline = Deadline(limit, clock)
-    try:
-        encoding = Encoding(instance, deadline.check)
-    except TimeOver:
-        return Optimum(None, None, 0, decided=False, solution=None, evidence=Evidence((), ()))
-    search = _Search(encoding, deadline, priced)
-    try:
-        return search.run()
-    finally:
-        search.close()
+    return core_guided(instance, limit, clock, _start_beside)
 
 
-class _Search:
-    def __init__(self, encoding: Encoding, deadline: Deadline, priced: bool) -> None:
-        self.instance = encoding.instance
-        self.priced = priced
-        self.deadline = deadline
-        self.encoding = encoding
-        self.solver = Solver(encoding.formula, self.look, glucose=True)
-        self.delay = 0
-        self.horizon = 0
-        self.best: Sequence[Plan] | None = None
-        self.known = Between(self.instance)
-        self.here: Between | None = None
-        self.beside: Beside[Between] | None = None
-        self.work_before = 0
-        self.tries_of_heuristics = 0
-        self.order: dict[int, None] = {}
-        self.robot_of: dict[Literal, int] = {}
-        self.sum_of: dict[Literal, tuple[Unary, int]] = {}
+def _start_beside(search: CoreGuided) -> None:
+    """Start the search beside where the compiled search for prices is at hand; a crowd is searched by halves."""
+    from carp_optimized.jit.compiling import is_cached  # noqa: PLC0415 - slow to load
+    from carp_optimum.branching.bounds import bound_part  # noqa: PLC0415
+    from carp_optimum.branching.branching import is_crowded  # noqa: PLC0415
+    from carp_optimum.lagrangian.priced_paths import find_ways  # noqa: PLC0415
 
-    def close(self) -> None:
-        self.solver.close()
-        if self.beside is not None:
-            self.beside.close()
+    if not (is_cached(find_ways) and is_cached(bound_part)):
+        return
+    if is_crowded(search.instance):
+        _search_halves(search)
+    if not search.is_met:
+        search.work_before = search.solver.work
+        search.beside = Beside(lambda look: narrowed(search.instance, look), search.look)
 
-    def run(self) -> Optimum:
-        obstacle = self.obstacle()
-        if obstacle is not None:
-            return self.unsolvable(obstacle)
-        try:
-            for position in range(len(self.encoding.robots)):
-                self.grow(position)
-            return self.raise_bound()
-        except TimeOver:
-            return self.undecided()
 
-    def obstacle(self) -> Obstacle | None:
-        """The obstacle, if it shows without a search."""
-        for robot in self.encoding.wayless:
-            return NoWay(robot.id)
-        if self.instance.after_goal == "park":
-            for goal, robots in Counter(robot.goal for robot in self.instance.robots).items():
-                if robots > self.instance.graph.resource[goal].capacity:
-                    return FullGoal(goal)
-        return None
-
-    def raise_bound(self) -> Optimum:
-        while True:
-            assumptions = [-literal for literal in (*self.robot_of, *self.sum_of)]
-            answer = None
-            while answer is None:
-                self.read_beside()
-                if self.known.plans is not None and self.is_met:
-                    return self.optimal_beside(self.known.plans)
-                answer = self.solver.satisfiable(assumptions, CONFLICTS_BETWEEN_RESULTS)
-            if answer:
-                plans = [plan for plan in self.encoding.plans(self.solver.model()) if plan is not None]
-                conflicts = violated(self.instance, plans)
-                if not conflicts:
-                    return self.optimal(plans)
-                for conflict in conflicts:
-                    self.encoding.forbid(conflict)
-            else:
-                core = self.shrunk([-literal for literal in self.solver.core()])
-                if not core:
-                    return self.unsolvable(Clauses(self.evidence.horizons))
-                self.relax(core)
-                if self.delay == DELAY_OF_DOUBT and self.has_no_end():
-                    return self.unsolvable(States())
-
-    def read_beside(self) -> None:
-        """Ask for what was found beside at an amount of work, so that the answer does not depend on the clock."""
-        if self.beside is not None:
-            work = (self.solver.work - self.work_before) * 3 // 4  # the two slow each other down, the other one more
-            self.take(self.beside.result(work))
-        elif self.priced and self.solver.conflicts > CONFLICTS_BEFORE_BESIDE:
-            self.start_beside()
-
-    def take(self, found: Between | None) -> None:
-        """Take in what was found beside, of all plans or of the half that is not searched here."""
-        if self.here is not None:
-            found = self.here.of_all(found or Between(self.instance))
-        if found is not None:
-            self.known = self.known.sharpened(found)
-
-    def start_beside(self) -> None:
-        """Start the search beside where the compiled search for prices is at hand; a crowd is searched by halves."""
-        from carp_optimized.jit.compiling import is_cached  # noqa: PLC0415 - slow to load
-        from carp_optimum.branching.bounds import bound_part  # noqa: PLC0415
-        from carp_optimum.branching.branching import is_crowded  # noqa: PLC0415
-        from carp_optimum.lagrangian.priced_paths import find_ways  # noqa: PLC0415
-
-        self.priced = False
-        if not (is_cached(find_ways) and is_cached(bound_part)):
-            return
-        if is_crowded(self.instance):
-            self.search_halves()
-        if not self.is_met:
-            self.work_before = self.solver.work
-            self.beside = Beside(lambda look: narrowed(self.instance, look), self.look)
-
-    def search_halves(self) -> None:
-        """Search one half of a crowd here and the other one beside, until bound and plans meet or both have ended."""
-        self.here = Between(self.instance)
-        self.beside = Beside(lambda look: half_narrowed(self.instance, look, 1), self.look)
-        work = 0
-        for work, found in half_narrowed(self.instance, self.look, 0):
-            self.here = found
-            self.take(self.beside.result(work))
-            if self.is_met:
-                break
-        while not (self.is_met or self.beside.has_ended):
-            work += WORK_OF_WAITING
-            self.take(self.beside.result(work))
-        self.beside.close()
-        self.here = self.beside = None
-
-    def has_no_end(self) -> bool:
-        """Whether the states of all robots together are few, and none is the end of a plan set."""
-        if not is_searched(self.instance):
-            return False
-        try:
-            return least_total_cost(self.instance, on_step=self.look) is None
-        except Refusal:
-            return False
-
-    def grow(self, position: int) -> None:
-        """Give a robot a longer horizon, and assume that it arrives within it."""
-        self.look()
-        robot = self.encoding.robots[position]
-        robot.grow()
-        self.robot_of[robot.late[robot.horizon]] = position
-
-    def shrunk(self, core: list[Literal]) -> list[Literal]:
-        """A core within the core, from which the solver drops nothing quickly."""
-        kept = 0
-        while kept < len(core) and len(core) > 1:
-            trial = core[:kept] + core[kept + 1 :]
-            if self.solver.satisfiable([-literal for literal in trial], CONFLICTS_TO_SHRINK) is False:
-                named = {-literal for literal in self.solver.core()}
-                core = [literal for literal in trial if literal in named]
-            else:
-                kept += 1
-        return core
-
-    def relax(self, core: Sequence[Literal]) -> None:
-        """One delay of the core must happen: raise the bound, and assume instead that no second one does."""
-        self.delay += 1
-        self.encoding.formula.add(*core)
-        for literal in core:
-            if literal in self.robot_of:
-                position = self.robot_of.pop(literal)
-                self.order.setdefault(position)
-                self.grow(position)
-            else:
-                self.assume_less(*self.sum_of.pop(literal))
-        self.assume_less(self.encoding.formula.at_least([[literal] for literal in core], len(core)), 1)
-
-    def assume_less(self, number: Unary, reached: int) -> None:
-        """Assume that a number which is at least `reached` is no more than that."""
-        if reached < len(number):
-            self.sum_of[number[reached]] = (number, reached + 1)
-
-    def look(self) -> None:
-        """Look at the clock. A long search stops to plan with heuristics, and stops again if they find nothing."""
-        if self.beside is not None:
-            self.beside.read()
-            self.deadline.check()
-            return
-        tries = self.tries_of_heuristics
-        parts = PARTS_BEFORE_HEURISTICS[tries:]
-        if self.best is None and parts and self.deadline.is_past(parts[0], PARTS):
-            self.tries_of_heuristics += 1
-            ticks_to_goal = {robot.robot.id: robot.ticks_to_goal for robot in self.encoding.robots}
-            check = self.deadline.part(PARTS).check
-            self.best = plans_of_all(self.instance, ticks_to_goal, check, self.lower, seed=tries)
-        self.deadline.check()
-
-    @property
-    def evidence(self) -> Evidence:
-        rest = [position for position in range(len(self.encoding.robots)) if position not in self.order]
-        horizons = tuple(max(robot.horizon, self.horizon) for robot in self.encoding.robots)
-        return Evidence(horizons, (*self.order, *rest))
-
-    @property
-    def lower(self) -> int:
-        return max(self.encoding.shortest + self.delay, self.known.lower)
-
-    @property
-    def is_met(self) -> bool:
-        """Whether the best plans known cost no more than the bound."""
-        return self.known.total is not None and self.known.total == self.lower
-
-    def optimal(self, plans: Sequence[Plan]) -> Optimum:
-        cost = total_cost(self.instance, plans)
-        require_kept(self.lower, cost)
-        solution = self.solution(plans)
-        return Optimum(self.encoding.shortest, cost, cost, decided=True, solution=solution, evidence=self.evidence)
-
-    def optimal_beside(self, plans: Sequence[Plan]) -> Optimum:
-        """The optimum found beside, with horizons that suffice for a proof."""
-        self.horizon = self.lower - self.encoding.shortest
-        return self.optimal(plans)
-
-    def unsolvable(self, obstacle: Obstacle) -> Optimum:
-        return Optimum(self.encoding.shortest, None, self.lower, True, None, self.evidence, obstacle)
-
-    def undecided(self) -> Optimum:
-        if self.beside is not None:
-            self.take(self.beside.latest())
-        known = self.known if self.best is None else self.known.with_plans(self.best)
-        cost = known.total
-        if known.plans is None or cost is None:
-            return Optimum(self.encoding.shortest, None, self.lower, False, None, self.evidence)
-        require_kept(self.lower, cost)
-        solution = self.solution(known.plans)
-        return Optimum(self.encoding.shortest, cost, self.lower, cost == self.lower, solution, self.evidence)
-
-    def solution(self, plans: Sequence[Plan]) -> Solution:
-        """The solution with these plans; raises `ContradictionError` if they break the law."""
-        solution = Solution(tuple(plans), tuple(plan.robot for plan in plans))
-        verdict = judge(self.instance, solution)
-        if verdict.violations or verdict.unplanned:
-            raise ContradictionError("the search has found plans that break a rule")
-        return solution
+def _search_halves(search: CoreGuided) -> None:
+    """Search one half of a crowd here and the other one beside, until bound and plans meet or both have ended."""
+    instance = search.instance
+    search.here = Between(instance)
+    search.beside = Beside(lambda look: half_narrowed(instance, look, 1), search.look)
+    work = 0
+    for work, found in half_narrowed(instance, search.look, 0):
+        search.here = found
+        search.take(search.beside.result(work))
+        if search.is_met:
+            break
+    while not (search.is_met or search.beside.has_ended):
+        work += WORK_OF_WAITING
+        search.take(search.beside.result(work))
+    search.beside.close()
+    search.here = search.beside = None

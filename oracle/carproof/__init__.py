@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from carp_optimized import add, plan, query
     from carp_optimized.improve.annealing import polish
     from carp_optimum.bound import lower_bound as bound
-    from carp_optimum.optimum import Optimum, optimum
+    from carp_optimum.optimum import optimum
+    from carp_optimum.sat.core_guided import Optimum
     from carp_spec import (
         AfterGoal,
         Carp,
@@ -73,7 +74,7 @@ _ELSEWHERE = {
     "RULES": "carproof.registry",
     "planner_named": "carproof.planner_options",
     "bound": "carp_optimum.bound:lower_bound",
-    "Optimum": "carp_optimum.optimum",
+    "Optimum": "carp_optimum.sat.core_guided",
     "optimum": "carp_optimum.optimum",
     "verify_bound": "carp_verify.bound.verify",
 }

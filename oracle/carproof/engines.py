@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, Protocol, cast
 from carp_spec import Instance, Neighbourhood, Plan, Planner, Refusal, RobotId, Solution, total_cost
 from carp_spec.query_certificates import QueryCertificateDocument
 from carp_spec.traces import Trace
-from carproof.command_line.progress import progress
 
 if TYPE_CHECKING:
     from carp_optimized.fleet import PlannedFleet
@@ -64,7 +63,7 @@ class FastestEngine:
 
     def plan(self, instance: Instance, planner: Planner) -> Solution:
         """Plans of all robots."""
-        return engine_named(_fastest_with(planner)).plan(instance, planner)
+        return engine_named(fastest_with(planner)).plan(instance, planner)
 
     @property
     def polish(self) -> "Polish":
@@ -114,20 +113,8 @@ def compile_what_is_kept() -> None:
         warm()
 
 
-def plan_showing(
-    label: str, engine: str | None, instance: Instance, planner: Planner
-) -> tuple[Solution, "PlannedFleet | None"]:
-    """Plans of all robots; if the optimised planner makes them, with its fleet, and a terminal shows its progress."""
-    if (engine or _fastest_with(planner)) == "reference":
-        return engine_named("reference").plan(instance, planner), None
-    compile_what_is_kept()
-    from carp_optimized.planners import plan_with_fleet, steps  # noqa: PLC0415 - loaded when it is first used
-
-    with progress(label, steps(instance, planner)) as advance:
-        return plan_with_fleet(instance, planner, advance)
-
-
-def _fastest_with(planner: Planner) -> str:
+def fastest_with(planner: Planner) -> str:
+    """The fastest engine that has the planner."""
     from carp_optimized import PLANNERS as COMPILED  # noqa: PLC0415 - loaded when it is first used
 
     return "optimized" if isinstance(planner, COMPILED) else "reference"

@@ -7,7 +7,7 @@ import msgspec
 from carp_verify.documents import SolutionDocument, solution_document
 
 if TYPE_CHECKING:
-    from carp_optimum.optimum import Optimum
+    from carp_optimum.sat.core_guided import Optimum
     from carp_verify.optimum.proof import Verified
 
 

@@ -19,6 +19,7 @@ from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from importlib.util import spec_from_loader
 from itertools import product
+from pathlib import Path
 from types import ModuleType
 
 os.environ["NUMBA_DISABLE_JIT"] = "1"  # numba looks when it is loaded
@@ -39,17 +40,17 @@ from carproof.testing.random_instances import question
 
 FOLDER = ROOT / "optimized" / "carp_optimized"
 MODULES = (
-    "replanning",
-    "order_search",
-    "reasons",
-    "answers",
-    "neighbourhood",
-    "orders",
-    "distances",
+    "neighbourhood.replanning",
+    "neighbourhood.order_search",
+    "query.relevant_plans",
+    "neighbourhood.answers",
+    "neighbourhood.adding",
+    "neighbourhood.orders",
+    "neighbourhood.distances",
     "passes",
-    "windows",
-    "guides",
-    "search",
+    "query.windows",
+    "query.guides",
+    "query.search",
 )
 QUESTIONS = 150
 FLEETS = 300  # of each kind
@@ -145,6 +146,11 @@ TESTS: Sequence[tuple[str, str, tuple[object, ...]]] = (
 )
 
 
+def source_of(module: str) -> Path:
+    """The file of a module, which is named as below `carp_optimized`."""
+    return FOLDER / f"{module.replace('.', '/')}.py"
+
+
 class Changed(MetaPathFinder, Loader):
     """Loads a module from another source than its file."""
 
@@ -156,7 +162,7 @@ class Changed(MetaPathFinder, Loader):
         return spec_from_loader(name, self) if name == self.name else None
 
     def exec_module(self, module: ModuleType) -> None:
-        module.__file__ = str(FOLDER / f"{self.name.rpartition('.')[2]}.py")
+        module.__file__ = str(source_of(self.name.partition(".")[2]))
         exec(compile(self.source, module.__file__, "exec"), module.__dict__)  # noqa: S102 - a mutant is to be run
 
 
@@ -239,7 +245,7 @@ def main(arguments: Sequence[str]) -> int:
         def changed(mutant: Mutant, module: str = module) -> None:
             load(module, mutant.source)
 
-        run_mutants(module, mutants(FOLDER / f"{module}.py", omit=False), lines, all_cases, changed, unchanged.work)
+        run_mutants(module, mutants(source_of(module), omit=False), lines, all_cases, changed, unchanged.work)
     return 0
 
 

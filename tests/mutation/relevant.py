@@ -23,13 +23,13 @@ ALSO: dict[str, list[str]] = {
 
 def changed_modules(copy: Path, original: Path) -> list[Path]:
     """The modules, as paths in the project, in which the two differ."""
-    modules = sorted(path.relative_to(copy) for path in copy.glob("*/carp_*/*.py"))
+    modules = sorted(path.relative_to(copy) for path in copy.glob("*/carp_*/**/*.py"))
     return [module for module in modules if (copy / module).read_bytes() != (original / module).read_bytes()]
 
 
 def tests_of(module: Path) -> Iterator[Path]:
     """The tests of the module's own name and of its rules; where it has none, all of its package's."""
-    package = module.parent.name
+    package, *inside = module.parts[1:-1]
     folder = Path("tests") / package.removeprefix("carp_")
     own = folder / f"test_{module.stem}.py"
     if not own.exists():
@@ -40,7 +40,7 @@ def tests_of(module: Path) -> Iterator[Path]:
         "../verify/test_vectors.py",
         "test_registry.py",
         "test_frozen.py",
-        *ALSO.get(f"{package}.{module.stem}", []),
+        *ALSO.get(".".join([package, *inside, module.stem]), []),
     ]:
         if (folder / name).exists() and name != own.name:
             yield folder / name

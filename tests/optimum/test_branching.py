@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from tests.profiles import draws
 
 from carp_optimum.branching.branching import Branching, is_crowded
-from carp_optimum.optimum import optimum
+from carp_optimum.sat.core_guided import core_guided
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, judge
 from carp_verify.optimum.encoding import Encoding
 from carp_verify.optimum.joint_search import least_total_cost
@@ -93,7 +93,7 @@ def _the_optimum_is_found(instance: Instance) -> None:
 @pytest.mark.parametrize("seed", range(4))
 def test_a_full_grid_is_searched_as_far_as_its_optimum(seed: int) -> None:
     instance = grid_instance(Grid(4, 4, 20), Fleet(16, seed))
-    least = optimum(instance, SECONDS, priced=False).cost
+    least = core_guided(instance, SECONDS).cost
     assert least is not None
     assert searched(instance, least + 1).least == searched_by_halves(instance, least + 1) == least
     assert searched(instance, least - 1).plans is None
@@ -104,7 +104,7 @@ def test_a_full_grid_is_searched_as_far_as_its_optimum(seed: int) -> None:
 @pytest.mark.parametrize("seed", range(4))
 def test_two_halves_have_all_parts(seed: int, parts: int, monkeypatch: pytest.MonkeyPatch) -> None:
     instance = grid_instance(Grid(4, 4, 20), Fleet(16, seed))
-    least = optimum(instance, SECONDS, priced=False).cost
+    least = core_guided(instance, SECONDS).cost
     assert least is not None
     for name in ("FIRST_STEPS", "STEPS"):
         monkeypatch.setattr(f"carp_optimum.branching.branching.{name}", 3)
@@ -114,7 +114,7 @@ def test_two_halves_have_all_parts(seed: int, parts: int, monkeypatch: pytest.Mo
 
 def test_the_bound_of_all_parts_together_is_below_the_optimum_and_above_the_shortest_paths() -> None:
     instance = grid_instance(Grid(4, 4, 20), Fleet(16, 2))
-    least = optimum(instance, SECONDS, priced=False)
+    least = core_guided(instance, SECONDS)
     assert least.cost is not None
     assert least.shortest is not None
     assert least.shortest + 2 < Branching(instance, least.cost + 5, nothing).least_of_all() <= least.cost

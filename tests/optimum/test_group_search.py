@@ -9,7 +9,7 @@ from tests.verify.tiny import TINY
 
 from carp_optimized import plan
 from carp_optimized.improve.repair import repair
-from carp_optimum.optimum import optimum
+from carp_optimum.sat.core_guided import core_guided
 from carp_optimum.sat.group_search import improved
 from carp_spec import AfterGoal, Carp, Instance, Plan, Solution, judge
 from carp_verify.optimum.encoding import Encoding
@@ -57,7 +57,7 @@ def test_the_total_falls_to_the_optimum_where_groups_leave_robots_out(
     instance = grid_instance(Grid(5, 5, 20), Fleet(robots, seed, after_goal))
     given = repair(instance, plan(instance, Carp()))
     assert not given.unplanned
-    least = optimum(instance, SECONDS, priced=False).cost
+    least = core_guided(instance, SECONDS).cost
     before = judge(instance, given).cost
     assert before is not None
     assert least is not None

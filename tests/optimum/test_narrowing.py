@@ -17,8 +17,10 @@ import carproof
 from carp_optimized.improve.repair import repair
 from carp_optimum.background import Beside
 from carp_optimum.lagrangian.reduced_costs import PricedBound
-from carp_optimum.narrowing import Between, half_narrowed, narrowed
+from carp_optimum.narrowing import half_narrowed, narrowed
 from carp_optimum.optimum import optimum
+from carp_optimum.sat.between import Between
+from carp_optimum.sat.core_guided import core_guided
 from carp_optimum.sat.priced_formula import PricedFormula, priced_formula
 from carp_optimum.sat.proving import write_proof
 from carp_optimum.sat.solver import TimeOver
@@ -33,7 +35,7 @@ SECONDS = 60
 
 @pytest.fixture
 def beside_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("carp_optimum.optimum.CONFLICTS_BEFORE_BESIDE", -1)
+    monkeypatch.setattr("carp_optimum.sat.core_guided.CONFLICTS_BEFORE_BESIDE", -1)
     monkeypatch.setattr("carp_optimum.narrowing.PRICE_STEPS", 5)
     monkeypatch.setattr("carp_optimum.sat.heuristics.ROUNDS", 40)
     monkeypatch.setattr("carp_optimized.jit.compiling.is_cached", lambda _: True)
@@ -42,7 +44,7 @@ def beside_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
 def crowd_with_plans() -> tuple[Instance, tuple[Plan, ...], tuple[Plan, ...]]:
     """A crowd with its cheapest plans, in an order of their own, and with dearer ones."""
     instance = grid_instance(Grid(4, 4, 20), Fleet(16, 2))
-    cheap = optimum(instance, SECONDS, priced=False).solution
+    cheap = core_guided(instance, SECONDS).solution
     assert cheap is not None
     dear = repair(instance, carproof.plan(instance, Carp())).plans
     assert len(dear) == len(cheap.plans)
@@ -95,7 +97,7 @@ def test_the_optimum_is_the_same_on_one_core_and_on_two(instance: Instance) -> N
 @pytest.mark.parametrize(("seed", "after_goal"), [(7, "park"), (10, "vanish")])
 def test_formulas_lead_up_from_a_weak_bound(seed: int, after_goal: AfterGoal, monkeypatch: pytest.MonkeyPatch) -> None:
     instance = town(seed, after_goal)
-    least = optimum(instance, SECONDS, priced=False).cost
+    least = core_guided(instance, SECONDS).cost
     monkeypatch.setattr("carp_optimum.sat.heuristics.ever_better", lambda *_: iter(()))
     found = results(instance)
     assert len({known.lower for known in found}) > 2
@@ -105,7 +107,7 @@ def test_formulas_lead_up_from_a_weak_bound(seed: int, after_goal: AfterGoal, mo
 @pytest.mark.usefixtures("beside_at_once")
 def test_one_formula_gives_cheaper_and_cheaper_plans_down_to_the_optimum(monkeypatch: pytest.MonkeyPatch) -> None:
     instance = town(7, "park")
-    least = optimum(instance, SECONDS, priced=False).cost
+    least = core_guided(instance, SECONDS).cost
     monkeypatch.setattr("carp_optimum.sat.heuristics.ever_better", lambda *_: iter(()))
     monkeypatch.setattr("carp_optimum.narrowing.STRIDE", 40)
     found = results(instance)
@@ -117,7 +119,7 @@ def test_one_formula_gives_cheaper_and_cheaper_plans_down_to_the_optimum(monkeyp
 @pytest.mark.usefixtures("beside_at_once")
 def test_formulas_end_below_the_total_of_the_best_plans_known(monkeypatch: pytest.MonkeyPatch) -> None:
     instance = town(7, "park")
-    least = optimum(instance, SECONDS, priced=False)
+    least = core_guided(instance, SECONDS)
     assert least.cost is not None
     assert least.solution is not None
     plans = least.solution.plans
@@ -140,7 +142,7 @@ def test_formulas_end_below_the_total_of_the_best_plans_known(monkeypatch: pytes
 def test_the_halves_of_a_crowd_meet_at_the_optimum(seed: int, parts: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("carp_optimum.branching.branching.PARTS_TO_SHARE", parts)
     instance = grid_instance(Grid(4, 4, 20), Fleet(16, seed))
-    least = optimum(instance, SECONDS, priced=False).cost
+    least = core_guided(instance, SECONDS).cost
     assert least is not None
     one, other = (list(half_narrowed(instance, nothing, half)) for half in (0, 1))
     assert all(work <= later and known.lower <= next.lower for (work, known), (later, next) in pairwise(one))
@@ -165,7 +167,7 @@ def test_a_crowd_has_the_same_optimum_on_one_core_and_on_two(seed: int, monkeypa
         found.append(optimum(instance, SECONDS))
     assert found[0] == found[1]
     assert found[0].decided
-    assert found[0].cost == optimum(instance, SECONDS, priced=False).cost
+    assert found[0].cost == core_guided(instance, SECONDS).cost
 
 
 def found_in_halves(
@@ -216,7 +218,7 @@ def test_a_crowd_is_searched_whole_after_halves_that_end_early(monkeypatch: pyte
     found_in_halves(monkeypatch, [(0, Between(instance, 0, cheap))], [])
     monkeypatch.setattr("carp_optimum.optimum.narrowed", lambda *_: iter([(0, Between(instance, least, dear))]))
     slices = iter([None] * 10)
-    monkeypatch.setattr("carp_optimum.optimum.Solver.satisfiable", lambda *_: next(slices))
+    monkeypatch.setattr("carp_optimum.sat.core_guided.Solver.satisfiable", lambda *_: next(slices))
     best = optimum(instance, SECONDS)
     assert best.solution is not None
     assert (best.decided, best.solution.plans) == (True, cheap)
@@ -225,7 +227,7 @@ def test_a_crowd_is_searched_whole_after_halves_that_end_early(monkeypatch: pyte
 @pytest.mark.usefixtures("beside_at_once")
 def test_a_crowd_without_plans_or_with_too_large_tables_is_searched_whole(monkeypatch: pytest.MonkeyPatch) -> None:
     instance = grid_instance(Grid(4, 4, 20), Fleet(16, 2))
-    least = optimum(instance, SECONDS, priced=False).cost
+    least = core_guided(instance, SECONDS).cost
     with monkeypatch.context() as patched:
         patched.setattr("carp_optimum.branching.branching.MOST_NODES", 200)
         assert {known.lower for _, known in half_narrowed(instance, nothing, 0)} == {0}
@@ -239,7 +241,7 @@ def test_a_crowd_without_plans_or_with_too_large_tables_is_searched_whole(monkey
 def test_plans_get_better_where_the_bound_is_too_far_for_formulas(monkeypatch: pytest.MonkeyPatch) -> None:
     instance = town(7, "park")
     monkeypatch.setattr("carp_optimum.narrowing.LARGEST_GAP", -1)
-    least = optimum(instance, SECONDS, priced=False).cost
+    least = core_guided(instance, SECONDS).cost
     totals = (known.total for _, known in narrowed(instance, nothing))
     assert least in islice(totals, 1000)
 
@@ -247,7 +249,7 @@ def test_plans_get_better_where_the_bound_is_too_far_for_formulas(monkeypatch: p
 def test_dearer_plans_do_not_replace_cheaper_ones() -> None:
     instance = town(9, "vanish")
     dear = carproof.plan(instance, Carp()).plans
-    cheap = optimum(instance, SECONDS, priced=False).solution
+    cheap = core_guided(instance, SECONDS).solution
     assert cheap is not None
     assert total_cost(instance, cheap.plans) < total_cost(instance, dear)
     assert Between(instance).with_plans(dear).with_plans(cheap.plans).with_plans(dear).plans == cheap.plans
@@ -256,7 +258,7 @@ def test_dearer_plans_do_not_replace_cheaper_ones() -> None:
 @pytest.mark.usefixtures("beside_at_once")
 def test_a_long_search_ends_where_its_bound_meets_the_plans_found_beside(monkeypatch: pytest.MonkeyPatch) -> None:
     instance = town(7, "park")
-    least = optimum(instance, SECONDS, priced=False)
+    least = core_guided(instance, SECONDS)
     assert least.solution is not None
     plans = least.solution.plans[::-1]
     monkeypatch.setattr("carp_optimum.optimum.narrowed", lambda *_: iter([(0, Between(instance, 0, plans))]))
@@ -274,7 +276,7 @@ def test_a_long_search_goes_on_where_the_plans_found_beside_cost_more_than_its_b
     monkeypatch.setattr("carp_optimum.optimum.narrowed", lambda *_: iter([(0, Between(instance, 0, plans))]))
     best = optimum(instance, SECONDS)
     assert best.decided
-    assert best.cost == optimum(instance, SECONDS, priced=False).cost
+    assert best.cost == core_guided(instance, SECONDS).cost
     assert best.cost != total_cost(instance, plans)
 
 
@@ -285,6 +287,6 @@ def test_robots_on_every_cell_are_proved_to_need_their_total(tmp_path: Path) -> 
     robots = (Robot(i, f"{x},{y}", f"{2 - x},{2 - y}") for i, (x, y) in enumerate(cells) if (x, y) != (1, 1))
     instance = Instance(grid(3, 3), tuple(robots), "vanish")
     best = optimum(instance, SECONDS)
-    assert (best.decided, best.cost) == (True, optimum(instance, SECONDS, priced=False).cost)
+    assert (best.decided, best.cost) == (True, core_guided(instance, SECONDS).cost)
     write_proof(instance, best, tmp_path, SECONDS)
     assert verify_proof(tmp_path).cost == best.cost

@@ -13,7 +13,7 @@ from tests.verify.tiny import TINY
 from carp_optimum.bound import lower_bound
 from carp_optimum.claims.cut_search import prove
 from carp_optimum.lagrangian.reduced_costs import PricedBound
-from carp_optimum.optimum import optimum
+from carp_optimum.sat.core_guided import core_guided
 from carp_optimum.sat.priced_formula import priced_formula
 from carp_optimum.sat.solver import Deadline, Solver
 from carp_spec import AfterGoal, Instance, judge
@@ -120,7 +120,7 @@ def test_any_prices_leave_the_optimum_and_nothing_cheaper(instance: Instance, da
 @pytest.mark.parametrize(("seed", "after_goal"), [(7, "park"), (10, "vanish")])
 def test_the_certificate_s_cuts_and_deadlines_count(seed: int, after_goal: AfterGoal, cuts: bool) -> None:
     instance = town(seed, after_goal)
-    least = optimum(instance, SECONDS, priced=False).cost
+    least = core_guided(instance, SECONDS).cost
     assert least is not None
     certificate = lower_bound(instance, steps=1500, seen=False)
     assert len(certificate.deadlines) > 2

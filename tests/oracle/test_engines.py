@@ -6,7 +6,8 @@ from tests.profiles import draws
 
 from carp_reference import query
 from carp_spec import Carp, Instance, Resource, ResourceGraph, Robot, plan_cost
-from carproof.engines import have_plans_beside, plan_showing, sum_of_shortest_paths
+from carproof.command_line.planning import plan_showing
+from carproof.engines import have_plans_beside, sum_of_shortest_paths
 from carproof.testing.strategies import instances
 
 ROAD = ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),))

@@ -9,7 +9,7 @@ from tests.oracle.running import HEAD_ON, TWO_PLANNED, Document, Outcome, Run, c
 
 from carp_experiments.measuring import optimum_table
 from carp_optimum.gap import Gap, PlannerGap
-from carp_optimum.optimum import Optimum
+from carp_optimum.sat.core_guided import Optimum
 from carp_spec import Carp
 from carp_verify.optimum.encoding import Evidence
 from carproof.gap.family import Cell

@@ -39,7 +39,8 @@ def test_without_a_subject_all_cases_come_in_the_order_of_the_subjects() -> None
 
 
 def test_importing_the_reader_reads_no_file() -> None:
-    script = "import pathlib; pathlib.Path.read_bytes = None; import carproof.testing.vectors as v; v.subjects(); v.vectors()"
+    script = "import pathlib; pathlib.Path.read_bytes = None; from carproof.testing.vectors import subjects, vectors"
+    script += "; subjects(); vectors()"
     subprocess.run([sys.executable, "-c", script], check=True)
 
 

@@ -151,7 +151,7 @@ def test_far_releases_do_not_make_the_search_over_all_states_endless() -> None:
 def test_a_search_over_too_many_states_leaves_the_search_for_an_optimum_going(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("carp_verify.optimum.unsolvable.FEW_STATES", 10**9)
     monkeypatch.setattr("carp_verify.optimum.joint_search.refuse_size", refuse_anything)
-    monkeypatch.setattr("carp_optimum.optimum.DELAY_OF_DOUBT", 1)
+    monkeypatch.setattr("carp_optimum.sat.core_guided.DELAY_OF_DOUBT", 1)
     instance = on_grid(
         3, Robot("a", "0,1", "2,1"), Robot("b", "2,1", "0,1"), Robot("c", "1,0", "1,2"), after_goal="park"
     )

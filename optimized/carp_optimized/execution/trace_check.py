@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from carp_optimized.state.arrays import Longs
+from carp_optimized.jit.kinds import Longs
 from carp_spec import Instance, Plan, Solution
 from carp_spec.traces import Trace
 

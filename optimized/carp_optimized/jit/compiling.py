@@ -180,12 +180,17 @@ def to_compile() -> int:
 def is_cached(function: Callable[..., object]) -> bool:
     """Whether an entry's machine code is on disk; otherwise its first call compiles it.
 
-    Code that is older than any source here or beside the function does not count: numba looks at the source of the
-    function alone, not at those of the functions that it calls.
+    Code that is older than any source of this package or the function's does not count: numba looks at the source of
+    the function alone, not at those of the functions that it calls.
     """
-    folders = {Path(__file__).parent, Path(unwrap(function).__code__.co_filename).parent}
-    newest = max(source.stat().st_mtime for folder in folders for source in folder.glob("*.py"))
+    packages = {_package(Path(__file__)), _package(Path(unwrap(function).__code__.co_filename))}
+    newest = max(source.stat().st_mtime for package in packages for source in package.rglob("*.py"))
     return any(index.stat().st_mtime >= newest for index in _indices(function))
+
+
+def _package(source: Path) -> Path:
+    """The folder of the whole package to which a source belongs."""
+    return [folder for folder in source.parents if (folder / "__init__.py").is_file()][-1]
 
 
 def _indices(function: Callable[..., object]) -> list[Path]:

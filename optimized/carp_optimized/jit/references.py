@@ -26,7 +26,7 @@ from numba.core.imputils import lower_builtin, lower_getattr_generic
 from numba.core.typing.templates import AbstractTemplate, AttributeTemplate, infer_getattr, infer_global, signature
 from numba.extending import intrinsic, register_model
 
-from carp_optimized.state.arrays import Ints, IntTable, Longs, LongTable, Numbers
+from carp_optimized.jit.kinds import Ints, IntTable, Longs, LongTable, Numbers
 
 F = TypeVar("F", bound=tuple[Any, ...])
 

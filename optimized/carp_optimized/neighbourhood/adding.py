@@ -1,6 +1,7 @@
 """The neighbourhood planner, the paper's Algorithm 1: one compiled call adds a robot."""
 
 from carp_optimized.jit.compiling import compiled, entry
+from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
 from carp_optimized.neighbourhood.distances import follow, nearest
 from carp_optimized.neighbourhood.order_search import hold_members, search_orders
@@ -25,7 +26,6 @@ from carp_optimized.state.arrays import (
     UNKNOWN,
     Adding,
     Answers,
-    Ints,
     Options,
     State,
     Work,

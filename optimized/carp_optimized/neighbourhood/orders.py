@@ -3,7 +3,8 @@
 import numpy as np
 
 from carp_optimized.jit.compiling import compiled
-from carp_optimized.state.arrays import Ints, Numbers, Work
+from carp_optimized.jit.kinds import Ints, Numbers
+from carp_optimized.state.arrays import Work
 
 GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 FIRST_MIX = np.uint64(0xBF58476D1CE4E5B9)

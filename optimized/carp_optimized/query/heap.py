@@ -1,7 +1,7 @@
 """A binary heap of 64-bit keys with a node each, in two arrays whose first `size` places it fills."""
 
 from carp_optimized.jit.compiling import RoomExhausted, compiled
-from carp_optimized.state.arrays import Ints, Longs
+from carp_optimized.jit.kinds import Ints, Longs
 
 
 @compiled

@@ -10,9 +10,10 @@ could lead into it, with the largest key popped afterwards, and when it could be
 """
 
 from carp_optimized.jit.compiling import compiled, inlined
+from carp_optimized.jit.kinds import Longs
 from carp_optimized.query.guides import toll_of
 from carp_optimized.query.search import LOW
-from carp_optimized.state.arrays import FURTHER, NEVER, NONE, PLANS, Answers, Longs, State
+from carp_optimized.state.arrays import FURTHER, NEVER, NONE, PLANS, Answers, State
 
 QUERY, READY, UNTIL, LARGEST_KEY = range(4)
 ENTERED, LEFT = 0, 4  # where these four begin in a row of `Answers.read`

@@ -4,16 +4,9 @@ Resources and robots are their indices in the instance, plans are the numbers of
 every sum of them is made in 64 bits, and none that is stored exceeds `NEVER`.
 """
 
-from typing import Annotated, NamedTuple, TypeAlias
+from typing import NamedTuple
 
-import numpy as np
-import numpy.typing as npt
-
-Ints: TypeAlias = npt.NDArray[np.int32]
-Longs: TypeAlias = npt.NDArray[np.int64]
-Numbers: TypeAlias = npt.NDArray[np.uint64]
-IntTable: TypeAlias = Annotated[npt.NDArray[np.int32], 2]
-LongTable: TypeAlias = Annotated[npt.NDArray[np.int64], 2]
+from carp_optimized.jit.kinds import Ints, IntTable, Longs, LongTable, Numbers
 
 NEVER = 2**31 - 1  # the end of what lasts for ever
 LARGEST = 2**30 - 1  # of ticks and durations: the sum of two is still below NEVER

@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 import numpy.typing as npt
 
+from carp_optimized.jit.kinds import Ints, Longs
 from carp_optimized.state.arrays import (
     ANSWERS,
     BLOCK,
@@ -20,8 +21,6 @@ from carp_optimized.state.arrays import (
     Freed,
     Graph,
     Guides,
-    Ints,
-    Longs,
     Polish,
     Records,
     Robots,

@@ -1,8 +1,9 @@
 """Records of plans: writing what a search found, and comparing."""
 
 from carp_optimized.jit.compiling import RecordsExhausted, compiled, entry
+from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
-from carp_optimized.state.arrays import NEVER, NONE, Ints, Records, State
+from carp_optimized.state.arrays import NEVER, NONE, Records, State
 from carp_optimized.state.natives import state_at
 
 

@@ -7,8 +7,8 @@ of a robot is a path of nodes from its start to its goal. A part of the search i
 from typing import NamedTuple
 
 from carp_optimized.jit.compiling import compiled
+from carp_optimized.jit.kinds import Ints, IntTable, Longs
 from carp_optimized.jit.references import dereference
-from carp_optimized.state.arrays import Ints, IntTable, Longs
 
 SCALE = 1 << 16  # parts of a tick
 ENDLESS = 1 << 60

@@ -16,8 +16,9 @@ import numpy as np
 import numpy.typing as npt
 
 from carp_optimized.improve.lacam import is_stepwise
+from carp_optimized.jit.kinds import Ints, Longs
 from carp_optimized.jit.references import Native
-from carp_optimized.state.arrays import NONE, Ints, Longs
+from carp_optimized.state.arrays import NONE
 from carp_optimized.state.encoding import encode_graph
 from carp_optimum.branching.arrays import COUNTERS, ENDLESS, SCALE, WORK, Live, Nodes, Part, Rows
 from carp_optimum.branching.bounds import bound_part

@@ -2,7 +2,7 @@
 
 First it tries pairs of robots that are in each other's way near the best prices, those most often in the way before the
 others; then groups that are already cuts, with one robot more. It searches for the optimum of each group
-(`carp_optimum.optimum`). A lower bound on that optimum is a cut if the robots' average costs are below it.
+(`carp_optimum.sat.core_guided`). A lower bound on that optimum is a cut if the robots' average costs are below it.
 """
 
 from collections import Counter, defaultdict
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from itertools import combinations, count
 
 from carp_optimum.lagrangian.price_search import PriceSearch
-from carp_optimum.optimum import optimum
+from carp_optimum.sat.core_guided import core_guided
 from carp_optimum.sat.proving import refutation
 from carp_optimum.sat.solver import NANOSECONDS, Deadline, TimeOver
 from carp_spec import Instance, Refusal
@@ -141,7 +141,7 @@ def prove(instance: Instance, members: Members, check: Callable[[], None]) -> Cu
     robots = tuple(instance.robots[position].id for position in members)
     group = group_of(instance, robots)
     try:
-        best = optimum(group, LOOKS, clock, priced=False)
+        best = core_guided(group, LOOKS, clock)
         check()
         if best.shortest is None or best.lower <= best.shortest:
             return None

@@ -2,11 +2,11 @@
 
 Near the best prices, a robot's ways have different delays. Each robot is allowed a delay that only a certain share of
 its ways exceeds, and a solver is asked whether all robots can keep these delays together (the clauses are those of
-`carp_optimum.optimum`, conflict by conflict). If not, it names robots that cannot: a core. A core whose shares add up
-to less than 1 is broken near the best prices, since one of its robots is late in all plans. The core is made small, its
-delays large, and it is proved on its own: the clauses of each robot hold only where that is assumed, so nothing else
-follows from the robots outside. Source: the implicit hitting sets of Davies and Bacchus 2011, with the prices in place
-of the hitting set.
+`carp_optimum.sat.core_guided`, conflict by conflict). If not, it names robots that cannot: a core. A core whose shares
+add up to less than 1 is broken near the best prices, since one of its robots is late in all plans. The core is made
+small, its delays large, and it is proved on its own: the clauses of each robot hold only where that is assumed, so
+nothing else follows from the robots outside. Source: the implicit hitting sets of Davies and Bacchus 2011, with the
+prices in place of the hitting set.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -15,7 +15,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from carp_optimized.state.arrays import Longs
+from carp_optimized.jit.kinds import Longs
 from carp_optimum.lagrangian.deadlines import Deadlines, Member
 from carp_optimum.lagrangian.price_search import PriceSearch
 from carp_optimum.sat.proving import refutation

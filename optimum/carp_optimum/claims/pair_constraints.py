@@ -17,8 +17,9 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from carp_optimized.jit.kinds import Ints, IntTable, Longs
 from carp_optimized.jit.references import Native
-from carp_optimized.state.arrays import NONE, Graph, Ints, IntTable, Longs
+from carp_optimized.state.arrays import NONE, Graph
 from carp_optimum.claims.pair_states import Meeting, Side, find_claim, find_meetings
 from carp_optimum.lagrangian.deadlines import Member
 from carp_optimum.lagrangian.price_search import PriceSearch

@@ -12,7 +12,7 @@ from itertools import combinations, count
 import numpy as np
 from msgspec.structs import replace
 
-from carp_optimized.state.arrays import IntTable, Longs, LongTable
+from carp_optimized.jit.kinds import IntTable, Longs, LongTable
 from carp_optimum.claims.pair_constraints import Sides
 from carp_optimum.lagrangian.deadlines import Deadlines, Member
 from carp_optimum.lagrangian.price_search import PriceSearch

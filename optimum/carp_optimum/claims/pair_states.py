@@ -13,8 +13,9 @@ with its delay, then its goal at the end, and two in which it is nowhere: after 
 from typing import NamedTuple
 
 from carp_optimized.jit.compiling import compiled, entry
+from carp_optimized.jit.kinds import Ints, IntTable, Longs
 from carp_optimized.jit.references import Native, dereference
-from carp_optimized.state.arrays import NONE, Ints, IntTable, Longs
+from carp_optimized.state.arrays import NONE
 from carp_optimum.lagrangian.state import Market, duration_of, market_at
 
 UNREACHED = -2

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from carp_optimized.state.arrays import Longs
+from carp_optimized.jit.kinds import Longs
 from carp_verify.bounds import DeadlinesDocument
 
 

@@ -4,7 +4,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from carp_optimized.state.arrays import NONE, Graph, IntTable, LongTable
+from carp_optimized.jit.kinds import IntTable, LongTable
+from carp_optimized.state.arrays import NONE, Graph
 from carp_optimum.lagrangian.state import Charges, Market, Prices, Requests, Scratch, Usage, Ways
 from carp_spec import Instance, Refusal
 from carp_verify.bound.rules import LARGEST_TABLE, size_fits

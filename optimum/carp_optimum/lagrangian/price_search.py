@@ -6,8 +6,9 @@ from typing import NamedTuple
 import numpy as np
 from msgspec.structs import replace
 
+from carp_optimized.jit.kinds import Ints, IntTable, Longs, LongTable
 from carp_optimized.jit.references import Native
-from carp_optimized.state.arrays import LARGEST, NONE, Ints, IntTable, Longs, LongTable
+from carp_optimized.state.arrays import LARGEST, NONE
 from carp_optimized.state.encoding import encode_graph, refuse_tick, refuse_what_is_too_large
 from carp_optimum.lagrangian.deadlines import Deadlines, flattened
 from carp_optimum.lagrangian.multipliers import charges_of, market_of, refuse_table, requests_of, sized

@@ -9,8 +9,9 @@ much less in the square: the gain stays the same.
 """
 
 from carp_optimized.jit.compiling import compiled, entry
+from carp_optimized.jit.kinds import Ints, Longs
 from carp_optimized.jit.references import Native
-from carp_optimized.state.arrays import NONE, Ints, Longs
+from carp_optimized.state.arrays import NONE
 from carp_optimum.lagrangian.state import Market, market_at
 
 UNIT = 64  # of a course

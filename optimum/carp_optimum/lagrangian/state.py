@@ -7,8 +7,9 @@ moves from r to s or from s to r, or is in r just before t and at t (`joint/exch
 from typing import NamedTuple
 
 from carp_optimized.jit.compiling import compiled
+from carp_optimized.jit.kinds import Ints, IntTable, Longs, LongTable
 from carp_optimized.jit.references import dereference
-from carp_optimized.state.arrays import NONE, Graph, Ints, IntTable, Longs, LongTable
+from carp_optimized.state.arrays import NONE, Graph
 
 
 class Requests(NamedTuple):

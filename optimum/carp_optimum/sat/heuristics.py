@@ -68,8 +68,7 @@ def plans_of_all(
 
 
 def ever_better(instance: Instance, look: Callable[[], None]) -> Iterator[tuple[int, Sequence[Plan]]]:
-    """The best plans of all robots so far, with the work for them: by annealings, then by
-    `carp_optimum.sat.group_search`.
+    """The best plans of all robots so far, with the work for them: by annealings, then by groups planned together.
 
     It ends if there are no plans of all robots to begin with. The work is about that of as many propagations of a
     solver; `look` is called now and then, and may end it by an exception. Raises `Refusal` for numbers that are too

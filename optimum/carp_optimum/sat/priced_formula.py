@@ -1,9 +1,9 @@
-"""The formula of all plans whose total is at most K, made small by a lower bound
-(`carp_optimum.lagrangian.reduced_costs`).
+"""The formula of all plans whose total is at most K, made small by a lower bound.
 
-It has only nodes whose reduced cost is within the gap, and all conflicts. The costs that share the gap are counted in
-`LEVELS` parts of it, rounded down: the reduced cost of each robot, the price of each resource that nobody is in, and
-the price of deadlines for each robot that is late, but one: the bound takes it that all the others pay it.
+It has only nodes whose reduced cost (`carp_optimum.lagrangian.reduced_costs`) is within the gap, and all conflicts.
+The costs that share the gap are counted in `LEVELS` parts of it, rounded down: the reduced cost of each robot, the
+price of each resource that nobody is in, and the price of deadlines for each robot that is late, but one: the bound
+takes it that all the others pay it.
 """
 
 from collections.abc import Callable, Mapping

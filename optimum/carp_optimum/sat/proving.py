@@ -6,7 +6,7 @@ from pathlib import Path
 
 import msgspec
 
-from carp_optimum.optimum import Optimum
+from carp_optimum.sat.core_guided import Optimum
 from carp_optimum.sat.lrat_hints import NoHintsError, refutation_with_hints
 from carp_optimum.sat.solver import Deadline, Solver
 from carp_spec import Instance, Refusal

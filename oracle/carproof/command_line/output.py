@@ -4,16 +4,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import msgspec
-
-from carp_spec import Instance, Plan, ResourceId, RobotId, Solution, total_cost
+from carp_spec import Instance, Plan, RobotId, Solution, total_cost
 from carp_spec.rule import interval
-from carp_verify.documents import visits_document, write_instance
+from carp_verify.documents import write_instance
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import print_document, write_whole
 from carproof.command_line.tables import print_line, print_table
 from carproof.engines import have_plans_beside, sum_of_shortest_paths
-from carproof.judging.audit import Audit
 from carproof.judging.unplanned import why_unplanned
 
 if TYPE_CHECKING:
@@ -89,65 +86,3 @@ def show_addition(instance: Instance, before: Solution, after: Solution, robot: 
 def shown_plan(plan: Plan) -> str:
     """A plan in one line."""
     return " ".join(f"{visit.resource}{interval(visit.enter, visit.leave)}" for visit in plan.visits)
-
-
-class VerifiedBoundDocument(msgspec.Struct, frozen=True):
-    """The bound that a certificate proves, or null with the path, the rule and the reason why it proves none.
-
-    `by` is the checker that decided; `assumed` lists the facts that it did not check: none.
-    """
-
-    bound: int | None
-    path: str | None
-    rule: str | None
-    reason: str | None
-    by: str
-    assumed: tuple[str, ...] = ()
-
-
-class VerifiedQueryDocument(msgspec.Struct, frozen=True):
-    """Whether a certificate proves its bound (null: no plan); if not, the path, the rule and the reason."""
-
-    proved: bool
-    bound: int | None
-    path: str | None
-    rule: str | None
-    reason: str | None
-    by: str
-
-
-class LateDocument(msgspec.Struct, frozen=True):
-    """A robot with the arrival of its plan, and a plan with which it arrives earlier."""
-
-    robot: RobotId
-    arrival: int
-    earliest: int
-    plan: tuple[tuple[ResourceId, int, int | None], ...]
-
-
-class AuditDocument(msgspec.Struct, frozen=True):
-    """The robots whose plans are certified, in order, those whose plans are late, and the checker that decided."""
-
-    certified: tuple[RobotId, ...]
-    late: tuple[LateDocument, ...]
-    unplanned: int
-    by: str
-
-
-def audit_document(audit: Audit, solution: Solution) -> AuditDocument:
-    """The document of an audit."""
-    late = (
-        LateDocument(each.plan.robot, arrival_of(each.plan), arrival_of(each.earlier), visits_document(each.earlier))
-        for each in audit.late
-    )
-    return AuditDocument(
-        certified=tuple(plan.robot for plan in audit.certified),
-        late=tuple(late),
-        unplanned=len(solution.unplanned),
-        by=audit.by,
-    )
-
-
-def arrival_of(plan: Plan) -> int:
-    """The tick at which a plan enters its goal for the last time."""
-    return plan.visits[-1].enter

@@ -12,8 +12,9 @@ from carp_verify.documents import write_instance, write_solution
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import OutputFile, write_whole
 from carproof.command_line.options import examples
+from carproof.command_line.planning import plan_showing
 from carproof.command_line.tables import print_line, print_table
-from carproof.engines import plan_showing, sum_of_shortest_paths
+from carproof.engines import sum_of_shortest_paths
 from carproof.formats.movingai import movingai_instance, read_map, read_scenario
 from carproof.generate import Fleet, Grid, grid_instance
 

@@ -18,7 +18,7 @@ from carproof.judging.verdicts import verify_proof
 from carproof.optima import optimum_document
 
 if TYPE_CHECKING:
-    from carp_optimum.optimum import Optimum
+    from carp_optimum.sat.core_guided import Optimum
 
 COLUMNS = ("robots", "shortest paths", "lower bound", "cost", "answer", "time")
 

@@ -21,7 +21,7 @@ from carproof.command_line.options import (
     planner_options,
 )
 from carproof.command_line.output import show_solution, write_result
-from carproof.engines import plan_showing
+from carproof.command_line.planning import plan_showing
 
 
 @click.command(

@@ -13,8 +13,8 @@ from carp_verify.documents import read_instance, solution_document
 from carp_verify.kernel import KernelVerdict, UndecidedError, ask, find_program, is_answer, request
 from carp_verify.kernel import verify_proof as ask_about_proof
 from carp_verify.query.rules import size_fits as query_size_fits
-from carproof.command_line.output import VerifiedBoundDocument, VerifiedQueryDocument
 from carproof.judging.audit import CHECKER
+from carproof.judging.documents import VerifiedBoundDocument, VerifiedQueryDocument
 
 if TYPE_CHECKING:
     from carp_verify.optimum.proof import ProofFiles, Verified

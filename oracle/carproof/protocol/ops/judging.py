@@ -6,9 +6,9 @@ from carp_spec import Instance, Solution, judge
 from carp_spec.query_certificates import QueryCertificateDocument
 from carp_verify.bounds import BoundDocument
 from carp_verify.documents import VerdictDocument, verdict_document
-from carproof.command_line.output import AuditDocument, VerifiedBoundDocument, VerifiedQueryDocument, audit_document
 from carproof.engines import Engine
 from carproof.judging.audit import ask_kernel, audit_in_order
+from carproof.judging.documents import AuditDocument, VerifiedBoundDocument, VerifiedQueryDocument, audit_document
 from carproof.judging.verdicts import verify_bound as bound_verdict
 from carproof.judging.verdicts import verify_query as query_verdict
 from carproof.requests import inside, sound_within

@@ -1,0 +1,12 @@
+"""The kinds of arrays that compiled functions take: whole numbers of one width, in one dimension or two."""
+
+from typing import Annotated, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+Ints: TypeAlias = npt.NDArray[np.int32]
+Longs: TypeAlias = npt.NDArray[np.int64]
+Numbers: TypeAlias = npt.NDArray[np.uint64]
+IntTable: TypeAlias = Annotated[npt.NDArray[np.int32], 2]
+LongTable: TypeAlias = Annotated[npt.NDArray[np.int64], 2]
