@@ -77,15 +77,15 @@ thorough: compiled
 bench: install
 	$(BIN)/pytest -q -s tests/bench/bench_speed.py
 
-# Measure how far planners are from the optimum, the figures of docs/results/gaps.md; takes a few minutes.
+# Measure how far planners are from the optimum, the figures of docs/results/small-maps.md; takes a few minutes.
 gap: install
 	$(BIN)/carproof gap --size 3..8 --map 0 --map 5 --map 10 --map 20 --limit 1
 
-# Measure how long the search for an optimum takes, and put the table into docs/results/gaps.md; takes up to half an hour.
+# Measure how long the search for an optimum takes, and put the table into docs/results/optima.md; takes up to half an hour.
 optimum-figures: install
 	$(BIN)/python -m carp_experiments.measuring.optimum_table
 
-# Measure how far polished plans are above the bound on the paper's maps, and put the tables into docs/results/gaps.md: four
+# Measure how far polished plans are above the bound on the paper's maps, and put the tables into docs/results/gaps.md and bounds.md: four
 # hours. `python -m carp_experiments.measuring.gap_table --seeds 2` measures two assignments a map, `--quick` prints the tables of a few seconds.
 gap-figures: install
 	$(BIN)/python -m carp_experiments.measuring.gap_table

@@ -1,4 +1,4 @@
-"""The tables of certified gaps in docs/results/gaps.md; `make gap-figures` makes them again.
+"""The tables of certified gaps in docs/results/gaps.md and bounds.md; `make gap-figures` makes them again.
 
 A gap is that of the best plans found above the bound found, both on the paper's maps. Where the optimum is found too,
 it splits the gap: the plans' part is above the optimum, and the bound's part below it. Plans and bound have the same
@@ -129,7 +129,7 @@ if __name__ == "__main__":
     if chosen.quick:
         sys.stdout.write("\n".join(gap_tables([*map(quick, GAPS)], [*map(quick, SPLITS)])))
     else:
-        page = Path(__file__).parents[2] / "docs" / "results" / "gaps.md"
+        results = Path(__file__).parents[3] / "docs" / "results"
         tables = gap_tables(*(first_seeds(tasks, chosen.seeds) for tasks in (GAPS, SPLITS)))
-        for name, table in zip(("gap table", "split table"), tables, strict=True):
-            write_section(page, name, table)
+        for page, name, table in zip(("gaps", "bounds"), ("gap table", "split table"), tables, strict=True):
+            write_section(results / f"{page}.md", name, table)

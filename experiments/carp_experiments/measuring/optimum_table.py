@@ -1,4 +1,4 @@
-"""The table of times of the search for an optimum, in docs/results/gaps.md; `make optimum-figures` makes it again.
+"""The table of times of the search for an optimum, in docs/results/optima.md; `make optimum-figures` makes it again.
 
 Seeds decide everything but the times.
 """
@@ -90,4 +90,4 @@ def optimum_table(families: Sequence[Family]) -> str:
 
 
 if __name__ == "__main__":
-    write_section(Path(__file__).parents[2] / "docs" / "results" / "gaps.md", "optimum table", optimum_table(FAMILIES))
+    write_section(Path(__file__).parents[3] / "docs" / "results" / "optima.md", "optimum table", optimum_table(FAMILIES))
