@@ -51,7 +51,7 @@ def command() -> None:
     """Run an experiment, or continue the one in a store.
 
     Results are written to the store as they come. A run that was stopped or killed continues when it is called again
-    with the same store, and a larger run takes over the results of a smaller one. The results and their digest do not
+    with the same store, and a larger run reuses the results of a smaller one. The results and their digest do not
     depend on the workers.
     """
 

@@ -6,8 +6,8 @@ rounds may raise it, every second one takes turns (`carp_optimized.neighbourhood
 bad place as often as a short one does. So there are several, each from the best plans seen, which are the result.
 Nothing here is trusted: the law judges the plans.
 
-Where robots wait much, as on a tree, luck decides where a cycle ends. Then there are more of them, and some begin again
-with the plans given: each begins where the one before began if that gained, and at the other place if not.
+Where robots wait much, as on a tree, results vary widely between cycles. Then there are more of them, and some begin
+again with the plans given: each begins where the one before began if that gained, and at the other place if not.
 """
 
 from collections.abc import Callable
