@@ -1,17 +1,15 @@
-"""A search that runs beside another one, on a second core of a Linux machine, and decides nothing by the clock.
+"""A background search, which runs beside another one and decides nothing by the clock.
 
 The search gives its results with the work that it has done, in units that are the same on every machine. The other one
 asks for the result after an amount of work, and waits for it if need be. So its answers depend neither on the clock nor
-on whether there is a second core: without one, or elsewhere, the search runs where it is asked.
+on whether the search has a process of its own: without one it runs where it is asked.
 """
 
-import os
-import signal
-import sys
 from collections import deque
 from collections.abc import Callable, Iterator
-from contextlib import suppress
-from multiprocessing.connection import Connection, Pipe
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
 from typing import Generic, TypeAlias, TypeVar
 
 from carp_spec import Refusal
@@ -24,18 +22,21 @@ PATIENCE = 0.05
 """Seconds between two looks at the clock of one who waits."""
 
 
-class Beside(Generic[Result]):
-    """A search and its results so far; `look` is called now and then by one who waits, and may raise an exception."""
+class BackgroundSearch(Generic[Result]):
+    """A search and its results so far; `look` is called now and then by one who waits, and may raise an exception.
 
-    def __init__(self, search: Search[Result], look: Look) -> None:
+    With a process of its own, which is spawned, the search must be one that can be pickled.
+    """
+
+    def __init__(self, search: Search[Result], look: Look, *, own_process: bool) -> None:
         self._look = look
         self._found: deque[tuple[int, Result | None]] = deque()
         self._result: Result | None = None
         self._work = 0
         self._ended = False
-        self._process: int | None = None
+        self._process: BaseProcess | None = None
         self._receiver: Connection | None = None
-        if sys.platform == "linux" and len(os.sched_getaffinity(0)) > 1:
+        if own_process:
             self._process, self._receiver = _started(search)
         else:
             self._steps = _changes(search(look))
@@ -66,9 +67,8 @@ class Beside(Generic[Result]):
     def close(self) -> None:
         """End the search."""
         if self._process is not None:
-            with suppress(ProcessLookupError, ChildProcessError):
-                os.kill(self._process, signal.SIGKILL)
-                os.waitpid(self._process, 0)
+            self._process.kill()
+            self._process.join()
             self._process = None
         if self._receiver is not None:
             self._receiver.close()
@@ -99,24 +99,24 @@ def _changes(steps: Iterator[tuple[int, Result]]) -> Iterator[tuple[int, Result 
         before = result
 
 
-def _started(search: Search[Result]) -> tuple[int, Connection]:
+def _started(search: Search[Result]) -> tuple[BaseProcess, Connection]:
     """A process that runs the search, and the end of a pipe through which its steps come."""
-    receiver, sender = Pipe(duplex=False)
-    process = os.fork()
-    if process == 0:
-        try:
-            receiver.close()
-            _run(search, sender)
-        finally:
-            os._exit(0)
+    spawning = get_context("spawn")
+    receiver, sender = spawning.Pipe(duplex=False)
+    process = spawning.Process(target=_run, args=(search, sender), daemon=True)
+    process.start()
     sender.close()
     return process, receiver
+
+
+def _never() -> None:
+    """Look at no clock: one who waits does that, and ends the process."""
 
 
 def _run(search: Search[Result], sender: Connection) -> None:
     """Send all steps of the search, or the exception that ended it."""
     try:
-        for step in _changes(search(lambda: None)):
+        for step in _changes(search(_never)):
             sender.send(step)
     except (Refusal, OSError):
         pass  # it has ended, or nobody listens any more

@@ -1,7 +1,7 @@
 """Bounds and plans meet at the optimum, whatever runs beside whatever and on however many cores."""
 
-import os
 from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
 from itertools import islice, pairwise
 from pathlib import Path
 
@@ -15,7 +15,7 @@ from tests.verify.tiny import TINY
 
 import carproof
 from carp_optimized.improve.repair import repair
-from carp_optimum.background import Beside
+from carp_optimum.background import BackgroundSearch
 from carp_optimum.lagrangian.reduced_costs import PricedBound
 from carp_optimum.narrowing import half_narrowed, narrowed
 from carp_optimum.optimum import optimum
@@ -81,16 +81,23 @@ def test_the_bound_rises_and_the_plans_get_cheaper_until_they_meet(instance: Ins
 @pytest.mark.usefixtures("beside_at_once")
 @settings(max_examples=draws(100), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(instances(TINY, least_robots=2))
-def test_the_optimum_is_the_same_on_one_core_and_on_two(instance: Instance) -> None:
-    found = []
-    for cores in (1, 2):
-        with pytest.MonkeyPatch.context() as patched:
-            patched.setattr(os, "sched_getaffinity", lambda _, cores=cores: {*range(cores)})
-            patched.setattr(Beside, "latest", None)  # depends on the clock
-            found.append(optimum(instance, SECONDS))
-    assert found[0] == found[1]
-    assert found[0].decided
-    assert found[0].cost == least_total_cost(instance)
+def test_the_optimum_of_tiny_instances_is_found_with_a_background_search(instance: Instance) -> None:
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(BackgroundSearch, "latest", None)  # depends on the clock
+        found = optimum(instance, SECONDS)
+    assert found.decided
+    assert found.cost == least_total_cost(instance)
+
+
+@pytest.mark.usefixtures("beside_at_once")
+@pytest.mark.parametrize("in_thread", [False, True])
+def test_the_optimum_is_the_same_in_one_process_and_in_two_and_in_a_thread(in_thread: bool) -> None:
+    instance = town(7, "park")
+    alone = optimum(instance, SECONDS)
+    with ThreadPoolExecutor(1) as pool:
+        together = pool.submit(optimum, instance, SECONDS, processes=2).result() if in_thread else None
+    assert alone == (together or optimum(instance, SECONDS, processes=2))
+    assert alone.decided
 
 
 @pytest.mark.usefixtures("beside_at_once")
@@ -156,15 +163,13 @@ def test_the_halves_of_a_crowd_meet_at_the_optimum(seed: int, parts: int, monkey
 
 
 @pytest.mark.usefixtures("beside_at_once")
-@pytest.mark.parametrize("seed", range(4))
-def test_a_crowd_has_the_same_optimum_on_one_core_and_on_two(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Beside, "latest", None)  # depends on the clock
-    monkeypatch.setattr("carp_optimum.optimum.narrowed", None)
+@pytest.mark.parametrize("seed", range(2))
+def test_a_dense_instance_has_the_same_optimum_in_one_process_and_in_two(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(BackgroundSearch, "latest", None)  # depends on the clock
     instance = grid_instance(Grid(4, 4, 20), Fleet(16, seed))
-    found = []
-    for cores in (1, 2):
-        monkeypatch.setattr(os, "sched_getaffinity", lambda _, cores=cores: {*range(cores)})
-        found.append(optimum(instance, SECONDS))
+    found = [optimum(instance, SECONDS, processes=processes) for processes in (1, 2)]
     assert found[0] == found[1]
     assert found[0].decided
     assert found[0].cost == core_guided(instance, SECONDS).cost
@@ -179,9 +184,7 @@ def found_in_halves(
 
 
 @pytest.mark.usefixtures("beside_at_once")
-@pytest.mark.parametrize("cores", [1, 2])
-def test_one_half_of_a_crowd_waits_for_the_other(cores: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {*range(cores)})
+def test_one_half_of_a_crowd_waits_for_the_other(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("carp_optimum.optimum.narrowed", None)
     instance, cheap, dear = crowd_with_plans()
     cost, more = total_cost(instance, cheap), total_cost(instance, dear)
@@ -205,7 +208,7 @@ def test_a_bound_of_one_half_is_none_of_all_plans(half: int, monkeypatch: pytest
     ahead = [(100, Between(instance, total_cost(instance, dear), dear))]
     found_in_halves(monkeypatch, *([ahead, []] if half == 0 else [late, ahead]))
     monkeypatch.setattr("carp_optimum.optimum.narrowed", lambda *_: late)
-    monkeypatch.setattr(Beside, "latest", lambda _: ahead[0][1] if half else None)
+    monkeypatch.setattr(BackgroundSearch, "latest", lambda _: ahead[0][1] if half else None)
     best = optimum(instance, SECONDS)
     assert best.lower < total_cost(instance, dear)
 

@@ -25,7 +25,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from time import monotonic_ns
 
-from carp_optimum.background import Beside  # noqa: TC001 - as the others
 from carp_optimum.sat.between import Between
 from carp_optimum.sat.heuristics import plans_of_all
 from carp_optimum.sat.solver import Deadline, Solver, TimeOver
@@ -38,6 +37,10 @@ from carp_verify.optimum.clauses import Literal, Unary
 from carp_verify.optimum.encoding import Encoding, Evidence, violated
 from carp_verify.optimum.joint_search import least_total_cost
 from carp_verify.optimum.unsolvable import Clauses, FullGoal, NoWay, Obstacle, States, is_searched
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from carp_optimum.background import BackgroundSearch
 
 CONFLICTS_TO_SHRINK = 300
 CONFLICTS_BEFORE_BESIDE = 60_000
@@ -111,7 +114,7 @@ class CoreGuided:
         self.best: Sequence[Plan] | None = None
         self.known = Between(self.instance)
         self.here: Between | None = None
-        self.beside: Beside[Between] | None = None
+        self.beside: BackgroundSearch[Between] | None = None
         self.work_before = 0
         self.tries_of_heuristics = 0
         self.order: dict[int, None] = {}

@@ -33,10 +33,15 @@ COLUMNS = ("robots", "shortest paths", "lower bound", "cost", "answer", "time")
 )
 @instance_argument
 @limit_option
+@click.option(
+    "--processes", type=click.IntRange(1, 2), default=2, help="Search in one process, or in two on two cores."
+)
 @click.option("--proof", type=click.Path(file_okay=False, path_type=Path), help="Write a proof into this folder.")
 @output_option
 @json_option
-def command(instance: str, limit: int, proof: Path | None, output: Path | None, as_json: bool) -> Answer:
+def command(
+    *, instance: str, limit: int, processes: int, proof: Path | None, output: Path | None, as_json: bool
+) -> Answer:
     """Find the least total cost of plans for all robots of INSTANCE, and plans that have it.
 
     The answer comes from a search and is not proved: it rests on the solver. With --proof it is proved: the command
@@ -56,7 +61,7 @@ def command(instance: str, limit: int, proof: Path | None, output: Path | None, 
     require_following_in(instance, problem)
     warm()
     started = perf_counter()
-    best = optimum(problem, limit)
+    best = optimum(problem, limit, processes=processes)
     seconds = perf_counter() - started
     if output is not None and best.solution is not None:
         write_whole(output, write_solution(best.solution))
