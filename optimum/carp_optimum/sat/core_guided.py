@@ -24,6 +24,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from time import monotonic_ns
+from typing import TYPE_CHECKING
 
 from carp_optimum.sat.between import Between
 from carp_optimum.sat.heuristics import plans_of_all
@@ -37,7 +38,6 @@ from carp_verify.optimum.clauses import Literal, Unary
 from carp_verify.optimum.encoding import Encoding, Evidence, violated
 from carp_verify.optimum.joint_search import least_total_cost
 from carp_verify.optimum.unsolvable import Clauses, FullGoal, NoWay, Obstacle, States, is_searched
-from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from carp_optimum.background import BackgroundSearch
