@@ -3,9 +3,9 @@
 from carp_optimized.jit.compiling import RecordsExhausted, TicksExhausted, entry
 from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
-from carp_optimized.query.guides import guide_slot, shortest_of
-from carp_optimized.query.search import find_plan
-from carp_optimized.query.windows import plan_fits, reserve, withdraw
+from carp_optimized.queries.guides import guide_slot, shortest_of
+from carp_optimized.queries.search import find_plan
+from carp_optimized.queries.windows import plan_fits, reserve, withdraw
 from carp_optimized.state.arrays import NEVER, NONE, TOO_FAR, UNCHANGED, UNKNOWN, State
 from carp_optimized.state.natives import state_at
 from carp_optimized.state.records import close_record, cost_of, start_record

@@ -42,15 +42,15 @@ FOLDER = ROOT / "optimized" / "carp_optimized"
 MODULES = (
     "neighbourhood.replanning",
     "neighbourhood.order_search",
-    "query.relevant_plans",
+    "queries.relevant_plans",
     "neighbourhood.answers",
     "neighbourhood.adding",
     "neighbourhood.orders",
     "neighbourhood.distances",
     "passes",
-    "query.windows",
-    "query.guides",
-    "query.search",
+    "queries.windows",
+    "queries.guides",
+    "queries.search",
 )
 QUESTIONS = 150
 FLEETS = 300  # of each kind

@@ -25,8 +25,8 @@ from carp_optimized.neighbourhood.distances import (
 )
 from carp_optimized.neighbourhood.order_search import spare_for
 from carp_optimized.passes import withdraw_all
-from carp_optimized.query.guides import guide_slot, toll_of
-from carp_optimized.query.search import find_plan, find_plan_alone
+from carp_optimized.queries.guides import guide_slot, toll_of
+from carp_optimized.queries.search import find_plan, find_plan_alone
 from carp_optimized.state import encoding
 from carp_optimized.state.arrays import LATE, NEVER, NO_LIMIT, NONE, Records, Work
 from carp_optimized.state.encoding import no_answers, no_work

@@ -102,7 +102,7 @@ def entries() -> set[str]:
     return {
         f"{source}:{node.name}"
         for folder in folders
-        for source in folder.glob("*.py")
+        for source in folder.rglob("*.py")
         for node in ast.walk(ast.parse(source.read_text()))
         if isinstance(node, ast.FunctionDef)
         and any(isinstance(each, ast.Name) and each.id == "entry" for each in node.decorator_list)

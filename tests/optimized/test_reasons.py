@@ -12,8 +12,8 @@ from tests.profiles import draws
 from carp_optimized import passes
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.neighbourhood.answers import number_plan, start_answers
-from carp_optimized.query.relevant_plans import reasons
-from carp_optimized.query.search import find_plan_by
+from carp_optimized.queries.relevant_plans import reasons
+from carp_optimized.queries.search import find_plan_by
 from carp_optimized.state.arrays import NEVER, NONE, PLANS
 from carp_optimized.state.encoding import no_answers
 from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Visit

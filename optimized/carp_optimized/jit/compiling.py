@@ -190,7 +190,7 @@ def is_cached(function: Callable[..., object]) -> bool:
 
 def _package(source: Path) -> Path:
     """The folder of the whole package to which a source belongs."""
-    return [folder for folder in source.parents if (folder / "__init__.py").is_file()][-1]
+    return ([folder for folder in source.parents if (folder / "__init__.py").is_file()] or [source.parent])[-1]
 
 
 def _indices(function: Callable[..., object]) -> list[Path]:

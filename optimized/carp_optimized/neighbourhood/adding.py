@@ -14,9 +14,9 @@ from carp_optimized.neighbourhood.replanning import (
     note_freed,
     replan,
 )
-from carp_optimized.query.guides import shortest_of
-from carp_optimized.query.search import find_plan, find_plan_alone, find_plan_by
-from carp_optimized.query.windows import give_rank, plan_fits, reserve_but, withdraw, withdraw_but
+from carp_optimized.queries.guides import shortest_of
+from carp_optimized.queries.search import find_plan, find_plan_alone, find_plan_by
+from carp_optimized.queries.windows import give_rank, plan_fits, reserve_but, withdraw, withdraw_but
 from carp_optimized.state.arrays import (
     LARGEST,
     NEVER,

@@ -7,7 +7,7 @@ Three kinds of reuse; each leaves the best order and its plans as they are:
   found then clashes with none of the others: stays that leave room for it do not change it (see
   `carp_optimized.neighbourhood.replanning`). No plan against fewer is no plan against more. So two prefixes with the
   same plans share their answers, too. An answer remembers only those of the given plans on which it depends
-  (`carp_optimized.query.relevant_plans`), so that it holds for more prefixes. On a single one it always depends: a
+  (`carp_optimized.queries.relevant_plans`), so that it holds for more prefixes. On a single one it always depends: a
   query is asked only where that clashes with the plan found alone. An answer keeps the record of its own query, even
   if another query has found the same plan: the readings of the other do not count, because it may have been asked
   against different plans.
@@ -21,9 +21,9 @@ Three kinds of reuse; each leaves the best order and its plans as they are:
 from carp_optimized.jit.compiling import compiled
 from carp_optimized.neighbourhood.answers import known_answer, learn, least_of, number_plan, start_answers
 from carp_optimized.neighbourhood.orders import next_permutation, next_row, queries_after, queries_of_rows, take_row
-from carp_optimized.query.relevant_plans import reasons
-from carp_optimized.query.search import find_plan_by
-from carp_optimized.query.windows import reserve, withdraw
+from carp_optimized.queries.relevant_plans import reasons
+from carp_optimized.queries.search import find_plan_by
+from carp_optimized.queries.windows import reserve, withdraw
 from carp_optimized.state.arrays import (
     BOUND,
     LARGEST,

@@ -17,8 +17,8 @@ from carp_optimized.jit.kinds import Numbers
 from carp_optimized.jit.references import Native
 from carp_optimized.neighbourhood.distances import Mean, distance_below, is_apart, is_less
 from carp_optimized.neighbourhood.orders import next_number
-from carp_optimized.query.search import find_plan_by
-from carp_optimized.query.windows import reserve, withdraw
+from carp_optimized.queries.search import find_plan_by
+from carp_optimized.queries.windows import reserve, withdraw
 from carp_optimized.state.arrays import MOST_MEMBERS, MOST_TURNS, NEVER, NONE, Polish, Records, State
 from carp_optimized.state.natives import polish_at, state_at
 from carp_optimized.state.records import cost_of

@@ -20,9 +20,9 @@ A plan made earlier and now under way is the same query with fewer ways to begin
 """
 
 from carp_optimized.jit.compiling import compiled, inlined
-from carp_optimized.query.guides import guide_slot, toll_of
-from carp_optimized.query.search import find_plan_by
-from carp_optimized.query.windows import (
+from carp_optimized.queries.guides import guide_slot, toll_of
+from carp_optimized.queries.search import find_plan_by
+from carp_optimized.queries.windows import (
     end_of_run,
     evict,
     last_by,

@@ -291,7 +291,7 @@ class Answers(NamedTuple):
     at least `least`, which is all that is known where the plan is `LATE`. Plans are numbered; `record[plan]` is the
     plan's record, `clashes[plan]` the set of plans that it clashes with, of those with which it has been `compared`.
     The answers of a member are chained from `oldest[member]` to `newest[member]` by `newer`. `read[resource]` is what
-    the query summed up last read there (`carp_optimized.query.relevant_plans`). `used` counts plans, answers, and
+    the query summed up last read there (`carp_optimized.queries.relevant_plans`). `used` counts plans, answers, and
     queries summed up. Answers that do not fit are forgotten, which costs time alone.
     """
 

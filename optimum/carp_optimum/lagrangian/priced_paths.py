@@ -10,7 +10,7 @@ graph, as in `carp_verify.optimum.robot_clauses`.
 
 from carp_optimized.jit.compiling import compiled, entry
 from carp_optimized.jit.references import Native
-from carp_optimized.query.heap import push, replace_root
+from carp_optimized.queries.heap import push, replace_root
 from carp_optimized.state.arrays import NONE
 from carp_optimum.lagrangian.state import (
     Market,

@@ -1,10 +1,10 @@
 """The CARP query, a relative of SIPP: A* over free windows in the order of `query/ties`."""
 
 from carp_optimized.jit.compiling import RoomExhausted, TicksExhausted, compiled
-from carp_optimized.query.blocks import below, lowest, width
-from carp_optimized.query.guides import guide_slot, reach_all, toll_of
-from carp_optimized.query.heap import push, replace_root
-from carp_optimized.query.windows import end_of_run, fits, is_exchange, last_by, plan_fits, skip_below, start_of_run
+from carp_optimized.queries.blocks import below, lowest, width
+from carp_optimized.queries.guides import guide_slot, reach_all, toll_of
+from carp_optimized.queries.heap import push, replace_root
+from carp_optimized.queries.windows import end_of_run, fits, is_exchange, last_by, plan_fits, skip_below, start_of_run
 from carp_optimized.state.arrays import (
     ASKED,
     BLOCK,

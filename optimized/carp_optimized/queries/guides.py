@@ -6,7 +6,7 @@ cost more than the detour. A query that might have looked further than its guide
 """
 
 from carp_optimized.jit.compiling import RoomExhausted, compiled
-from carp_optimized.query.heap import push, replace_root
+from carp_optimized.queries.heap import push, replace_root
 from carp_optimized.state.arrays import FURTHER, LARGEST, NONE, TOO_FAR, UNREACHABLE, State
 
 

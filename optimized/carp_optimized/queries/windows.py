@@ -7,7 +7,7 @@ forbidden, a gap is a tick shorter at both ends. The windows of other resources 
 
 from carp_optimized.jit.compiling import RoomExhausted, compiled, inlined
 from carp_optimized.jit.kinds import Ints
-from carp_optimized.query.blocks import below, width
+from carp_optimized.queries.blocks import below, width
 from carp_optimized.state.arrays import BLOCK, NEVER, NONE, Records, Rows, State
 
 

@@ -11,8 +11,8 @@ could lead into it, with the largest key popped afterwards, and when it could be
 
 from carp_optimized.jit.compiling import compiled, inlined
 from carp_optimized.jit.kinds import Longs
-from carp_optimized.query.guides import toll_of
-from carp_optimized.query.search import LOW
+from carp_optimized.queries.guides import toll_of
+from carp_optimized.queries.search import LOW
 from carp_optimized.state.arrays import FURTHER, NEVER, NONE, PLANS, Answers, State
 
 QUERY, READY, UNTIL, LARGEST_KEY = range(4)
