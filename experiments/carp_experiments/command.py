@@ -8,22 +8,22 @@ import click
 
 from carp_experiments.beyond.executions import FULL_EXECUTIONS, QUICK_EXECUTIONS, executions_cases, executions_report
 from carp_experiments.experiments import EXPERIMENTS, Experiment, Profile
-from carp_experiments.kernel_texts import FULL_TEXTS, QUICK_TEXTS, text_cases, text_report
 from carp_experiments.measuring.crosscheck_campaign import (
     FULL_QUESTIONS,
     QUICK_QUESTIONS,
     crosscheck_cases,
     crosscheck_report,
 )
+from carp_experiments.measuring.kernel_texts import FULL_TEXTS, QUICK_TEXTS, text_cases, text_report
 from carp_experiments.measuring.kernel_verdicts import FULL_VERDICTS, QUICK_VERDICTS, kernel_cases, kernel_report
 from carp_experiments.paper.map_cases import WAREHOUSE
 from carp_verify.kernel import program
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import print_document
 from carproof.command_line.options import examples
-from carproof.command_line.progress import progress
 from carproof.command_line.tables import print_line, print_table
 from carproof.extras import require
+from carproof.progress import progress
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -9,6 +9,7 @@ from carp_spec import Instance, Neighbourhood, Plan, Planner, Refusal, RobotId, 
 from carp_spec.query_certificates import QueryCertificateDocument
 from carp_spec.traces import Trace
 
+from carproof.progress import progress
 if TYPE_CHECKING:
     from carp_optimized.fleet import PlannedFleet
     from carp_optimized.improve.many_starts import Polish

@@ -10,7 +10,7 @@ import pytest
 from tests.oracle.running import Run
 from tests.verify.kernel_program import program
 
-from carp_experiments.kernel_texts import TextCase, Texts, decided, drawn_texts, text_cases, text_report
+from carp_experiments.measuring.kernel_texts import TextCase, Texts, decided, drawn_texts, text_cases, text_report
 from carp_verify.kernel import PROGRAM, VARIABLE
 
 STAND_IN = """#!/bin/sh
@@ -64,7 +64,7 @@ def test_a_kernel_that_ends_early_differs_on_each_text_on_which_it_does(
 
 
 def test_a_kernel_that_does_not_answer_differs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr("carp_experiments.kernel_texts.LONGEST", 0.2)
+    monkeypatch.setattr("carp_experiments.measuring.kernel_texts.LONGEST", 0.2)
     stand_in(monkeypatch, tmp_path, "exec sleep 100")
     assert len(differences([TextCase(0, 2)])) == 2
 

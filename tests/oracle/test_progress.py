@@ -15,8 +15,8 @@ import pytest
 from carp_optimized import plan
 from carp_spec import Carp
 from carp_verify.documents import write_instance, write_solution
-from carproof.command_line.progress import found_so_far, search_progress
 from carproof.generate import Fleet, Grid, grid_instance
+from carproof.progress import found_so_far, search_progress
 
 CODES = re.compile(r"\x1b\[[0-9;?]*[a-zA-Z]")
 

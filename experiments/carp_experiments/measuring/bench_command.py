@@ -11,8 +11,8 @@ from carp_verify.documents import write
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import print_document
 from carproof.command_line.options import examples, json_option
-from carproof.command_line.progress import progress
 from carproof.command_line.tables import print_table
+from carproof.progress import progress
 
 MAPS = (10, 20)
 

@@ -13,9 +13,9 @@ from carproof.command_line.answer import Answer
 from carproof.command_line.files import hypothesis_elsewhere, print_document
 from carproof.command_line.options import examples, json_option, output_option
 from carproof.command_line.output import write_result
-from carproof.command_line.progress import progress
 from carproof.command_line.tables import print_line
 from carproof.extras import require
+from carproof.progress import progress
 
 
 @click.command(

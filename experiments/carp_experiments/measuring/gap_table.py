@@ -20,10 +20,10 @@ from carp_optimum.optimum import optimum
 from carp_spec import Instance, total_cost
 from carp_verify.bound.rules import require_kept
 from carp_verify.bound.verify import verify_bound
-from carproof.command_line.progress import progress
 from carproof.gap.statistics import mean_interval
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.markdown import markdown_table, write_section
+from carproof.progress import progress
 
 GAP_COLUMNS = ("map", "seeds", "plans of all", "bound", "gap", "worst gap")
 SPLIT_COLUMNS = ("map", "robots", "optimum found", "plans above it", "bound below it", "proved")

@@ -12,10 +12,10 @@ from time import perf_counter
 
 from carp_optimum.optimum import optimum
 from carp_spec import AfterGoal, Instance
-from carproof.command_line.progress import progress
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 from carproof.generate.options import JUST_ONE
 from carproof.markdown import markdown_table, write_section
+from carproof.progress import progress
 
 LIMIT = 60
 FULL, SPARSE = 20, 5

@@ -15,7 +15,7 @@ from carp_spec import Instance, Refusal, Solution
 from carp_spec.inputs.requests import sound_solution
 from carp_verify.documents import read_instance, read_solution
 from carp_verify.limits import require_following
-from carproof.layouts import layout_named
+from carproof.formats.layouts import layout_named
 
 T = TypeVar("T")
 STANDARD_INPUT = "-"

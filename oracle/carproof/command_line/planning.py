@@ -3,8 +3,8 @@
 from typing import TYPE_CHECKING
 
 from carp_spec import Instance, Planner, Solution
-from carproof.command_line.progress import progress
 from carproof.engines import compile_what_is_kept, engine_named, fastest_with
+from carproof.progress import progress
 
 if TYPE_CHECKING:
     from carp_optimized.fleet import PlannedFleet

@@ -21,12 +21,12 @@ from carproof.command_line.files import (
 from carproof.command_line.foreign import MovingAI, from_option, movingai_options, read_movingai
 from carproof.command_line.options import engine_option, examples, json_option, kernel_option
 from carproof.command_line.output import shown_plan
-from carproof.command_line.progress import progress
 from carproof.command_line.tables import print_line, print_table
 from carproof.engines import engine_named
 from carproof.formats import format_of, read_foreign_solution
 from carproof.judging.audit import Audit, ask_kernel, audit_in_order, audit_in_some_order
 from carproof.judging.documents import arrival_of, audit_document
+from carproof.progress import progress
 
 COLUMNS = ("robots", "certified", "late", "unplanned", "decided by", "time")
 OWN_FORMAT = "carproof"

@@ -11,10 +11,10 @@ from carproof.command_line.answer import Answer
 from carproof.command_line.files import InputFile, naming, print_document, refuse_two_standard_inputs, write_whole
 from carproof.command_line.foreign import MovingAI, Problem, from_option, movingai_options, read_solution_of
 from carproof.command_line.options import DEFAULT_SECONDS, examples, json_option, output_option
-from carproof.command_line.progress import found_so_far, gap, search_progress
 from carproof.command_line.tables import print_line, print_table
 from carproof.engines import warm
 from carproof.extras import require
+from carproof.progress import found_so_far, gap, search_progress
 
 COLUMNS = ("robots", "shortest paths", "lower bound", "best known", "gap", "steps", "time")
 

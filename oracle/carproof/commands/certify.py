@@ -11,8 +11,8 @@ from carproof.command_line.answer import Answer
 from carproof.command_line.files import print_document, require_following_in
 from carproof.command_line.foreign import Problem, solution_files
 from carproof.command_line.options import examples, json_option
-from carproof.command_line.progress import progress
 from carproof.command_line.tables import counted, print_line, remark
+from carproof.progress import progress
 
 if TYPE_CHECKING:
     from carp_verify.certificate import Certificate

@@ -15,7 +15,6 @@ from carp_verify.kernel import version
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import OutputFile, hypothesis_elsewhere, print_document, write_whole
 from carproof.command_line.options import examples, json_option, kernel_option
-from carproof.command_line.progress import progress
 from carproof.command_line.tables import counted, print_line, print_table, printable, remark
 from carproof.conform.cases import ASKED_OPS
 from carproof.conform.claims import FEATURES, Claims
@@ -23,6 +22,7 @@ from carproof.conform.levels import CLASSICAL_LEVELS, EXECUTOR_LEVELS, LEVELS, W
 from carproof.engines import warm
 from carproof.extras import require
 from carproof.formats import ADAPTERS
+from carproof.progress import progress
 from carproof.protocol.ops.published import op_list
 
 if TYPE_CHECKING:

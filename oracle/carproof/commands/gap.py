@@ -10,11 +10,11 @@ from carp_verify.documents import write
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import InputFile, print_document, read_instance_file, require_following_in
 from carproof.command_line.options import RangeType, examples, json_option, limit_option
-from carproof.command_line.progress import progress
 from carproof.command_line.tables import print_line, print_table
 from carproof.engines import warm
 from carproof.extras import require
 from carproof.generate import Range
+from carproof.progress import progress
 
 if TYPE_CHECKING:
     from carproof.gap.family import Family

@@ -18,9 +18,9 @@ from carproof.command_line.files import InputFile, naming, read_file, refuse_two
 from carproof.command_line.foreign import Problem, solution_files
 from carproof.command_line.options import examples, gives_plans
 from carproof.command_line.output import show_unplanned, write_result
-from carproof.command_line.progress import found_so_far, gap, search_progress
 from carproof.command_line.tables import print_table
 from carproof.engines import engine_named, sum_of_shortest_paths, warm
+from carproof.progress import found_so_far, gap, search_progress
 
 COLUMNS = ("plans", "unplanned", "total cost", "bound", "gap", "rounds", "time")
 

@@ -13,9 +13,9 @@ from typing import Any, Literal
 import msgspec
 
 from carp_experiments.measuring.kernel_verdicts import certified, fleet_questions
+from carp_experiments.measuring.texts import changed, vector_requests
 from carp_experiments.report import ExperimentReport, Table
 from carp_experiments.store import Row
-from carp_experiments.texts import changed, vector_requests
 from carp_spec import Instance, Plan, Refusal, Solution, judge
 from carp_spec.permutations import splitmix64
 from carp_spec.query_certificates import QueryCertificateDocument
