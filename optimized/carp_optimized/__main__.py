@@ -4,7 +4,7 @@ from carp_optimized.execution.following import retime
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.jit.compiling import note_that_it_is_compiled
 from carp_spec import Instance, Neighbourhood, Plan, Resource, ResourceGraph, Robot, Shuffled, Solution, Visit
-from carp_spec.traces import Trace
+from carp_spec.execution.traces import Trace
 
 
 def compile_all() -> None:

@@ -22,15 +22,15 @@ from carp_spec import (
     Solution,
 )
 from carp_spec.inputs.options import require_planner, require_polish_options
-from carp_spec.inputs.requests import known, require_addition, require_query, sound_solution
 from carp_spec.inputs.values import require_instance
 from carp_spec.planners import BY_DEFAULT
 from carp_spec.polish_rules import last_round
+from carp_spec.requests import known, require_addition, require_query, sound_solution
 
 if TYPE_CHECKING:
     from carp_optimized.certifying import Certifier
     from carp_optimized.fleet import PlannedFleet
-    from carp_spec.traces import Trace
+    from carp_spec.execution.traces import Trace
 
 ROUNDS = 50  # of a polish in one compiled call
 PLANNERS = (Carp, Shuffled, LongestFirst, Greedy, Neighbourhood)

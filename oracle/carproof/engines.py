@@ -6,10 +6,10 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
 from carp_spec import Instance, Neighbourhood, Plan, Planner, Refusal, RobotId, Solution, total_cost
+from carp_spec.execution.traces import Trace
 from carp_spec.query_certificates import QueryCertificateDocument
-from carp_spec.traces import Trace
-
 from carproof.progress import progress
+
 if TYPE_CHECKING:
     from carp_optimized.fleet import PlannedFleet
     from carp_optimized.improve.many_starts import Polish

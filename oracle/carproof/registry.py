@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from carp_spec.execution_rules import EXECUTION_RULES, TRACE_RULES, is_acyclic
+from carp_spec.execution.execution_rules import EXECUTION_RULES, TRACE_RULES, is_acyclic
 from carp_spec.inputs.options import options_are_right
 from carp_spec.instance_rules import INSTANCE_RULES
 from carp_spec.joint_rules import JOINT_RULES, SOLUTION_RULES

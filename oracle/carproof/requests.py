@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from carp_spec import Instance, Refusal, RobotId, Solution
-from carp_spec.inputs.requests import require_robot, sound_solution
+from carp_spec.requests import require_robot, sound_solution
 from carp_spec.rule import DESIGN
 from carproof.input_rules import Code
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from carp_spec import Instance, Plan, RobotId, Solution, Visit
-from carp_spec.dependencies import Dependency, Node, dependencies
-from carp_spec.execution_rules import require_followed, require_lawful_ends
-from carp_spec.inputs.requests import require_trace
-from carp_spec.traces import Trace
+from carp_spec.execution.dependencies import Dependency, Node, dependencies
+from carp_spec.execution.execution_rules import require_followed, require_lawful_ends
+from carp_spec.execution.traces import Trace
+from carp_spec.requests import require_trace
 
 
 @dataclass(frozen=True, slots=True)

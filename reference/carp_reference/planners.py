@@ -24,9 +24,9 @@ from carp_spec import (
     Solution,
 )
 from carp_spec.inputs.options import require_planner
-from carp_spec.inputs.requests import known, require_addition, require_query
 from carp_spec.inputs.values import require_instance
 from carp_spec.planners import BY_DEFAULT
+from carp_spec.requests import known, require_addition, require_query
 
 
 def query(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0) -> Plan | None:

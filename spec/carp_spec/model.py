@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Literal, TypeAlias
 
-from carp_spec.inputs.shapes import of_shape
+from carp_spec.shapes import of_shape
 
 ResourceId: TypeAlias = str | int
 RobotId: TypeAlias = str | int

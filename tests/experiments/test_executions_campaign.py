@@ -9,7 +9,7 @@ from carp_experiments.beyond import executions
 from carp_experiments.beyond.executions import ExecutionsCase, executions_cases, executions_report
 from carp_experiments.beyond.many_executions import Flags, Longs, breaches, entered_in_order, random_numbers
 from carp_reference.execution import Order, earliest
-from carp_spec.dependencies import Dependency, Node
+from carp_spec.execution.dependencies import Dependency, Node
 from carp_spec.permutations import splitmix64
 from carproof.execution.delays import Delay, delayed, in_order, is_last, on_the_clock
 

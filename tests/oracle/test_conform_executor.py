@@ -16,7 +16,7 @@ from tests.profiles import draws
 
 from carp_reference.execution import order_of
 from carp_spec import Robot
-from carp_spec.traces import Trace
+from carp_spec.execution.traces import Trace
 from carproof.conform.answers import Skipped
 from carproof.conform.cases import EXECUTION, Case
 from carproof.conform.child import Limits

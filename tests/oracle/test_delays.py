@@ -10,8 +10,8 @@ from tests.spec.making import RING, TURNING, solution_of
 
 from carp_reference.execution import order_of
 from carp_spec import Instance, Solution, check
-from carp_spec.dependencies import Node
-from carp_spec.execution_rules import is_acyclic, trace_violations
+from carp_spec.execution.dependencies import Node
+from carp_spec.execution.execution_rules import is_acyclic, trace_violations
 from carproof.execution.delays import (
     Delay,
     executed,

@@ -10,7 +10,7 @@ from tests.oracle.running import Document, Outcome, Run, line, save, solution, t
 from tests.profiles import draws
 
 from carp_spec import Solution, Visit, check, check_update, judge
-from carp_spec.execution_rules import is_acyclic, trace_violations
+from carp_spec.execution.execution_rules import is_acyclic, trace_violations
 from carp_verify.documents import read_instance, read_solution, read_trace
 from carproof.engines import engine_named
 from carproof.execution.delays import Delay

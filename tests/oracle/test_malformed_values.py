@@ -29,8 +29,8 @@ from carp_spec import (
     Solution,
     Visit,
 )
+from carp_spec.execution.traces import Trace
 from carp_spec.query_certificates import QUERY_FORMAT, QueryCertificateDocument
-from carp_spec.traces import Trace
 from carp_verify.bounds import digest
 from carp_verify.certificate import certify
 from carp_verify.documents import read_instance, read_solution, write_instance, write_solution, write_trace

@@ -4,7 +4,7 @@ import pytest
 from tests.oracle.running import BROKEN, Run, line
 
 from carp_spec import Refusal, Rule, Violation
-from carp_spec.inputs.requests import path_to, require_tick
+from carp_spec.requests import path_to, require_tick
 from carp_verify.documents import read_solution
 from carproof.rules import ALL_RULES
 

@@ -7,7 +7,7 @@ import pytest
 from carp_reference import plan
 from carp_reference.execution import order_of
 from carp_spec import Carp, Instance, Solution, check, judge
-from carp_spec.execution_rules import trace_violations
+from carp_spec.execution.execution_rules import trace_violations
 from carproof.execution import switching
 from carproof.execution.delays import (
     Delay,

@@ -10,8 +10,8 @@ from tests.spec.making import CROSSED, plan_of
 import carp_reference
 from carp_reference.execution import order_of, retime, solution_at
 from carp_spec import Carp, Instance, Plan, Refusal, Solution, Visit, check_update, judge
-from carp_spec.execution_rules import trace_violations
-from carp_spec.traces import Trace
+from carp_spec.execution.execution_rules import trace_violations
+from carp_spec.execution.traces import Trace
 from carproof.execution.delays import Delay, executed, in_order, planned, stuck
 
 

@@ -11,10 +11,10 @@ from tests.spec.making import is_before
 
 import carp_reference
 from carp_spec import Carp, Instance, Plan, Solution, Visit, check
-from carp_spec.dependencies import Stay, dependencies, shortest_cycle, stays_by_resource
-from carp_spec.execution_rules import is_acyclic, trace_violations
+from carp_spec.execution.dependencies import Stay, dependencies, shortest_cycle, stays_by_resource
+from carp_spec.execution.execution_rules import is_acyclic, trace_violations
+from carp_spec.execution.traces import Trace
 from carp_spec.joint_rules import following_is_avoided
-from carp_spec.traces import Trace
 from carproof.testing.strategies import PlannedInstance, Sizes, instances, planned_instances
 
 SIZES = Sizes(resources=4, robots=4)

@@ -13,7 +13,6 @@ from tests.spec.strategies import FEWER
 
 from carp_spec import Plan, Refusal, Robot, Solution, Visit
 from carp_spec.inputs.options import require_polish_options
-from carp_spec.inputs.requests import sound_solution
 from carp_spec.permutations import splitmix64
 from carp_spec.planners import LARGEST_SEED
 from carp_spec.polish_rules import (
@@ -34,6 +33,7 @@ from carp_spec.polish_rules import (
     spans,
     ticks_apart,
 )
+from carp_spec.requests import sound_solution
 
 SEEDS = st.integers(0, LARGEST_SEED)
 ROW = line("abcde")

@@ -24,7 +24,7 @@ from carp_spec import (
     plan_cost,
     total_cost,
 )
-from carp_spec.execution_rules import is_acyclic, trace_violations
+from carp_spec.execution.execution_rules import is_acyclic, trace_violations
 from carp_spec.instance_rules import after_goal_is_known, following_is_known
 from carp_spec.neighbourhood_rules import (
     baseline_is_tried,

@@ -14,8 +14,8 @@ from tests.spec.making import PARKED, PARKING, SOLVED, VANISHING, plan_of, solut
 from tests.spec.strategies import FEWER, SIZES, solutions
 
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, Solution, judge
+from carp_spec.execution.traces import Trace
 from carp_spec.model import Following
-from carp_spec.traces import Trace
 from carp_verify.documents import (
     INSTANCE_FORMAT,
     MOST_DIGITS,

@@ -14,7 +14,7 @@ from typing import Annotated, Final, Literal, TypeAlias, TypeVar
 import msgspec
 
 from carp_spec.check import Verdict
-from carp_spec.inputs.shapes import SHAPE, require_shape
+from carp_spec.execution.traces import Trace
 from carp_spec.inputs.values import require_instance
 from carp_spec.model import (
     AfterGoal,
@@ -32,7 +32,7 @@ from carp_spec.model import (
 from carp_spec.query_certificates import QUERY_FORMAT, QueryCertificateDocument
 from carp_spec.refusal import Refusal
 from carp_spec.rule import DESIGN, rule
-from carp_spec.traces import Trace
+from carp_spec.shapes import SHAPE, require_shape
 
 INSTANCE_FORMAT: Final = "carproof-instance/1"
 SOLUTION_FORMAT: Final = "carproof-solution/1"

@@ -18,11 +18,11 @@ from carp_experiments.store import Row
 from carp_reference import plan
 from carp_reference.execution import Order, order_of
 from carp_spec import Carp, Plan, RobotId, Visit
-from carp_spec.dependencies import Dependency, shortest_cycle
-from carp_spec.execution_rules import trace_violations
+from carp_spec.execution.dependencies import Dependency, shortest_cycle
+from carp_spec.execution.execution_rules import trace_violations
+from carp_spec.execution.traces import Trace
 from carp_spec.joint_rules import JOINT_RULES
 from carp_spec.permutations import splitmix64
-from carp_spec.traces import Trace
 from carproof.execution.delays import Delay, executed, in_order, on_the_clock
 from carproof.testing.random_instances import Draw, draw_fleet, draw_instance
 

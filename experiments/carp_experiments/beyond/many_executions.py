@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from carp_reference.execution import Order
-from carp_spec.dependencies import Node, stays_by_resource
+from carp_spec.execution.dependencies import Node, stays_by_resource
 from carproof.execution.delays import Delay, is_last, waits_for_leaving
 
 Longs: TypeAlias = npt.NDArray[np.int64]

@@ -18,9 +18,9 @@ from carp_optimized.jit.compiling import entry
 from carp_optimized.jit.kinds import Longs
 from carp_optimized.state.encoding import refuse_tick, refuse_what_is_too_large
 from carp_spec import Instance, Plan, RobotId, Solution, Visit
-from carp_spec.execution_rules import require_followed, require_lawful_ends
-from carp_spec.inputs.requests import require_trace
-from carp_spec.traces import Trace
+from carp_spec.execution.execution_rules import require_followed, require_lawful_ends
+from carp_spec.execution.traces import Trace
+from carp_spec.requests import require_trace
 
 Flags: TypeAlias = npt.NDArray[np.bool_]
 FOR_EVER = 2**62

@@ -1,4 +1,4 @@
-"""Whether a trace follows a solution, on arrays: a quick yes in place of `carp_spec.execution_rules`.
+"""Whether a trace follows a solution, on arrays: a quick yes in place of `carp_spec.execution.execution_rules`.
 
 It shares nothing with the retiming that relies on it. Where it finds a breach, the law decides and names it.
 """
@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from carp_optimized.jit.kinds import Longs
 from carp_spec import Instance, Plan, Solution
-from carp_spec.traces import Trace
+from carp_spec.execution.traces import Trace
 
 NEVER = 2**40
 """Beyond all ticks that are looked at here."""

@@ -20,7 +20,7 @@ from carp_optimized.improve.repair import repair
 from carp_optimized.neighbourhood.polishing import CHANCE, SURE
 from carp_spec import Instance, Refusal, Solution
 from carp_spec.inputs.options import require_polish_options
-from carp_spec.inputs.requests import sound_solution
+from carp_spec.requests import sound_solution
 
 ROUNDS = 50
 """The rounds of one compiled call."""

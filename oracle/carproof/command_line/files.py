@@ -12,7 +12,7 @@ import click
 from click.shell_completion import CompletionItem
 
 from carp_spec import Instance, Refusal, Solution
-from carp_spec.inputs.requests import sound_solution
+from carp_spec.requests import sound_solution
 from carp_verify.documents import read_instance, read_solution
 from carp_verify.limits import require_following
 from carproof.formats.layouts import layout_named

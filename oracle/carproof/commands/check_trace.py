@@ -3,7 +3,7 @@
 import click
 
 from carp_spec import Verdict, total_cost
-from carp_spec.execution_rules import trace_violations
+from carp_spec.execution.execution_rules import trace_violations
 from carp_verify.documents import read_trace, write_verdict
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import print_document, read_file, read_sound

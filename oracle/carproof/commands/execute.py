@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from carp_spec.inputs.requests import require_tick
+from carp_spec.requests import require_tick
 from carp_verify.documents import write, write_solution, write_trace
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import OutputFile, naming, print_document, read_sound, write_whole

@@ -6,7 +6,7 @@ import click
 import msgspec
 
 from carp_spec import Refusal, ResourceId, Visit
-from carp_spec.inputs.requests import require_tick
+from carp_spec.requests import require_tick
 from carp_verify.documents import write_solution
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import (

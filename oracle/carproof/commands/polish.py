@@ -10,8 +10,8 @@ import click
 from carp_optimized.improve.many_starts import polish_many
 from carp_spec import Instance, Refusal, Solution, check, total_cost
 from carp_spec.inputs.options import require_polish_options
-from carp_spec.inputs.requests import sound_solution
 from carp_spec.polish_rules import ITERATIONS, last_round
+from carp_spec.requests import sound_solution
 from carp_verify.documents import write_solution
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import InputFile, naming, read_file, refuse_two_standard_inputs

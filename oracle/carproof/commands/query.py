@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from carp_spec import plan_cost
-from carp_spec.inputs.requests import require_tick, sound_solution
+from carp_spec.requests import require_tick, sound_solution
 from carp_verify.documents import write
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import (

@@ -3,8 +3,8 @@
 from collections.abc import Callable, Iterator, Sequence
 
 from carp_spec import Instance, Plan, RobotId, Violation, Visit, check
-from carp_spec.execution_rules import trace_violations
-from carp_spec.traces import Trace
+from carp_spec.execution.execution_rules import trace_violations
+from carp_spec.execution.traces import Trace
 from carproof.conform.answers import Skipped
 from carproof.conform.cases import Case
 from carproof.conform.findings import Fault, Finding, all_arrive, are_ready, wrong

@@ -15,8 +15,8 @@ from carp_spec import (
     plan_cost,
     total_cost,
 )
+from carp_spec.execution.traces import Trace
 from carp_spec.polish_rules import is_kept
-from carp_spec.traces import Trace
 from carp_verify.bounds import BoundDocument
 from carp_verify.documents import VerdictDocument, verdict_document
 from carproof.command_line.output import shown_plan

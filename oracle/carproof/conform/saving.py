@@ -10,7 +10,7 @@ import click
 import msgspec
 
 from carp_spec import Refusal, Solution, check
-from carp_spec.traces import Trace
+from carp_spec.execution.traces import Trace
 from carp_verify.documents import instance_document, solution_of, write_instance, write_solution
 from carproof.command_line.files import write_whole
 from carproof.conform.advice import advice_for

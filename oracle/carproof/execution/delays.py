@@ -10,8 +10,8 @@ from itertools import groupby
 
 from carp_reference.execution import Order, earliest, order_with
 from carp_spec import Instance, Plan, RobotId, Solution, Visit
-from carp_spec.dependencies import Dependency, Node, stays_by_resource
-from carp_spec.traces import Trace
+from carp_spec.execution.dependencies import Dependency, Node, stays_by_resource
+from carp_spec.execution.traces import Trace
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,10 +9,10 @@ import msgspec
 
 from carp_reference.execution import Order, order_of
 from carp_spec import Instance, Refusal, ResourceId, RobotId, Solution, Violation, check
-from carp_spec.dependencies import Node, shortest_cycle
+from carp_spec.execution.dependencies import Node, shortest_cycle
+from carp_spec.execution.traces import Trace
 from carp_spec.permutations import splitmix64
 from carp_spec.rule import DESIGN, rule
-from carp_spec.traces import Trace
 from carproof.execution.delays import Delay, executed, in_order, on_the_clock, planned, slack, smallest_collision, stuck
 from carproof.execution.switching import switching
 

@@ -12,7 +12,7 @@ from itertools import pairwise
 
 from carp_reference.execution import Order, order_of, order_with, solution_at
 from carp_spec import Instance, ResourceId, Solution
-from carp_spec.dependencies import Dependency, Node
+from carp_spec.execution.dependencies import Dependency, Node
 from carproof.execution.delays import Delay, delayed, is_last, reached, stuck
 
 MOST_TRIED = 20

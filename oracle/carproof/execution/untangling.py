@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from carp_spec import Instance, Plan, Robot, RobotId, Solution, Visit, plan_cost
-from carp_spec.dependencies import dependencies, shortest_cycle
+from carp_spec.execution.dependencies import dependencies, shortest_cycle
 from carproof.engines import Engine
 
 MOST_ROUNDS = 10_000

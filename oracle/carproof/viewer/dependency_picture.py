@@ -5,7 +5,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 from carp_reference.execution import Order
 from carp_spec import RobotId
-from carp_spec.dependencies import Dependency, Node, shortest_cycle
+from carp_spec.execution.dependencies import Dependency, Node, shortest_cycle
 from carproof.execution.delays import slack
 from carproof.viewer.chart_picture import AXIS, GAP, LANE, TimeScale, draw_axis
 from carproof.viewer.colours import LOOKS

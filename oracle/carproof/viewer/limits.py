@@ -3,8 +3,8 @@
 from typing import Any
 
 from carp_spec import Instance, Refusal, Rule, Solution
+from carp_spec.execution.traces import Trace
 from carp_spec.rule import DESIGN, rule
-from carp_spec.traces import Trace
 
 MOST_RESOURCES = 50_000
 MOST_EDGES = 200_000

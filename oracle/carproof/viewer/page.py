@@ -13,7 +13,7 @@ from string import Template
 import msgspec
 
 from carp_spec import Instance, Solution
-from carp_spec.traces import Trace
+from carp_spec.execution.traces import Trace
 from carproof.viewer.colours import variables
 from carproof.viewer.limits import refuse_more
 from carproof.viewer.map_picture import map_picture

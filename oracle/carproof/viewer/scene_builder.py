@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from carp_spec import Instance, Plan, ResourceId, RobotId, Solution, Violation, judge, plan_cost
-from carp_spec.execution_rules import trace_violations
-from carp_spec.inputs.shapes import require_shape
+from carp_spec.execution.execution_rules import trace_violations
+from carp_spec.execution.traces import Trace
 from carp_spec.inputs.values import require_instance, require_solution
-from carp_spec.traces import Trace
+from carp_spec.shapes import require_shape
 from carp_spec.windows import free_windows
 from carproof.command_line.tables import printable
 from carproof.registry import RULES

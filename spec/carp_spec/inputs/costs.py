@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 
 from carp_spec import plan_rules
-from carp_spec.inputs.shapes import require_shape
 from carp_spec.inputs.values import require_instance
 from carp_spec.model import Instance, Plan, RobotId, Visit
 from carp_spec.refusal import Refusal
+from carp_spec.shapes import require_shape
 
 
 def plan_cost(instance: Instance, plan: Plan) -> int:

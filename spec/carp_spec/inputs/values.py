@@ -7,10 +7,10 @@ all its robots named. It is empty until the instance itself is known to be right
 from collections.abc import Sequence
 from typing import Any
 
-from carp_spec.inputs.shapes import require_shape
 from carp_spec.instance_rules import instance_faults
 from carp_spec.model import Instance, Plan, Solution
 from carp_spec.refusal import Refusal
+from carp_spec.shapes import require_shape
 
 NOTHING = Solution((), ())
 

@@ -6,9 +6,9 @@ import msgspec
 
 from carp_reference.execution import order_of
 from carp_spec import Instance, Refusal, ResourceId, RobotId, Solution, Verdict, Visit, total_cost
-from carp_spec.execution_rules import require_followed, trace_violations
-from carp_spec.inputs.requests import require_robot, require_tick
-from carp_spec.traces import Trace
+from carp_spec.execution.execution_rules import require_followed, trace_violations
+from carp_spec.execution.traces import Trace
+from carp_spec.requests import require_robot, require_tick
 from carp_verify.documents import (
     SolutionDocument,
     TraceDocument,

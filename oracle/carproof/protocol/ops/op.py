@@ -13,9 +13,9 @@ from typing import Any, Literal, Union, get_args, get_type_hints
 import msgspec
 
 from carp_spec import Instance, Neighbourhood, Planner, Refusal, Solution
+from carp_spec.execution.traces import Trace
 from carp_spec.inputs.options import require_polish_options
 from carp_spec.query_certificates import QueryCertificateDocument
-from carp_spec.traces import Trace
 from carp_verify.bounds import BoundDocument, read_bound
 from carp_verify.documents import (
     InstanceDocument,

@@ -9,13 +9,13 @@ from itertools import islice
 from operator import itemgetter
 
 from carp_spec.check import MOST_LISTED
-from carp_spec.dependencies import Node, Stay, dependencies, shortest_cycle, stays_by_resource
+from carp_spec.execution.dependencies import Node, Stay, dependencies, shortest_cycle, stays_by_resource
+from carp_spec.execution.traces import Trace
 from carp_spec.joint_rules import misnamed
 from carp_spec.model import Instance, Plan, ResourceId, RobotId, Solution, Visit
 from carp_spec.plan_rules import plan_ends_at_goal, plan_starts_at_release
 from carp_spec.refusal import Refusal
 from carp_spec.rule import DESIGN, Breach, Rule, Violation, at_visit, interval, violation_rule
-from carp_spec.traces import Trace
 
 ADG = "Hönig et al. 2019, action dependency graph; ter Mors 2010"
 

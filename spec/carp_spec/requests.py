@@ -7,14 +7,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from carp_spec.check import check, judge
+from carp_spec.execution.traces import Trace
 from carp_spec.inputs.options import require_planner
-from carp_spec.inputs.shapes import SHAPE, require_shape
 from carp_spec.inputs.values import require_plans, require_solution
 from carp_spec.model import Instance, Plan, RobotId, Solution
 from carp_spec.planners import Neighbourhood
 from carp_spec.refusal import Refusal
 from carp_spec.rule import Violation, is_between
-from carp_spec.traces import Trace
+from carp_spec.shapes import SHAPE, require_shape
 
 
 def require_robot(instance: Instance, robot: RobotId, path: str = "$.robot") -> None:
