@@ -73,10 +73,10 @@ def test_every_command_that_plans_compiles_everything_at_once(
 def test_the_first_command_compiles_and_announces_it_and_no_later_one_does(folder: Path) -> None:
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(folder / "cache")}
 
-    def told(*words: str) -> str:
+    def announced(*words: str) -> str:
         command = [sys.executable, "-m", "carproof", *words]
         return subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stderr
 
-    assert told("plan", "town.json").count("compiles") == 1
+    assert announced("plan", "town.json").count("compiles") == 1
     for later in ("demo", "polish town.json plans.json --seconds 0.1", "bound town.json --seconds 1", "warm"):
-        assert told(*later.split()) == ""
+        assert announced(*later.split()) == ""

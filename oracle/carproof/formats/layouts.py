@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from contextlib import suppress
 
 BEGINNING = 100_000
-"""In so many bytes the texts show what they are."""
+"""The bytes by which a text is recognised."""
 TEXTS: Mapping[str, str] = {
     "an openTCS plant model": r"<model\b[^>]*>(?=.*<(point|path|vehicle)\b)",
     "an Open-RMF building or navigation graph": r"^levels:(?=.*^\s+-?\s*(vertices|lanes):)",
@@ -17,7 +17,7 @@ GEOJSON = {"FeatureCollection", "Feature", "GeometryCollection"}
 
 
 def layout_named(data: bytes) -> str | None:
-    """What the data is, as `an openTCS plant model`; `None` if it is no layout that carproof knows by sight."""
+    """The kind of the data, as `an openTCS plant model`; `None` if it is no layout that carproof knows by sight."""
     text = data[:BEGINNING].decode(errors="replace")
     for name, sign in TEXTS.items():
         if re.search(sign, text, re.DOTALL | re.MULTILINE):
