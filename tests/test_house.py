@@ -24,6 +24,7 @@ MAY_IMPORT: dict[str, set[str]] = {
 }
 READ_IN_A_MINUTE = 238  # words of English non-fiction: Brysbaert 2019, https://doi.org/10.1016/j.jml.2019.104047
 SLOW_TO_LOAD = {"z3", "numba", "numpy", "pysat", "matplotlib", "hypothesis", "networkx"}
+SAYS_NOTHING_OF_PLANS = {"inputs", "shapes", "requests", "documents"}
 MOST_MODULES = 17
 """Of a folder: about a dozen."""
 
@@ -135,8 +136,8 @@ def readme(package: str) -> str:
 
 
 def words(package: str) -> int:
-    """The words of a package's Python, names and operators included; `inputs` says nothing about plans."""
-    files = [file for file in packages()[package].rglob("*.py") if file.parent.name != "inputs"]
+    """The words of a package's Python, names and operators included, but for what says nothing about plans."""
+    files = [file for file in packages()[package].rglob("*.py") if not SAYS_NOTHING_OF_PLANS & {*file.parts, file.stem}]
     return sum(len(file.read_text().split()) for file in files)
 
 
