@@ -12,7 +12,7 @@ from carp_spec.refusal import Refusal
 T = TypeVar("T")
 SHAPE = "document/shape"
 PATHS = {"resources": ".nodes", "resource": "[0]", "enter": "[1]", "leave": "[2]"}
-"""The fields of which the path is not the name."""
+"""The fields that have another path than their name."""
 ENDS = (".source", ".target")
 WORDS = {str: "a string", int: "a whole number", bool: "true or false", NoneType: "None"}
 
@@ -24,7 +24,7 @@ def require_shape(value: object, kind: Any, path: str = "$") -> None:  # noqa: A
     """
     kinds, is_tuple, given = _parts(kind)
     is_list = ... in kinds
-    if given is not None and type(value) is kind:
+    if given is not None and isinstance(value, kind):
         for name, of in given.items():
             require_shape(getattr(value, name), of, path + PATHS.get(name, f".{name}"))
     elif is_tuple and type(value) is tuple and (is_list or len(value) == len(kinds)):

@@ -187,8 +187,8 @@ def test_a_format_need_not_be_named_where_it_makes_no_difference(position: str) 
     [
         replace(INSTANCE, after_goal="vanish"),
         replace(INSTANCE, robots=(Robot("r1", "0,0", "2,0", release=1),)),
-        replace(INSTANCE, graph=ResourceGraph((Resource("a"), Resource("b")), ())),
-        replace(INSTANCE, graph=ResourceGraph((Resource("a", x=1, y=1), Resource("b", x=1, y=1)), ())),
+        Instance(ResourceGraph((Resource("a"), Resource("b")), ()), (), "park"),
+        Instance(ResourceGraph((Resource("a", x=1, y=1), Resource("b", x=1, y=1)), ()), (), "park"),
     ],
 )
 def test_an_instance_that_has_no_walks_is_refused(instance: Instance) -> None:

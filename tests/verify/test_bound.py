@@ -114,6 +114,7 @@ def test_the_verifier_shares_nothing_with_the_finder_and_loads_nothing_compiled(
         "carp_spec",
         "carp_verify.bounds",
         "carp_verify.limits",
+        "carp_spec.inputs.values",
         "carp_spec.rule",
         "carp_verify.bound.rules",
         "carp_verify.bound.cuts",

@@ -207,4 +207,4 @@ class _Finder:
 
 def _twin(robot: RobotId) -> RobotId:
     """A name that no robot of a document has."""
-    return f"\0{robot}"
+    return f"\0{robot!r}"

@@ -1,1 +1,1 @@
-"""What public functions refuse, by the rule and at the path that the document or request would be refused with."""
+"""Malformed values and requests are refused by the rule, and at the path, of their document or op."""

@@ -50,7 +50,7 @@ def require_polish_options(iterations: object, seconds: object, seed: object) ->
 
 
 def require_limits(**limits: object) -> None:
-    """Raise `Refusal` unless each limit of a search, by its name, is a number of at least 0, or `None`: there is none.
+    """Raise `Refusal` unless each limit of a search, by its name, is a number of at least 0, or `None`.
 
     Steps are whole numbers. With a limit of 0, which the protocol refuses, a search ends at once.
     """

@@ -5,7 +5,7 @@ all its robots named. It is empty until the instance itself is known to be right
 """
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, cast
 
 from carp_spec.instance_rules import instance_faults
 from carp_spec.model import Instance, Plan, Solution
@@ -17,7 +17,7 @@ NOTHING = Solution((), ())
 
 def require_instance(instance: Instance) -> None:
     """Raise `Refusal` with the first fault, unless the instance is known to be right."""
-    if type(instance) is not Instance or not instance.seen:
+    if not (isinstance(cast("object", instance), Instance) and instance.seen):
         require_shape(instance, Instance)
         for fault in instance_faults(instance):
             raise Refusal("document", fault.path, fault.rule, fault.message)
