@@ -5,6 +5,7 @@ all its robots named. It is empty until the instance itself is known to be right
 """
 
 from collections.abc import Sequence
+from operator import itemgetter
 from typing import Any, cast
 
 from carp_spec.instance_rules import instance_faults
@@ -35,9 +36,9 @@ def require_solution(instance: Instance, solution: Solution) -> None:
 def require_plans(instance: Instance, plans: Sequence[Plan]) -> Solution:
     """The solution that has these plans; raises `Refusal` with the first fault of the instance, or of a plan."""
     require_instance(instance)
-    for each, _ in (*instance.seen,):
-        if each.plans is plans:
-            return each
+    same = [(sound is None, each) for each, sound in (*instance.seen,) if each.plans is plans]
+    if same:
+        return min(same, key=itemgetter(0))[1]
     found: Any = plans
     if isinstance(found, Sequence):
         found = tuple(found)
