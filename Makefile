@@ -6,7 +6,7 @@ export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 .DELETE_ON_ERROR:
-.PHONY: bench install compiled demo quick quick-tests test checked ci thorough paper-sized nightly coverage mutation conform lint format docs gap optimum-figures gap-figures executions texts generated kernel kernel-mutants clean
+.PHONY: bench install compiled demo quick quick-tests test checked ci thorough paper-sized nightly coverage mutation conform planted lint format docs gap optimum-figures gap-figures executions texts generated kernel kernel-mutants clean
 
 install: .venv/installed
 
@@ -121,6 +121,10 @@ conform: install
 	for language in cpp go; do \
 	    $(BIN)/carproof conform --level context-optimal --examples 2000 -- .venv/foreign/$$language || exit 1; \
 	done
+
+# When `carproof conform` finds bugs that show only beyond a size or a number: the table of docs/results/conform.md.
+planted: compiled
+	nice $(BIN)/python -m tests.oracle.planted
 
 # Every line and branch of the specification and the reference, by their own tests and the vectors; then of the compiled planner, run
 # uncompiled, without the tests that start processes of their own or take long that way.

@@ -40,6 +40,7 @@ class Conformance:
         *,
         without: Collection[str] = ...,
         solvable: bool = ...,
+        large: float = ...,
     ) -> None: ...
 
     @overload
@@ -53,6 +54,7 @@ class Conformance:
         documents: Literal[True],
         without: Collection[str] = ...,
         solvable: bool = ...,
+        large: float = ...,
     ) -> None: ...
 
     def conforms(  # noqa: PLR0913 - the options of the command
@@ -65,12 +67,14 @@ class Conformance:
         *,
         without: Collection[str] = (),
         solvable: bool = False,
+        large: float = 0.0,
     ) -> None:
         """Fail the test if the planner does not conform to the level.
 
         The planner takes a `carp_spec.Instance` and returns a `carp_spec.Solution`; with `documents=True` it takes and
         returns the documents, as dictionaries. `without` names features that it is not asked, like `carproof conform
-        --without`. With `solvable=True` all robots can have plans.
+        --without`. With `solvable=True` all robots can have plans. For `large` seconds it
+        is also asked about 10 to 1,000 robots; no other time limits it.
         """
         __tracebackhide__ = True
         from carproof.extras import advice, require  # noqa: PLC0415 - only a test that judges loads them
@@ -85,7 +89,7 @@ class Conformance:
         from carproof.conform.function import Function, by_documents  # noqa: PLC0415
         from carproof.conform.levels import LEVELS, WHOLE_LEVELS  # noqa: PLC0415
         from carproof.conform.run import Options, conform  # noqa: PLC0415
-        from carproof.conform.saved import read_saved, save_all  # noqa: PLC0415
+        from carproof.conform.saved import own_folder, read_saved, save_all  # noqa: PLC0415
         from carproof.conform.saving import Origin  # noqa: PLC0415
 
         if level not in [each.label for each in WHOLE_LEVELS]:
@@ -94,43 +98,45 @@ class Conformance:
         name = getattr(planner, "__name__", type(planner).__name__)
         called = by_documents(planner) if documents else cast("Callable[[Instance], Solution]", planner)
         origin = Origin(f"{name} at level {level}", shlex.join(["pytest", self._test]))
-        before = read_saved(self._folder, origin.judged, whole=True)
+        folder = own_folder(self._folder, name, origin.judged)
+        before = read_saved(folder, whole=True)
         if before.stale is not None:
             print(before.stale)  # noqa: T201 - pytest shows it
-        options = Options(LEVELS[level], examples, seed, whole=True, claims=claims)
+        options = Options(LEVELS[level], examples, seed, whole=True, claims=claims, large=large)
         report = conform(Function(called, name), options, saved=before.cases)
         if report.interrupted:
             raise KeyboardInterrupt
         try:
-            save_all(report.failures, self._folder, origin)
+            save_all(report.failures, folder, origin)
         except ClickException as error:
             print(f"Nothing is saved: {error.message}")  # noqa: T201 - pytest shows it
         if not report.conforms:
-            pytest.fail(self._told(report), pytrace=False)
+            pytest.fail(_told(report, folder), pytrace=False)
 
-    def _told(self, report: "Report") -> str:
-        """The finding, the size of the instance, and the folder in which it was saved."""
-        from carproof.command_line.tables import counted  # noqa: PLC0415
-        from carproof.conform.saving import picture_of  # noqa: PLC0415
 
-        level = report.options.level
-        head = f"{report.program} does not conform to level {level.label}: {level.statement}"
-        if not report.failures:
-            reasons = [*(fault.message for fault in report.faults), *report.shortfalls]
-            return "\n".join([head, *(reasons or ["no random case decided it"])])
-        smallest, *others = report.failures
-        finding, instance = smallest.finding, smallest.case.instance
-        assert finding is not None  # noqa: S101 - a failure has a finding
-        size = f"{counted(len(instance.robots), 'robot')} and {counted(len(instance.graph.resources), 'resource')}"
-        lines = [
-            head,
-            f"{finding.category}: {finding.message} [{finding.rule}]",
-            f"on an instance of {size}, saved in {self._folder}" + (f", with {len(others)} more" if others else ""),
-            *(f"  {robot}" for robot in instance.robots),
-            picture_of(smallest),
-            finding.stderr,
-        ]
-        return "\n".join(lines).rstrip()
+def _told(report: "Report", folder: Path) -> str:
+    """The finding, the size of the instance, and the folder in which it was saved."""
+    from carproof.command_line.tables import counted  # noqa: PLC0415
+    from carproof.conform.saving import picture_of  # noqa: PLC0415
+
+    level = report.options.level
+    head = f"{report.program} does not conform to level {level.label}: {level.statement}"
+    if not report.failures:
+        reasons = [*(fault.message for fault in report.faults), *report.shortfalls]
+        return "\n".join([head, *(reasons or ["no random case decided it"])])
+    smallest, *others = report.failures
+    finding, instance = smallest.finding, smallest.case.instance
+    assert finding is not None  # noqa: S101 - a failure has a finding
+    size = f"{counted(len(instance.robots), 'robot')} and {counted(len(instance.graph.resources), 'resource')}"
+    lines = [
+        head,
+        f"{finding.category}: {finding.message} [{finding.rule}]",
+        f"on an instance of {size}, saved in {folder}" + (f", with {len(others)} more" if others else ""),
+        *(f"  {robot}" for robot in instance.robots),
+        picture_of(smallest),
+        finding.stderr,
+    ]
+    return "\n".join(lines).rstrip()
 
 
 @pytest.fixture

@@ -38,7 +38,8 @@ LEVEL = ("--level", "context-optimal")
 
 def conform(folder: Path, command: list[str], *options: str) -> dict[str, Any]:
     """Run the runner as a process of its own."""
-    run = [sys.executable, "-m", "carproof", "conform", "--json", "--seed", "0", *options, "--", *command]
+    asked = ["--json", "--seed", "0", "--large", "5", *options]
+    run = [sys.executable, "-m", "carproof", "conform", *asked, "--", *command]
     done = subprocess.run(run, capture_output=True, cwd=folder, text=True)  # noqa: PLW1510 - in the report
     assert done.returncode in (0, 1), done.stderr
     report: dict[str, Any] = json.loads(done.stdout)
@@ -67,7 +68,7 @@ def test_a_bug_of_a_program_that_only_plans_whole_instances_is_refused(tmp_path:
     report = conform(tmp_path, command, "--one-shot", "--shrinking", "3")
     assert {failure["rule"] for failure in report["failures"]} <= BUGS["go", "pace-ignored"]
     assert report["failures"][0]["robots"] <= 3
-    assert_saved(tmp_path / "conform-failure", report["failures"][0]["rule"])
+    assert_saved(tmp_path / report["saved"], report["failures"][0]["rule"])
 
 
 @pytest.mark.parametrize(("language", "bug"), rest_in("ci", list(BUGS), 0, len(BUGS) - 1))
@@ -83,7 +84,7 @@ def test_a_bug_is_refused_by_its_rule_with_a_small_instance(language: str, bug: 
     assert {failure["rule"] for failure in report["failures"]} <= BUGS[language, bug]
     assert smallest["robots"] <= 3
     assert smallest["resources"] <= 9
-    assert_saved(tmp_path / "conform-failure", smallest["rule"])
+    assert_saved(tmp_path / report["saved"], smallest["rule"])
 
 
 def assert_saved(folder: Path, rule: str) -> None:

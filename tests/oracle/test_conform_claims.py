@@ -45,7 +45,7 @@ def fails_where(is_hard: Callable[[Instance], bool]) -> Function:
 
 @pytest.mark.parametrize("feature", ["capacities", "directed", "vanish"])
 def test_a_planner_without_a_feature_conforms_where_it_is_not_claimed(feature: str) -> None:
-    planner = fails_where(FEATURES[feature])
+    planner = fails_where(lambda instance: FEATURES[feature](Case("smoke", "one", "plan", instance)))
     assert conform(planner, whole(Claims())).conforms is False
     assert conform(planner, whole(Claims(frozenset([feature])))).conforms
 
@@ -74,7 +74,7 @@ def test_only_a_claimed_feature_is_in_a_random_case() -> None:
     subject = Tampered(lambda case, reply: (asked.append(case), reply)[1])  # type: ignore[func-returns-value]
     assert conform(subject, of(Claims(frozenset({*FEATURES} - {"park"})))).conforms
     assert sum(case.stage == "random" for case in asked) == 24
-    assert not [case for case in asked for name in {*FEATURES} - {"park"} if FEATURES[name](case.instance)]
+    assert not [case for case in asked for name in {*FEATURES} - {"park"} if FEATURES[name](case)]
 
 
 def test_nothing_is_decided_where_nothing_can_be_asked() -> None:
@@ -86,8 +86,8 @@ def test_the_verdict_lists_what_was_left_out(carproof: Run, tmp_path: Path, monk
     monkeypatch.chdir(tmp_path)
     options = ["--examples", "0", "--without", "directed", "--without", "capacities", "--solvable", "--one-shot"]
     program = ["--", "false", "{instance}"]
-    last = carproof("conform", *options, *program).stdout.splitlines()[-1]
-    assert last.endswith("; not asked: capacities, directed, robots without a plan")
+    lines = carproof("conform", *options, *program).stdout.splitlines()
+    assert "not asked, as it does not claim it: capacities, directed, robots without a plan" in lines
     report = json.loads(carproof("conform", "--json", *options, *program).stdout)
     assert report["left_out"] == ["capacities", "directed", "robots without a plan"]
 
@@ -119,7 +119,19 @@ def test_a_case_is_left_out_where_it_has_a_feature_that_is_not_claimed(
         assert claims.why_not(Case("smoke", "one", "plan", without)) is None
         assert claims.why_not(Case("smoke", "one", "plan", having)) == f"it does not claim {feature}"
         assert claims.left_out == [feature, *["robots without a plan"] * solvable]
-    assert (feature in features(having), feature in features(without)) == (feature != "vanish", False)
+    cases = [Case("smoke", "one", "plan", instance) for instance in (having, without)]
+    assert [feature in features(case) for case in cases] == [feature != "vanish", False]
+
+
+def test_who_does_not_claim_now_is_asked_about_no_robot_under_way() -> None:
+    asked: list[Case] = []
+    subject = Tampered(lambda case, reply: (asked.append(case), reply)[1])  # type: ignore[func-returns-value]
+    subject.ops = ("query", "add")
+    assert conform(subject, of(Claims(frozenset({"now"})), examples=60)).conforms
+    planned = [plan.robot == case.robot for case in asked for plan in case.solution.plans]
+    assert planned
+    assert not any(planned)
+    assert {case.now for case in asked} == {0}
 
 
 @pytest.mark.parametrize(

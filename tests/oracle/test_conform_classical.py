@@ -15,10 +15,10 @@ from tests.profiles import draws, rest_in
 import carp_reference
 from carp_optimum.optimum import optimum
 from carp_spec import Carp, Instance, Resource, ResourceGraph, Robot, Solution
-from carproof.conform.classical_cases import classical_instances
 from carproof.conform.findings import is_complete
 from carproof.conform.function import Function
 from carproof.conform.levels import Level
+from carproof.conform.random_cases import classical_instances
 from carproof.conform.run import Options, conform
 from carproof.formats.movingai import movingai_instance, read_map, read_scenario
 from carproof.formats.movingai_writer import is_classical, write_movingai
@@ -76,7 +76,7 @@ def test_an_instance_that_the_files_cannot_say_is_not_classical(instance: Instan
 
 
 def report_of(process: Run, *arguments: str) -> dict[str, Any]:
-    outcome = process("conform", "--one-shot", "--json", "--seed", "0", *arguments)
+    outcome = process("conform", "--one-shot", "--json", "--seed", "0", "--large", "2", *arguments)
     assert outcome.code in (0, 1), outcome
     report: dict[str, Any] = json.loads(outcome.stdout)
     return report
@@ -112,7 +112,7 @@ def test_a_bug_is_refused_by_its_rule_with_a_small_benchmark(
     assert {failure["rule"] for failure in report["failures"]} == {rule}
     assert report["failures"][0]["robots"] == 2
     assert report["failures"][0]["resources"] <= 5
-    found = elsewhere / "conform-failure"
+    found = elsewhere / report["saved"]
     grid = read_map((found / "instance.map").read_bytes())
     assert len(read_scenario((found / "instance.scen").read_bytes(), grid, None)) == 2
     assert process("check", str(found / "instance.json"), str(found / "solution.json")).code == 1

@@ -132,7 +132,8 @@ def test_the_verdict_names_who_decided(carproof: Run, tmp_path: Path) -> None:
     ]
     assert by == ["carp_spec", "carproof-kernel 1"]
     outcome = carproof(*arguments, "--kernel", "--", "false")
-    assert (outcome.code, outcome.stdout.splitlines()[-1]) == (1, "decided by carproof-kernel 1")
+    assert outcome.code == 1
+    assert "decided by carproof-kernel 1" in outcome.stdout.splitlines()
 
 
 def test_without_a_kernel_or_above_its_levels_nothing_is_asked(

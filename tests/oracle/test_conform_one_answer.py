@@ -287,7 +287,7 @@ def test_carproof_and_a_plan_that_contradict_each_other_are_a_fault(monkeypatch:
         (later(plan("new", *FIRST_GOES)), "arrives at 4 at best: not so"),
     ):
         engine = SimpleNamespace(query=lambda *_, best=best: best)
-        monkeypatch.setattr(judges, "engine_named", lambda _, engine=engine: engine)
+        monkeypatch.setattr(judges, "engine_for", lambda _, engine=engine: engine)
         with pytest.raises(RuntimeError, match=message):
             first_finding(QUERY, goes(*FIRST_GOES), Level.COMPLETE)
 

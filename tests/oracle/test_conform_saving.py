@@ -1,6 +1,8 @@
 """The files that a run saves: each distinct finding, in place of those of an earlier run, with all that repeats it."""
 
+import os
 import subprocess
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -13,7 +15,7 @@ from carproof.conform.findings import PROGRAM_RULES, wrong
 from carproof.conform.levels import Level
 from carproof.conform.outcome import Outcome
 from carproof.conform.run import Options, Report, conform
-from carproof.conform.saved import Saved, read_saved, save_all
+from carproof.conform.saved import Saved, own_folder, read_saved, save_all
 from carproof.conform.saving import Origin
 from carproof.conform.smoke import EAST, FIRST, WEST, passing_place, row, smoke_cases
 from carproof.conform.vector_cases import vector_cases
@@ -73,7 +75,7 @@ def test_saved_cases_are_read_as_they_were_asked(tmp_path: Path, whole: bool) ->
     cases = [*smoke_cases(ops, Level.COMPLETE, whole), *vector_cases(ops, Level.COMPLETE, whole)]
     one_of_each = list({case.op: case for case in cases}.values())
     save_all([Outcome(case, wrong("plan/move", "it is wrong"), NOBODY) for case in one_of_each], tmp_path, ORIGIN)
-    read = read_saved(tmp_path, ORIGIN.judged, whole)
+    read = read_saved(tmp_path, whole)
     assert [case.stage for case in read.cases] == ["saved"] * len(one_of_each)
     asked = [
         (case.name, case.op, case.instance, case.solution, case.robot, case.now, case.planner) for case in read.cases
@@ -83,16 +85,39 @@ def test_saved_cases_are_read_as_they_were_asked(tmp_path: Path, whole: bool) ->
     ]
 
 
-def test_findings_of_another_program_or_level_and_damaged_ones_are_cleared(tmp_path: Path) -> None:
+def test_each_program_and_level_has_a_folder_of_its_own(tmp_path: Path) -> None:
+    first = own_folder(tmp_path, "./my planner", "one")
+    assert first.parent == tmp_path
+    save_all(FAILURES, first, ORIGIN)
+    assert own_folder(tmp_path, "./my planner", ORIGIN.judged) == first
+    second = own_folder(tmp_path, "./my planner", "another level")
+    assert read_saved(second, whole=True) == Saved()
+    save_all(FAILURES, second, Origin("another level"))
+    assert len({first, second, own_folder(tmp_path, "./my planner", "a third")}) == 3
+    assert read_saved(first, whole=True).cases
+
+
+def damage_text(file: Path) -> None:
+    file.write_text("{}")
+
+
+def damage_to_pipe(file: Path) -> None:
+    file.unlink()
+    os.mkfifo(file)
+
+
+def damage_to_link(file: Path) -> None:
+    file.unlink()
+    file.symlink_to("/dev/zero")
+
+
+@pytest.mark.parametrize("damage", [damage_text, damage_to_pipe, damage_to_link])
+@pytest.mark.parametrize("name", ["vector.json", "run.json"])
+def test_damaged_findings_are_cleared(tmp_path: Path, name: str, damage: Callable[[Path], None]) -> None:
     save_all(FAILURES, tmp_path, ORIGIN)
-    stale = f"{tmp_path} holds findings of ./planner at level sound: they are cleared."
-    assert read_saved(tmp_path, "./planner at level complete", whole=True) == Saved(stale=stale)
-    assert files(tmp_path) == set()
-    assert read_saved(tmp_path, ORIGIN.judged, whole=True) == Saved()
-    save_all(FAILURES, tmp_path, ORIGIN)
-    (tmp_path / "vector.json").write_text("{}")
+    damage(tmp_path / name)
     stale = f"{tmp_path} holds findings that cannot be read: they are cleared."
-    assert read_saved(tmp_path, ORIGIN.judged, whole=True) == Saved(stale=stale)
+    assert read_saved(tmp_path, whole=True) == Saved(stale=stale)
     assert files(tmp_path) == set()
 
 
@@ -101,7 +126,7 @@ def test_saved_cases_are_asked_first(tmp_path: Path) -> None:
     subject.ops = ("query",)
     options = Options(Level.COMPLETE_IN_CONTEXT, examples=0)
     save_all(conform(subject, options).failures, tmp_path, ORIGIN)
-    again = conform(subject, options, saved=read_saved(tmp_path, ORIGIN.judged, whole=False).cases)
+    again = conform(subject, options, saved=read_saved(tmp_path, whole=False).cases)
     first = again.outcomes[0]
     assert (first.case.stage, first.finding and first.finding.rule) == ("saved", "query/complete")
     assert again.failures[0].case.stage == "saved"

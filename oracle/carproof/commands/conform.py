@@ -1,5 +1,6 @@
 """`carproof conform`: whether a planner conforms to the specification."""
 
+import os
 import shlex
 import shutil
 from collections.abc import Sequence
@@ -28,9 +29,9 @@ from carproof.protocol.ops.published import op_list
 if TYPE_CHECKING:
     from carproof.conform.child import Limits
     from carproof.conform.one_shot import OneShot
+    from carproof.conform.outcome import Subject
     from carproof.conform.run import Report
     from carproof.conform.saving import Origin
-    from carproof.conform.subjects import Subject
 
 _STAGES = "passed", "gave up", "skipped", "not asked", "wrong answer", "crash", "timeout", "protocol error"
 _SEED_BITS = 32
@@ -72,6 +73,12 @@ _LEVELS = "\n".join(
     default=5.0,
     help="Seconds for an answer; 5 times that at a start.",
 )
+@click.option(
+    "--large",
+    type=click.FloatRange(0),
+    default=30.0,
+    help="Seconds for large cases, of 10 to 1000 robots; 0: none are asked.",
+)
 @click.option("--shrinking", type=click.FloatRange(0), default=15.0, help="Seconds for shrinking a failure.")
 @click.option("--memory", type=click.IntRange(0), default=4096, help="MiB of address space for PROGRAM; 0: any.")
 @click.option("--solvable", is_flag=True, help="Ask only for robots that can have plans, together.")
@@ -92,7 +99,12 @@ _LEVELS = "\n".join(
     help=f"The format of its answer: {', '.join(ADAPTERS)}.  [default: found out]",
 )
 @kernel_option
-@click.option("--save", type=click.Path(path_type=Path, file_okay=False), default="conform-failure", help="Folder.")
+@click.option(
+    "--save",
+    type=click.Path(path_type=Path, file_okay=False),
+    default="conform-failure",
+    help="A folder in which each program has a folder.",
+)
 @click.option("--junit", type=OutputFile(), help="Write the results to this file, as XML for continuous integration.")
 @click.option("--html", type=OutputFile(), help="Write a report to this file, with each failure in the viewer.")
 @json_option
@@ -103,6 +115,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     number: int,
     seed: int,
     timeout: float,
+    large: float,
     shrinking: float,
     memory: int,
     solvable: bool,
@@ -119,8 +132,11 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     """Ask PROGRAM questions, and judge its answers.
 
     PROGRAM stays up and answers requests, one a line, as carproof serve does: start, stop, and any of the ops below. It
-    is not asked ops that it does not offer. A failing case is shrunk and written to the folder of --save: the request,
-    the documents, a test vector and pictures. The next run asks these cases first.
+    is not asked ops that it does not offer. A failing case is shrunk and written to its folder in that of --save: the
+    request, the documents, a test vector and pictures. The next run asks these cases first.
+
+    For the seconds of --large it is asked about 10 to 1,000 robots, large maps and large numbers. The last line says
+    how large the cases were that it rightly answered; nothing is claimed beyond.
 
     It must answer all smoke cases, and 90 in 100 random cases of each op that it offers. A skipped case or an undecided
     optimum is not an answer. It may give up at most half of the random cases of an op that have an answer. carproof
@@ -151,7 +167,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     from carproof.conform.one_shot import OneShot  # noqa: PLC0415
     from carproof.conform.program import Program  # noqa: PLC0415
     from carproof.conform.run import Options, conform  # noqa: PLC0415
-    from carproof.conform.saved import read_saved  # noqa: PLC0415
+    from carproof.conform.saved import own_folder, read_saved  # noqa: PLC0415
 
     require("hypothesis", "pysat")
     if format is not None and not one_shot:
@@ -166,17 +182,20 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     classical = isinstance(subject, OneShot) and subject.is_classical
     _require_level(LEVELS[level], one_shot, classical, executor, kernel)
     claims = Claims(frozenset(without), solvable)
-    options = Options(LEVELS[level], number, seed, timeout, shrinking, one_shot, classical, claims, executor=executor)
+    options = Options(
+        LEVELS[level], number, seed, timeout, shrinking, one_shot, classical, claims, executor=executor, large=large
+    )
     if kernel:
         options = replace(options, kernel=version())
     warm()
     origin = _origin(program, level, one_shot, executor, seed)
-    before = read_saved(save, origin.judged, one_shot)
+    folder = own_folder(save, _program_name(program), origin.judged)
+    before = read_saved(folder, one_shot)
     if before.stale is not None:
         remark(printable(before.stale))
     with progress("asking", number) as advance, hypothesis_elsewhere():
         report = conform(subject, options, advance, before.cases)
-    saved = _saved(report, save, origin)
+    saved = _saved(report, folder, origin)
     if junit is not None:
         write_whole(junit, junit_document(report, saved))
     if html is not None:
@@ -188,6 +207,12 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     else:
         _show(report, saved)
     return Answer.UNDECIDED if report.conforms is None else Answer.of(report.conforms)
+
+
+def _program_name(program: Sequence[str]) -> str:
+    """The name of the program: of the script where an interpreter runs one."""
+    scripts = (word for word in program[1:] if os.path.isfile(word))  # noqa: PTH113 - a long text is none
+    return Path(next(scripts, program[0])).name
 
 
 def _require_level(level: Level, one_shot: bool, classical: bool, executor: bool, kernel: bool) -> None:
@@ -258,7 +283,7 @@ def _origin(program: Sequence[str], level: str, one_shot: bool, executor: bool, 
 def _show(report: "Report", saved: Sequence[Path]) -> None:
     """Print the results: counts, findings, and the verdict."""
     from carproof.conform.documents import counts  # noqa: PLC0415
-    from carproof.conform.wording import verdict  # noqa: PLC0415
+    from carproof.conform.wording import details, verdict  # noqa: PLC0415
 
     rows = [(stage, *(count[name] for name in _STAGES)) for stage, count in counts(report).items()]
     print_table(["cases", *_STAGES], rows, numbers=_STAGES)
@@ -281,6 +306,5 @@ def _show(report: "Report", saved: Sequence[Path]) -> None:
     if saved:
         others = f", with {len(saved) - 1} more in it" if saved[1:] else ""
         print_line(f"the smallest failing case is in {saved[0]}{others}")
-    print_line(verdict(report))
-    if report.options.kernel is not None:
-        print_line(f"decided by {report.options.by}")
+    for line in (*details(report), *verdict(report)):
+        print_line(line)

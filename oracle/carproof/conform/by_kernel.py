@@ -12,10 +12,9 @@ from carp_verify.documents import VerdictDocument, solution_document
 from carp_verify.kernel import ask, request
 from carp_verify.limits import following_is_allowed
 from carproof.conform.answers import Answer
-from carproof.conform.cases import Case
+from carproof.conform.cases import Case, engine_for
 from carproof.conform.findings import Finding
 from carproof.conform.levels import Level
-from carproof.engines import engine_named
 from carproof.protocol.ops.planning import QueryDocument
 
 LAWFUL = ("solution/", "plan/", "joint/")
@@ -77,7 +76,7 @@ def _is_early(case: Case, answer: QueryDocument | Solution, level: Level) -> boo
         asked = [*instance.robot] if isinstance(case.planner, Carp) else [*answer.order, *answer.unplanned]
         plans = dict.fromkeys(asked) | {plan.robot: plan for plan in answer.plans}
         committed, followed = [], []
-    certifier = engine_named("reference").certifier(instance)
+    certifier = engine_for(instance).certifier(instance)
     certifier.commit(committed)
     requests, is_early = [], True
     for robot in asked:

@@ -4,6 +4,7 @@ from dataclasses import dataclass, fields
 from typing import Any, Literal, TypeAlias
 
 from carp_spec import Instance, Neighbourhood, Planner, RobotId, Solution
+from carproof.engines import Engine, engine_named
 from carproof.protocol.ops import OPS
 from carproof.protocol.ops import op as wire
 from carproof.protocol.ops.op import PolishOptions
@@ -12,11 +13,13 @@ ASKED_OPS = ("check", "query", "plan", "add", "polish", "optimum", "bound")
 """The ops of the table that programs are asked."""
 EXECUTION = "execute"
 """The op of an execution, through which `Executor` leads a program by many requests `drive`."""
-Stage: TypeAlias = Literal["saved", "smoke", "vectors", "random"]
+Stage: TypeAlias = Literal["saved", "smoke", "vectors", "random", "large"]
 OPTIMUM_SECONDS = 3
 BOUND_STEPS = 100
 POLISH_ROUNDS = 30
 NO_PLANS = Solution((), ())
+MOST_ROBOTS, MOST_RESOURCES = 8, 24
+"""Of a small instance, about which the reference is asked."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +54,16 @@ class Case:
     def options(self) -> Neighbourhood:
         """The options of `add`."""
         return self.planner if isinstance(self.planner, Neighbourhood) else Neighbourhood()
+
+
+def is_large(instance: Instance) -> bool:
+    """Whether the reference would take long."""
+    return len(instance.robots) > MOST_ROBOTS or len(instance.graph.resources) > MOST_RESOURCES
+
+
+def engine_for(instance: Instance) -> Engine:
+    """The planner with which answers are compared: the reference, or the compiled one where that would take long."""
+    return engine_named(None if is_large(instance) else "reference")
 
 
 def request_of(case: Case) -> Any:  # noqa: ANN401 - the request of its op

@@ -1,12 +1,15 @@
 """A process with limits: it gets one line at a time, and cannot hang or flood its parent."""
 
+import errno
 import os
 import selectors
 import signal
+import stat
 import subprocess
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from pathlib import Path
 from time import monotonic, sleep
 from types import TracebackType
 from typing import IO, Self, cast
@@ -66,6 +69,15 @@ def exit_code(process: subprocess.Popen[bytes], seconds: float) -> int | None:
             return None
         sleep(_NAP)
     return seen.si_status if seen.si_code == os.CLD_EXITED else -seen.si_status
+
+
+def plain_file(path: Path, most: int) -> bytes:
+    """As much of a plain file, and a byte; raises `OSError` for a link, a folder, a pipe or a device."""
+    opened = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
+    with os.fdopen(opened, "rb") as file:
+        if not stat.S_ISREG(os.fstat(opened).st_mode):
+            raise OSError(errno.EINVAL, "it is no plain file", str(path))
+        return file.read(most + 1)
 
 
 def ending(code: int) -> str:

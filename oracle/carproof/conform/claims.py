@@ -3,27 +3,27 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from carp_spec import Carp, Instance
-from carproof.conform.cases import Case
+from carp_spec import Carp
+from carproof.conform.cases import Case, engine_for
 from carproof.conform.optimum import found_cost
-from carproof.engines import engine_named
 
-FEATURES: Mapping[str, Callable[[Instance], bool]] = {
-    "capacities": lambda instance: any(resource.capacity > 1 for resource in instance.graph.resources),
-    "durations": lambda instance: any(resource.duration > 1 for resource in instance.graph.resources),
-    "paces": lambda instance: any(robot.pace > 1 for robot in instance.robots),
-    "releases": lambda instance: any(robot.release > 0 for robot in instance.robots),
-    "directed": lambda instance: instance.graph.directed,
-    "park": lambda instance: instance.after_goal == "park",
-    "vanish": lambda instance: instance.after_goal == "vanish",
+FEATURES: Mapping[str, Callable[[Case], bool]] = {
+    "capacities": lambda case: any(resource.capacity > 1 for resource in case.instance.graph.resources),
+    "durations": lambda case: any(resource.duration > 1 for resource in case.instance.graph.resources),
+    "paces": lambda case: any(robot.pace > 1 for robot in case.instance.robots),
+    "releases": lambda case: any(robot.release > 0 for robot in case.instance.robots),
+    "directed": lambda case: case.instance.graph.directed,
+    "park": lambda case: case.instance.after_goal == "park",
+    "vanish": lambda case: case.instance.after_goal == "vanish",
+    "now": lambda case: case.now > 0 or any(plan.robot == case.robot for plan in case.solution.plans),
 }
-"""The features of an instance beyond classical ones, and the policies after the goal."""
+"""The features of a case beyond classical ones, the policies after the goal, and robots that are under way."""
 UNSOLVABLE = "robots without a plan"
 
 
-def features(instance: Instance) -> frozenset[str]:
-    """The features by which an instance is more than the simplest, in which robots vanish."""
-    return frozenset(name for name, has in FEATURES.items() if name != "vanish" and has(instance))
+def features(case: Case) -> frozenset[str]:
+    """The features by which a case is more than the simplest, in which robots vanish."""
+    return frozenset(name for name, has in FEATURES.items() if name != "vanish" and has(case))
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,7 @@ class Claims:
     def why_not(self, case: Case) -> str | None:
         """The reason why the program is not asked a case, `None` if it is asked."""
         for name, has in FEATURES.items():
-            if name in self.without and has(case.instance):
+            if name in self.without and has(case):
                 return f"it does not claim {name}"
         return f"it does not claim {UNSOLVABLE}" if self.solvable and not is_solvable(case) else None
 
@@ -51,11 +51,11 @@ EVERYTHING = Claims()
 
 def is_solvable(case: Case) -> bool:
     """Whether each robot that a case asks for has a plan; of whole instances, whether all can have plans together."""
-    reference = engine_named("reference")
+    engine = engine_for(case.instance)
     if case.op == "check":
         return True
     if case.op in ("query", "add") and case.robot is not None:
-        return reference.query(case.instance, case.solution.plans, case.robot, case.now) is not None
-    if not reference.plan(case.instance, Carp()).unplanned:
+        return engine.query(case.instance, case.solution.plans, case.robot, case.now) is not None
+    if not engine.plan(case.instance, Carp()).unplanned:
         return True
     return case.planner is None and found_cost(case.instance)[1] is not None

@@ -3,9 +3,11 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from carp_spec import Solution
 from carproof.conform.effort import Effort
 from carproof.conform.findings import LEAST_ANSWERED, LEAST_TRIED, answers_enough, tries_enough
 from carproof.conform.outcome import Outcome
+from carproof.protocol.ops.planning import QueryDocument
 
 
 @dataclass(slots=True)
@@ -33,6 +35,34 @@ class Tally:
         """The counts in words."""
         given_up = f", {self.gave_up} given up" if self.gave_up else ""
         return f"{self.answered} of {self.asked}{given_up}"
+
+
+@dataclass(slots=True)
+class Extent:
+    """How large the cases were that a program rightly answered without giving up, and the largest numbers in any."""
+
+    robots: int = 0
+    resources: int = 0
+    capacity: int = 0
+    duration: int = 0
+    pace: int = 0
+    tick: int = 0
+
+    def add(self, outcome: Outcome) -> None:
+        """Count an outcome."""
+        if outcome.finding is not None or outcome.effort != Effort.TRIED:
+            return
+        instance, answer = outcome.case.instance, outcome.answer
+        resources, robots = instance.graph.resources, instance.robots
+        self.robots, self.resources = max((self.robots, self.resources), (len(robots), len(resources)))
+        self.capacity = max(self.capacity, *(resource.capacity for resource in resources))
+        self.duration = max(self.duration, *(resource.duration for resource in resources))
+        self.pace = max([self.pace, *(robot.pace for robot in robots)])
+        plans = [*outcome.case.solution.plans, *(answer.plans if isinstance(answer, Solution) else ())]
+        ends = [visit.enter for plan in plans for visit in plan.visits[-1:]]
+        if isinstance(answer, QueryDocument) and answer.plan:
+            ends.append(answer.plan[-1][1])
+        self.tick = max([self.tick, outcome.case.now, *ends])
 
 
 def smoke_shortfalls(outcomes: list[Outcome]) -> Iterator[str]:

@@ -22,7 +22,8 @@ def counts(report: Report) -> dict[str, Counter[str]]:
     by_stage: dict[str, Counter[str]] = {}
     for outcome in report.outcomes:
         by_stage.setdefault(outcome.case.stage, Counter())[label(outcome)] += 1
-    return {**by_stage, "random": report.random}
+    large = {"large": report.large} if report.large else {}
+    return {**by_stage, "random": report.random, **large}
 
 
 def report_document(report: Report, saved: Sequence[Path]) -> bytes:
@@ -34,6 +35,7 @@ def report_document(report: Report, saved: Sequence[Path]) -> bytes:
         sizes = {"robots": len(case.instance.robots), "resources": len(case.instance.graph.resources)}
         asked = {"stage": case.stage, "case": case.name, "op": case.op, **sizes}
         asked |= {} if folder is None else {"folder": str(folder)}
+        asked |= {"minimal": report.minimal} if outcome is report.smallest else {}
         failures.append({**_finding_fields(outcome.finding), **asked})
     document = {
         "format": FORMAT,
@@ -49,6 +51,8 @@ def report_document(report: Report, saved: Sequence[Path]) -> bytes:
         "seed": report.options.seed,
         "cases": counts(report),
         "judged": report.judged,
+        "largest": report.extent,
+        "not_asked": report.cut,
         "answered": {"smoke": _tally_fields(report.smoke), "random": _tallies_fields(report)},
         "shortfalls": report.shortfalls,
         "failures": failures,
@@ -83,10 +87,11 @@ def junit_document(report: Report, saved: Sequence[Path]) -> bytes:
         test.set("time", f"{outcome.seconds:.3f}")
         if not outcome.is_judged:
             SubElement(test, "skipped", message=_printable(outcome.skipped or ""))
-    if report.random:
-        name = f"{report.random.total()} cases, seed {report.options.seed}"
-        smallest = report.smallest
-        _test(suite, "random", name, None if smallest is None else smallest.finding, folders.get(id(smallest)))
+    for stage, count in (("random", report.random), ("large", report.large)):
+        if count:
+            name = f"{count.total()} cases, seed {report.options.seed}"
+            found = report.smallest if report.smallest is not None and report.smallest.case.stage == stage else None
+            _test(suite, stage, name, None if found is None else found.finding, folders.get(id(found)))
     for finding in report.faults:
         _test(suite, "process", "start and stop", finding)
     if not report.reaches_level:

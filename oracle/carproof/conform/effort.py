@@ -6,11 +6,10 @@ from carp_spec import Carp, Solution
 from carp_verify.bounds import BoundDocument
 from carp_verify.documents import SolutionDocument
 from carproof.conform.answers import Answer
-from carproof.conform.cases import OPTIMUM_SECONDS, POLISH_ROUNDS, Case
+from carproof.conform.cases import OPTIMUM_SECONDS, POLISH_ROUNDS, Case, engine_for
 from carproof.conform.judges import worth
 from carproof.conform.levels import Level
 from carproof.conform.optimum import cost_alone, found_cost
-from carproof.engines import engine_named
 from carproof.optima import OptimumDocument
 from carproof.protocol.ops.planning import QueryDocument
 
@@ -62,13 +61,13 @@ def _planned(case: Case, has_plan: bool) -> Effort:
     assert case.robot is not None  # noqa: S101 - a promise of ours
     if has_plan:
         return Effort.TRIED
-    best = engine_named("reference").query(case.instance, case.solution.plans, case.robot, case.now)
+    best = engine_for(case.instance).query(case.instance, case.solution.plans, case.robot, case.now)
     return Effort.NOTHING_TO_DO if best is None else Effort.GAVE_UP
 
 
 def _planned_whole(case: Case, answer: Solution) -> Effort:
     """More than half as many robots as CARP plans; classical planners often plan all robots or nobody."""
-    could = engine_named("reference").plan(case.instance, Carp())
+    could = engine_for(case.instance).plan(case.instance, Carp())
     if not could.plans or (case.classical and could.unplanned and not answer.plans):
         return Effort.NOTHING_TO_DO
     return Effort.TRIED if 2 * len(answer.plans) > len(could.plans) else Effort.GAVE_UP
@@ -79,7 +78,7 @@ def _polished(case: Case, answer: Solution) -> Effort:
     given = worth(case, case.solution.plans)
     if worth(case, answer.plans) < given:
         return Effort.TRIED
-    polished = engine_named("reference").polish(case.instance, case.solution, iterations=POLISH_ROUNDS)
+    polished = engine_for(case.instance).polish(case.instance, case.solution, iterations=POLISH_ROUNDS)
     return Effort.GAVE_UP if worth(case, polished.plans) < given else Effort.NOTHING_TO_DO
 
 

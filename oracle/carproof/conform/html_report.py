@@ -37,7 +37,7 @@ def html_document(report: Report, saved: Sequence[Path], origin: Origin) -> byte
         colours=variables(),
         title=escape(f"{report.program}: level {level.label}"),
         answer={True: "yes", False: "no", None: "undecided"}[report.conforms],
-        verdict=escape(verdict(report)),
+        verdict=escape(" ".join(verdict(report))),
         counts=_table(report),
         asked=_list(_asked(report, origin)),
         heading="Findings" if found else "Nothing is wrong",
@@ -66,6 +66,7 @@ def _asked(report: Report, origin: Origin) -> Mapping[str, str]:
         "left out": ", ".join(options.claims.left_out) or "nothing",
         "not asked": "; ".join(f"{counted(count, 'case')}: {why}" for why, count in unasked.items()),
         "seed": str(options.seed),
+        "large cases": "; ".join(report.cut),
         "decided by": options.by,
         "again": origin.again,
     }

@@ -1,11 +1,12 @@
 """The demands of each level on an answer. A program is judged by its answer alone, not by its method."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from carp_spec import (
     Carp,
     Instance,
     Plan,
+    Refusal,
     RobotId,
     Solution,
     Visit,
@@ -17,16 +18,18 @@ from carp_spec import (
 )
 from carp_spec.execution.traces import Trace
 from carp_spec.polish_rules import is_kept
+from carp_verify.bound.rules import ContradictionError
 from carp_verify.bounds import BoundDocument
 from carp_verify.documents import VerdictDocument, verdict_document
+from carp_verify.query.rules import plans_are_lawful, size_fits
+from carp_verify.query.verify import Traffic, require_certificate
 from carproof.command_line.output import shown_plan
 from carproof.conform.answers import Answer
-from carproof.conform.cases import POLISH_ROUNDS, Case
+from carproof.conform.cases import POLISH_ROUNDS, Case, engine_for, is_large
 from carproof.conform.driving import execution_findings
 from carproof.conform.findings import Finding, wrong
 from carproof.conform.levels import Level
 from carproof.conform.optimum import bound_findings, complete_findings, optimum_findings, plan_cost_findings
-from carproof.engines import engine_named
 from carproof.optima import OptimumDocument
 from carproof.protocol.ops.planning import QueryDocument
 
@@ -73,16 +76,57 @@ def _query_findings(case: Case, answer: QueryDocument, level: Level) -> Iterator
         before = _followed(case.instance, committed, case.robot, case.now)
         for violation in (*check(case.instance, (*others, plan)), *check_update(before, [plan], case.now)):
             yield wrong(violation.rule, violation.message)
-    yield from _against_best(case, committed, case.robot, plan, level)
+    if level >= Level.COMPLETE_IN_CONTEXT:
+        own = next((each for each in committed if each.robot == case.robot), None)
+        best = Beside(case.instance, others).best(case.robot, case.now, own)
+        yield from _against_best(case.instance, best, case.robot, plan, level)
+
+
+class Beside:
+    """The best plans beside those that are committed.
+
+    Those of large instances are the compiled planner's. They count if they break no rule, and if `carp_verify` accepts
+    a certificate that no plan arrives earlier.
+    """
+
+    def __init__(self, instance: Instance, committed: Iterable[Plan] = ()) -> None:
+        self._instance = instance
+        self._committed: list[Plan] = []
+        self._certifier = engine_for(instance).certifier(instance) if is_large(instance) else None
+        self._traffic = Traffic(instance)
+        for plan in committed:
+            self.commit(plan)
+
+    def commit(self, plan: Plan) -> None:
+        """Commit one plan more."""
+        self._committed.append(plan)
+        if self._certifier is not None:
+            self._certifier.commit([plan])
+            self._traffic.commit(plan)
+
+    def best(self, robot: RobotId, now: int = 0, followed: Plan | None = None) -> Plan | None:
+        """The best plan of a robot that has followed a plan, if any, until now."""
+        if self._certifier is None:
+            committed = [*self._committed, *([] if followed is None else [followed])]
+            return engine_for(self._instance).query(self._instance, committed, robot, now)
+        plan, certificate = self._certifier.certify(robot, followed, now)
+        try:
+            require_certificate(self._traffic, certificate, followed)
+        except Refusal as refusal:
+            if refusal.rule != size_fits.id:
+                raise ContradictionError(f"the certificate of robot {robot} was refused: {refusal}") from refusal
+        arrival = None if plan is None else plan.visits[-1].enter
+        if plan is not None and not (plans_are_lawful(self._instance, [plan]) and self._traffic.allows(plan.visits)):
+            raise ContradictionError(f"the plan found for robot {robot} breaks a rule")
+        if certificate.bound != arrival:
+            raise ContradictionError(f"the plan of robot {robot} arrives at {arrival}, not at {certificate.bound}")
+        return plan
 
 
 def _against_best(
-    case: Case, committed: Sequence[Plan], robot: RobotId, plan: Plan | None, level: Level
+    instance: Instance, best: Plan | None, robot: RobotId, plan: Plan | None, level: Level
 ) -> Iterator[Finding]:
-    """Compare with the best plan against the committed ones."""
-    if level < Level.COMPLETE_IN_CONTEXT:
-        return
-    best = engine_named("reference").query(case.instance, committed, robot, case.now)
+    """Compare with the best plan."""
     if best is None:
         if plan is not None:
             raise RuntimeError(f"carproof says that robot {robot} has no plan, and {shown_plan(plan)} is one")
@@ -90,9 +134,9 @@ def _against_best(
     arrival = best.visits[-1].enter
     if plan is None:
         yield wrong("query/complete", f"robot {robot} has a plan, which arrives at {arrival}: {shown_plan(best)}")
-    elif plan_cost(case.instance, plan) < plan_cost(case.instance, best):
+    elif plan_cost(instance, plan) < plan_cost(instance, best):
         raise RuntimeError(f"carproof says that robot {robot} arrives at {arrival} at best: not so {shown_plan(plan)}")
-    elif level >= Level.CONTEXT_OPTIMAL and plan_cost(case.instance, plan) > plan_cost(case.instance, best):
+    elif level >= Level.CONTEXT_OPTIMAL and plan_cost(instance, plan) > plan_cost(instance, best):
         late = plan.visits[-1].enter
         yield wrong("query/optimal", f"robot {robot} arrives at {late}, and can at {arrival}: {shown_plan(best)}")
     elif level >= Level.EXACT and plan != best:
@@ -111,18 +155,21 @@ def _plan_findings(case: Case, solution: Solution, level: Level) -> Iterator[Fin
     if case.planner is None and level >= Level.OPTIMAL:
         yield from plan_cost_findings(case.instance, solution)
     if case.planner is not None and level >= Level.EXACT:
-        expected = engine_named("reference").plan(case.instance, case.planner)
+        expected = engine_for(case.instance).plan(case.instance, case.planner)
         yield from _same_solution(solution, expected, case.planner.name)
 
 
 def _in_order_findings(case: Case, solution: Solution, order: Sequence[RobotId], level: Level) -> Iterator[Finding]:
     """Compare each plan with the best against those before it."""
+    if level < Level.COMPLETE_IN_CONTEXT:
+        return
     plans = {plan.robot: plan for plan in solution.plans}
-    committed: list[Plan] = []
+    beside = Beside(case.instance)
     for robot in order:
         plan = plans.get(robot)
-        yield from _against_best(case, committed, robot, plan, level)
-        committed += [] if plan is None else [plan]
+        yield from _against_best(case.instance, beside.best(robot), robot, plan, level)
+        if plan is not None:
+            beside.commit(plan)
 
 
 def _same_solution(solution: Solution, expected: Solution, planner: str) -> Iterator[Finding]:
@@ -150,7 +197,7 @@ def _add_findings(case: Case, after: Solution, level: Level) -> Iterator[Finding
     if level >= Level.COMPLETE_IN_CONTEXT:
         yield from _against_keeping(case, after)
     if level >= Level.EXACT:
-        expected = engine_named("reference").add(case.instance, case.solution, case.robot, case.now, case.options)
+        expected = engine_for(case.instance).add(case.instance, case.solution, case.robot, case.now, case.options)
         yield from _same_solution(after, expected, "add")
 
 
@@ -158,7 +205,7 @@ def _against_keeping(case: Case, after: Solution) -> Iterator[Finding]:
     """With the baseline, adding a robot is no worse than keeping all plans and asking for one more."""
     assert case.robot is not None  # noqa: S101 - a promise of ours
     kept = case.solution.plans
-    one_more = engine_named("reference").query(case.instance, kept, case.robot, case.now)
+    one_more = engine_for(case.instance).query(case.instance, kept, case.robot, case.now)
     if one_more is None or not case.options.baseline:
         return
     if case.robot in after.unplanned:
@@ -178,7 +225,7 @@ def _polish_findings(case: Case, after: Solution, level: Level) -> Iterator[Find
         given = f"the solution to polish leaves {missing_before} robots unplanned, with a total of {total_before}"
         yield wrong(is_kept.id, f"{given}, and the answer leaves {missing}, with {total}")
     if level >= Level.EXACT:
-        expected = engine_named("reference").polish(case.instance, case.solution, iterations=POLISH_ROUNDS)
+        expected = engine_for(case.instance).polish(case.instance, case.solution, iterations=POLISH_ROUNDS)
         yield from _same_solution(after, expected, "polish")
 
 

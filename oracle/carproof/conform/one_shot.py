@@ -4,13 +4,14 @@ import subprocess
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
-from tempfile import TemporaryDirectory
+from tempfile import TemporaryDirectory, TemporaryFile
+from typing import BinaryIO
 
 from carp_spec import Instance, Refusal, Robot, Solution
 from carp_verify.documents import write_instance
 from carproof.conform.answers import NotAsked, Reply, decode_solution, protocol_error, shown
 from carproof.conform.cases import Case
-from carproof.conform.child import Limits, end_group, ending, environment, exit_code, limited
+from carproof.conform.child import Limits, end_group, ending, environment, exit_code, limited, plain_file
 from carproof.conform.findings import IN_TIME, RIGHT_RESULT, Category, Fault, Finding, is_alive
 from carproof.formats import carproof_documents, format_of, looks_like_none, read_foreign_solution
 from carproof.formats.movingai import GridMap, movingai_instance
@@ -20,6 +21,11 @@ INSTANCE, MAP, SCEN, AGENTS, SOLUTION = "{instance}", "{map}", "{scen}", "{agent
 PROBE = movingai_instance(GridMap(3, 2, ("...", "...")), [Robot("r1", "2,0", "0,1")], "park")
 """An instance whose right answer fits only one format: only in one order of coordinates is the robot's start a cell."""
 _KEPT_STDERR = 8 * 2**10
+
+
+def _folder() -> TemporaryDirectory[str]:
+    """A folder for a program's files. The program may have changed it so that it cannot be removed."""
+    return TemporaryDirectory(prefix="carproof-", ignore_cleanup_errors=True)
 
 
 def names(template: Sequence[str], placeholder: str) -> bool:
@@ -51,7 +57,7 @@ class OneShot:
     def start(self) -> None:
         """Recognise the format that the program writes; raises `Refusal` if it must be named."""
         if self.is_classical and self._format is None:
-            with suppress(Fault), TemporaryDirectory(prefix="carproof-") as folder:
+            with suppress(Fault), _folder() as folder:
                 self._format = self._format_of(self._written(PROBE, Path(folder), self._limits.seconds))
 
     def _format_of(self, written: bytes) -> str | None:
@@ -69,22 +75,22 @@ class OneShot:
             return NotAsked("it plans whole instances, by a planner of its own")
         if self.is_classical and not is_classical(case.instance):
             return NotAsked("it plans classical grids")
-        with TemporaryDirectory(prefix="carproof-") as folder:
+        with _folder() as folder:
             written = self._written(case.instance, Path(folder), seconds or self._limits.seconds)
         return self._read(written, case.instance) if written else Solution((), (), tuple(case.instance.robot))
 
     def _written(self, instance: Instance, folder: Path, seconds: float) -> bytes:
         """Run the program on an instance, and return its answer; only a classical one may be empty."""
-        solution, output, errors = folder / "solution", folder / "output", folder / "errors"
+        solution = folder / "solution"
         command = self._command(instance, folder, solution)
-        with output.open("wb") as stdout, errors.open("wb") as stderr:
-            code = self._wait(command, stdout.fileno(), stderr.fileno(), seconds)
-        ending_of_errors = self._beginning(errors)[-_KEPT_STDERR:].decode("utf-8", "backslashreplace")
+        with TemporaryFile() as output, TemporaryFile() as errors:
+            code = self._wait(command, output.fileno(), errors.fileno(), seconds)
+            printed, complained = self._beginning(output), self._beginning(errors)
+        ending_of_errors = complained[-_KEPT_STDERR:].decode("utf-8", "backslashreplace")
         if code is None:
             message = f"no answer within {self._limits.shown(seconds)}"
             raise Fault(Finding(Category.TIMEOUT, IN_TIME.id, message, ending_of_errors))
-        answer = solution if names(self._template, SOLUTION) else output
-        written = self._beginning(answer) if answer.is_file() else b""
+        written = self._solution(solution, ending_of_errors) if names(self._template, SOLUTION) else printed
         if code not in (0, 1) or (code == 1 and not written):
             raise Fault(Finding(Category.CRASH, is_alive.id, ending(code), ending_of_errors))
         if not (written or self.is_classical) or len(written) > self._limits.output:
@@ -134,10 +140,20 @@ class OneShot:
         finally:
             end_group(process)
 
-    def _beginning(self, file: Path) -> bytes:
+    def _beginning(self, file: BinaryIO) -> bytes:
         """As much of a file as an answer may have, and a byte."""
-        with file.open("rb") as opened:
-            return opened.read(self._limits.output + 1)
+        file.seek(0)
+        return file.read(self._limits.output + 1)
+
+    def _solution(self, solution: Path, errors: str) -> bytes:
+        """The file that the program wrote; nothing if it wrote none."""
+        try:
+            return plain_file(solution, self._limits.output)
+        except FileNotFoundError:
+            return b""
+        except OSError as error:
+            message = f"its answer must be a plain file that can be read: {error.strerror}"
+            raise Fault(Finding(Category.PROTOCOL_ERROR, RIGHT_RESULT.id, message, errors)) from error
 
     def finish(self) -> None:
         """Nothing runs on."""

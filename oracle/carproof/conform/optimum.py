@@ -6,16 +6,20 @@ from functools import lru_cache
 from carp_spec import Instance, Refusal, Solution, judge, total_cost
 from carp_verify.bounds import BoundDocument
 from carp_verify.documents import solution_of
-from carproof.conform.cases import OPTIMUM_SECONDS
+from carproof.conform.cases import OPTIMUM_SECONDS, engine_for, is_large
 from carproof.conform.findings import Finding, is_complete, is_lower, is_optimal, wrong
 from carproof.conform.levels import Level
-from carproof.engines import engine_named
 from carproof.optima import OptimumDocument
 
 
 @lru_cache(maxsize=1)
 def found_cost(instance: Instance) -> tuple[bool, int | None]:
-    """Whether the search for the optimum ended in time, and what it found: `None` if robots cannot all be planned."""
+    """Whether the search for the optimum ended in time, and what it found: `None` if robots cannot all be planned.
+
+    It is not asked about large instances.
+    """
+    if is_large(instance):
+        return False, None
     from carp_optimum.optimum import optimum  # noqa: PLC0415 - loads a solver
 
     found = optimum(instance, OPTIMUM_SECONDS)
@@ -24,7 +28,7 @@ def found_cost(instance: Instance) -> tuple[bool, int | None]:
 
 def cost_alone(instance: Instance) -> int | None:
     """The sum of the robots' costs if each were alone, `None` if one has no plan even then."""
-    plans = [engine_named("reference").query(instance, (), robot) for robot in instance.robot]
+    plans = [engine_for(instance).query(instance, (), robot) for robot in instance.robot]
     known = [plan for plan in plans if plan is not None]
     return total_cost(instance, known) if len(known) == len(plans) else None
 

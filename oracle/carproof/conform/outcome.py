@@ -1,17 +1,42 @@
-"""The outcome of one case."""
+"""Subjects, which answer cases, and the outcome of one case."""
 
 from dataclasses import dataclass
 from time import monotonic
+from typing import Protocol
 
-from carproof.conform.answers import Answer, NotAsked, Skipped
+from carp_spec import Refusal
+from carproof.conform.answers import Answer, NotAsked, Reply, Skipped
 from carproof.conform.by_kernel import require_agreement
-from carproof.conform.cases import Case
+from carproof.conform.cases import Case, is_large
 from carproof.conform.claims import features
 from carproof.conform.effort import Effort, effort, why_undecided
 from carproof.conform.findings import Fault, Finding
 from carproof.conform.judges import first_finding
 from carproof.conform.levels import Level
-from carproof.conform.subjects import Subject
+
+
+class Subject(Protocol):
+    """A subject that answers cases; `ops` are the ops that it offers."""
+
+    @property
+    def name(self) -> str:
+        """Its name in reports."""
+
+    @property
+    def ops(self) -> tuple[str, ...]:
+        """The ops that it offers."""
+
+    def start(self) -> None:
+        """Get ready; raises `Fault` if that fails."""
+
+    def ask(self, case: Case, seconds: float | None = None) -> Reply:
+        """Its reply, within this many seconds (`None`: the usual limit); raises `Fault` without a reply to judge."""
+
+    def finish(self) -> None:
+        """End; raises `Fault` if that fails."""
+
+    def kill(self) -> None:
+        """Leave nothing behind."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +64,7 @@ class Outcome:
         assert self.finding is not None  # noqa: S101 - both are failures
         assert other.finding is not None  # noqa: S101
         is_alike = self.finding.key == other.finding.key
-        return is_alike and features(self.case.instance) <= features(other.case.instance)
+        return is_alike and features(self.case) <= features(other.case)
 
 
 def ask(subject: Subject, case: Case, level: Level, seconds: float | None = None, by_kernel: bool = False) -> Outcome:
@@ -55,11 +80,16 @@ def ask(subject: Subject, case: Case, level: Level, seconds: float | None = None
     taken = monotonic() - started
     if isinstance(reply, Skipped | NotAsked):
         return Outcome(case, skipped=reply.why, asked=isinstance(reply, Skipped), seconds=taken)
-    finding = first_finding(case, reply, level)
-    if by_kernel:
-        require_agreement(case, reply, level, finding)
-    if finding is not None:
-        return Outcome(case, finding, reply, seconds=taken)
-    undecided = why_undecided(case, reply, level)
-    shown = effort(case, reply) if undecided is None else None
+    try:
+        finding = first_finding(case, reply, level)
+        if by_kernel:
+            require_agreement(case, reply, level, finding)
+        if finding is not None:
+            return Outcome(case, finding, reply, seconds=taken)
+        undecided = why_undecided(case, reply, level)
+        shown = effort(case, reply) if undecided is None else None
+    except Refusal as refusal:
+        if not is_large(case.instance):
+            raise
+        return Outcome(case, None, reply, f"carproof cannot judge it: {refusal.message}", seconds=taken)
     return Outcome(case, None, reply, undecided, effort=shown, seconds=taken)

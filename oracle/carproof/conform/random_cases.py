@@ -28,10 +28,14 @@ from carproof.conform.claims import EVERYTHING, Claims
 from carproof.conform.levels import Level
 from carproof.engines import engine_named
 from carproof.execution.delays import stuck
+from carproof.formats.movingai import BLOCKED, PASSABLE, GridMap, movingai_instance
+from carproof.generate.grid import cell_id
 from carproof.testing.strategies import Sizes, broken_solutions, committed_plans, fleets_under_way, instances, solutions
 
 SIZES = Sizes(resources=6, robots=4)
 OPTIMUM_SIZES = Sizes(resources=5, robots=3, duration=2, release=2)
+WIDTH, HEIGHT = 4, 3
+CLASSICAL_SIZES = Sizes(robots=4, release=0, pace=1)
 LONGEST_DELAY = 3
 MOST_DELAYS = 4
 EXACT_PLANNERS: tuple[Planner, ...] = (
@@ -99,14 +103,14 @@ def _instances(sizes: Sizes, least_robots: int = 0) -> st.SearchStrategy[Instanc
 
 
 @st.composite
-def _queries(draw: st.DrawFn, sizes: Sizes) -> Case:
+def _queries(draw: st.DrawFn, sizes: Sizes, under_way: bool) -> Case:
     """One robot against plans of some of the others; it may be under way itself, at a tick later than 0."""
     instance = draw(_instances(sizes, least_robots=1))
     robot: RobotId = draw(st.sampled_from(instance.robots)).id
-    is_new = draw(st.sampled_from([True, True, True, False]))
+    is_new = draw(st.sampled_from([True, True, True, not under_way]))
     plans = draw(committed_plans(instance, sizes, without=robot if is_new else None))
     ends = [visit.leave or visit.enter for plan in plans for visit in plan.visits]
-    now = draw(st.just(0) | st.integers(0, max(ends, default=sizes.release)))
+    now = draw(st.just(0) | st.integers(0, max(ends, default=sizes.release) if under_way else 0))
     return Case("random", "query", "query", instance, Solution.of(instance, plans), robot, now)
 
 
@@ -119,10 +123,11 @@ def _plans(planners: Sequence[Planner | None], sizes: Sizes) -> st.SearchStrateg
 
 
 @st.composite
-def _additions(draw: st.DrawFn, sizes: Sizes) -> Case:
+def _additions(draw: st.DrawFn, sizes: Sizes, under_way: bool) -> Case:
     fleet = draw(fleets_under_way(sizes, _instances(sizes, least_robots=1)))
     options = draw(st.sampled_from(ADDING))
-    return Case("random", "add", "add", fleet.instance, fleet.solution, fleet.robot, fleet.now, options)
+    now = fleet.now if under_way else 0
+    return Case("random", "add", "add", fleet.instance, fleet.solution, fleet.robot, now, options)
 
 
 @st.composite
@@ -178,11 +183,12 @@ def random_cases(
     if whole:
         return {"plan": _plans([None], sizes)}
     planners = EXACT_PLANNERS if level >= Level.EXACT else (Carp(),)
+    under_way = "now" not in claims.without
     small = st.one_of(instances(_claimed(OPTIMUM_SIZES, claims)), _busy_instances(sizes), _busy_instances(sizes))
     by_op: dict[str, st.SearchStrategy[Case]] = {
-        "query": _queries(sizes),
+        "query": _queries(sizes, under_way),
         "plan": _plans(planners, sizes),
-        "add": _additions(sizes),
+        "add": _additions(sizes, under_way),
         "check": _checks(sizes),
         "polish": _polishes(sizes),
         "bound": small.map(lambda instance: Case("random", "bound", "bound", instance)),
@@ -190,3 +196,28 @@ def random_cases(
     if level >= Level.COMPLETE:
         by_op["optimum"] = small.map(lambda instance: Case("random", "optimum", "optimum", instance))
     return {op: cases for op, cases in by_op.items() if op in ops}
+
+
+@st.composite
+def _grids(draw: st.DrawFn) -> ResourceGraph:
+    """Small grids, some cells blocked."""
+    width, height = draw(st.integers(1, WIDTH)), draw(st.integers(1, HEIGHT))
+    kinds = st.sampled_from([PASSABLE[0], PASSABLE[0], PASSABLE[0], BLOCKED[0]])
+    rows = tuple("".join(draw(st.lists(kinds, min_size=width, max_size=width))) for _ in range(height))
+    graph = movingai_instance(GridMap(width, height, rows), (), "park").graph
+    return graph if graph.resources else ResourceGraph((Resource(cell_id(0, 0), x=0, y=0),), ())
+
+
+def classical_instances() -> st.SearchStrategy[Instance]:
+    """Grids with robots of different starts and different goals; most meet."""
+    return instances(CLASSICAL_SIZES, _grids(), 1, starts_apart=True, goals_apart=True).map(_classical)
+
+
+def _classical(instance: Instance) -> Instance:
+    robots = (replace(robot, id=f"r{number}") for number, robot in enumerate(instance.robots, start=1))
+    return replace(instance, robots=tuple(robots), after_goal="park")
+
+
+def classical_cases() -> st.SearchStrategy[Case]:
+    """Whole instances, to be planned by a planner of the program's own."""
+    return classical_instances().map(lambda instance: Case("random", "plan", "plan", instance, classical=True))

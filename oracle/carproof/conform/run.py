@@ -1,24 +1,27 @@
-"""A run: smoke cases, test vectors, then random cases; it ends with a report, also when it is interrupted."""
+"""A run: smoke cases, test vectors, random cases, large ones; it ends with a report, also when it is interrupted."""
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from time import monotonic
 
 from carproof.conform.cases import EXECUTION, Case
 from carproof.conform.claims import EVERYTHING, Claims
-from carproof.conform.deciding import Tally, random_shortfalls, smoke_shortfalls
+from carproof.conform.deciding import Extent, Tally, random_shortfalls, smoke_shortfalls
 from carproof.conform.effort import Effort
 from carproof.conform.findings import Category, Fault, Finding
+from carproof.conform.ladder import SIZES, Rung, large_case, rungs
 from carproof.conform.levels import EXECUTOR_LEVELS, JUDGED_OPS, Level
-from carproof.conform.outcome import Outcome, ask
+from carproof.conform.outcome import Outcome, Subject, ask
 from carproof.conform.shrinking import SHRINK_SECONDS, FailureSearch
 from carproof.conform.smoke import smoke_cases
-from carproof.conform.subjects import Subject
 from carproof.conform.vector_cases import vector_cases
 
 _IN_CONTEXT = Level.COMPLETE_IN_CONTEXT
 MOST_FAULTS = 3
 """After this many crashes, timeouts and protocol errors no further fixed case is asked: each costs a new process."""
+LARGEST_PART = 10
+"""A large case that takes more than this part of the time for all is too slow: none of its size is asked again."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +30,8 @@ class Options:
 
     `whole`: only whole instances, each planned by the program's own planner. `classical`: also, random instances are
     classical multi-agent path finding. `claims`: the features that it can be asked. `kernel`: the name and version of
-    the proved kernel, if it decides. `executor`: it is to execute plans, not to make them.
+    the proved kernel, if it decides. `executor`: it is to execute plans, not to make them. `large`: the seconds for
+    large cases.
     """
 
     level: Level = Level.SOUND
@@ -40,6 +44,7 @@ class Options:
     claims: Claims = EVERYTHING
     kernel: str | None = None
     executor: bool = False
+    large: float = 0.0
 
     @property
     def statement(self) -> str:
@@ -64,8 +69,10 @@ class Report:
     """The results of a run so far.
 
     `outcomes` are those of the fixed cases. `random` counts the random cases by outcome, `tallies` those of each op,
-    and `judged` all answers of each op. `smallest` is the failing random case after shrinking. A fault without a case,
-    at the start or at the stop, is in `faults`.
+    `large` the large cases, and `judged` all answers of each op. `extent` is how large the cases rightly answered were,
+    and `cut` says which large cases were not asked. `smallest` is the failing random or large case after shrinking, and
+    `minimal` whether nothing more can be taken away from it. A fault without a case, at the start or at the stop, is in
+    `faults`.
     """
 
     options: Options
@@ -73,8 +80,12 @@ class Report:
     outcomes: list[Outcome] = field(default_factory=list)
     random: Counter[str] = field(default_factory=Counter)
     tallies: dict[str, Tally] = field(default_factory=dict)
+    large: Counter[str] = field(default_factory=Counter)
     judged: Counter[str] = field(default_factory=Counter)
+    extent: Extent = field(default_factory=Extent)
+    cut: list[str] = field(default_factory=list)
     smallest: Outcome | None = None
+    minimal: bool = False
     faults: list[Finding] = field(default_factory=list)
     interrupted: bool = False
 
@@ -159,10 +170,14 @@ class Report:
         if outcome.case.stage == "random":
             self.random[label(outcome)] += 1
             self.tallies.setdefault(outcome.case.op, Tally()).add(outcome)
+        elif outcome.case.stage == "large":
+            self.large[label(outcome)] += 1
         else:
             self.outcomes.append(outcome)
         if outcome.answer is not None and outcome.is_judged:
             self.judged[outcome.case.op] += 1
+            if outcome.case.op in self.options.ops:
+                self.extent.add(outcome)
 
 
 def label(outcome: Outcome) -> str:
@@ -202,6 +217,8 @@ def _ask_everything(subject: Subject, report: Report, advance: Callable[[], None
     for cases in (smoke_cases, vector_cases):
         _ask_fixed(subject, report, cases(subject.ops, options.level, options.whole), advance)
     _ask_random(subject, report, advance)
+    if options.large and options.examples and not options.executor and not report.findings:
+        _ask_large(subject, report, advance)
 
 
 def _ask_fixed(subject: Subject, report: Report, cases: Iterable[Case], advance: Callable[[], None]) -> None:
@@ -218,8 +235,11 @@ def _ask_fixed(subject: Subject, report: Report, cases: Iterable[Case], advance:
 
 def _ask_random(subject: Subject, report: Report, advance: Callable[[], None]) -> None:
     """Ask as many of each op."""
-    from carproof.conform.classical_cases import classical_cases  # noqa: PLC0415 - loads hypothesis
-    from carproof.conform.random_cases import execution_cases, random_cases  # noqa: PLC0415 - loads hypothesis
+    from carproof.conform.random_cases import (  # noqa: PLC0415 - loads hypothesis
+        classical_cases,
+        execution_cases,
+        random_cases,
+    )
 
     options = report.options
     ours = random_cases(subject.ops, options.level, options.whole, options.claims)
@@ -237,11 +257,65 @@ def _ask_random(subject: Subject, report: Report, advance: Callable[[], None]) -
     def is_claimed(case: Case) -> bool:
         return options.claims.why_not(case) is None
 
-    search = FailureSearch(ask_one, options.limit, options.shrink_seconds)
+    search = FailureSearch(ask_one, options.limit, options.shrink_seconds, is_claimed)
     try:
         for number, cases in enumerate(by_op.values()):
             examples = (options.examples + number) // len(by_op)
             if examples and search.best is None:
                 search.run(cases.filter(is_claimed), examples, options.seed)
     finally:
-        report.smallest = search.best
+        report.smallest, report.minimal = search.best, search.minimal
+
+
+def _ask_large(subject: Subject, report: Report, advance: Callable[[], None]) -> None:
+    """Ask large cases until one fails or the time is over; of what is too slow, none of its size is asked again."""
+    options = report.options
+    ends, most = monotonic() + options.large, options.large / LARGEST_PART
+    too_large: dict[str, int] = {}
+    ladder = list(rungs(subject.ops, options.level, options.seed, options.whole))
+    for position, rung in enumerate(ladder):
+        if monotonic() >= ends:
+            report.cut.append(_not_asked(ladder, position, options.large))
+            return
+        if rung.robots >= too_large.get(rung.op, rung.robots + 1):
+            continue
+        started = monotonic()
+        case = large_case(rung, options.claims, options.classical)
+        if case is None or options.claims.why_not(case) is not None:
+            continue
+        outcome = ask(subject, case, options.level, min(options.limit, most), options.kernel is not None)
+        if outcome.finding is not None and outcome.finding.category == Category.TIMEOUT:
+            too_large[rung.op] = rung.robots
+            report.cut.append(f"{rung.op} of {rung.robots} robots is too slow: {outcome.finding.message} ({case.name})")
+            continue
+        report.add(outcome)
+        advance()
+        if outcome.finding is not None:
+            _shrink(subject, report, outcome)
+            return
+        if monotonic() - started > most and rung.robots < SIZES[-1]:
+            too_large[rung.op] = next(robots for robots in SIZES if robots > rung.robots)
+            message = f"{rung.op} of {rung.robots} robots took more than {most:g} s with its judgement"
+            report.cut.append(f"{message}, so none of more robots was asked")
+
+
+def _not_asked(ladder: Sequence[Rung], position: int, seconds: float) -> str:
+    """The large cases that were left out."""
+    of_all, left = (Counter(rung.robots for rung in ladder[first:]) for first in (0, position))
+    sizes = ", ".join(f"{left[robots]} of {of_all[robots]} of {robots} robots" for robots in SIZES if left[robots])
+    return f"the {seconds:g} s for large cases were over; not asked: {sizes}"
+
+
+def _shrink(subject: Subject, report: Report, outcome: Outcome) -> None:
+    options = report.options
+
+    def ask_one(case: Case, seconds: float | None) -> Outcome:
+        return ask(subject, case, options.level, seconds, options.kernel is not None)
+
+    search = FailureSearch(
+        ask_one, options.limit, options.shrink_seconds, lambda case: options.claims.why_not(case) is None
+    )
+    try:
+        search.run_on(outcome)
+    finally:
+        report.smallest, report.minimal = search.best, search.minimal

@@ -1,8 +1,10 @@
-"""The folder of a run's findings: written in place of those of an earlier run, and read again by the next one."""
+"""The folder of a program's findings: written in place of those of an earlier run, and read again by the next one."""
 
+import os
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from itertools import count
 from pathlib import Path
 from typing import Literal
 
@@ -11,12 +13,16 @@ import msgspec
 from carp_spec import Refusal
 from carproof.command_line.files import write_whole
 from carproof.conform.cases import ASKED_OPS, EXECUTION, Case
+from carproof.conform.child import plain_file
 from carproof.conform.outcome import Outcome
 from carproof.conform.saving import FILES, Origin, save
 from carproof.conform.vector_cases import case_of
 from carproof.testing.vectors import VectorsDocument
 
 RUN = "run.json"
+LARGEST = 2**28
+"""Bytes of a file that is read again."""
+MOST_LETTERS = 60
 
 
 class SavedRun(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -29,35 +35,50 @@ class SavedRun(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 @dataclass(frozen=True, slots=True)
 class Saved:
-    """The cases to ask again, and, where a folder belongs to another program or level, one sentence about that."""
+    """The cases to ask again, and, where a folder could not be read, one sentence about that."""
 
     cases: tuple[Case, ...] = ()
     stale: str | None = None
 
 
-def read_saved(folder: Path, judged: str, whole: bool) -> Saved:
-    """The saved cases of the one who is judged; findings of another one are cleared.
+def own_folder(base: Path, program: str, judged: str) -> Path:
+    """The folder of the one who is judged, in a folder for the findings of all: no one's findings replace another's.
+
+    `program` names it; where another one with that name has findings there, a number follows.
+    """
+    name = "".join(c if c.isalnum() or c in "._-" else "-" for c in program).strip(".-")[:MOST_LETTERS] or "program"
+    folders = (base / (name if number == 1 else f"{name}-{number}") for number in count(1))
+    return next(folder for folder in folders if _judged(folder) in (None, judged))
+
+
+def _judged(folder: Path) -> str | None:
+    """Whose findings a folder holds; `None` if it holds none that can be read."""
+    try:
+        return msgspec.json.decode(plain_file(folder / RUN, LARGEST), type=SavedRun).judged
+    except (OSError, ValueError):
+        return None
+
+
+def read_saved(folder: Path, whole: bool) -> Saved:
+    """The saved cases of a folder; those that cannot be read are cleared.
 
     `whole`: planners of whole instances are asked, who choose the planner themselves.
     """
-    if not (folder / RUN).exists():
+    if not os.path.lexists(folder / RUN):
         clear(folder)
         return Saved()
     try:
-        run = msgspec.json.decode((folder / RUN).read_bytes(), type=SavedRun)
+        run = msgspec.json.decode(plain_file(folder / RUN, LARGEST), type=SavedRun)
         cases = tuple(_read_case(folder / name, case) for name, case in run.cases.items())
     except (OSError, ValueError, Refusal):
         clear(folder)
         return Saved(stale=f"{folder} holds findings that cannot be read: they are cleared.")
-    if run.judged != judged:
-        clear(folder)
-        return Saved(stale=f"{folder} holds findings of {run.judged}: they are cleared.")
     return Saved(tuple(replace(case, planner=None) for case in cases) if whole else cases)
 
 
 def _read_case(folder: Path, name: str) -> Case:
     """A saved case; raises `OSError`, `ValueError` or `Refusal` if it cannot be read."""
-    (vector,) = msgspec.json.decode((folder / "vector.json").read_bytes(), type=VectorsDocument).cases
+    (vector,) = msgspec.json.decode(plain_file(folder / "vector.json", LARGEST), type=VectorsDocument).cases
     (op,) = (each for each in (*ASKED_OPS, EXECUTION) if each == vector.op)
     return replace(case_of(vector, op), stage="saved", name=name)
 

@@ -161,7 +161,7 @@ def about_case(case: Case) -> str:
     """The comment of the vector or the name of the smoke case, and the features; of a random case its features."""
     comments = {vector.id: vector.comment for vector in vectors()}
     named = comments.get(case.name, "" if case.name == case.op else case.name)
-    return "; ".join(each for each in (named, ", ".join(sorted(features(case.instance)))) if each)
+    return "; ".join(each for each in (named, ", ".join(sorted(features(case)))) if each)
 
 
 def vectors_document(outcome: Outcome) -> dict[str, Any]:

@@ -1,7 +1,8 @@
 """The search for a random case that fails, and for the smallest that fails in the same way.
 
-Hypothesis draws and shrinks. The first outcome of each case is remembered. So a program that answers the same question
-differently, or the end of the time for shrinking, cannot confuse it.
+Hypothesis draws random cases, and shrinks a failing one in half of the time. Then one thing after the other is taken
+away (`smaller`), until nothing can be taken away or the time is over. The first outcome of each case is remembered. So
+a program that answers the same question differently, or the end of the time, cannot confuse it.
 """
 
 from collections.abc import Callable
@@ -12,6 +13,7 @@ from typing import TYPE_CHECKING
 from carproof.conform.cases import Case
 from carproof.conform.findings import Category
 from carproof.conform.outcome import Outcome
+from carproof.conform.smaller import smallest
 
 if TYPE_CHECKING:
     from hypothesis.strategies import SearchStrategy
@@ -24,17 +26,24 @@ Ask = Callable[[Case, float | None], Outcome]
 
 
 class FailureSearch:
-    """Draws cases until one fails, and then smaller ones that fail alike; `best` is the smallest so far."""
+    """Looks for a case that fails, and then for smaller ones that fail alike; `best` is the smallest so far.
 
-    def __init__(self, ask: Ask, limit: float, shrink_seconds: float) -> None:
+    It is `minimal` if nothing more can be taken away from it. `may_ask` is whether a program can be asked a case.
+    """
+
+    def __init__(
+        self, ask: Ask, limit: float, shrink_seconds: float, may_ask: Callable[[Case], bool] = lambda _: True
+    ) -> None:
         self._ask = ask
+        self._may_ask = may_ask
         self._limit = limit
         self._shrink_seconds = shrink_seconds
         self._slowest = 0.0
-        self._deadline = 0.0
-        self._fails: dict[Case, bool] = {}
+        self._deadline = self._ends = 0.0
+        self._fails: dict[int, bool] = {}  # by hash, as large cases would fill the memory
         self._first: Outcome | None = None
         self.best: Outcome | None = None
+        self.minimal = False
 
     def run(self, cases: "SearchStrategy[Case]", examples: int, seed: int) -> None:
         """Draw at most `examples` cases."""
@@ -51,24 +60,39 @@ class FailureSearch:
             find(cases, self._is_failure, settings=limits, random=Random(seed))  # noqa: S311 - cases, no secrets
         except (NoSuchExample, Unsatisfiable):
             return
+        self._shrink()
+
+    def run_on(self, outcome: Outcome) -> None:
+        """Shrink a failure that was found otherwise."""
+        self._slowest = outcome.seconds
+        self._begin(outcome)
+        self._shrink()
+
+    def _shrink(self) -> None:
+        """Take away what can be taken away, in the time that is left."""
+        assert self.best is not None  # noqa: S101 - a promise of ours
+        self._ends = self._deadline
+        _, ended = smallest(self.best.case, self._is_failure, lambda: monotonic() >= self._deadline)
+        self.minimal = ended and monotonic() < self._deadline
         self._confirm()
 
     def _is_failure(self, case: Case) -> bool:
         if self._first is None:
-            return self._is_first_failure(case)
-        if case not in self._fails and monotonic() < self._deadline:
-            self._fails[case] = self._fails_alike(case)
-        return self._fails.get(case, False)
+            outcome = self._ask(case, None)
+            if outcome.finding is None:
+                self._slowest = max(self._slowest, outcome.seconds)
+                return False
+            self._begin(outcome)
+        key = hash(case)
+        if key not in self._fails and monotonic() < self._ends and self._may_ask(case):
+            self._fails[key] = self._fails_alike(case)
+        return self._fails.get(key, False)
 
-    def _is_first_failure(self, case: Case) -> bool:
-        outcome = self._ask(case, None)
-        if outcome.finding is None:
-            self._slowest = max(self._slowest, outcome.seconds)
-            return False
+    def _begin(self, outcome: Outcome) -> None:
         self._first = self.best = outcome
-        self._fails[case] = True
-        self._deadline = monotonic() + self._shrink_seconds
-        return True
+        self._fails[hash(outcome.case)] = True
+        started = monotonic()
+        self._deadline, self._ends = started + self._shrink_seconds, started + self._shrink_seconds / 2
 
     def _fails_alike(self, case: Case) -> bool:
         assert self._first is not None  # noqa: S101 - a promise of ours
@@ -91,3 +115,4 @@ class FailureSearch:
         again = self._ask(self.best.case, None)
         alike = again.finding is not None and again.finding.key == self.best.finding.key
         self.best = again if alike else self._first
+        self.minimal = self.minimal and alike

@@ -1,27 +1,58 @@
-"""The verdict of a run in a line: what was tested, on how many answers, and what was left out."""
+"""The report in words: how the answers counted, and in two lines what was shown, and on how large cases."""
+
+from collections.abc import Iterator
 
 from carproof.command_line.tables import counted
 from carproof.conform.findings import LEAST_ANSWERED
 from carproof.conform.run import Report
 
 
-def verdict(report: Report) -> str:
-    """The verdict, with the answers that decided it."""
+def verdict(report: Report) -> tuple[str, str]:
+    """Two lines: what the run shows on how many answers, and how large the cases were."""
+    return _shown(report), _extent(report)
+
+
+def _shown(report: Report) -> str:
     level = report.options.level
     answers = counted(report.tested, "answer")
-    tested = f"{report.program}, level {level.label} ({report.options.statement}), tested on {answers}"
+    claim = f"{report.program}, level {level.label} ({report.options.statement}), tested on {answers}"
     if report.conforms:
-        return f"CONFORMS: {tested}; {_answered(report)}"
+        return f"CONFORMS: {claim}."
     if report.conforms is None:
         why = "interrupted before anything wrong was found" if report.interrupted else "no random case decided it"
-        return f"UNDECIDED: {tested}: {why}; {_answered(report)}"
-    return f"DOES NOT CONFORM: {tested}; {_answered(report)}"
+        return f"UNDECIDED: {claim}: {why}."
+    return f"DOES NOT CONFORM: {claim}."
 
 
-def _answered(report: Report) -> str:
-    """How many cases were answered."""
+def _extent(report: Report) -> str:
+    extent = report.extent
+    if not extent.robots:
+        return "Nothing is shown: no case in which there was something to do was rightly answered."
+    size = f"{counted(extent.robots, "robot")} and {_many(extent.resources, 'resource')}"
+    numbers = f"capacity {extent.capacity:,}, duration {extent.duration:,}, pace {extent.pace:,}, tick {extent.tick:,}"
+    return f"The largest case rightly answered had {size}; the largest numbers were {numbers}. Nothing is shown beyond."
+
+
+def _many(count: int, noun: str) -> str:
+    return f"{count:,} {noun}" + ("" if count == 1 else "s")
+
+
+def details(report: Report) -> Iterator[str]:
+    """How many cases of each kind were answered, what was not asked, and whether the failing case is minimal."""
+    if report.smallest is not None:
+        yield f"the failing {report.smallest.case.stage} case is {_how_small(report)}"
     random = ", ".join(f"{op} {tally}" for op, tally in report.tallies.items()) or "none"
     needed = f"{LEAST_ANSWERED} in 100 needed, seed {report.options.seed}"
-    left_out = "".join(f", {name}" for name in report.options.claims.left_out)
-    answered = f"rightly answered: smoke {report.smoke}; random {random} ({needed})"
-    return f"{answered}; not asked:{left_out[1:]}" if left_out else answered
+    yield f"rightly answered: smoke {report.smoke}; random {random} ({needed}); large {report.large['passed']}"
+    if report.options.claims.left_out:
+        yield f"not asked, as it does not claim it: {', '.join(report.options.claims.left_out)}"
+    yield from (f"large cases: {cut}" for cut in report.cut)
+    if report.options.kernel is not None:
+        yield f"decided by {report.options.by}"
+
+
+def _how_small(report: Report) -> str:
+    """Whether the failing random or large case can be made smaller."""
+    if report.minimal:
+        return "minimal: with any one robot, resource, edge or unit of a number less it does not fail"
+    return f"perhaps not minimal: the {report.options.shrink_seconds:g} s for shrinking (--shrinking) were over"

@@ -1,0 +1,384 @@
+"""Smaller questions than one that fails: each edit takes one thing away, or several of a kind at once.
+
+An edit gets the smallest question so far and returns a smaller one, or `None` where it has nothing to take away. The
+edits of a kind go from coarse to fine, so that a question of hundreds of robots is small after a few.
+"""
+
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import Literal, TypeAlias, TypeVar
+
+from carp_reference.execution import order_of
+from carp_spec import Instance, Plan, Refusal, ResourceGraph, ResourceId, RobotId, Visit
+from carproof.conform.cases import EXECUTION, Case
+from carproof.execution.delays import stuck
+from carproof.requests import sound_solution
+
+Edit: TypeAlias = Callable[[Case], Case | None]
+Kind: TypeAlias = Literal["resources", "robots"]
+T = TypeVar("T")
+
+NUMBERS: Sequence[tuple[Kind, str, int]] = (
+    ("robots", "release", 0),
+    ("robots", "pace", 1),
+    ("resources", "capacity", 1),
+    ("resources", "duration", 1),
+)
+"""The numbers of an instance, with the least that each can be."""
+LONG_ID = 8
+
+
+def smallest(case: Case, fails: Callable[[Case], bool], is_over: Callable[[], bool]) -> tuple[Case, bool]:
+    """A question that fails, and whether it is minimal: no edit makes it smaller and keeps the failure.
+
+    It is not known to be minimal if the time was over.
+    """
+    is_moving = True
+    while is_moving:
+        is_moving = False
+        for kind in KINDS:
+            for edit in kind(case):
+                if is_over():
+                    return case, False
+                smaller = edit(case)
+                if smaller is not None and smaller != case and is_question(smaller) and fails(smaller):
+                    case, is_moving = smaller, True
+    return case, True
+
+
+def is_question(case: Case) -> bool:
+    """Whether a program may be asked it: the plans given break no rule, unless they are to be checked."""
+    try:
+        if case.op in ("query", "add", "polish", EXECUTION):
+            sound_solution(case.instance, case.solution, case.robot if case.op == "query" else None)
+    except Refusal:
+        return False
+    return case.op != EXECUTION or not stuck(order_of(case.instance, case.solution))
+
+
+def _chunks(items: Sequence[T]) -> Iterator[frozenset[T]]:
+    """All items, then halves, quarters, and so on to single ones."""
+    size = len(items)
+    while size:
+        yield from (frozenset(items[first : first + size]) for first in range(0, len(items), size))
+        size //= 2
+
+
+def _steps(value: int, least: int) -> Iterator[int]:
+    """How much to take from a number: all, then half of it, and so on to one."""
+    step = value - least
+    while step > 0:
+        yield step
+        step //= 2
+
+
+def _made(case: Case, instance: Instance, plans: Sequence[Plan]) -> Case:
+    """The question with another instance and some of its plans; a robot that loses its plan is unplanned."""
+    kept = {plan.robot for plan in plans}
+    lost = [plan.robot for plan in case.solution.plans if plan.robot not in kept]
+    order = tuple(robot for robot in case.solution.order if robot in instance.robot and robot not in lost)
+    unplanned = tuple(robot for robot in (*case.solution.unplanned, *lost) if robot in instance.robot)
+    ended = tuple(plans) if case.op == "check" else tuple(_ended(instance, plan) for plan in plans)
+    delays = tuple(delay for delay in case.delays if delay[0] in kept)
+    return replace(
+        case,
+        instance=instance,
+        solution=replace(case.solution, plans=ended, order=order, unplanned=unplanned),
+        delays=delays,
+    )
+
+
+def _ended(instance: Instance, plan: Plan) -> Plan:
+    """The plan with the end of its last visit that the instance asks for."""
+    *visits, last = plan.visits
+    lasts = instance.duration(plan.robot, last.resource)
+    leave = None if instance.after_goal == "park" else last.enter + lasts
+    return Plan(plan.robot, (*visits, Visit(last.resource, last.enter, leave)))
+
+
+def _fewer_robots(case: Case) -> Iterable[Edit]:
+    def edit(gone: frozenset[RobotId], case: Case) -> Case:
+        robots = tuple(each for each in case.instance.robots if each.id not in gone or each.id == case.robot)
+        instance = replace(case.instance, robots=robots)
+        return _made(case, instance, [plan for plan in case.solution.plans if plan.robot in instance.robot])
+
+    return (partial(edit, gone) for gone in _chunks([*case.instance.robot]))
+
+
+def _fewer_plans(case: Case) -> Iterable[Edit]:
+    def edit(gone: frozenset[RobotId], case: Case) -> Case:
+        return _made(case, case.instance, [plan for plan in case.solution.plans if plan.robot not in gone])
+
+    return (partial(edit, gone) for gone in _chunks([plan.robot for plan in case.solution.plans]))
+
+
+def _fewer_resources(case: Case) -> Iterable[Edit]:
+    """Take away resources in which nobody starts, ends or stays."""
+
+    def edit(some: frozenset[ResourceId], case: Case) -> Case:
+        used = {end for robot in case.instance.robots for end in (robot.start, robot.goal)}
+        used |= {visit.resource for plan in case.solution.plans for visit in plan.visits}
+        gone, graph = some - used, case.instance.graph
+        resources = tuple(each for each in graph.resources if each.id not in gone)
+        edges = tuple(edge for edge in graph.edges if gone.isdisjoint(edge))
+        instance = replace(case.instance, graph=replace(graph, resources=resources, edges=edges))
+        return _made(case, instance, case.solution.plans)
+
+    return (partial(edit, some) for some in _chunks([*case.instance.graph.index]))
+
+
+def _shorter_ways(case: Case) -> Iterable[Edit]:
+    """Join resources with those beside them, single ones with each of them and with the first of all."""
+
+    def edit(some: frozenset[ResourceId], into: ResourceId | None, case: Case) -> Case | None:
+        graph = case.instance.graph
+        gone = some & graph.index.keys()
+        if not gone or (into is not None and into not in graph.index):
+            return None
+        became = _joined(graph, gone) if into is None else {id: into if id in gone else id for id in graph.index}
+        return _moved(case, gone, became) if len(became) == len(graph.index) else None
+
+    graph, beside = case.instance.graph, _beside(case.instance.graph)
+    yield from (partial(edit, some, None) for some in _chunks([*graph.index]) if len(some) > 1)
+    for id in graph.index:
+        targets = dict.fromkeys([*beside[id], *[*graph.index][:1]])
+        yield from (partial(edit, frozenset([id]), into) for into in targets if into != id)
+
+
+def _beside(graph: ResourceGraph) -> Mapping[ResourceId, list[ResourceId]]:
+    """The resources that an edge joins with each, in either direction."""
+    beside: dict[ResourceId, list[ResourceId]] = {id: [] for id in graph.index}
+    for source, target in graph.edges:
+        beside[source].append(target)
+        beside[target].append(source)
+    return beside
+
+
+def _joined(graph: ResourceGraph, gone: frozenset[ResourceId]) -> dict[ResourceId, ResourceId]:
+    """For each resource the nearest one that stays; one without any is left out."""
+    became = {id: id for id in graph.index if id not in gone}
+    beside, reached = _beside(graph), deque(became)
+    while reached:
+        at = reached.popleft()
+        for id in beside[at]:
+            if id not in became:
+                became[id] = became[at]
+                reached.append(id)
+    return became
+
+
+def _moved(case: Case, gone: frozenset[ResourceId], became: Mapping[ResourceId, ResourceId]) -> Case | None:
+    """The question on the graph in which each resource became another one or stayed."""
+    graph = case.instance.graph
+    moves = [(became[source], became[target]) for source, target in graph.edges]
+    distinct = {(move if graph.directed else frozenset(move)): move for move in moves if move[0] != move[1]}
+    resources = tuple(each for each in graph.resources if each.id not in gone)
+    robots = tuple(replace(each, start=became[each.start], goal=became[each.goal]) for each in case.instance.robots)
+    smaller = ResourceGraph(resources, tuple(distinct.values()), graph.directed)
+    if any(visit.resource not in became for plan in case.solution.plans for visit in plan.visits):
+        return None  # a plan to check may be anywhere
+    places: dict[tuple[RobotId, int], int] = {}
+    plans = []
+    for plan in case.solution.plans:
+        visits: list[Visit] = []
+        for place, visit in enumerate(plan.visits):
+            resource = became[visit.resource]
+            if visits and visits[-1].resource == resource:
+                visits[-1] = replace(visits[-1], leave=visit.leave)
+            else:
+                visits.append(replace(visit, resource=resource))
+            places[plan.robot, place] = len(visits) - 1
+        plans.append(Plan(plan.robot, tuple(visits)))
+    delays = {(robot, places[robot, place]): ticks for robot, place, ticks in case.delays}
+    joined = replace(case, delays=tuple((*node, ticks) for node, ticks in delays.items()))
+    return _made(joined, replace(case.instance, graph=smaller, robots=robots), plans)
+
+
+def _fewer_edges(case: Case) -> Iterable[Edit]:
+    def edit(gone: frozenset[tuple[ResourceId, ResourceId]], case: Case) -> Case:
+        edges = tuple(edge for edge in case.instance.graph.edges if edge not in gone)
+        instance = replace(case.instance, graph=replace(case.instance.graph, edges=edges))
+        return _made(case, instance, case.solution.plans)
+
+    return (partial(edit, gone) for gone in _chunks(case.instance.graph.edges))
+
+
+def _simpler(case: Case) -> Iterable[Edit]:
+    """Let robots vanish and edges go both ways; let a robot without plan end where it starts; shorten far ids."""
+
+    def vanish(case: Case) -> Case:
+        return _made(case, replace(case.instance, after_goal="vanish"), case.solution.plans)
+
+    def both_ways(case: Case) -> Case:
+        graph = case.instance.graph
+        edges = {frozenset(edge): edge for edge in graph.edges}
+        undirected = ResourceGraph(graph.resources, tuple(edges.values()))
+        return _made(case, replace(case.instance, graph=undirected), case.solution.plans)
+
+    def stay(robot: RobotId, case: Case) -> Case | None:
+        robots = tuple(replace(r, goal=r.start) if r.id == robot else r for r in case.instance.robots)
+        planned = any(plan.robot == robot for plan in case.solution.plans)
+        return None if planned else replace(case, instance=replace(case.instance, robots=robots))
+
+    return (vanish, both_ways, *(partial(stay, robot) for robot in case.instance.robot), _numbered)
+
+
+def _numbered(case: Case) -> Case | None:
+    """The question with 0, 1, 2, ... for the ids of resources and of robots, if some are long."""
+    instance, solution = case.instance, case.solution
+    if all(len(str(id)) < LONG_ID for id in (*instance.graph.index, *instance.robot)):
+        return None
+    place: dict[ResourceId, ResourceId] = {**instance.graph.index}
+    number: dict[RobotId, RobotId] = {robot: position for position, robot in enumerate(instance.robot)}
+    resources = tuple(replace(each, id=place[each.id]) for each in instance.graph.resources)
+    edges = tuple((place[source], place[target]) for source, target in instance.graph.edges)
+    robots = tuple(
+        replace(each, id=number[each.id], start=place[each.start], goal=place[each.goal]) for each in instance.robots
+    )
+    plans = tuple(
+        Plan(
+            number.get(plan.robot, plan.robot),
+            tuple(replace(visit, resource=place.get(visit.resource, visit.resource)) for visit in plan.visits),
+        )
+        for plan in solution.plans
+    )
+    order, unplanned = (
+        tuple(number.get(robot, robot) for robot in names) for names in (solution.order, solution.unplanned)
+    )
+    return replace(
+        case,
+        instance=replace(instance, graph=ResourceGraph(resources, edges, instance.graph.directed), robots=robots),
+        solution=replace(solution, plans=plans, order=order, unplanned=unplanned),
+        robot=None if case.robot is None else number[case.robot],
+        delays=tuple((number[robot], visit, ticks) for robot, visit, ticks in case.delays),
+    )
+
+
+def _smaller_numbers(case: Case) -> Iterable[Edit]:
+    """Each number of resources and robots, for many at once and then alone."""
+
+    def edit(kind: Kind, name: str, least: int, some: frozenset[RobotId], step: int, case: Case) -> Case:
+        return _with_numbers(case, kind, name, dict.fromkeys(some, -step), least)
+
+    for kind, name, least in NUMBERS:
+        parts = case.instance.robots if kind == "robots" else case.instance.graph.resources
+        values = {each.id: getattr(each, name) for each in parts if getattr(each, name) > least}
+        for some in _chunks([*values]):
+            steps = _steps(max(values[id] for id in some), least)
+            yield from (partial(edit, kind, name, least, some, step) for step in steps)
+
+
+def _with_numbers(case: Case, kind: Kind, name: str, change: Mapping[ResourceId, int], least: int) -> Case:
+    """The question with some numbers changed, no lower than the least; who is released sooner waits at the start."""
+
+    def changed(each: T, id: ResourceId) -> T:
+        if id not in change:
+            return each
+        return replace(each, **{name: max(least, getattr(each, name) + change[id])})  # type: ignore[type-var]
+
+    instance = case.instance
+    if kind == "resources":
+        resources = tuple(changed(each, each.id) for each in instance.graph.resources)
+        return _made(case, replace(instance, graph=replace(instance.graph, resources=resources)), case.solution.plans)
+    instance = replace(instance, robots=tuple(changed(each, each.id) for each in instance.robots))
+    if name != "release" or case.op == "check":
+        return _made(case, instance, case.solution.plans)
+    plans = []
+    for plan in case.solution.plans:
+        first, *others = plan.visits
+        plans.append(Plan(plan.robot, (replace(first, enter=instance.robot[plan.robot].release), *others)))
+    return _made(case, instance, plans)
+
+
+def _sooner(case: Case) -> Iterable[Edit]:
+    """Take ticks out of the times between events: all that comes later comes sooner."""
+
+    def edit(number: int, step: int, case: Case) -> Case | None:
+        events = _events(case)
+        if number >= len(events) or events[number] - step < events[number - 1]:
+            return None
+        return _shifted(case, events[number], step)
+
+    events = _events(case)
+    for number in range(1, len(events)):
+        yield from (partial(edit, number, step) for step in _steps(events[number], events[number - 1]))
+
+
+def _events(case: Case) -> list[int]:
+    ticks = {0, case.now, *(robot.release for robot in case.instance.robots)}
+    visits = [visit for plan in case.solution.plans for visit in plan.visits]
+    return sorted({*ticks, *(tick for visit in visits for tick in (visit.enter, visit.leave) if tick is not None)})
+
+
+def _shifted(case: Case, since: int, step: int) -> Case:
+    """The question in which all that is at a tick or later comes sooner."""
+
+    def sooner(tick: int) -> int:
+        return tick - step if tick >= since else tick
+
+    robots = tuple(replace(robot, release=sooner(robot.release)) for robot in case.instance.robots)
+    plans = tuple(
+        Plan(
+            plan.robot,
+            tuple(
+                Visit(visit.resource, sooner(visit.enter), None if visit.leave is None else sooner(visit.leave))
+                for visit in plan.visits
+            ),
+        )
+        for plan in case.solution.plans
+    )
+    earlier = replace(case, now=sooner(case.now), solution=replace(case.solution, plans=plans))
+    return replace(earlier, instance=replace(case.instance, robots=robots))
+
+
+def _fewer_visits(case: Case) -> Iterable[Edit]:
+    """Let a robot with a plan start at its second place, or end at its last but one."""
+
+    def edit(robot: RobotId, at_start: bool, case: Case) -> Case | None:
+        visits = next((plan.visits for plan in case.solution.plans if plan.robot == robot), ())
+        if len(visits) < 2 or any(late == robot for late, _, _ in case.delays):  # noqa: PLR2004 - one visit must stay
+            return None
+        left = visits[1:] if at_start else visits[:-1]
+        ends = {"start": left[0].resource, "release": left[0].enter} if at_start else {"goal": left[-1].resource}
+        robots = tuple(replace(r, **ends) if r.id == robot else r for r in case.instance.robots)  # type: ignore[arg-type]
+        plans = [Plan(robot, left) if plan.robot == robot else plan for plan in case.solution.plans]
+        return _made(case, replace(case.instance, robots=robots), plans)
+
+    return (partial(edit, plan.robot, at_start) for plan in case.solution.plans for at_start in (False, True))
+
+
+def _earlier_now(case: Case) -> Iterable[Edit]:
+    def edit(step: int, case: Case) -> Case | None:
+        return replace(case, now=case.now - step) if step <= case.now else None
+
+    return (partial(edit, step) for step in _steps(case.now, 0))
+
+
+def _fewer_delays(case: Case) -> Iterable[Edit]:
+    def edit(number: int, step: int, case: Case) -> Case | None:
+        if number >= len(case.delays):
+            return None
+        robot, visit, ticks = case.delays[number]
+        less = ((robot, visit, ticks - step),) if ticks > step else ()
+        return replace(case, delays=(*case.delays[:number], *less, *case.delays[number + 1 :]))
+
+    steps = ((number, step) for number, each in enumerate(case.delays) for step in _steps(each[2], 0))
+    return (partial(edit, number, step) for number, step in steps)
+
+
+KINDS: Sequence[Callable[[Case], Iterable[Edit]]] = (
+    _fewer_robots,
+    _fewer_plans,
+    _fewer_resources,
+    _shorter_ways,
+    _fewer_resources,
+    _fewer_edges,
+    _simpler,
+    _smaller_numbers,
+    _sooner,
+    _fewer_visits,
+    _earlier_now,
+    _fewer_delays,
+)

@@ -1,0 +1,265 @@
+"""Planners with a bug each that shows only beyond a size or a number, and the table of when `conform` finds them.
+
+`python -m tests.oracle.planted` prints the table.
+"""
+
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from carp_spec import Carp, Instance, Plan, Resource, Robot, Solution, Visit
+from carproof.conform.answers import Answer, Reply
+from carproof.conform.cases import Case, request_of
+from carproof.conform.levels import Level
+from carproof.conform.run import Options, Report, conform
+from carproof.engines import engine_named
+from carproof.protocol.ops import OPS
+from carproof.protocol.ops.planning import QueryDocument, query_document
+
+BIT_15, BIT_31 = 2**15, 2**31
+Tamper = Callable[[Case], Reply]
+
+
+def rightly(case: Case) -> Answer:
+    reply: Answer = OPS[case.op].handle(request_of(case), engine_named(None))
+    return reply
+
+
+@dataclass(frozen=True)
+class Bug:
+    """A bug, beyond what it shows, in which op, the level that it breaks, and its answers; `None` where it is right."""
+
+    what: str
+    beyond: str
+    op: str
+    level: Level
+    answer: Callable[[Case], Reply | None]
+
+
+class Planted:
+    """A planner that is right but for a bug."""
+
+    name = "planted"
+
+    def __init__(self, bug: Bug) -> None:
+        self.bug = bug
+        self.ops: tuple[str, ...] = (bug.op,)
+
+    def start(self) -> None: ...
+
+    def ask(self, case: Case, seconds: float | None = None) -> Reply:
+        del seconds
+        return self.bug.answer(case) or rightly(case)
+
+    def finish(self) -> None: ...
+
+    def kill(self) -> None: ...
+
+
+def alone(case: Case) -> Solution:
+    """Each robot planned as if there were no other."""
+    plans = [engine_named(None).query(case.instance, (), robot) for robot in case.instance.robot]
+    return Solution.of(case.instance, [plan for plan in plans if plan is not None])
+
+
+def believing(
+    resource: Callable[[Resource], Resource], robot: Callable[[Robot], Robot]
+) -> Callable[[Case], Reply | None]:
+    """Plans of an instance whose resources and robots are taken for others."""
+
+    def answer(case: Case) -> Reply | None:
+        graph = case.instance.graph
+        believed = Instance(
+            replace(graph, resources=tuple(map(resource, graph.resources))),
+            tuple(map(robot, case.instance.robots)),
+            case.instance.after_goal,
+        )
+        return None if believed == case.instance else engine_named(None).plan(believed, case.planner or Carp())
+
+    return answer
+
+
+def same(each: Resource | Robot) -> Resource | Robot:
+    return each
+
+
+def ends(solution: Solution) -> int:
+    return max((plan.visits[-1].enter for plan in solution.plans), default=0)
+
+
+def late_collisions(case: Case) -> Reply | None:
+    return alone(case) if ends(rightly_planned(case)) >= BIT_15 else None
+
+
+def rightly_planned(case: Case) -> Solution:
+    return engine_named(None).plan(case.instance, Carp())
+
+
+def short_ticks(case: Case) -> Reply | None:
+    """Ticks of 16 bits."""
+    solution = rightly_planned(case)
+
+    def cut(tick: int) -> int:
+        return (tick + BIT_15) % (2 * BIT_15) - BIT_15
+
+    plans = tuple(
+        Plan(
+            plan.robot,
+            tuple(Visit(v.resource, cut(v.enter), None if v.leave is None else cut(v.leave)) for v in plan.visits),
+        )
+        for plan in solution.plans
+    )
+    return replace(solution, plans=plans) if plans != solution.plans else None
+
+
+def short_ids(case: Case) -> Reply | None:
+    """Ids of resources of 32 bits."""
+    solution = rightly_planned(case)
+    plans = tuple(
+        Plan(
+            plan.robot,
+            tuple(replace(v, resource=v.resource % BIT_31) if isinstance(v.resource, int) else v for v in plan.visits),
+        )
+        for plan in solution.plans
+    )
+    return replace(solution, plans=plans) if plans != solution.plans else None
+
+
+def gives_up_late(case: Case) -> Reply | None:
+    """A search that ends 500 ticks after the release."""
+    reply = rightly(case)
+    assert isinstance(reply, QueryDocument)
+    robot = case.instance.robot[case.robot or 0]
+    return QueryDocument(None) if reply.plan is not None and reply.plan[-1][1] > robot.release + 500 else None
+
+
+def waits(case: Case) -> Reply | None:
+    """A plan that starts a tick later than it could, beyond 40 committed plans."""
+    reply = rightly(case)
+    assert isinstance(reply, QueryDocument)
+    if len(case.solution.plans) <= 40 or case.now or reply.plan is None or len(reply.plan) < 2:
+        return None
+    robot = case.instance.robot[case.robot or 0]
+    later = replace(
+        case.instance,
+        robots=tuple(replace(r, release=r.release + 1) if r.id == robot.id else r for r in case.instance.robots),
+    )
+    plan = engine_named(None).query(later, case.solution.plans, robot.id)
+    if plan is None:
+        return None
+    first, *rest = plan.visits
+    return query_document(Plan(plan.robot, (replace(first, enter=robot.release), *rest)))
+
+
+def arrives_only(case: Case) -> Reply | None:
+    """The goal is kept free only at the arrival."""
+    assert case.robot is not None
+    robot = case.instance.robot[case.robot]
+    graph = case.instance.graph
+    short = tuple(replace(each, duration=1) if each.id == robot.goal else each for each in graph.resources)
+    believed = replace(case.instance, graph=replace(graph, resources=short), after_goal="vanish")
+    others = [plan for plan in case.solution.plans if plan.robot != case.robot]
+    if len(others) < len(case.solution.plans) or case.now:
+        return None
+    plan = engine_named(None).query(believed, others, case.robot)
+    if plan is None:
+        return None
+    *visits, last = plan.visits
+    leave = None if case.instance.after_goal == "park" else last.enter + case.instance.duration(robot.id, robot.goal)
+    return query_document(Plan(plan.robot, (*visits, replace(last, leave=leave))))
+
+
+def beyond(measure: Callable[[Case], int], most: int, wrongly: Tamper) -> Callable[[Case], Reply | None]:
+    return lambda case: wrongly(case) if measure(case) > most else None
+
+
+def robots(case: Case) -> int:
+    return len(case.instance.robots)
+
+
+def resources(case: Case) -> int:
+    return len(case.instance.graph.resources)
+
+
+def others_lost(case: Case) -> Reply:
+    """An added robot is planned as if there were no other."""
+    assert case.robot is not None
+    plan = engine_named(None).query(case.instance, (), case.robot, case.now)
+    plans = case.solution.plans if plan is None else (*case.solution.plans, plan)
+    return Solution.of(case.instance, plans)
+
+
+def any_order(case: Case) -> Reply:
+    """The right plans of robots in another order."""
+    turned = replace(case.instance, robots=case.instance.robots[::-1])
+    return engine_named(None).plan(turned, Carp())
+
+
+def _capacity(most: int) -> Callable[[Case], Reply | None]:
+    return believing(lambda each: replace(each, capacity=10**6) if each.capacity > most else each, lambda each: each)
+
+
+BUDGETS = (0.0, 1.0, 3.0, 10.0, 30.0, 100.0)
+"""Seconds for large cases; without any, smoke cases, vectors and random cases alone are asked."""
+SOUND, OPTIMAL = Level.SOUND, Level.CONTEXT_OPTIMAL
+ARRIVES_ONLY = Bug("the goal is kept free only at the arrival", "nothing", "query", SOUND, arrives_only)
+BUGS: Sequence[Bug] = (
+    Bug("no collision check", "8 resources", "plan", SOUND, beyond(resources, 8, alone)),
+    Bug("no collision check", "5 robots", "plan", SOUND, beyond(robots, 5, alone)),
+    Bug("no collision check", "64 robots", "plan", SOUND, beyond(robots, 64, alone)),
+    Bug("no collision check", "255 robots", "plan", SOUND, beyond(robots, 255, alone)),
+    Bug("no collision check", "1,024 resources", "plan", SOUND, beyond(resources, 1024, alone)),
+    Bug("capacities are unlimited", "capacity 2", "plan", SOUND, _capacity(2)),
+    Bug("capacities are unlimited", "capacity 10", "plan", SOUND, _capacity(10)),
+    Bug(
+        "durations are cut",
+        "duration 9",
+        "plan",
+        SOUND,
+        believing(lambda r: replace(r, duration=min(r.duration, 9)), lambda r: r),
+    ),
+    Bug(
+        "durations are cut",
+        "duration 255",
+        "plan",
+        SOUND,
+        believing(lambda r: replace(r, duration=min(r.duration, 255)), lambda r: r),
+    ),
+    Bug("paces are cut", "pace 3", "plan", SOUND, believing(lambda r: r, lambda r: replace(r, pace=min(r.pace, 3)))),
+    Bug(
+        "releases are cut",
+        "tick 100,000",
+        "plan",
+        SOUND,
+        believing(lambda r: r, lambda r: replace(r, release=min(r.release, 10**5))),
+    ),
+    Bug("no collision check", "tick 32,767", "plan", SOUND, late_collisions),
+    Bug("ticks have 16 bits", "tick 32,767", "plan", SOUND, short_ticks),
+    Bug("ids have 32 bits", "id 2^31", "plan", SOUND, short_ids),
+    Bug("the others are forgotten", "20 robots", "add", SOUND, beyond(robots, 20, others_lost)),
+    Bug("the search ends", "500 ticks", "query", Level.COMPLETE_IN_CONTEXT, gives_up_late),
+    Bug("a tick too late", "40 plans", "query", OPTIMAL, waits),
+    Bug("another order", "50 robots", "plan", Level.EXACT, beyond(robots, 50, any_order)),
+)
+
+
+def run(bug: Bug, large: float, examples: int = 20, shrinking: float = 0.0, seed: int = 1) -> Report:
+    return conform(Planted(bug), Options(bug.level, examples, seed, 60.0, shrinking, large=large))
+
+
+def main() -> None:
+    rows = ["| planted bug | shows beyond | found by | large cases before | `--large` |", "|---|---|---|---:|---:|"]
+    for bug in BUGS:
+        reports = ((large, run(bug, large)) for large in BUDGETS)
+        large, report = next(((large, report) for large, report in reports if report.failures), (0.0, None))
+        if report is None:
+            rows.append(f"| {bug.what} | {bug.beyond} | not found | | |")
+            continue
+        found = report.failures[0].case
+        before = max(0, report.large.total() - 1)
+        rows.append(f"| {bug.what} | {bug.beyond} | {found.op}: {found.name} | {before} | {large:g} |")
+    sys.stdout.write("\n".join(rows) + "\n")
+
+
+if __name__ == "__main__":
+    main()

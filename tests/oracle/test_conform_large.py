@@ -1,0 +1,171 @@
+"""Large cases: bugs that show only beyond a size or a number are found, shrunk, and nothing is claimed beyond."""
+
+import json
+import sys
+from pathlib import Path
+
+import pytest
+from tests.oracle.planted import ARRIVES_ONLY, BUGS, Bug, Planted, rightly, run
+from tests.oracle.running import Run
+
+from carp_spec import Solution
+from carproof.conform.answers import Reply
+from carproof.conform.cases import Case
+from carproof.conform.claims import FEATURES, Claims
+from carproof.conform.findings import IN_TIME, Category, Fault, Finding
+from carproof.conform.judges import first_finding
+from carproof.conform.ladder import SIZES, large_case, rungs
+from carproof.conform.levels import Level
+from carproof.conform.run import Options, conform
+from carproof.formats.movingai_writer import is_classical
+
+BUDGET = 60.0
+NO_BUG = Bug("none", "nothing", "plan", Level.SOUND, lambda _: None)
+CHEAP = {"8 resources", "5 robots", "64 robots", "capacity 2", "duration 9", "pace 3", "tick 100,000", "id 2^31"}
+
+
+@pytest.mark.parametrize(
+    "bug",
+    [
+        pytest.param(bug, id=f"{bug.what} beyond {bug.beyond}", marks=[] if bug.beyond in CHEAP else pytest.mark.ci)
+        for bug in BUGS
+    ],
+)
+def test_a_bug_that_shows_only_beyond_a_size_or_a_number_is_found(bug: Bug) -> None:
+    report = run(bug, BUDGET, examples=10)
+    assert report.conforms is False
+    assert run(bug, 0.0, examples=10).conforms is bool(report.large)
+
+
+def test_the_same_seed_asks_the_same_large_cases() -> None:
+    def asked(seed: int) -> list[Case]:
+        cases: list[Case] = []
+        ladder = list(rungs(("plan", "query", "add", "polish", "check"), Level.EXACT, seed, whole=False))[:60]
+        for rung in ladder:
+            case = large_case(rung, Claims(), classical=False)
+            cases += [] if case is None else [case]
+        return cases
+
+    first = asked(3)
+    assert first == asked(3)
+    assert first != asked(4)
+    assert len(first) > 50
+
+
+@pytest.mark.parametrize("feature", FEATURES)
+def test_large_cases_have_no_feature_that_is_not_claimed(feature: str) -> None:
+    claims = Claims(frozenset({feature}))
+    ladder = [r for r in rungs(("plan", "query", "add"), Level.SOUND, 1, whole=False) if r.robots == SIZES[0]]
+    cases = [case for rung in ladder if (case := large_case(rung, claims, classical=False)) is not None]
+    assert len(cases) > 100
+    assert not [case.name for case in cases if FEATURES[feature](case)]
+
+
+def test_large_cases_of_classical_planners_are_classical() -> None:
+    ladder = [r for r in rungs(("plan",), Level.SOUND, 1, whole=True) if r.robots <= SIZES[1]]
+    cases = [case for rung in ladder if (case := large_case(rung, Claims(), classical=True)) is not None]
+    assert cases
+    assert all(is_classical(case.instance) for case in cases)
+
+
+class Slow(Planted):
+    """Right, and too slow beyond 20 robots."""
+
+    def ask(self, case: Case, seconds: float | None = None) -> Reply:
+        if len(case.instance.robots) > 20:
+            raise Fault(Finding(Category.TIMEOUT, IN_TIME.id, "no answer"))
+        return super().ask(case, seconds)
+
+
+def test_a_planner_that_is_too_slow_for_a_size_is_named_and_judged_below_it() -> None:
+    report = conform(Slow(NO_BUG), Options(examples=10, large=BUDGET))
+    assert report.conforms
+    assert report.extent.robots == SIZES[0]
+    assert [cut for cut in report.cut if "too slow" in cut and f"{SIZES[1]} robots" in cut]
+
+
+def test_cases_that_the_clock_cuts_are_counted() -> None:
+    report = conform(Planted(NO_BUG), Options(examples=10, large=0.2))
+    assert report.conforms
+    assert any("not asked" in cut for cut in report.cut)
+
+
+def test_who_gives_up_on_large_cases_has_shown_nothing_about_them() -> None:
+    def gives_up(case: Case) -> Reply:
+        return Solution((), (), tuple(case.instance.robot))
+
+    lazy = Bug(
+        "gives up", "8 robots", "plan", Level.SOUND, lambda c: gives_up(c) if len(c.instance.robots) > 8 else None
+    )
+    report = conform(Planted(lazy), Options(examples=10, large=1.0))
+    assert report.conforms
+    assert report.large["gave up"]
+    assert report.extent.robots <= 8
+
+
+@pytest.mark.parametrize("level", [Level.CONTEXT_OPTIMAL, Level.EXACT])
+def test_right_answers_to_large_cases_pass_at_every_level(level: Level) -> None:
+    ops = ("plan", "query", "add", "polish", "check")
+    ladder = [rung for rung in rungs(ops, level, 1, whole=False) if rung.robots == SIZES[2]]
+    cases = [case for rung in ladder[:45] if (case := large_case(rung, Claims(), classical=False)) is not None]
+    assert {case.op for case in cases} == {*ops}
+    assert [case.name for case in cases if first_finding(case, rightly(case), level) is not None] == []
+
+
+def test_a_failure_is_shrunk_until_nothing_can_be_taken_away() -> None:
+    report = run(ARRIVES_ONLY, 0.0, examples=200, shrinking=60.0)
+    assert report.smallest is not None
+    instance = report.smallest.case.instance
+    sizes = len(instance.robots), len(instance.graph.resources), len(instance.graph.edges)
+    assert (sizes, report.minimal) == ((2, 1, 0), True)
+
+
+def test_a_large_failure_is_shrunk_to_the_number_beyond_which_it_shows() -> None:
+    (bug,) = (each for each in BUGS if each.beyond == "tick 100,000")
+    report = run(bug, BUDGET, examples=10, shrinking=60.0)
+    assert report.smallest is not None
+    (robot,) = report.smallest.case.instance.robots
+    assert (robot.release, robot.start == robot.goal, report.minimal) == (100_001, True, True)
+
+
+def test_without_time_a_failure_is_not_called_minimal() -> None:
+    assert not run(ARRIVES_ONLY, 0.0, examples=100, shrinking=0.0).minimal
+
+
+UNTIDY = """
+import json, os, pathlib, sys
+from carp_verify.documents import read_instance, write_solution
+from carp_spec import Carp
+import carp_reference
+
+how, source, target = sys.argv[1:]
+folder = pathlib.Path(source).parent
+if how == "clears":
+    for each in folder.iterdir():
+        each.unlink()
+    sys.exit()
+for name in ["output", "errors", "solution", *os.listdir(folder)]:
+    each = folder / name
+    each.unlink(missing_ok=True)
+    if how == "pipes":
+        os.mkfifo(each)
+    elif how == "links":
+        each.symlink_to("/dev/zero")
+    elif how == "folders":
+        each.mkdir()
+if how == "no folder":
+    folder.rmdir()
+"""
+
+
+@pytest.mark.parametrize("how", ["pipes", "links", "folders", "clears", "no folder"])
+def test_a_program_that_replaces_the_files_beside_its_instance_is_at_fault(
+    process: Run, elsewhere: Path, how: str
+) -> None:
+    program = elsewhere / "untidy.py"
+    program.write_text(UNTIDY)
+    command = [sys.executable, str(program), how, "{instance}", "{solution}"]
+    outcome = process("conform", "--one-shot", "--examples", "0", "--json", "--", *command)
+    assert outcome.code == 1, outcome
+    failures = json.loads(outcome.stdout)["failures"]
+    assert {failure["category"] for failure in failures} == {"protocol error"}
