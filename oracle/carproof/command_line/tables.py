@@ -17,8 +17,8 @@ def printable(value: object) -> str:
 
 
 def counted(number: int, noun: str) -> str:
-    """A number of things: `1 robot`, `2 robots`."""
-    return f"{number} {noun}" + ("" if number == 1 else "s")
+    """A number of things: `1 robot`, `2,000 robots`."""
+    return f"{number:,} {noun}" + ("" if number == 1 else "s")
 
 
 def say(text: str = "") -> None:

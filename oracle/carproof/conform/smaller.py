@@ -14,7 +14,7 @@ from carp_reference.execution import order_of
 from carp_spec import Instance, Plan, Refusal, ResourceGraph, ResourceId, RobotId, Visit
 from carproof.conform.cases import EXECUTION, Case
 from carproof.execution.delays import stuck
-from carproof.requests import sound_solution
+from carp_spec.requests import sound_solution
 
 Edit: TypeAlias = Callable[[Case], Case | None]
 Kind: TypeAlias = Literal["resources", "robots"]
