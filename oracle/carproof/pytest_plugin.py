@@ -85,12 +85,12 @@ class Conformance:
             pytest.fail(f"carproof.conforms {advice(error)}", pytrace=False)
         from click import ClickException  # noqa: PLC0415
 
-        from carproof.conform.claims import Claims  # noqa: PLC0415
-        from carproof.conform.function import Function, by_documents  # noqa: PLC0415
+        from carproof.conform.judging.claims import Claims  # noqa: PLC0415
         from carproof.conform.levels import LEVELS, WHOLE_LEVELS  # noqa: PLC0415
+        from carproof.conform.programs.function import Function, by_documents  # noqa: PLC0415
+        from carproof.conform.reporting.saved import own_folder, read_saved, save_all  # noqa: PLC0415
+        from carproof.conform.reporting.saving import Origin  # noqa: PLC0415
         from carproof.conform.run import Options, conform  # noqa: PLC0415
-        from carproof.conform.saved import own_folder, read_saved, save_all  # noqa: PLC0415
-        from carproof.conform.saving import Origin  # noqa: PLC0415
 
         if level not in [each.label for each in WHOLE_LEVELS]:
             pytest.fail(f"level must be one of {', '.join(each.label for each in WHOLE_LEVELS)}", pytrace=False)
@@ -117,7 +117,7 @@ class Conformance:
 def _told(report: "Report", folder: Path) -> str:
     """The finding, the size of the instance, and the folder in which it was saved."""
     from carproof.command_line.tables import counted  # noqa: PLC0415
-    from carproof.conform.saving import picture_of  # noqa: PLC0415
+    from carproof.conform.reporting.saving import picture_of  # noqa: PLC0415
 
     level = report.options.level
     head = f"{report.program} does not conform to level {level.label}: {level.statement}"

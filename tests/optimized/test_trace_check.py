@@ -15,7 +15,7 @@ from carp_spec import Carp, Instance, Plan, Refusal, Resource, ResourceGraph, Ro
 from carp_spec.execution.execution_rules import trace_violations
 from carp_spec.execution.traces import Trace
 from carp_spec.permutations import splitmix64
-from carproof.conform.smoke import committed, row
+from carproof.conform.asking.smoke import committed, row
 from carproof.execution.delays import Delay, executed, in_order, on_the_clock
 from carproof.testing.random_instances import Draw, draw_fleet, draw_instance
 

@@ -12,10 +12,10 @@ import msgspec
 from carp_spec import Refusal
 from carp_verify.bounds import digest
 from carp_verify.documents import read_instance
+from carproof.conform.asking.smoke import smoke_cases
+from carproof.conform.asking.vector_cases import vector_cases
 from carproof.conform.cases import ASKED_OPS, request_fields
 from carproof.conform.levels import Level
-from carproof.conform.smoke import smoke_cases
-from carproof.conform.vector_cases import vector_cases
 from carproof.engines import engine_named
 from carproof.protocol.server import respond
 

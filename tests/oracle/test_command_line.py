@@ -158,7 +158,7 @@ def test_progress_goes_to_standard_error_and_only_to_a_terminal(tmp_path: Path) 
 
 
 def test_a_fault_of_ours_is_no_answer(carproof: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("carproof.commands.rules.rule_named", lambda _: 1 // 0)
+    monkeypatch.setattr("carproof.commands.judge.rules.rule_named", lambda _: 1 // 0)
     outcome = carproof("rules", "joint/capacity")
     assert outcome.code == 70
     assert outcome.stderr.endswith("carproof failed by a fault of its own; the lines above say where.\n")

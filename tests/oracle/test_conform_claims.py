@@ -11,13 +11,13 @@ from tests.oracle.test_conform_judges import Tampered, as_it_is
 
 import carp_reference
 from carp_spec import Carp, Greedy, Instance, Resource, ResourceGraph, Robot, Solution
-from carproof.conform import optimum
+from carproof.conform.asking.smoke import EAST, FIRST, FIRST_GOES, WEST, committed, passing_place, row
 from carproof.conform.cases import ASKED_OPS, Case
-from carproof.conform.claims import FEATURES, Claims, features, is_solvable
-from carproof.conform.function import Function
+from carproof.conform.judging import optimum
+from carproof.conform.judging.claims import FEATURES, Claims, features, is_solvable
 from carproof.conform.levels import Level
+from carproof.conform.programs.function import Function
 from carproof.conform.run import Options, conform
-from carproof.conform.smoke import EAST, FIRST, FIRST_GOES, WEST, committed, passing_place, row
 
 
 @pytest.fixture(autouse=True)

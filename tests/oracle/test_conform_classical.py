@@ -15,10 +15,10 @@ from tests.profiles import draws, rest_in
 import carp_reference
 from carp_optimum.optimum import optimum
 from carp_spec import Carp, Instance, Resource, ResourceGraph, Robot, Solution
+from carproof.conform.asking.random_cases import classical_instances
 from carproof.conform.findings import is_complete
-from carproof.conform.function import Function
 from carproof.conform.levels import Level
-from carproof.conform.random_cases import classical_instances
+from carproof.conform.programs.function import Function
 from carproof.conform.run import Options, conform
 from carproof.formats.movingai import movingai_instance, read_map, read_scenario
 from carproof.formats.movingai_writer import is_classical, write_movingai

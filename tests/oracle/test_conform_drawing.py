@@ -1,7 +1,7 @@
 """The picture in text of a finding of `carproof conform`."""
 
 from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Visit
-from carproof.conform.drawing import MOST_TICKS, drawing
+from carproof.conform.reporting.drawing import MOST_TICKS, drawing
 
 
 def drawn(robots: int, leave: int) -> str:

@@ -15,14 +15,14 @@ import carp_reference
 import carp_verify.bound.verify
 from carp_spec import Carp, Instance, Plan, Solution, Visit
 from carproof.conform.answers import result_of
+from carproof.conform.asking.smoke import EAST, row
 from carproof.conform.cases import NO_PLANS, Case
-from carproof.conform.child import Limits
 from carproof.conform.findings import LEAST_ANSWERED, LEAST_TRIED, Fault, answers_enough, tries_enough
-from carproof.conform.function import Function
 from carproof.conform.levels import Level
-from carproof.conform.program import Program
+from carproof.conform.programs.child import Limits
+from carproof.conform.programs.function import Function
+from carproof.conform.programs.program import Program
 from carproof.conform.run import Options, Report, conform
-from carproof.conform.smoke import EAST, row
 
 PATIENT = 30.0
 EVASIVE = [sys.executable, str(Path(__file__).with_name("evasive.py"))]

@@ -18,18 +18,18 @@ from carp_reference.execution import order_of
 from carp_spec import Robot
 from carp_spec.execution.traces import Trace
 from carproof.conform.answers import Skipped
+from carproof.conform.asking.random_cases import execution_cases
+from carproof.conform.asking.smoke import committed, row
 from carproof.conform.cases import EXECUTION, Case
-from carproof.conform.child import Limits
-from carproof.conform.driving import execution, execution_findings
-from carproof.conform.executor import Executor
 from carproof.conform.findings import Fault
+from carproof.conform.judging.driving import execution, execution_findings
 from carproof.conform.levels import Level
-from carproof.conform.program import Program
-from carproof.conform.random_cases import execution_cases
+from carproof.conform.programs.child import Limits
+from carproof.conform.programs.executor import Executor
+from carproof.conform.programs.program import Program
+from carproof.conform.reporting.saved import read_saved, save_all
+from carproof.conform.reporting.saving import Origin
 from carproof.conform.run import Options, Report, conform
-from carproof.conform.saved import read_saved, save_all
-from carproof.conform.saving import Origin
-from carproof.conform.smoke import committed, row
 from carproof.engines import engine_named
 from carproof.execution.delays import Delay, executed, in_order
 from carproof.protocol.ops.executing import DriveDocument, DriveRequest, drive

@@ -12,14 +12,14 @@ from pathlib import Path
 import pytest
 from tests.oracle.running import Run
 
+from carproof.conform.asking.smoke import smoke_cases
 from carproof.conform.cases import Case
-from carproof.conform.child import Child, Limits
 from carproof.conform.findings import Category, Fault
+from carproof.conform.judging.outcome import ask
 from carproof.conform.levels import Level
-from carproof.conform.outcome import ask
-from carproof.conform.program import Program
+from carproof.conform.programs.child import Child, Limits
+from carproof.conform.programs.program import Program
 from carproof.conform.run import Options, Report, conform
-from carproof.conform.smoke import smoke_cases
 
 OWNER = f"-Xowner={os.getpid()}"
 """Python takes it and does nothing with it: other test processes run the same program at the same time."""

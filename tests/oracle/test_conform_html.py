@@ -10,13 +10,13 @@ from selenium.webdriver.support.wait import WebDriverWait
 from tests.oracle.browser import Page, chromium, logged
 from tests.oracle.test_conform_saving import CASE, FAILURES, ORIGIN
 
-from carproof.conform.claims import Claims
-from carproof.conform.documents import junit_document, report_document
 from carproof.conform.findings import Category, Finding
-from carproof.conform.html_report import html_document
-from carproof.conform.outcome import Outcome
+from carproof.conform.judging.claims import Claims
+from carproof.conform.judging.outcome import Outcome
+from carproof.conform.reporting.documents import junit_document, report_document
+from carproof.conform.reporting.html_report import html_document
+from carproof.conform.reporting.saved import save_all
 from carproof.conform.run import Options, Report
-from carproof.conform.saved import save_all
 
 HOSTILE = "</title><script>document.title = 'taken'</script> & \"<b>"
 GONE = Finding(Category.CRASH, "program/alive", f"it is gone {HOSTILE}", f"its last words {HOSTILE}")

@@ -16,8 +16,8 @@ from carp_verify.documents import VerdictDocument, solution_document
 from carproof.conform.answers import Reply
 from carproof.conform.cases import ASKED_OPS, Case, request_fields, request_of
 from carproof.conform.levels import Level
+from carproof.conform.reporting.saving import save
 from carproof.conform.run import Options, Report, conform
-from carproof.conform.saving import save
 from carproof.engines import engine_named
 from carproof.optima import OptimumDocument
 from carproof.protocol.ops import OPS

@@ -48,15 +48,15 @@ from carp_verify.bound.rules import ContradictionError
 from carp_verify.documents import VerdictDocument, read_instance, read_query_certificate, read_solution
 from carp_verify.kernel import KernelVerdict, ask, version
 from carp_verify.query.verify import verify_query
-from carproof.conform import by_kernel
 from carproof.conform.answers import Answer
-from carproof.conform.by_kernel import EARLY, LAWFUL, require_agreement
+from carproof.conform.asking.smoke import FIRST_GOES
 from carproof.conform.cases import Case
 from carproof.conform.findings import Finding, wrong
-from carproof.conform.judges import first_finding
+from carproof.conform.judging import by_kernel
+from carproof.conform.judging.by_kernel import EARLY, LAWFUL, require_agreement
+from carproof.conform.judging.judges import first_finding
 from carproof.conform.levels import Level
 from carproof.conform.run import Options, Report, conform
-from carproof.conform.smoke import FIRST_GOES
 
 CONTEXT_OPTIMAL = Level.CONTEXT_OPTIMAL
 OPS = ("check", "query", "plan", "add", "polish")

@@ -10,11 +10,11 @@ from tests.oracle.running import Run
 
 from carp_spec import Solution
 from carproof.conform.answers import Reply
+from carproof.conform.asking.ladder import SIZES, large_case, rungs
 from carproof.conform.cases import Case
-from carproof.conform.claims import FEATURES, Claims
 from carproof.conform.findings import IN_TIME, Category, Fault, Finding
-from carproof.conform.judges import first_finding
-from carproof.conform.ladder import SIZES, large_case, rungs
+from carproof.conform.judging.claims import FEATURES, Claims
+from carproof.conform.judging.judges import first_finding
 from carproof.conform.levels import Level
 from carproof.conform.run import Options, conform
 from carproof.formats.movingai_writer import is_classical

@@ -13,17 +13,17 @@ import carp_verify.bound.verify
 from carp_spec import Carp, Greedy, Instance, Neighbourhood, Plan, Planner, Resource, ResourceGraph, Robot, Solution
 from carp_verify.bounds import BoundDocument
 from carp_verify.documents import VerdictDocument, solution_document
-from carproof.conform import effort as efforts
-from carproof.conform import judges
-from carproof.conform import optimum as optima
 from carproof.conform.answers import Answer
+from carproof.conform.asking.smoke import EAST, FIRST, FIRST_GOES, WEST, Stay, committed, passing_place, row
 from carproof.conform.cases import Case, request_of
-from carproof.conform.effort import Effort, effort, why_undecided
 from carproof.conform.findings import wrong
-from carproof.conform.judges import first_finding
+from carproof.conform.judging import gave_up as efforts
+from carproof.conform.judging import judges
+from carproof.conform.judging import optimum as optima
+from carproof.conform.judging.gave_up import Effort, effort, why_undecided
+from carproof.conform.judging.judges import first_finding
+from carproof.conform.judging.optimum import cost_alone, found_cost
 from carproof.conform.levels import Level
-from carproof.conform.optimum import cost_alone, found_cost
-from carproof.conform.smoke import EAST, FIRST, FIRST_GOES, WEST, Stay, committed, passing_place, row
 from carproof.engines import engine_named
 from carproof.optima import OptimumDocument
 from carproof.protocol.ops import OPS

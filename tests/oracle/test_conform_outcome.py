@@ -9,15 +9,15 @@ from tests.oracle.test_conform_one_answer import BEST, OPTIMUM, PLAN, QUERY, UND
 
 from carp_spec import Instance, Solution
 from carp_verify.bound.rules import ContradictionError
-from carproof.conform import outcome
 from carproof.conform.answers import NotAsked, Reply, Skipped
+from carproof.conform.asking.smoke import EAST, FIRST_GOES, committed, row
 from carproof.conform.cases import Case
-from carproof.conform.effort import Effort
 from carproof.conform.findings import Category, Fault, Finding, wrong
-from carproof.conform.function import Function, by_documents
+from carproof.conform.judging import outcome
+from carproof.conform.judging.gave_up import Effort
+from carproof.conform.judging.outcome import Outcome, ask
 from carproof.conform.levels import Level
-from carproof.conform.outcome import Outcome, ask
-from carproof.conform.smoke import EAST, FIRST_GOES, committed, row
+from carproof.conform.programs.function import Function, by_documents
 from carproof.protocol.ops.planning import QueryDocument
 
 CRASH = Finding(Category.CRASH, "program/alive", "it is gone")

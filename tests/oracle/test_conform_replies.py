@@ -10,8 +10,8 @@ from carp_spec import Solution
 from carp_verify.bounds import BoundDocument
 from carp_verify.documents import VerdictDocument, solution_document
 from carproof.conform.answers import MOST_SHOWN, Skipped, decode_solution, read_result, result_of, shown
+from carproof.conform.asking.smoke import EAST, FIRST_GOES, committed, row
 from carproof.conform.findings import Category, Fault
-from carproof.conform.smoke import EAST, FIRST_GOES, committed, row
 from carproof.optima import OptimumDocument
 from carproof.protocol.ops.planning import QueryDocument
 

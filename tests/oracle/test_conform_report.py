@@ -10,10 +10,9 @@ from tests.oracle.test_conform_judges import Tampered, as_it_is, no_plan
 from carp_spec import Robot
 from carproof.conform import run
 from carproof.conform.answers import Reply, Skipped
+from carproof.conform.asking.smoke import EAST, row, smoke_cases
+from carproof.conform.asking.vector_cases import vector_cases
 from carproof.conform.cases import Case, Stage
-from carproof.conform.claims import Claims
-from carproof.conform.deciding import Tally, random_shortfalls, smoke_shortfalls
-from carproof.conform.effort import Effort
 from carproof.conform.findings import (
     PROGRAM_RULES,
     Category,
@@ -31,11 +30,12 @@ from carproof.conform.findings import (
     tries_enough,
     wrong,
 )
+from carproof.conform.judging.claims import Claims
+from carproof.conform.judging.deciding import Tally, random_shortfalls, smoke_shortfalls
+from carproof.conform.judging.gave_up import Effort
+from carproof.conform.judging.outcome import Outcome
 from carproof.conform.levels import CLASSICAL_LEVELS, EXECUTOR_LEVELS, JUDGED_OPS, LEVELS, WHOLE_LEVELS, Level
-from carproof.conform.outcome import Outcome
 from carproof.conform.run import MOST_FAULTS, Options, Report, conform, label
-from carproof.conform.smoke import EAST, row, smoke_cases
-from carproof.conform.vector_cases import vector_cases
 from carproof.formats.movingai_writer import is_classical
 from carproof.protocol.ops.planning import QueryDocument
 
@@ -392,7 +392,7 @@ def test_planners_of_whole_instances_are_asked_classical_ones_if_they_are_classi
 @pytest.mark.usefixtures("few")
 def test_a_kernel_that_decides_is_asked_about_fixed_and_random_cases(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[Stage] = []
-    monkeypatch.setattr("carproof.conform.outcome.require_agreement", lambda case, *_: asked.append(case.stage))
+    monkeypatch.setattr("carproof.conform.judging.outcome.require_agreement", lambda case, *_: asked.append(case.stage))
     for kernel, by, counts in (
         (None, "carp_spec", {}),
         ("carproof-kernel 7", "carproof-kernel 7", {"smoke": 4, "vectors": 1, "random": 3}),

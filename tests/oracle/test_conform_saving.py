@@ -9,16 +9,16 @@ import pytest
 from tests.oracle.test_conform_judges import Tampered, no_plan
 
 from carp_spec import Solution
-from carproof.conform.advice import _ADVICE, advice_for
+from carproof.conform.asking.smoke import EAST, FIRST, WEST, passing_place, row, smoke_cases
+from carproof.conform.asking.vector_cases import vector_cases
 from carproof.conform.cases import ASKED_OPS, Case
 from carproof.conform.findings import PROGRAM_RULES, wrong
+from carproof.conform.judging.outcome import Outcome
 from carproof.conform.levels import Level
-from carproof.conform.outcome import Outcome
+from carproof.conform.reporting.advice import _ADVICE, advice_for
+from carproof.conform.reporting.saved import Saved, own_folder, read_saved, save_all
+from carproof.conform.reporting.saving import Origin
 from carproof.conform.run import Options, Report, conform
-from carproof.conform.saved import Saved, own_folder, read_saved, save_all
-from carproof.conform.saving import Origin
-from carproof.conform.smoke import EAST, FIRST, WEST, passing_place, row, smoke_cases
-from carproof.conform.vector_cases import vector_cases
 from carproof.registry import RULES
 from carproof.rules import ALL_RULES
 

@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 
 from carp_spec import Robot
 from carproof.conform import shrinking
+from carproof.conform.asking.smoke import row
 from carproof.conform.cases import Case
 from carproof.conform.findings import Category, Finding, wrong
-from carproof.conform.outcome import Outcome
+from carproof.conform.judging.outcome import Outcome
 from carproof.conform.shrinking import FailureSearch
-from carproof.conform.smoke import row
 
 MOST = 12
 JUMPS, LATE = wrong("plan/move", "it jumps"), wrong("query/optimal", "it is late")

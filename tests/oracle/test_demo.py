@@ -22,7 +22,7 @@ FILES = [
 @pytest.fixture
 def small_paper_map(monkeypatch: pytest.MonkeyPatch) -> None:
     small = grid_instance(Grid(5, 5), Fleet(robots=6))
-    monkeypatch.setattr("carproof.commands.demo.grid_instance", lambda *_: small)
+    monkeypatch.setattr("carproof.commands.run.demo.grid_instance", lambda *_: small)
 
 
 @pytest.mark.usefixtures("small_paper_map")

@@ -13,8 +13,8 @@ from jsonschema import Draft202012Validator
 from tests.oracle.running import REQUESTS, TWO, line
 
 from carp_spec import Instance
-from carproof.commands import conform as conform_command
-from carproof.commands import serve as serve_command
+from carproof.commands.judge import conform as conform_command
+from carproof.commands.run import serve as serve_command
 from carproof.conform.cases import ASKED_OPS
 from carproof.engines import Engine, engine_named
 from carproof.protocol.lines import Request

@@ -5,17 +5,17 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from time import monotonic
 
+from carproof.conform.asking.ladder import SIZES, Rung, large_case, rungs
+from carproof.conform.asking.smoke import smoke_cases
+from carproof.conform.asking.vector_cases import vector_cases
 from carproof.conform.cases import EXECUTION, Case
-from carproof.conform.claims import EVERYTHING, Claims
-from carproof.conform.deciding import Extent, Tally, random_shortfalls, smoke_shortfalls
-from carproof.conform.effort import Effort
 from carproof.conform.findings import Category, Fault, Finding
-from carproof.conform.ladder import SIZES, Rung, large_case, rungs
+from carproof.conform.judging.claims import EVERYTHING, Claims
+from carproof.conform.judging.deciding import Extent, Tally, random_shortfalls, smoke_shortfalls
+from carproof.conform.judging.gave_up import Effort
+from carproof.conform.judging.outcome import Outcome, Subject, ask
 from carproof.conform.levels import EXECUTOR_LEVELS, JUDGED_OPS, Level
-from carproof.conform.outcome import Outcome, Subject, ask
 from carproof.conform.shrinking import SHRINK_SECONDS, FailureSearch
-from carproof.conform.smoke import smoke_cases
-from carproof.conform.vector_cases import vector_cases
 
 _IN_CONTEXT = Level.COMPLETE_IN_CONTEXT
 MOST_FAULTS = 3
@@ -235,7 +235,7 @@ def _ask_fixed(subject: Subject, report: Report, cases: Iterable[Case], advance:
 
 def _ask_random(subject: Subject, report: Report, advance: Callable[[], None]) -> None:
     """Ask as many of each op."""
-    from carproof.conform.random_cases import (  # noqa: PLC0415 - loads hypothesis
+    from carproof.conform.asking.random_cases import (  # noqa: PLC0415 - loads hypothesis
         classical_cases,
         execution_cases,
         random_cases,

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from carproof.conform.cases import Case
 from carproof.conform.findings import Category
-from carproof.conform.outcome import Outcome
+from carproof.conform.judging.outcome import Outcome
 from carproof.conform.smaller import smallest
 
 if TYPE_CHECKING:

@@ -12,9 +12,9 @@ from typing import Literal, TypeAlias, TypeVar
 
 from carp_reference.execution import order_of
 from carp_spec import Instance, Plan, Refusal, ResourceGraph, ResourceId, RobotId, Visit
+from carp_spec.requests import sound_solution
 from carproof.conform.cases import EXECUTION, Case
 from carproof.execution.delays import stuck
-from carp_spec.requests import sound_solution
 
 Edit: TypeAlias = Callable[[Case], Case | None]
 Kind: TypeAlias = Literal["resources", "robots"]

@@ -24,7 +24,7 @@ from carp_spec import (
     TimeExpanded,
 )
 from carproof.conform.cases import EXECUTION, Case
-from carproof.conform.claims import EVERYTHING, Claims
+from carproof.conform.judging.claims import EVERYTHING, Claims
 from carproof.conform.levels import Level
 from carproof.engines import engine_named
 from carproof.execution.delays import stuck

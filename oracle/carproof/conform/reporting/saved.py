@@ -12,11 +12,11 @@ import msgspec
 
 from carp_spec import Refusal
 from carproof.command_line.files import write_whole
+from carproof.conform.asking.vector_cases import case_of
 from carproof.conform.cases import ASKED_OPS, EXECUTION, Case
-from carproof.conform.child import plain_file
-from carproof.conform.outcome import Outcome
-from carproof.conform.saving import FILES, Origin, save
-from carproof.conform.vector_cases import case_of
+from carproof.conform.judging.outcome import Outcome
+from carproof.conform.programs.child import plain_file
+from carproof.conform.reporting.saving import FILES, Origin, save
 from carproof.testing.vectors import VectorsDocument
 
 RUN = "run.json"

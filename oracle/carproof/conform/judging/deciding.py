@@ -4,9 +4,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from carp_spec import Solution
-from carproof.conform.effort import Effort
 from carproof.conform.findings import LEAST_ANSWERED, LEAST_TRIED, answers_enough, tries_enough
-from carproof.conform.outcome import Outcome
+from carproof.conform.judging.gave_up import Effort
+from carproof.conform.judging.outcome import Outcome
 from carproof.protocol.ops.planning import QueryDocument
 
 

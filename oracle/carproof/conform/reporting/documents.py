@@ -9,9 +9,9 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 import msgspec
 
-from carproof.conform.advice import advice_for
-from carproof.conform.deciding import Tally
 from carproof.conform.findings import Finding
+from carproof.conform.judging.deciding import Tally
+from carproof.conform.reporting.advice import advice_for
 from carproof.conform.run import Report, label
 
 FORMAT = "carproof-conformance/1"

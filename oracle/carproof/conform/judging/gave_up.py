@@ -7,9 +7,9 @@ from carp_verify.bounds import BoundDocument
 from carp_verify.documents import SolutionDocument
 from carproof.conform.answers import Answer
 from carproof.conform.cases import OPTIMUM_SECONDS, POLISH_ROUNDS, Case, engine_for
-from carproof.conform.judges import worth
+from carproof.conform.judging.judges import worth
+from carproof.conform.judging.optimum import cost_alone, found_cost
 from carproof.conform.levels import Level
-from carproof.conform.optimum import cost_alone, found_cost
 from carproof.optima import OptimumDocument
 from carproof.protocol.ops.planning import QueryDocument
 

@@ -28,7 +28,7 @@ def _extent(report: Report) -> str:
     extent = report.extent
     if not extent.robots:
         return "Nothing is shown: no case in which there was something to do was rightly answered."
-    size = f"{counted(extent.robots, 'robot')} and {_many(extent.resources, 'resource')}"
+    size = f"{counted(extent.robots, 'robot')} and {counted(extent.resources, 'resource')}"
     numbers = f"capacity {extent.capacity:,}, duration {extent.duration:,}, pace {extent.pace:,}, tick {extent.tick:,}"
     return f"The largest case rightly answered had {size}; the largest numbers were {numbers}. Nothing is shown beyond."
 

@@ -8,8 +8,8 @@ import msgspec
 from carp_spec.permutations import splitmix64
 from carproof.conform.answers import Reply, Skipped, protocol_error, read_result, result_of
 from carproof.conform.cases import Case, request_fields
-from carproof.conform.child import Child, Limits
 from carproof.conform.findings import Fault, Finding, is_response
+from carproof.conform.programs.child import Child, Limits
 from carproof.protocol.lines import VERSION
 
 STARTING = 5

@@ -6,12 +6,12 @@ from typing import Protocol
 
 from carp_spec import Refusal
 from carproof.conform.answers import Answer, NotAsked, Reply, Skipped
-from carproof.conform.by_kernel import require_agreement
 from carproof.conform.cases import Case, is_large
-from carproof.conform.claims import features
-from carproof.conform.effort import Effort, effort, why_undecided
 from carproof.conform.findings import Fault, Finding
-from carproof.conform.judges import first_finding
+from carproof.conform.judging.by_kernel import require_agreement
+from carproof.conform.judging.claims import features
+from carproof.conform.judging.gave_up import Effort, effort, why_undecided
+from carproof.conform.judging.judges import first_finding
 from carproof.conform.levels import Level
 
 

@@ -2,9 +2,9 @@
 
 from carproof.conform.answers import Reply, protocol_error
 from carproof.conform.cases import EXECUTION, Case
-from carproof.conform.driving import execution
 from carproof.conform.findings import answers_enough
-from carproof.conform.program import Program
+from carproof.conform.judging.driving import execution
+from carproof.conform.programs.program import Program
 from carproof.protocol.ops.op import request_fields
 
 

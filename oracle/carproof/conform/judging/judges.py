@@ -26,10 +26,10 @@ from carp_verify.query.verify import Traffic, require_certificate
 from carproof.command_line.output import shown_plan
 from carproof.conform.answers import Answer
 from carproof.conform.cases import POLISH_ROUNDS, Case, engine_for, is_large
-from carproof.conform.driving import execution_findings
 from carproof.conform.findings import Finding, wrong
+from carproof.conform.judging.driving import execution_findings
+from carproof.conform.judging.optimum import bound_findings, complete_findings, optimum_findings, plan_cost_findings
 from carproof.conform.levels import Level
-from carproof.conform.optimum import bound_findings, complete_findings, optimum_findings, plan_cost_findings
 from carproof.optima import OptimumDocument
 from carproof.protocol.ops.planning import QueryDocument
 

@@ -23,7 +23,7 @@ from carp_spec import (
 )
 from carp_spec.permutations import splitmix64
 from carproof.conform.cases import Case
-from carproof.conform.claims import UNSOLVABLE, Claims
+from carproof.conform.judging.claims import UNSOLVABLE, Claims
 from carproof.conform.levels import Level
 from carproof.engines import engine_named
 from carproof.generate import Fleet, Grid, Range, Traits, Warehouse, grid_instance, warehouse_instance

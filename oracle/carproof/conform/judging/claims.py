@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from carp_spec import Carp
 from carproof.conform.cases import Case, engine_for
-from carproof.conform.optimum import found_cost
+from carproof.conform.judging.optimum import found_cost
 
 FEATURES: Mapping[str, Callable[[Case], bool]] = {
     "capacities": lambda case: any(resource.capacity > 1 for resource in case.instance.graph.resources),

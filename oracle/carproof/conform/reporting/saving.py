@@ -13,12 +13,12 @@ from carp_spec import Refusal, Solution, check
 from carp_spec.execution.traces import Trace
 from carp_verify.documents import instance_document, solution_of, write_instance, write_solution
 from carproof.command_line.files import write_whole
-from carproof.conform.advice import advice_for
 from carproof.conform.answers import Answer
 from carproof.conform.cases import POLISH_ROUNDS, Case, case_input, request_fields
-from carproof.conform.claims import features
-from carproof.conform.drawing import drawing, map_drawing
-from carproof.conform.outcome import Outcome
+from carproof.conform.judging.claims import features
+from carproof.conform.judging.outcome import Outcome
+from carproof.conform.reporting.advice import advice_for
+from carproof.conform.reporting.drawing import drawing, map_drawing
 from carproof.formats.movingai_writer import MAP_NAME, write_movingai
 from carproof.optima import OptimumDocument
 from carproof.protocol.ops.op import made

@@ -10,14 +10,14 @@ from string import Template
 
 from carp_spec import Refusal
 from carproof.command_line.tables import counted
-from carproof.conform.advice import advice_for
-from carproof.conform.documents import counts
-from carproof.conform.drawing import map_drawing
 from carproof.conform.findings import Finding
-from carproof.conform.outcome import Outcome
+from carproof.conform.judging.outcome import Outcome
+from carproof.conform.reporting.advice import advice_for
+from carproof.conform.reporting.documents import counts
+from carproof.conform.reporting.drawing import map_drawing
+from carproof.conform.reporting.saving import Origin, about_case, filled, judged_solution
+from carproof.conform.reporting.wording import verdict
 from carproof.conform.run import Report
-from carproof.conform.saving import Origin, about_case, filled, judged_solution
-from carproof.conform.wording import verdict
 from carproof.rules import ALL_RULES
 from carproof.viewer.colours import variables
 from carproof.viewer.page import page
@@ -32,7 +32,7 @@ def html_document(report: Report, saved: Sequence[Path], origin: Origin) -> byte
     level = report.options.level
     failures = [_failure(*each, origin) for each in zip_longest(report.failures, saved)]
     found = [*map(_fault, report.faults), *failures, *(f"<p>{escape(each)}</p>" for each in report.shortfalls)]
-    filled_in = Template(files("carproof.conform").joinpath("report.html").read_text(encoding="utf-8")).substitute(
+    filled_in = Template(files("carproof.conform.reporting").joinpath("report.html").read_text(encoding="utf-8")).substitute(
         policy=POLICY,
         colours=variables(),
         title=escape(f"{report.program}: level {level.label}"),

@@ -11,8 +11,8 @@ from carp_spec import Instance, Refusal, Robot, Solution
 from carp_verify.documents import write_instance
 from carproof.conform.answers import NotAsked, Reply, decode_solution, protocol_error, shown
 from carproof.conform.cases import Case
-from carproof.conform.child import Limits, end_group, ending, environment, exit_code, limited, plain_file
 from carproof.conform.findings import IN_TIME, RIGHT_RESULT, Category, Fault, Finding, is_alive
+from carproof.conform.programs.child import Limits, end_group, ending, environment, exit_code, limited, plain_file
 from carproof.formats import carproof_documents, format_of, looks_like_none, read_foreign_solution
 from carproof.formats.movingai import GridMap, movingai_instance
 from carproof.formats.movingai_writer import MAP_NAME, is_classical, write_movingai

@@ -18,7 +18,7 @@ from carproof.command_line.files import OutputFile, hypothesis_elsewhere, print_
 from carproof.command_line.options import examples, json_option, kernel_option
 from carproof.command_line.tables import counted, print_line, print_table, printable, remark
 from carproof.conform.cases import ASKED_OPS
-from carproof.conform.claims import FEATURES, Claims
+from carproof.conform.judging.claims import FEATURES, Claims
 from carproof.conform.levels import CLASSICAL_LEVELS, EXECUTOR_LEVELS, LEVELS, WHOLE_LEVELS, Level
 from carproof.engines import warm
 from carproof.extras import require
@@ -27,11 +27,11 @@ from carproof.progress import progress
 from carproof.protocol.ops.published import op_list
 
 if TYPE_CHECKING:
-    from carproof.conform.child import Limits
-    from carproof.conform.one_shot import OneShot
-    from carproof.conform.outcome import Subject
+    from carproof.conform.judging.outcome import Subject
+    from carproof.conform.programs.child import Limits
+    from carproof.conform.programs.one_shot import OneShot
+    from carproof.conform.reporting.saving import Origin
     from carproof.conform.run import Report
-    from carproof.conform.saving import Origin
 
 _STAGES = "passed", "gave up", "skipped", "not asked", "wrong answer", "crash", "timeout", "protocol error"
 _SEED_BITS = 32
@@ -161,13 +161,13 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     Exit codes: 0 it conforms, 1 it does not, 2 bad usage, 3 undecided: no random case decided it. If interrupted, the
     command prints its findings so far.
     """
-    from carproof.conform.child import Limits  # noqa: PLC0415 - what runs processes is loaded when it is needed
-    from carproof.conform.documents import junit_document, report_document  # noqa: PLC0415
-    from carproof.conform.executor import Executor  # noqa: PLC0415
-    from carproof.conform.one_shot import OneShot  # noqa: PLC0415
-    from carproof.conform.program import Program  # noqa: PLC0415
+    from carproof.conform.programs.child import Limits  # noqa: PLC0415 - what runs processes is loaded when it is needed
+    from carproof.conform.programs.executor import Executor  # noqa: PLC0415
+    from carproof.conform.programs.one_shot import OneShot  # noqa: PLC0415
+    from carproof.conform.programs.program import Program  # noqa: PLC0415
+    from carproof.conform.reporting.documents import junit_document, report_document  # noqa: PLC0415
+    from carproof.conform.reporting.saved import own_folder, read_saved  # noqa: PLC0415
     from carproof.conform.run import Options, conform  # noqa: PLC0415
-    from carproof.conform.saved import own_folder, read_saved  # noqa: PLC0415
 
     require("hypothesis", "pysat")
     if format is not None and not one_shot:
@@ -199,7 +199,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     if junit is not None:
         write_whole(junit, junit_document(report, saved))
     if html is not None:
-        from carproof.conform.html_report import html_document  # noqa: PLC0415 - it draws
+        from carproof.conform.reporting.html_report import html_document  # noqa: PLC0415 - it draws
 
         write_whole(html, html_document(report, saved, origin))
     if as_json:
@@ -234,7 +234,7 @@ def _require_level(level: Level, one_shot: bool, classical: bool, executor: bool
 def _one_shot(program: tuple[str, ...], limits: "Limits", format: str | None) -> "OneShot":
     from tempfile import gettempdir  # noqa: PLC0415 - loaded only where used
 
-    from carproof.conform.one_shot import INSTANCE, MAP, SCEN, OneShot, names  # noqa: PLC0415
+    from carproof.conform.programs.one_shot import INSTANCE, MAP, SCEN, OneShot, names  # noqa: PLC0415
 
     try:
         gettempdir()
@@ -250,7 +250,7 @@ def _one_shot(program: tuple[str, ...], limits: "Limits", format: str | None) ->
 
 def _saved(report: "Report", folder: Path, origin: "Origin") -> list[Path]:
     """Save the failures, and return their folders; where they cannot be written, say so and go on to the verdict."""
-    from carproof.conform.saved import save_all  # noqa: PLC0415 - what draws pictures is loaded when it is needed
+    from carproof.conform.reporting.saved import save_all  # noqa: PLC0415 - what draws pictures is loaded when it is needed
 
     if report.interrupted and not report.failures:
         return []
@@ -263,7 +263,7 @@ def _saved(report: "Report", folder: Path, origin: "Origin") -> list[Path]:
 
 def _origin(program: Sequence[str], level: str, one_shot: bool, executor: bool, seed: int) -> "Origin":
     """Who is judged, and the command lines that ask again; no single line asks an executor one case."""
-    from carproof.conform.saving import Origin  # noqa: PLC0415 - what draws pictures is loaded when it is needed
+    from carproof.conform.reporting.saving import Origin  # noqa: PLC0415 - what draws pictures is loaded when it is needed
 
     context = click.get_current_context()
     words = ["--seed", str(seed)]
@@ -282,8 +282,8 @@ def _origin(program: Sequence[str], level: str, one_shot: bool, executor: bool, 
 
 def _show(report: "Report", saved: Sequence[Path]) -> None:
     """Print the results: counts, findings, and the verdict."""
-    from carproof.conform.documents import counts  # noqa: PLC0415
-    from carproof.conform.wording import details, verdict  # noqa: PLC0415
+    from carproof.conform.reporting.documents import counts  # noqa: PLC0415
+    from carproof.conform.reporting.wording import details, verdict  # noqa: PLC0415
 
     rows = [(stage, *(count[name] for name in _STAGES)) for stage, count in counts(report).items()]
     print_table(["cases", *_STAGES], rows, numbers=_STAGES)

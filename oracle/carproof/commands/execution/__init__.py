@@ -1,0 +1,1 @@
+"""`carproof execution`: commands about late robots."""

@@ -1,0 +1,1 @@
+"""Commands that judge plans and planners, and explain the rules."""

@@ -1,0 +1,1 @@
+"""Commands that plan, and tell what the best possible is."""

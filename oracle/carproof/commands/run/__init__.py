@@ -1,0 +1,1 @@
+"""Commands that make instances, and run carproof."""

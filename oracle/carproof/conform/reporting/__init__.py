@@ -1,0 +1,1 @@
+"""What a person gets of a run: documents, a page, saved findings."""
