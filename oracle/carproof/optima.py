@@ -16,7 +16,7 @@ class OptimumDocument(msgspec.Struct, frozen=True, omit_defaults=True, forbid_un
 
     `proved` means that the search ended with an answer, which nothing checked: it rests on the solver. If `proved` is
     true and the cost is null, the robots cannot all be planned. If it is false, the solution is the best known, or
-    null. `checked` is present, and true, if a proof was written and checked as by `carproof verify-proof`.
+    null. `checked` is present, and true, if a proof was written and checked as by `carproof verify`.
     """
 
     cost: int | None

@@ -319,7 +319,7 @@ def test_check_judges_a_file_against_an_instance_or_a_benchmark(carproof: Run, f
 
 
 @pytest.mark.usefixtures("benchmark")
-@pytest.mark.parametrize("command", ["check", "view", "certify", "polish --iterations 5"])
+@pytest.mark.parametrize("command", ["check", "view", "check --z3", "polish --iterations 5"])
 @pytest.mark.parametrize("format", ["lacam", "paths-row-column"])
 def test_any_solution_file_is_accepted_with_a_benchmark(carproof: Run, command: str, format: str) -> None:
     for arguments in (f"{MAPS} {format}", f"m.json - --from {format}"):

@@ -77,8 +77,8 @@ def asked(op: str, document: object) -> Document:
 
 def test_the_trace_itself_is_right(carproof: Run) -> None:
     save(trace=GOOD)
-    assert carproof("check-trace train.json plans.json trace.json").code == 0
-    assert carproof("retime train.json plans.json trace.json --engine reference").code == 0
+    assert carproof("execution check train.json plans.json trace.json").code == 0
+    assert carproof("execution retime train.json plans.json trace.json --engine reference").code == 0
     assert [*asked("drive", GOOD)] == [*asked("retime", GOOD)] == ["id", "result"]
 
 
@@ -86,12 +86,12 @@ def test_the_trace_itself_is_right(carproof: Run) -> None:
 def test_a_trace_that_contradicts_the_plans_is_refused_and_nothing_is_written(kind: str, carproof: Run) -> None:
     document, path, rule = CONTRADICTIONS[kind]
     save(trace=document)
-    outcome = carproof("check-trace train.json plans.json trace.json")
+    outcome = carproof("execution check train.json plans.json trace.json")
     assert (outcome.code, outcome.stderr) == (1, "")
     assert outcome.stdout.startswith(f"[{rule}] ")
     assert outcome.stdout.endswith("INVALID: the trace does not follow the plans\n")
     for engine in ("reference", "optimized"):
-        outcome = carproof(f"retime train.json plans.json trace.json --engine {engine} -o late.json")
+        outcome = carproof(f"execution retime train.json plans.json trace.json --engine {engine} -o late.json")
         assert (outcome.code, outcome.stdout, outcome.stderr.count("\n")) == (2, "", 1)
         assert outcome.stderr.startswith(f"Error: trace.json: {path}: ")
         assert outcome.stderr.endswith(f" [{rule}]\n")

@@ -1,4 +1,4 @@
-"""The output of `carproof bench` for made-up figures, and its progress."""
+"""The output of `carproof dev bench` for made-up figures, and its progress."""
 
 import json
 from collections.abc import Callable
@@ -40,7 +40,7 @@ def made_up(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("made_up")
 def test_tables_fit_eighty_columns(carproof: Run) -> None:
-    outcome = carproof("bench")
+    outcome = carproof("dev", "bench")
     assert outcome.code == 0
     assert max(map(len, outcome.stdout.splitlines())) <= 80
     assert "160^2    6400" in outcome.stdout
@@ -48,7 +48,7 @@ def test_tables_fit_eighty_columns(carproof: Run) -> None:
 
 @pytest.mark.usefixtures("made_up")
 def test_the_document_has_the_ratios_of_the_last_robot_on_the_full_map(carproof: Run) -> None:
-    outcome = carproof("bench", "--assignments", "3", "--no-growth", "--json")
+    outcome = carproof("dev", "bench", "--assignments", "3", "--no-growth", "--json")
     document = json.loads(outcome.stdout)
     assert document["ratios"] == {"4": 23.45, "10": 23.45}
     assert (document["query_us"], document["pass_us"], document["growth"]) == (12.34, 1234.5, [])

@@ -20,10 +20,10 @@ def test_a_bound_is_found_shown_and_verified(carproof: Run) -> None:
     outcome = carproof("bound town.json -o certificate.json")
     assert outcome.code == 0
     assert outcome.stdout.splitlines()[-1].split()[:6] == ["2", "5", "5", "5", "0.00", "%"]
-    verified = carproof("verify-bound town.json certificate.json")
+    verified = carproof("verify town.json certificate.json")
     assert (verified.code, verified.stderr) == (0, "")
     assert verified.stdout.splitlines()[-1].split()[:2] == ["5", "2"]
-    document = json.loads(carproof("verify-bound town.json certificate.json --json").stdout)
+    document = json.loads(carproof("verify town.json certificate.json --json").stdout)
     assert document == {
         "bound": 5, "path": None, "rule": None, "reason": None, "by": "carp_verify", "assumed": []
     }  # fmt: skip
@@ -45,17 +45,17 @@ def test_a_robot_without_a_way_is_told(carproof: Run) -> None:
     outcome = carproof("bound islands.json --steps 3 -o certificate.json")
     assert outcome.code == 1
     assert outcome.stdout.splitlines()[-1] == "unplanned: no way leads from a to island, the goal of robot r1"
-    verified = carproof("verify-bound islands.json certificate.json")
+    verified = carproof("verify islands.json certificate.json")
     assert verified.code == 0
     assert verified.stdout.splitlines()[-1] == "robot r1 has no way to its goal: the bound is that of the others"
 
 
 def test_a_certificate_that_proves_nothing_is_refused_with_path_rule_and_reason(carproof: Run) -> None:
     save(wrong={**json.loads(carproof("bound town.json --steps 3 --json").stdout), "bound": 6})
-    outcome = carproof("verify-bound town.json wrong.json")
+    outcome = carproof("verify town.json wrong.json")
     message = "the bound must be 5, the sum of all parts rounded up, and is 6"
     assert (outcome.code, outcome.stdout) == (1, f"not proved: $.bound: {message} [bound/total]\n")
-    reported = json.loads(carproof("verify-bound town.json wrong.json --json").stdout)
+    reported = json.loads(carproof("verify town.json wrong.json --json").stdout)
     assert (reported["bound"], reported["path"], reported["rule"], reported["reason"]) == (
         None,
         "$.bound",

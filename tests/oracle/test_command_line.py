@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from tests.oracle.running import Run
 
-from carproof.commands import COMMANDS, GROUPS
+from carproof.commands import COMMANDS, SECTIONS
 
 SLOW_TO_LOAD = ("z3", "numba", "numpy", "networkx", "pysat", "hypothesis", "matplotlib")
 CARPROOF = Path(sys.executable).with_name("carproof")
@@ -24,8 +24,8 @@ def test_help_names_every_command_and_fits_eighty_columns(carproof: Run) -> None
 
 
 def test_help_groups_the_commands_and_cuts_no_summary(carproof: Run) -> None:
-    listed = carproof("--help").stdout.partition("Check:\n")[2].partition("  Examples:")[0]
-    assert [group for group in GROUPS if group != "Check" and f"\n{group}:\n" not in listed] == []
+    listed = carproof("--help").stdout.partition("Judge plans:\n")[2].partition("  Examples:")[0]
+    assert [group for group in SECTIONS if group != "Judge plans" and f"\n{group}:\n" not in listed] == []
     assert "..." not in listed
     assert all(len(line.split()) > 1 and line.endswith(".") for line in listed.splitlines() if line.startswith("  "))
 
@@ -36,6 +36,15 @@ def test_each_command_explains_itself_with_an_example(carproof: Run, name: str) 
     assert outcome.code == 0
     assert f"\n    carproof {name}" in outcome.stdout
     assert max(map(len, outcome.stdout.splitlines())) <= 80
+
+
+@pytest.mark.parametrize("old", RENAMED)
+def test_old_names_stand_for_the_new_ones(carproof: Run, old: str) -> None:
+    now = " ".join(RENAMED[old])
+    outcome = carproof(old, "--help")
+    assert outcome.code == 0
+    assert outcome.stdout == carproof(*RENAMED[old], "--help").stdout
+    assert f"carproof {now}" in outcome.stderr
 
 
 def test_without_arguments_the_help_is_shown(carproof: Run) -> None:

@@ -49,55 +49,60 @@ def _train_and_ring(elsewhere: Path) -> None:
 
 
 def test_a_trace_is_checked_against_the_plans(carproof: Run) -> None:
-    outcome = carproof("check-trace train.json plans.json trace.json")
+    outcome = carproof("execution check train.json plans.json trace.json")
     assert outcome == Outcome(0, "no rule is broken: by tick 3, 1 of 2 robots are at their goals\n", "")
     save(wrong=trace([["a", 0, 2], ["b", 2, None]]))
-    outcome = carproof("check-trace train.json plans.json wrong.json")
+    outcome = carproof("execution check train.json plans.json wrong.json")
     assert outcome.code == 1
     assert outcome.stdout.startswith("[execution/order] resource b in [2,for ever): robot r1 (by the plans robot r0")
-    verdict = json.loads(carproof("check-trace train.json plans.json wrong.json --json").stdout)
+    verdict = json.loads(carproof("execution check train.json plans.json wrong.json --json").stdout)
     assert [violation["rule"] for violation in verdict["violations"]] == ["execution/order"]
 
 
 def test_dependencies_name_the_cycle_and_who_is_late(carproof: Run) -> None:
-    outcome = carproof("dependencies ring.json turning.json")
+    outcome = carproof("execution dependencies ring.json turning.json")
     assert outcome.code == 1
     assert "cycle at tick 1: " in outcome.stdout
     assert all(f"robot r{number} into" in outcome.stdout for number in range(4))
-    outcome = carproof("dependencies train.json plans.json --delay r0:0:4 --dot graph.dot --svg graph.svg")
+    outcome = carproof("execution dependencies train.json plans.json --delay r0:0:4 --dot graph.dot --svg graph.svg")
     assert outcome.code == 0
     assert "robot r0 is late by 4\nrobot r1 is late by 4\n" in outcome.stdout
     assert "on the clock, robots collide by these delays: robot r0 at visit 0 by 1" in outcome.stdout
     assert Path("graph.dot").read_text().count("->") == 3
     assert "<title>train.json · plans.json: which visits wait for which</title>" in Path("graph.svg").read_text()
-    document = json.loads(carproof("dependencies train.json plans.json --json").stdout)
+    document = json.loads(carproof("execution dependencies train.json plans.json --json").stdout)
     assert document["acyclic"]
     assert [visit["slack"] for visit in document["visits"]] == [0, 0, None, None]
 
 
 def test_drivers_collide_wait_or_stand(carproof: Run) -> None:
-    outcome = carproof("execute train.json plans.json --delays delays.json")
+    outcome = carproof("execution simulate train.json plans.json --delays delays.json")
     assert outcome.code == 1
     rows = {row.split()[0]: row.split() for row in outcome.stdout.splitlines()[2:5]}
     assert [rows[driver][7] for driver in DRIVERS] == ["1", "0", "0"]
     assert [rows[driver][4] for driver in DRIVERS] == ["1", "2", "2"]
-    outcome = carproof("execute ring.json turning.json --driver order --delays 0")
+    outcome = carproof("execution simulate ring.json turning.json --driver order --delays 0")
     assert outcome.code == 1
     assert outcome.stdout.splitlines()[2].split() == ["order", "4", "0", "0", "0", "-", "-", "0", "4", "0"]
-    assert carproof("execute train.json plans.json --driver order --delays delays.json --trace done.json").code == 0
-    assert carproof("check-trace train.json plans.json done.json").code == 0
+    assert (
+        carproof("execution simulate train.json plans.json --driver order --delays delays.json --trace done.json").code
+        == 0
+    )
+    assert carproof("execution check train.json plans.json done.json").code == 0
 
 
 def test_robots_of_a_rotation_stand_where_dependencies_name_it(carproof: Run) -> None:
     for delays in ([], [["r2", 0, 5]]):
         save(delays=delays)
-        named = json.loads(carproof("dependencies ring.json turning.json --json").stdout)["cycle"]
-        outcome = carproof("execute ring.json turning.json --driver order --delays delays.json --trace end.json --json")
+        named = json.loads(carproof("execution dependencies ring.json turning.json --json").stdout)["cycle"]
+        outcome = carproof(
+            "execution simulate ring.json turning.json --driver order --delays delays.json --trace end.json --json"
+        )
         assert outcome.code == 1
         assert sorted(json.loads(outcome.stdout)["standing"]) == sorted(named["robots"]) == ["r0", "r1", "r2", "r3"]
         plans = json.loads(Path("end.json").read_bytes())["plans"]
         assert [plan["visits"] for plan in plans] == [[[way[0], 0, None]] for way in RING]
-        assert carproof("check-trace ring.json turning.json end.json").code == 0
+        assert carproof("execution check ring.json turning.json end.json").code == 0
 
 
 @pytest.fixture
@@ -109,10 +114,10 @@ def late_town(carproof: Run, elsewhere: Path) -> Path:
     plans = [plan for plan in given["plans"] if plan["robot"] != "r8"]
     order = [robot for robot in given["order"] if robot != "r8"]
     save(plans={**given, "plans": plans, "order": order, "unplanned": ["r8"]}, delays=[["r1", 0, 3]])
-    asked = "execute town.json plans.json --driver order --delays delays.json --trace trace.json --now 4"
+    asked = "execution simulate town.json plans.json --driver order --delays delays.json --trace trace.json --now 4"
     assert carproof(asked).code == 0
-    assert carproof("check-trace town.json plans.json trace.json").code == 0
-    assert carproof("retime town.json plans.json trace.json --engine reference -o late.json").code == 0
+    assert carproof("execution check town.json plans.json trace.json").code == 0
+    assert carproof("execution retime town.json plans.json trace.json --engine reference -o late.json").code == 0
     return elsewhere
 
 
@@ -176,16 +181,16 @@ def test_polish_takes_plans_after_a_delay_and_makes_them_cheaper(late_town: Path
 
 
 def test_what_happened_on_the_clock_is_no_history_in_order(late_town: Path, carproof: Run) -> None:
-    carproof("execute town.json plans.json --driver clock --delays delays.json --trace trace.json --now 4")
-    assert carproof("check-trace town.json plans.json trace.json").code == 1
-    outcome = carproof("retime town.json plans.json trace.json --engine reference -o other.json")
+    carproof("execution simulate town.json plans.json --driver clock --delays delays.json --trace trace.json --now 4")
+    assert carproof("execution check town.json plans.json trace.json").code == 1
+    outcome = carproof("execution retime town.json plans.json trace.json --engine reference -o other.json")
     assert (outcome.code, "[execution/order]" in outcome.stderr) == (2, True)
     assert not (late_town / "other.json").exists()
 
 
 def test_wrong_delays_in_a_file_are_named_with_it(carproof: Run) -> None:
     save(delays=[["r0", 0, 1], ["r1", 0, -2]])
-    outcome = carproof("execute train.json plans.json --delays delays.json")
+    outcome = carproof("execution simulate train.json plans.json --delays delays.json")
     sentence = "the delay must be of a visit that is planned, for at least a tick, not ['r1', 0, -2] [request/delays]"
     assert (outcome.code, outcome.stderr) == (2, f"Error: delays.json: $[1]: {sentence}\n")
 
@@ -199,14 +204,14 @@ def test_wrong_delays_in_a_file_are_named_with_it(carproof: Run) -> None:
     ],
 )
 def test_wrong_options_of_an_execution_write_nothing(options: str, message: str, carproof: Run) -> None:
-    outcome = carproof(f"execute train.json plans.json {options}")
+    outcome = carproof(f"execution simulate train.json plans.json {options}")
     assert outcome.code == 2
     assert message in outcome.stderr
     assert not Path("t.json").exists()
 
 
 def test_retimed_plans_are_a_fleet_under_way(carproof: Run) -> None:
-    outcome = carproof("retime train.json plans.json trace.json -o late.json")
+    outcome = carproof("execution retime train.json plans.json trace.json -o late.json")
     assert outcome.code == 0
     assert outcome.stdout.splitlines() == [
         "total cost 2 before, 7 now",
@@ -219,7 +224,7 @@ def test_retimed_plans_are_a_fleet_under_way(carproof: Run) -> None:
 
 def test_a_rotation_is_untangled_at_least_cost_or_named(carproof: Run, elsewhere: Path) -> None:
     out = elsewhere / "in-order.json"
-    outcome = carproof("untangle ring.json turning.json -o in-order.json --engine reference")
+    outcome = carproof("execution untangle ring.json turning.json -o in-order.json --engine reference")
     assert outcome.code == 0
     assert outcome.stdout.splitlines()[2].split() == ["4", "1", "6", "2"]
     instance, ordered = read_instance(line(**moves(RING))), read_solution(out.read_bytes())
@@ -227,7 +232,7 @@ def test_a_rotation_is_untangled_at_least_cost_or_named(carproof: Run, elsewhere
     assert not list(is_acyclic(instance, ordered))
     save(closed=moves(RING, "ab bc cd da"))
     out.unlink()
-    outcome = carproof("untangle closed.json turning.json -o in-order.json --engine reference")
+    outcome = carproof("execution untangle closed.json turning.json -o in-order.json --engine reference")
     assert (outcome.code, outcome.stdout, out.exists()) == (1, "", False)
     assert outcome.stderr.startswith("Out of the rotation of the robots ")
 
@@ -265,7 +270,7 @@ def test_nobody_switches_to_park_in_the_way() -> None:
 
 def test_an_executed_trace_reads_as_it_was_written(carproof: Run, elsewhere: Path) -> None:
     outcome = carproof(
-        "execute train.json plans.json --driver switching --trace done.json --followed followed.json --json"
+        "execution simulate train.json plans.json --driver switching --trace done.json --followed followed.json --json"
     )
     assert json.loads(outcome.stdout)["driver"] == "switching"
     assert read_trace((elsewhere / "done.json").read_bytes()).now == 2

@@ -19,14 +19,14 @@ COMMANDS = (
     "import json\nfrom carproof.entry.cli import main\nprint(any([main(each) for each in json.loads(sys.argv[1])]))"
 )
 FINDS = {
-    "certify town.json plans.json": "z3-solver",
+    "check --z3 town.json plans.json": "z3-solver",
     "theorems": "z3-solver",
     "verify-proof .": "z3-solver",
     "optimum town.json": "python-sat",
     "bound town.json": "python-sat",
     "gap town.json": "python-sat",
     "conform true": "hypothesis",
-    "crosscheck": "hypothesis",
+    "dev crosscheck": "hypothesis",
     "experiment quality --quick": "joblib",
 }
 DEPOT = ROOT / "oracle/carproof/examples/depot"
@@ -38,7 +38,7 @@ BASE = [
     "add town.json one.json r2 -o added.json",
     "polish town.json plans.json --iterations 10 -o polished.json",
     "query town.json plans.json r1 --certificate r1.json",
-    "verify-query town.json plans.json r1.json",
+    "verify town.json plans.json r1.json",
     "audit town.json plans.json",
     "view town.json plans.json -o view.html",
     "generate grid --width 3 --height 3 --robots 2 -o grid.json",

@@ -28,15 +28,15 @@ def _instances(elsewhere: Path) -> None:
         "plan forbidding.json --engine reference -o plans.json",
         "add forbidding.json one.json r2 --engine reference -o plans.json",
         "polish forbidding.json apart.json --engine reference --iterations 1 -o plans.json",
-        "give-way forbidding.json apart.json r1 --engine reference -o plans.json",
-        "untangle forbidding.json apart.json --engine reference -o plans.json",
+        "execution give-way forbidding.json apart.json r1 --engine reference -o plans.json",
+        "execution untangle forbidding.json apart.json --engine reference -o plans.json",
     ],
 )
 def test_commands_that_plan_keep_a_free_tick(command: str, carproof: Run) -> None:
     assert carproof(command).code == 0
     assert carproof("check forbidding.json plans.json").code == 0
-    assert carproof("dependencies forbidding.json plans.json").code == 0
-    assert carproof("execute forbidding.json plans.json --driver order --delays 0.5").code == 0
+    assert carproof("execution dependencies forbidding.json plans.json").code == 0
+    assert carproof("execution simulate forbidding.json plans.json --driver order --delays 0.5").code == 0
 
 
 def test_plans_without_a_free_tick_are_wrong(carproof: Run) -> None:
@@ -59,16 +59,16 @@ def certificates(carproof: Run) -> None:
         "audit forbidding.json apart.json",
         "audit forbidding.json apart.json --find-order",
         "audit forbidding.json apart.json --kernel",
-        "certify forbidding.json apart.json",
+        "check --z3 forbidding.json apart.json",
         "optimum forbidding.json -o new.json",
         "optimum forbidding.json --proof new",
         "gap forbidding.json",
         "bound forbidding.json -o new.json",
         "query forbidding.json one.json r2 --certificate new.json",
-        "verify-bound forbidding.json bound.json",
-        "verify-bound forbidding.json bound.json --kernel",
-        "verify-query forbidding.json one.json query.json",
-        "verify-query forbidding.json one.json query.json --kernel",
+        "verify forbidding.json bound.json",
+        "verify forbidding.json bound.json --kernel",
+        "verify forbidding.json one.json query.json",
+        "verify forbidding.json one.json query.json --kernel",
     ],
 )
 def test_commands_that_prove_refuse_in_one_sentence(command: str, carproof: Run) -> None:

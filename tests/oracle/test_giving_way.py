@@ -22,7 +22,7 @@ SIZES = Sizes(resources=6, robots=5)
 EAST = [["a", 0, 1], ["b", 1, 2], ["c", 2, 3], ["d", 3, 4]]
 APART = [["d", 0, 1], ["c", 1, 2], ["b", 2, 3], ["a", 3, 4]]
 ROBOTS = [{"id": "r1", "start": "a", "goal": "d"}, {"id": "person", "start": "d", "goal": "a"}]
-PERSON_FIRST = "give-way town.json plans.json person --engine reference"
+PERSON_FIRST = "execution give-way town.json plans.json person --engine reference"
 
 
 @pytest.fixture(autouse=True)

@@ -46,9 +46,9 @@ def stand_in(monkeypatch: pytest.MonkeyPatch, **answer: object) -> None:
 COMMANDS = [
     "check town.json plans.json --kernel",
     "audit town.json plans.json --kernel",
-    "verify-proof proof --kernel",
-    "verify-query town.json plans.json query.json --kernel",
-    "verify-bound town.json bound.json --kernel",
+    "verify proof --kernel",
+    "verify town.json plans.json query.json --kernel",
+    "verify town.json bound.json --kernel",
 ]
 
 
@@ -66,7 +66,7 @@ def test_what_the_kernel_accepts_is_accepted_in_its_name(
 
 def proved_by(command: str) -> int:
     """The bound that its certificate proves: robot r1 arrives at tick 2, and the least total cost is 5."""
-    return 2 if "verify-query" in command else 5
+    return 2 if "query.json" in command else 5
 
 
 def forge(command: str) -> None:
@@ -107,7 +107,7 @@ def test_a_kernel_that_proves_another_bound_is_a_contradiction(
 def test_a_size_that_only_the_kernel_refuses_is_no_contradiction(
     carproof: Run, monkeypatch: pytest.MonkeyPatch, command: str
 ) -> None:
-    rule = "query-certificate/size" if "verify-query" in command else "bound/size"
+    rule = "query-certificate/size" if "query.json" in command else "bound/size"
     stand_in(monkeypatch, verdict="refused", rule=rule, message="it is too large")
     assert carproof(command) == Outcome(1, f"not proved: $: it is too large [{rule}]\n", "")
 
@@ -188,7 +188,7 @@ def test_a_kernel_that_proves_something_else_is_a_contradiction(
     carproof: Run, monkeypatch: pytest.MonkeyPatch, answer: dict[str, int]
 ) -> None:
     stand_in(monkeypatch, verdict="accepted", **{"unplanned": 0, **answer})
-    outcome = carproof("verify-proof proof")
+    outcome = carproof("verify proof")
     assert (outcome.code, "Internal contradiction: " in outcome.stderr) == (70, True)
 
 
@@ -196,19 +196,19 @@ def test_a_proof_is_verified_without_a_kernel_that_cannot_decide(
     carproof: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     stand_in(monkeypatch, verdict="undecided", message="too large")
-    decided = carproof("verify-proof proof")
+    decided = carproof("verify proof")
     assert (decided.code, decided.stderr, "decided by" in decided.stdout) == (0, "", False)
     monkeypatch.setenv(VARIABLE, "nowhere")
-    assert carproof("verify-proof proof") == decided
+    assert carproof("verify proof") == decided
 
 
 def test_the_kernel_proves_an_optimum_and_no_obstacle_but_clauses(
     carproof: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv(VARIABLE, program())
-    outcome = carproof("verify-proof proof --kernel")
+    outcome = carproof("verify proof --kernel")
     assert (outcome.code, outcome.stdout.splitlines()[-1]) == (0, f"decided by {PROGRAM} 1")
-    document = json.loads(carproof("verify-proof proof --kernel --json").stdout)
+    document = json.loads(carproof("verify proof --kernel --json").stdout)
     assert (document["proved"], document["cost"], document["by"]) == (True, 5, f"{PROGRAM} 1")
     save(lane=UNSOLVABLE)
     carproof("optimum lane.json --proof lane")
@@ -223,14 +223,14 @@ def test_certificates_of_queries_are_written_and_verified(carproof: Run) -> None
     assert verified.stdout.splitlines()[-1].split() == ["r1", "0", "2", "0", "carp_verify"]
     certificate = json.loads(Path("query.json").read_text())
     save(wrong={**certificate, "bound": 3})
-    outcome = carproof("verify-query town.json plans.json wrong.json")
+    outcome = carproof("verify town.json plans.json wrong.json")
     assert outcome.code == 1
     assert outcome.stdout.startswith("not proved: $.labels: ")
     assert outcome.stdout.endswith("[query-certificate/closed]\n")
-    document = json.loads(carproof("verify-query town.json plans.json wrong.json --json").stdout)
+    document = json.loads(carproof("verify town.json plans.json wrong.json --json").stdout)
     assert (document["proved"], document["bound"], document["rule"]) == (False, None, "query-certificate/closed")
     save(wrong={**certificate, "now": True})
-    assert carproof("verify-query town.json plans.json wrong.json").code == 2
+    assert carproof("verify town.json plans.json wrong.json").code == 2
 
 
 def test_a_certificate_is_written_too_where_there_is_no_plan(carproof: Run) -> None:
@@ -238,7 +238,7 @@ def test_a_certificate_is_written_too_where_there_is_no_plan(carproof: Run) -> N
     save(park=corridor([EAST, standing], "park"), stands=solution({"r2": [["b", 0, None]]}, ["r1"]))
     for engine in ("optimized", "reference"):
         assert carproof(f"query park.json stands.json r1 --certificate query.json --engine {engine}").code == 1
-        verified = carproof("verify-query park.json stands.json query.json")
+        verified = carproof("verify park.json stands.json query.json")
         assert verified.stdout.splitlines()[-1].split()[2] == "never"
 
 

@@ -52,10 +52,10 @@ def test_that_robots_cannot_all_be_planned_is_found_and_with_a_proof_proved(carp
         row, reason = outcome.stdout.splitlines()[-2:]
         assert (outcome.code, row.split()[4:-2]) == (1, answer)
         assert reason == f"the robots cannot all be planned: {obstacle}"
-    outcome = carproof("verify-proof proof --instance lane.json")
+    outcome = carproof("verify proof --instance lane.json")
     assert (outcome.code, outcome.stdout) == (0, f"proved: the robots cannot all be planned: {obstacle}\n")
     proved = {"proved": True, "claim": "unsolvable", "obstacle": obstacle}
-    assert document_of(carproof, "verify-proof proof") == dict.fromkeys(("cost", "solution", "reason", "by")) | proved
+    assert document_of(carproof, "verify proof") == dict.fromkeys(("cost", "solution", "reason", "by")) | proved
     none = {"cost": None, "lower": 28, "proved": True, "solution": None}
     assert document_of(carproof, "optimum lane.json") == none
 
@@ -89,20 +89,20 @@ def test_a_proof_is_written_and_checked(carproof: Run) -> None:
     assert (outcome.code, outcome.stdout.splitlines()[-1].split()[3:5]) == (0, ["5", "proved"])
     document = document_of(carproof, "optimum town.json --proof proof")
     assert (document["proved"], document["checked"]) == (True, True)
-    outcome = carproof("verify-proof proof --instance town.json")
+    outcome = carproof("verify proof --instance town.json")
     assert (outcome.code, outcome.stderr) == (0, "")
     assert outcome.stdout.splitlines()[-1].split() == ["5", "2", "checked", "sat", "unsat"]
     proved = {"proved": True, "claim": "optimum", "cost": 5, "solution": TWO_PLANNED}
-    assert document_of(carproof, "verify-proof proof") == proved | {"obstacle": None, "reason": None, "by": None}
+    assert document_of(carproof, "verify proof") == proved | {"obstacle": None, "reason": None, "by": None}
 
 
 def test_a_proof_about_which_z3_does_not_answer_is_undecided(carproof: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     assert carproof("optimum town.json --proof proof").code == 0
     monkeypatch.setattr("carp_verify.optimum.proof._ask_z3", lambda *_: "unknown")
-    outcome = carproof("verify-proof proof")
+    outcome = carproof("verify proof")
     assert outcome.code == 3
     assert outcome.stdout.splitlines()[-1] == "undecided: z3 did not answer in time about one of the formulas"
-    document = document_of(carproof, "verify-proof proof")
+    document = document_of(carproof, "verify proof")
     assert (document["proved"], document["cost"]) == (False, 5)
 
 
@@ -110,8 +110,8 @@ def test_a_proof_that_does_not_hold_is_refused_with_its_reason(carproof: Run, fo
     carproof("optimum town.json --proof proof")
     (folder / "proof" / "beat.cnf").unlink()
     reason = "beat.cnf: it cannot be read: No such file or directory"
-    assert carproof("verify-proof proof") == Outcome(1, f"not proved: {reason}\n", "")
-    document = document_of(carproof, "verify-proof proof")
+    assert carproof("verify proof") == Outcome(1, f"not proved: {reason}\n", "")
+    document = document_of(carproof, "verify proof")
     assert (document["proved"], document["reason"]) == (False, reason)
 
 

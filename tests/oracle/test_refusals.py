@@ -91,7 +91,7 @@ FILES = (
     ("plan town.json -o none/out.json", "there is no folder "),
     ("plan town.json -o /proc/x", "/proc/x: it "),
     ("check - -", "Only one of the files can be standard input."),
-    ("certify town.json nothing.json", "document/format"),
+    ("check --z3 town.json nothing.json", "document/format"),
     ("demo town.json", "town.json"),
     ("demo town.json/demo", "town.json"),
 )
@@ -123,20 +123,20 @@ PLANNING = (
     ("polish town.json plans.json --seconds 1 --iterations 1", "there must be either iterations or seconds, not both"),
     ("polish town.json plans.json --seed -1", "--seed: the seed must be a whole number between 0 and"),
     ("polish town.json plans.json --bound bound-high.json", "bound-high.json: $."),
-    ("give-way town.json plans.json r1 --route route.json --engine reference", "[plan/start]"),
+    ("execution give-way town.json plans.json r1 --route route.json --engine reference", "[plan/start]"),
 )
 EXECUTING = (
-    ("retime east.json east-plans.json trace-early.json", "trace-early.json: $.", "[trace/ticks]"),
-    ("retime east.json east-plans.json trace-nobody.json", "trace-nobody.json: $.", "[trace/robots]"),
-    ("retime east.json east-plans.json trace-astray.json", "trace-astray.json: $.", "[trace/prefix]"),
-    ("retime east.json east-plans.json trace-hurried.json", "trace-hurried.json: $.", "[execution/duration]"),
-    ("retime east.json east-plans.json east-plans.json", "east-plans.json: $.", "[document/format]"),
+    ("execution retime east.json east-plans.json trace-early.json", "trace-early.json: $.", "[trace/ticks]"),
+    ("execution retime east.json east-plans.json trace-nobody.json", "trace-nobody.json: $.", "[trace/robots]"),
+    ("execution retime east.json east-plans.json trace-astray.json", "trace-astray.json: $.", "[trace/prefix]"),
+    ("execution retime east.json east-plans.json trace-hurried.json", "trace-hurried.json: $.", "[execution/duration]"),
+    ("execution retime east.json east-plans.json east-plans.json", "east-plans.json: $.", "[document/format]"),
     *(
-        (f"execute east.json east-plans.json --delays={delays}", "[request/delays]")
+        (f"execution simulate east.json east-plans.json --delays={delays}", "[request/delays]")
         for delays in ("2", "0.05:0", "x", "0.1:x", "-1", "0.00000001")
     ),
     *(
-        (f"execute east.json east-plans.json --delays {delays}.json", "[request/delays]")
+        (f"execution simulate east.json east-plans.json --delays {delays}.json", "[request/delays]")
         for delays in ("delays-nobody", "delays-last", "delays-zero", "delays-twice", "nothing")
     ),
 )
@@ -146,9 +146,9 @@ PROOFS = (
     ("bound --plans plans.json", "Give INSTANCE, or --map and --scen."),
     ("bound late.json --steps 1", "late.json: $.robots[0].release: "),
     ("bound late.json --steps 1", "the reference engine has no such limit, but finds no bounds"),
-    ("verify-bound town.json bound-scale.json", "bound-scale.json: $.scale: ", "[document/shape]"),
-    ("verify-bound town.json bound-true.json", "bound-true.json: $.bound: ", "[document/shape]"),
-    ("verify-bound town.json bound-more.json", "bound-more.json: $: ", "[document/shape]"),
+    ("verify town.json bound-scale.json", "bound-scale.json: $.scale: ", "[document/shape]"),
+    ("verify town.json bound-true.json", "bound-true.json: $.bound: ", "[document/shape]"),
+    ("verify town.json bound-more.json", "bound-more.json: $: ", "[document/shape]"),
     ("optimum town.json --proof town.json", "town.json"),
     ("optimum town.json --proof town.json/proof", "town.json"),
     ("verify-proof nowhere", "nowhere"),

@@ -20,14 +20,14 @@ TABLES = [
     "generate grid --width 4 --height 4 --robots 2 -o grid.json",
     "view town.json plans.json -o page.html",
     "bound town.json --steps 3",
-    "verify-bound town.json bound.json",
+    "verify town.json bound.json",
     "optimum town.json",
     "polish town.json plans.json --iterations 3",
     "audit town.json plans.json",
-    "dependencies town.json plans.json",
-    "execute town.json plans.json --delays 0.5:2",
-    "untangle town.json plans.json",
-    "give-way town.json plans.json r2 --now 1 -o after.json",
+    "execution dependencies town.json plans.json",
+    "execution simulate town.json plans.json --delays 0.5:2",
+    "execution untangle town.json plans.json",
+    "execution give-way town.json plans.json r2 --now 1 -o after.json",
     "gap town.json --limit 5",
     "theorems",
 ]
@@ -55,7 +55,7 @@ def test_a_narrow_terminal_shows_every_word_of_a_table_whole(
     carproof: Run, monkeypatch: pytest.MonkeyPatch, documents: Path, command: str
 ) -> None:
     monkeypatch.chdir(documents)
-    if command.startswith("verify-bound"):
+    if command.startswith("verify"):
         carproof("bound", "town.json", "--steps", "3", "-o", "bound.json")
     piped = carproof(*command.split())
     assert piped.code in (0, 1, 3), piped

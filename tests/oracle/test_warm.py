@@ -59,7 +59,7 @@ def test_a_limit_of_time_begins_when_the_planner_is_compiled(
         "add town.json one.json r2",
         "polish town.json plans.json --iterations 3",
         "audit town.json plans.json",
-        "give-way town.json plans.json r1",
+        "execution give-way town.json plans.json r1",
     ],
 )
 def test_every_command_that_plans_compiles_everything_at_once(

@@ -143,23 +143,23 @@ def write(folder: Path, *plans: Plan) -> tuple[Path, Path]:
 
 
 def test_the_command_certifies_and_refuses(carproof: Run, tmp_path: Path) -> None:
-    accepted = carproof("certify", *write(tmp_path, EASTWARD, STANDING))
+    accepted = carproof("check", "--z3", *write(tmp_path, EASTWARD, STANDING))
     assert (accepted.code, accepted.stderr) == (0, "")
     assert accepted.stdout.startswith(
         "certified: check finds no rule broken, and z3 no tick too full and no exchange in 3 "
     )
-    refused = carproof("certify", *write(tmp_path, EASTWARD, WESTWARD, STANDING))
+    refused = carproof("check", "--z3", *write(tmp_path, EASTWARD, WESTWARD, STANDING))
     assert refused.code == 1
     assert "[joint/capacity] resource b at tick 1" in refused.stdout
     assert "REFUSED: z3 finds 1 ticks at which a rule is broken in 3 resources" in refused.stdout
-    teleport = carproof("certify", *write(tmp_path, Plan("r1", (Visit("a", 0, 1), Visit("c", 1, 2)))))
+    teleport = carproof("check", "--z3", *write(tmp_path, Plan("r1", (Visit("a", 0, 1), Visit("c", 1, 2)))))
     assert teleport.code == 1
     assert teleport.stdout.startswith("[plan/move] resource c in [1,2): robot r1 (")
     assert "REFUSED: check finds a rule broken, and z3 was not asked" in teleport.stdout
 
 
 def test_the_command_prints_one_document(carproof: Run, tmp_path: Path) -> None:
-    outcome = carproof("certify", *write(tmp_path, EASTWARD, WESTWARD, STANDING), "--json")
+    outcome = carproof("check", "--z3", *write(tmp_path, EASTWARD, WESTWARD, STANDING), "--json")
     document = json.loads(outcome.stdout)
     assert outcome.code == 1
     assert document["accepted"] is False
@@ -172,6 +172,6 @@ def test_what_z3_cannot_tell_is_undecided(carproof: Run, tmp_path: Path, monkeyp
             raise Undecided(f"z3 answers unknown to {formulas}")
 
     monkeypatch.setattr(certificate, "Solver", Puzzled)
-    outcome = carproof("certify", *write(tmp_path, EASTWARD))
+    outcome = carproof("check", "--z3", *write(tmp_path, EASTWARD))
     assert outcome.code == 3
     assert outcome.stderr.startswith("Undecided: z3 answers unknown")

@@ -95,6 +95,6 @@ def test_a_proof_with_such_a_file_is_not_proved(
     carproof("optimum town.json --proof proof")
     (folder / "proof" / name).unlink()
     replaced(folder / "proof" / name)
-    outcome = carproof("verify-proof proof")
+    outcome = carproof("verify proof")
     assert (outcome.code, outcome.stderr) == (1, "")
     assert outcome.stdout.startswith(f"not proved: {name}: it must be a plain file, and is ")

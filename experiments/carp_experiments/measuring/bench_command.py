@@ -1,4 +1,4 @@
-"""`carproof bench`: the speed of the optimised planner."""
+"""`carproof dev bench`: the speed of the optimised planner."""
 
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -19,7 +19,7 @@ MAPS = (10, 20)
 
 @click.command(
     short_help="Measure queries, passes of CARP and additions.",
-    epilog=examples("carproof bench", "carproof bench --assignments 5 --json > bench.json"),
+    epilog=examples("carproof dev bench", "carproof dev bench --assignments 5 --json > bench.json"),
 )
 @click.option("--assignments", type=click.IntRange(min=1), default=20, help="The number of random assignments per map.")
 @click.option("--growth/--no-growth", default=True, help="Measure larger and larger grids too.")

@@ -1,7 +1,7 @@
 """A campaign of random small questions to both engines: the reference and the optimised planner must agree on all.
 
-A case is a block of questions, so that a row stands for a second of work. `carproof crosscheck` asks the same kind of
-questions up to the first difference, which it shrinks. This campaign can be stopped and continued, and runs on many
+A case is a block of questions, so that a row stands for a second of work. `carproof dev crosscheck` asks the same kind
+of questions up to the first difference, which it shrinks. This campaign can be stopped and continued, and runs on many
 machines.
 """
 

@@ -1,4 +1,4 @@
-"""`carproof crosscheck`: the optimised planner against the reference."""
+"""`carproof dev crosscheck`: the optimised planner against the reference."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -20,7 +20,7 @@ from carproof.progress import progress
 
 @click.command(
     short_help="Ask both engines the same random questions.",
-    epilog=examples("carproof crosscheck --examples 10000", "carproof crosscheck --seed 7 -o difference.json"),
+    epilog=examples("carproof dev crosscheck --examples 10000", "carproof dev crosscheck --seed 7 -o difference.json"),
 )
 @click.option("--examples", "count", type=click.IntRange(min=1), default=1000, help="The number of random questions.")
 @click.option("--seed", type=click.IntRange(min=0), default=0, help="The seed of the questions.")

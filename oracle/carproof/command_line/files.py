@@ -25,16 +25,19 @@ BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
 
 class InputFile(click.ParamType[str]):
-    """An existing file to read, or `-`; its value is the name."""
+    """An existing file to read, or `-`; its value is the name. With `folders`, a folder too."""
 
     name = "file"
+
+    def __init__(self, *, folders: bool = False) -> None:
+        self.folders = folders
 
     def convert(self, value: str, param: click.Parameter | None, ctx: click.Context | None) -> str:
         """Refuse a name that cannot be an input, before any work is done."""
         path = Path(value)
         if not value:
             self.fail("the name of a file must not be empty.", param, ctx)
-        if value != STANDARD_INPUT and path.is_dir():
+        if value != STANDARD_INPUT and path.is_dir() and not self.folders:
             self.fail(f"{value}: it is a folder.", param, ctx)
         if value != STANDARD_INPUT and not path.exists():
             self.fail(f"{value}: there is no such file.", param, ctx)

@@ -7,10 +7,7 @@ import sys
 import traceback
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from difflib import get_close_matches
 from errno import EBADF
-from importlib import import_module
-from typing import TYPE_CHECKING
 
 import click
 from click.shell_completion import shell_complete
@@ -19,15 +16,12 @@ from carp_spec import Refusal
 from carp_verify.bound.rules import ContradictionError
 from carp_verify.kernel import UndecidedError
 from carproof.command_line.answer import INTERNAL_ERROR, INTERRUPTED, PIPE_CLOSED, Answer
+from carproof.command_line.lazy import LazyGroup
 from carproof.command_line.tables import printable, remark
-from carproof.commands import COMMANDS, GROUPS
+from carproof.commands import RENAMED, SECTIONS
 from carproof.entry.supervising import supervised
 from carproof.extras import advice
 
-if TYPE_CHECKING:
-    from importlib.metadata import EntryPoints
-
-WIDEST_SUMMARY = 200
 ALLOCATIONS = 50_000
 """After how many objects a process of our own looks for garbage: documents are many objects, and hold no cycles."""
 COMPLETION = "_CARPROOF_COMPLETE"
@@ -47,57 +41,14 @@ check --require-all, a robot without a plan), 2 bad input or usage,
 """
 
 
-class LazyCommands(click.Group):
-    """A group whose commands are the modules of `carproof.commands`, and those that other packages add."""
-
-    def list_commands(self, ctx: click.Context) -> list[str]:
-        """The commands in the order in which they are listed."""
-        del ctx
-        return [*COMMANDS, *_added_commands().names]
-
-    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """Load a command."""
-        del ctx
-        if cmd_name in COMMANDS:
-            command = import_module(f"carproof.commands.{cmd_name.replace('-', '_')}").command
-        elif cmd_name in _added_commands().names:
-            command = _added_commands()[cmd_name].load()
-        else:
-            return None
-        assert isinstance(command, click.Command)  # noqa: S101 - a promise of ours, not of the user's
-        return command
-
-    def resolve_command(
-        self, ctx: click.Context, args: list[str]
-    ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Find the command; for one that there is not, the nearest is suggested."""
-        name = args[0]
-        if name[:1] != "-" and self.get_command(ctx, name) is None and not ctx.resilient_parsing:
-            near = get_close_matches(name, self.list_commands(ctx), 1)
-            hint = f"Did you mean {near[0]}?" if near else "carproof --help lists them."
-            raise click.UsageError(f"No such command {name!r}. {hint}", ctx)
-        return super().resolve_command(ctx, args)
-
-    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """List the commands group by group, each with its whole summary; commands of other packages come last."""
-        for group, names in GROUPS.items():
-            shown = names if group != "Run" else (*names, *_added_commands().names)
-            with formatter.section(group):
-                formatter.write_dl([(name, self._summary(ctx, name)) for name in shown])
-
-    def _summary(self, ctx: click.Context, name: str) -> str:
-        command = self.get_command(ctx, name)
-        assert command is not None  # noqa: S101 - a listed command exists
-        return command.get_short_help_str(limit=WIDEST_SUMMARY)
-
-
-def _added_commands() -> "EntryPoints":
-    from importlib.metadata import entry_points  # noqa: PLC0415 - slow to load, and most commands are ours
-
-    return entry_points(group="carproof.commands")
-
-
-@click.group(cls=LazyCommands, epilog=EPILOG, context_settings=SETTINGS)
+@click.group(
+    cls=LazyGroup,
+    sections=SECTIONS,
+    added="carproof.commands",
+    renamed=RENAMED,
+    epilog=EPILOG,
+    context_settings=SETTINGS,
+)
 @click.version_option(package_name="carproof", message="carproof %(version)s")
 def carproof() -> None:
     """Plan robots in an automated warehouse, and judge any planner's plans by stable rules."""

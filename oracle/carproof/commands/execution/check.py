@@ -1,4 +1,4 @@
-"""`carproof check-trace`: whether what has happened follows a solution."""
+"""`carproof execution check`: whether what has happened follows a solution."""
 
 import click
 
@@ -13,7 +13,7 @@ from carproof.command_line.tables import print_line
 
 @click.command(
     short_help="Check what robots have done against their plans.",
-    epilog=examples("carproof check-trace town.json plans.json trace.json"),
+    epilog=examples("carproof execution check town.json plans.json trace.json"),
 )
 @instance_argument
 @solution_argument

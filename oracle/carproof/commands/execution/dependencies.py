@@ -1,4 +1,4 @@
-"""`carproof dependencies`: the action dependency graph, and the effect of delays."""
+"""`carproof execution dependencies`: the action dependency graph, and the effect of delays."""
 
 from pathlib import Path
 
@@ -19,10 +19,10 @@ from carproof.viewer.dependency_picture import dependency_still
 @click.command(
     short_help="Show which visits wait, and what delays do.",
     epilog=examples(
-        "carproof dependencies town.json plans.json",
-        "carproof dependencies town.json plans.json --delay r7:3:5",
-        "carproof dependencies town.json plans.json --dot graph.dot",
-        "carproof dependencies town.json plans.json --svg graph.svg",
+        "carproof execution dependencies town.json plans.json",
+        "carproof execution dependencies town.json plans.json --delay r7:3:5",
+        "carproof execution dependencies town.json plans.json --dot graph.dot",
+        "carproof execution dependencies town.json plans.json --svg graph.svg",
     ),
 )
 @instance_argument

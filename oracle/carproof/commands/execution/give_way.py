@@ -1,4 +1,4 @@
-"""`carproof give-way`: a robot with priority goes first, and the others give way."""
+"""`carproof execution give-way`: a robot with priority goes first, and the others give way."""
 
 from pathlib import Path
 
@@ -26,8 +26,8 @@ from carproof.requests import robot_called
 @click.command(
     short_help="Let one robot go first, and plan the others around it.",
     epilog=examples(
-        "carproof give-way town.json plans.json person --now 12 -o after.json",
-        "carproof give-way town.json plans.json person --now 12 --route route.json",
+        "carproof execution give-way town.json plans.json person --now 12 -o after.json",
+        "carproof execution give-way town.json plans.json person --now 12 --route route.json",
     ),
 )
 @asks_for_a_robot

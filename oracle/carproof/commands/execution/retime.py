@@ -1,4 +1,4 @@
-"""`carproof retime`: plans for the rest of the way, after delays."""
+"""`carproof execution retime`: plans for the rest of the way, after delays."""
 
 from pathlib import Path
 
@@ -25,7 +25,7 @@ from carproof.engines import engine_named
 @click.command(
     short_help="Make plans for the rest, in the same order, after delays.",
     epilog=examples(
-        "carproof retime town.json plans.json trace.json -o late.json",
+        "carproof execution retime town.json plans.json trace.json -o late.json",
         "carproof query town.json late.json r7 --now 12",
     ),
 )

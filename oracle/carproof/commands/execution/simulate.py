@@ -1,4 +1,4 @@
-"""`carproof execute`: simulations of a solution with delayed robots."""
+"""`carproof execution simulate`: simulations of a solution with delayed robots."""
 
 from pathlib import Path
 
@@ -20,9 +20,9 @@ MOST_SHOWN = 3
 @click.command(
     short_help="Simulate robots that are delayed.",
     epilog=examples(
-        "carproof execute town.json plans.json --delays 0.05:3",
-        "carproof execute town.json plans.json --driver order --trace t.json --now 9",
-        "carproof execute town.json plans.json --driver clock --delays delays.json",
+        "carproof execution simulate town.json plans.json --delays 0.05:3",
+        "carproof execution simulate town.json plans.json --driver order --trace t.json --now 9",
+        "carproof execution simulate town.json plans.json --driver clock --delays delays.json",
     ),
 )
 @instance_argument

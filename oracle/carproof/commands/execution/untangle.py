@@ -1,4 +1,4 @@
-"""`carproof untangle`: a solution that robots can follow in order."""
+"""`carproof execution untangle`: a solution that robots can follow in order."""
 
 from pathlib import Path
 
@@ -17,7 +17,7 @@ from carproof.execution.untangling import untangle
 
 @click.command(
     short_help="Remove rotations from plans.",
-    epilog=examples("carproof untangle town.json plans.json -o in-order.json"),
+    epilog=examples("carproof execution untangle town.json plans.json -o in-order.json"),
 )
 @instance_argument
 @solution_argument

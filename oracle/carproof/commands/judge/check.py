@@ -15,6 +15,7 @@ from carproof.command_line.files import print_document, require_following_in, wr
 from carproof.command_line.foreign import Problem, solution_files
 from carproof.command_line.options import examples, json_option, kernel_option, output_option
 from carproof.command_line.tables import print_line, print_table, say
+from carproof.commands.judge.second_opinion import certified
 from carproof.registry import RULES
 
 
@@ -27,19 +28,22 @@ from carproof.registry import RULES
         "carproof check town.json plans.json --require-all",
         "carproof check town.json result.txt --from lacam",
         "carproof check town.json plans.json --kernel",
+        "carproof check town.json plans.json --z3",
         "carproof check --map town.map --scen town.scen --agents 40 result.txt",
     ),
 )
 @solution_files
 @kernel_option
+@click.option("--z3", is_flag=True, help="Let z3 confirm that plans keep capacities and avoid exchanges.")
 @click.option("--require-all", is_flag=True, help="Answer no also if a robot has no plan.")
 @click.option("--all", "everything", is_flag=True, help="List every violation, however many there are.")
 @output_option
 @json_option
-def command(
+def command(  # noqa: PLR0913 - an argument an option
     *,
     problem: Problem,
     kernel: bool,
+    z3: bool,
     require_all: bool,
     everything: bool,
     output: Path | None,
@@ -57,11 +61,18 @@ def command(
 
     With --kernel the proved kernel decides, and --json prints its verdict.
 
-    Exit codes: 0 no rule is broken, 1 a rule is broken (--require-all: or a robot has no plan), 2 bad input.
+    With --z3 a solution that breaks no rule is looked at by other means: z3 shows for each resource that it is too
+    full at no tick at all, and for each pair of resources that no two robots exchange it. Where it cannot tell, the
+    answer is undecided.
+
+    Exit codes: 0 no rule is broken, 1 a rule is broken (--require-all: or a robot has no plan), 2 bad input,
+    3 undecided.
     """
     instance, given = problem.read(as_named=True)
-    if kernel:
+    if kernel or z3:
         require_following_in(problem.names[0], instance)
+    if z3:
+        return certified(instance, given, as_json)
     most = None if everything else MOST_LISTED
     verdict = judge(instance, given, most)
     decided = kernel_verdict(instance, given, verdict) if kernel else None

@@ -23,7 +23,7 @@ COLUMNS = ("robots", "shortest paths", "lower bound", "best known", "gap", "step
     short_help="Find a lower bound on the total cost.",
     epilog=examples(
         "carproof bound town.json -o certificate.json",
-        "carproof verify-bound town.json certificate.json",
+        "carproof verify town.json certificate.json",
         "carproof bound town.json --seconds 60 --plans plans.json",
         "carproof bound town.json --steps 500 --json",
         "carproof bound --map town.map --scen town.scen --plans result.txt",

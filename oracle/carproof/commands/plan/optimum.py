@@ -28,7 +28,7 @@ COLUMNS = ("robots", "shortest paths", "lower bound", "cost", "answer", "time")
     epilog=examples(
         "carproof optimum town.json",
         "carproof optimum town.json --limit 300 -o best.json",
-        "carproof optimum town.json --proof proof && carproof verify-proof proof",
+        "carproof optimum town.json --proof proof && carproof verify proof",
     ),
 )
 @instance_argument

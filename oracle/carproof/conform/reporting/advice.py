@@ -50,8 +50,8 @@ _ADVICE = {
     "protocol": "Send one JSON object a line, with an id, an op and the op's fields.",
     "view": "Show fewer robots or ticks.",
     "optimum": "Ask for an instance with fewer robots or resources.",
-    "bound": "Check the certificate by carproof verify-bound, which names the first entry that is wrong.",
-    "query-certificate": "Check the certificate by carproof verify-query, which names the first entry that is wrong.",
+    "bound": "Check the certificate by carproof verify, which names the first entry that is wrong.",
+    "query-certificate": "Check the certificate by carproof verify, which names the first entry that is wrong.",
     "kernel": "Build the kernel by make kernel, or name its program in CARPROOF_KERNEL.",
 }
 """By rule, or by the part of its id before the stroke."""

@@ -32,7 +32,9 @@ def html_document(report: Report, saved: Sequence[Path], origin: Origin) -> byte
     level = report.options.level
     failures = [_failure(*each, origin) for each in zip_longest(report.failures, saved)]
     found = [*map(_fault, report.faults), *failures, *(f"<p>{escape(each)}</p>" for each in report.shortfalls)]
-    filled_in = Template(files("carproof.conform.reporting").joinpath("report.html").read_text(encoding="utf-8")).substitute(
+    filled_in = Template(
+        files("carproof.conform.reporting").joinpath("report.html").read_text(encoding="utf-8")
+    ).substitute(
         policy=POLICY,
         colours=variables(),
         title=escape(f"{report.program}: level {level.label}"),

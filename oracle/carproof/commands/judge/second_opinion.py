@@ -1,16 +1,13 @@
-"""`carproof certify`: check a solution, and let z3 confirm that plans keep capacities and avoid exchanges."""
+"""The second opinion of `carproof check --z3`: z3 confirms that plans keep capacities and avoid exchanges."""
 
 import json
 from dataclasses import asdict
 from time import perf_counter
 from typing import TYPE_CHECKING
 
-import click
-
+from carp_spec import Instance, Solution
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import print_document, require_following_in
-from carproof.command_line.foreign import Problem, solution_files
-from carproof.command_line.options import examples, json_option
+from carproof.command_line.files import print_document
 from carproof.command_line.tables import counted, print_line, remark
 from carproof.progress import progress
 
@@ -18,28 +15,8 @@ if TYPE_CHECKING:
     from carp_verify.certificate import Certificate
 
 
-@click.command(
-    short_help="Check plans, with z3's second opinion.",
-    epilog=examples(
-        "carproof certify town.json plans.json",
-        "carproof plan town.json --json | carproof certify town.json -",
-        "carproof certify --map town.map --scen town.scen result.txt",
-    ),
-)
-@solution_files
-@json_option
-def command(problem: Problem, as_json: bool) -> Answer:
-    """Check SOLUTION, in any format, and let z3 confirm that its plans keep capacities and avoid exchanges.
-
-    A solution that breaks a rule of single plans or of the list of plans is refused, as by check. Otherwise z3 shows
-    for each resource that it is too full at no tick at all, and for each pair of resources that no two robots exchange
-    it. This is a second opinion on the rules joint/capacity and joint/exchange, by other means than check. If there is
-    such a tick, it is named, with the robots.
-
-    Exit codes: 0 certified, 1 refused, 2 bad input, 3 z3 could not tell.
-    """
-    instance, solution = problem.read(as_named=True)
-    require_following_in(problem.names[0], instance)
+def certified(instance: Instance, solution: Solution, as_json: bool) -> Answer:
+    """Print what z3 says of a solution that `check` accepts: too full at no tick at all, and no exchange."""
     from carp_verify.certificate import certify  # noqa: PLC0415 - loads z3
     from carp_verify.lemmas.smt import Undecided  # noqa: PLC0415
 
