@@ -16,6 +16,7 @@ import pytest
 from carp_spec import Instance, Solution
 from carp_verify.bounds import BoundDocument
 from carp_verify.documents import instance_document, solution_document
+from carp_verify.kernel import VARIABLE
 
 ROOT = Path(__file__).parents[2]
 PROGRAM = ROOT / "build/kernel/carproof-kernel"
@@ -23,9 +24,14 @@ Json = Any
 PACKAGES = "coq, ocaml, ocaml-findlib, libyojson-ocaml-dev and libzarith-ocaml-dev"
 
 
-@cache
 def program() -> str:
-    """The kernel, made by `make kernel` if its sources have changed; for the first time only where all is required."""
+    """The kernel's program: the one that `VARIABLE` names, or else ours."""
+    return os.environ.get(VARIABLE) or built()
+
+
+@cache
+def built() -> str:
+    """Our kernel, made by `make kernel` if its sources have changed; for the first time only where all is required."""
     is_required = os.environ.get("CARPROOF_REQUIRE_ALL") == "1"
     if not all(map(which, ("coqc", "ocamlfind", "ocamlopt"))):
         reason = f"the kernel needs the Debian packages {PACKAGES}"

@@ -158,6 +158,7 @@ BAD_INSTANCES = {
     "1e0": INSTANCE.replace('"capacity": 2', '"capacity": 1e0'),
     "true": INSTANCE.replace('"capacity": 2', '"capacity": true'),
     "null": INSTANCE.replace('"capacity": 2', '"capacity": null'),
+    "false": INSTANCE.replace('"capacity": 2', '"capacity": false'),
     "a string": INSTANCE.replace('"capacity": 2', '"capacity": "2"'),
     "a boolean id": INSTANCE.replace('"id": "a"', '"id": true'),
     "101 digits": INSTANCE.replace('"capacity": 2', f'"capacity": {10**100}'),
@@ -180,6 +181,14 @@ def test_a_bad_instance_is_refused_with_the_rule_that_carp_spec_names(text: str,
     assert (code, verdict["verdict"], verdict["rule"]) == (2, "bad input", refusal.value.rule)
     assert verdict["path"] == refusal.value.path
     assert sentence.count("\n") == 1
+
+
+@pytest.mark.parametrize("value", ["false", "true", '"2"', "2.0", "[]", "{}"])
+def test_only_null_stands_for_no_tick(value: str, tmp_path: Path) -> None:
+    (tmp_path / "instance.json").write_text(INSTANCE.replace("vanish", "park"))
+    for leave, code in (("null", 0), (value, 2)):
+        (tmp_path / "solution.json").write_text(SOLUTION.replace('["b", 1, 2]', f'["b", 1, {leave}]'))
+        assert run("check", tmp_path / "instance.json", tmp_path / "solution.json")[0] == code
 
 
 @pytest.mark.parametrize(

@@ -111,6 +111,19 @@ def test_an_audit_accepts_plans_made_one_after_the_other_and_no_later_one(instan
         assert (verdict["verdict"], verdict["rule"]) == ("refused", "query/optimal")
 
 
+def test_an_audit_refuses_plans_that_break_the_law_and_names_the_rule() -> None:
+    """Each is optimal by itself: the certificates hold, but the two robots exchange their resources."""
+    graph = ResourceGraph((Resource("a", 2), Resource("b", 2)), (("a", "b"),))
+    instance = Instance(graph, (Robot("r", "a", "b"), Robot("s", "b", "a")))
+    problem = prepare(instance, 0)
+    plans = [find_plan(problem, (), robot) for robot in instance.robot]
+    certificates = [query_certificate(problem, (), robot) for robot in instance.robot]
+    solution = Solution.of(instance, [plan for plan in plans if plan is not None])
+    documents = {"instance": instance_document(instance), "solution": solution_document(solution)}
+    verdict = ask(encoded(op="audit", certificates=certificates, **documents))
+    assert (verdict["verdict"], verdict["rule"]) == ("refused", "joint/exchange")
+
+
 # ---- refutations ----
 
 FORMULA = "c a comment\np cnf 2 4\n1 2 0\n-1 2 0\n1 -2 0\n-1 -2 0\n"
@@ -130,6 +143,11 @@ BAD_PROOFS = {
     "no 0": "5 2 0 1 2 0\n6 0 5 3 4\n",
     "words after 0": "5 2 0 1 2 0 7\n6 0 5 3 4 0\n",
     "a number that is taken": "1 2 0 1 2 0\n6 0 1 3 4 0\n",
+    "a number that was taken": "5 2 0 1 2 0\n5 d 5 0\n5 2 0 1 2 0\n6 0 5 3 4 0\n",
+    "a number below 1": "0 2 0 1 2 0\n6 0 5 3 4 0\n",
+    "a deletion of no clause": "5 2 0 1 2 0\n5 d -1 0\n6 0 5 3 4 0\n",
+    "a step after the empty clause": PROOF + "7 1 0 5 0\n",
+    "a deletion after the empty clause": PROOF + "7 d 1 0\n",
     "a 0 as literal": "5 0 0 1 2 0\n6 0 5 3 4 0\n",
 }
 
@@ -159,6 +177,21 @@ def test_a_formula_that_has_a_solution_is_not_refuted(tmp_path: Path) -> None:
 )
 def test_a_malformed_formula_is_bad_input(formula: str, tmp_path: Path) -> None:
     assert refute(tmp_path, formula, PROOF)[0] == 2
+
+
+@pytest.mark.parametrize(
+    "proof",
+    [
+        f"{PROOF}\n",
+        f"c a comment\n{PROOF}",
+        "5 2 0 1 2 0 \n",
+        "5 2 0  1 2 0\n",
+        "05 2 0 1 2 0\n",
+        f"5 {10**18} 0 1 0\n",
+    ],
+)
+def test_lines_of_a_refutation_that_are_not_in_its_form_are_bad_input(proof: str, tmp_path: Path) -> None:
+    assert refute(tmp_path, FORMULA, proof)[0] == 2
 
 
 @pytest.mark.parametrize("proof", ["5 x 0\n", "5 1.0 0 1 0\n", "5 0x1 0 1 0\n", "5 1_0 0 1 0\n", "5 - 0 1 0\n"])
@@ -279,6 +312,8 @@ def test_a_bound_with_cuts_is_decided(tmp_path: Path) -> None:
         {"refutation": ""},
         {"refutation": "nonsense\n"},
         {"least": 8},
+        {"least": -1},
+        {"horizons": (10, 10)},
         {"horizons": (0, 0)},
         {"horizons": (1,)},
         {"horizons": (-1, 3)},

@@ -357,12 +357,19 @@ def test_deadlines_whose_proof_is_changed_are_refused(change: Mapping[str, Any],
     assert answer["message"].startswith(f"the proof of deadlines 0 does not hold: {why}")
 
 
-def test_a_deadline_too_late_for_a_formula_is_undecided(tmp_path: Path) -> None:
+def test_a_price_of_deadlines_below_0_is_refused(tmp_path: Path) -> None:
+    changed = msgspec.structs.replace(deadline_certificate().deadlines[0], price=-1)
+    document = msgspec.structs.replace(deadline_certificate(), deadlines=(changed,))
+    answer = bound_verdict(head_on(), document, tmp_path)
+    assert (answer["verdict"], answer["rule"]) == ("refused", "bound/deadline")
+
+
+def test_a_deadline_too_late_for_a_formula_is_refused(tmp_path: Path) -> None:
     (deadlines,) = deadline_certificate().deadlines
     for tick in (10**7, 10**40):
         document = late_bound(head_on(), msgspec.structs.replace(deadlines, ticks=(2, tick), price=1))
         answer = bound_verdict(head_on(), document, tmp_path)
-        assert answer["message"] == "the formula would have more than 5000000 clauses, the limit"
+        assert (answer["verdict"], answer["rule"]) == ("refused", "bound/size")
 
 
 def idle_hints(clauses: Sequence[Clause], text: str) -> list[tuple[int, int]]:

@@ -41,6 +41,9 @@ def test_clauses_that_are_forgotten_may_have_served_before() -> None:
     [
         ("", "it does not end with the empty clause"),
         ("5 1 0 1 2 0\n", "it does not end with the empty clause"),
+        (f"{REFUTED}7 1 0 5 0\n", "must not follow the empty clause"),
+        (f"{REFUTED}7 d 5 0\n", "must not follow the empty clause"),
+        (f"{REFUTED}\n", "line 3 must be"),
         ("6 0 3 4 0\n", "line 1 has the hint 3, whose clause leaves several literals open"),
         ("5 1 0 1 0\n6 0 5 3 4 0\n", "line 1 does not follow from its hints"),
         ("5 1 0 1 2 0\n5 0 5 3 4 0\n", "line 2 must have a number above 5"),

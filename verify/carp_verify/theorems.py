@@ -44,6 +44,18 @@ THEOREMS = (
         ),
     ),
     Theorem(
+        "Checker",
+        "accepted_solutions_are_exactly_the_lawful_ones",
+        "the same from the documents on: instance and solution",
+        (*(f"instance/{name}" for name in _OF_INSTANCES), "solution/covers", "solution/order"),
+    ),
+    Theorem(
+        "Checker",
+        "solution_cost_is_the_total_cost",
+        "the cost in a verdict is the sum of the plans' costs",
+        ("cost/total",),
+    ),
+    Theorem(
         "Windows",
         "free_windows_are_maximal",
         "the computed windows are exactly the maximal intervals with room for one more robot",
@@ -118,7 +130,7 @@ THEOREMS = (
     Theorem(
         "Audit",
         "plans_of_an_accepted_audit_are_optimal",
-        "no robot of an audited solution can arrive earlier beside the plans before its own",
+        "an audited solution is lawful, and no robot can arrive earlier beside the plans before its own",
         ("query/optimal",),
     ),
     Theorem(
@@ -170,13 +182,19 @@ THEOREMS = (
     ),
     Theorem(
         "Total",
+        "proved_claim_holds_of_every_solution",
+        "the same two from the documents on: instance, manifest and refutation of a proof directory",
+        ("cost/total",),
+    ),
+    Theorem(
+        "Total",
         "refuted_deadlines_are_not_all_kept",
         "in each lawful solution of all plannable robots, one of the robots with refuted deadlines breaks its own",
     ),
     Theorem(
         "Total",
         "bound_with_refuted_groups_is_below_every_solution",
-        "no lawful solution of all plannable robots costs less than an accepted bound whose groups are refuted",
+        "from the documents on: no lawful solution of all plannable robots costs less than a `carproof-bound/1` proves",
         ("cost/total",),
     ),
     Theorem(

@@ -57,7 +57,7 @@ Definition query_accepted (i : instance) (s : solution) (id now : Z) (cert : cer
 
 (** Audit a solution: the instance is well-formed, the solution lawful, and each of its plans certified. *)
 Definition audit_accepted (i : instance) (s : solution) (certificates : list (Z * certificate)) : bool :=
-  instance_accepted i && accepted i s && match audit i s certificates with None => true | Some _ => false end.
+  solution_accepted i s && match audit i s certificates with None => true | Some _ => false end.
 
 Section Instance.
 Variable i : instance.
@@ -194,9 +194,7 @@ Theorem plans_of_an_accepted_audit_are_optimal i s certificates : audit_accepted
   In p (plans s) -> plan_robot p = id -> In a (robots i) -> robot_id a = id -> Sound i a committed rival ->
   arrival (release a) p <= arrival (release a) rival.
 Proof.
-  unfold audit_accepted. rewrite !andb_true_iff. intros [[W L] A].
-  apply instance_is_well_formed_exactly_when_accepted in W.
-  apply (checker_accepts_exactly_lawful_solutions i W) in L.
+  unfold audit_accepted. rewrite andb_true_iff, accepted_solutions_are_exactly_the_lawful_ones. intros [[W L] A].
   destruct (audit i s certificates) eqn:E; [discriminate|]. split; [exact W|]. split; [exact L|].
   exact (audited_plans_are_optimal i W s L certificates E).
 Qed.

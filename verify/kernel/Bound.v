@@ -61,9 +61,16 @@ Definition prices_are_different (c : certificate) : bool :=
   Pairs.distinct (flat_map (fun x => match key_here x with Some k => [k] | None => [] end) (prices c)) &&
   Triples.distinct (flat_map (fun x => match key_exchange x with Some k => [k] | None => [] end) (prices c)).
 
-(** bound/size: a table of the priced resources and the ticks, up to the last price, has 20,000,000 entries at most. *)
-Definition size_accepted (c : certificate) : bool :=
-  last_tick (prices c) * Z.of_nat (Ids.S.cardinal (Ids.of_list (map place (prices c)))) <=? 20000000.
+(** bound/size: tables have 20,000,000 entries at most: of robots, and of those of cuts and deadlines, by resource, and of
+    priced resources by tick, up to the last price. *)
+Definition size_accepted (i : instance) (c : certificate) : bool :=
+  let fits n m := n * m <=? 20000000 in
+  let count {A} (l : list A) := total_of (fun _ => 1) l in
+  let all := count (resources i) in
+  fits (count (robots i)) all &&
+  fits (total_of (fun k => count (members k)) (cuts c)) all &&
+  fits (total_of (fun g => count (deadlines g)) (groups c)) all &&
+  fits (last_tick (prices c)) (Z.of_nat (Ids.S.cardinal (Ids.of_list (map place (prices c))))).
 
 (** bound/cut: what a robot's own ticks count, in parts of a tick, where its cuts count the rest. *)
 Definition weight_of (c : certificate) (id : Z) : Z :=
@@ -72,7 +79,8 @@ Definition weight_of (c : certificate) (id : Z) : Z :=
 Definition cuts_accepted (i : instance) (c : certificate) : bool :=
   let ids := Ids.of_list (robot_ids i) in
   forallb (fun k =>
-    (0 <=? multiplier k) && Ids.distinct (members k) && forallb (Ids.contains ids) (members k)) (cuts c) &&
+    (0 <=? multiplier k) && (0 <=? least_total k) && negb (match members k with [] => true | _ => false end) &&
+    Ids.distinct (members k) && forallb (Ids.contains ids) (members k)) (cuts c) &&
   forallb (fun id => 0 <=? weight_of c id) (robot_ids i).
 
 (** bound/deadline: the deadlines of a robot, each with what it pays if it keeps it. *)
@@ -126,15 +134,16 @@ Definition claim_accepted (i : instance) (tf : tariff) (successors : Z -> list Z
   | None => negb (start a =? goal a) && match rest_at (start a) with None => true | Some _ => false end
   end.
 
-(** The first robots of the instance that are not named in order, or whose claims do not hold; none if all is right. *)
+(** The first robots of the instance that are not named in order, or whose claims do not hold; none if all is right. A
+    robot's evidence is looked for when its claim is checked, and so after all that is cheaper to check. *)
 Fixpoint refused_claims (i : instance) (tf : tariff) (successors : Z -> list Z) (table : Map.t resource)
-    (c : certificate) (robots : list robot) (claims : list (Z * option Z)) (all : list evidence)
+    (c : certificate) (robots : list robot) (claims : list (Z * option Z)) (all : list (unit -> evidence))
     : option (list robot) :=
   match robots, claims, all with
   | [], [], _ => None
   | a :: robots', (id, claimed_least) :: claims', e :: all' =>
       if (id =? robot_id a) &&
-        claim_accepted i tf successors (takes_in table a) (weight_of c id) a (dues_of c id) claimed_least e
+        claim_accepted i tf successors (takes_in table a) (weight_of c id) a (dues_of c id) claimed_least (e tt)
       then refused_claims i tf successors table c robots' claims' all'
       else Some robots
   | _, _, _ => Some robots
@@ -154,7 +163,7 @@ Definition total_accepted (table : Map.t resource) (c : certificate) : bool :=
 Inductive bound_rule :=
   Scale | Price_rule | Once | Size | Cut_rule | Deadline_rule | Robots (refused : list robot) | Total.
 
-Definition broken_rule (i : instance) (c : certificate) (all : list evidence) : option bound_rule :=
+Definition broken_rule (i : instance) (c : certificate) (all : list (unit -> evidence)) : option bound_rule :=
   let table := resource_table i in
   let moves := successor_table i in
   let successors := listed moves in
@@ -162,7 +171,7 @@ Definition broken_rule (i : instance) (c : certificate) (all : list evidence) : 
   if negb (scale_accepted c) then Some Scale
   else if negb (forallb (price_accepted i (Ids.contains ids) successors c) (prices c)) then Some Price_rule
   else if negb (prices_are_different c) then Some Once
-  else if negb (size_accepted c) then Some Size
+  else if negb (size_accepted i c) then Some Size
   else if negb (cuts_accepted i c) then Some Cut_rule
   else if negb (groups_accepted c) then Some Deadline_rule
   else match refused_claims i (tariff_of (prices c)) successors table c (robots i) (claims c) all with
@@ -170,7 +179,7 @@ Definition broken_rule (i : instance) (c : certificate) (all : list evidence) : 
        | None => if total_accepted table c then None else Some Total
        end.
 
-Definition bound_accepted (i : instance) (c : certificate) (all : list evidence) : bool :=
+Definition bound_accepted (i : instance) (c : certificate) (all : list (unit -> evidence)) : bool :=
   match broken_rule i c all with None => true | Some _ => false end.
 
 (** * What it proves *)
@@ -236,7 +245,7 @@ Proof.
 Qed.
 
 Section Instance.
-Variables (i : instance) (s : solution) (c : certificate) (all : list evidence).
+Variables (i : instance) (s : solution) (c : certificate) (all : list (unit -> evidence)).
 Hypothesis right : Well_formed i.
 Hypothesis lawful : Lawful i s.
 Hypothesis complete : Plans_every_plannable_robot i s.
@@ -404,7 +413,7 @@ Proof.
   induction robots' as [| a robots' IH]; intros [| [id claimed_least] claims'] [| e all'] K H;
     try discriminate; try (simpl; lia). simpl in H.
   destruct (Z.eqb_spec id (robot_id a)) as [-> |]; [| discriminate].
-  destruct (claim_accepted i tf successors _ _ a _ claimed_least e) eqn:C; [| discriminate].
+  destruct (claim_accepted i tf successors _ _ a _ claimed_least (e tt)) eqn:C; [| discriminate].
   apply accepted_claim_is_below_plans in C; [| apply K; left; auto].
   assert (IHr := IH claims' all' (fun b Hb => K b (or_intror Hb)) H). simpl in *. lia.
 Qed.
@@ -489,7 +498,7 @@ Proof.
   destruct (scale_accepted c) eqn:Scaled; [| discriminate]. cbn [negb] in H.
   destruct (forallb (price_accepted _ _ _ c) (prices c)) eqn:Priced; [| discriminate]. cbn [negb] in H.
   destruct (prices_are_different c); [| discriminate]. cbn [negb] in H.
-  destruct (size_accepted c); [| discriminate]. cbn [negb] in H.
+  destruct (size_accepted i c); [| discriminate]. cbn [negb] in H.
   destruct (cuts_accepted i c) eqn:Cutted; [| discriminate]. cbn [negb] in H.
   destruct (groups_accepted c) eqn:Grouped; [| discriminate]. cbn [negb] in H.
   destruct (refused_claims _ _ _ _ c _ _ all) eqn:Claimed; [discriminate |].
@@ -504,7 +513,7 @@ Proof.
       apply Ids.contains_of_list in O. exact O.
     - intros id Hid. apply Z.leb_le, Weights, Hid.
     - intros k Hk. specialize (Multipliers k Hk). rewrite !andb_true_iff in Multipliers.
-      destruct Multipliers as ((M & _) & _). apply Z.leb_le in M. exact M.
+      destruct Multipliers as ((((M & _) & _) & _) & _). apply Z.leb_le in M. exact M.
     - intros g Hg. apply Z.leb_le, (proj1 (forallb_forall _ _) Grouped g Hg). }
   rewrite Totalled. pose proof (Z.mul_div_le (- parts (resource_table i) c) (scale c) Scaled).
   pose proof (Z.mod_pos_bound (- parts (resource_table i) c) (scale c) Scaled).

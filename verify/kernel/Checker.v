@@ -143,6 +143,15 @@ Definition accepted (i : instance) (s : solution) : bool :=
   && capacity_accepted i (plans s)
   && exchanges_accepted (plans s).
 
+(** The instance is well-formed, and the solution keeps the law. *)
+Definition solution_accepted (i : instance) (s : solution) : bool := instance_accepted i && accepted i s.
+
+(** The total cost; each robot is looked up. *)
+Definition solution_cost (i : instance) (s : solution) : Z :=
+  let known := robot_of (lookup_of i) in
+  fold_left (fun total p =>
+    total + match Map.find (plan_robot p) known with Some a => cost a p | None => 0 end) (plans s) 0.
+
 (** * Proofs: plans *)
 
 Lemma same_end_iff one other : same_end one other = true <-> one = other.
@@ -370,3 +379,26 @@ Proof.
       * apply exchanges_accepted_iff; auto.
 Qed.
 End Proofs.
+
+(** The same from the documents on. *)
+Theorem accepted_solutions_are_exactly_the_lawful_ones i s :
+  solution_accepted i s = true <-> Well_formed i /\ Lawful i s.
+Proof.
+  unfold solution_accepted. rewrite andb_true_iff, instance_is_well_formed_exactly_when_accepted.
+  split; intros [W L]; (split; [exact W |]); apply (checker_accepts_exactly_lawful_solutions i W); exact L.
+Qed.
+
+Theorem solution_cost_is_the_total_cost i s : Well_formed i -> solution_cost i s = total_cost i s.
+Proof.
+  intros W. unfold solution_cost, total_cost. cbv zeta.
+  assert (E : forall p, match Map.find (plan_robot p) (robot_of (lookup_of i)) with Some a => cost a p | None => 0 end =
+    cost_of_plan i p).
+  { intros p. unfold cost_of_plan. destruct (find (fun a => robot_id a =? plan_robot p) (robots i)) as [a|] eqn:E.
+    - apply find_some in E as [A E]. apply Z.eqb_eq in E.
+      assert (F : Map.find (plan_robot p) (robot_of (lookup_of i)) = Some a) by (apply find_robot; auto).
+      rewrite F. reflexivity.
+    - destruct (Map.find (plan_robot p) (robot_of (lookup_of i))) as [a|] eqn:F; auto.
+      apply find_robot in F as [A F]; [|exact W]. apply (find_none _ _ E) in A. apply Z.eqb_neq in A. congruence. }
+  generalize 0 at 2 3. induction (plans s) as [|p ps IH]; intros n; [reflexivity|]. cbn [fold_left]. rewrite E.
+  apply IH.
+Qed.

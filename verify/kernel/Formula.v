@@ -421,17 +421,33 @@ Fixpoint once (known ids : list Z) : list Z :=
 Definition deadlines_refuted (i : instance) (g : group) : blueprint -> list (list word) -> bool :=
   group_refuted i (once [] (map who (deadlines g))) (In_time (deadlines g)).
 
-(** Each claim has a proof. *)
+(** Each claim has a proof, which is made when the claim is checked. *)
 Fixpoint all_refuted {A} (claim_refuted : A -> blueprint -> list (list word) -> bool) (claimed : list A)
-    (proofs : list (blueprint * list (list word))) : bool :=
+    (proofs : list (unit -> blueprint * list (list word))) : bool :=
   match claimed, proofs with
   | [], _ => true
-  | k :: claimed', (b, lines) :: proofs' =>
+  | k :: claimed', proof :: proofs' =>
+      let (b, lines) := proof tt in
       if claim_refuted k b lines then all_refuted claim_refuted claimed' proofs' else false
   | _ :: _, [] => false
   end.
 
 (** All cuts and deadlines of the certificate. *)
 Definition groups_refuted (i : instance) (c : certificate)
-    (of_cuts of_deadlines : list (blueprint * list (list word))) : bool :=
+    (of_cuts of_deadlines : list (unit -> blueprint * list (list word))) : bool :=
   all_refuted (cut_refuted i) (cuts c) of_cuts && all_refuted (deadlines_refuted i) (groups c) of_deadlines.
+
+(** * From the documents on *)
+
+(** The instance is well-formed, and the certificate proves its bound. *)
+Definition bound_proved (i : instance) (c : certificate) (all : list (unit -> evidence))
+    (of_cuts of_deadlines : list (unit -> blueprint * list (list word))) : bool :=
+  instance_accepted i && bound_accepted i c all && groups_refuted i c of_cuts of_deadlines.
+
+(** The claim of a proof is that no plans cost less, or, without a cost, that there are none. *)
+Definition demand_of (cost : option Z) : demand :=
+  match cost with Some total => Cheaper_than total | None => Lawful_plans end.
+
+(** The instance is well-formed, and the claim is proved. *)
+Definition claim_proved (i : instance) (cost : option Z) (b : blueprint) (lines : list (list word)) : bool :=
+  instance_accepted i && refuted i (demand_of cost) b lines.

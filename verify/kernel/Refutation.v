@@ -40,15 +40,21 @@ Fixpoint until_zero (words : list word) (before : list Z) : option (list Z * lis
   | _ => None
   end.
 
-(** Read a line: "number literals 0 hints 0" or "number d numbers 0". *)
+(** Read a line: "number literals 0 hints 0" or "number d numbers 0". Clauses have numbers above 0. *)
 Definition read_step (line : list word) : option step :=
   match line with
-  | Number _ :: Letter_d :: rest =>
-      match until_zero rest [] with Some (numbers, []) => Some (Delete numbers) | _ => None end
+  | Number number :: Letter_d :: rest =>
+      match until_zero rest [] with
+      | Some (numbers, []) => if forallb (Z.ltb 0) (number :: numbers) then Some (Delete numbers) else None
+      | _ => None
+      end
   | Number number :: rest =>
       match until_zero rest [] with
       | Some (added, hinted) =>
-          match until_zero hinted [] with Some (hints, []) => Some (Add number added hints) | _ => None end
+          match until_zero hinted [] with
+          | Some (hints, []) => if forallb (Z.ltb 0) (number :: hints) then Some (Add number added hints) else None
+          | _ => None
+          end
       | None => None
       end
   | _ => None
@@ -90,17 +96,21 @@ Definition denied (c : clause) : Literals.t := fold_left (fun known l => Literal
 
 Definition has_no_zero (c : clause) : bool := forallb (fun l => negb (l =? 0)) c.
 
-(** The clauses follow line by line, and one of them is empty. *)
-Fixpoint accepts (clauses : Numbered.t clause) (lines : list (list word)) : bool :=
+(** The clauses follow line by line, each with a number above the last one, and the clause of the last line is empty. *)
+Fixpoint accepts (last : Z) (clauses : Numbered.t clause) (lines : list (list word)) : bool :=
   match lines with
   | [] => false
   | line :: rest =>
       match read_step line with
       | None => false
-      | Some (Delete numbers) => accepts (fold_left (fun kept n => Numbered.remove n kept) numbers clauses) rest
+      | Some (Delete numbers) => accepts last (fold_left (fun kept n => Numbered.remove n kept) numbers clauses) rest
       | Some (Add number added hints) =>
-          if has_no_zero added && negb (Numbered.mem number clauses) && propagate clauses (denied added) hints
-          then match added with [] => true | _ => accepts (Numbered.add number added clauses) rest end
+          if has_no_zero added && (last <? number) && propagate clauses (denied added) hints
+          then match added, rest with
+               | [], [] => true
+               | [], _ => false
+               | _, _ => accepts number (Numbered.add number added clauses) rest
+               end
           else false
       end
   end.
@@ -113,7 +123,7 @@ Fixpoint numbered (formula : list clause) (number : Z) (clauses : Numbered.t cla
 
 (** The lines are a refutation of the formula. *)
 Definition refutes (formula : list clause) (lines : list (list word)) : bool :=
-  accepts (numbered formula 1 (Numbered.empty clause)) lines.
+  accepts (fold_left (fun n _ => n + 1) formula 0) (numbered formula 1 (Numbered.empty clause)) lines.
 
 (** * Why it is right *)
 
@@ -210,17 +220,18 @@ Proof.
   intros m c. rewrite Numbered_facts.remove_o. destruct (Numbered_facts.eq_dec n m); [discriminate | apply H].
 Qed.
 
-Lemma accepted_lines_contradict lines : forall clauses, All_satisfied clauses -> accepts clauses lines = true -> False.
+Lemma accepted_lines_contradict lines : forall last clauses, All_satisfied clauses ->
+  accepts last clauses lines = true -> False.
 Proof.
-  induction lines as [| line rest IH]; simpl; intros clauses Hc H; [discriminate |].
+  induction lines as [| line rest IH]; cbn [accepts]; intros last clauses Hc H; [discriminate |].
   destruct (read_step line) as [[number added hints | numbers] |]; [| | discriminate].
   - destruct (has_no_zero added) eqn:Hz; [| discriminate].
-    destruct (Numbered.mem number clauses); [discriminate |].
+    destruct (last <? number); [| discriminate].
     destruct (propagate clauses (denied added) hints) eqn:Hp; [| discriminate]. simpl in H.
     pose proof (propagated_clause_is_satisfied clauses added hints Hc Hz Hp) as Ha.
     destruct added as [| l others]; [destruct Ha as (l & [] & _) |].
-    apply (IH (Numbered.add number (l :: others) clauses)); auto using added_clauses_are_satisfied.
-  - apply (IH (fold_left (fun kept n => Numbered.remove n kept) numbers clauses));
+    apply (IH number (Numbered.add number (l :: others) clauses)); auto using added_clauses_are_satisfied.
+  - apply (IH last (fold_left (fun kept n => Numbered.remove n kept) numbers clauses));
     auto using kept_clauses_are_satisfied.
 Qed.
 
@@ -235,6 +246,6 @@ End Valuation.
 
 Theorem accepted_refutation_means_unsatisfiable formula lines : refutes formula lines = true -> Unsatisfiable formula.
 Proof.
-  intros H v Hf. apply (accepted_lines_contradict v lines) in H; auto.
+  intros H v Hf. unfold refutes in H. apply (accepted_lines_contradict v lines) in H; auto.
   apply numbered_clauses_are_satisfied; auto. intros n c E. rewrite Numbered_facts.empty_o in E. discriminate.
 Qed.

@@ -1003,6 +1003,19 @@ Proof.
   apply (robot_ids_are_unique i right).
 Qed.
 
+(** The same from the documents on: no lawful solution that plans every robot with a way to its goal costs less than the
+    claim, or no such solution exists. *)
+Theorem proved_claim_holds_of_every_solution i cost b lines : claim_proved i cost b lines = true -> Well_formed i /\
+  forall s, Lawful i s -> Plans_every_plannable_robot i s ->
+  match cost with Some total => total <= total_cost i s | None => False end.
+Proof.
+  unfold claim_proved. rewrite andb_true_iff. intros [right H].
+  apply instance_is_well_formed_exactly_when_accepted in right. split; [exact right |].
+  intros s lawful complete. destruct cost as [total |].
+  - exact (refuted_total_is_impossible i total b lines s right H lawful complete).
+  - exact (refuted_instance_has_no_solution i b lines s right H lawful complete).
+Qed.
+
 (** * Cuts and deadlines *)
 
 Lemma group_is_known i ids a : Well_formed i -> In a (group_of i ids) -> In a (robots i).
@@ -1205,18 +1218,20 @@ Lemma all_refuted_claims_hold {A} refuted (Holds : A -> Prop) claimed :
   forall proofs, all_refuted refuted claimed proofs = true -> forall k, In k claimed -> Holds k.
 Proof.
   intros R. induction claimed as [| k claimed IH]; intros proofs H j Hj; [destruct Hj |].
-  destruct proofs as [| [b lines] proofs]; [discriminate |]. simpl in H.
+  destruct proofs as [| proof proofs]; [discriminate |]. simpl in H. destruct (proof tt) as [b lines].
   destruct (refuted k b lines) eqn:K; [| discriminate].
   destruct Hj as [<- | Hj]; [apply (R _ _ _ K) | apply (IH proofs H j Hj)].
 Qed.
 
-(** No lawful solution that plans every robot with a way to its goal costs less than an accepted bound whose cuts and
-    deadlines are refuted. *)
-Theorem bound_with_refuted_groups_is_below_every_solution i s c all of_cuts of_deadlines : Well_formed i ->
-  bound_accepted i c all = true -> groups_refuted i c of_cuts of_deadlines = true ->
-  Lawful i s -> Plans_every_plannable_robot i s -> bound c <= total_cost i s.
+(** No lawful solution that plans every robot with a way to its goal costs less than a bound that a certificate proves,
+    whose cuts and deadlines are refuted. *)
+Theorem bound_with_refuted_groups_is_below_every_solution i c all of_cuts of_deadlines :
+  bound_proved i c all of_cuts of_deadlines = true -> Well_formed i /\
+  forall s, Lawful i s -> Plans_every_plannable_robot i s -> bound c <= total_cost i s.
 Proof.
-  intros right H R lawful complete. apply andb_true_iff in R as [Cuts Deadlines].
+  unfold bound_proved. rewrite !andb_true_iff. intros [[right H] R].
+  apply instance_is_well_formed_exactly_when_accepted in right. split; [exact right |].
+  intros s lawful complete. apply andb_true_iff in R as [Cuts Deadlines].
   apply (accepted_bound_is_below_every_solution i s c all); auto.
   - apply (all_refuted_claims_hold (cut_refuted i) _ _ (fun k b lines K =>
       refuted_cut_holds i k b lines s right K lawful complete) _ Cuts).

@@ -11,12 +11,14 @@ exception Too_large
 exception No_way of Law.robot
 exception Too_early of Law.robot * Z.t
 
+(* The most clauses of a formula, and of all formulas of a bound together, as in carp_verify. *)
 let most_clauses = 5_000_000
 
 module Ticks = Set.Make (Z)
 
 (* Clauses and variables in the order in which they were added, the last one first. *)
 type draft = {
+  most : int;
   mutable clauses : Z.t list list;
   mutable reasons : reason list;
   mutable count : int;
@@ -24,7 +26,7 @@ type draft = {
   mutable variables : int;
 }
 
-let require draft more = if draft.count + more > most_clauses then raise Too_large
+let require draft more = if draft.count + more > draft.most then raise Too_large
 
 let add draft reason literals =
   require draft 1;
@@ -163,26 +165,43 @@ let grow draft clerk =
     clerk.unfinished <- List.filter (fun node -> not (go_on draft clerk node)) (clerk.unfinished @ added);
     arrive_at_horizon draft clerk)
 
+(* At most as many nodes as the robot has at a horizon: those that follow the first one in each resource. *)
+let nodes_within clerk horizon =
+  let within place first =
+    match rest clerk place with
+    | Some _ -> Z.max Z.zero (Z.sub (Z.of_int (horizon + 1)) (least_delay clerk (place, first)))
+    | None -> Z.zero
+  in
+  if stands_still clerk || clerk.seen <> None then Z.zero
+  else Collections.Map.fold (fun place first sum -> Z.add sum (within place first)) clerk.guide.firsts Z.zero
+
+(* Refuse horizons whose nodes alone need too many clauses. *)
+let require_nodes draft clerks horizons =
+  let needed clerk horizon = Z.add (Z.of_int horizon) (nodes_within clerk horizon) in
+  let all = List.fold_left2 (fun sum clerk horizon -> Z.add sum (needed clerk horizon)) Z.zero clerks horizons in
+  if Z.gt all (Z.of_int draft.most) then raise Too_large
+
 (* The nodes of a stay in the resource at the tick that is not the last one. *)
 let nodes_of clerk place tick =
-  let rec held ticks =
+  let rec held ticks () =
     match ticks () with
-    | Seq.Cons (each, later) when Z.leq each (Z.add tick (clerk.takes place)) -> each :: held later
-    | _ -> []
+    | Seq.Cons (each, later) when Z.leq each (Z.add tick (clerk.takes place)) ->
+        Seq.Cons (Hashtbl.find clerk.node (place, each), held later)
+    | _ -> Seq.Nil
   in
-  let ticks = held (Ticks.to_seq_from (Z.succ tick) (ticks_in clerk place)) in
-  List.map (fun each -> Hashtbl.find clerk.node (place, each)) ticks
+  held (Ticks.to_seq_from (Z.succ tick) (ticks_in clerk place))
 
 (* The alternatives that put the robot into the resource at the tick: each is literals that hold together. *)
 let stays clerk place tick =
   let duration = clerk.takes place in
-  let nodes = List.map (fun node -> [ node ]) (nodes_of clerk place tick) in
+  let nodes = Seq.map (fun node -> [ node ]) (nodes_of clerk place tick) in
   let delay = Z.sub tick (earliest clerk) in
-  if is_after clerk tick then []
+  if is_after clerk tick then Seq.empty
   else if Z.equal place clerk.robot.goal && Z.sign delay >= 0 && not (stands_still clerk) then
     let left = Z.sub delay duration in
-    if clerk.parks || Z.sign left < 0 then nodes @ [ [ -later_than clerk delay ] ]
-    else if Z.lt left (Z.of_int clerk.horizon) then nodes @ [ [ -later_than clerk delay; later_than clerk left ] ]
+    if clerk.parks || Z.sign left < 0 then Seq.append nodes (Seq.return [ -later_than clerk delay ])
+    else if Z.lt left (Z.of_int clerk.horizon) then
+      Seq.append nodes (Seq.return [ -later_than clerk delay; later_than clerk left ])
     else nodes
   else nodes
 
@@ -226,7 +245,7 @@ let id_of { clerks; _ } position = clerks.(position).robot.robot_id
 
 (* A literal that holds if the robot is in the resource at the tick, if it can be there. *)
 let presence ({ draft; clerks; presences } as encoding) position place tick =
-  match stays clerks.(position) place tick with
+  match List.of_seq (stays clerks.(position) place tick) with
   | [] -> None
   | [ [ literal ] ] -> Some literal
   | alternatives -> (
@@ -303,7 +322,7 @@ let forbid_all ({ clerks; _ } as encoding) capacity =
   let movers = Hashtbl.create 1024 and moves = ref [] in
   let note position clerk (source, tick) =
     let try_move target =
-      if stays clerk target tick <> [] then (
+      if stays clerk target tick () <> Seq.Nil then (
         let key = (tick, source, target) in
         if not (Hashtbl.mem movers key) then moves := key :: !moves;
         Hashtbl.replace movers key (position :: Option.value ~default:[] (Hashtbl.find_opt movers key)))
@@ -356,7 +375,7 @@ let close draft clerk = add draft (Is_in_time clerk.robot.robot_id) [ -Hashtbl.f
    where it is seen again later, as its clauses would let it be in two places. *)
 let see draft clerk (d : Bound.deadline) =
   let look ({ seen_at; spots } : Bound.sight) =
-    let nodes = List.concat_map (fun place -> nodes_of clerk place seen_at) spots in
+    let nodes = List.concat_map (fun place -> List.of_seq (nodes_of clerk place seen_at)) spots in
     let delay = Z.sub (Bound.last_arrival d) (earliest clerk) in
     let arrived = if Z.sign delay < 0 then [] else [ -later_than clerk delay ] in
     let is_elsewhere (place, tick) =
@@ -411,10 +430,10 @@ let clerk_of (instance : Law.instance) table (onward, backward) ranks position (
 let dues_of due (a : Law.robot) = List.filter (fun (d : Bound.deadline) -> Z.equal d.who a.robot_id) (List.rev due)
 
 (* The blueprint and the number of its variables; deadlines need no horizons. Raises [No_way] where no way leads to a
-   goal, [Too_early] if a robot cannot be at its goal so early, and [Too_large]. *)
-let blueprint (instance : Law.instance) group asked { horizons; order } =
+   goal, [Too_early] if a robot cannot be at its goal so early, and [Too_large] beyond [most] clauses. *)
+let blueprint (instance : Law.instance) group asked { horizons; order } most =
   let draft =
-    { clauses = []; reasons = []; count = 0; meanings = Refutation.Numbered.empty; variables = 0 }
+    { most; clauses = []; reasons = []; count = 0; meanings = Refutation.Numbered.empty; variables = 0 }
   in
   let table = Tables.resource_table instance and moves = Search.moves_of instance and ranks = Hashtbl.create 64 in
   List.iteri (fun rank position -> Hashtbl.replace ranks position rank) order;
@@ -428,7 +447,9 @@ let blueprint (instance : Law.instance) group asked { horizons; order } =
   let grow_to clerk horizon = while clerk.horizon < horizon do grow draft clerk done in
   let all = Array.to_list clerks in
   let horizon_in due clerk = List.fold_left max 0 (List.map (horizon_by clerk) (dues_of due clerk.robot)) in
-  List.iter2 grow_to all (match asked with In_time due -> List.map (horizon_in due) all | _ -> horizons);
+  let horizons = match asked with In_time due -> List.map (horizon_in due) all | _ -> horizons in
+  require_nodes draft all horizons;
+  List.iter2 grow_to all horizons;
   let encoding = { draft; clerks; presences = Hashtbl.create 1024 } in
   forbid_all encoding (Tables.room_in table);
   (match asked with

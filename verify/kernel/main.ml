@@ -36,24 +36,38 @@ let answered ask =
   | result -> result
   | exception Reading.Refused { path; rule; message } -> bad_input path rule message
   | exception (Stack_overflow | Out_of_memory) -> answer (Undecided "the question is too large for the memory")
+  | exception failure -> answer (Undecided ("the program fails: " ^ Printexc.to_string failure))
 
+(* The text of a plain file; it is opened without waiting, and looked at before it is read. *)
 let contents file =
-  let channel = try open_in_bin file with Sys_error reason -> Reading.refuse "$" "document/json" reason in
-  Fun.protect ~finally:(fun () -> close_in channel) (fun () ->
-      try
-        if in_channel_length channel > Reading.largest_document then
-          Reading.refuse "$" "document/json"
-            (Printf.sprintf "%s must have at most %d bytes" file Reading.largest_document);
-        really_input_string channel (in_channel_length channel)
-      with Sys_error reason | Failure reason -> Reading.refuse "$" "document/json" reason)
+  let refuse reason = Reading.refuse "$" "document/json" (Printf.sprintf "%s %s" file reason) in
+  match Unix.openfile file [ O_RDONLY; O_NONBLOCK; O_CLOEXEC ] 0 with
+  | exception Unix.Unix_error (reason, _, _) -> refuse ("cannot be read: " ^ Unix.error_message reason)
+  | descriptor ->
+      Fun.protect ~finally:(fun () -> Unix.close descriptor) (fun () ->
+          let { Unix.st_kind; st_size; _ } = Unix.fstat descriptor in
+          if st_kind <> Unix.S_REG then refuse "must be a plain file";
+          if st_size > Reading.largest_document then
+            refuse (Printf.sprintf "must have at most %d bytes" Reading.largest_document);
+          try really_input_string (Unix.in_channel_of_descr descriptor) st_size
+          with Sys_error reason -> refuse reason | End_of_file -> refuse "ends too early")
+
+(* The text of a file of a proof directory, which no link leads out of. *)
+let contents_in directory name =
+  let file = Filename.concat directory name in
+  match (Unix.lstat file).st_kind with
+  | Unix.S_LNK -> Reading.refuse "$" "document/json" (file ^ " must be a plain file, not a link")
+  | _ -> contents file
+  | exception Unix.Unix_error _ -> contents file
 
 let json_of_file file = Reading.json_of_text (contents file)
 let instance_of_file file = Reading.instance_of_json "$" (json_of_file file)
 
 (* The instance and the claim of a proof directory. *)
 let claim_of_directory directory =
-  let instance = instance_of_file (Filename.concat directory "instance.json") in
-  (instance, Reading.claim_of_json instance "$" (json_of_file (Filename.concat directory "manifest.json")))
+  let json name = Reading.json_of_text (contents_in directory name) in
+  let instance = Reading.instance_of_json "$" (json "instance.json") in
+  (instance, Reading.claim_of_json instance "$" (json "manifest.json"))
 
 let print_formula ((blueprint : Formula.blueprint), variables) =
   Printf.printf "p cnf %d %d\n" variables (List.length blueprint.formula);
@@ -61,7 +75,7 @@ let print_formula ((blueprint : Formula.blueprint), variables) =
   List.iter print_clause blueprint.formula
 
 (* One request a line: the op, and its documents by their names. *)
-let requested line () =
+let requested line =
   let json = Reading.json_of_text line in
   let optional = [ "solution"; "certificate"; "certificates" ] in
   let field = Reading.fields "$" ~required:[ "op"; "instance" ] ~optional json in
@@ -77,13 +91,32 @@ let requested line () =
   | "audit", Some solution, None, Some certificates -> Verdicts.audit instance solution certificates
   | _ -> Reading.shape "$" "a request that the kernel knows, with its documents"
 
+(* The next line of a channel: none at its end, an error if it is longer than a document may be. *)
+let next_line channel =
+  let line = Buffer.create 4096 and is_long = ref false in
+  let ended () = Some (if !is_long then Error () else Ok (Buffer.contents line)) in
+  let rec read () =
+    match input_char channel with
+    | '\n' -> ended ()
+    | byte ->
+        if Buffer.length line < Reading.largest_document then Buffer.add_char line byte else is_long := true;
+        read ()
+    | exception End_of_file -> if Buffer.length line = 0 then None else ended ()
+  in
+  read ()
+
 let rec serve () =
-  match input_line stdin with
-  | line ->
-      let document, _, _ = answered (requested line) in
+  match next_line stdin with
+  | None -> exit 0
+  | Some line ->
+      let ask () =
+        match line with
+        | Ok line -> requested line
+        | Error () -> Reading.malformed (Printf.sprintf "it must have at most %d bytes" Reading.largest_document)
+      in
+      let document, _, _ = answered ask in
       print_endline (Yojson.Safe.to_string document);
       serve ()
-  | exception End_of_file -> exit 0
 
 let () =
   let print (document, sentence, code) =
@@ -91,7 +124,7 @@ let () =
     Option.iter prerr_endline sentence;
     exit code
   in
-  match List.tl (Array.to_list Sys.argv) with
+  try match List.tl (Array.to_list Sys.argv) with
   | [ "--version" ] -> print_endline ("carproof-kernel " ^ version)
   | [ "serve" ] -> serve ()
   | [ "check"; instance; solution ] ->
@@ -116,7 +149,7 @@ let () =
   | [ "verify-proof"; directory ] ->
       print (answered (fun () ->
           let instance, claim = claim_of_directory directory in
-          let proof = Reading.proof_of_text (contents (Filename.concat directory "beat.lrat")) in
+          let proof = Reading.proof_of_text (contents_in directory "beat.lrat") in
           Verdicts.verify_proof instance claim proof))
   | [ "formula"; directory ] ->
       let made = ref None in
@@ -132,3 +165,4 @@ let () =
       print (answered (fun () ->
           Verdicts.refute (Reading.formula_of_text (contents formula)) (Reading.proof_of_text (contents proof))))
   | _ -> prerr_string usage; exit 2
+  with Sys_error reason -> prerr_endline ("the answer cannot be written: " ^ reason); Unix._exit 2

@@ -194,7 +194,7 @@ type instance = { instance : Law.instance; resource_numbers : numbers; robot_num
 
 (* Refuse an instance that the kernel does not accept, by the first rule that is seen to be broken. *)
 let name_fault path { Law.resources; edges; directed; robots; _ } =
-  let known id = List.exists (fun r -> Z.equal r.Law.resource_id id) resources in
+  let known id = Z.lt id (Z.of_int (List.length resources)) in
   let at_least_one rule path name value =
     if Z.lt value Z.one then
       refuse (path ^ "." ^ name) rule (Printf.sprintf "the %s must be a whole number of at least 1" name)
@@ -461,7 +461,7 @@ let lines_of_words contents =
   List.filter is_text (List.concat_map (fun line -> [ words line ]) (String.split_on_char '\n' contents))
 
 let whole_of_word word =
-  let sign = if word.[0] = '-' then 1 else 0 in
+  let sign = if String.starts_with ~prefix:"-" word then 1 else 0 in
   let digits = String.length word - sign in
   let is_digit c = c >= '0' && c <= '9' in
   if digits < 1 || digits > most_digits || not (String.for_all is_digit (String.sub word sign digits)) then
@@ -486,7 +486,17 @@ let formula_of_text contents =
       formula
   | _ -> shape "$" "the header p cnf VARIABLES CLAUSES"
 
-(* The words of a proof's lines; whether they make steps, the kernel decides. *)
+(* The words of a proof's lines, with one space between two; whether they make steps, the kernel decides. *)
 let proof_of_text contents =
-  let word = function "d" -> Refutation.Letter_d | word -> Refutation.Number (whole_of_word word) in
-  List.concat_map (fun words -> [ List.map word words ]) (lines_of_words contents)
+  let word = function
+    | "d" -> Refutation.Letter_d
+    | word ->
+        let n = whole_of_word word in
+        if Z.to_string n <> word || String.length (Z.to_string (Z.abs n)) > 18 then
+          shape "$" (Printf.sprintf "a whole number of at most 18 digits, not %S" word);
+        Refutation.Number n
+  in
+  let length = String.length contents in
+  let ended = length > 0 && contents.[length - 1] = '\n' in
+  let lines = String.split_on_char '\n' (if ended then String.sub contents 0 (length - 1) else contents) in
+  if length = 0 then [] else List.rev (List.rev_map (fun line -> List.map word (String.split_on_char ' ' line)) lines)

@@ -46,8 +46,24 @@ let rec way_on takes onwards ticks goal r =
     in
     match List.find_opt is_shortest next with None -> [] | Some s -> s :: way_on takes onwards ticks goal s
 
+(* The steps that carp_verify allows the searches of all robots together, and what the kernel looks at besides: a step
+   goes through the ticks of a stay up to the last price, and through a robot's deadlines. *)
+exception Too_many_steps
+exception Too_much_work
+
+let most_steps = 5_000_000
+let most_work = 100_000_000
+
+type budget = { mutable steps : int; mutable work : int }
+
+let spend budget first until dues =
+  let ticks = Z.max Z.zero (Z.sub until first) in
+  if Z.gt ticks (Z.of_int budget.work) then raise Too_much_work;
+  budget.work <- budget.work - Z.to_int ticks - dues - 1;
+  if budget.work < 0 then raise Too_much_work
+
 (* Labels for all that costs less than is claimed, tick by tick; none once the claim is seen to be too high. *)
-let labels_below claimed weight (tariff : Labels.tariff) dues horizon takes onwards ticks (a : Law.robot) =
+let labels_below budget claimed weight (tariff : Labels.tariff) dues horizon takes onwards ticks (a : Law.robot) =
   let amounts = Hashtbl.create 1024 and queue = ref Queue.empty and too_high = ref false in
   let reach amount r t =
     match Hashtbl.find_opt ticks r with
@@ -61,8 +77,10 @@ let labels_below claimed weight (tariff : Labels.tariff) dues horizon takes onwa
             | Some known when Z.leq known amount -> ()
             | _ -> Hashtbl.replace amounts (r, t) amount)
   in
+  let count_of_dues = List.length dues in
   let enter amount r t =
     let ready = Z.add t (takes r) in
+    spend budget t (Z.min ready tariff.horizon) count_of_dues;
     let paid = Z.add (Labels.stay_price tariff r t ready) (Bound.fees_on_the_way dues r t ready) in
     reach (Z.add amount paid) r ready
   in
@@ -71,6 +89,8 @@ let labels_below claimed weight (tariff : Labels.tariff) dues horizon takes onwa
     match Queue.min_elt_opt !queue with
     | Some ((t, r) as first) when not !too_high ->
         queue := Queue.remove first !queue;
+        budget.steps <- budget.steps - 1;
+        if budget.steps < 0 then raise Too_many_steps;
         let amount = Hashtbl.find amounts (r, t) in
         let later = Z.succ t in
         let paid = Z.add (Labels.wait_price tariff r t) (Bound.fees_on_the_way dues r t later) in
@@ -82,7 +102,7 @@ let labels_below claimed weight (tariff : Labels.tariff) dues horizon takes onwa
   settle ();
   Hashtbl.fold (fun place amount labels -> (place, amount) :: labels) amounts []
 
-(* The evidence of each robot's claim. *)
+(* The evidence of each robot's claim, looked for when it is asked for. Raises [Too_many_steps] and [Too_much_work]. *)
 let evidence (instance : Law.instance) (certificate : Bound.certificate) =
   let onwards, backwards = moves_of instance in
   let tariff = Tables.tariff_of certificate.prices and table = Tables.resource_table instance in
@@ -94,8 +114,8 @@ let evidence (instance : Law.instance) (certificate : Bound.certificate) =
   in
   let deadlines = List.concat_map (fun (g : Bound.group) -> g.deadlines) certificate.groups in
   let horizon = List.fold_left after tariff.horizon deadlines in
-  let known = Hashtbl.create 64 in
-  let of_robot (a : Law.robot) =
+  let known = Hashtbl.create 64 and budget = { steps = most_steps; work = most_work } in
+  let of_robot (a : Law.robot) () =
     let takes = Tables.takes_in table a in
     let ticks =
       match Hashtbl.find_opt known (a.goal, a.pace) with
@@ -106,7 +126,7 @@ let evidence (instance : Law.instance) (certificate : Bound.certificate) =
       match Hashtbl.find_opt claims a.robot_id with
       | Some (Some claimed) ->
           let weight = Bound.weight_of certificate a.robot_id and dues = Bound.dues_of certificate a.robot_id in
-          labels_below claimed weight tariff dues horizon takes onwards ticks a
+          labels_below budget claimed weight tariff dues horizon takes onwards ticks a
       | _ -> []
     in
     { Bound.ticks_after = Hashtbl.fold (fun r rest all -> (r, rest) :: all) ticks []; labels;

@@ -53,8 +53,9 @@ def is_least(claimed: object, least: int | None) -> bool:
 
 @rule(
     "bound/cut",
-    "A cut is a group of one or more distinct robots, a whole multiplier of at least 0, and a refutation of a smaller "
-    "total of the group's costs; the multipliers of a robot's cuts are no more than the scale together.",
+    "A cut is a group of one or more distinct robots, a whole multiplier and a whole total of at least 0, and a "
+    "refutation of a smaller total of the group's costs, with horizons no more than it; the multipliers of a robot's "
+    "cuts are no more than the scale together.",
     DESIGN,
 )
 def is_weight(scale: int, multipliers: int) -> bool:

@@ -7,7 +7,7 @@ The text is LRAT without RAT steps. The clauses of the formula have the numbers 
 adds a clause under a new number. Its hints show that it follows from the clauses before it: assume that all its
 literals are false; then the clause of each hint has at most one literal that is not false, which must be true, and the
 clause of the last hint has none. A line `NUMBER d HINT ... 0` deletes clauses. The refutation ends with the empty
-clause. Source of the format: Cruz-Filipe, Heule, Hunt, Kaufmann and Schneider-Kamp 2017.
+clause, and nothing follows it. Source of the format: Cruz-Filipe, Heule, Hunt, Kaufmann and Schneider-Kamp 2017.
 
 The author of the steps is not trusted. The literals that the hints look at are counted before the first step is
 checked, and the time is proportional to their number.
@@ -57,8 +57,10 @@ def require_refutation(clauses: Sequence[Clause], text: str) -> None:
         if step.number <= last:
             raise NotRefutedError(f"line {step.line} must have a number above {last}")
         _require_step(step, step.clause, known)
-        if not step.clause:
+        if not step.clause and step is steps[-1]:
             return
+        if not step.clause:
+            raise NotRefutedError(f"line {step.line + 1} must not follow the empty clause")
         last = step.number
         known[last] = frozenset(step.clause)
     raise NotRefutedError("it does not end with the empty clause")
