@@ -17,7 +17,7 @@ def planner_named(name: object, options: Mapping[str, object]) -> Planner:
     Raises `Refusal` on an unknown name, an option that the planner does not have, or a value out of range.
     """
     if not isinstance(name, str) or name not in PLANNERS:
-        near = get_close_matches(str(name), PLANNERS, 1)
+        near = get_close_matches(name, PLANNERS, 1) if isinstance(name, str) else []
         meant = f"did you mean {near[0]}? The" if near else "the"
         message = f"there is no planner {name!r}; {meant} planners are {', '.join(PLANNERS)}"
         raise Refusal("option", "$.planner", options_are_right.id, message)

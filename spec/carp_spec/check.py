@@ -1,4 +1,4 @@
-"""The checker: the violations of a set of plans, in a fixed order."""
+"""The checker: the violations of plans, in a fixed order."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ class Verdict:
 
 
 def check(instance: Instance, plans: Sequence[Plan], most: int | None = MOST_LISTED) -> tuple[Violation, ...]:
-    """The violations of plans, at most the first `most` of each rule (`None`: all).
+    """The violations of plans, at most `most` of each rule (`None`: all).
 
     Raises `Refusal` for malformed input and unknown robots.
     """

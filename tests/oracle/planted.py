@@ -161,7 +161,7 @@ def arrives_only(case: Case) -> Reply | None:
     others = [plan for plan in case.solution.plans if plan.robot != case.robot]
     if len(others) < len(case.solution.plans) or case.now:
         return None
-    plan = engine_named(None).query(believed, others, case.robot)
+    plan = engine_named(None).find(believed, others, case.robot)
     if plan is None:
         return None
     *visits, last = plan.visits

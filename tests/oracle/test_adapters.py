@@ -204,7 +204,7 @@ def test_what_a_format_cannot_hold_is_not_written() -> None:
     half = Solution(SOLUTION.plans[:1], ("r1",), ("r2",))
     wrong = replace(SOLUTION, order=("r1",))
     for format in ("lacam", "mapf-tracker"):
-        with pytest.raises(Refusal, match="it leaves 1 robots unplanned"):
+        with pytest.raises(Refusal, match="unplanned"):
             write_foreign_solution(INSTANCE, half, format)
         with pytest.raises(Refusal, match=r"it breaks a rule: \[solution/order\]"):
             write_foreign_solution(INSTANCE, wrong, format)

@@ -107,9 +107,9 @@ def test_a_trace_that_contradicts_the_plans_is_refused_and_nothing_is_written(ki
 def test_a_document_that_is_no_trace_is_refused_everywhere(kind: str, carproof: Run) -> None:
     document, path, rule = MALFORMED[kind]
     save(trace=document)
-    for command in ("check-trace", "retime"):
+    for command in ("check", "retime"):
         more = " --engine reference -o late.json" if command == "retime" else ""
-        outcome = carproof(f"{command} train.json plans.json trace.json{more}")
+        outcome = carproof(f"execution {command} train.json plans.json trace.json{more}")
         assert (outcome.code, outcome.stdout, outcome.stderr.count("\n")) == (2, "", 1)
         assert outcome.stderr.startswith(f"Error: trace.json: {path}: ")
         assert outcome.stderr.endswith(f" [{rule}]\n")
@@ -121,10 +121,10 @@ def test_a_document_that_is_no_trace_is_refused_everywhere(kind: str, carproof: 
 
 def test_half_a_file_and_no_file_are_refused(carproof: Run) -> None:
     Path("trace.json").write_bytes(json.dumps(GOOD).encode()[:-10])
-    for command in ("check-trace", "retime"):
-        outcome = carproof(f"{command} train.json plans.json trace.json")
+    for command in ("check", "retime"):
+        outcome = carproof(f"execution {command} train.json plans.json trace.json")
         assert (outcome.code, outcome.stdout) == (2, "")
         assert outcome.stderr.endswith("[document/json]\n")
-        outcome = carproof(f"{command} train.json plans.json none.json")
+        outcome = carproof(f"execution {command} train.json plans.json none.json")
         assert outcome.code == 2
         assert "none.json: there is no such file." in outcome.stderr

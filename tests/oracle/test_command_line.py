@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from tests.oracle.running import Run
 
-from carproof.commands import COMMANDS, SECTIONS
+from carproof.commands import COMMANDS, RENAMED, SECTIONS
 
 SLOW_TO_LOAD = ("z3", "numba", "numpy", "networkx", "pysat", "hypothesis", "matplotlib")
 CARPROOF = Path(sys.executable).with_name("carproof")

@@ -235,11 +235,12 @@ def test_a_function_cannot_reach_the_judges(planner: Callable[[Instance], Soluti
     assert {finding.rule for finding in report.findings} <= rules | {"plan/goal", "plan/duration", "plan/contiguous"}
 
 
-def test_a_function_may_return_lists_and_what_looks_like_visits() -> None:
+def test_a_function_that_returns_lists_and_what_looks_like_visits_is_told_so() -> None:
     def mine(instance: Instance) -> Solution:
         return with_visits(right(instance), lambda visit: Duck(visit.resource, visit.enter, visit.leave))
 
-    assert conform(Function(mine, "mine"), Options(examples=20, whole=True)).conforms
+    report = conform(Function(mine, "mine"), Options(examples=20, whole=True))
+    assert {(finding.category, finding.rule) for finding in report.findings} == {("protocol error", "program/result")}
 
 
 def test_a_function_that_gives_up_or_plans_one_robot_shows_nothing() -> None:

@@ -21,7 +21,7 @@ COMMANDS = (
 FINDS = {
     "check --z3 town.json plans.json": "z3-solver",
     "theorems": "z3-solver",
-    "verify-proof .": "z3-solver",
+    "verify .": "z3-solver",
     "optimum town.json": "python-sat",
     "bound town.json": "python-sat",
     "gap town.json": "python-sat",

@@ -151,7 +151,7 @@ PROOFS = (
     ("verify town.json bound-more.json", "bound-more.json: $: ", "[document/shape]"),
     ("optimum town.json --proof town.json", "town.json"),
     ("optimum town.json --proof town.json/proof", "town.json"),
-    ("verify-proof nowhere", "nowhere"),
+    ("verify nowhere", "nowhere"),
     ("gap", "Give an INSTANCE or a --size, one of them."),
     ("gap town.json --size 3", "Give an INSTANCE or a --size, one of them."),
     ("gap --size 4..3", "4..3 must be a range within 1..100."),

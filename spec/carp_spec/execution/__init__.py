@@ -1,1 +1,1 @@
-"""Executions: what robots have done by a tick, the action dependency graph, and the rules."""
+"""Executions of plans."""
