@@ -12,7 +12,7 @@ class Certifier:
 
     def __init__(self, instance: Instance) -> None:
         """Begin without plans. Raises `Refusal` if the instance has numbers that are too large."""
-        self._fleet = PlannedFleet(instance)
+        self._fleet = PlannedFleet(instance, shortcuts=False)
         self._ids = [resource.id for resource in instance.graph.resources]
 
     def commit(self, plans: Sequence[Plan]) -> None:

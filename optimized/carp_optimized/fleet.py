@@ -51,14 +51,17 @@ class PlannedFleet:
     function is at work; one that runs out of room is called again with larger arrays.
     """
 
-    def __init__(self, instance: Instance, reuse: Reuse | None = None) -> None:
-        """Begin without plans. Raises `Refusal` if the instance has numbers that are too large."""
+    def __init__(self, instance: Instance, reuse: Reuse | None = None, *, shortcuts: bool = True) -> None:
+        """Begin without plans; with `shortcuts` queries leave out what their plans do not depend on.
+
+        Raises `Refusal` if the instance has numbers that are too large.
+        """
         require_instance(instance)
         encoding.refuse_what_is_too_large(instance)
         self.instance = instance
         self.reuse = reuse or Reuse()
         self._adding: Native[Adding] | None = None
-        self._take(encoding.encode(instance))
+        self._take(encoding.encode(instance, shortcuts=shortcuts))
         self._index = {robot.id: position for position, robot in enumerate(instance.robots)}
         self._order = np.zeros(0, np.int32)
         self._records = np.full(len(instance.robots), NONE, np.int32)
@@ -128,6 +131,7 @@ class PlannedFleet:
     def find_with_labels(self, robot: int, before: Plan | None, now: int) -> tuple[Plan | None, Labels]:
         """The same plan, and the windows that its query expanded: their resources, each with the tick of its entry.
 
+        With shortcuts not all windows are expanded that could be entered before the arrival.
         The start is entered as late as the robot may be there to leave it as early: the query does not come back to it,
         but other plans may. Who has stayed at its goal too long to end there does come back, and has no such label.
         """

@@ -4,7 +4,7 @@ from carp_optimized.jit.compiling import RecordsExhausted, TicksExhausted, entry
 from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
 from carp_optimized.queries.guides import guide_slot, shortest_of
-from carp_optimized.queries.search import find_plan
+from carp_optimized.queries.search import find_any_plan, find_plan, find_plan_only
 from carp_optimized.queries.windows import plan_fits, reserve, withdraw
 from carp_optimized.state.arrays import NEVER, NONE, TOO_FAR, UNCHANGED, UNKNOWN, State
 from carp_optimized.state.natives import state_at
@@ -17,7 +17,7 @@ UNASKED = -2
 def find_one(native: Native[State], robot: int, before: int, now: int) -> int:
     """The record of one robot's plan against the reservations, or `NONE`; nothing is reserved."""
     state = state_at(native)
-    return find_plan(state, robot, before, now, NEVER)
+    return find_plan_only(state, robot, before, now, NEVER)
 
 
 @entry
@@ -78,13 +78,14 @@ def record_plan(native: Native[State], robot: int, resources: Ints, enters: Ints
 def carp(native: Native[State], order: Ints, before: Ints, now: int, plans: Ints, rank: int) -> None:
     """Plan the robots in order, each against those before it, into `plans`; `NONE` for one that finds no plan.
 
-    `before` are the plans followed until now, by robot. The first robot gets the rank.
+    `before` are the plans followed until now, by robot. The first robot gets the rank. Queries of robots that park may
+    read so much that it is not noted.
     """
     state = state_at(native)
     for k in range(order.size):
         robot = int(order[k])
         state.rank[robot] = rank + k
-        plan = find_plan(state, robot, int(before[robot]), now, NEVER)
+        plan = find_any_plan(state, robot, int(before[robot]), now, NEVER, NEVER, not state.parks)
         plans[k] = plan
         if plan != NONE:
             reserve(state, plan)
@@ -108,7 +109,7 @@ def greedy(native: Native[State], waiting: Ints, found: Ints, order: Ints, plans
             if known and (found[k] == NONE or plan_fits(state, int(found[k]))):
                 state.counters[UNCHANGED] += 1
             else:
-                found[k] = find_plan(state, robot, NONE, 0, NEVER)
+                found[k] = find_any_plan(state, robot, NONE, 0, NEVER, NEVER, not state.parks)
             if found[k] != NONE:
                 cost = cost_of(state, int(found[k]))
                 if cost < least:

@@ -17,13 +17,13 @@ from carp_optimized.jit.kinds import Numbers
 from carp_optimized.jit.references import Native
 from carp_optimized.neighbourhood.distances import Mean, distance_below, is_apart, is_less
 from carp_optimized.neighbourhood.orders import next_number
-from carp_optimized.queries.search import find_plan_by
+from carp_optimized.queries.search import find_plan_only
 from carp_optimized.queries.windows import reserve, withdraw
-from carp_optimized.state.arrays import MOST_MEMBERS, MOST_TURNS, NEVER, NONE, Polish, Records, State
+from carp_optimized.state.arrays import BLOCK, MOST_MEMBERS, MOST_TURNS, NEVER, NONE, Polish, Records, State
 from carp_optimized.state.natives import polish_at, state_at
 from carp_optimized.state.records import cost_of
 
-QUEUED, TURN, MARKS, CHANCE = range(4)  # the counts
+QUEUED, TURN, MARKS, CHANCE, MARKED = range(5)  # the counts
 SURE = 1 << 16  # a chance is in parts of this
 REPAIR, DELAYED, CONTESTED, NEAR = range(4)
 LEAST_MEMBERS = 4
@@ -118,8 +118,11 @@ def draw_in_way(state: State, polish: Polish, kind: int, pivot: int) -> int:
     else:
         mark_spans(state, polish, polish.wishes, int(polish.alone[pivot]))
     count = 0
+    is_told = note_robots_in_spans(state, polish)
     for robot in range(polish.plans.size):
-        if robot != pivot and polish.plans[robot] != NONE and meets_span(state, polish, int(polish.plans[robot])):
+        if robot == pivot or polish.plans[robot] == NONE or (is_told and polish.others[robot] == 0):
+            continue
+        if is_told or meets_span(state, polish, int(polish.plans[robot])):
             polish.candidates[count] = robot
             count += 1
     for k in range(count):
@@ -139,6 +142,7 @@ def swap_places(polish: Polish, one: int, other: int) -> None:
 def mark_spans(state: State, polish: Polish, records: Records, record: int) -> None:
     """Mark the resources that the plan visits, and those that a move leads to from there, with their spans."""
     polish.counts[MARKS] += 1
+    polish.counts[MARKED] = 0
     first = int(records.visits_at[record])
     last = first + int(records.visits[record]) - 1
     for k in range(first, last + 1):
@@ -160,6 +164,32 @@ def mark_span(polish: Polish, resource: int, enter: int, leave: int) -> None:
         polish.mark[resource] = polish.counts[MARKS]
         polish.first[resource] = enter
         polish.last[resource] = leave
+        polish.marked[polish.counts[MARKED]] = resource
+        polish.counts[MARKED] += 1
+
+
+@compiled
+def note_robots_in_spans(state: State, polish: Polish) -> bool:
+    """Note as 1 in `others` the robots with a stay that meets a span, 0 for the others; whether windows tell robots.
+
+    Those of a capacity above 1 do not. The windows hold all plans, and a stay is between two of them.
+    """
+    windows = state.windows
+    if state.stays.start.size > BLOCK:
+        return False
+    for robot in range(polish.others.size):
+        polish.others[robot] = 0
+    for k in range(int(polish.counts[MARKED])):
+        resource = int(polish.marked[k])
+        slot = int(windows.offset[resource])
+        last = slot + int(windows.size[resource]) - 1
+        # a stay begins as the window before it ends, and ends as the window behind it begins, but for the gaps
+        while slot < last and windows.start[slot + 1] - state.gap < polish.first[resource]:
+            slot += 1
+        while slot < last and windows.end[slot] + state.gap <= polish.last[resource]:
+            polish.others[windows.robot[slot]] = 1
+            slot += 1
+    return True
 
 
 @compiled
@@ -206,10 +236,15 @@ def rank_crossing(state: State, polish: Polish, pivot: int, chosen: int, most: i
     With the pivot they are at most as many as given.
     """
     records = state.records
+    resource = int(records.resource[chosen])
+    polish.counts[MARKS] += 1
+    polish.counts[MARKED] = 0
+    mark_span(polish, resource, 0, NEVER)
+    is_told = note_robots_in_spans(state, polish)
     count = 0
     for robot in range(polish.plans.size):
         record = int(polish.plans[robot])
-        if robot == pivot or record == NONE:
+        if robot == pivot or record == NONE or (is_told and polish.others[robot] == 0):
             continue
         visit = crossing(state, record, chosen)
         if visit != NONE:
@@ -414,7 +449,7 @@ def plan_members(state: State, polish: Polish, size: int, missing: int, limit: i
         robot = int(polish.members[k])
         rest -= int(polish.least[robot])
         latest = NEVER if unplanned < missing else int(state.robots.release[robot]) + limit - cost - rest
-        record = find_plan_by(state, robot, NONE, 0, NEVER, latest)
+        record = find_plan_only(state, robot, NONE, 0, latest)
         polish.chosen[k] = record
         if record == NONE:
             unplanned += 1

@@ -2,6 +2,7 @@
 
 from carp_optimized.jit.compiling import RoomExhausted, TicksExhausted, compiled
 from carp_optimized.queries.blocks import below, lowest, width
+from carp_optimized.queries.ends import ENDED, end_from
 from carp_optimized.queries.guides import guide_slot, reach_all, toll_of
 from carp_optimized.queries.heap import push, replace_root
 from carp_optimized.queries.windows import end_of_run, fits, is_exchange, last_by, plan_fits, skip_below, start_of_run
@@ -14,6 +15,7 @@ from carp_optimized.state.arrays import (
     NO_LIMIT,
     NONE,
     TOO_FAR,
+    UNKNOWN,
     UNREACHABLE,
     State,
 )
@@ -21,6 +23,7 @@ from carp_optimized.state.records import start_record, write_record
 
 EVERY = (1 << BLOCK) - 1
 LOW = (1 << 32) - 1
+FIRST_TRY = 32  # expansions until the end of the plan is looked for
 STANDING = 0  # the slot of no row: a copy of the window in which the robot is when it sets out
 
 
@@ -32,6 +35,18 @@ def find_plan(state: State, robot: int, before: int, now: int, behind: int) -> i
 
 @compiled
 def find_plan_by(state: State, robot: int, before: int, now: int, behind: int, latest: int) -> int:
+    """The record of the robot's plan that arrives by `latest`, with what the query has read: see `find_any_plan`."""
+    return find_any_plan(state, robot, before, now, behind, latest, True)
+
+
+@compiled
+def find_plan_only(state: State, robot: int, before: int, now: int, latest: int) -> int:
+    """The same against all reservations; its record does not note what the query has read, so that may be less."""
+    return find_any_plan(state, robot, before, now, NEVER, latest, False)
+
+
+@compiled
+def find_any_plan(state: State, robot: int, before: int, now: int, behind: int, latest: int, is_noted: bool) -> int:
     """The record of the robot's plan against the reservations, or `NONE`; `before` is the plan followed until now.
 
     A plan that is to be found must arrive by the tick `latest`.
@@ -64,14 +79,14 @@ def find_plan_by(state: State, robot: int, before: int, now: int, behind: int, l
     if not fits(state, resource, enter, ready, NONE, behind):
         return NONE
     slot = guide_slot(state, robot, resource)
-    expansions = search(state, robot, slot, resource, enter, ready, behind, latest)
+    expansions = search(state, robot, slot, resource, enter, ready, behind, latest, is_noted)
     if expansions == FURTHER:
         reach_all(state, slot)
-        expansions = search(state, robot, slot, resource, enter, ready, behind, latest)
+        expansions = search(state, robot, slot, resource, enter, ready, behind, latest, is_noted)
     if expansions == 0:
         return NONE
     record = start_record(state, robot, first, max(history - 1, 0))
-    write_record(state, record, int(state.search.goal[0]), expansions)
+    write_record(state, record, int(state.search.goal[0]), expansions if is_noted else UNKNOWN)
     return record
 
 
@@ -160,8 +175,30 @@ def is_unseen(state: State, slot: int, expansions: int, latest: int) -> bool:
 
 
 @compiled
-def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
-    state: State, robot: int, slot: int, resource: int, enter: int, ready: int, behind: int, latest: int
+def end_early(state: State, expansions: int, window: int, ready: int, key: int) -> int:
+    """End a search in the window of the goal, as if it had been expanded next; the number of expansions."""
+    search = state.search
+    if expansions == search.expanded.size:
+        raise RoomExhausted
+    search.expanded[expansions] = state.windows.resource[window]
+    search.ready[expansions] = ready
+    search.popped[expansions] = key
+    search.goal[0] = window
+    search.expansions[0] = expansions + 1
+    return expansions + 1
+
+
+@compiled
+def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
+    state: State,
+    robot: int,
+    slot: int,
+    resource: int,
+    enter: int,
+    ready: int,
+    behind: int,
+    latest: int,
+    is_noted: bool,
 ) -> int:
     """A* from the resource, entered at `enter` and left from `ready` on; the number of expansions, 0: no plan.
 
@@ -171,6 +208,10 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
     a plan is: no window of that kind is put into the queue, and the windows expanded stay the same.
     The window in which the plan ends is then `goal[0]`. The window in which the robot stands can be entered again
     if it has stayed at its goal for too long to end there; otherwise entering it again leads nowhere new.
+    A robot that parks ends its plan in the last window of its goal. Once that is entered at its first tick, no other
+    parent can enter it earlier, so the plan is known, and the search ends: all windows of a smaller f, which may be
+    those of the whole map if the goal is crossed late, would be expanded in vain. Where the plan's record does not note
+    what the search reads, `carp_optimized.queries.ends` looks for such an end now and then.
     The best of the windows reached last waits outside the heap, for it is often the next. Windows between which there
     are only robots behind are one: from `window`, by which it is known, to `tail`.
     """
@@ -189,6 +230,11 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
     alike = pace * state.longest if state.last_alike else 0
     is_bounded = latest <= LARGEST
     largest_key = (latest << 32) + LOW
+    last_goal = goal if parks and state.shortcuts else NONE
+    goal_window = int(windows.offset[goal]) + int(windows.size[goal]) - 1
+    next_try = FIRST_TRY if last_goal != NONE and not is_noted else NEVER
+    if next_try < NEVER and windows.start[goal_window] > latest:
+        return 0
 
     toll = toll_of(state, slot, resource)
     if toll < 0:
@@ -231,6 +277,17 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
         enter = label - int(reached[node])
         if key != (enter << 32) + toll_of(state, slot, resource):
             continue  # entered earlier since this entry was made
+        if expansions >= next_try:
+            next_try = 2 * expansions
+            next_f = key >> 32
+            if not (beyond and is_unseen(state, slot, expansions, next_f)):
+                end = end_from(state, robot, slot, goal_window, own_slot, next_f, min(latest, LARGEST), expansions)
+                if end == FURTHER:
+                    return FURTHER
+                if end == ENDED:
+                    state.search.goal[0] = goal_window
+                    state.search.expansions[0] = expansions
+                    return expansions
         last = node if counts_all else end_of_run(state, node, behind)
         end = int(windows.end[last])
         if expansions > 0:
@@ -304,6 +361,10 @@ def search(  # noqa: C901, PLR0912, PLR0915 - one hot loop
                     break
                 reached[window] = label - entry
                 parent[window] = node
+                if until == NEVER and target == last_goal and entry == windows.start[window]:
+                    if beyond and is_unseen(state, slot, expansions, enter + (toll_of(state, slot, resource) >> 32)):
+                        return FURTHER
+                    return end_early(state, expansions, window, entry + need, key)
                 if key < best_key:
                     if best != NONE:
                         push(keys, nodes, size, best_key, best)

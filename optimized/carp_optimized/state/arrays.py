@@ -15,6 +15,7 @@ UNKNOWN = -1  # the number of expansions of a plan that no query of the fleet ha
 
 SEVERAL = -2  # sources
 BLOCK = 8  # windows are looked at in blocks
+MOST_GATHERED = 128  # windows at the end of a query
 
 UNREACHABLE = -1  # a guide: the goal cannot be reached from the resource
 TOO_FAR = -2  # a guide: it can, in more than LARGEST ticks
@@ -107,6 +108,22 @@ class Guides(NamedTuple):
     detour: int
 
 
+class Ending(NamedTuple):
+    """The scratch of looking for the end of a query (`carp_optimized.queries.ends`).
+
+    `gathered` are windows with their keys; `place` is where a window is among them, if it is. `changed` are the windows
+    of which entry and parent have been changed, with what they had for `reached` and `parent` before.
+    """
+
+    gathered: Ints
+    key: Longs
+    place: Ints
+    changed: Ints
+    reached: Longs
+    parent: Ints
+    counts: Longs
+
+
 class Search(NamedTuple):
     """The scratch of a query, never cleared: what an earlier query wrote has an earlier generation.
 
@@ -126,6 +143,7 @@ class Search(NamedTuple):
     ready: Ints
     popped: Longs
     expansions: Longs
+    ending: Ending
 
 
 class Records(NamedTuple):
@@ -187,7 +205,8 @@ class State(NamedTuple):
     No duration is above `longest`, and none below, if they `last_alike`. The toll of a resource is its ticks to the
     goal times `scale` plus its index, if `scale` is not 0. `roots` are the terms of `neighbourhood/distance` of small
     squares; all are split after `split` bits. A place is free for `gap` ticks before another robot enters it: then
-    windows begin and end so much later and earlier, and may be of negative length.
+    windows begin and end so much later and earlier, and may be of negative length. With `shortcuts` a query leaves out
+    what its plan does not depend on.
     """
 
     graph: Graph
@@ -208,6 +227,7 @@ class State(NamedTuple):
     split: int
     parks: bool
     gap: int
+    shortcuts: bool
 
 
 class Work(NamedTuple):
@@ -254,13 +274,13 @@ class Polish(NamedTuple):
     """The arrays for polishing.
 
     `queue` holds the robots that have a plan in planning order, and `plans` the plans by robot; `counts` how many
-    robots are in the queue, how many rounds are done, the generation of the marks, and the chance that a round may
-    raise the total. `stream[0]` is the state of the random numbers. `alone[robot]` is the record, in `wishes`, of the
-    plan that the robot has alone, `NONE` if it has no path, and `least[robot]` is its cost. `has_path` says how many
-    have one.
-    By resource: the span of a plan, `first` to `last`, where `mark` is the generation of the marks. The candidates are
-    in order; those that are ranked have the rank whole + rest / ticks. By place in the neighbourhood: the members,
-    their plans before and their new ones. `others` is scratch by robot.
+    robots are in the queue, how many rounds are done, the generation of the marks, the chance that a round may raise
+    the total, and how many resources are marked. `stream[0]` is the state of the random numbers. `alone[robot]` is the
+    record, in `wishes`, of the plan that the robot has alone, `NONE` if it has no path, and `least[robot]` is its cost.
+    `has_path` says how many have one.
+    By resource: the span of a plan, `first` to `last`, where `mark` is the generation of the marks; `marked` lists
+    these resources. The candidates are in order; those that are ranked have the rank whole + rest / ticks. By place in
+    the neighbourhood: the members, their plans before and their new ones. `others` is scratch by robot.
     """
 
     queue: Ints
@@ -274,6 +294,7 @@ class Polish(NamedTuple):
     mark: Longs
     first: Ints
     last: Ints
+    marked: Ints
     candidates: Ints
     whole: Longs
     rest: Longs

@@ -13,11 +13,13 @@ from carp_optimized.state.arrays import (
     BLOCK,
     COUNTERS,
     LARGEST,
+    MOST_GATHERED,
     MOST_TURNS,
     NEVER,
     NONE,
     PLANS,
     Answers,
+    Ending,
     Freed,
     Graph,
     Guides,
@@ -194,6 +196,15 @@ def no_search(windows: int, edges: int) -> Search:
         ready=np.zeros(entries, np.int32),
         popped=np.zeros(entries, np.int64),
         expansions=np.zeros(1, np.int64),
+        ending=Ending(
+            gathered=np.zeros(MOST_GATHERED, np.int32),
+            key=np.zeros(MOST_GATHERED, np.int64),
+            place=np.zeros(windows, np.int32),
+            changed=np.zeros(8 * MOST_GATHERED, np.int32),
+            reached=np.zeros(8 * MOST_GATHERED, np.int64),
+            parent=np.zeros(8 * MOST_GATHERED, np.int32),
+            counts=np.zeros(3, np.int64),
+        ),
     )
 
 
@@ -254,8 +265,8 @@ def split_of_terms(graph: Graph) -> int:
     return max(0, largest.bit_length() - 31)
 
 
-def encode(instance: Instance) -> State:
-    """A state in which no plan is reserved."""
+def encode(instance: Instance, *, shortcuts: bool) -> State:
+    """A state in which no plan is reserved, whose queries take shortcuts or expand all that they may."""
     graph = encode_graph(instance)
     robots, goals, paces = encode_robots(instance)
     resources = graph.duration.size
@@ -282,6 +293,7 @@ def encode(instance: Instance) -> State:
         split=split_of_terms(graph),
         parks=instance.after_goal == "park",
         gap=instance.gap,
+        shortcuts=shortcuts,
     )
 
 
@@ -364,7 +376,7 @@ def no_polish(wishes: Records, alone: Ints, least: Longs, resources: int) -> Pol
     return Polish(
         queue=ints(alone.size),
         plans=ints(alone.size),
-        counts=longs(4),
+        counts=longs(5),
         stream=np.zeros(1, np.uint64),
         wishes=wishes,
         alone=alone,
@@ -373,6 +385,7 @@ def no_polish(wishes: Records, alone: Ints, least: Longs, resources: int) -> Pol
         mark=longs(resources),
         first=ints(resources),
         last=ints(resources),
+        marked=ints(resources),
         candidates=ints(max(alone.size, MOST_TURNS)),
         whole=longs(MOST_TURNS),
         rest=longs(MOST_TURNS),

@@ -3,7 +3,7 @@
 from carp_optimized.jit.compiling import RecordsExhausted, compiled, entry
 from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
-from carp_optimized.state.arrays import NEVER, NONE, Records, State
+from carp_optimized.state.arrays import NEVER, NONE, UNKNOWN, Records, State
 from carp_optimized.state.natives import state_at
 
 
@@ -26,7 +26,7 @@ def start_record(state: State, robot: int, first: int, history: int) -> int:
 
 @compiled
 def write_record(state: State, record: int, last: int, expansions: int) -> None:
-    """Finish a record with the path to the window `last` and with what the search has expanded."""
+    """Finish a record with the path to the window `last` and with what the search has expanded, if that is noted."""
     records = state.records
     windows = state.windows
     search = state.search
@@ -37,7 +37,7 @@ def write_record(state: State, record: int, last: int, expansions: int) -> None:
         length += 1
         node = int(search.parent[node])
     end = int(records.visits_at[record]) + int(records.visits[record]) + length
-    if end > records.resource.size or int(records.used[2]) + expansions > records.expanded.size:
+    if end > records.resource.size or int(records.used[2]) + expansions > records.expanded.size:  # `UNKNOWN` is below 0
         raise RecordsExhausted
     node = last
     for k in range(end - 1, end - 1 - length, -1):
@@ -53,7 +53,10 @@ def write_record(state: State, record: int, last: int, expansions: int) -> None:
     )
     records.visits[record] += length
     close_record(state, record)
-    write_expansions(state, record, expansions)
+    if expansions == UNKNOWN:
+        records.expansions[record] = UNKNOWN
+    else:
+        write_expansions(state, record, expansions)
 
 
 @compiled
