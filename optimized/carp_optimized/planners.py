@@ -32,7 +32,8 @@ if TYPE_CHECKING:
     from carp_optimized.fleet import PlannedFleet
     from carp_spec.execution.traces import Trace
 
-ROUNDS = 50  # of a polish in one compiled call
+ROUNDS = 50  # of a polish in one compiled call, if there are not so many
+VISITS = 20_000  # in all plans together
 PLANNERS = (Carp, Shuffled, LongestFirst, Greedy, Neighbourhood)
 
 
@@ -157,7 +158,7 @@ def polish(
 
     It ends earlier if no plan can be shorter. All robots are planned from their release on: none is under way. Equal
     iterations and seed give an equal solution. The time is that of the rounds,
-    looked at between calls of `advance`, `ROUNDS` rounds apart.
+    looked at between calls of `advance`, at most `ROUNDS` rounds apart.
     Raises `Refusal` for wrong options, for a solution that breaks a rule, and for numbers that are too large.
     """
     require_polish_options(iterations, seconds, seed)
@@ -169,14 +170,21 @@ def polish(
     polishing = fleet.polishing(seed)
     played = fleet.polish(polishing, 0)
     started = perf_counter()
+    most = rounds_between_looks(whole)
     while played != last and (seconds is None or perf_counter() - started < seconds):
-        rounds = ROUNDS if last is None else min(ROUNDS, last - played)
+        rounds = most if last is None else min(ROUNDS, last - played)
         batch = fleet.polish(polishing, rounds)
         played += batch
         advance(played, *fleet.worth)
         if batch < rounds:
             break
     return _solution(instance, fleet.plans, set(fleet.instance.robot))
+
+
+def rounds_between_looks(solution: Solution) -> int:
+    """How many rounds of a polish are played between two looks at a clock: fewer where each takes long."""
+    visits = sum(len(plan.visits) for plan in solution.plans)
+    return max(ROUNDS * VISITS // max(visits, VISITS), 1)
 
 
 def _solution(instance: Instance, plans: tuple[Plan, ...], named: set[RobotId]) -> Solution:

@@ -7,9 +7,9 @@
 
 It has the model (`Instance`, `ResourceGraph`, `Resource`, `Robot`, `Solution`, `Plan`, `Visit`) and its documents
 (`read_...`, `write_...`); the checker (`check`, with a `Verdict` of `Violation`s by the rules in `RULES`); the planners
-(`plan`, `query`, `add`, `polish`) with their options (`Carp`, `Neighbourhood`, ...); and bounds and optima (`bound`,
-`verify_bound`, `optimum`). `carproof.formats` reads and writes other tools' formats, `carproof.generate` makes
-instances, and `carproof.testing.strategies` draws them for hypothesis.
+(`plan`, `plan_within`, `query`, `add`, `polish`) with their options (`Carp`, `Neighbourhood`, ...); and bounds and
+optima (`bound`, `verify_bound`, `optimum`). `carproof.formats` reads and writes other tools' formats,
+`carproof.generate` makes instances, and `carproof.testing.strategies` draws them for hypothesis.
 
 A name is loaded when it is first used, so that importing this page costs nothing.
 """
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from carp_optimized import add, plan, query
     from carp_optimized.improve.annealing import polish
+    from carp_optimized.improve.anytime import plan_within
     from carp_optimum.bound import lower_bound as bound
     from carp_optimum.optimum import optimum
     from carp_optimum.sat.core_guided import Optimum
@@ -65,6 +66,7 @@ _DOCUMENTS = ("read_instance", "read_solution", "write_instance", "write_solutio
 _ELSEWHERE = {
     "add": "carp_optimized",
     "plan": "carp_optimized",
+    "plan_within": "carp_optimized.improve.anytime",
     "polish": "carp_optimized.improve.annealing",
     "query": "carp_optimized",
     "check": "carp_spec:judge",
@@ -115,6 +117,7 @@ __all__ = [
     "optimum",
     "plan",
     "plan_cost",
+    "plan_within",
     "planner_named",
     "polish",
     "query",

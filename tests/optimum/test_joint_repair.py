@@ -1,5 +1,7 @@
 """Robots that a planner leaves out get plans, in small groups or in another order, and the law judges them."""
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given
 
@@ -77,3 +79,15 @@ def test_repaired_plans_break_no_rule_and_nobody_loses_a_plan(planned: PlannedIn
     assert judge(instance, repaired).valid
     assert {*given.order} <= {*repaired.order}
     assert repair_jointly(instance, whole) == repaired
+
+
+def test_a_repair_moves_a_crowd_tick_by_tick_where_other_means_fail(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("carp_optimized.improve.repair.ATTEMPTS", 0)
+    instance = replace(grid_instance(Grid(width=8, height=8, map=20), Fleet(robots=32)), after_goal="park")
+    island = Resource("island")
+    graph = ResourceGraph((*instance.graph.resources, island), instance.graph.edges)
+    lost = Robot("lost", "island", instance.robots[0].start)
+    instance = replace(instance, graph=graph, robots=(*instance.robots, lost))
+    repaired = repair(instance, plan(instance, Carp()))
+    assert repaired.unplanned == ("lost",)
+    assert judge(instance, repaired).valid

@@ -99,6 +99,7 @@ REQUESTS: dict[str, Document] = {
     "check": {"instance": TWO, "solution": TWO_PLANNED},
     "query": {"instance": TWO, "solution": ONE_PLANNED, "robot": "r2"},
     "plan": {"instance": TWO, "planner": "shuffled", "attempts": 2},
+    "plan-within": {"instance": TWO, "iterations": 3},
     "add": {"instance": TWO, "solution": ONE_PLANNED, "robot": "r2", "now": 0, "m": 1},
     "polish": {"instance": TWO, "solution": TWO_PLANNED, "iterations": 3},
     "optimum": {"instance": TWO, "limit": 10},

@@ -250,3 +250,31 @@ def test_the_examples_of_add_work(process: Run) -> None:
     environment = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
     done = subprocess.run(["/bin/sh", "-ec", lines], env=environment, check=False, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_plan_within_a_time_gives_lawful_plans(carproof: Run) -> None:
+    outcome = carproof("plan town.json --seconds 0.2 -o out.json")
+    assert (outcome.code, outcome.stderr) == (0, "")
+    assert carproof("check town.json out.json").code == 0
+
+
+def test_plan_by_rounds_gives_equal_plans_for_equal_seeds(carproof: Run) -> None:
+    once = carproof("plan town.json --iterations 20 --seed 3 --json")
+    assert once.code == 0
+    assert once.stdout == carproof("plan town.json --iterations 20 --seed 3 --json").stdout
+
+
+@pytest.mark.parametrize(
+    ("options", "rule"),
+    [
+        ("--seconds 0", "polish/options"),
+        ("--seconds 1 --iterations 1", "polish/options"),
+        ("--seconds 1 --planner carp", "planner/options"),
+        ("--iterations 1 --m 3", "planner/options"),
+        ("--seconds 1 --engine reference", "planner/options"),
+    ],
+)
+def test_plan_within_a_time_refuses_options_that_do_not_go_with_it(carproof: Run, options: str, rule: str) -> None:
+    outcome = carproof(f"plan town.json {options}")
+    assert outcome.code == 2
+    assert rule in outcome.stderr

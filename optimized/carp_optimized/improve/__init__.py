@@ -1,1 +1,1 @@
-"""Better plans: repair of unplanned robots, large neighbourhood search, annealing, LaCAM."""
+"""Plans that get better until the time is over, for robots that move a step a tick (classical MAPF)."""

@@ -18,12 +18,11 @@ import carp_optimized
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.improve.repair import repair
 from carp_optimized.neighbourhood.polishing import CHANCE, SURE
+from carp_optimized.planners import rounds_between_looks
 from carp_spec import Instance, Refusal, Solution
 from carp_spec.inputs.options import require_polish_options
 from carp_spec.requests import sound_solution
 
-ROUNDS = 50
-"""The rounds of one compiled call."""
 CYCLES, CYCLES_OF_LUCK = 8, 16
 LUCK = 2
 """Luck decides where the delays, times this, are more than the shortest paths."""
@@ -72,13 +71,14 @@ def anneal(
     seed: int = 0,
     advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
     clock: Callable[[], float] = perf_counter,
+    repairs: bool = True,
 ) -> Solution:
-    """Improve a solution for that many seconds, the repair of robots left out included.
+    """Improve a solution for that many seconds, the repair of robots left out included, if it `repairs` them first.
 
     `advance` gets the rounds and the best so far. Raises what `polish` raises.
     """
     started = clock()
-    if len(solution.plans) < len(instance.robots):
+    if repairs and len(solution.plans) < len(instance.robots):
         with suppress(Refusal):
             solution = repair(instance, solution)
     seconds = max(seconds - (clock() - started), BRIEF)
@@ -95,6 +95,7 @@ def anneal(
     cycles = CYCLES_OF_LUCK if luck else CYCLES
     current = 0
     from_given = True
+    rounds = rounds_between_looks(solution)
     started = clock()
     while (spent := int(PARTS * (clock() - started) / seconds)) < PARTS:
         cycle, gone = divmod(cycles * spent, PARTS)
@@ -107,13 +108,13 @@ def anneal(
         expected = PARTS * played // max(spent, 1)
         heated = (HEAT if from_given else REHEAT) * max(own[1] - least, 0) // (COOLER if luck else 1)
         polishing.fields.counts[CHANCE] = _chance(heated, len(instance.robots), expected, PARTS - gone)
-        batch = fleet.polish(polishing, ROUNDS)
+        batch = fleet.polish(polishing, rounds)
         played += batch
         own = min(own, fleet.worth)
         if own < best:
             best, plans = own, fleet.plans
         advance(played, *best)
-        if batch < ROUNDS:
+        if batch < rounds:
             break
     return Solution.of(instance, plans)
 

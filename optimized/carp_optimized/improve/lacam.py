@@ -1,286 +1,390 @@
-"""Plans of all robots together, step by step, where each move takes one tick (classical multi-agent path finding).
+"""Plans of all robots together, step by step, where each move takes one tick: LaCAM (Okumura 2023).
 
-A configuration is the place of every robot at a tick. The search is LaCAM (Okumura 2023): depth-first over
-configurations, each with ever longer demands on its successor, which fix the place of one more robot at a time.
-Successors come from PIBT (Okumura et al. 2022): robots choose their places in order of priority, and a robot that
-stands in a chosen place has to choose next. So crowds are planned for which no order of robots works. Totals are far
-from the least; a polish lowers them. Nothing here is trusted: the law judges the plans.
+A configuration is the place of every robot at a tick. The search is depth-first over configurations, each with ever
+longer demands on its successor, which fix the place of one more robot at a time. Successors come from
+`carp_optimized.improve.pibt`. So crowds are planned for which no order of robots works. Totals are far from the least;
+`carp_optimized.improve.rounds` lowers them. Nothing here is trusted: the law judges the plans.
 """
 
-from collections import deque
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from random import Random
-from typing import TypeAlias
+from collections.abc import Iterator
+from typing import NamedTuple
 
-from carp_optimized.fleet import PlannedFleet
-from carp_spec import Instance, Plan, Visit
+import numpy as np
+
+from carp_optimized.improve.crowds import GONE, Crowd, can_begin, crowd_of, is_stepwise, measure
+from carp_optimized.improve.pibt import NOWHERE, Step, begin, choose, end, is_open, no_step, rank_choices, take
+from carp_optimized.jit.compiling import compiled, entry
+from carp_optimized.jit.kinds import Ints, IntTable, Longs, Numbers
+from carp_optimized.jit.references import Native, dereference
+from carp_optimized.neighbourhood.orders import FIRST_MIX, GOLDEN, SECOND_MIX
+from carp_optimized.state.arrays import NONE
+from carp_spec import Instance, Plan, ResourceId, Visit
 
 STEPS = 10_000
-"""The search ends after this number of configurations; most searches that succeed need a few hundred."""
-GONE = -1
-"""The place of a robot that has vanished."""
-NOWHERE = -2
-Configuration: TypeAlias = tuple[int, ...]
-"""The index of each robot's resource, or `GONE`."""
+"""The search ends after this number of successors; most searches that succeed need a few hundred."""
+FOUND, FAILED, FULL, RUNNING = range(4)
+NODES, DEMANDS, DEPTH, TRIED = range(4)  # the counts
+ROOM = 256
+"""The configurations for which there is room at first."""
+PART = 64
+"""Robots whose distances are measured in one compiled call."""
 
 
-@dataclass(slots=True)
-class _Node:
-    """A configuration, how it was reached, and what is still to be tried from it.
+class Nodes(NamedTuple):
+    """The configurations reached: their places, the robots that are to move by priority, and the one before.
 
-    `order` begins with the robots that were at their goals longest ago, as `waiting` counts. Each of `demands` fixes
-    the next places of the first robots in that order.
+    `chain` leads on to the next configuration with the same `bucket`. From `head[node]` on, `later` leads through the
+    demands still to be tried: a demand is that its robot goes to `place`, beside what the demand `above` demands. The
+    robot is that at the place `level - 1` of the node's order.
     """
 
-    places: Configuration
-    parent: "_Node | None"
-    waiting: tuple[int, ...]
-    order: tuple[int, ...]
-    demands: deque[tuple[int, ...]]
+    places: IntTable
+    order: IntTable
+    present: Ints
+    parent: Ints
+    hash: Numbers
+    chain: Ints
+    bucket: Ints
+    head: Ints
+    tail: Ints
+    place: Ints
+    above: Ints
+    level: Ints
+    later: Ints
+    stack: Ints
+    counts: Longs
 
 
-def is_stepwise(instance: Instance) -> bool:
-    """Whether all robots are there from tick 0, and each needs one tick and a place of its own."""
-    return (
-        instance.following == "allowed"
-        and all(each.capacity == 1 and each.duration == 1 for each in instance.graph.resources)
-        and all(each.release == 0 and each.pace == 1 for each in instance.robots)
-    )
+class Lacam(NamedTuple):
+    """The whole search."""
+
+    crowd: Crowd
+    step: Step
+    nodes: Nodes
+
+
+lacam_at = dereference(Lacam)
 
 
 def plans_by_steps(instance: Instance, steps: int = STEPS) -> tuple[Plan, ...] | None:
     """Plans of all robots; `None` if the search finds none in that many steps, or the instance is not `is_stepwise`."""
     if not is_stepwise(instance):
         return None
-    crowd = _Crowd(instance)
-    if not crowd.can_begin():
+    crowd = crowd_of(instance)
+    measure(Native(crowd), 0, crowd.start.size)
+    if not can_begin(crowd):
         return None
-    random = Random(0)  # noqa: S311 - not for secrets
-    stack = [crowd.node(crowd.starts, None)]
-    known = {stack[0].places: stack[0]}
+    search = Search(crowd)
+    search.go(steps)
+    return None if search.ways is None else plans_of(instance, search.ways)
+
+
+class Search:
+    """A search that goes on as long as it is asked to."""
+
+    __slots__ = ("_native", "outcome", "ways")
+
+    def __init__(self, crowd: Crowd, seed: int = 0) -> None:
+        """The crowd has been measured, and `can_begin`."""
+        self.outcome = RUNNING
+        self.ways: IntTable | None = None
+        self._native = Native(Lacam(crowd, no_step(crowd, seed), _no_nodes(crowd, ROOM)))
+        _place_root(self._native.fields)
+
+    @property
+    def tried(self) -> int:
+        """The successors tried so far."""
+        return int(self._native.fields.nodes.counts[TRIED])
+
+    def go(self, steps: int) -> None:
+        """Try that many successors, or until `outcome` is not `RUNNING`; `ways` are then the places tick by tick."""
+        nodes = self._native.fields.nodes
+        last = int(nodes.counts[TRIED]) + steps
+        while self.outcome == RUNNING and nodes.counts[TRIED] < last:
+            self.outcome = search(self._native, last - int(nodes.counts[TRIED]))
+            if self.outcome == FULL:
+                crowd, step, _ = self._native.fields
+                nodes = _enlarged(crowd, nodes)
+                self._native = Native(Lacam(crowd, step, nodes))
+                self.outcome = RUNNING
+        if self.outcome == FOUND:
+            self.ways = _ways(nodes)
+
+
+def _no_nodes(crowd: Crowd, room: int) -> Nodes:
+    robots = crowd.start.size
+    choices = int(np.diff(crowd.first).max(initial=0)) + 1
+    demands = room + 4 * choices
+    return Nodes(
+        places=np.empty((room, robots), np.int32),
+        order=np.empty((room, robots), np.int32),
+        present=np.empty(room, np.int32),
+        parent=np.empty(room, np.int32),
+        hash=np.empty(room, np.uint64),
+        chain=np.empty(room, np.int32),
+        bucket=np.full(2 * room, NONE, np.int32),
+        head=np.empty(room, np.int32),
+        tail=np.empty(room, np.int32),
+        place=np.empty(demands, np.int32),
+        above=np.empty(demands, np.int32),
+        level=np.empty(demands, np.int32),
+        later=np.empty(demands, np.int32),
+        stack=np.empty(2 * room, np.int32),
+        counts=np.zeros(4, np.int64),
+    )
+
+
+def _enlarged(crowd: Crowd, nodes: Nodes) -> Nodes:
+    """The same configurations, with twice the room."""
+    larger = _no_nodes(crowd, 2 * nodes.present.size)
+    for name, before in nodes._asdict().items():
+        if name != "bucket":
+            getattr(larger, name)[: len(before)] = before
+    for node in range(int(nodes.counts[NODES])):
+        at = int(larger.hash[node]) % larger.bucket.size
+        larger.chain[node], larger.bucket[at] = larger.bucket[at], node
+    return larger
+
+
+def _place_root(lacam: Lacam) -> None:
+    """The configuration at tick 0; robots with the longest ways come first."""
+    crowd, step, nodes = lacam
+    robots = crowd.start.size
+    distance = crowd.distance[np.arange(robots), crowd.start]
+    by_distance = np.argsort(-distance, kind="stable").astype(np.int32)
+    present = by_distance if crowd.parks else by_distance[distance[by_distance] > 0]
+    nodes.order[0, : present.size] = present
+    nodes.present[0] = present.size
+    step.next[:] = crowd.start
+    add_root(Native(lacam))
+
+
+def _ways(nodes: Nodes) -> IntTable:
+    """The places of all robots, tick by tick."""
+    node = int(nodes.stack[nodes.counts[DEPTH] - 1])
+    way = []
+    while node != NONE:
+        way.append(node)
+        node = int(nodes.parent[node])
+    return nodes.places[way[::-1]]
+
+
+def plans_of(instance: Instance, ways: IntTable) -> tuple[Plan, ...]:
+    """The plans of robots that are in these places, tick by tick."""
+    names = [each.id for each in instance.graph.resources]
+    parks = instance.after_goal == "park"
+    return tuple(Plan(robot.id, tuple(_visits(names, ways[:, k], parks))) for k, robot in enumerate(instance.robots))
+
+
+def _visits(names: list[ResourceId], way: Ints, parks: bool) -> Iterator[Visit]:
+    present = int((way != GONE).sum())
+    enters = [0, *(1 + np.flatnonzero(np.diff(way[:present]))).tolist()]
+    for k, enter in enumerate(enters):
+        is_last = k == len(enters) - 1
+        leave = (None if parks else present) if is_last else enters[k + 1]
+        yield Visit(names[way[enter]], enter, leave)
+
+
+@entry
+def add_root(native: Native[Lacam]) -> None:
+    """Take the places of the step for the first configuration, whose order is there already."""
+    lacam = lacam_at(native)
+    add_node(lacam, NONE, hash_of(lacam.step.next))
+    lacam.nodes.stack[0] = 0
+    lacam.nodes.counts[DEPTH] = 1
+
+
+@entry
+def search(native: Native[Lacam], steps: int) -> int:
+    """Try that many successors; returns how it ended, with the last configuration on top of the stack."""
+    lacam = lacam_at(native)
+    nodes = lacam.nodes
+    counts = nodes.counts
+    choices = lacam.step.wishes[0].size
     for _ in range(steps):
-        node = stack[-1]
-        if crowd.is_done(node.places):
-            return crowd.plans(node)
-        demands = node.demands.popleft()
-        if len(demands) < len(node.order):
-            robot = node.order[len(demands)]
-            node.demands.extend((*demands, place) for place in crowd.choices(robot, node.places[robot], random))
-        places = _successor(crowd, node, demands, random)
-        if places is not None:
-            stack.append(known.setdefault(places, crowd.node(places, node)))
-        while stack and not stack[-1].demands:
-            stack.pop()
-        if not stack:
-            return None
-    return None
+        if counts[DEPTH] == 0:
+            return FAILED
+        node = int(nodes.stack[int(counts[DEPTH]) - 1])
+        if is_done(lacam.crowd, nodes.places[node]):
+            return FOUND
+        if (
+            counts[NODES] == nodes.present.size
+            or counts[DEPTH] == nodes.stack.size
+            or counts[DEMANDS] + choices + 1 > nodes.place.size
+        ):
+            return FULL
+        counts[TRIED] += 1
+        try_successor(lacam, node)
+        while counts[DEPTH] > 0 and nodes.head[int(nodes.stack[int(counts[DEPTH]) - 1])] == NONE:
+            counts[DEPTH] -= 1
+    return RUNNING
 
 
-def _successor(crowd: "_Crowd", node: _Node, demands: Sequence[int], random: Random) -> Configuration | None:
-    """A configuration that can follow and meets the demands; `None` if none is found."""
-    step = _Step(crowd, node, random)
-    for robot, place in zip(node.order, demands, strict=False):
-        if not step.is_open(robot, place):
-            return None
-        step.take(robot, place)
-    for robot in node.order:
-        if step.waits(robot) and not step.choose(robot):
-            return None
-    return tuple(step.next)
+@compiled
+def is_done(crowd: Crowd, places: Ints) -> bool:
+    """Whether every robot is at its goal or gone."""
+    for robot in range(crowd.goal.size):  # noqa: SIM110 - no generators in compiled code
+        if places[robot] != crowd.goal[robot] and places[robot] != GONE:
+            return False
+    return True
 
 
-class _Crowd:
-    """The robots of an instance as numbers, with their distances to their goals."""
-
-    def __init__(self, instance: Instance) -> None:
-        graph = instance.graph
-        self._instance = instance
-        self._parks = instance.after_goal == "park"
-        self.targets = [[graph.index[each] for each in graph.successors[one.id]] for one in graph.resources]
-        self._goals = [graph.index[robot.goal] for robot in instance.robots]
-        fleet = PlannedFleet(instance)
-        far = len(self.targets)  # more than any way
-        self.to_goal = [
-            [potential.get(place, far) for place in range(far)]
-            for potential in map(fleet.potential, range(len(self._goals)))
-        ]
-        self.starts: Configuration = tuple(graph.index[robot.start] for robot in instance.robots)
-
-    def can_begin(self) -> bool:
-        """Whether no two robots start in one place, or park in one, and each has a way to its goal."""
-        starts = self.starts
-        has_ways = all(table[start] < len(table) for table, start in zip(self.to_goal, starts, strict=True))
-        goals_differ = not self._parks or len({*self._goals}) == len(self._goals)
-        return has_ways and goals_differ and len({*starts}) == len(starts)
-
-    def is_done(self, places: Configuration) -> bool:
-        """Whether every robot is at its goal or gone."""
-        return all(place in (goal, GONE) for place, goal in zip(places, self._goals, strict=True))
-
-    def node(self, places: Configuration, parent: _Node | None) -> _Node:
-        """A configuration from which nothing has been tried yet."""
-        tick = len(self.targets) + 1  # longer than any way, so that robots that wait equally long differ by their ways
-        if parent is None:
-            waiting = tuple(table[place] for table, place in zip(self.to_goal, places, strict=True))
-        else:
-            waiting = tuple(
-                before % tick if place == goal else before + tick
-                for before, place, goal in zip(parent.waiting, places, self._goals, strict=True)
-            )
-        present = (robot for robot, place in enumerate(places) if not self._leaves(robot, place))
-        return _Node(places, parent, waiting, tuple(sorted(present, key=lambda each: -waiting[each])), deque([()]))
-
-    def _leaves(self, robot: int, place: int) -> bool:
-        """Whether the robot is gone at the next tick."""
-        return place == GONE or (place == self._goals[robot] and not self._parks)
-
-    def choices(self, robot: int, place: int, random: Random) -> list[int]:
-        """The places in which the robot can be next, the nearest to its goal first; equal ones in random order."""
-        choices = [*self.targets[place], place]
-        random.shuffle(choices)
-        return sorted(choices, key=self.to_goal[robot].__getitem__)
-
-    def plans(self, node: _Node) -> tuple[Plan, ...]:
-        """The plans by which the robots get to this configuration."""
-        ways: list[Configuration] = []
-        last: _Node | None = node
-        while last is not None:
-            ways.append(last.places)
-            last = last.parent
-        ways.reverse()
-        return tuple(
-            Plan(robot.id, tuple(self._visits([places[k] for places in ways])))
-            for k, robot in enumerate(self._instance.robots)
-        )
-
-    def _visits(self, way: list[int]) -> Iterator[Visit]:
-        """The visits of a robot that is in these places, tick by tick."""
-        present = [place for place in way if place != GONE]
-        enter = 0
-        for tick in range(1, len(present) + 1):
-            is_last = tick == len(present)
-            if is_last or present[tick] != present[enter]:
-                leave = None if is_last and self._parks else tick
-                yield Visit(self._instance.graph.resources[present[enter]].id, enter, leave)
-                enter = tick
+@compiled
+def try_successor(lacam: Lacam, node: int) -> None:
+    """Put a configuration on the stack that can follow and meets the next demands, if one is found."""
+    nodes = lacam.nodes
+    step = lacam.step
+    demand = int(nodes.head[node])
+    nodes.head[node] = nodes.later[demand]
+    places = nodes.places[node]
+    order = nodes.order[node]
+    present = int(nodes.present[node])
+    level = int(nodes.level[demand])
+    if level < present:
+        robot = int(order[level])
+        demand_each(lacam, node, demand, robot)
+    begin(step, places, order, present)
+    if choose_all(lacam, node, demand):
+        hash = hash_of(step.next)
+        found = node_at(nodes, step.next, hash)
+        if found == NONE:
+            found = add_node(lacam, node, hash)
+        nodes.stack[int(nodes.counts[DEPTH])] = found
+        nodes.counts[DEPTH] += 1
+    end(step, places, order, present)
 
 
-class _Step:
-    """One tick: where the robots stand, and the places that they have chosen so far."""
-
-    def __init__(self, crowd: _Crowd, node: _Node, random: Random) -> None:
-        self._crowd = crowd
-        self._random = random
-        self._places = node.places
-        self._stands = {node.places[robot]: robot for robot in node.order}
-        self._takers: dict[int, int] = {}
-        self.next = [GONE] * len(node.places)
-        for robot in node.order:
-            self.next[robot] = NOWHERE
-
-    def is_open(self, robot: int, place: int) -> bool:
-        """Whether the robot can be there next: nobody else has chosen the place, or comes from there to its own."""
-        other = self._stands.get(place)
-        return place not in self._takers and (other is None or self.next[other] != self._places[robot])
-
-    def take(self, robot: int, place: int) -> None:
-        """Choose the place for the robot."""
-        self.next[robot] = place
-        self._takers[place] = robot
-
-    def choose(self, first: int) -> bool:
-        """Choose places for the robot and for those in its way; `False` if it has to stay because they cannot leave."""
-        turns = [self._turn(first)]
-        while turns:
-            robot = turns[-1].robot
-            place = next((each for each in turns[-1].wishes if self.is_open(robot, each)), None)
-            if place is None:
-                self.take(robot, self._places[robot])
-                turns.pop()
-                continue
-            self.take(robot, place)
-            other = self._stands.get(place)
-            if other is None or not self.waits(other):
-                self._pull(turns)
-                return True
-            turns.append(self._turn(other))
-        return False
-
-    def _turn(self, robot: int) -> "_Turn":
-        """The robot's wishes: from the nearest to its goal, or from the farthest if it has to let a partner pass."""
-        wishes = self._crowd.choices(robot, self._places[robot], self._random)
-        partner = self._partner(robot, wishes[0])
-        if partner is not None:
-            wishes.reverse()
-        return _Turn(robot, iter(wishes), wishes[0], partner)
-
-    def _pull(self, turns: Sequence["_Turn"]) -> None:
-        """Let partners follow into the places that are left for them."""
-        for turn in reversed(turns):
-            left = self._places[turn.robot]
-            is_first = self.next[turn.robot] == turn.first
-            if turn.partner is not None and is_first and self.waits(turn.partner) and self.is_open(turn.partner, left):
-                self.take(turn.partner, left)
-
-    def _partner(self, robot: int, wish: int) -> int | None:
-        """The robot with which this one has to change places, and can, by leaving for a junction with it behind."""
-        here = self._places[robot]
-        if wish == here:
-            return None
-        other = self._stands.get(wish)
-        if other is not None and self.waits(other) and self._must_swap(robot, other, here, wish):
-            return other if self._can_swap(wish, here) else None
-        for place in self._crowd.targets[here]:
-            other = self._stands.get(place)
-            if other is None or place == wish:
-                continue
-            if self._must_swap(other, robot, here, wish) and self._can_swap(wish, here):
-                return other
-        return None
-
-    def waits(self, robot: int) -> bool:
-        """Whether the robot has still to choose."""
-        return self.next[robot] == NOWHERE
-
-    def _must_swap(self, pusher: int, puller: int, behind: int, ahead: int) -> bool:
-        """Whether the pusher, driving the puller ahead of it, gets nowhere before they have changed places."""
-        to_goal = self._crowd.to_goal
-        while to_goal[pusher][ahead] < to_goal[pusher][behind]:
-            ways = self._ways_on(behind, ahead)
-            if len(ways) > 1:
-                return False
-            if not ways:
-                break
-            behind, ahead = ahead, ways[0]
-        return to_goal[puller][behind] < to_goal[puller][ahead] and (
-            to_goal[pusher][behind] == 0 or to_goal[pusher][ahead] < to_goal[pusher][behind]
-        )
-
-    def _can_swap(self, behind: int, ahead: int) -> bool:
-        """Whether the way on from `ahead` leads to a junction, where two robots can change places."""
-        origin = behind
-        for _ in self._crowd.targets:
-            ways = self._ways_on(behind, ahead)
-            if len(ways) != 1 or ahead == origin:
-                return len(ways) > 1 and ahead != origin
-            behind, ahead = ahead, ways[0]
-        return False
-
-    def _ways_on(self, behind: int, ahead: int) -> list[int]:
-        """The places next to `ahead`, but for the one behind and dead ends in which a robot is at its goal."""
-        return [each for each in self._crowd.targets[ahead] if each != behind and not self._is_shut(each)]
-
-    def _is_shut(self, place: int) -> bool:
-        robot = self._stands.get(place)
-        return robot is not None and len(self._crowd.targets[place]) == 1 and self._crowd.to_goal[robot][place] == 0
+@compiled
+def demand_each(lacam: Lacam, node: int, above: int, robot: int) -> None:
+    """Add the demands that the robot goes to each place that it can be in, beside the demands above."""
+    nodes = lacam.nodes
+    wishes = lacam.step.wishes[0]
+    for k in range(rank_choices(lacam.crowd, lacam.step, robot, int(nodes.places[node][robot]), wishes)):
+        add_demand(nodes, node, int(wishes[k]), above, int(nodes.level[above]) + 1)
 
 
-@dataclass(slots=True)
-class _Turn:
-    """A robot that chooses: its wishes not yet tried, the first of all, and the partner that follows it there."""
+@compiled
+def add_demand(nodes: Nodes, node: int, place: int, above: int, level: int) -> None:
+    """Put a demand behind those of the configuration."""
+    demand = int(nodes.counts[DEMANDS])
+    nodes.counts[DEMANDS] += 1
+    nodes.place[demand] = place
+    nodes.above[demand] = above
+    nodes.level[demand] = level
+    nodes.later[demand] = NONE
+    if nodes.head[node] == NONE:
+        nodes.head[node] = demand
+    else:
+        nodes.later[int(nodes.tail[node])] = demand
+    nodes.tail[node] = demand
 
-    robot: int
-    wishes: Iterator[int]
-    first: int
-    partner: int | None
+
+@compiled
+def choose_all(lacam: Lacam, node: int, demand: int) -> bool:
+    """Choose the next places of all robots as demanded; whether that was possible."""
+    nodes = lacam.nodes
+    step = lacam.step
+    places = nodes.places[node]
+    order = nodes.order[node]
+    while nodes.level[demand] > 0:
+        robot = int(order[int(nodes.level[demand]) - 1])
+        place = int(nodes.place[demand])
+        if not is_open(step, places, robot, place):
+            return False
+        take(step, robot, place)
+        demand = int(nodes.above[demand])
+    for k in range(int(nodes.present[node])):
+        robot = int(order[k])
+        if step.next[robot] == NOWHERE and not choose(lacam.crowd, step, places, robot):
+            return False
+    return True
+
+
+@compiled
+def hash_of(places: Ints) -> np.uint64:
+    """A hash of a configuration: the sum of one number for each robot and place."""
+    total = np.uint64(0)
+    for robot in range(places.size):
+        mixed = (np.uint64(robot + 1) << np.uint64(32)) + np.uint64(places[robot] + 1)
+        mixed *= GOLDEN
+        mixed = (mixed ^ (mixed >> np.uint64(30))) * FIRST_MIX
+        mixed = (mixed ^ (mixed >> np.uint64(27))) * SECOND_MIX
+        total += mixed ^ (mixed >> np.uint64(31))
+    return np.uint64(total)
+
+
+@compiled
+def node_at(nodes: Nodes, places: Ints, hash: np.uint64) -> int:
+    """The configuration with these places; `NONE` if it has not been reached."""
+    node = int(nodes.bucket[int(hash % np.uint64(nodes.bucket.size))])
+    while node != NONE:
+        if nodes.hash[node] == hash and is_same(nodes.places[node], places):
+            return node
+        node = int(nodes.chain[node])
+    return NONE
+
+
+@compiled
+def is_same(one: Ints, other: Ints) -> bool:
+    """Whether two configurations are the same."""
+    for robot in range(one.size):  # noqa: SIM110 - no generators in compiled code
+        if one[robot] != other[robot]:
+            return False
+    return True
+
+
+@compiled
+def add_node(lacam: Lacam, parent: int, hash: np.uint64) -> int:
+    """Make a configuration of the places chosen."""
+    nodes = lacam.nodes
+    node = int(nodes.counts[NODES])
+    nodes.counts[NODES] += 1
+    places = nodes.places[node]
+    for robot in range(places.size):
+        places[robot] = lacam.step.next[robot]
+    nodes.parent[node] = parent
+    nodes.hash[node] = hash
+    at = int(hash % np.uint64(nodes.bucket.size))
+    nodes.chain[node] = nodes.bucket[at]
+    nodes.bucket[at] = node
+    if parent != NONE:
+        nodes.present[node] = put_in_order(lacam, node, nodes.order[parent], int(nodes.present[parent]))
+    nodes.head[node] = NONE
+    add_demand(nodes, node, NONE, NONE, 0)
+    return node
+
+
+@compiled
+def put_in_order(lacam: Lacam, node: int, before: Ints, present: int) -> int:
+    """Order the robots that are there at the next tick, from the order before; how many there are.
+
+    Those that were at their goals longest ago come first, and those that are at theirs last, each by the length of the
+    way from its start: in the order before, those on their way stand like that already.
+    """
+    crowd = lacam.crowd
+    places = lacam.nodes.places[node]
+    order = lacam.nodes.order[node]
+    count = 0
+    for k in range(present):
+        robot = int(before[k])
+        if places[robot] != crowd.goal[robot]:
+            order[count] = robot
+            count += 1
+    away = count
+    for k in range(present):
+        robot = int(before[k])
+        if places[robot] == crowd.goal[robot] and crowd.parks:
+            place = count
+            way = way_of(crowd, robot)
+            while place > away and way > way_of(crowd, int(order[place - 1])):
+                order[place] = order[place - 1]
+                place -= 1
+            order[place] = robot
+            count += 1
+    return count
+
+
+@compiled
+def way_of(crowd: Crowd, robot: int) -> int:
+    """The length of the robot's way from its start."""
+    return int(crowd.distance[robot][int(crowd.start[robot])])

@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from carp_spec import Refusal, check
+from carp_spec.inputs.options import require_polish_options
 from carp_verify.documents import write_solution
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import naming, read_instance_file
@@ -22,12 +23,18 @@ from carproof.command_line.options import (
 )
 from carproof.command_line.output import show_solution, write_result
 from carproof.command_line.planning import plan_showing
+from carproof.engines import warm
+from carproof.progress import found_so_far, search_progress
+
+SHORTEST = 0.01
+"""The seconds left at least."""
 
 
 @click.command(
     short_help="Plan all robots of an instance.",
     epilog=examples(
         "carproof plan town.json",
+        "carproof plan town.json --seconds 10 -o plans.json",
         "carproof plan town.json --m 6 -o plans.json",
         "carproof plan town.json --planner shuffled --attempts 100 --seed 1",
         "carproof plan town.json --planner fixed-paths --k 5 --paths disjoint",
@@ -42,6 +49,8 @@ from carproof.command_line.planning import plan_showing
     default=None,
     help="Plan robots that are left out together with others.  [default: unless --planner or --no-baseline is given]",
 )
+@click.option("--seconds", type=float, help="Give the best plans found in this time, by all means at hand.")
+@click.option("--iterations", type=int, help="The same by first plans and this many rounds, in place of a time.")
 @gives_plans
 @click.pass_context
 def command(  # noqa: PLR0913 - one parameter for each argument and option
@@ -51,6 +60,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     instance: str,
     planner: str,
     repair: bool | None,
+    seconds: float | None,
+    iterations: int | None,
     engine: str | None,
     output: Path | None,
     as_json: bool,
@@ -62,8 +73,16 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     planner leaves robots out, rounds of a polish, small groups planned jointly and other orders repair that. Robots
     that stay unplanned are listed with the reason.
 
+    With --seconds, the first plans are those of CARP or of a search over the places of all robots (LaCAM), and large
+    neighbourhood search improves them until the time is over; what the machine does in that time decides the plans.
+    Reading INSTANCE is part of the time, and neither compiling the planner nor writing the plans is. Equal
+    --iterations and --seed give equal plans on every machine.
+
     Exit codes: 0 every robot has a plan, 1 some robot has none, 2 bad input.
     """
+    if seconds is not None or iterations is not None:
+        _refuse_planner_options(context)
+        return _plan_within(instance, seconds, iterations, options["seed"] or 0, output, as_json=as_json)
     chosen = chosen_planner(planner, options)
     problem = read_instance_file(instance)
     started = perf_counter()
@@ -89,3 +108,38 @@ def repairs_unasked(context: click.Context, options: dict[str, Any]) -> bool:
     """Whether plans are repaired by default: not if a planner is named, nor in paper mode."""
     is_named = context.get_parameter_source("planner") is not click.core.ParameterSource.DEFAULT
     return not is_named and options["baseline"] is not False
+
+
+def _refuse_planner_options(context: click.Context) -> None:
+    """Refuse options that a search within a time does not have."""
+    for name in (*(each for each in PLANNING if each != "seed"), "planner", "repair", "engine"):
+        source = context.get_parameter_source(name)
+        if source is not None and source is not click.core.ParameterSource.DEFAULT:
+            message = f"--seconds and --iterations choose among planners by themselves, so there is no --{name}"
+            raise Refusal("option", f"$.{name}", "planner/options", message)
+
+
+def _plan_within(
+    name: str, seconds: float | None, iterations: int | None, seed: int, output: Path | None, *, as_json: bool
+) -> Answer:
+    from carp_optimized.improve.anytime import plan_within  # noqa: PLC0415 - numba is slow to load
+
+    require_polish_options(iterations, seconds, seed)
+    warm()
+    started = perf_counter()
+    problem = read_instance_file(name)
+    played = 0
+    with naming(name), search_progress("planning", iterations, seconds) as show:
+
+        def advance(rounds: int, unplanned: int, total: int) -> None:
+            nonlocal played
+            played = rounds
+            show(rounds, found_so_far(total, 0, unplanned))
+
+        left = None if seconds is None else max(seconds - (perf_counter() - started), SHORTEST)
+        solution = plan_within(problem, iterations=iterations, seconds=left, seed=seed, advance=advance)
+    time = perf_counter() - started
+    write_result(write_solution(solution), output, as_json)
+    if not as_json:
+        show_solution(problem, solution, f"best of {played} rounds", time, None)
+    return Answer.of(not solution.unplanned)

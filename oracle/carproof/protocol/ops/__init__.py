@@ -19,7 +19,7 @@ from carproof.protocol.lines import RIGHT_FIELDS, SPOKEN_VERSION, VERSION, Reque
 from carproof.protocol.ops.executing import check_trace, dependencies, drive, execute, give_way, retime, untangle
 from carproof.protocol.ops.judging import audit, check, verify_bound, verify_query
 from carproof.protocol.ops.op import Op, op_of
-from carproof.protocol.ops.planning import add, plan, polish, query
+from carproof.protocol.ops.planning import add, plan, plan_within, polish, query
 from carproof.protocol.ops.searching import bound, optimum
 
 
@@ -67,6 +67,7 @@ _HANDLERS: tuple[Callable[[Any, Engine], object], ...] = (
     check,
     query,
     plan,
+    plan_within,
     add,
     polish,
     optimum,

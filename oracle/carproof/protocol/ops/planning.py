@@ -65,6 +65,24 @@ def plan(request: PlanRequest, engine: Engine) -> Solution:
 
 
 @dataclass(frozen=True, slots=True)
+class PlanWithinRequest:
+    """An instance to plan within a time."""
+
+    instance: Instance
+    options: PolishOptions = field(default_factory=PolishOptions)
+
+
+def plan_within(request: PlanWithinRequest, engine: Engine) -> Solution:
+    """Plan all robots as well as possible in `seconds`, 10 unless given, or by `iterations` rounds."""
+    del engine
+    warm()
+    from carp_optimized.improve.anytime import plan_within as within  # noqa: PLC0415 - numba is slow to load
+
+    with inside("$.instance"):
+        return within(request.instance, **asdict(request.options))
+
+
+@dataclass(frozen=True, slots=True)
 class AddRequest:
     """A robot to add at the tick `now`."""
 

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 
 from carp_optimized import plan
-from carp_optimized.improve.lacam import STEPS, is_stepwise, plans_by_steps
-from carp_optimized.improve.repair import repair
+from carp_optimized.improve.crowds import is_stepwise
+from carp_optimized.improve.lacam import STEPS, plans_by_steps
 from carp_spec import AfterGoal, Carp, Instance, Resource, ResourceGraph, Robot, Solution, judge
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 from carproof.testing.strategies import Sizes, instances
@@ -61,18 +61,6 @@ def test_robots_on_a_tree_make_room_for_one_another(seed: int) -> None:
 
 def test_robots_that_cannot_pass_get_no_plans() -> None:
     assert plans_by_steps(row_with_pockets(4, (), ((0, 3), (3, 0)))) is None
-
-
-def test_a_repair_moves_a_crowd_tick_by_tick_where_other_means_fail(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("carp_optimized.improve.repair.ATTEMPTS", 0)
-    instance = crowd(8, 32, "park")
-    island = Resource("island")
-    graph = ResourceGraph((*instance.graph.resources, island), instance.graph.edges)
-    lost = Robot("lost", "island", instance.robots[0].start)
-    instance = replace(instance, graph=graph, robots=(*instance.robots, lost))
-    repaired = repair(instance, plan(instance, Carp()))
-    assert repaired.unplanned == ("lost",)
-    assert judge(instance, repaired).valid
 
 
 @pytest.mark.parametrize(

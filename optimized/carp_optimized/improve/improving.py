@@ -1,0 +1,156 @@
+"""Paths of a crowd that get better, for as long as they are asked to: the rounds of `carp_optimized.improve.rounds`."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from carp_optimized.improve.crowds import GONE, Crowd
+from carp_optimized.improve.rounds import (
+    BEST,
+    CHANCE,
+    DIRTY,
+    FIRST_WEIGHT,
+    FULL,
+    KINDS,
+    MOST_MEMBERS,
+    ROUNDS,
+    SURE,
+    TOTAL,
+    Rounds,
+    plan_each,
+    plan_first,
+    play,
+    put_all,
+)
+from carp_optimized.improve.sipp import no_query
+from carp_optimized.improve.stays import Paths, no_paths, no_stays, with_more_room
+from carp_optimized.jit.kinds import Ints, IntTable
+from carp_optimized.jit.references import Native
+
+PART = 8
+"""The robots that one compiled call plans."""
+LONGER = 32
+"""The visits that a path may have beyond the longest one given."""
+
+
+class Improving:
+    """Paths of all robots, and the best ones seen."""
+
+    __slots__ = ("_native", "rounds")
+
+    def __init__(self, crowd: Crowd, paths: Paths, seed: int = 0) -> None:
+        """The crowd has been measured. The paths break no rule together."""
+        robots, room = paths.place.shape
+        visits = np.arange(room) < paths.size[:, np.newaxis]
+        stays = no_stays(np.bincount(paths.place[visits], minlength=crowd.queue.size).astype(np.int32))
+        self.rounds = Rounds(
+            crowd=crowd,
+            stays=stays,
+            query=no_query(stays),
+            paths=paths,
+            best=no_paths(robots, room),
+            tried=no_paths(MOST_MEMBERS, room),
+            least=crowd.distance[np.arange(robots), crowd.start],
+            members=np.zeros(MOST_MEMBERS, np.int32),
+            key=np.zeros(MOST_MEMBERS, np.int64),
+            mark=np.zeros(robots, np.int32),
+            changed=np.zeros(robots, np.int32),
+            is_changed=np.zeros(robots, np.int32),
+            weight=np.full(KINDS, FIRST_WEIGHT, np.int64),
+            counts=np.zeros(8, np.int64),
+            stream=np.array([seed], np.uint64),
+        )
+        self._native = Native(self.rounds)
+
+    @property
+    def best(self) -> int:
+        """The sum of arrivals of the best paths."""
+        return int(self.rounds.counts[BEST])
+
+    @property
+    def total(self) -> int:
+        """The sum of arrivals of the paths."""
+        return int(self.rounds.counts[TOTAL])
+
+    @property
+    def played(self) -> int:
+        """The rounds so far."""
+        return int(self.rounds.counts[ROUNDS])
+
+    def begin(self) -> None:
+        """Take the paths for the best."""
+        robots = self.rounds.paths.size.size
+        done = 0
+        while (done := put_all(self._native, done)) < robots:
+            self._make_room()
+        self.rounds.counts[TOTAL] = arrivals(self.rounds.paths).sum()
+        self._remember()
+
+    def _remember(self) -> None:
+        counts = self.rounds.counts
+        counts[BEST] = counts[TOTAL]
+        for best, paths in zip(self.rounds.best, self.rounds.paths, strict=True):
+            best[...] = paths
+        counts[DIRTY] = 0
+        self.rounds.is_changed[:] = 0
+
+    def return_to_best(self) -> None:
+        """Go on from the best paths."""
+        for best, paths in zip(self.rounds.best, self.rounds.paths, strict=True):
+            paths[...] = best
+        self.rounds.stays.size[:] = 0
+        self.rounds.counts[DIRTY] = 0
+        self.rounds.is_changed[:] = 0
+        self.begin()
+
+    def play(self, rounds: int, work: int, chance: int = 0) -> int:
+        """Play that many rounds, or as many as take that much work; how many."""
+        self.rounds.counts[CHANCE] = min(chance, SURE - 1)
+        played = play(self._native, rounds, work)
+        if played != FULL:
+            return played
+        self._make_room()
+        return 0
+
+    def plan_each(self, order: Ints, goes_on: Callable[[], bool]) -> None:
+        """Plan the robots again, one after the other."""
+        self._go_through(plan_each, order, goes_on)
+
+    def plan_first(self, order: Ints, goes_on: Callable[[], bool]) -> None:
+        """Plan robots that have no paths yet, one after the other, those that find none left out."""
+        self._go_through(plan_first, order, goes_on)
+
+    def _go_through(
+        self, step: Callable[[Native[Rounds], Ints, int, int], int], order: Ints, goes_on: Callable[[], bool]
+    ) -> None:
+        done = 0
+        while done < order.size and goes_on():
+            end = min(done + PART, order.size)
+            done = step(self._native, order, done, end)
+            if done < end:
+                self._make_room()
+
+    def _make_room(self) -> None:
+        stays = with_more_room(self.rounds.stays)
+        self.rounds = self.rounds._replace(stays=stays, query=no_query(stays))
+        self._native = Native(self.rounds)
+
+
+def arrivals(paths: Paths) -> Ints:
+    """The ticks at which the robots arrive."""
+    last: Ints = paths.enter[np.arange(paths.size.size), paths.size - 1]
+    return last
+
+
+def paths_of(ways: IntTable) -> Paths:
+    """The paths of robots that are in these places, tick by tick."""
+    enters = []
+    for way in ways.T:
+        present = int((way != GONE).sum())
+        enters.append(np.concatenate([[0], 1 + np.flatnonzero(np.diff(way[:present]))]))
+    paths = no_paths(len(enters), max(map(len, enters), default=0) + LONGER)
+    for robot, ticks in enumerate(enters):
+        paths.size[robot] = ticks.size
+        paths.enter[robot, : ticks.size] = ticks
+        paths.place[robot, : ticks.size] = ways[ticks, robot]
+    return paths

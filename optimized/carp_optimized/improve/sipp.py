@@ -1,0 +1,168 @@
+"""The earliest path of one robot between the stays of others: SIPP (Phillips and Likhachev 2011).
+
+A gap between two stays of a resource is a safe interval. Gap k of a resource comes before its stay k, so it is known by
+the place of that stay in the arrays. A robot that reaches a gap earlier can do all that one who comes later can, so the
+earliest arrival in each gap is enough. Arrivals are looked at in the order of the ticks at which they could reach the
+goal, and the latest found first among equals: with steps of one tick these bounds are small whole numbers, so they have
+buckets.
+
+Parked robots never leave. So no arrival is earlier than the last stay in the goal ends, which is known at the start.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from carp_optimized.improve.crowds import Crowd
+from carp_optimized.improve.stays import Paths, Stays, later_than
+from carp_optimized.jit.compiling import compiled
+from carp_optimized.jit.kinds import Ints, Longs
+from carp_optimized.state.arrays import NEVER, NONE
+
+BUCKETS = 1 << 14
+"""Paths that arrive later than the first bound by more ticks than this are not found."""
+GENERATION, LABELS, TOP, EXPANDED = range(4)  # the counts
+
+
+class Query(NamedTuple):
+    """The scratch of a query: for each gap its arrival and the gap before, if it is marked; and the labels by bound."""
+
+    mark: Ints
+    arrive: Ints
+    before: Ints
+    head: Ints
+    gap: Ints
+    tick: Ints
+    later: Ints
+    counts: Longs
+
+
+def no_query(stays: Stays) -> Query:
+    """The scratch for these rows."""
+    gaps = stays.enter.size
+    labels = 4 * gaps
+    return Query(
+        mark=np.zeros(gaps, np.int32),
+        arrive=np.empty(gaps, np.int32),
+        before=np.empty(gaps, np.int32),
+        head=np.full(BUCKETS, NONE, np.int32),
+        gap=np.empty(labels, np.int32),
+        tick=np.empty(labels, np.int32),
+        later=np.empty(labels, np.int32),
+        counts=np.zeros(4, np.int64),
+    )
+
+
+@compiled
+def find_path(crowd: Crowd, stays: Stays, query: Query, robot: int, latest: int, paths: Paths, row: int) -> bool:
+    """Write the path with the earliest arrival into the row; `False` if there is none by the tick `latest`."""
+    start = int(crowd.start[robot])
+    goal = int(crowd.goal[robot])
+    first = int(stays.first[start])
+    if stays.size[start] > 0 and stays.enter[first] == 0:
+        return False
+    least = int(crowd.distance[robot][start])
+    if crowd.parks and stays.size[goal] > 0:
+        least = max(least, int(stays.leave[int(stays.first[goal]) + int(stays.size[goal]) - 1]))
+    if least > latest:
+        return False
+    latest = min(latest, least + BUCKETS - 1)
+    query.counts[GENERATION] += 1
+    query.counts[LABELS] = 0
+    query.counts[TOP] = 0
+    reach(query, first, 0, NONE, 0)
+    found = NONE
+    bucket = 0
+    while bucket <= query.counts[TOP]:
+        label = int(query.head[bucket])
+        if label == NONE:
+            bucket += 1
+            continue
+        query.head[bucket] = query.later[label]
+        gap = int(query.gap[label])
+        if query.arrive[gap] != query.tick[label]:
+            continue
+        if stays.place[gap] == goal and (not crowd.parks or end_of(stays, gap) == NEVER):
+            found = gap
+            break
+        query.counts[EXPANDED] += 1
+        if not expand(crowd, stays, query, robot, gap, least, latest):
+            break
+    for k in range(bucket, int(query.counts[TOP]) + 1):
+        query.head[k] = NONE
+    return found != NONE and write_path(stays, query, found, paths, row)
+
+
+@compiled
+def end_of(stays: Stays, gap: int) -> int:
+    """The tick at which the gap ends: the robot that stays next enters."""
+    place = int(stays.place[gap])
+    return int(stays.enter[gap]) if gap < stays.first[place] + stays.size[place] else NEVER
+
+
+@compiled
+def expand(crowd: Crowd, stays: Stays, query: Query, robot: int, gap: int, least: int, latest: int) -> bool:
+    """Reach all gaps that one move leads to from this one; `False` if there is no room for that many labels."""
+    place = int(stays.place[gap])
+    soon = int(query.arrive[gap]) + 1
+    until = end_of(stays, gap)
+    distance = crowd.distance[robot]
+    for edge in range(int(crowd.first[place]), int(crowd.first[place + 1])):
+        target = int(crowd.target[edge])
+        rest = int(distance[target])
+        if max(soon + rest, least) > latest:
+            continue
+        first = int(stays.first[target])
+        last = first + int(stays.size[target])
+        into = first + later_than(stays, target, soon)
+        while into <= last:
+            free = int(stays.leave[into - 1]) if into > first else 0
+            tick = max(soon, free)
+            bound = max(tick + rest, least)
+            if tick > until or bound > latest:
+                break
+            end = int(stays.enter[into]) if into < last else NEVER
+            # whoever left the target at this tick, and enters the place at it, would swap with the robot
+            swaps = into > first and tick == free and tick == until and stays.robot[into - 1] == stays.robot[gap]
+            is_marked = query.mark[into] == query.counts[GENERATION]
+            if tick < end and not swaps and (not is_marked or tick < query.arrive[into]):
+                if query.counts[LABELS] == query.gap.size:
+                    return False
+                reach(query, into, tick, gap, bound - least)
+            into += 1
+    return True
+
+
+@compiled
+def reach(query: Query, gap: int, tick: int, before: int, bucket: int) -> None:
+    """Note an arrival in a gap."""
+    query.mark[gap] = query.counts[GENERATION]
+    query.arrive[gap] = tick
+    query.before[gap] = before
+    label = int(query.counts[LABELS])
+    query.counts[LABELS] += 1
+    query.gap[label] = gap
+    query.tick[label] = tick
+    query.later[label] = query.head[bucket]
+    query.head[bucket] = label
+    query.counts[TOP] = max(int(query.counts[TOP]), bucket)
+
+
+@compiled
+def write_path(stays: Stays, query: Query, found: int, paths: Paths, row: int) -> bool:
+    """Write the visits that lead to a gap; `False` if they are too many for the row."""
+    visits = 0
+    gap = found
+    while gap != NONE:
+        visits += 1
+        gap = int(query.before[gap])
+    if visits > paths.place[row].size:
+        return False
+    paths.size[row] = visits
+    gap = found
+    while gap != NONE:
+        visits -= 1
+        paths.place[row][visits] = stays.place[gap]
+        paths.enter[row][visits] = query.arrive[gap]
+        gap = int(query.before[gap])
+    return True

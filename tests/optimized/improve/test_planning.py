@@ -1,0 +1,121 @@
+"""Plans in a given time: they keep the law, never get worse, and come in time."""
+
+from dataclasses import replace
+from time import process_time
+
+import numpy as np
+import pytest
+from hypothesis import given
+
+from carp_optimized.improve.checking import require_lawful
+from carp_optimized.improve.crowds import Crowd, crowd_of, is_stepwise, measure
+from carp_optimized.improve.lacam import plans_by_steps
+from carp_optimized.improve.planning import Clock as Timer
+from carp_optimized.improve.planning import first_paths, plan_crowd
+from carp_optimized.improve.stays import Paths
+from carp_optimized.jit.references import Native
+from carp_spec import AfterGoal, Instance, judge, total_cost
+from carproof.generate import Fleet, Grid, grid_instance
+from carproof.testing.strategies import Sizes, instances
+
+STEPWISE = Sizes(resources=7, robots=5, capacity=1, duration=1, release=0, pace=1)
+
+
+def crowd(side: int, robots: int, after_goal: AfterGoal = "park", seed: int = 0) -> Instance:
+    """Robots on a full square grid."""
+    made = grid_instance(Grid(width=side, height=side, map=20), Fleet(robots=robots, seed=seed))
+    return replace(made, after_goal=after_goal)
+
+
+@given(instances(STEPWISE).filter(is_stepwise))
+def test_plans_break_no_rule_are_the_same_again_and_no_worse_than_the_first(instance: Instance) -> None:
+    found = plan_crowd(instance, iterations=30, seconds=None, seed=3)
+    assert found == plan_crowd(instance, iterations=30, seconds=None, seed=3)
+    if found is None:
+        return
+    assert judge(instance, found).valid
+    first = plans_by_steps(instance)
+    if first is not None:
+        assert not found.unplanned
+        assert total_cost(instance, found.plans) <= total_cost(instance, first)
+
+
+@pytest.mark.parametrize("after_goal", ["park", "vanish"])
+def test_rounds_improve_a_crowd_and_its_best_total_never_rises(after_goal: AfterGoal) -> None:
+    instance = crowd(12, 60, after_goal)
+    seen: list[int] = []
+    found = plan_crowd(instance, iterations=3000, seconds=None, advance=lambda _, __, total: seen.append(total))
+    assert found is not None
+    assert judge(instance, found).valid
+    assert seen == sorted(seen, reverse=True)
+    assert total_cost(instance, found.plans) == seen[-1] < seen[0]
+    first = plans_by_steps(instance)
+    assert first is not None
+    assert 2 * seen[-1] < total_cost(instance, first) + seen[0]
+
+
+def test_robots_that_no_order_plans_get_plans() -> None:
+    instance = crowd(8, 60)
+    found = plan_crowd(instance, iterations=10, seconds=None)
+    assert found is not None
+    assert not found.unplanned
+    assert judge(instance, found).valid
+
+
+@pytest.mark.parametrize(
+    ("side", "robots", "seconds"), [(8, 20, 0.3), (40, 300, 0.5), (70, 1500, 1.5), (90, 3000, 0.2)]
+)
+def test_the_time_is_kept_at_several_sizes(side: int, robots: int, seconds: float) -> None:
+    instance = crowd(side, robots)
+    plan_crowd(crowd(3, 2), iterations=1, seconds=None)
+    started = process_time()
+    found = plan_crowd(instance, iterations=None, seconds=seconds, clock=process_time)
+    assert process_time() - started < 1.5 * seconds + 0.5
+    assert found is not None
+    if robots < 3000:
+        assert not found.unplanned
+
+
+def test_nobody_has_a_plan_where_the_time_is_over_at_once() -> None:
+    ticks = iter(range(10**9))
+    instance = crowd(5, 4)
+    found = plan_crowd(instance, iterations=None, seconds=0.5, clock=lambda: float(next(ticks)))
+    assert found is not None
+    assert len(found.unplanned) == 4
+
+
+def paths_on_a_grid() -> tuple[Crowd, Paths]:
+    made = crowd_of(crowd(6, 12))
+    measure(Native(made), 0, 12)
+    return made, first_paths(made, Timer(None, lambda: 0.0, 0.0), 0)
+
+
+@pytest.mark.parametrize("visit", ["start", "goal", "jump", "late", "overlap", "swap"])
+def test_paths_that_break_a_rule_are_noticed(visit: str) -> None:
+    made, paths = paths_on_a_grid()
+    require_lawful(made, paths)
+    longest = int(np.argmax(paths.size))
+    middle = int(paths.size[longest]) // 2
+    if visit == "start":
+        paths.place[longest, 0] = paths.place[longest, 1]
+    elif visit == "goal":
+        paths.size[longest] -= 1
+    elif visit == "jump":
+        paths.place[longest, middle] = paths.place[longest, middle + 1]
+    elif visit == "late":
+        paths.enter[longest, middle] = paths.enter[longest, middle + 1]
+    elif visit == "overlap":
+        other = (longest + 1) % 12
+        made.start[other], made.goal[other] = made.start[longest], made.goal[longest]
+        for each in paths:
+            each[other] = each[longest]
+    else:
+        places = paths.place[longest, :2].tolist()
+        for robot, way in ((0, places), (1, places[::-1])):
+            paths.size[robot] = 2
+            paths.place[robot, :2] = way
+            paths.enter[robot, :2] = 0, 1
+            made.start[robot], made.goal[robot] = way
+        paths.size[2:] = 0
+    with pytest.raises(AssertionError, match="break a rule"):
+        require_lawful(made, paths)

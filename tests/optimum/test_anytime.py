@@ -1,0 +1,38 @@
+"""Plans within a time, for instances of every kind."""
+
+from time import process_time
+
+from hypothesis import given
+
+from carp_optimized.improve.anytime import plan_within
+from carp_spec import Instance, judge
+from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
+from carproof.testing.strategies import instances
+
+
+@given(instances())
+def test_plans_break_no_rule_and_are_the_same_again(instance: Instance) -> None:
+    found = plan_within(instance, iterations=5, seed=1)
+    assert found == plan_within(instance, iterations=5, seed=1)
+    assert judge(instance, found).valid
+
+
+def test_robots_with_slow_places_are_planned_in_time() -> None:
+    instance = grid_instance(Grid(width=20, height=20), Fleet(robots=60), Traits(duration=Range(1, 3)))
+    plan_within(instance, iterations=1)
+    seen: list[tuple[int, int]] = []
+    started = process_time()
+    found = plan_within(
+        instance, seconds=0.5, clock=process_time, advance=lambda _, unplanned, total: seen.append((unplanned, total))
+    )
+    assert process_time() - started < 2
+    assert judge(instance, found).valid
+    assert seen == sorted(seen, reverse=True)
+
+
+def test_robots_for_which_there_is_no_time_are_unplanned() -> None:
+    instance = grid_instance(Grid(width=5, height=5), Fleet(robots=6), Traits(duration=Range(2, 2)))
+    ticks = iter(range(10**9))
+    found = plan_within(instance, seconds=2.5, clock=lambda: float(next(ticks)))
+    assert 0 < len(found.unplanned) < 6
+    assert judge(instance, found).valid
