@@ -14,6 +14,7 @@ from carp_optimized.improve.annealing import anneal
 from carp_optimized.improve.planning import plan_crowd
 from carp_spec import Instance, Solution
 from carp_spec.inputs.options import require_polish_options
+from carp_spec.inputs.values import require_instance
 
 SECONDS = 10.0
 """The time, unless one is given."""
@@ -39,6 +40,7 @@ def plan_within(
     compilation of the planner, which happens once, is not part of the time: `python -m carp_optimum` makes it happen.
     Raises `Refusal` for wrong options, and for numbers that are too large.
     """
+    require_instance(instance)
     require_polish_options(iterations, seconds, seed)
     if iterations is None and seconds is None:
         seconds = SECONDS
