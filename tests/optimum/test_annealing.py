@@ -1,7 +1,7 @@
 """Simulated annealing of a polish: lawful and reproducible plans, never worse than those given, and no dead ends."""
 
-from collections.abc import Callable, Sequence
-from itertools import chain, count, pairwise
+from collections.abc import Callable
+from itertools import count, pairwise
 
 import pytest
 from hypothesis import given
@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from carp_optimized import plan, polish
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.improve import annealing
-from carp_optimized.improve.annealing import CYCLES_OF_LUCK, ENOUGH, PARTS, _chance, anneal
+from carp_optimized.improve.annealing import anneal
 from carp_optimized.improve.repair import repair
-from carp_optimized.neighbourhood.polishing import CHANCE, SURE
-from carp_spec import Carp, Instance, Plan, Resource, ResourceGraph, Robot, Solution, judge, total_cost
+from carp_optimized.neighbourhood.polishing import CHANCE
+from carp_spec import Carp, Instance, Resource, ResourceGraph, Robot, Solution, judge, total_cost
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances
 
@@ -77,18 +77,6 @@ def test_robots_that_share_a_lane_in_both_directions_learn_to_take_turns() -> No
         assert fleet.worth == (0, 440)
 
 
-def test_the_mean_raise_is_four_mean_delays_falls_as_the_cube_of_the_time_left_and_waits_for_enough_rounds() -> None:
-    def mean_raise(rounds: int, left: int) -> float:
-        chance = _chance(heated=64 * 100, robots=50, rounds=rounds, left=left)
-        return chance / (SURE - chance)
-
-    assert mean_raise(50 * ENOUGH, PARTS) == pytest.approx(4 * 2, rel=0.01)
-    assert mean_raise(500 * ENOUGH, PARTS) == mean_raise(50 * ENOUGH, PARTS)
-    assert mean_raise(50 * ENOUGH, PARTS // 2) == pytest.approx(1, rel=0.01)
-    assert mean_raise(ENOUGH, PARTS) == pytest.approx(8 / 50, rel=0.01)
-    assert mean_raise(0, PARTS) == _chance(0, 0, 0, PARTS) == 0
-
-
 def test_the_best_plans_seen_are_the_result(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(annealing, "HEAT", 10_000)
     instance = grid_instance(Grid(8, 8, map=8), Fleet(robots=24, seed=1))
@@ -97,71 +85,6 @@ def test_the_best_plans_seen_are_the_result(monkeypatch: pytest.MonkeyPatch) -> 
     annealed = anneal(instance, given, 6, clock=ticking(), advance=lambda *at: seen.append(at))
     assert worth(annealed, instance) == seen[-1][1:] <= worth(given, instance)
     assert [rounds for rounds, _, _ in seen] == [50, 100, 150, 200]
-
-
-def beginnings(monkeypatch: pytest.MonkeyPatch, instance: Instance, given: Solution) -> list[int]:
-    """The totals of the plans with which cycles begin."""
-    begun: list[int] = []
-    commit = PlannedFleet.commit
-
-    def recorded(fleet: PlannedFleet, plans: Sequence[Plan]) -> None:
-        begun.append(total_cost(instance, tuple(plans)))
-        commit(fleet, plans)
-
-    monkeypatch.setattr(PlannedFleet, "commit", recorded)
-    anneal(instance, given, 80, clock=ticking())
-    return begun
-
-
-def test_each_cycle_begins_with_the_best_plans_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(annealing, "HEAT", 10_000)
-    instance = grid_instance(Grid(8, 8, map=8), Fleet(robots=24, seed=1))
-    given = polish(instance, plan(instance, Carp()), iterations=ROUNDS)
-    begun = beginnings(monkeypatch, instance, given)
-    assert len(begun) > 1
-    assert begun == sorted(begun, reverse=True)
-
-
-@pytest.mark.parametrize(("map", "enough", "is_from_given"), [(0, 1, True), (0, 1000, False), (12, 1, False)])
-def test_where_robots_wait_much_some_cycles_begin_again_with_the_plans_given(
-    monkeypatch: pytest.MonkeyPatch, map: int, enough: int, is_from_given: bool
-) -> None:
-    monkeypatch.setattr(annealing, "ENOUGH", enough)
-    instance = grid_instance(Grid(12, 12, map=map), Fleet(robots=40, seed=1))
-    given = repair(instance, plan(instance, Carp()))
-    begun = beginnings(monkeypatch, instance, given)
-    assert begun[0] == total_cost(instance, given.plans)
-    assert (begun[1:2] == begun[:1]) == is_from_given  # the first cycle gains
-    assert (begun[0] in begun[2:]) == is_from_given
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_a_cycle_begins_where_the_one_before_did_only_if_that_gained(
-    monkeypatch: pytest.MonkeyPatch, seed: int
-) -> None:
-    monkeypatch.setattr(annealing, "ENOUGH", 1)
-    instance = grid_instance(Grid(12, 12, map=0), Fleet(robots=40, seed=1))
-    given = repair(instance, plan(instance, Carp()))
-    bests = [total_cost(instance, given.plans)]
-    begun: dict[int, int] = {}  # the totals with which cycles began, by their number
-    commit = PlannedFleet.commit
-
-    def recorded(fleet: PlannedFleet, plans: Sequence[Plan]) -> None:
-        begun[len(bests)] = total_cost(instance, tuple(plans))
-        commit(fleet, plans)
-
-    monkeypatch.setattr(PlannedFleet, "commit", recorded)
-    middles = (number + 0.5 for number in range(CYCLES_OF_LUCK + 1))  # of cycles, each with one call of the planner
-    clock = chain([0, 0, 0], middles).__next__
-    anneal(instance, given, CYCLES_OF_LUCK, seed=seed, clock=clock, advance=lambda *at: bests.append(at[2]))
-    gained = [after < before for before, after in pairwise(bests)]
-    assert len(gained) == CYCLES_OF_LUCK
-    assert any(gained[1:])
-    assert not all(gained)
-    from_given = True
-    for number, has_gained in enumerate(gained[:-1], 2):
-        from_given = from_given == has_gained
-        assert (begun.get(number) == bests[0]) == from_given
 
 
 def test_no_heat_gives_the_plans_of_a_polish(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -55,13 +55,6 @@ def test_the_better_half_goes_on_from_where_it_is_and_the_last_gets_the_rest() -
     assert seen == [(10, 0, 9), (20, 0, 7), (30, 0, 7), (40, 0, 6), (60, 0, 5), (80, 0, 4), (121, 0, 3)]
 
 
-def test_seconds_are_shared_as_rounds_are_and_another_seed_asks_for_others() -> None:
-    recorder = Recorder({4: 9, 5: 8, 6: 3})
-    instance = lane()
-    polish_many(recorder, 2, instance, waiting(instance, 10), seconds=8, seed=1, advance=lambda *_: None)
-    assert recorder.asked == [(10, None, 2, 4), (10, None, 2, 5), (8, None, 4, 6)]
-
-
 def test_a_solution_that_leaves_robots_out_is_worse_than_any_that_does_not() -> None:
     instance = lane()
     nothing = Solution((), (), ("r0",))

@@ -1,6 +1,6 @@
 """Bounds and plans meet at the optimum, whatever runs beside whatever and on however many cores."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from itertools import islice, pairwise
 from pathlib import Path
@@ -16,12 +16,10 @@ from tests.verify.tiny import TINY
 import carproof
 from carp_optimized.improve.repair import repair
 from carp_optimum.background import BackgroundSearch
-from carp_optimum.lagrangian.reduced_costs import PricedBound
 from carp_optimum.narrowing import half_narrowed, narrowed
 from carp_optimum.optimum import optimum
 from carp_optimum.sat.between import Between
 from carp_optimum.sat.core_guided import core_guided
-from carp_optimum.sat.priced_formula import PricedFormula, priced_formula
 from carp_optimum.sat.proving import write_proof
 from carp_optimum.sat.solver import TimeOver
 from carp_spec import AfterGoal, Carp, Instance, Plan, Robot, judge, total_cost
@@ -109,38 +107,6 @@ def test_formulas_lead_up_from_a_weak_bound(seed: int, after_goal: AfterGoal, mo
     found = results(instance)
     assert len({known.lower for known in found}) > 2
     assert (found[-1].lower, found[-1].total) == (least, least)
-
-
-@pytest.mark.usefixtures("beside_at_once")
-def test_one_formula_gives_cheaper_and_cheaper_plans_down_to_the_optimum(monkeypatch: pytest.MonkeyPatch) -> None:
-    instance = town(7, "park")
-    least = core_guided(instance, SECONDS).cost
-    monkeypatch.setattr("carp_optimum.sat.heuristics.ever_better", lambda *_: iter(()))
-    monkeypatch.setattr("carp_optimum.narrowing.STRIDE", 40)
-    found = results(instance)
-    assert (found[-1].lower, found[-1].total) == (least, least)
-    assert len({known.lower for known in found}) == 3
-    assert len({known.total for known in found}) > 2
-
-
-@pytest.mark.usefixtures("beside_at_once")
-def test_formulas_end_below_the_total_of_the_best_plans_known(monkeypatch: pytest.MonkeyPatch) -> None:
-    instance = town(7, "park")
-    least = core_guided(instance, SECONDS)
-    assert least.cost is not None
-    assert least.solution is not None
-    plans = least.solution.plans
-    searched = []
-
-    def below(instance: Instance, bound: PricedBound, cost: int, look: Callable[[], None]) -> PricedFormula:
-        searched.append(cost)
-        return priced_formula(instance, bound, cost, look)
-
-    monkeypatch.setattr("carp_optimum.sat.heuristics.ever_better", lambda *_: iter([(0, plans)]))
-    monkeypatch.setattr("carp_optimum.narrowing.priced_formula", below)
-    assert results(instance)[-1] == Between(instance, least.cost, plans)
-    assert searched
-    assert max(searched) == least.cost - 1
 
 
 @pytest.mark.usefixtures("beside_at_once")
@@ -238,36 +204,6 @@ def test_a_crowd_without_plans_or_with_too_large_tables_is_searched_whole(monkey
     monkeypatch.setattr("carp_optimum.sat.heuristics.ever_better", lambda *_: iter(()))
     assert [known for _, known in half_narrowed(instance, nothing, 0)] == [Between(instance)] * 2
     assert optimum(instance, SECONDS).cost == least
-
-
-@pytest.mark.usefixtures("beside_at_once")
-def test_plans_get_better_where_the_bound_is_too_far_for_formulas(monkeypatch: pytest.MonkeyPatch) -> None:
-    instance = town(7, "park")
-    monkeypatch.setattr("carp_optimum.narrowing.LARGEST_GAP", -1)
-    least = core_guided(instance, SECONDS).cost
-    totals = (known.total for _, known in narrowed(instance, nothing))
-    assert least in islice(totals, 1000)
-
-
-def test_dearer_plans_do_not_replace_cheaper_ones() -> None:
-    instance = town(9, "vanish")
-    dear = carproof.plan(instance, Carp()).plans
-    cheap = core_guided(instance, SECONDS).solution
-    assert cheap is not None
-    assert total_cost(instance, cheap.plans) < total_cost(instance, dear)
-    assert Between(instance).with_plans(dear).with_plans(cheap.plans).with_plans(dear).plans == cheap.plans
-
-
-@pytest.mark.usefixtures("beside_at_once")
-def test_a_long_search_ends_where_its_bound_meets_the_plans_found_beside(monkeypatch: pytest.MonkeyPatch) -> None:
-    instance = town(7, "park")
-    least = core_guided(instance, SECONDS)
-    assert least.solution is not None
-    plans = least.solution.plans[::-1]
-    monkeypatch.setattr("carp_optimum.optimum.narrowed", lambda *_: iter([(0, Between(instance, 0, plans))]))
-    best = optimum(instance, SECONDS)
-    assert best.solution is not None
-    assert (best.decided, best.cost, best.solution.plans) == (True, least.cost, plans)
 
 
 @pytest.mark.usefixtures("beside_at_once")

@@ -47,22 +47,3 @@ def test_each_round_adds_every_number_once(weights: Sequence[dict[Node, int]]) -
         assert [len(group) for group in groups] == [2] * (left // 2) + [1] * (left % 2)
         left = len(groups)
     assert left == 1
-
-
-def test_robots_of_the_same_nodes_are_added_first() -> None:
-    weights: Sequence[dict[Node, int]] = [
-        {("a", 0): 1, ("a", 1): 1},
-        {("b", 0): 1, ("c", 1): 1},
-        {("a", 0): 2},
-        {("c", 1): 1},
-        {("b", 1): 9},
-    ]
-    first, second, third = groups_of_near(weights)
-    assert list(first) == [(0, 2), (1, 3), (4,)]
-    assert list(second) == [(0, 1), (2,)]
-    assert list(third) == [(0, 1)]
-
-
-def test_heavier_nodes_make_robots_nearer() -> None:
-    first, *_ = groups_of_near([{("a", 0): 1, ("b", 0): 3}, {("a", 0): 2}, {("b", 0): 3}, {("a", 0): 1}])
-    assert list(first) == [(0, 2), (1, 3)]

@@ -141,16 +141,6 @@ def test_the_certificate_s_cuts_and_deadlines_count(seed: int, after_goal: After
     assert cheapest(instance, bound, least - 1) is None
 
 
-def test_nodes_beyond_the_gap_are_left_out() -> None:
-    instance = town(7, "park")
-    bound = PricedBound(instance, lower_bound(instance, steps=100))
-    for cost in (bound.certificate.bound, bound.certificate.bound + 3):
-        encoding = priced_formula(instance, bound, cost, lambda: None).encoding
-        shortest = {robot.robot.id: robot.shortest or 0 for robot in encoding.robots}
-        for robot in encoding.robots:
-            assert robot.node.keys() <= bound.reduced(robot, shortest, cost).nodes.keys()
-
-
 def test_at_the_bound_one_robot_of_each_group_with_deadlines_is_late_and_no_second_one_if_that_is_too_dear() -> None:
     instance = town(7, "park")
     bound = PricedBound(instance, lower_bound(instance, steps=1500, seen=False))

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from hypothesis import event, given, settings
 from hypothesis.strategies import integers
-from tests.optimum.sight_examples import SCALE, long_way_round, search_of, two_lanes
+from tests.optimum.sight_examples import SCALE, long_way_round, search_of
 from tests.profiles import draws
 
 from carp_optimum.bound import lower_bound
-from carp_optimum.claims.pair_constraints import Claim, Pair, Sides
+from carp_optimum.claims.pair_constraints import Claim, Sides
 from carp_optimum.claims.pair_search import STEPS, SightSearch, pairs_in
 from carp_optimum.lagrangian.deadlines import Member
 from carp_optimum.lagrangian.price_search import PriceSearch
@@ -76,46 +76,11 @@ def test_all_that_is_found_about_more_ticks_is_broken_and_has_a_proof(width: int
         assert search._refutation(search._unproved(members).document, lambda: None)
 
 
-def test_a_claim_does_not_depend_on_those_that_were_searched_for_before() -> None:
-    prices = search_of(on_a_map(9, 24, 26))
-    sides, pairs = sides_near(prices)
-    for pair in pairs:
-        alone = Sides(prices, sides.at, sides.delays, {})
-        assert alone.claim(*pair, True, lambda: None) == sides.claim(*pair, True, lambda: None)
-
-
 def test_ways_that_are_too_long_to_be_looked_at_make_a_claim_lighter() -> None:
     sides, pairs = sides_near(search_of(on_a_map(9, 24, 27)), -1)
     claims = about_more_ticks(sides, pairs)
     assert claims
     assert all(broken_by(sides, members) == weight for weight, members in claims.values())
-
-
-def test_places_that_no_recent_way_took_are_added() -> None:
-    sides, _ = sides_near(search_of(two_lanes()))
-    _, (long, second) = sides.claim(0, 2, False, lambda: None)
-    ids = [resource.id for resource in two_lanes().graph.resources]
-    assert [ids[place] for place in long.places] == ["east0"]
-    assert [ids[place] for place in second.places] == ["west3", "bay", "hall", "east0"]
-    assert not sides.at[:, 2, second.seen][np.isin(sides.at[:, 2, second.seen], second.places[:2])].size
-
-
-def test_no_place_can_be_added_to_where_a_robot_is_seen() -> None:
-    prices = search_of(on_a_map(7, 14, 7))
-    sides, pairs = sides_near(prices)
-    search = SightSearch(prices)
-    tried = 0
-    for _, members in about_more_ticks(sides, pairs).values():
-        for number, member in enumerate(members[:-2]):
-            side = sides.side(member.robot)
-            assert side is not None
-            within = Pair(prices, (side, side), 0, STEPS).within(side, member.seen)[:-1]
-            for place in {*side.resource[within].tolist()} - {*member.places}:
-                wider = [*members]
-                wider[number] = member._replace(places=(*member.places, place))
-                assert not search._refutation(search._unproved(wider).document, lambda: None)
-                tried += 1
-    assert tried > 0
 
 
 def test_a_claim_for_which_there_is_no_time_leaves_the_robots_free_to_be_anywhere() -> None:

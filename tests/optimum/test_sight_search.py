@@ -1,12 +1,9 @@
 """The search for deadlines of robots that are seen: what it finds is true, and raises the bound where robots meet."""
 
-from collections.abc import Callable
-
 import pytest
 from tests.optimum.sight_examples import SCALE, search_of, two_lanes
 
 from carp_optimum.bound import lower_bound
-from carp_optimum.claims.pair_constraints import Sides
 from carp_optimum.claims.pair_search import SightSearch
 from carp_optimum.lagrangian.deadlines import Deadlines, Member
 from carp_optimum.sat.solver import TimeOver
@@ -108,25 +105,6 @@ def test_the_bound_is_that_of_the_claims_that_are_proved_in_time() -> None:
     assert certificate.bound <= -(-before // SCALE)
 
 
-def test_a_pair_of_much_work_has_its_turn_when_others_were_searched_in_vain(monkeypatch: pytest.MonkeyPatch) -> None:
-    searched: list[tuple[int, ...]] = []
-
-    def claim(_: Sides, one: int, other: int, is_about_more: bool, check: Callable[[], None]) -> tuple[int, tuple[()]]:
-        assert not is_about_more
-        check()
-        searched.append((one, other))
-        return 0, ()
-
-    monkeypatch.setattr(Sides, "claim", claim)
-    monkeypatch.setattr(Sides, "work", lambda _, one, other: 1 + 2 * one * other)
-    monkeypatch.setattr("carp_optimum.claims.pair_search.pairs_in", lambda *_: {(1, 3), (0, 2)})
-    monkeypatch.setattr("carp_optimum.claims.pair_search.MOST_WORK", 7)
-    search = SightSearch(search_of(two_lanes()))
-    for _ in range(5):
-        search.round(lambda: None)
-    assert searched == [(0, 2)] * 3 + [(1, 3), (0, 2)]
-
-
 def test_the_same_search_finds_the_same() -> None:
     found = []
     for _ in range(2):
@@ -134,10 +112,3 @@ def test_the_same_search_finds_the_same() -> None:
         SightSearch(prices).round(lambda: None)
         found.append([deadlines.document for deadlines in prices.deadlines])
     assert found[0] == found[1]
-
-
-def test_nothing_is_searched_for_where_tables_would_be_large(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("carp_optimum.claims.pair_search.LARGEST_ENCODING", 0)
-    prices = search_of(two_lanes())
-    assert SightSearch(prices).round(lambda: None) == 0
-    assert not prices.deadlines
