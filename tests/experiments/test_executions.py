@@ -5,7 +5,6 @@ from collections.abc import Iterable
 import msgspec
 import pytest
 
-from carp_experiments.beyond import people
 from carp_experiments.beyond.delayed import (
     PLANNERS,
     DriverOf,
@@ -16,11 +15,8 @@ from carp_experiments.beyond.delayed import (
 )
 from carp_experiments.beyond.following import FollowingOf, following_figures, following_report, following_row
 from carp_experiments.beyond.people import PeopleOf, PeopleRow, people_report, people_row
-from carp_experiments.paper.map_cases import FULL_MAP, STATIONS, WAREHOUSE, MapCase, instance_of
+from carp_experiments.paper.map_cases import FULL_MAP, WAREHOUSE, MapCase
 from carp_experiments.store import Row, digest_of
-from carp_spec import Instance, RobotId, Solution
-from carproof.engines import Engine
-from carproof.execution.giving_way import GivenWay, give_way
 
 
 def test_late_robots_collide_on_the_clock_alone_and_nobody_stands() -> None:
@@ -74,21 +70,6 @@ def test_people_are_first_and_robots_pay() -> None:
     assert any(person.replanned for person in reported.people)
 
 
-def test_a_person_comes_every_two_ticks_and_is_no_robot_that_has_arrived(monkeypatch: pytest.MonkeyPatch) -> None:
-    asked: list[int] = []
-
-    def noted(instance: Instance, solution: Solution, robot: RobotId, now: int, engine: Engine) -> GivenWay:
-        (plan,) = (each for each in solution.plans if each.robot == robot)
-        assert plan.visits[-1].enter > now
-        asked.append(now)
-        return give_way(instance, solution, robot, now, engine)
-
-    monkeypatch.setattr(people, "give_way", noted)
-    MapCase(people_row, FULL_MAP, 3, 20).run()
-    assert asked == [*range(2, 2 * len(asked) + 1, 2)]
-    assert len(asked) > 5
-
-
 def test_people_without_a_new_plan_are_counted_apart() -> None:
     first = {"delay": 0, "proved": True, "replanned": 4, "stuck": 0, "extra": 6, "pushed": 0}
     unserved = {"delay": None, "proved": False, "replanned": 0, "stuck": 1, "extra": 6, "pushed": 2}
@@ -97,9 +78,3 @@ def test_people_without_a_new_plan_are_counted_apart() -> None:
     assert (one.people, one.first, one.unserved, one.replanned.estimate) == (1, 1, 0, 4)
     assert (two.people, two.first, two.unserved, two.delay, two.stuck) == (2, 1, 1, 0, 1)
     assert (two.replanned.estimate, two.extra.estimate, two.pushed.estimate, two.milliseconds.estimate) == (2, 6, 2, 15)
-
-
-def test_the_warehouse_has_the_robots() -> None:
-    instance = instance_of(MapCase(execution_row, WAREHOUSE, 0, 100))
-    assert len(instance.robots) == 100
-    assert len({robot.goal for robot in instance.robots}) == STATIONS

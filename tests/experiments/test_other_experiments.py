@@ -13,7 +13,7 @@ from carp_experiments.paper.adding_time import PAPER, time_report, time_row
 from carp_experiments.paper.claims import related_claims, reuse_claims
 from carp_experiments.paper.map_cases import MapCase, instance_of
 from carp_experiments.paper.related_work import FIXED, METHODS, Related, related_report, related_row
-from carp_experiments.paper.reuse_counts import ReuseOf, reuse_report, reuse_row
+from carp_experiments.paper.reuse_counts import ReuseOf, reuse_report
 from carp_experiments.paper.small_gaps import COMPARED, POLISHED, GapRow, gap_report, gap_row
 from carp_experiments.store import digest_of
 from carp_spec import Carp, FixedPaths, Greedy, LongestFirst, Planner, plan_cost
@@ -35,14 +35,6 @@ def test_the_table_of_times_compares_with_carp() -> None:
     assert cells["CARP"][4:] == ("0.00 ± 0.00", "1.00 ± 0.00", "1.0")
     assert cells["Proposed_4"][5] == "5.00 ± 1.96"
     assert cells["Proposed_6"][6] == "47.4", "75.81 / 1.60"
-
-
-def test_prefixes_leave_the_papers_shares_of_the_last_round() -> None:
-    report = reuse_report([MapCase(reuse_row, 20, seed, 20).run() for seed in (1, 2)], 20)
-    lines = {line[0]: line for line in report.tables[0].rows}
-    assert lines["Proposed_4"][6] == "66.7 ± 0.0 %"
-    assert lines["Proposed_5"][6] == "54.2 ± 0.0 %"
-    assert lines["Proposed_6"][6] == "45.3 ± 0.0 %"
 
 
 def test_queries_are_told_apart_by_what_they_are_for() -> None:
@@ -179,12 +171,6 @@ def test_what_a_polish_reaches_on_its_way_is_what_a_shorter_one_reaches() -> Non
     assert after[0] != after[-1]
 
 
-def test_a_polish_with_nothing_to_do_reaches_what_was_there() -> None:
-    instance = instance_of(MapCase(polishing.polish_row, 20, 1, 1))
-    solution = carp_optimized.plan(instance, Carp())
-    assert len(set(polishing.polish_to(instance, solution, [50, 100], 9)[1])) == 1
-
-
 def test_polish_is_summed_up_over_the_assignments_that_do_not_fail() -> None:
     reached = {**dict.fromkeys(polishing.METHODS, (5, 110)), polishing.LONGEST: (5, 100)}
     failed = {**reached, "Proposed_4": (3, 40)}
@@ -197,22 +183,6 @@ def test_polish_is_summed_up_over_the_assignments_that_do_not_fail() -> None:
     assert gaps.rows == (("7", *["110: 10.00"] * 2, "100: 0.00", *["110: 10.00"] * 2),)
     assert bounds.rows == (("7", "80", "100", "25.00", "2/2", "2/2", "2.0", "0.5"),)
     assert failures.rows == (("7", "1/2 (1.00)", *["0/2 (0.00)"] * 4),)
-
-
-def test_a_method_that_fails_everywhere_has_no_gap() -> None:
-    rows = [
-        {
-            "map": 0,
-            "shortest": 80,
-            "bound": 100,
-            "results": dict.fromkeys(polishing.METHODS, (4, 90)),
-            "measured": {"bound": 1, "Proposed_4": 1},
-        }
-    ]
-    gaps, bounds, failures = polishing.polish_report(rows, 5).tables
-    assert set(gaps.rows[0][1:]) == {"all failed"}
-    assert bounds.rows[0][4:6] == ("0/0", "0/0")
-    assert set(failures.rows[0][1:]) == {"1/1 (1.00)"}
 
 
 @pytest.mark.parametrize("experiment", EXPERIMENTS, ids=lambda experiment: experiment.name)

@@ -3,12 +3,11 @@
 import pytest
 
 import carp_optimized
-from carp_experiments.experiments import EXPERIMENTS, Profile
 from carp_experiments.paper.map_cases import MapCase, instance_of
-from carp_experiments.paper.quality import ALGORITHMS, QualityRow, quality_row, seeded, summarise
+from carp_experiments.paper.quality import ALGORITHMS, quality_row, seeded, summarise
 from carp_experiments.paper.quality_report import quality_report
 from carp_experiments.store import Row
-from carp_spec import Refusal, total_cost
+from carp_spec import total_cost
 
 
 @pytest.mark.parametrize("case", [MapCase(quality_row, 4, 1, 30), MapCase(quality_row, 17, 2, 20)])
@@ -54,17 +53,3 @@ def test_what_is_measured_on_one_assignment_counts_as_one_over_all_maps() -> Non
     )
     assert (one.saving, one.cases) == (all.saving, 2)
     assert all.cases == 4
-
-
-def test_cases_come_assignment_by_assignment() -> None:
-    cases = EXPERIMENTS[0].cases(Profile(2, 30, (3, 5)))
-    assert [(case.assignment, case.map) for case in cases] == [(0, 3), (0, 5), (1, 3), (1, 5)]
-
-
-def test_rows_are_read_as_they_were_written() -> None:
-    assert QualityRow(1, 2, 3, {"CARP": (1, 9)}).total("CARP", 1) == 9
-
-
-def test_more_robots_than_places_are_refused() -> None:
-    with pytest.raises(Refusal, match="401 robots need as many distinct starts, and the map has 400"):
-        MapCase(quality_row, 0, 0, 401).run()

@@ -1,9 +1,7 @@
 """Streams of robots: docks, arrivals, the plans of both planners, and the figures."""
 
 import msgspec
-import pytest
 
-from carp_experiments.beyond import streams
 from carp_experiments.beyond.streams import (
     PLANNERS,
     RATES,
@@ -17,7 +15,6 @@ from carp_experiments.beyond.streams import (
     streamed,
 )
 from carp_experiments.paper.map_cases import FULL_MAP, WAREHOUSE, MapCase
-from carp_experiments.store import digest_of
 from carp_optimized.fleet import PlannedFleet
 from carp_spec import Neighbourhood, Plan, Visit, check_update
 from carp_spec.instance_rules import instance_faults
@@ -35,13 +32,6 @@ def test_robots_come_at_the_rate_in_docks_that_nobody_enters() -> None:
         docks = {robot.start for robot in instance.robots}
         assert all(instance.graph.resource[dock].capacity == 200 for dock in docks)
         assert not docks & {target for _, target in instance.graph.moves}
-
-
-def test_docks_leave_the_moves_of_the_map_as_they_are() -> None:
-    graph = stream_instance(SMALL, 400).graph
-    assert sum(len(graph.successors[each.id]) for each in graph.resources[:400]) == 2 * 2 * 20 * 19
-    assert ("3,4", "3,5") in graph.moves
-    assert ("3,5", "3,4") in graph.moves
 
 
 def test_every_robot_gets_a_plan_and_a_higher_rate_makes_robots_wait() -> None:
@@ -66,20 +56,9 @@ def test_who_comes_changes_no_history_and_neighbours_make_room() -> None:
     assert second.taken < first.taken
 
 
-def test_a_stream_with_a_robot_without_a_plan_is_not_counted(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(streams, "docked", lambda instance: instance)
-    with pytest.raises(AssertionError):
-        streamed(MapCase(stream_row, 10, 1, 120), "CARP", 2000)
-
-
 def test_the_middle_half_is_between_the_quarters() -> None:
     plans = [Plan(tick, (Visit("a", 0, tick), Visit("b", tick, tick + 1))) for tick in (70, 10, 20, 30, 40, 50, 60, 80)]
     assert middle_half(plans) == 70 - 30
-
-
-def test_a_row_is_the_same_every_time() -> None:
-    case = MapCase(stream_row, FULL_MAP, 0, 20)
-    assert digest_of(case.run()) == digest_of(case.run())
 
 
 def test_the_report_has_the_throughput_of_each_rate() -> None:

@@ -56,13 +56,6 @@ def test_a_kernel_that_reads_what_python_refuses_differs(monkeypatch: pytest.Mon
     assert '"bad input"' in report.lines[0]
 
 
-def test_a_kernel_that_ends_early_differs_on_each_text_on_which_it_does(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    stand_in(monkeypatch, tmp_path, "exit 1")
-    assert len(differences([TextCase(0, 20)])) == 20
-
-
 def test_a_kernel_that_does_not_answer_differs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr("carp_experiments.measuring.kernel_texts.LONGEST", 0.2)
     stand_in(monkeypatch, tmp_path, "exec sleep 100")

@@ -7,7 +7,6 @@ from carp_experiments.beyond.unplanned import (
     blocking_group,
     blocking_groups,
     group_facts,
-    one_by_one,
     planned_around,
     repaired,
     unplanned_report,
@@ -58,21 +57,6 @@ def test_a_repair_ends_when_every_robot_has_a_plan() -> None:
     assert not better.unplanned
     assert rounds == 2000
     assert repaired(instance, better, 20_000, 1) == (better, 0)
-
-
-def test_robots_are_planned_around_those_that_are() -> None:
-    instance = instance_of(MapCase(unplanned_row, 10, 2, 6))
-    first = one_by_one(instance, (), ["r5"])
-    whole = one_by_one(instance, first.plans, ["r4", "r1"])
-    assert whole.order == ("r5", "r4", "r1")
-    assert whole.plans[0] == first.plans[0]
-    assert set(whole.unplanned) == {*instance.robot} - {*whole.order}
-    assert judge(instance, whole).valid
-
-
-def test_an_assignment_without_failures_is_told_as_such() -> None:
-    row = MapCase(unplanned_row, 12, 0, 10).run()
-    assert (row["before"], row["rounds"], row["left"], row["groups"]) == (0, 0, [], [])
 
 
 def test_the_report_counts_what_came_of_the_failures() -> None:
