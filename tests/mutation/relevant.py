@@ -38,7 +38,6 @@ def tests_of(module: Path) -> Iterator[Path]:
     yield own
     for name in [
         "../verify/test_vectors.py",
-        "test_registry.py",
         "test_frozen.py",
         *ALSO.get(".".join([package, *inside, module.stem]), []),
     ]:

@@ -55,11 +55,6 @@ def test_a_file_with_the_other_system_s_line_ends_is_read() -> None:
     assert all(read(text.replace("\n", "\r\n")) == SOLUTION for text in (*CORRECT.values(), TABLE))
 
 
-@pytest.mark.parametrize("format", CORRECT)
-def test_what_is_written_is_read_again(format: str) -> None:
-    assert read(write_foreign_solution(INSTANCE, SOLUTION, format).decode()) == SOLUTION
-
-
 def test_carproofs_own_document_is_one_of_the_formats() -> None:
     assert read(write_solution(SOLUTION).decode()) == SOLUTION
     assert write_foreign_solution(INSTANCE, SOLUTION, "carproof") == write_solution(SOLUTION)
@@ -356,13 +351,6 @@ def test_agents_of_a_benchmark_are_called_as_the_solution_calls_them(
     assert f": robot {name} (" in outcome.stdout.splitlines()[0]
     assert ": robot r2 (" in carproof("check m.json broken").stdout.splitlines()[0]
     assert f'"{name}"' in carproof(f"view {MAPS} broken").stdout
-
-
-def test_check_tells_the_rule_that_a_file_breaks(carproof: Run, benchmark: Path) -> None:
-    (benchmark / "broken").write_text(LACAM.replace("1:(1,0)", "1:(0,0)"))
-    outcome = carproof("check m.json broken")
-    assert outcome.code == 1
-    assert outcome.stdout.startswith("[plan/move] resource 2,0 in [2,for ever): robot r1 (the graph has no move to it")
 
 
 @pytest.mark.usefixtures("benchmark")

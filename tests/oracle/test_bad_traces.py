@@ -117,14 +117,3 @@ def test_a_document_that_is_no_trace_is_refused_everywhere(kind: str, carproof: 
     for op in ("check-trace", "retime", "drive"):
         error = asked(op, document)["error"]
         assert (error["path"], error["rule"]) == (f"$.trace{path[1:]}", rule)
-
-
-def test_half_a_file_and_no_file_are_refused(carproof: Run) -> None:
-    Path("trace.json").write_bytes(json.dumps(GOOD).encode()[:-10])
-    for command in ("check", "retime"):
-        outcome = carproof(f"execution {command} train.json plans.json trace.json")
-        assert (outcome.code, outcome.stdout) == (2, "")
-        assert outcome.stderr.endswith("[document/json]\n")
-        outcome = carproof(f"execution {command} train.json plans.json none.json")
-        assert outcome.code == 2
-        assert "none.json: there is no such file." in outcome.stderr

@@ -39,14 +39,6 @@ def made_up(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("made_up")
-def test_tables_fit_eighty_columns(carproof: Run) -> None:
-    outcome = carproof("dev", "bench")
-    assert outcome.code == 0
-    assert max(map(len, outcome.stdout.splitlines())) <= 80
-    assert "160^2    6400" in outcome.stdout
-
-
-@pytest.mark.usefixtures("made_up")
 def test_the_document_has_the_ratios_of_the_last_robot_on_the_full_map(carproof: Run) -> None:
     outcome = carproof("dev", "bench", "--assignments", "3", "--no-growth", "--json")
     document = json.loads(outcome.stdout)

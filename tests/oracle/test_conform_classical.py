@@ -16,7 +16,6 @@ import carp_reference
 from carp_optimum.optimum import optimum
 from carp_spec import Carp, Instance, Resource, ResourceGraph, Robot, Solution
 from carproof.conform.asking.random_cases import classical_instances
-from carproof.conform.findings import is_complete
 from carproof.conform.levels import Level
 from carproof.conform.programs.function import Function
 from carproof.conform.run import Options, conform
@@ -177,10 +176,6 @@ def test_a_prioritized_planner_is_complete_in_context_and_not_complete() -> None
 
 def test_a_planner_of_all_robots_together_is_not_judged_by_the_order_of_its_plans() -> None:
     assert conform(Function(best, "best"), Options(Level.OPTIMAL, examples=40, seed=2, whole=True)).conforms
-
-
-def test_all_robots_planned_or_a_proof_that_this_cannot_be() -> None:
-    assert [is_complete(*each) for each in ((0, 5), (0, None), (2, None), (1, 5))] == [True, True, True, False]
 
 
 @pytest.mark.parametrize(

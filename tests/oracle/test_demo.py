@@ -39,10 +39,3 @@ def test_the_demo_plans_checks_and_compares(carproof: Run, tmp_path: Path) -> No
     for name in ("paper", "depot"):
         for planner in ("carp", "neighbourhood"):
             assert carproof("check", folder / f"{name}.json", folder / f"{name}-{planner}.json").code == 0
-
-
-def test_the_shipped_scenario_is_made_for_the_shipped_map() -> None:
-    folder = Path(__file__).parent.parent.parent / "oracle/carproof/examples"
-    agents = [line.split("\t") for line in (folder / "depot.scen").read_text().splitlines()[1:]]
-    assert {agent[1] for agent in agents} == {"depot.map"}
-    assert len(agents) == 30

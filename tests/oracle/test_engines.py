@@ -1,6 +1,5 @@
 """Sums of shortest paths, and who has a plan beside others: the compiled planner answers as the reference does."""
 
-import pytest
 from hypothesis import given, settings
 from tests.profiles import draws
 
@@ -10,7 +9,6 @@ from carproof.command_line.planning import plan_showing
 from carproof.engines import have_plans_beside, sum_of_shortest_paths
 from carproof.testing.strategies import instances
 
-ROAD = ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),))
 LONG = ResourceGraph((Resource("a", 1, 10**30), Resource("b")), (("a", "b"),))
 
 
@@ -38,14 +36,3 @@ def test_numbers_too_large_for_the_compiled_planner_are_added_up_too() -> None:
     instance = Instance(LONG, (Robot("r", "a", "b"), Robot("s", "b", "a")))
     assert sum_of_shortest_paths(instance, instance.robot) == 10**30 + 1
     assert have_plans_beside(instance, (), ["r", "s"], 0) == [True, True]
-
-
-def test_neither_the_reference_nor_another_fleet_is_asked_where_one_has_planned(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    instance = Instance(ROAD, (Robot("r", "a", "b"), Robot("s", "a", "b")))
-    solution, fleet = plan_showing("", None, instance, Carp())
-    for name in ("carproof.engines.engine_named", "carp_optimized.fleet.PlannedFleet"):
-        monkeypatch.setattr(name, lambda *_: pytest.fail("asked"))
-    assert sum_of_shortest_paths(instance, ["r"], fleet) == 1
-    assert have_plans_beside(instance, solution.plans, solution.unplanned, 0, fleet) == [False]

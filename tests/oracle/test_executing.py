@@ -1,7 +1,6 @@
 """The commands about executions: `check-trace`, `dependencies`, `execute`, `retime`, `untangle`."""
 
 import json
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -9,7 +8,7 @@ from hypothesis import given, settings
 from tests.oracle.running import Document, Outcome, Run, line, save, solution, town
 from tests.profiles import draws
 
-from carp_spec import Solution, Visit, check, check_update, judge
+from carp_spec import Solution, check, check_update, judge
 from carp_spec.execution.execution_rules import is_acyclic, trace_violations
 from carp_verify.documents import read_instance, read_solution, read_trace
 from carproof.engines import engine_named
@@ -151,15 +150,6 @@ def test_a_robot_is_added_to_plans_after_a_delay(late_town: Path, carproof: Run)
     assert check_update(solution_of(late_town, "late").plans, solution_of(late_town, "added").plans, 4) == ()
 
 
-def test_a_query_after_a_delay_keeps_the_history_and_is_no_later(late_town: Path, carproof: Run) -> None:
-    for plan in solution_of(late_town, "late").plans:
-        outcome = carproof(f"query town.json late.json {plan.robot} --now 4 --engine reference --json")
-        assert outcome.code == 0
-        found = [Visit(*visit) for visit in json.loads(outcome.stdout)["plan"]]
-        assert check_update([plan], [replace(plan, visits=tuple(found))], 4) == ()
-        assert found[-1].enter <= plan.visits[-1].enter
-
-
 def test_an_audit_names_who_is_late_after_a_delay_and_nobody_before(late_town: Path, carproof: Run) -> None:
     assert carproof("audit town.json plans.json --engine reference").code == 0
     outcome = carproof("audit town.json late.json --engine reference --json")
@@ -170,22 +160,6 @@ def test_an_audit_names_who_is_late_after_a_delay_and_nobody_before(late_town: P
     late = {each["robot"] for each in audit["late"]}
     assert late == {robot for robot, tick in after.items() if tick > arrivals[robot]}
     assert {*audit["certified"]} == after.keys() - late
-
-
-def test_polish_takes_plans_after_a_delay_and_makes_them_cheaper(late_town: Path, carproof: Run) -> None:
-    assert carproof("polish town.json late.json --iterations 5 --engine reference -o polished.json").code == 0
-    assert carproof("check town.json polished.json").code == 0
-    instance = read_instance((late_town / "town.json").read_bytes())
-    given, polished = (judge(instance, solution_of(late_town, name)).cost for name in ("late", "polished"))
-    assert polished < given
-
-
-def test_what_happened_on_the_clock_is_no_history_in_order(late_town: Path, carproof: Run) -> None:
-    carproof("execution simulate town.json plans.json --driver clock --delays delays.json --trace trace.json --now 4")
-    assert carproof("execution check town.json plans.json trace.json").code == 1
-    outcome = carproof("execution retime town.json plans.json trace.json --engine reference -o other.json")
-    assert (outcome.code, "[execution/order]" in outcome.stderr) == (2, True)
-    assert not (late_town / "other.json").exists()
 
 
 def test_wrong_delays_in_a_file_are_named_with_it(carproof: Run) -> None:

@@ -103,9 +103,3 @@ def test_another_projects_tests_run_without_hypothesis_and_a_judgement_names_it(
     )
     assert b"1 failed, 1 passed" in done.stdout, done.stdout.decode()
     assert b"carproof.conforms needs hypothesis" in done.stdout
-
-
-def test_no_page_and_no_message_installs_an_extra_from_an_index_that_there_is_not() -> None:
-    sources = [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("oracle/**/*.py")]
-    found = [source for source in sources if re.search(r"install\s+carproof\[", source.read_text())]
-    assert found == []

@@ -32,15 +32,6 @@ def test_a_measurement_of_a_few_robots_is_bracketed_by_bound_and_plans() -> None
     assert found.shortest <= found.bound <= found.optimum <= found.plans
 
 
-def test_the_quick_size_has_one_assignment_of_each_map() -> None:
-    assert {task.seeds for task in map(gap_table.quick, (*gap_table.GAPS, *gap_table.SPLITS))} == {1}
-
-
-def test_a_part_of_the_seeds_can_be_measured() -> None:
-    assert {task.seeds for task in gap_table.first_seeds(gap_table.GAPS, 2)} == {2}
-    assert gap_table.first_seeds(gap_table.SPLITS, None) == [*gap_table.SPLITS]
-
-
 def test_other_work_on_the_machine_takes_no_time_from_a_measurement(monkeypatch: pytest.MonkeyPatch) -> None:
     clocks: list[object] = []
 

@@ -1,7 +1,5 @@
 """The paper's maps, warehouses and fleets: shape, nesting, and equal results for equal seeds."""
 
-from pathlib import Path
-
 import networkx as nx
 import pytest
 from hypothesis import given
@@ -127,10 +125,3 @@ def test_the_command_makes_what_the_function_makes(carproof: Run) -> None:
     instance = warehouse_instance(Warehouse(columns=1, rows=2), Fleet(robots=3, seed=4, distinct="starts"))
     outcome = carproof(*["generate", "warehouse", "--columns", "1", "--rows", "2", "--robots", "3", "--seed", "4"])
     assert outcome.stdout.encode() == write_instance(instance)
-
-
-def test_what_was_written_is_told(carproof: Run, tmp_path: Path) -> None:
-    outcome = carproof("generate", "grid", "--robots", "5", "-o", tmp_path / "town.json")
-    assert outcome.code == 0
-    assert outcome.stdout.splitlines()[-1].split() == [str(tmp_path / "town.json"), "400", "760", "5", "vanish"]
-    assert (tmp_path / "town.json").read_text() == carproof("generate", "grid", "--robots", "5").stdout

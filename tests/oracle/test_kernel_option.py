@@ -6,9 +6,9 @@ from pathlib import Path
 
 import msgspec
 import pytest
-from tests.oracle.running import EAST, TWO, TWO_PLANNED, Outcome, Run, corridor, line, save, solution
+from tests.oracle.running import EAST, Outcome, Run, corridor, save, solution
 from tests.oracle.test_optimum import UNSOLVABLE
-from tests.verify.bound_examples import crossing, cut_certificate, deadline_certificate
+from tests.verify.bound_examples import crossing, cut_certificate
 from tests.verify.kernel_program import program
 
 import carp_verify.kernel
@@ -242,24 +242,6 @@ def test_a_certificate_is_written_too_where_there_is_no_plan(carproof: Run) -> N
         assert verified.stdout.splitlines()[-1].split()[2] == "never"
 
 
-def test_the_op_verify_query_is_served(carproof: Run) -> None:
-    certificate = json.loads(Path("query.json").read_text())
-    asked = {"op": "verify-query", "instance": TWO, "solution": TWO_PLANNED}
-    requests = [
-        line(id=1, **asked, certificate=certificate),
-        line(id=2, **asked, certificate={**certificate, "bound": 3}),
-        line(id=3, **asked, certificate={**certificate, "bound": True}),
-        line(id=4, **asked),
-    ]
-    answers = [json.loads(each) for each in carproof("serve", stdin=b"".join(requests)).stdout.splitlines()]
-    assert answers[0]["result"] == {
-        "proved": True, "bound": 2, "path": None, "rule": None, "reason": None, "by": "carp_verify"
-    }  # fmt: skip
-    assert (answers[1]["result"]["proved"], answers[1]["result"]["rule"]) == (False, "query-certificate/closed")
-    assert (answers[2]["error"]["path"], answers[2]["error"]["rule"]) == ("$.certificate.bound", "document/shape")
-    assert answers[3]["error"]["path"] == "$.certificate"
-
-
 def test_a_bound_with_cuts_is_verified_by_the_kernel(carproof: Run, folder: Path) -> None:
     program()
     certificate = cut_certificate()
@@ -274,23 +256,3 @@ def test_a_bound_with_cuts_is_verified_by_the_kernel(carproof: Run, folder: Path
     outcome = carproof(COMMANDS[-1])
     assert (outcome.code, outcome.stderr) == (1, "")
     assert outcome.stdout.startswith("not proved: $: the proof of cut 0 does not hold: the refutation does not derive")
-
-
-def test_a_bound_with_deadlines_is_verified_by_the_kernel_alone(carproof: Run, folder: Path) -> None:
-    program()
-    certificate = deadline_certificate()
-    (folder / "town.json").write_bytes(write_instance(crossing()))
-    (folder / "bound.json").write_bytes(write(certificate))
-    document = json.loads(carproof(COMMANDS[-1], "--json").stdout)
-    assert (document["bound"], document["assumed"]) == (7, [])
-    (group,) = certificate.deadlines
-    for fields, code, message in (
-        ({"price": 2 * group.price}, 1, "the bound must be the sum of all parts"),
-        ({"refutation": ""}, 1, "the proof of deadlines 0 does not hold: the refutation does not derive"),
-        ({"ticks": (1, 2)}, 1, "the claim of robot r0 must be no more than its least priced cost"),
-        ({"price": -1}, 1, "the price of deadlines must be at least 0"),
-    ):
-        changed = msgspec.structs.replace(certificate, deadlines=(msgspec.structs.replace(group, **fields),))
-        (folder / "bound.json").write_bytes(write(changed))
-        outcome = carproof(COMMANDS[-1])
-        assert (outcome.code, message in outcome.stdout + outcome.stderr) == (code, True)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from carproof.markdown import markdown_table, with_section, write_section
+from carproof.markdown import with_section, write_section
 
 
 def test_writing_a_section_replaces_it_and_nothing_else(tmp_path: Path) -> None:
@@ -18,8 +18,3 @@ def test_writing_a_section_replaces_it_and_nothing_else(tmp_path: Path) -> None:
 def test_a_page_without_the_section_is_refused(page: str) -> None:
     with pytest.raises(ValueError, match="rules: begin"):
         with_section(page, "rules", "")
-
-
-def test_numbers_of_a_table_are_aligned_to_the_right() -> None:
-    table = markdown_table(("map", "robots"), [("depot", 30)], numbers=["robots"])
-    assert table == "| map | robots |\n| --- | ---: |\n| depot | 30 |\n"

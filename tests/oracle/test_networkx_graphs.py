@@ -120,18 +120,3 @@ def test_a_broken_rule_of_instances_names_the_node_or_the_edge() -> None:
 def test_parallel_edges_are_refused() -> None:
     with pytest.raises(Refusal, match="no parallel edges"):
         instance_from_networkx(nx.MultiGraph([(1, 2), (1, 2)]), [])
-
-
-@pytest.mark.parametrize(
-    ("edges", "robots", "rule"),
-    [
-        ([(1, 1)], [], "instance/edge"),
-        ([(1, 2)], [Robot("r1", 1, 3)], "instance/endpoint"),
-        ([(1, 2)], [Robot("r1", 1, 2, pace=0)], "instance/pace"),
-    ],
-)
-def test_what_breaks_a_rule_of_instances_is_refused(
-    edges: list[tuple[int, int]], robots: list[Robot], rule: str
-) -> None:
-    with pytest.raises(Refusal, match=rule):
-        instance_from_networkx(nx.Graph(edges), robots)

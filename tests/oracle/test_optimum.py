@@ -1,19 +1,16 @@
 """`optimum`, `verify-proof`, `gap` and the op `optimum`."""
 
 import json
-from math import inf
 from pathlib import Path
 
 import pytest
 from tests.oracle.running import HEAD_ON, TWO_PLANNED, Document, Outcome, Run, corridor, save
 
-from carp_experiments.measuring import optimum_table
 from carp_optimum.gap import Gap, PlannerGap
 from carp_optimum.sat.core_guided import Optimum
 from carp_spec import Carp
 from carp_verify.optimum.encoding import Evidence
 from carproof.gap.family import Cell
-from carproof.generate import Range
 
 UNSOLVABLE = corridor([{"id": "r1", "start": "a", "goal": "e"}, HEAD_ON])
 
@@ -66,22 +63,6 @@ def test_an_undecided_search_says_so_and_gives_its_bound(carproof: Run) -> None:
     document = json.loads(outcome.stdout)
     assert (outcome.code, document["proved"]) == (3, False)
     assert document["lower"] > 1000
-
-
-@pytest.mark.parametrize(
-    ("options", "known"),
-    [
-        ("--width 8 --height 8 --robots 48 --map 20 --after-goal park", "no plans of all robots found yet"),
-        ("--width 6 --height 6 --robots 18 --map 0", "and the best found "),
-    ],
-)
-def test_an_undecided_search_tells_its_bound_and_whether_it_has_plans(carproof: Run, options: str, known: str) -> None:
-    assert carproof(f"generate grid {options} --seed 2 -o crowd.json").code == 0
-    outcome = carproof("optimum crowd.json --limit 2")
-    assert outcome.code == 3
-    last = outcome.stdout.splitlines()[-1]
-    assert last.startswith("undecided after 2 s: plans of all robots cost at least ")
-    assert known in last
 
 
 def test_a_proof_is_written_and_checked(carproof: Run) -> None:
@@ -179,17 +160,3 @@ def test_means_of_a_family_leave_out_what_is_not_known() -> None:
     assert (cell.above_optimum(0).instances, str(cell.above_optimum(0))) == (2, "15.0 ± 9.8")
     assert (cell.price_of_the_search(0).instances, str(cell.price_of_the_search(0))) == (1, "10.0 ± 0.0")
     assert str(Cell(3, 0, 2, range(0), ()).delay) == "-"
-
-
-def test_a_row_of_the_optimum_table_counts_what_is_undecided_as_over_the_limit() -> None:
-    family = optimum_table.Family(3, 20, 2, "park", Range(1, 3))
-    head = ("3 x 3, full grid, durations 1..3", "2", "park")
-    assert optimum_table.row(family, [2, inf, 0.25]) == (*head, "2/3", "2.00", "over 60")
-    assert optimum_table.row(family, [2, 0.25]) == (*head, "2/2", "1.12", "2.00")
-
-
-def test_the_table_of_times_fits_the_page_that_holds_it() -> None:
-    page = (Path(__file__).parents[2] / "docs" / "results" / "optima.md").read_text()
-    times = optimum_table.optimum_table([optimum_table.Family(3, 5, 2, "vanish", instances=2)])
-    assert times.partition("| 3 x 3")[0] in page
-    assert times.splitlines()[-1].startswith("| 3 x 3, map 5 | 2 | vanish | 2/2 | 0.")

@@ -4,9 +4,7 @@ import json
 import os
 import subprocess
 import sys
-from importlib import import_module
 from pathlib import Path
-from types import ModuleType
 
 import pytest
 from tests.oracle.running import (
@@ -44,12 +42,6 @@ def test_plan_prints_a_table_and_writes_the_document(carproof: Run) -> None:
     assert json.loads(Path("out.json").read_text()) == TWO_PLANNED
 
 
-def test_plan_prints_nothing_but_the_document_for_json(carproof: Run) -> None:
-    outcome = carproof("plan town.json --planner carp --json")
-    assert outcome.stdout.count("\n") == 1
-    assert json.loads(outcome.stdout) == TWO_PLANNED
-
-
 def test_an_unplanned_robot_is_told_with_its_reason_and_the_answer_is_no(carproof: Run) -> None:
     outcome = carproof("plan three.json --planner carp")
     assert outcome.code == 1
@@ -83,42 +75,6 @@ def test_every_planner_runs_and_its_plans_are_right(carproof: Run, options: str)
     assert planned.code == 0
     checked = carproof("check town.json -", stdin=planned.stdout.encode())
     assert (checked.code, checked.stdout) == (0, "no rule is broken: total cost 5, unplanned robots 0\n")
-
-
-def test_without_an_engine_asked_for_the_fastest_plans_that_has_the_planner(
-    carproof: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    asked = []
-
-    def watched(name: str) -> ModuleType:
-        asked.append(name)
-        return import_module(name)
-
-    monkeypatch.setattr("carproof.engines.import_module", watched)
-    for command, engines in (
-        ("plan town.json --planner neighbourhood", []),
-        ("plan town.json --planner fixed-paths", ["carp_reference"]),
-        ("add town.json one.json r2", ["carp_optimized"]),
-        ("add town.json one.json r2 --engine reference", ["carp_reference"]),
-    ):
-        asked.clear()
-        outcome = carproof(f"{command} --json")
-        assert (outcome.code, outcome.stderr, [*dict.fromkeys(asked)]) == (0, "", engines)
-
-
-def test_check_prints_each_violation_and_counts_them(carproof: Run) -> None:
-    outcome = carproof("check town.json broken.json")
-    assert outcome.code == 1
-    assert outcome.stdout.splitlines() == [
-        "[joint/capacity] resource b in [1,2): robots r1, r2 (capacity 1)",
-        "[joint/capacity] resource c in [2,3): robots r1, r2 (capacity 1)",
-        "",
-        "rule            violations",
-        "──────────────────────────",
-        "joint/capacity           2",
-        "",
-        "INVALID: total cost 6, unplanned robots 0",
-    ]
 
 
 def test_check_prints_the_first_hundred_violations_of_a_rule_and_all_of_them_if_asked(carproof: Run) -> None:

@@ -7,8 +7,7 @@ import msgspec
 import pytest
 from tests.oracle.running import HEAD_ON, TWO, TWO_PLANNED, Run, corridor, save, solution
 
-import carp_reference
-from carp_spec import Instance, Refusal, Solution
+from carp_spec import Instance, Solution
 from carp_verify.documents import read_instance, read_solution
 from carproof import polish
 from carproof.engines import engine_named
@@ -74,15 +73,6 @@ def test_for_a_time_the_command_python_and_the_op_anneal(carproof: Run, monkeypa
     response, _ = respond(msgspec.json.encode(op), engine_named(None))
     assert json.loads(msgspec.json.encode(response))["result"] == LATE
     assert times == [0.1, 0.2, 0.3]
-
-
-def test_rounds_from_python_are_those_of_the_reference() -> None:
-    assert polish(INSTANCE, GIVEN, iterations=9) == carp_reference.polish(INSTANCE, GIVEN, iterations=9)
-
-
-def test_a_time_that_is_none_is_refused_from_python_too() -> None:
-    with pytest.raises(Refusal, match="must be a number above 0"):
-        polish(INSTANCE, GIVEN, seconds=0)
 
 
 @pytest.mark.parametrize("option", ["--engine optimized", "--starts 2"])

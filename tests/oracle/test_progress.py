@@ -16,7 +16,7 @@ from carp_optimized import plan
 from carp_spec import Carp
 from carp_verify.documents import write_instance, write_solution
 from carproof.generate import Fleet, Grid, grid_instance
-from carproof.progress import found_so_far, search_progress
+from carproof.progress import search_progress
 
 CODES = re.compile(r"\x1b\[[0-9;?]*[a-zA-Z]")
 
@@ -67,15 +67,6 @@ def test_bound_and_polish_show_a_bar_that_fits_and_what_they_found(files: tuple[
         assert re.fullmatch(label + r" ━+ 0:00:00 total \d+, bound \d+, gap \d+\.\d\d %", bars[-1].strip())
         assert max(map(len, lines)) <= 80
         assert not lines[-1].startswith(label)
-
-
-def test_totals_of_seven_digits_fit_into_eighty_columns() -> None:
-    widest = max(found_so_far(1_600_000, 1_400_000), found_so_far(1_600_000, 1_400_000, 9999), key=len)
-    assert len("polishing ") + 16 + len(" 0:00:00 ") + len(widest) <= 80
-
-
-def test_without_plans_the_bound_stands_alone() -> None:
-    assert found_so_far(None, 7) == "bound 7"
 
 
 def test_where_there_is_no_terminal_nothing_is_shown(capsys: pytest.CaptureFixture[str]) -> None:

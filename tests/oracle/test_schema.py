@@ -1,7 +1,6 @@
 """The published JSON Schemas are the decoder's own, and agree with it on simple documents."""
 
 import json
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -9,7 +8,7 @@ from jsonschema import Draft202012Validator
 
 from carp_spec import Refusal
 from carp_verify.documents import read_instance, read_solution
-from carproof.schema import DOCUMENTS, document_schema, schema_file, schema_text, write_schemas
+from carproof.schema import DOCUMENTS, document_schema, schema_file
 
 INSTANCE: dict[str, Any] = {
     "format": "carproof-instance/1",
@@ -44,21 +43,10 @@ def test_the_published_schema_is_the_generated_one(name: str) -> None:
     assert schema_file(name).read_text() == document_schema(name), "`make generated` writes it again"
 
 
-@pytest.mark.parametrize("name", DOCUMENTS)
-def test_a_schema_has_an_id(name: str) -> None:
-    assert json.loads(document_schema(name))["$id"] == f"urn:carproof:{name}:1"
-
-
 def test_a_document_may_name_its_schema() -> None:
     named = {**INSTANCE, "$schema": "instance.schema.json"}
     assert accepted("instance", named) == (True, True)
     assert read_instance(json.dumps(named).encode()) == read_instance(json.dumps(INSTANCE).encode())
-
-
-def test_write_schemas_writes_them_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("carproof.schema.FOLDER", tmp_path / "schemas")
-    write_schemas()
-    assert len(list((tmp_path / "schemas").glob("*.schema.json"))) == len(DOCUMENTS)
 
 
 def test_schema_and_decoder_accept_the_same_good_documents() -> None:
@@ -98,9 +86,3 @@ def test_schema_and_decoder_reject_the_same_bad_instances(change: dict[str, Any]
 )
 def test_schema_and_decoder_reject_the_same_bad_solutions(change: dict[str, Any]) -> None:
     assert accepted("solution", {**SOLUTION, **change}) == (False, False)
-
-
-def test_a_definition_need_not_be_described() -> None:
-    assert json.loads(schema_text("town", {"$defs": {"Town": {"type": "object"}}}))["$defs"] == {
-        "Town": {"type": "object"}
-    }

@@ -13,10 +13,6 @@ from carproof.execution.delays import (
     Delay,
     executed,
     in_order,
-    late_robots,
-    on_the_clock,
-    slack,
-    smallest_collision,
     stuck,
 )
 from carproof.execution.simulation import random_delays
@@ -53,26 +49,3 @@ def test_robots_that_change_places_are_safe_and_mostly_earlier(tried: int, monke
         earlier += sum(unswitched[node] - found.enters[node] for node in lasts)
         assert found.switches > 0 or found.enters == unswitched
     assert earlier > 0
-
-
-def test_robots_that_collide_on_the_clock_have_broken_the_order() -> None:
-    collided = 0
-    for instance, solution, delays in cases():
-        order = order_of(instance, solution)
-        trace = executed(order, on_the_clock(order, delays), delays)
-        if {each.rule for each in check(instance, trace.plans)} & TOGETHER:
-            collided += 1
-            assert trace_violations(instance, solution, trace)
-            least = smallest_collision(instance, solution)
-            assert least is not None
-            assert sum(delay.ticks for delay in least) <= sum(delay.ticks for delay in delays)
-    assert collided > 0
-
-
-def test_slack_is_the_longest_delay_that_makes_nobody_late() -> None:
-    for instance, solution, _ in cases():
-        order = order_of(instance, solution)
-        for node, ticks in slack(order).items():
-            longest = 9 if ticks is None else ticks
-            assert longest == 0 or not late_robots(order, [Delay(*node, longest)])
-            assert ticks is None or late_robots(order, [Delay(*node, ticks + 1)])

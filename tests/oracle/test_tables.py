@@ -69,32 +69,6 @@ def test_a_narrow_terminal_shows_every_word_of_a_table_whole(
     assert missing == set(), narrow.stdout
 
 
-def test_a_table_that_does_not_fit_becomes_a_paragraph_for_each_row(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    columns = ["planner", "shortest paths", "unplanned", "statement"]
-    rows = [("neighbourhood", 12345678, 1, "it is long, and so it needs a second line"), ("carp", 7, "", "short")]
-    print_table(columns, rows, numbers=columns[1:3])
-    piped = capsys.readouterr().out.splitlines()
-    assert piped[0] == "planner        shortest paths  unplanned  statement"
-    assert piped[2] == "neighbourhood        12345678          1  it is long, and so it needs a second line"
-    monkeypatch.setenv("FORCE_COLOR", "1")
-    monkeypatch.setenv("TERM", "xterm")
-    monkeypatch.setenv("COLUMNS", str(WIDTH))
-    print_table(columns, rows, numbers=columns[1:3])
-    assert capsys.readouterr().out.splitlines() == [
-        "planner: neighbourhood",
-        "shortest paths: 12345678",
-        "unplanned: 1",
-        "statement: it is long, and so it needs a",
-        "  second line",
-        "",
-        "planner: carp",
-        "shortest paths: 7",
-        "statement: short",
-    ]
-
-
 def test_a_table_whose_words_fit_stays_a_table(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -8,24 +8,21 @@ from subprocess import run
 
 import pytest
 from PIL import Image
-from tests.oracle.running import BEHIND, EAST, EAST_PLAN, TWO_PLANNED, Document, Run, corridor, solution
+from tests.oracle.running import EAST, EAST_PLAN, TWO_PLANNED, Document, Run, corridor, solution
 from tests.oracle.viewing import COLLIDING, CORRIDOR, HOSTILE, SVG, drawn, picture_of, scene_of, without_positions
 from tests.programs import require_programs
 
-from carp_spec import Resource, ResourceGraph, judge
-from carp_verify.documents import read_instance, read_solution
+from carp_spec import Resource, ResourceGraph
 from carproof.viewer import limits
 from carproof.viewer.chart_picture import TimeScale
 from carproof.viewer.colours import LIGHT, LOOKS
 from carproof.viewer.lanes import area, lanes, spots
-from carproof.viewer.names import common_start, fitted, short_labels
 from carproof.viewer.placement import UNIT, placement
 from carproof.viewer.samples import FOLDER, sample_pictures
 
 FEWEST_PIXELS = 30
 OUTSIDE = re.compile(r"""(?:src|href|url|action)\s*[=(]\s*["']?(?!#|data:)[a-z]*:?//""", re.IGNORECASE)
 WHOLE = area(is_named=False, has_traits=False)
-PARKED = solution({"r1": [*EAST_PLAN[:2], ["c", 2, None]]}, ["r2"])
 
 
 def test_the_page_is_one_file_that_names_no_address_outside(carproof: Run, tmp_path: Path) -> None:
@@ -57,16 +54,6 @@ def test_the_scene_has_every_visit_in_its_place_and_every_free_window(carproof: 
     assert stays == [[("a", 0, 1), ("b", 1, 2), ("c", 2, 3)], [("b", 2, 4)]]
     assert [place["windows"] for place in scene["places"][:2]] == [[[1, None]], [[0, 1], [4, None]]]
     assert (scene["first"], scene["last"]) == (0, 4)
-
-
-def test_every_violation_of_the_checker_is_in_the_scene(carproof: Run, tmp_path: Path) -> None:
-    scene = scene_of(drawn(carproof, tmp_path, CORRIDOR, COLLIDING))
-    verdict = judge(read_instance(json.dumps(CORRIDOR).encode()), read_solution(json.dumps(COLLIDING).encode()))
-    assert [each["message"] for each in scene["violations"]] == [each.message for each in verdict.violations]
-    assert [(each["start"], each["end"]) for each in scene["violations"]] == [(1, 2), (2, 3)]
-    assert scene["rules"] == [{"id": "joint/capacity", "statement": scene["rules"][0]["statement"], "count": 2}]
-    assert [scene["places"][place]["label"] for each in scene["violations"] for place in each["places"]] == ["b", "c"]
-    assert all(each["tracks"] == [0, 1] for each in scene["violations"])
 
 
 def test_what_a_broken_solution_names_beyond_the_instance_is_shown_too(carproof: Run, tmp_path: Path) -> None:
@@ -102,21 +89,6 @@ def test_ids_cannot_leave_their_text(carproof: Run, tmp_path: Path) -> None:
         assert shown in texts
 
 
-def test_a_long_id_is_cut_in_the_middle(carproof: Run, tmp_path: Path) -> None:
-    name = "x" * 1000 + "end"
-    scene = scene_of(drawn(carproof, tmp_path, corridor([{**EAST, "id": name}]), solution({}, [name])))
-    label = scene["tracks"][0]["label"]
-    assert len(label) < 70
-    assert label.endswith("end")
-
-
-def test_robots_are_called_by_their_number_where_that_tells_them_apart() -> None:
-    assert short_labels(["r1", "r2", "r100"]) == ["1", "2", "100"]
-    assert short_labels(["a1", "b1", "a2"]) == ["a1", "b1", "2"]
-    assert short_labels(["ann", "a longer name"]) == ["ann", "…ame"]
-    assert short_labels([]) == []
-
-
 def test_the_still_of_the_map_shows_each_robot_where_it_is(carproof: Run, tmp_path: Path) -> None:
     def robots(tick: int) -> dict[str | None, str | None]:
         picture = picture_of(drawn(carproof, tmp_path, CORRIDOR, COLLIDING, "--at", str(tick)))
@@ -133,16 +105,6 @@ def test_the_still_of_the_map_marks_the_violations_of_its_tick(carproof: Run, tm
         return len(picture_of(still).findall(f".//{SVG}path[@class='violation']")), still.count(" blamed")
 
     assert [marked(tick) for tick in range(4)] == [(0, 0), (1, 2), (1, 2), (0, 0)]
-
-
-def test_robots_park_for_ever_or_vanish(carproof: Run, tmp_path: Path) -> None:
-    def robots(plans: dict[str, object], tick: int) -> int:
-        return len(
-            picture_of(drawn(carproof, tmp_path, corridor([EAST, BEHIND], "park"), plans, "--at", str(tick)))[-1]
-        )
-
-    assert robots(PARKED, 2) == 1
-    assert robots(solution({"r1": EAST_PLAN}, ["r2"]), 3) == 0
 
 
 def test_the_still_of_the_chart_has_rows_windows_stays_and_violations(carproof: Run, tmp_path: Path) -> None:
@@ -236,15 +198,6 @@ def test_large_graphs_without_positions_are_laid_out_in_rows() -> None:
     assert (placed.width, placed.height) == (29 * UNIT + 52, 29 * UNIT + 52)
 
 
-def test_names_are_shown_without_what_all_begin_with() -> None:
-    names = [f"warehouse/aisle{aisle}/pick{pick}" for aisle in (10, 11) for pick in (1, 2)]
-    assert common_start(names) == "warehouse/aisle"
-    assert common_start(["hall/a", "hall/a/north", "hall/a/south"]) == "hall/"
-    assert common_start(["r1", "r2"]) == common_start(["north-gate", "south-gate"]) == common_start([]) == ""
-    assert fitted(["one-long-name", "another-long-name", "a"], 6) == ["one-l…", "anoth…", "a"]
-    assert fitted(["long/name/1", "long/name/2"], 6) == ["…ame/1", "…ame/2"]
-
-
 def test_all_goals_and_starts_of_one_resource_are_drawn_apart(carproof: Run, tmp_path: Path) -> None:
     instance = corridor([{**EAST, "id": f"r{number}"} for number in range(5)])
     picture = picture_of(drawn(carproof, tmp_path, instance, solution({}, [f"r{n}" for n in range(5)]), "--at", "0"))
@@ -261,16 +214,6 @@ def test_both_resources_of_an_exchange_are_marked(carproof: Run, tmp_path: Path)
     assert len(still.findall(f".//{SVG}path[@class='violation']")) == 2
     chart = picture_of(drawn(carproof, tmp_path, instance, plans, "--chart"))
     assert len(chart.findall(f".//{SVG}path[@class='violation']")) == 2
-
-
-def test_the_rows_of_the_chart_follow_the_robots(carproof: Run, tmp_path: Path) -> None:
-    plans = solution({"r2": [["b", 0, 1], ["c", 1, 2]], "r1": [["d", 0, 1], ["a", 1, 2]]})
-    chart = picture_of(drawn(carproof, tmp_path, CORRIDOR, plans, "--chart"))
-    assert [each.text for each in chart.findall(f".//{SVG}text[@class='row-name']")] == ["d", "a", "b", "c"]
-
-
-def test_eighteen_robots_look_different() -> None:
-    assert len({(look.fill, look.edge) for look in LOOKS}) == len(LOOKS) == 18
 
 
 def test_an_instance_alone_is_shown_with_its_starts_and_goals(carproof: Run, tmp_path: Path) -> None:

@@ -254,16 +254,6 @@ def test_choosing_a_robot_zooms_to_it_and_keeps_it_in_sight(
     assert shown.number("viewer.map.scale") == small
 
 
-def test_a_click_on_a_small_robot_zooms_around_it(
-    driver: Chrome, tmp_path: Path, warehouse: tuple[Instance, Solution]
-) -> None:
-    shown = opened(driver, tmp_path, *warehouse)
-    before = shown.number(VIEW)
-    at_robot(shown, "r40", "pointerdown", "pointerup")
-    assert shown.number("viewer.map.chosen") == [40]
-    assert shown.number(VIEW)[2] > before[2]
-
-
 def test_the_map_is_moved_by_dragging_and_keys_and_zoomed_by_wheel_pinch_and_keys(
     driver: Chrome, tmp_path: Path, warehouse: tuple[Instance, Solution]
 ) -> None:
@@ -293,34 +283,6 @@ def test_the_map_is_moved_by_dragging_and_keys_and_zoomed_by_wheel_pinch_and_key
             x,
         )
     assert shown.number(VIEW)[2] == pytest.approx(min(4, 2 * wheeled))
-
-
-def test_panels_without_content_take_no_room(driver: Chrome, tmp_path: Path) -> None:
-    instance = read_instance(json.dumps(CORRIDOR).encode())
-    shown = opened(driver, tmp_path, Instance(instance.graph, ()), Solution((), ()))
-    assert shown.number("document.getElementById('map-panel').clientWidth") == 1280
-    shown = opened(driver, tmp_path, instance, Solution((), (), ("r1", "r2")))
-    assert shown.number("document.getElementById('chart-panel').hidden")
-    assert shown.number("document.getElementById('violations-panel').hidden")
-    assert shown.number("document.getElementById('robots-panel').clientHeight") > 500
-
-
-def test_starts_and_goals_are_drawn_until_they_are_hidden(
-    driver: Chrome, tmp_path: Path, town: tuple[Instance, Solution]
-) -> None:
-    shown = opened(driver, tmp_path, *town)
-    track = town[0].robots[0]
-    count = (
-        "(() => { const { map } = viewer, place = scene.places.find((each) => each.label === arguments[0]);"
-        "map.draw(); const half = 12 * map.scale; const pen = map.back.getContext('2d');"
-        "const data = pen.getImageData(map.px(place.at[0]) - half, map.py(place.at[1]) - half - 1, 2 * half, 2).data;"
-        "return data.filter((each) => each).length; })()"
-    ).replace("scene.places", "JSON.parse(document.getElementById('scene').textContent).places")
-    goal = f"{track.goal}"
-    shown.press(Keys.END)
-    assert shown.number(count.replace("arguments[0]", f"'{goal}'")) > 0
-    shown.press("g")
-    assert shown.number(count.replace("arguments[0]", f"'{goal}'")) == 0
 
 
 def test_robots_that_wait_in_a_circle_are_shown(driver: Chrome, tmp_path: Path) -> None:
@@ -406,13 +368,6 @@ def test_robots_are_found_by_name(collision: Page) -> None:
     assert collision.script("return document.querySelectorAll('#robots button:not([hidden])').length") == 1
     collision.press(Keys.SPACE)
     assert collision.text("play") == "Play"
-
-
-def test_robots_without_a_plan_are_listed_first(driver: Chrome, tmp_path: Path) -> None:
-    solution = Solution((Plan("r1", (Visit("a", 0, 1), Visit("b", 1, 2), Visit("c", 2, 3))),), ("r1",), ("r2",))
-    shown = opened(driver, tmp_path, read_instance(json.dumps(CORRIDOR).encode()), solution)
-    assert shown.text("facts").startswith("2 robots, 1 unplanned")
-    assert shown.text("robots").splitlines()[:2] == ["without a plan 1", "r2 b → e · unplanned"]
 
 
 def test_hostile_ids_are_only_text(driver: Chrome, tmp_path: Path) -> None:

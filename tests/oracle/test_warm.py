@@ -9,11 +9,6 @@ import pytest
 from tests.oracle.running import Run
 
 
-def test_warm_says_that_the_planner_is_compiled(carproof: Run) -> None:
-    outcome = carproof("warm")
-    assert (outcome.code, outcome.stdout, outcome.stderr) == (0, "carproof's planner is compiled already\n", "")
-
-
 @pytest.fixture
 def uncompiled(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """As if nothing were compiled: a list that gets longer when it would be."""
