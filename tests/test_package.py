@@ -58,18 +58,6 @@ def test_every_pinned_library_runs_on_the_oldest_python_that_the_package_takes()
     assert refused == []
 
 
-def test_an_index_can_place_the_package() -> None:
-    assert PROJECT["urls"]
-    assert len(PROJECT["keywords"]) > 3
-    assert {each.partition(" ::")[0] for each in PROJECT["classifiers"]} >= {"Topic", "Intended Audience", "Typing"}
-
-
-def test_a_library_that_has_development_releases_alone_can_be_installed() -> None:
-    extras = PROJECT["optional-dependencies"]
-    wanted = [each for extra in ("prove", "test") for each in extras[extra] if each.startswith("python-sat")]
-    assert wanted == ["python-sat>=1.8.dev1,<2"] * 2, "pip takes no development release that a bound does not name"
-
-
 def test_the_version_is_that_of_the_newest_changes() -> None:
     heading = next(line for line in (ROOT / "CHANGELOG.md").read_text().splitlines() if line.startswith("## "))
     number, _, state = heading.removeprefix("## ").partition(", ")
