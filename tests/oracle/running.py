@@ -128,3 +128,15 @@ REQUESTS: dict[str, Document] = {
 def line(**fields: object) -> bytes:
     """A request of the protocol."""
     return json.dumps(fields).encode() + b"\n"
+
+
+def asked(op: str, **fields: object) -> Document:
+    """The server's answer, by the reference."""
+    import msgspec
+
+    from carproof.engines import engine_named
+    from carproof.protocol.server import respond
+
+    response, _ = respond(line(id=1, op=op, **fields), engine_named("reference"))
+    answer: Document = json.loads(msgspec.json.encode(response))
+    return answer

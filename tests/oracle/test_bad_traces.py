@@ -1,15 +1,10 @@
 """Traces that contradict the plans, run backwards or have gaps: all that read one refuse it, with path and rule."""
 
-import json
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import pytest
-from tests.oracle.running import Document, Run, line, save, solution, town
-
-from carproof.engines import engine_named
-from carproof.protocol.server import respond
+from tests.oracle.running import Document, Run, asked, save, solution, town
 
 ROBOTS = [{"id": "r0", "start": "b", "goal": "c"}, {"id": "r1", "start": "a", "goal": "b"}]
 TRAIN = town("ab bc cd ae", ROBOTS)
@@ -65,21 +60,19 @@ def _train(elsewhere: Path) -> None:
     save(train=TRAIN, plans=PLANS)
 
 
-def asked(op: str, document: object) -> Document:
+def traced(op: str, document: object) -> Document:
     """The answer of the server."""
     fields: Document = {"instance": TRAIN, "solution": PLANS, "trace": document}
     if op == "drive":
         fields["ready"] = []
-    response, _ = respond(line(id=1, op=op, **fields), engine_named("reference"))
-    answered: Document = json.loads(msgspec.json.encode(response))
-    return answered
+    return asked(op, **fields)
 
 
 def test_the_trace_itself_is_right(carproof: Run) -> None:
     save(trace=GOOD)
     assert carproof("execution check train.json plans.json trace.json").code == 0
     assert carproof("execution retime train.json plans.json trace.json --engine reference").code == 0
-    assert [*asked("drive", GOOD)] == [*asked("retime", GOOD)] == ["id", "result"]
+    assert [*traced("drive", GOOD)] == [*traced("retime", GOOD)] == ["id", "result"]
 
 
 @pytest.mark.parametrize("kind", CONTRADICTIONS)
@@ -96,10 +89,10 @@ def test_a_trace_that_contradicts_the_plans_is_refused_and_nothing_is_written(ki
         assert outcome.stderr.startswith(f"Error: trace.json: {path}: ")
         assert outcome.stderr.endswith(f" [{rule}]\n")
     assert not Path("late.json").exists()
-    verdict = asked("check-trace", document)["result"]
+    verdict = traced("check-trace", document)["result"]
     assert (verdict["valid"], {each["rule"] for each in verdict["violations"]}) == (False, {rule})
     for op in ("retime", "drive"):
-        error = asked(op, document)["error"]
+        error = traced(op, document)["error"]
         assert (error["path"], error["rule"]) == (f"$.trace{path[1:]}", rule)
 
 
@@ -115,5 +108,5 @@ def test_a_document_that_is_no_trace_is_refused_everywhere(kind: str, carproof: 
         assert outcome.stderr.endswith(f" [{rule}]\n")
     assert not Path("late.json").exists()
     for op in ("check-trace", "retime", "drive"):
-        error = asked(op, document)["error"]
+        error = traced(op, document)["error"]
         assert (error["path"], error["rule"]) == (f"$.trace{path[1:]}", rule)

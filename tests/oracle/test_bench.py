@@ -9,37 +9,21 @@ from tests.oracle.running import Run
 
 from carp_experiments.measuring import bench
 from carp_experiments.measuring import bench_command as command
-from carp_experiments.measuring.bench import GROWTH, PARTS, Added, OnGrid, OnMap, on_grid, on_map, weight
+from carp_experiments.measuring.bench import GROWTH, PARTS, Added, OnMap, on_grid, on_map, weight
 
 KINDS = ("kept", "unchanged", "prefixes", "shared", "bounds")
 
 
-def large_figures(map: int, assignments: int, advance: Callable[[], None]) -> OnMap:
-    """More than was ever measured."""
-    for _ in range(assignments):
-        advance()
-    added = [
-        Added(k, name, 123_456.7, 23.45, 12_345, dict.fromkeys(KINDS, 54_321))
-        for k in (50, 100)
-        for name in ("4", "10")
-    ]
-    return OnMap(map, 12.34, 1234.5, added)
+def figures(map: int, _: int, __: Callable[[], None]) -> OnMap:
+    return OnMap(
+        map, 12.34, 1234.5, [Added(100, name, 5.6, 23.45, 78, dict.fromkeys(KINDS, 9)) for name in ("4", "10")]
+    )
 
 
-def large_grid(side: int, advance: Callable[[], None]) -> OnGrid:
-    for _ in range(PARTS * weight(side)):
-        advance()
-    return OnGrid(side, side * side // 4, 123.4, 54_321_000, 43_210_000, 12_345)
-
-
-@pytest.fixture
-def made_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(command, "on_map", large_figures)
-    monkeypatch.setattr(command, "on_grid", large_grid)
-
-
-@pytest.mark.usefixtures("made_up")
-def test_the_document_has_the_ratios_of_the_last_robot_on_the_full_map(carproof: Run) -> None:
+def test_the_document_has_the_ratios_of_the_last_robot_on_the_full_map(
+    carproof: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(command, "on_map", figures)
     outcome = carproof("dev", "bench", "--assignments", "3", "--no-growth", "--json")
     document = json.loads(outcome.stdout)
     assert document["ratios"] == {"4": 23.45, "10": 23.45}

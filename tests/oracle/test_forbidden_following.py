@@ -2,14 +2,9 @@
 
 import json
 from pathlib import Path
-from typing import Any
 
-import msgspec
 import pytest
-from tests.oracle.running import BEHIND_PLAN, EAST_PLAN, ONE_PLANNED, TWO, Document, Run, line, save, solution
-
-from carproof.engines import engine_named
-from carproof.protocol.server import respond
+from tests.oracle.running import BEHIND_PLAN, EAST_PLAN, ONE_PLANNED, TWO, Document, Run, asked, save, solution
 
 FORBIDDING = {**TWO, "following": "forbidden"}
 APART = solution({"r1": [["a", 0, 2], ["b", 2, 3], ["c", 3, 4]], "r2": BEHIND_PLAN})
@@ -90,7 +85,7 @@ def test_commands_that_prove_refuse_in_one_sentence(command: str, carproof: Run)
     ],
 )
 def test_ops_that_prove_refuse_with_path_and_rule(op: str, fields: Document) -> None:
-    error = asked(op, {"instance": FORBIDDING, **fields})["error"]
+    error = asked(op, instance=FORBIDDING, **fields)["error"]
     assert (error["path"], error["rule"], error["message"]) == ("$.instance.following", "limit/following", SENTENCE)
 
 
@@ -98,14 +93,7 @@ def test_certificates_prove_nothing_where_following_is_forbidden(carproof: Run) 
     certificates(carproof)
     for op, fields in (("verify-bound", {}), ("verify-query", {"solution": ONE_PLANNED})):
         certificate = json.loads(Path(f"{op.partition('-')[2]}.json").read_bytes())
-        result = asked(op, {"instance": FORBIDDING, **fields, "certificate": certificate})["result"]
+        result = asked(op, instance=FORBIDDING, certificate=certificate, **fields)["result"]
         assert (result["bound"], result["rule"]) == (None, "limit/following")
-        result = asked(op, {"instance": TWO, **fields, "certificate": certificate})["result"]
+        result = asked(op, instance=TWO, certificate=certificate, **fields)["result"]
         assert result["bound"] is not None
-
-
-def asked(op: str, fields: Document) -> Document:
-    """The answer of the server."""
-    response, _ = respond(line(id=1, op=op, **fields), engine_named("reference"))
-    answered: dict[str, Any] = json.loads(msgspec.json.encode(response))
-    return answered

@@ -4,24 +4,23 @@ import importlib
 import json
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, cast
+from typing import cast
 
 import msgspec
 import pytest
 from click.testing import CliRunner
 from jsonschema import Draft202012Validator
-from tests.oracle.running import REQUESTS, TWO, line
+from tests.oracle.running import REQUESTS, TWO, asked
 
 from carp_spec import Instance
 from carproof.commands.judge import conform as conform_command
 from carproof.commands.run import serve as serve_command
 from carproof.conform.cases import ASKED_OPS
-from carproof.engines import Engine, engine_named
+from carproof.engines import Engine
 from carproof.protocol.lines import Request
 from carproof.protocol.ops import OPS
 from carproof.protocol.ops.op import Op, op_of, request_fields
 from carproof.protocol.ops.published import NAME, schema, table
-from carproof.protocol.server import respond
 from carproof.schema import schema_file
 from carproof.testing.vectors import vectors
 
@@ -32,12 +31,6 @@ def validator(definition: str | None = None) -> Draft202012Validator:
     if definition is not None:
         published = {"$ref": f"#/$defs/{definition}", "$defs": published["$defs"]}
     return Draft202012Validator(published)
-
-
-def asked(op: str, fields: dict[str, Any]) -> dict[str, Any]:
-    response, _ = respond(line(id=1, op=op, **fields), engine_named("reference"))
-    answered: dict[str, Any] = json.loads(msgspec.json.encode(response))
-    return answered
 
 
 def test_the_schema_is_made_of_the_table() -> None:
@@ -54,8 +47,8 @@ def test_requests_and_responses_keep_to_the_schema(op: str) -> None:
     request = {"id": 1, "op": op, **REQUESTS[op]}
     validator().validate(request)
     assert not validator().is_valid({**request, "colour": "red"})
-    validator(OPS[op].request.__name__.replace("Request", "Response")).validate(asked(op, REQUESTS[op]))
-    validator("Refused").validate(asked(op, {**REQUESTS[op], "colour": "red"}))
+    validator(OPS[op].request.__name__.replace("Request", "Response")).validate(asked(op, **REQUESTS[op]))
+    validator("Refused").validate(asked(op, **REQUESTS[op], colour="red"))
 
 
 @pytest.mark.parametrize("op", REQUESTS)
@@ -101,9 +94,9 @@ def fly_low(request: FlyRequest, engine: Engine) -> FlyDocument:
 
 def test_an_op_in_the_table_is_answered_and_shows_up_everywhere(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(cast("dict[str, Op]", OPS), "fly-low", op_of(fly_low))
-    assert asked("fly-low", {"instance": TWO}) == {"id": 1, "result": {"landed": True}}
-    assert asked("fly-low", {"instance": TWO, "height": "7"})["error"]["path"] == "$.height"
-    assert "fly-low" in asked("start", {"version": 1})["result"]["ops"]
+    assert asked("fly-low", instance=TWO) == {"id": 1, "result": {"landed": True}}
+    assert asked("fly-low", instance=TWO, height="7")["error"]["path"] == "$.height"
+    assert "fly-low" in asked("start", version=1)["result"]["ops"]
     published = json.loads(schema())
     assert {"$ref": "#/$defs/FlyRequest"} in published["anyOf"]
     assert published["$defs"]["FlyRequest"]["properties"]["height"] == {"type": "integer", "default": 7}
