@@ -1,6 +1,5 @@
 """A machine on which nothing can be written, by real read-only mounts in a namespace of the test's own."""
 
-import json
 import os
 import subprocess
 import sys
@@ -8,7 +7,6 @@ from pathlib import Path
 
 import pytest
 from tests.optimized.test_compiling import CALLS, ENTRIES
-from tests.oracle.running import TWO, TWO_PLANNED
 
 READ_ONLY = """
 awk '{print $2}' /proc/self/mounts | sort -u | while read -r folder; do
@@ -36,14 +34,6 @@ def run_read_only(folder: Path, *command: str) -> "subprocess.CompletedProcess[s
     return done
 
 
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    (tmp_path / "town.json").write_text(json.dumps(TWO))
-    (tmp_path / "plans.json").write_text(json.dumps(TWO_PLANNED))
-    (tmp_path / "entries.py").write_text(ENTRIES)
-    return tmp_path
-
-
 def test_solutions_are_checked(folder: Path) -> None:
     done = run_read_only(folder, sys.executable, "-m", "carproof", "check", "town.json", "plans.json")
     assert (done.returncode, done.stderr) == (0, "")
@@ -51,6 +41,7 @@ def test_solutions_are_checked(folder: Path) -> None:
 
 
 def test_what_is_compiled_is_not_kept_and_that_is_said_once(folder: Path) -> None:
+    (folder / "entries.py").write_text(ENTRIES)
     done = run_read_only(folder, sys.executable, "-c", CALLS)
     assert (done.returncode, done.stdout) == (0, "4 6\n"), done.stderr
     assert done.stderr.count("in each process, as it finds no folder") == 1

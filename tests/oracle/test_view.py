@@ -233,27 +233,24 @@ def test_an_instance_alone_is_shown_with_its_starts_and_goals(carproof: Run, tmp
 @pytest.mark.parametrize(
     ("name", "options", "named"),
     [
-        ("x.pdf", (), (".html", ".svg")),
-        ("x.svg", (), (".html", "--at", "--chart")),
-        ("x.html", ("--at", "1"), (".svg",)),
-        ("x.PNG", ("--chart",), (".svg",)),
+        ("x.pdf", "", (".html", ".svg")),
+        ("x.svg", "", (".html", "--at", "--chart")),
+        ("x.html", "--at 1", (".svg",)),
+        ("x.PNG", "--chart", (".svg",)),
     ],
 )
 def test_a_file_that_promises_another_format_is_refused(
-    carproof: Run, tmp_path: Path, name: str, options: tuple[str, ...], named: tuple[str, ...]
+    carproof: Run, folder: Path, name: str, options: str, named: tuple[str, ...]
 ) -> None:
-    (tmp_path / "town.json").write_text(json.dumps(CORRIDOR))
-    (tmp_path / "plans.json").write_text(json.dumps(COLLIDING))
-    outcome = carproof("view", tmp_path / "town.json", tmp_path / "plans.json", *options, "-o", tmp_path / name)
+    outcome = carproof(f"view town.json broken.json {options} -o {name}")
     assert outcome.code == 2
     assert all(each in outcome.stderr for each in named)
-    assert not (tmp_path / name).exists()
+    assert not (folder / name).exists()
 
 
-def test_a_tick_after_all_plans_is_refused_with_the_last_one(carproof: Run, tmp_path: Path) -> None:
-    (tmp_path / "town.json").write_text(json.dumps(CORRIDOR))
-    (tmp_path / "plans.json").write_text(json.dumps(COLLIDING))
-    outcome = carproof("view", tmp_path / "town.json", tmp_path / "plans.json", "--at", "900")
+@pytest.mark.usefixtures("folder")
+def test_a_tick_after_all_plans_is_refused_with_the_last_one(carproof: Run) -> None:
+    outcome = carproof("view town.json broken.json --at 900")
     assert outcome.code == 2
     assert "from tick 0 to tick 5" in outcome.stderr
 
@@ -280,16 +277,14 @@ def test_the_chart_marks_round_ticks() -> None:
     [("resources", "5 "), ("edges", "4 "), ("robots", "2 "), ("visits", "7 "), ("bytes", "")],
 )
 def test_what_is_too_large_is_refused_with_the_limit(
-    carproof: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, what: str
+    carproof: Run, folder: Path, monkeypatch: pytest.MonkeyPatch, name: str, what: str
 ) -> None:
     monkeypatch.setitem(limits._MOST, name, 1)
-    (tmp_path / "town.json").write_text(json.dumps(CORRIDOR))
-    (tmp_path / "plans.json").write_text(json.dumps(COLLIDING))
-    outcome = carproof("view", tmp_path / "town.json", tmp_path / "plans.json", "-o", tmp_path / "out.html")
+    outcome = carproof("view town.json broken.json -o out.html")
     assert outcome.code == 2
     assert f"a picture shows at most 1 {name}, and this one would have {what}" in outcome.stderr.replace("\n", " \n")
     assert outcome.stderr.endswith("[view/size]\n")
-    assert not (tmp_path / "out.html").exists()
+    assert not (folder / "out.html").exists()
 
 
 def trace(now: int, *behind: list[object]) -> Document:
@@ -325,11 +320,10 @@ def test_the_rules_that_a_trace_breaks_are_listed_where_the_plans_break_none(car
     assert [rule["id"] for rule in scene["rules"]] == ["joint/capacity"]
 
 
-@pytest.mark.parametrize("option", [("--chart",), ("--at", "1")])
-def test_a_still_with_a_trace_is_refused(carproof: Run, tmp_path: Path, option: tuple[str, ...]) -> None:
-    (tmp_path / "town.json").write_text(json.dumps(CORRIDOR))
-    town = tmp_path / "town.json"
-    outcome = carproof("view", town, town, "--trace", town, *option)
+@pytest.mark.usefixtures("folder")
+@pytest.mark.parametrize("option", ["--chart", "--at 1"])
+def test_a_still_with_a_trace_is_refused(carproof: Run, option: str) -> None:
+    outcome = carproof(f"view town.json plans.json --trace plans.json {option}")
     assert outcome.code == 2
     assert "--trace is for the page, without --at and --chart." in outcome.stderr
 

@@ -6,11 +6,10 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as ET
 
-from tests.oracle.running import BEHIND, EAST, EAST_PLAN, Document, Run, corridor, solution
+from tests.oracle.running import BROKEN, TWO, Document, Run
 
 SVG = "{http://www.w3.org/2000/svg}"
-COLLIDING = solution({"r1": EAST_PLAN, "r2": [["b", 0, 2], ["c", 2, 3], ["d", 3, 4], ["e", 4, 5]]})
-CORRIDOR = corridor([EAST, BEHIND])
+COLLIDING, CORRIDOR = BROKEN, TWO
 HOSTILE = "</script><script>alert('1')</script>&\"\u2028é漢字🤖\u202e"
 
 
