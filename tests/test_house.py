@@ -22,9 +22,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "carproof": {"carp_spec", "carp_reference", "carp_optimized", "carp_verify", "carp_optimum"},
     "carp_experiments": {"carp_spec", "carp_reference", "carp_optimized", "carp_verify", "carp_optimum", "carproof"},
 }
-READ_IN_A_MINUTE = 238  # words of English non-fiction: Brysbaert 2019, https://doi.org/10.1016/j.jml.2019.104047
 SLOW_TO_LOAD = {"z3", "numba", "numpy", "pysat", "matplotlib", "hypothesis", "networkx"}
-SAYS_NOTHING_OF_PLANS = {"inputs", "shapes", "requests", "documents"}
 MOST_MODULES = 17
 """Of a folder: about a dozen."""
 
@@ -133,22 +131,6 @@ def test_importing_a_package_loads_nothing_slow(package: str) -> None:
 
 def readme(package: str) -> str:
     return (packages()[package].parent / "README.md").read_text()
-
-
-def words(package: str) -> int:
-    """The words of a package's Python, names and operators included, but for what says nothing about plans."""
-    files = [file for file in packages()[package].rglob("*.py") if not SAYS_NOTHING_OF_PLANS & {*file.parts, file.stem}]
-    return sum(len(file.read_text().split()) for file in files)
-
-
-def test_the_law_and_the_planners_to_read_take_an_hour() -> None:
-    assert words("carp_spec") + words("carp_reference") <= 60 * READ_IN_A_MINUTE
-
-
-@pytest.mark.parametrize("package", ["carp_spec", "carp_reference"])
-def test_a_readme_names_the_minutes_to_read_the_package(package: str) -> None:
-    (minutes,) = re.findall(r"takes? about (\d+) minutes to read", readme(package))
-    assert words(package) <= int(minutes) * READ_IN_A_MINUTE + READ_IN_A_MINUTE / 2
 
 
 def test_tests_that_pages_name_are_there() -> None:
