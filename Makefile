@@ -99,7 +99,7 @@ texts: install kernel
 	nice $(BIN)/carproof experiment texts --store texts.sqlite
 
 generated: install
-	$(BIN)/python -m carproof.schema
+	$(BIN)/python -m carp_spec.documents.schema
 	$(BIN)/python -m tests.oracle.test_readme
 	$(BIN)/python -m tests.vectors.writing
 	$(BIN)/python -m carproof.protocol.ops.published

@@ -21,12 +21,13 @@ from mkdocs.structure.pages import Page
 
 from carp_experiments.page import RESULTS, results
 from carp_spec import Rule
+from carp_spec.documents.vectors import Vector
 from carproof.entry.cli import carproof
 from carproof.input_rules import Code
 from carproof.protocol.ops.published import table as ops
 from carproof.registry import RULES
 from carproof.rules import ALL_RULES
-from carproof.testing.vectors import FOLDER, Vector, subjects, vectors
+from carproof.testing.vectors import FOLDER, subjects, vectors
 
 ROOT = Path(__file__).parents[1]
 PLACE = re.compile(r"<!-- generated: (.+?) -->\n")

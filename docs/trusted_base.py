@@ -12,17 +12,17 @@ from carproof.markdown import markdown_table
 ROOT = Path(__file__).parents[1]
 KERNEL = ROOT / "verify" / "kernel"
 LAW = ("check", "joint_rules", "plan_rules", "instance_rules", "model", "rule", "refusal")
-BOUND = ("bound/verify", "bound/rules", "bounds", "limits")
+BOUND = ("bound/verify", "bound/rules", "documents/bounds", "limits")
 ENCODER = ("optimum/encoding", "optimum/robot_clauses", "optimum/clauses", "optimum/rules", "limits")
 UNSOLVABLE = ("optimum/proof", "optimum/unsolvable")
 CHECK = "`check`: no rule is broken"
 VERDICTS: dict[str, tuple[tuple[str, ...], str]] = {
-    CHECK: (("documents",), ""),
+    CHECK: (("documents/decoding", "documents/instances", "documents/solutions"), ""),
     "`verify-bound`, without cuts": (BOUND, ""),
     "`verify-bound`, with cuts": ((*BOUND, "bound/cuts", *ENCODER[:-1], "optimum/refutation"), ""),
     "`verify-query` and `audit`": (("query/verify", "query/rules", "limits"), ""),
     "with `--kernel`": (
-        ("kernel", "bounds", "limits"),
+        ("kernel", "documents/bounds", "limits"),
         "[the proved kernel](#the-proved-kernel), and not the law in Python",
     ),
     "`verify-proof`, an optimum": (("optimum/proof", "plain_files", *ENCODER, "optimum/refutation"), ""),
@@ -40,6 +40,12 @@ VERDICTS: dict[str, tuple[tuple[str, ...], str]] = {
         "z3, the argument by hand in the docstring",
     ),
 }
+
+
+def module_file(name: str) -> Path:
+    """The file of a module of `carp_verify` or, for a document, of `carp_spec`."""
+    package = "spec/carp_spec" if name.startswith("documents/") else "verify/carp_verify"
+    return ROOT / package / f"{name}.py"
 
 
 def lines_of_code(path: Path) -> int:
@@ -82,10 +88,10 @@ def coq_lines(paths: Iterable[Path]) -> tuple[int, int]:
 
 def table() -> str:
     """The verdicts as a table in Markdown."""
-    columns, rows = ("verdict", "beside the law, in `carp_verify`", "lines", "also"), []
+    columns, rows = ("verdict", "beside the law, in `carp_verify` or `carp_spec`", "lines", "also"), []
     law = sum(lines_of_code(ROOT / "spec" / "carp_spec" / f"{name}.py") for name in LAW)
     for verdict, (modules, others) in VERDICTS.items():
-        lines = sum(lines_of_code(ROOT / "verify" / "carp_verify" / f"{name}.py") for name in modules)
+        lines = sum(lines_of_code(module_file(name)) for name in modules)
         named = ", ".join(f"`{name}`" for name in modules)
         if verdict == CHECK:
             named += f", as in all that follow; the law is {law} lines of `carp_spec`"

@@ -11,10 +11,10 @@ from pathlib import Path
 import click
 import pytest
 
+from carp_spec.documents.schema import FOLDER
 from carproof.entry.cli import carproof
 from carproof.protocol.ops import OPS
 from carproof.rules import ALL_RULES
-from carproof.schema import FOLDER
 
 ROOT = Path(__file__).parent.parent
 SURFACE = Path(__file__).with_name("surface.txt")

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from carp_optimized.fleet import PlannedFleet
 from carp_spec import Instance, Plan, RobotId
-from carp_spec.query_certificates import QUERY_FORMAT, QueryCertificateDocument
+from carp_spec.documents.query_certificates import QUERY_FORMAT, QueryCertificateDocument
 
 
 class Certifier:

@@ -8,7 +8,7 @@ from carp_optimum.claims.pair_search import SightSearch
 from carp_optimum.lagrangian.deadlines import Deadlines, Member
 from carp_optimum.lagrangian.price_search import PriceSearch
 from carp_spec import Instance, Resource, ResourceGraph, Robot
-from carp_verify.bounds import DeadlinesDocument
+from carp_spec.documents.bounds import DeadlinesDocument
 
 
 def compile_all() -> None:

@@ -18,9 +18,10 @@ from msgspec.structs import replace
 
 from carp_optimum.sat.solver import Deadline, TimeOver
 from carp_spec import Instance
+from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument
+from carp_spec.documents.instances import digest
 from carp_spec.inputs.options import require_limits
 from carp_spec.inputs.values import require_instance
-from carp_verify.bounds import BOUND_FORMAT, BoundDocument, digest
 from carp_verify.limits import require_following
 
 if TYPE_CHECKING:

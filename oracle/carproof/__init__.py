@@ -56,13 +56,14 @@ if TYPE_CHECKING:
         total_cost,
     )
     from carp_spec import judge as check
+    from carp_spec.documents.bounds import BoundDocument, read_bound
+    from carp_spec.documents.instances import read_instance, write_instance
+    from carp_spec.documents.solutions import read_solution, write_solution
+    from carp_spec.documents.verdicts import write_verdict
     from carp_verify.bound.verify import verify_bound
-    from carp_verify.bounds import BoundDocument, read_bound
-    from carp_verify.documents import read_instance, read_solution, write_instance, write_solution, write_verdict
     from carproof.planner_options import planner_named
     from carproof.registry import RULES
 
-_DOCUMENTS = ("read_instance", "read_solution", "write_instance", "write_solution", "write_verdict")
 _ELSEWHERE = {
     "add": "carp_optimized",
     "plan": "carp_optimized",
@@ -70,9 +71,13 @@ _ELSEWHERE = {
     "polish": "carp_optimized.improve.annealing",
     "query": "carp_optimized",
     "check": "carp_spec:judge",
-    "BoundDocument": "carp_verify.bounds",
-    "read_bound": "carp_verify.bounds",
-    **dict.fromkeys(_DOCUMENTS, "carp_verify.documents"),
+    "BoundDocument": "carp_spec.documents.bounds",
+    "read_bound": "carp_spec.documents.bounds",
+    "read_instance": "carp_spec.documents.instances",
+    "read_solution": "carp_spec.documents.solutions",
+    "write_instance": "carp_spec.documents.instances",
+    "write_solution": "carp_spec.documents.solutions",
+    "write_verdict": "carp_spec.documents.verdicts",
     "RULES": "carproof.registry",
     "planner_named": "carproof.planner_options",
     "bound": "carp_optimum.bound:lower_bound",

@@ -6,8 +6,8 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
 from carp_spec import Instance, Neighbourhood, Plan, Planner, Refusal, RobotId, Solution, total_cost
+from carp_spec.documents.query_certificates import QueryCertificateDocument
 from carp_spec.execution.traces import Trace
-from carp_spec.query_certificates import QueryCertificateDocument
 from carproof.progress import progress
 
 if TYPE_CHECKING:

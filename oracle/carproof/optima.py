@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Literal
 
 import msgspec
 
-from carp_verify.documents import SolutionDocument, solution_document
+from carp_spec.documents.solutions import SolutionDocument, solution_document
 
 if TYPE_CHECKING:
     from carp_optimum.sat.core_guided import Optimum

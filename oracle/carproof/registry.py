@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from carp_spec.documents.decoding import has_format, has_shape, is_json
 from carp_spec.execution.execution_rules import EXECUTION_RULES, TRACE_RULES, is_acyclic
 from carp_spec.inputs.options import options_are_right
 from carp_spec.instance_rules import INSTANCE_RULES
@@ -20,7 +21,6 @@ from carp_spec.polish_rules import POLISH_RULES
 from carp_spec.query_rules import absence_is_true, expansion_key, plan_is_optimal, plan_is_sound
 from carp_spec.rule import Rule
 from carp_spec.windows import stay_fits, windows_are_free
-from carp_verify.documents import has_format, has_shape, is_json
 from carproof.execution.giving_way import robot_is_first
 
 RULES: tuple[Rule[..., Any], ...] = (

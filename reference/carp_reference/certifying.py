@@ -6,7 +6,7 @@ from dataclasses import replace
 from carp_reference.problem import prepare
 from carp_reference.query import Node, find_plan
 from carp_spec import Instance, Plan, RobotId
-from carp_spec.query_certificates import QUERY_FORMAT, QueryCertificateDocument
+from carp_spec.documents.query_certificates import QUERY_FORMAT, QueryCertificateDocument
 
 
 class Certifier:

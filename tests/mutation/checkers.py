@@ -42,7 +42,9 @@ LEMMAS = ("verify/test_lemmas", "verify/test_formulas")
 TESTS: Mapping[str, Sequence[str]] = {
     "carp_spec.polish_rules": ("spec/test_polish_rules",),
     "carp_spec.windows": ("spec/test_windows",),
-    "carp_verify.documents": ("verify/test_documents",),
+    "carp_spec.documents.instances": ("verify/test_documents",),
+    "carp_spec.documents.solutions": ("verify/test_documents",),
+    "carp_spec.documents.decoding": ("verify/test_documents",),
     "carp_verify.bound.verify": BOUNDS,
     "carp_verify.bound.rules": (*BOUNDS, "verify/test_gap", "oracle/test_bound"),
     "carp_verify.bound.cuts": BOUNDS,

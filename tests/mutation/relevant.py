@@ -17,7 +17,9 @@ ALSO: dict[str, list[str]] = {
     "carp_spec.joint_rules": ["test_check.py", "test_rule.py"],
     "carp_spec.check": ["test_rule.py"],
     "carp_spec.rule": ["test_check.py"],
-    "carp_verify.documents": ["test_schema.py"],
+    "carp_spec.documents.instances": ["test_documents.py", "test_schema.py"],
+    "carp_spec.documents.solutions": ["test_documents.py", "test_schema.py"],
+    "carp_spec.documents.decoding": ["test_documents.py", "test_schema.py"],
 }
 
 

@@ -15,7 +15,7 @@ from typing import Literal
 import carp_optimized
 import carp_reference
 from carp_spec import Instance, Neighbourhood, Solution
-from carp_verify.documents import write_solution
+from carp_spec.documents.solutions import write_solution
 from carproof.generate import Fleet, Grid, grid_instance
 
 DIGESTS = Path(__file__).with_suffix(".txt")

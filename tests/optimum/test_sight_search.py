@@ -7,8 +7,8 @@ from carp_optimum.bound import lower_bound
 from carp_optimum.claims.pair_search import SightSearch
 from carp_optimum.lagrangian.deadlines import Deadlines, Member
 from carp_optimum.sat.solver import TimeOver
+from carp_spec.documents.bounds import DeadlinesDocument
 from carp_verify.bound.cuts import require_deadlines
-from carp_verify.bounds import DeadlinesDocument
 
 
 def test_claims_are_proved_and_raise_the_bound() -> None:

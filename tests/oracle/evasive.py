@@ -10,8 +10,7 @@ from typing import Any
 import msgspec
 
 from carp_spec import Refusal
-from carp_verify.bounds import digest
-from carp_verify.documents import read_instance
+from carp_spec.documents.instances import digest, read_instance
 from carproof.conform.asking.smoke import smoke_cases
 from carproof.conform.asking.vector_cases import vector_cases
 from carproof.conform.cases import ASKED_OPS, request_fields

@@ -12,7 +12,8 @@ from tests.oracle.running import Run
 from tests.profiles import draws
 
 from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, Robot, Solution, Visit, judge
-from carp_verify.documents import write_instance, write_solution
+from carp_spec.documents.instances import write_instance
+from carp_spec.documents.solutions import write_solution
 from carproof.formats import (
     ADAPTERS,
     read_foreign_solution,

@@ -11,9 +11,10 @@ from tests.oracle.running import EAST, EAST_PLAN, TWO_PLANNED, Run, corridor, li
 
 import carp_reference
 from carp_spec import Carp, Plan, RobotId, Solution, check, plan_cost
-from carp_spec.query_certificates import QueryCertificateDocument
+from carp_spec.documents.instances import read_instance
+from carp_spec.documents.query_certificates import QueryCertificateDocument
+from carp_spec.documents.solutions import read_solution
 from carp_verify.bound.rules import ContradictionError
-from carp_verify.documents import read_instance, read_solution
 from carproof.engines import engine_named
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.judging.audit import audit_in_order, audit_in_some_order, in_order

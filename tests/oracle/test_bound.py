@@ -8,7 +8,7 @@ from msgspec import to_builtins
 from tests.oracle.running import HEAD_ON, Run, corridor, save
 
 from carp_optimum.bound import Progress
-from carp_verify.bounds import BOUND_FORMAT, BoundDocument, read_bound
+from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, read_bound
 
 EMPTY = BoundDocument(BOUND_FORMAT, "", 0, 1, 0, (), (), (), ())
 

@@ -22,7 +22,8 @@ PLANNER = """
 import pathlib, sys
 from carp_reference import plan
 from carp_spec import Carp
-from carp_verify.documents import read_instance, write_solution
+from carp_spec.documents.instances import read_instance
+from carp_spec.documents.solutions import write_solution
 
 sys.stdout.buffer.write(write_solution(plan(read_instance(pathlib.Path(sys.argv[1]).read_bytes()), Carp())))
 """

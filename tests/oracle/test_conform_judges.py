@@ -11,8 +11,10 @@ import pytest
 
 import carp_reference
 from carp_spec import Carp, Plan, Solution, judge
-from carp_verify.bounds import BoundDocument
-from carp_verify.documents import VerdictDocument, solution_document
+from carp_spec.documents.bounds import BoundDocument
+from carp_spec.documents.solutions import solution_document
+from carp_spec.documents.vectors import VectorsDocument
+from carp_spec.documents.verdicts import VerdictDocument
 from carproof.conform.answers import Reply
 from carproof.conform.cases import ASKED_OPS, Case, request_fields, request_of
 from carproof.conform.levels import Level
@@ -22,7 +24,6 @@ from carproof.engines import engine_named
 from carproof.optima import OptimumDocument
 from carproof.protocol.ops import OPS
 from carproof.protocol.ops.planning import QueryDocument, query_document
-from carproof.testing.vectors import VectorsDocument
 
 LATE = {"query/optimal", "joint/capacity", "joint/exchange", "fleet/history"}
 Tamper = Callable[[Case, Reply], Reply]

@@ -44,8 +44,11 @@ from tests.oracle.test_kernel_option import stand_in
 from tests.verify.kernel_program import program
 
 from carp_spec import Carp, judge
+from carp_spec.documents.instances import read_instance
+from carp_spec.documents.query_certificates import read_query_certificate
+from carp_spec.documents.solutions import read_solution
+from carp_spec.documents.verdicts import VerdictDocument
 from carp_verify.bound.rules import ContradictionError
-from carp_verify.documents import VerdictDocument, read_instance, read_query_certificate, read_solution
 from carp_verify.kernel import KernelVerdict, ask, version
 from carp_verify.query.verify import verify_query
 from carproof.conform.answers import Answer

@@ -134,7 +134,8 @@ def test_without_time_a_failure_is_not_called_minimal() -> None:
 
 UNTIDY = """
 import json, os, pathlib, sys
-from carp_verify.documents import read_instance, write_solution
+from carp_spec.documents.instances import read_instance
+from carp_spec.documents.solutions import write_solution
 from carp_spec import Carp
 import carp_reference
 

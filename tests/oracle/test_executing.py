@@ -9,8 +9,9 @@ from tests.oracle.running import Document, Outcome, Run, line, save, solution, t
 from tests.profiles import draws
 
 from carp_spec import Solution, check, check_update, judge
+from carp_spec.documents.instances import read_instance
+from carp_spec.documents.solutions import read_solution, read_trace
 from carp_spec.execution.execution_rules import is_acyclic, trace_violations
-from carp_verify.documents import read_instance, read_solution, read_trace
 from carproof.engines import engine_named
 from carproof.execution.delays import Delay
 from carproof.execution.simulation import DRIVERS, execute, random_delays

@@ -8,7 +8,7 @@ from carp_experiments.measuring import gap_table
 from carp_experiments.measuring.gap_table import Found, Task
 from carp_optimum.bound import lower_bound
 from carp_spec import Instance, Solution
-from carp_verify.bounds import BoundDocument
+from carp_spec.documents.bounds import BoundDocument
 
 TASK = Task(10, 100, 2, 1)
 

@@ -12,7 +12,8 @@ from tests.verify.bound_examples import crossing, cut_certificate
 from tests.verify.kernel_program import program
 
 import carp_verify.kernel
-from carp_verify.documents import write, write_instance
+from carp_spec.documents.decoding import write
+from carp_spec.documents.instances import write_instance
 from carp_verify.kernel import PROGRAM, VARIABLE
 
 STAND_IN = """#!{python}

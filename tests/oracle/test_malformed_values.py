@@ -29,11 +29,11 @@ from carp_spec import (
     Solution,
     Visit,
 )
+from carp_spec.documents.instances import digest, read_instance, write_instance
+from carp_spec.documents.query_certificates import QUERY_FORMAT, QueryCertificateDocument
+from carp_spec.documents.solutions import read_solution, write_solution, write_trace
 from carp_spec.execution.traces import Trace
-from carp_spec.query_certificates import QUERY_FORMAT, QueryCertificateDocument
-from carp_verify.bounds import digest
 from carp_verify.certificate import certify
-from carp_verify.documents import read_instance, read_solution, write_instance, write_solution, write_trace
 from carp_verify.optimum.joint_search import least_total_cost
 from carp_verify.query.verify import verify_query
 from carproof.formats import named_as, read_foreign_solution, write_foreign_solution

@@ -8,7 +8,7 @@ import pytest
 
 import carp_reference
 from carp_spec import Carp, Refusal, Resource, Robot, judge
-from carp_verify.documents import read_instance, write_instance
+from carp_spec.documents.instances import read_instance, write_instance
 from carproof.formats import instance_from_networkx
 
 

@@ -13,6 +13,7 @@ from jsonschema import Draft202012Validator
 from tests.oracle.running import REQUESTS, TWO, asked
 
 from carp_spec import Instance
+from carp_spec.documents.schema import schema_file
 from carproof.commands.judge import conform as conform_command
 from carproof.commands.run import serve as serve_command
 from carproof.conform.cases import ASKED_OPS
@@ -21,7 +22,6 @@ from carproof.protocol.lines import Request
 from carproof.protocol.ops import OPS
 from carproof.protocol.ops.op import Op, op_of, request_fields
 from carproof.protocol.ops.published import NAME, schema, table
-from carproof.schema import schema_file
 from carproof.testing.vectors import vectors
 
 

@@ -8,7 +8,8 @@ import pytest
 from tests.oracle.running import HEAD_ON, TWO, TWO_PLANNED, Run, corridor, save, solution
 
 from carp_spec import Instance, Solution
-from carp_verify.documents import read_instance, read_solution
+from carp_spec.documents.instances import read_instance
+from carp_spec.documents.solutions import read_solution
 from carproof import polish
 from carproof.engines import engine_named
 from carproof.protocol.server import respond

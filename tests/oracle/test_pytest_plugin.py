@@ -38,7 +38,8 @@ def returns_nothing(instance: Instance) -> Solution:
 
 def right_documents(document):
     import json
-    from carp_verify.documents import read_instance, write_solution
+    from carp_spec.documents.instances import read_instance
+    from carp_spec.documents.solutions import write_solution
     return json.loads(write_solution(right(read_instance(json.dumps(document).encode()))))
 
 def no_document(document):

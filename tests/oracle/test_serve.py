@@ -27,7 +27,7 @@ from tests.oracle.running import (
     solution,
 )
 
-from carp_verify.bounds import read_bound
+from carp_spec.documents.bounds import read_bound
 from carproof.engines import engine_named
 from carproof.protocol.lines import LONGEST_LINE
 from carproof.protocol.ops import OPS

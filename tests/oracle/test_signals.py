@@ -11,7 +11,8 @@ import pytest
 
 from carp_optimized import plan
 from carp_spec import Carp
-from carp_verify.documents import write_instance, write_solution
+from carp_spec.documents.instances import write_instance
+from carp_spec.documents.solutions import write_solution
 from carproof.entry.supervising import GRACE
 from carproof.generate import Fleet, Grid, grid_instance
 

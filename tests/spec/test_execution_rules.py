@@ -19,10 +19,10 @@ from tests.spec.making import (
 )
 
 from carp_spec import Instance, Plan, Refusal, Solution, Visit, check
+from carp_spec.documents.solutions import read_trace, trace_document, write_trace
 from carp_spec.execution.dependencies import Dependency, Node, dependencies, shortest_cycle
 from carp_spec.execution.execution_rules import is_acyclic, trace_violations
 from carp_spec.execution.traces import Trace
-from carp_verify.documents import read_trace, trace_document, write_trace
 
 TRACE = Trace(2, (Plan("r1", (Visit("a", 0, 1), Visit("b", 1, None))), Plan("r2", ())))
 

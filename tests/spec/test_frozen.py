@@ -13,7 +13,9 @@ import pytest
 import carp_reference
 import carp_spec
 from carp_reference.problem import Problem
-from carp_verify import bounds, documents
+from carp_spec import documents
+from carp_spec.documents.bounds import BoundDocument
+from carp_spec.documents.instances import InstanceDocument
 
 
 def modules_of(package: ModuleType) -> Iterator[ModuleType]:
@@ -32,7 +34,7 @@ def classes_of(modules: Iterable[ModuleType]) -> Iterator[type[Any]]:
 
 MODULES = [*modules_of(carp_spec), *modules_of(carp_reference)]
 DATACLASSES = [each for each in classes_of(MODULES) if is_dataclass(each)]
-STRUCTS = [each for each in classes_of([*MODULES, documents, bounds]) if issubclass(each, msgspec.Struct)]
+STRUCTS = [each for each in classes_of([*MODULES, *modules_of(documents)]) if issubclass(each, msgspec.Struct)]
 
 
 @pytest.mark.parametrize("kind", DATACLASSES)
@@ -50,4 +52,4 @@ def test_documents_are_frozen_and_refuse_unknown_fields(kind: type[msgspec.Struc
 
 def test_the_classes_that_everybody_uses_are_among_them() -> None:
     assert {carp_spec.Plan, carp_spec.Rule, carp_spec.Verdict, carp_spec.Neighbourhood, Problem} <= {*DATACLASSES}
-    assert {documents.InstanceDocument, bounds.BoundDocument} <= {*STRUCTS}
+    assert {InstanceDocument, BoundDocument} <= {*STRUCTS}

@@ -24,6 +24,11 @@ from carp_spec import (
     plan_cost,
     total_cost,
 )
+from carp_spec.documents.bounds import read_bound
+from carp_spec.documents.decoding import is_json
+from carp_spec.documents.query_certificates import read_query_certificate
+from carp_spec.documents.solutions import read_solution, read_trace
+from carp_spec.documents.vectors import Fields, Vector
 from carp_spec.execution.execution_rules import is_acyclic, trace_violations
 from carp_spec.instance_rules import after_goal_is_known, following_is_known
 from carp_spec.neighbourhood_rules import (
@@ -54,15 +59,12 @@ from carp_spec.query_rules import expansion_key
 from carp_spec.windows import Window, free_windows, stay_fits, windows_are_free
 from carp_verify.bound.rules import BOUND_RULES
 from carp_verify.bound.verify import verify_bound
-from carp_verify.bounds import read_bound
-from carp_verify.documents import is_json, read_query_certificate, read_solution, read_trace
 from carp_verify.optimum.joint_search import least_total_cost
 from carp_verify.query.rules import QUERY_CERTIFICATE_RULES, plans_are_lawful, robot_is_known
 from carp_verify.query.verify import verify_query
 from carproof.execution.giving_way import robot_is_first
 from carproof.planner_options import planner_named
 from carproof.registry import RULES
-from carproof.testing.vectors import Fields, Vector
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,8 @@ from hashlib import sha256
 
 import msgspec
 
-from carproof.testing.vectors import DIGESTS, Vector, VectorsDocument, subjects, vector_file, vectors, vectors_document
+from carp_spec.documents.vectors import Vector, VectorsDocument
+from carproof.testing.vectors import DIGESTS, subjects, vector_file, vectors, vectors_document
 
 
 class ChangedError(Exception):

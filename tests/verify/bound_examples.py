@@ -12,9 +12,10 @@ from carp_optimum.claims.cut_search import prove
 from carp_optimum.sat.proving import refutation
 from carp_optimum.sat.solver import Deadline
 from carp_spec import Instance, Plan, Resource, ResourceGraph, ResourceId, Robot, Visit
+from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, DeadlinesDocument
+from carp_spec.documents.instances import digest
 from carp_verify.bound.cuts import formula_of_deadlines
 from carp_verify.bound.verify import Budget, RobotSearch, Tariff, fees_of, predecessors, verify_bound
-from carp_verify.bounds import BOUND_FORMAT, BoundDocument, DeadlinesDocument, digest
 
 SCALE = 4
 HORIZON = 6

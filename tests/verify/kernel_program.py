@@ -14,8 +14,9 @@ import msgspec
 import pytest
 
 from carp_spec import Instance, Solution
-from carp_verify.bounds import BoundDocument
-from carp_verify.documents import instance_document, solution_document
+from carp_spec.documents.bounds import BoundDocument
+from carp_spec.documents.instances import instance_document
+from carp_spec.documents.solutions import solution_document
 from carp_verify.kernel import VARIABLE
 
 ROOT = Path(__file__).parents[2]

@@ -7,7 +7,7 @@ from tests.spec.making import plan_of
 
 from carp_reference.certifying import Certifier
 from carp_spec import AfterGoal, Instance, Plan, Resource, ResourceGraph, Robot, RobotId, Solution
-from carp_spec.query_certificates import QueryCertificateDocument
+from carp_spec.documents.query_certificates import QueryCertificateDocument
 
 
 @dataclass(frozen=True, slots=True)

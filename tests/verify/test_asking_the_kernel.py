@@ -8,7 +8,8 @@ import pytest
 
 import carp_verify.kernel
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
-from carp_verify.documents import instance_document, write
+from carp_spec.documents.decoding import write
+from carp_spec.documents.instances import instance_document
 from carp_verify.kernel import (
     PROGRAM,
     VARIABLE,

@@ -24,11 +24,12 @@ from tests.verify.tiny import TINY
 
 from carp_optimum.bound import Progress, lower_bound
 from carp_spec import Instance, Resource, ResourceGraph, Robot
+from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, read_bound
+from carp_spec.documents.decoding import write
+from carp_spec.documents.instances import digest
 from carp_spec.plan_rules import plan_cost
 from carp_verify.bound import verify as page
 from carp_verify.bound.verify import Tariff, verify_bound
-from carp_verify.bounds import BOUND_FORMAT, BoundDocument, digest, read_bound
-from carp_verify.documents import write
 from carp_verify.optimum.joint_search import least_total_cost
 from carproof.testing.strategies import PlannedInstance, Sizes, instances, planned_instances
 
@@ -112,7 +113,8 @@ def test_the_verifier_shares_nothing_with_the_finder_and_loads_nothing_compiled(
     ours = {name for name in names if name is not None and name.startswith("carp_")}
     assert ours == {
         "carp_spec",
-        "carp_verify.bounds",
+        "carp_spec.documents.bounds",
+        "carp_spec.documents.instances",
         "carp_verify.limits",
         "carp_spec.inputs.values",
         "carp_spec.rule",

@@ -26,11 +26,12 @@ from tests.verify.bound_examples import (
 from carp_optimum.bound import lower_bound
 from carp_optimum.sat.solver import Solver
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
+from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, CutDocument, DeadlinesDocument, read_bound
+from carp_spec.documents.decoding import write
+from carp_spec.documents.instances import digest
 from carp_spec.plan_rules import plan_cost
 from carp_verify.bound.cuts import formula_of, formula_of_deadlines
 from carp_verify.bound.verify import Budget, Fees, RobotSearch, Tariff, fees_of, predecessors, verify_bound
-from carp_verify.bounds import BOUND_FORMAT, BoundDocument, CutDocument, DeadlinesDocument, digest, read_bound
-from carp_verify.documents import write
 from carproof.testing.strategies import Sizes, instances
 
 

@@ -9,11 +9,12 @@ from tests.verify.bound_examples import Tamper, completed, crossing, cut_certifi
 
 from carp_optimum.bound import lower_bound
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, Rule
+from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, read_bound
+from carp_spec.documents.decoding import write
+from carp_spec.documents.instances import digest
 from carp_verify.bound import rules as bound_rules
 from carp_verify.bound import verify as page
 from carp_verify.bound.verify import verify_bound
-from carp_verify.bounds import BOUND_FORMAT, BoundDocument, digest, read_bound
-from carp_verify.documents import write
 
 
 def test_a_horizon_below_zero_is_malformed() -> None:

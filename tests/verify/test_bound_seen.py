@@ -18,12 +18,12 @@ from carp_optimum.bound import lower_bound
 from carp_optimum.sat.proving import refutation
 from carp_optimum.sat.solver import Deadline, Solver
 from carp_spec import Instance, Robot, RobotId
+from carp_spec.documents.bounds import BoundDocument, DeadlinesDocument, Sight
+from carp_spec.documents.instances import instance_document
 from carp_spec.permutations import shuffle
 from carp_verify.bound.cuts import formula_of_deadlines
 from carp_verify.bound.rules import LARGEST_FORMULA
 from carp_verify.bound.verify import verify_bound
-from carp_verify.bounds import BoundDocument, DeadlinesDocument, Sight
-from carp_verify.documents import instance_document
 from carp_verify.optimum.encoding import Encoding
 from carp_verify.optimum.joint_search import least_total_cost
 from carproof.testing.random_instances import Draw

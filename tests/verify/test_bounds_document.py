@@ -7,8 +7,8 @@ import pytest
 from tests.spec.making import instance_on, line
 
 from carp_spec import Refusal, Robot
-from carp_verify.bounds import BOUND_FORMAT, digest, read_bound
-from carp_verify.documents import write_instance
+from carp_spec.documents.bounds import BOUND_FORMAT, read_bound
+from carp_spec.documents.instances import digest, write_instance
 
 
 def test_the_digest_is_that_of_the_document() -> None:

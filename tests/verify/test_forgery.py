@@ -24,11 +24,12 @@ from carp_optimum.bound import lower_bound
 from carp_optimum.optimum import optimum
 from carp_optimum.sat.proving import write_proof
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
-from carp_spec.query_certificates import QueryCertificateDocument
+from carp_spec.documents.bounds import BoundDocument, CutDocument, read_bound
+from carp_spec.documents.decoding import write
+from carp_spec.documents.instances import digest
+from carp_spec.documents.query_certificates import QueryCertificateDocument, read_query_certificate
 from carp_verify.bound.cuts import formula_of
 from carp_verify.bound.verify import verify_bound
-from carp_verify.bounds import BoundDocument, CutDocument, digest, read_bound
-from carp_verify.documents import read_query_certificate, write
 from carp_verify.optimum.clauses import dimacs
 from carp_verify.optimum.encoding import Evidence, beat_formula, reach_formula
 from carp_verify.optimum.joint_search import least_total_cost

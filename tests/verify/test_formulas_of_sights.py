@@ -12,8 +12,8 @@ from tests.verify.bound_examples import HORIZON, left, plans_of
 
 from carp_optimum.sat.solver import Solver
 from carp_spec import AfterGoal, Instance, Plan, Resource, ResourceGraph, ResourceId, Robot
+from carp_spec.documents.bounds import DeadlinesDocument
 from carp_verify.bound.cuts import formula_of_deadlines
-from carp_verify.bounds import DeadlinesDocument
 from carp_verify.optimum.encoding import violated
 from carp_verify.optimum.refutation import NotRefutedError
 from carproof.testing.strategies import Sizes, instances

@@ -8,10 +8,12 @@ from hypothesis import given
 from tests.verify.kernel_program import ask, check, encoded, run, served
 
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, Solution, judge
-from carp_verify.documents import instance_document, read_instance, read_solution
+from carp_spec.documents.instances import instance_document, read_instance
+from carp_spec.documents.solutions import read_solution
+from carp_spec.documents.vectors import Vector
 from carproof.testing.mutations import BrokenSolution
 from carproof.testing.strategies import PlannedInstance, broken_solutions, instances, planned_instances
-from carproof.testing.vectors import Vector, vectors
+from carproof.testing.vectors import vectors
 
 _kernel = pytest.fixture(scope="module", autouse=True)(served)
 

@@ -17,9 +17,11 @@ from carp_reference.context import context_of
 from carp_reference.problem import Problem, prepare
 from carp_reference.query import _expand, _start, find_plan
 from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, ResourceId, Robot, RobotId, Solution, has_ended
+from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument
+from carp_spec.documents.decoding import write
+from carp_spec.documents.instances import digest, instance_document
+from carp_spec.documents.solutions import solution_document
 from carp_verify.bound.verify import verify_bound
-from carp_verify.bounds import BOUND_FORMAT, BoundDocument, digest
-from carp_verify.documents import instance_document, solution_document, write
 from carproof.testing.strategies import FleetUnderWay, fleets_under_way, instances
 
 _kernel = pytest.fixture(scope="module", autouse=True)(served)

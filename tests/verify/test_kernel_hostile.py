@@ -15,15 +15,11 @@ from tests.verify.kernel_program import Json, program, run
 from tests.verify.test_kernel_optimum import claim
 
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
-from carp_verify.bounds import BOUND_FORMAT, BoundDocument, DeadlinesDocument, digest
-from carp_verify.documents import (
-    instance_document,
-    read_instance,
-    read_query_certificate,
-    read_solution,
-    write,
-    write_instance,
-)
+from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, DeadlinesDocument
+from carp_spec.documents.decoding import write
+from carp_spec.documents.instances import digest, instance_document, read_instance, write_instance
+from carp_spec.documents.query_certificates import read_query_certificate
+from carp_spec.documents.solutions import read_solution
 from carp_verify.optimum.encoding import Evidence
 from carp_verify.query.rules import LARGEST_CHECK
 from carp_verify.query.verify import verify_query

@@ -20,12 +20,13 @@ from carp_optimum.optimum import optimum
 from carp_optimum.sat.proving import refutation, write_proof
 from carp_optimum.sat.solver import Deadline, Solver
 from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot, RobotId
+from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, CutDocument, DeadlinesDocument
+from carp_spec.documents.decoding import write
+from carp_spec.documents.instances import digest, read_instance, write_instance
 from carp_spec.permutations import shuffle
 from carp_verify.bound.cuts import formula_of_deadlines, group_of
 from carp_verify.bound.rules import LARGEST_FORMULA
 from carp_verify.bound.verify import verify_bound
-from carp_verify.bounds import BOUND_FORMAT, BoundDocument, CutDocument, DeadlinesDocument, digest
-from carp_verify.documents import read_instance, write, write_instance
 from carp_verify.optimum.clauses import Clause, Formula, dimacs
 from carp_verify.optimum.encoding import Encoding, Evidence, beat_formula
 from carp_verify.optimum.joint_search import least_total_cost

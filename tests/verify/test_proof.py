@@ -14,8 +14,8 @@ from tests.verify.tiny import TINY
 from carp_optimum.optimum import optimum
 from carp_optimum.sat.proving import write_proof
 from carp_spec import AfterGoal, Instance, Refusal, Resource, ResourceGraph, Robot, Solution, Verdict, Violation, judge
+from carp_spec.documents.instances import write_instance
 from carp_verify.bound.rules import ContradictionError
-from carp_verify.documents import write_instance
 from carp_verify.optimum.proof import FILES, ProofError, verify_proof
 from carproof.testing.strategies import instances
 

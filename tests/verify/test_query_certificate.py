@@ -15,7 +15,7 @@ import carp_optimized.certifying
 import carp_reference
 import carp_verify.query.rules
 from carp_spec import Plan, Refusal, Robot, Visit
-from carp_spec.query_certificates import QueryCertificateDocument
+from carp_spec.documents.query_certificates import QueryCertificateDocument
 from carp_spec.windows import Window
 from carp_verify.query.rules import QUERY_CERTIFICATE_RULES
 from carp_verify.query.verify import Traffic, verify_query

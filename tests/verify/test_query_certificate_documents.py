@@ -5,8 +5,8 @@ import json
 import pytest
 
 from carp_spec import Refusal
-from carp_spec.query_certificates import QUERY_FORMAT, QueryCertificateDocument
-from carp_verify.documents import read_query_certificate, write
+from carp_spec.documents.decoding import write
+from carp_spec.documents.query_certificates import QUERY_FORMAT, QueryCertificateDocument, read_query_certificate
 
 CERTIFICATE = QueryCertificateDocument(QUERY_FORMAT, "r", 0, None, (("a", 0),), (("b", 0), ("a", 1)))
 

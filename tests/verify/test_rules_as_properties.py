@@ -23,13 +23,13 @@ from carp_spec import (
     Visit,
     plan_cost,
 )
+from carp_spec.documents.instances import read_instance, write_instance
 from carp_spec.inputs.options import LARGEST_SAMPLE, options_are_right
 from carp_spec.instance_rules import instance_faults
 from carp_spec.neighbourhood_rules import baseline_is_tried, next_trajectory, replaces_best
 from carp_spec.plan_rules import is_plan_cost, is_total_cost
 from carp_spec.planners import LARGEST_SEED
 from carp_spec.query_rules import expansion_key
-from carp_verify.documents import read_instance, write_instance
 from carproof.testing.strategies import PlannedInstance, instances, planned_instances
 
 Plant: TypeAlias = Callable[[Instance, st.DataObject], Instance]

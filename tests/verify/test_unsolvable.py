@@ -14,7 +14,7 @@ from tests.verify.tiny import case
 from carp_optimum.optimum import optimum
 from carp_optimum.sat.proving import write_proof
 from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot
-from carp_verify.documents import write_instance
+from carp_spec.documents.instances import write_instance
 from carp_verify.optimum import unsolvable
 from carp_verify.optimum.clauses import dimacs
 from carp_verify.optimum.encoding import Evidence, beat_formula

@@ -15,11 +15,12 @@ from tests.vectors.judging import finding
 from tests.vectors.writing import ChangedError, digests, file_text, list_text, listed
 
 from carp_spec import plan_cost
+from carp_spec.documents.schema import schema_file
+from carp_spec.documents.vectors import Vector
 from carp_verify.bound.rules import BOUND_RULES
 from carp_verify.query.rules import QUERY_CERTIFICATE_RULES
 from carproof.registry import RULES
-from carproof.schema import schema_file
-from carproof.testing.vectors import DIGESTS, FLAGS, FOLDER, Vector, subjects, vector_file, vectors, vectors_document
+from carproof.testing.vectors import DIGESTS, FLAGS, FOLDER, subjects, vector_file, vectors, vectors_document
 
 BY_RULE = [rule.id for rule in RULES]
 KNOWN = {*BY_RULE, *(rule.id for rule in (*BOUND_RULES, *QUERY_CERTIFICATE_RULES))}

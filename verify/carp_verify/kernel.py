@@ -11,8 +11,8 @@ from typing import Any, Final, Literal
 import msgspec
 
 from carp_spec import Instance, Refusal, Rule
+from carp_spec.documents.instances import instance_document
 from carp_spec.rule import DESIGN, rule
-from carp_verify.documents import instance_document
 from carp_verify.limits import require_following
 
 PROGRAM: Final = "carproof-kernel"

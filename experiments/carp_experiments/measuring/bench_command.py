@@ -7,7 +7,7 @@ from typing import Any
 import click
 
 from carp_experiments.measuring.bench import GROWTH, PARTS, Added, OnGrid, OnMap, on_grid, on_map, weight
-from carp_verify.documents import write
+from carp_spec.documents.decoding import write
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import print_document
 from carproof.command_line.options import examples, json_option

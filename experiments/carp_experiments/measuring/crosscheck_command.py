@@ -8,7 +8,8 @@ import click
 import msgspec
 
 from carp_experiments.measuring.crosscheck import Difference, first_difference
-from carp_verify.documents import instance_document, solution_document
+from carp_spec.documents.instances import instance_document
+from carp_spec.documents.solutions import solution_document
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import hypothesis_elsewhere, print_document
 from carproof.command_line.options import examples, json_option, output_option

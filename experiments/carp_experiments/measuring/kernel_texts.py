@@ -17,11 +17,13 @@ from carp_experiments.measuring.texts import changed, vector_requests
 from carp_experiments.report import ExperimentReport, Table
 from carp_experiments.store import Row
 from carp_spec import Instance, Plan, Refusal, Solution, judge
+from carp_spec.documents.bounds import read_bound
+from carp_spec.documents.decoding import require_json
+from carp_spec.documents.instances import digest, read_instance
+from carp_spec.documents.query_certificates import QueryCertificateDocument, read_query_certificate
+from carp_spec.documents.solutions import read_solution, solution_document
 from carp_spec.permutations import splitmix64
-from carp_spec.query_certificates import QueryCertificateDocument
 from carp_verify.bound.verify import verify_bound
-from carp_verify.bounds import digest, read_bound
-from carp_verify.documents import read_instance, read_query_certificate, read_solution, require_json, solution_document
 from carp_verify.kernel import KernelVerdict, is_answer, replies, request, verdict_of
 from carp_verify.limits import require_following
 from carp_verify.query.verify import Traffic, require_certificate, verify_query

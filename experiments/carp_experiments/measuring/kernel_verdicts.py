@@ -14,9 +14,9 @@ import msgspec
 from carp_experiments.report import ExperimentReport, Table
 from carp_experiments.store import Row
 from carp_spec import Instance, RobotId, Solution, judge
+from carp_spec.documents.query_certificates import QueryCertificateDocument
+from carp_spec.documents.solutions import solution_document
 from carp_spec.permutations import shuffle, splitmix64
-from carp_spec.query_certificates import QueryCertificateDocument
-from carp_verify.documents import solution_document
 from carp_verify.kernel import KernelVerdict, ask, request
 from carproof.testing.random_instances import Draw, draw_fleet, draw_instance
 

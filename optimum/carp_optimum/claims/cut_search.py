@@ -15,8 +15,8 @@ from carp_optimum.sat.core_guided import core_guided
 from carp_optimum.sat.proving import refutation
 from carp_optimum.sat.solver import NANOSECONDS, Deadline, TimeOver
 from carp_spec import Instance, Refusal
+from carp_spec.documents.bounds import CutDocument
 from carp_verify.bound.cuts import group_of
-from carp_verify.bounds import CutDocument
 from carp_verify.optimum.encoding import beat_formula
 
 LOOKS = 400  # of the search for a group's optimum at its clock

@@ -21,8 +21,8 @@ from carp_optimum.lagrangian.price_search import PriceSearch
 from carp_optimum.sat.proving import refutation
 from carp_optimum.sat.solver import NANOSECONDS, Deadline, Solver, TimeOver
 from carp_spec import Instance, Refusal
+from carp_spec.documents.bounds import DeadlinesDocument
 from carp_verify.bound.cuts import formula_of_deadlines
-from carp_verify.bounds import DeadlinesDocument
 from carp_verify.optimum.clauses import Literal
 from carp_verify.optimum.encoding import Encoding, violated
 from carp_verify.optimum.rules import LARGEST_FORMULA

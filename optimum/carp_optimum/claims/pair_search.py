@@ -19,9 +19,9 @@ from carp_optimum.lagrangian.price_search import PriceSearch
 from carp_optimum.sat.proving import refutation
 from carp_optimum.sat.solver import NANOSECONDS, Deadline, TimeOver
 from carp_spec import Refusal
+from carp_spec.documents.bounds import DeadlinesDocument
 from carp_verify.bound.cuts import formula_of_deadlines
 from carp_verify.bound.rules import ContradictionError
-from carp_verify.bounds import DeadlinesDocument
 from carp_verify.optimum.rules import LARGEST_FORMULA
 
 STEPS = 120

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from carp_optimized.jit.kinds import Longs
-from carp_verify.bounds import DeadlinesDocument
+from carp_spec.documents.bounds import DeadlinesDocument
 
 
 class Member(NamedTuple):

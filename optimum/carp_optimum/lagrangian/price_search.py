@@ -15,8 +15,8 @@ from carp_optimum.lagrangian.multipliers import charges_of, market_of, refuse_ta
 from carp_optimum.lagrangian.price_steps import KEPT, LARGEST_GAIN, PARTS, UNIT, turn_all, walk_all
 from carp_optimum.lagrangian.priced_paths import find_rests, find_ways, least_cost, see_ways
 from carp_spec import Instance, Refusal, ResourceId, RobotId
+from carp_spec.documents.bounds import DeadlinesDocument
 from carp_verify.bound.rules import LARGEST_TABLE, LONGEST_STAY, stay_is_searched
-from carp_verify.bounds import DeadlinesDocument
 
 TICKS_BEYOND = 32  # of the horizon beyond the last arrival of a robot that nothing delays
 DELAYS = 64

@@ -10,9 +10,9 @@ from carp_optimum.sat.core_guided import Optimum
 from carp_optimum.sat.lrat_hints import NoHintsError, refutation_with_hints
 from carp_optimum.sat.solver import Deadline, Solver
 from carp_spec import Instance, Refusal
+from carp_spec.documents.instances import write_instance
 from carp_spec.inputs.values import require_instance
 from carp_verify.bound.rules import ContradictionError
-from carp_verify.documents import write_instance
 from carp_verify.optimum.clauses import Formula, dimacs
 from carp_verify.optimum.encoding import Evidence, beat_formula, reach_formula
 from carp_verify.optimum.proof import PROOF_FORMAT, Manifest, UnsolvableManifest, variables

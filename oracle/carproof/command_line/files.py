@@ -12,8 +12,9 @@ import click
 from click.shell_completion import CompletionItem
 
 from carp_spec import Instance, Refusal, Solution
+from carp_spec.documents.instances import read_instance
+from carp_spec.documents.solutions import read_solution
 from carp_spec.requests import sound_solution
-from carp_verify.documents import read_instance, read_solution
 from carp_verify.limits import require_following
 from carproof.formats.layouts import layout_named
 

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from carp_spec import Instance, Plan, RobotId, Solution, total_cost
+from carp_spec.documents.instances import write_instance
 from carp_spec.rule import interval
-from carp_verify.documents import write_instance
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import print_document, write_whole
 from carproof.command_line.tables import print_line, print_table

@@ -6,9 +6,10 @@ from typing import Any, TypeAlias
 import msgspec
 
 from carp_spec import Refusal, Solution
+from carp_spec.documents.bounds import BoundDocument
+from carp_spec.documents.decoding import UNREADABLE, is_json, uncapitalized
+from carp_spec.documents.verdicts import VerdictDocument
 from carp_spec.execution.traces import Trace
-from carp_verify.bounds import BoundDocument
-from carp_verify.documents import UNREADABLE, VerdictDocument, is_json, uncapitalized
 from carproof.conform.findings import RIGHT_RESULT, Category, Fault, Finding, is_accepted, is_response
 from carproof.optima import OptimumDocument
 from carproof.protocol.ops import OPS

@@ -1,7 +1,7 @@
 """carproof's own solution document, among the formats to choose from."""
 
 from carp_spec import Instance, Refusal, Solution
-from carp_verify.documents import read_solution, write_solution
+from carp_spec.documents.solutions import read_solution, write_solution
 from carproof.formats.adapter import Adapter
 
 

@@ -12,8 +12,8 @@ from dataclasses import dataclass, field, replace
 import msgspec
 
 from carp_spec import Instance, Plan, Refusal, Solution
+from carp_spec.documents.solutions import solution_document
 from carp_verify.bound.rules import ContradictionError
-from carp_verify.documents import solution_document
 from carp_verify.kernel import ask, request
 from carp_verify.limits import require_following
 from carp_verify.query.rules import plans_are_lawful, size_fits

@@ -3,7 +3,7 @@
 import msgspec
 
 from carp_spec import Plan, ResourceId, RobotId, Solution
-from carp_verify.documents import visits_document
+from carp_spec.documents.solutions import visits_document
 from carproof.judging.audit import Audit
 
 

@@ -5,11 +5,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from carp_spec import Instance, Refusal, Solution
-from carp_spec.query_certificates import QueryCertificateDocument
+from carp_spec.documents.bounds import BoundDocument
+from carp_spec.documents.instances import read_instance
+from carp_spec.documents.query_certificates import QueryCertificateDocument
+from carp_spec.documents.solutions import solution_document
 from carp_verify.bound.rules import ContradictionError, is_about
 from carp_verify.bound.rules import size_fits as bound_size_fits
-from carp_verify.bounds import BoundDocument
-from carp_verify.documents import read_instance, solution_document
 from carp_verify.kernel import KernelVerdict, UndecidedError, ask, find_program, is_answer, request
 from carp_verify.kernel import verify_proof as ask_about_proof
 from carp_verify.query.rules import size_fits as query_size_fits

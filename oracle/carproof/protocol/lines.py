@@ -16,8 +16,8 @@ from typing import Any, Literal, TypeVar
 import msgspec
 
 from carp_spec import Refusal
+from carp_spec.documents.decoding import require_json, uncapitalized, with_values
 from carp_spec.rule import DESIGN
-from carp_verify.documents import require_json, uncapitalized, with_values
 from carproof.input_rules import Code
 from carproof.requests import inside
 

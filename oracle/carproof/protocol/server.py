@@ -5,7 +5,7 @@ import traceback
 from typing import BinaryIO
 
 from carp_spec import Refusal
-from carp_verify.documents import write
+from carp_spec.documents.decoding import write
 from carproof.engines import Engine
 from carproof.extras import INSTALLED, advice
 from carproof.protocol.lines import LONGEST_LINE, MISSING, NULL, SHORT_LINE, ErrorDocument, Request, Response, refused

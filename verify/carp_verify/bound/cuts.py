@@ -12,9 +12,9 @@ described up to it: then each is in one of its places, or has arrived by its dea
 from collections.abc import Sequence
 
 from carp_spec import Instance, RobotId
+from carp_spec.documents.bounds import CutDocument, DeadlinesDocument
 from carp_spec.rule import is_whole
 from carp_verify.bound.rules import is_deadline
-from carp_verify.bounds import CutDocument, DeadlinesDocument
 from carp_verify.optimum.clauses import Formula
 from carp_verify.optimum.encoding import Encoding, Evidence, beat_formula
 from carp_verify.optimum.refutation import NotRefutedError, require_refutation

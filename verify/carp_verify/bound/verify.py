@@ -32,6 +32,8 @@ from operator import itemgetter
 from typing import TypeAlias
 
 from carp_spec import Instance, Refusal, ResourceGraph, ResourceId, Robot, RobotId, Rule
+from carp_spec.documents.bounds import BoundDocument, CutDocument, DeadlinesDocument
+from carp_spec.documents.instances import digest
 from carp_spec.inputs.values import require_instance
 from carp_spec.rule import is_whole
 from carp_verify.bound.rules import (
@@ -48,7 +50,6 @@ from carp_verify.bound.rules import (
     is_weight,
     size_fits,
 )
-from carp_verify.bounds import BoundDocument, CutDocument, DeadlinesDocument, digest
 from carp_verify.limits import require_following
 
 Before: TypeAlias = Mapping[ResourceId, Sequence[ResourceId]]

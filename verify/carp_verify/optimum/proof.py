@@ -30,8 +30,9 @@ from typing import Final, Literal
 import msgspec
 
 from carp_spec import Instance, Plan, Refusal, Solution, judge
+from carp_spec.documents.decoding import decode, has_format
+from carp_spec.documents.instances import read_instance, write_instance
 from carp_spec.model import ResourceId, RobotId
-from carp_verify.documents import decode, has_format, read_instance, write_instance
 from carp_verify.optimum.clauses import dimacs
 from carp_verify.optimum.encoding import Encoding, Evidence, beat_formula, reach_formula
 from carp_verify.optimum.refutation import NotRefutedError, require_refutation

@@ -20,8 +20,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from carp_spec import Instance, Plan, Refusal, ResourceId, Robot, Rule, Solution, Visit, has_ended
+from carp_spec.documents.query_certificates import QueryCertificateDocument
 from carp_spec.inputs.values import require_solution
-from carp_spec.query_certificates import QueryCertificateDocument
 from carp_spec.windows import Window
 from carp_verify.limits import require_following
 from carp_verify.query.rules import (

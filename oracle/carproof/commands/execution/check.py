@@ -3,8 +3,9 @@
 import click
 
 from carp_spec import Verdict, total_cost
+from carp_spec.documents.solutions import read_trace
+from carp_spec.documents.verdicts import write_verdict
 from carp_spec.execution.execution_rules import trace_violations
-from carp_verify.documents import read_trace, write_verdict
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import print_document, read_file, read_sound
 from carproof.command_line.options import examples, instance_argument, json_option, solution_argument, trace_argument

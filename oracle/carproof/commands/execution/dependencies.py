@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from carp_reference.execution import order_of
-from carp_verify.documents import write
+from carp_spec.documents.decoding import write
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import OutputFile, naming, read_sound, shown, write_whole
 from carproof.command_line.options import examples, instance_argument, json_option, output_option, solution_argument

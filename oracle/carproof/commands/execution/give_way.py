@@ -6,8 +6,8 @@ import click
 import msgspec
 
 from carp_spec import Refusal, ResourceId, Visit
+from carp_spec.documents.solutions import write_solution
 from carp_spec.requests import require_tick
-from carp_verify.documents import write_solution
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import (
     InputFile,

@@ -4,8 +4,9 @@ from pathlib import Path
 
 import click
 
+from carp_spec.documents.decoding import write
+from carp_spec.documents.solutions import write_solution, write_trace
 from carp_spec.requests import require_tick
-from carp_verify.documents import write, write_solution, write_trace
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import OutputFile, naming, print_document, read_sound, write_whole
 from carproof.command_line.options import examples, instance_argument, json_option, solution_argument

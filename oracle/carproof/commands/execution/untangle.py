@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from carp_spec import total_cost
-from carp_verify.documents import write_solution
+from carp_spec.documents.solutions import write_solution
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import read_sound
 from carproof.command_line.options import examples, gives_plans, instance_argument, solution_argument

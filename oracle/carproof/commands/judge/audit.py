@@ -5,8 +5,8 @@ from time import perf_counter
 
 import click
 
+from carp_spec.documents.decoding import write
 from carp_spec.requests import sound_solution
-from carp_verify.documents import write
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import (
     InputFile,

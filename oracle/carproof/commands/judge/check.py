@@ -7,8 +7,10 @@ import click
 
 from carp_spec import Instance, Solution, Verdict, judge
 from carp_spec.check import MOST_LISTED
+from carp_spec.documents.decoding import write
+from carp_spec.documents.solutions import solution_document
+from carp_spec.documents.verdicts import write_verdict
 from carp_verify.bound.rules import ContradictionError
-from carp_verify.documents import solution_document, write, write_verdict
 from carp_verify.kernel import KernelVerdict, ask, request
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import print_document, require_following_in, write_whole

@@ -6,8 +6,9 @@ from typing import NoReturn
 import click
 
 from carp_spec import Instance
-from carp_verify.bounds import read_bound
-from carp_verify.documents import read_query_certificate, write
+from carp_spec.documents.bounds import read_bound
+from carp_spec.documents.decoding import write
+from carp_spec.documents.query_certificates import read_query_certificate
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import (
     InputFile,

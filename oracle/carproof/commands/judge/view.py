@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from carp_verify.documents import read_trace
+from carp_spec.documents.solutions import read_trace
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import InputFile, naming, read_file, refuse_two_standard_inputs
 from carproof.command_line.foreign import Problem, instance_and_perhaps_solution

@@ -6,8 +6,8 @@ from typing import Any, cast
 import click
 
 from carp_spec import Neighbourhood
+from carp_spec.documents.solutions import write_solution
 from carp_spec.requests import require_new_robot, require_tick
-from carp_verify.documents import write_solution
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import naming, read_sound
 from carproof.command_line.options import (

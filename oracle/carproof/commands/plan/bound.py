@@ -6,7 +6,7 @@ from time import perf_counter
 import click
 
 from carp_spec import Instance, judge, total_cost
-from carp_verify.documents import write
+from carp_spec.documents.decoding import write
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import InputFile, naming, print_document, refuse_two_standard_inputs, write_whole
 from carproof.command_line.foreign import MovingAI, Problem, from_option, movingai_options, read_solution_of

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, get_args
 import click
 
 from carp_spec import AfterGoal
+from carp_spec.documents.decoding import write
 from carp_spec.planners import LARGEST_SEED
-from carp_verify.documents import write
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import InputFile, print_document, read_instance_file, require_following_in
 from carproof.command_line.options import RangeType, examples, json_option, limit_option

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import click
 
 from carp_spec import Instance
-from carp_verify.documents import write, write_solution
+from carp_spec.documents.decoding import write
+from carp_spec.documents.solutions import write_solution
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import print_document, read_instance_file, require_following_in, write_whole
 from carproof.command_line.options import examples, instance_argument, json_option, limit_option, output_option

@@ -9,10 +9,10 @@ import click
 
 from carp_optimized.improve.many_starts import polish_many
 from carp_spec import Instance, Refusal, Solution, check, total_cost
+from carp_spec.documents.solutions import write_solution
 from carp_spec.inputs.options import require_polish_options
 from carp_spec.polish_rules import ITERATIONS, last_round
 from carp_spec.requests import sound_solution
-from carp_verify.documents import write_solution
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import InputFile, naming, read_file, refuse_two_standard_inputs
 from carproof.command_line.foreign import Problem, solution_files
@@ -119,8 +119,8 @@ def bound_of(instance: Instance, certificate: str | None) -> int:
     """A lower bound on the total cost: that of the certificate, if there is one, else the sum of shortest paths."""
     if certificate is None:
         return sum_of_shortest_paths(instance, instance.robot)
+    from carp_spec.documents.bounds import read_bound  # noqa: PLC0415 - only for those who have a certificate
     from carp_verify.bound.verify import verify_bound  # noqa: PLC0415
-    from carp_verify.bounds import read_bound  # noqa: PLC0415 - only for those who have a certificate
 
     return read_file(certificate, lambda data: verify_bound(instance, read_bound(data)))
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import click
 
 from carp_spec import plan_cost
+from carp_spec.documents.decoding import write
 from carp_spec.requests import require_tick, sound_solution
-from carp_verify.documents import write
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import (
     OutputFile,

@@ -8,7 +8,8 @@ from time import perf_counter
 import click
 
 from carp_spec import Carp, Instance, Neighbourhood, Planner, judge, total_cost
-from carp_verify.documents import write_instance, write_solution
+from carp_spec.documents.instances import write_instance
+from carp_spec.documents.solutions import write_solution
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import OutputFile, write_whole
 from carproof.command_line.options import examples

@@ -4,12 +4,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from carp_spec import Carp
-from carp_verify.documents import write
+from carp_spec.documents.decoding import write
+from carp_spec.documents.vectors import Vector
 from carproof.conform.cases import ASKED_OPS, Case
 from carproof.conform.levels import Level
 from carproof.protocol.lines import Request
 from carproof.protocol.ops import OPS
-from carproof.testing.vectors import Vector, vectors
+from carproof.testing.vectors import vectors
 
 
 def vector_cases(ops: Sequence[str], level: Level, whole: bool) -> Iterator[Case]:

@@ -7,8 +7,9 @@ following.
 """
 
 from carp_spec import Carp, Instance, Plan, Solution
+from carp_spec.documents.solutions import solution_document
+from carp_spec.documents.verdicts import VerdictDocument
 from carp_verify.bound.rules import ContradictionError
-from carp_verify.documents import VerdictDocument, solution_document
 from carp_verify.kernel import ask, request
 from carp_verify.limits import following_is_allowed
 from carproof.conform.answers import Answer

@@ -3,8 +3,8 @@
 from enum import Enum
 
 from carp_spec import Carp, Solution
-from carp_verify.bounds import BoundDocument
-from carp_verify.documents import SolutionDocument
+from carp_spec.documents.bounds import BoundDocument
+from carp_spec.documents.solutions import SolutionDocument
 from carproof.conform.answers import Answer
 from carproof.conform.cases import OPTIMUM_SECONDS, POLISH_ROUNDS, Case, engine_for
 from carproof.conform.judging.judges import worth

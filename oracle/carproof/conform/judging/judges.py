@@ -16,11 +16,11 @@ from carp_spec import (
     plan_cost,
     total_cost,
 )
+from carp_spec.documents.bounds import BoundDocument
+from carp_spec.documents.verdicts import VerdictDocument, verdict_document
 from carp_spec.execution.traces import Trace
 from carp_spec.polish_rules import is_kept
 from carp_verify.bound.rules import ContradictionError
-from carp_verify.bounds import BoundDocument
-from carp_verify.documents import VerdictDocument, verdict_document
 from carp_verify.query.rules import plans_are_lawful, size_fits
 from carp_verify.query.verify import Traffic, require_certificate
 from carproof.command_line.output import shown_plan

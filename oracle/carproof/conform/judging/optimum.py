@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from functools import lru_cache
 
 from carp_spec import Instance, Refusal, Solution, judge, total_cost
-from carp_verify.bounds import BoundDocument
-from carp_verify.documents import solution_of
+from carp_spec.documents.bounds import BoundDocument
+from carp_spec.documents.solutions import solution_of
 from carproof.conform.cases import OPTIMUM_SECONDS, engine_for, is_large
 from carproof.conform.findings import Finding, is_complete, is_lower, is_optimal, wrong
 from carproof.conform.levels import Level

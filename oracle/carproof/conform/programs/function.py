@@ -7,7 +7,8 @@ from typing import Any
 import msgspec
 
 from carp_spec import Instance, Solution
-from carp_verify.documents import read_instance, write_instance, write_solution
+from carp_spec.documents.instances import read_instance, write_instance
+from carp_spec.documents.solutions import write_solution
 from carproof.conform.answers import NotAsked, Reply, decode_solution, protocol_error
 from carproof.conform.cases import Case
 from carproof.conform.findings import RIGHT_RESULT, Category, Fault, Finding, is_alive

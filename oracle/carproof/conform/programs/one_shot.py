@@ -8,7 +8,7 @@ from tempfile import TemporaryDirectory, TemporaryFile
 from typing import BinaryIO
 
 from carp_spec import Instance, Refusal, Robot, Solution
-from carp_verify.documents import write_instance
+from carp_spec.documents.instances import write_instance
 from carproof.conform.answers import NotAsked, Reply, decode_solution, protocol_error, shown
 from carproof.conform.cases import Case
 from carproof.conform.findings import IN_TIME, RIGHT_RESULT, Category, Fault, Finding, is_alive

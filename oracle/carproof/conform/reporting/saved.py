@@ -11,13 +11,13 @@ from typing import Literal
 import msgspec
 
 from carp_spec import Refusal
+from carp_spec.documents.vectors import VectorsDocument
 from carproof.command_line.files import write_whole
 from carproof.conform.asking.vector_cases import case_of
 from carproof.conform.cases import ASKED_OPS, EXECUTION, Case
 from carproof.conform.judging.outcome import Outcome
 from carproof.conform.programs.child import plain_file
 from carproof.conform.reporting.saving import FILES, Origin, save
-from carproof.testing.vectors import VectorsDocument
 
 RUN = "run.json"
 LARGEST = 2**28

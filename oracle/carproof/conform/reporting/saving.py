@@ -10,8 +10,9 @@ import click
 import msgspec
 
 from carp_spec import Refusal, Solution, check
+from carp_spec.documents.instances import instance_document, write_instance
+from carp_spec.documents.solutions import solution_of, write_solution
 from carp_spec.execution.traces import Trace
-from carp_verify.documents import instance_document, solution_of, write_instance, write_solution
 from carproof.command_line.files import write_whole
 from carproof.conform.answers import Answer
 from carproof.conform.cases import POLISH_ROUNDS, Case, case_input, request_fields

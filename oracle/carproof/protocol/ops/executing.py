@@ -6,17 +6,11 @@ import msgspec
 
 from carp_reference.execution import order_of
 from carp_spec import Instance, Refusal, ResourceId, RobotId, Solution, Verdict, Visit, total_cost
+from carp_spec.documents.solutions import SolutionDocument, TraceDocument, solution_document, trace_document
+from carp_spec.documents.verdicts import VerdictDocument, verdict_document
 from carp_spec.execution.execution_rules import require_followed, trace_violations
 from carp_spec.execution.traces import Trace
 from carp_spec.requests import require_robot, require_tick
-from carp_verify.documents import (
-    SolutionDocument,
-    TraceDocument,
-    VerdictDocument,
-    solution_document,
-    trace_document,
-    verdict_document,
-)
 from carproof.engines import Engine
 from carproof.execution.delays import Delay, late_robots, may_enter, until
 from carproof.execution.giving_way import give_way as given_way

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 from carp_spec import Instance, Solution, judge
-from carp_spec.query_certificates import QueryCertificateDocument
-from carp_verify.bounds import BoundDocument
-from carp_verify.documents import VerdictDocument, verdict_document
+from carp_spec.documents.bounds import BoundDocument
+from carp_spec.documents.query_certificates import QueryCertificateDocument
+from carp_spec.documents.verdicts import VerdictDocument, verdict_document
 from carproof.engines import Engine
 from carproof.judging.audit import ask_kernel, audit_in_order
 from carproof.judging.documents import AuditDocument, VerifiedBoundDocument, VerifiedQueryDocument, audit_document

@@ -13,22 +13,19 @@ from typing import Any, Literal, Union, get_args, get_type_hints
 import msgspec
 
 from carp_spec import Instance, Neighbourhood, Planner, Refusal, Solution
-from carp_spec.execution.traces import Trace
-from carp_spec.inputs.options import require_polish_options
-from carp_spec.query_certificates import QueryCertificateDocument
-from carp_verify.bounds import BoundDocument, read_bound
-from carp_verify.documents import (
-    InstanceDocument,
+from carp_spec.documents.bounds import BoundDocument, read_bound
+from carp_spec.documents.instances import InstanceDocument, instance_document, read_instance
+from carp_spec.documents.query_certificates import QueryCertificateDocument, read_query_certificate
+from carp_spec.documents.solutions import (
     SolutionDocument,
     TraceDocument,
-    instance_document,
-    read_instance,
-    read_query_certificate,
     read_solution,
     read_trace,
     solution_document,
     trace_document,
 )
+from carp_spec.execution.traces import Trace
+from carp_spec.inputs.options import require_polish_options
 from carproof.engines import Engine
 from carproof.planner_options import PLANNERS, planner_named
 from carproof.protocol.lines import RIGHT_FIELDS, Request, value_of

@@ -5,8 +5,8 @@ from dataclasses import asdict, dataclass, field
 import msgspec
 
 from carp_spec import Instance, Neighbourhood, Plan, Planner, ResourceId, RobotId, Solution, Visit
+from carp_spec.documents.solutions import visits_document
 from carp_spec.requests import require_new_robot, require_robot, require_tick
-from carp_verify.documents import visits_document
 from carproof.engines import Engine, warm
 from carproof.protocol.ops.op import PolishOptions
 from carproof.requests import inside, sound_within

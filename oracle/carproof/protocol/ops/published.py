@@ -10,11 +10,11 @@ from typing import Any, Literal, get_args
 
 import msgspec
 
+from carp_spec.documents.schema import schema_file, schema_text
 from carproof.markdown import markdown_table
 from carproof.protocol.lines import ErrorDocument
 from carproof.protocol.ops import OPS
 from carproof.protocol.ops.op import Field, Op, document_of
-from carproof.schema import schema_file, schema_text
 
 NAME = "protocol"
 ABOUT = "A request of the protocol. The response to an XRequest is an XResponse, a Refused or, by a program, a Skipped."

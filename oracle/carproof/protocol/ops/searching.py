@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from carp_spec import Instance, Refusal
-from carp_verify.bounds import BoundDocument
+from carp_spec.documents.bounds import BoundDocument
 from carproof.command_line.options import DEFAULT_LIMIT, DEFAULT_SECONDS
 from carproof.engines import Engine, warm
 from carproof.extras import require

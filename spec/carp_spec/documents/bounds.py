@@ -3,13 +3,12 @@
 `carp_verify` checks it, whatever made it. Its rules are `bound/...`.
 """
 
-from hashlib import sha256
 from typing import Annotated, Final, Literal, TypeAlias
 
 import msgspec
 
-from carp_spec.model import Instance, ResourceId, RobotId
-from carp_verify.documents import Positive, Tick, decode, write_instance
+from carp_spec.documents.decoding import Positive, Tick, decode
+from carp_spec.model import ResourceId, RobotId
 
 BOUND_FORMAT: Final = "carproof-bound/1"
 
@@ -70,11 +69,6 @@ class BoundDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omi
     cuts: tuple[CutDocument, ...]
     robots: tuple[tuple[RobotId, int | None], ...]
     deadlines: tuple[DeadlinesDocument, ...] = ()
-
-
-def digest(instance: Instance) -> str:
-    """The SHA-256 digest of the instance's document as carproof writes it."""
-    return sha256(write_instance(instance)).hexdigest()
 
 
 def read_bound(data: bytes) -> BoundDocument:

@@ -4,6 +4,7 @@ from typing import Annotated, Final, Literal
 
 import msgspec
 
+from carp_spec.documents.decoding import decode
 from carp_spec.model import ResourceId, RobotId
 
 QUERY_FORMAT: Final = "carproof-query/1"
@@ -24,3 +25,8 @@ class QueryCertificateDocument(msgspec.Struct, frozen=True, forbid_unknown_field
     bound: int | None
     labels: tuple[tuple[ResourceId, int], ...]
     potential: tuple[tuple[ResourceId, int], ...]
+
+
+def read_query_certificate(data: bytes) -> QueryCertificateDocument:
+    """Read a query certificate; raises `Refusal` if it is malformed."""
+    return decode(data, QueryCertificateDocument, QUERY_FORMAT)

@@ -1,4 +1,4 @@
-"""The documents' JSON Schemas, made from the same classes that decode them; `python -m carproof.schema` writes them.
+"""JSON Schemas, made from the classes that decode documents. `python -m carp_spec.documents.schema` writes them.
 
 They are published in the folder `schemas` of `carp_spec`. A schema accepts more than the decoder: JSON Schema counts
 1.0 as a whole number, which `document/shape` does not, and it cannot express the `instance/...` rules about ids.
@@ -12,10 +12,12 @@ from typing import Any
 import msgspec
 
 import carp_spec
-from carp_spec.query_certificates import QueryCertificateDocument
-from carp_verify.bounds import BoundDocument
-from carp_verify.documents import InstanceDocument, SolutionDocument, TraceDocument, VerdictDocument
-from carproof.testing.vectors import VectorsDocument
+from carp_spec.documents.bounds import BoundDocument
+from carp_spec.documents.instances import InstanceDocument
+from carp_spec.documents.query_certificates import QueryCertificateDocument
+from carp_spec.documents.solutions import SolutionDocument, TraceDocument
+from carp_spec.documents.vectors import VectorsDocument
+from carp_spec.documents.verdicts import VerdictDocument
 
 FOLDER = Path(carp_spec.__file__).with_name("schemas")
 DRAFT = "https://json-schema.org/draft/2020-12/schema"

@@ -1,0 +1,1 @@
+"""The documents that programs exchange: their classes, readers, writers and JSON Schemas."""

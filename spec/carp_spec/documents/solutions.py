@@ -1,0 +1,90 @@
+"""The documents of plans: solutions, `carproof-solution/1`, and traces, `carproof-trace/1`."""
+
+from collections.abc import Sequence
+from typing import Annotated, Final, Literal
+
+import msgspec
+
+from carp_spec.documents.decoding import decode, write
+from carp_spec.execution.traces import Trace
+from carp_spec.model import Plan, ResourceId, RobotId, Solution, Visit
+from carp_spec.shapes import require_shape
+
+SOLUTION_FORMAT: Final = "carproof-solution/1"
+TRACE_FORMAT: Final = "carproof-trace/1"
+
+
+class PlanDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A plan: each visit is [resource, enter, leave], and a leave of null means for ever."""
+
+    robot: RobotId
+    visits: tuple[tuple[ResourceId, int, int | None], ...]
+
+
+class SolutionDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A solution: plans, the order in which they were made, and the robots without a plan; `$schema` is not kept."""
+
+    format: Literal["carproof-solution/1"]
+    plans: tuple[PlanDocument, ...]
+    order: tuple[RobotId, ...]
+    unplanned: tuple[RobotId, ...]
+    schema: str | msgspec.UnsetType = msgspec.field(default=msgspec.UNSET, name="$schema")
+
+
+class TraceDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The visits that robots have entered by the tick now, the last with a leave of null if it is not left."""
+
+    format: Literal["carproof-trace/1"]
+    now: Annotated[int, msgspec.Meta(ge=0)]
+    plans: tuple[PlanDocument, ...]
+
+
+def read_solution(data: bytes) -> Solution:
+    """Read a solution document; raises `Refusal` if it is malformed. The checker decides whether it is right."""
+    return solution_of(decode(data, SolutionDocument, SOLUTION_FORMAT))
+
+
+def solution_of(document: SolutionDocument) -> Solution:
+    """The solution of a document."""
+    return Solution(_plans(document.plans), document.order, document.unplanned)
+
+
+def _plans(documents: Sequence[PlanDocument]) -> tuple[Plan, ...]:
+    return tuple(Plan(each.robot, tuple(Visit(*visit) for visit in each.visits)) for each in documents)
+
+
+def read_trace(data: bytes) -> Trace:
+    """Read a trace; raises `Refusal` if it is malformed. `trace_violations` decides whether it follows a solution."""
+    document = decode(data, TraceDocument, TRACE_FORMAT)
+    return Trace(document.now, _plans(document.plans))
+
+
+def visits_document(plan: Plan) -> tuple[tuple[ResourceId, int, int | None], ...]:
+    """The visits of a plan as documents write them."""
+    return tuple((visit.resource, visit.enter, visit.leave) for visit in plan.visits)
+
+
+def _plan_documents(plans: Sequence[Plan]) -> tuple[PlanDocument, ...]:
+    return tuple(PlanDocument(plan.robot, visits_document(plan)) for plan in plans)
+
+
+def solution_document(solution: Solution) -> SolutionDocument:
+    """The document of a solution; raises `Refusal` if it is malformed."""
+    require_shape(solution, Solution)
+    return SolutionDocument(SOLUTION_FORMAT, _plan_documents(solution.plans), solution.order, solution.unplanned)
+
+
+def trace_document(trace: Trace) -> TraceDocument:
+    """The document of a trace; raises `Refusal` if it is malformed."""
+    require_shape(trace, Trace)
+    return TraceDocument(TRACE_FORMAT, trace.now, _plan_documents(trace.plans))
+
+
+def write_solution(solution: Solution) -> bytes:
+    """Write a solution document."""
+    return write(solution_document(solution))
+
+
+def write_trace(trace: Trace) -> bytes:
+    """Write a trace document."""
+    return write(trace_document(trace))
