@@ -487,3 +487,52 @@ def test_networkx_reads_what_is_written(graph: ResourceGraph) -> None:
 def test_the_instances_of_these_tests_are_right() -> None:
     for instance in (VANISHING, PARKING):
         assert read_instance(write_instance(instance)) == instance
+
+
+PLANNED = (
+    b'{"format":"carproof-solution/1","plans":[{"robot":"r","visits":[["a",0,null]]}],"order":["r"],"unplanned":[]}'
+)
+FOLLOWED = b'{"format":"carproof-trace/1","now":7,"plans":[{"robot":"r","visits":[["a",0,null]]}]}'
+
+
+@pytest.mark.parametrize(("read", "data"), [(read_solution, PLANNED), (read_trace, FOLLOWED)])
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        (b'"robot":"r"', b'"robot":"r","robot":"r"'),
+        (b'"robot":"r"', b'"robot":"s:t","robot" :"r"'),
+        (b'"robot":"r"', b'"robot":"r","robo\\u0074":"r"'),
+        (b'"robot":"r"', b'"robot":"r","robot":"\\u003a"'),
+        (b'{"format"', b'{"plans":[],"format"'),
+        (b'{"format"', b'{"plans":1,"format"'),
+        (b'"r"', b'"\\ud800"'),
+        (b'"r"', b'"\xff"'),
+        (b'"r"', b'"\xed\xa0\x80"'),
+        (b'"r"', b'"\x01"'),
+        (b'"r"', b"1" * 101),
+        (b"0,null", b"-" + b"1" * 101 + b",null"),
+        (b"null", b"NaN"),
+        (b"null", b"1" * 101),
+    ],
+)
+def test_plans_are_refused_that_are_no_json(
+    read: Callable[[bytes], object], data: bytes, old: bytes, new: bytes
+) -> None:
+    read(data)
+    with pytest.raises(Refusal) as refused:
+        read(data.replace(old, new, 1))
+    assert refused.value.rule == "document/json"
+
+
+@pytest.mark.parametrize("new", [b"1.0", b"1e3", b"true", b'"1"', b"[]", b"null,null", b"1,"])
+def test_visits_are_refused_that_have_no_shape(new: bytes) -> None:
+    with pytest.raises(Refusal):
+        read_solution(PLANNED.replace(b"null", new))
+
+
+def test_names_in_strings_are_no_members() -> None:
+    data = PLANNED.replace(b'"r"', b'"\\":r\\":"')
+    assert read_solution(data).order == ('":r":',)
+    named = data.replace(b'{"format"', b'{"$schema":"urn:carproof:solution:1","format"')
+    assert read_solution(named) == read_solution(data)
+    assert read_solution(PLANNED.replace(b"null", b"9" * 100)).plans[0].visits[0].leave == int("9" * 100)

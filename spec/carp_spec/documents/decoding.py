@@ -18,11 +18,14 @@ from carp_spec.rule import DESIGN, rule
 from carp_spec.shapes import SHAPE
 
 MOST_DIGITS: Final = 100
+TOO_LONG: Final = b"0" * (MOST_DIGITS + 1)
+EACH_DIGIT_AS_0: Final = bytes.maketrans(b"123456789", b"0" * 9)
 ESCAPE: Final = b"\\u"  # the escape of half a surrogate pair is not text, though Python's parser accepts it
 UNREADABLE: Final = (msgspec.DecodeError, UnicodeDecodeError, RecursionError)
 Tick: TypeAlias = Annotated[int, msgspec.Meta(extra_json_schema={"minimum": 0})]
 Positive: TypeAlias = Annotated[int, msgspec.Meta(extra_json_schema={"minimum": 1})]
 D = TypeVar("D", bound=msgspec.Struct)
+Q = TypeVar("Q")
 
 
 class _Headed(msgspec.Struct, frozen=True):
@@ -161,6 +164,23 @@ def decode(data: bytes, kind: type[D], format: str) -> D:
     if wrong is not None:
         raise Refusal("document", wrong[0], has_shape.id, wrong[1])
     return msgspec.json.decode(data, type=kind)
+
+
+def decode_quickly(data: bytes, kind: type[Q]) -> Q | None:
+    """The document, or nothing if `decode` must look closer; it reads no document that `decode` refuses.
+
+    msgspec keeps the last member of a name. Written again, the document has each member once, and the same strings, as
+    they hold no escaped colon. So it has fewer colons only if the data has a name twice. The kind must have no default
+    but `UNSET`, or a member that is absent would be written. msgspec also takes longer numbers than `decode`.
+    """
+    if ESCAPE in data or TOO_LONG in data.translate(EACH_DIGIT_AS_0):
+        return None
+    try:
+        data.decode()
+        document = msgspec.json.decode(data, type=kind)
+    except (*UNREADABLE, ValueError):
+        return None
+    return document if data.count(b":") == msgspec.json.encode(document).count(b":") else None
 
 
 def write(document: object) -> bytes:

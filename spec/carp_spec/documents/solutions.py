@@ -1,11 +1,13 @@
 """The documents of plans: solutions, `carproof-solution/1`, and traces, `carproof-trace/1`."""
 
 from collections.abc import Sequence
+from dataclasses import fields
+from types import GenericAlias
 from typing import Annotated, Final, Literal
 
 import msgspec
 
-from carp_spec.documents.decoding import decode, write
+from carp_spec.documents.decoding import decode, decode_quickly, write
 from carp_spec.execution.traces import Trace
 from carp_spec.model import Plan, ResourceId, RobotId, Solution, Visit
 from carp_spec.shapes import require_shape
@@ -39,8 +41,25 @@ class TraceDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     plans: tuple[PlanDocument, ...]
 
 
+def _of(kind: type[msgspec.Struct], name: str, item: type[msgspec.Struct]) -> type[msgspec.Struct]:
+    """The class, with a tuple of these items in the field of that name."""
+    items = [(name, GenericAlias(tuple, (item, ...)))]
+    return msgspec.defstruct(kind.__name__, items, bases=(kind,), forbid_unknown_fields=True, frozen=True)
+
+
+_FIELDS = [(each.name, each.type) for each in fields(Visit)]
+_VISIT = msgspec.defstruct("Visit", _FIELDS, array_like=True, forbid_unknown_fields=True, frozen=True, gc=False)
+_PLAN = _of(PlanDocument, "visits", _VISIT)
+_SOLUTION = _of(SolutionDocument, "plans", _PLAN)
+_TRACE = _of(TraceDocument, "plans", _PLAN)
+"""As in the documents, but for a visit: `msgspec.convert` then makes all values of the model at once."""
+
+
 def read_solution(data: bytes) -> Solution:
     """Read a solution document; raises `Refusal` if it is malformed. The checker decides whether it is right."""
+    quick = decode_quickly(data, _SOLUTION)
+    if quick is not None:
+        return msgspec.convert(quick, Solution, from_attributes=True)
     return solution_of(decode(data, SolutionDocument, SOLUTION_FORMAT))
 
 
@@ -55,6 +74,9 @@ def _plans(documents: Sequence[PlanDocument]) -> tuple[Plan, ...]:
 
 def read_trace(data: bytes) -> Trace:
     """Read a trace; raises `Refusal` if it is malformed. `trace_violations` decides whether it follows a solution."""
+    quick = decode_quickly(data, _TRACE)
+    if quick is not None:
+        return msgspec.convert(quick, Trace, from_attributes=True)
     document = decode(data, TraceDocument, TRACE_FORMAT)
     return Trace(document.now, _plans(document.plans))
 
