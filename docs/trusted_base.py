@@ -20,7 +20,7 @@ VERDICTS: dict[str, tuple[tuple[str, ...], str]] = {
     CHECK: (("documents/decoding", "documents/instances", "documents/solutions"), ""),
     "`verify-bound`, without cuts": (BOUND, ""),
     "`verify-bound`, with cuts": ((*BOUND, "bound/cuts", *ENCODER[:-1], "optimum/refutation"), ""),
-    "`verify-query` and `audit`": (("query/verify", "query/rules", "limits"), ""),
+    "`verify-query` and `audit`": (("query/verify", "query/rules", "documents/query_certificates", "limits"), ""),
     "with `--kernel`": (
         ("kernel", "documents/bounds", "limits"),
         "[the proved kernel](#the-proved-kernel), and not the law in Python",

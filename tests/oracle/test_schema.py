@@ -50,15 +50,6 @@ def test_a_document_may_name_its_schema() -> None:
     assert read_instance(json.dumps(named).encode()) == read_instance(json.dumps(INSTANCE).encode())
 
 
-<<<<<<< HEAD
-=======
-def test_write_schemas_writes_them_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("carp_spec.documents.schema.FOLDER", tmp_path / "schemas")
-    write_schemas()
-    assert len(list((tmp_path / "schemas").glob("*.schema.json"))) == len(DOCUMENTS)
-
-
->>>>>>> 919234a (Give the documents one room in the specification)
 def test_schema_and_decoder_accept_the_same_good_documents() -> None:
     assert accepted("instance", INSTANCE) == (True, True)
     assert accepted("solution", SOLUTION) == (True, True)

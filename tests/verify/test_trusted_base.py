@@ -4,25 +4,32 @@ import re
 from pathlib import Path
 
 import pytest
-from docs.trusted_base import CHECK, KERNEL, ROOT, VERDICTS, coq_lines, kernel_lines
+from docs.trusted_base import CHECK, KERNEL, VERDICTS, coq_lines, kernel_lines, module_file
 from tests.verify.kernel_mutants import mutants, mutated
+
+OURS = r"(?:carp_verify|carp_spec(?=\.documents))"
+
+
+def source(name: str) -> str:
+    return module_file(name).read_text()
 
 
 @pytest.mark.parametrize("verdict", VERDICTS)
 def test_what_a_trusted_module_imports_is_trusted_too(verdict: str) -> None:
     """Each needs what `check` does; a proof directory has one of three claims, which need parts of `proof`."""
     named = {*VERDICTS[verdict][0]}
-    of_proofs = {name for modules, _ in VERDICTS.values() if "proof" in modules for name in modules}
-    known = {*VERDICTS[CHECK][0]} | (of_proofs if "proof" in named else named)
+    of_proofs = {name for modules, _ in VERDICTS.values() if "optimum/proof" in modules for name in modules}
+    known = {*VERDICTS[CHECK][0]} | (of_proofs if "optimum/proof" in named else named)
     for name in named:
-        source = (ROOT / "verify" / "carp_verify" / f"{name}.py").read_text()
-        assert set(re.findall(r"^from carp_verify\.(\w+) import", source, re.MULTILINE)) <= known
+        imported = re.findall(
+            r"^from (?:carp_verify|carp_spec(?=\.documents))\.([\w.]+) import", source(name), re.MULTILINE
+        )
+        assert {each.replace(".", "/") for each in imported} <= known
 
 
 @pytest.mark.parametrize("name", sorted({name for modules, _ in VERDICTS.values() for name in modules}))
 def test_what_is_trusted_imports_no_search(name: str) -> None:
-    source = (ROOT / "verify" / "carp_verify" / f"{name}.py").read_text()
-    assert not any(package in source for package in ("carp_optimum", "carp_optimized", "carp_reference", "pysat"))
+    assert not any(package in source(name) for package in ("carp_optimum", "carp_optimized", "carp_reference", "pysat"))
 
 
 def test_comments_of_coq_and_ocaml_are_no_lines_of_code(tmp_path: Path) -> None:
