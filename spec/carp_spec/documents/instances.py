@@ -51,7 +51,7 @@ class GraphDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class RobotDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A robot."""
+    """A robot."""  # a field is also one of `Robot`, of the same name and default
 
     id: RobotId
     start: ResourceId
@@ -87,7 +87,7 @@ def read_instance(data: bytes) -> Instance:
             edges=tuple((edge.source, edge.target) for edge in document.graph.edges),
             directed=document.graph.directed,
         ),
-        robots=tuple(Robot(each.id, each.start, each.goal, each.release, each.pace) for each in document.robots),
+        robots=msgspec.convert(document.robots, tuple[Robot, ...], from_attributes=True),
         after_goal=document.after_goal,
         following="allowed" if document.following is msgspec.UNSET else document.following,
     )
@@ -114,9 +114,7 @@ def instance_document(instance: Instance) -> InstanceDocument:
             directed=graph.directed,
         ),
         after_goal=instance.after_goal,
-        robots=tuple(
-            RobotDocument(each.id, each.start, each.goal, each.release, each.pace) for each in instance.robots
-        ),
+        robots=msgspec.convert(instance.robots, tuple[RobotDocument, ...], from_attributes=True),
         following=msgspec.UNSET if instance.following == "allowed" else instance.following,
     )
 
