@@ -8,7 +8,7 @@ from jsonschema import Draft202012Validator
 
 from carp_spec import Refusal
 from carp_spec.documents.instances import read_instance
-from carp_spec.documents.schema import DOCUMENTS, document_schema, schema_file, schema_text, write_schemas
+from carp_spec.documents.schema import DOCUMENTS, document_schema, schema_file
 from carp_spec.documents.solutions import read_solution
 
 INSTANCE: dict[str, Any] = {
