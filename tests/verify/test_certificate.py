@@ -152,7 +152,7 @@ def test_the_command_certifies_and_refuses(carproof: Run, tmp_path: Path) -> Non
     refused = carproof("check", "--z3", *write(tmp_path, EASTWARD, WESTWARD, STANDING))
     assert refused.code == 1
     assert "[joint/capacity] resource b at tick 1" in refused.stdout
-    assert "REFUSED: z3 finds 1 ticks at which a rule is broken in 3 resources" in refused.stdout
+    assert "REFUSED: z3 finds 1 tick at which a rule is broken in 3 resources" in refused.stdout
     teleport = carproof("check", "--z3", *write(tmp_path, Plan("r1", (Visit("a", 0, 1), Visit("c", 1, 2)))))
     assert teleport.code == 1
     assert teleport.stdout.startswith("[plan/move] resource c in [1,2): robot r1 (")
