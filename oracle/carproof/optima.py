@@ -14,22 +14,22 @@ if TYPE_CHECKING:
 class OptimumDocument(msgspec.Struct, frozen=True, omit_defaults=True, forbid_unknown_fields=True):
     """The least total cost, a lower bound, and the solution that has it.
 
-    `proved` means that the search ended with an answer, which nothing checked: it rests on the solver. If `proved` is
-    true and the cost is null, the robots cannot all be planned. If it is false, the solution is the best known, or
-    null. `checked` is present, and true, if a proof was written and checked as by `carproof verify`.
+    `decided` means that the search ended with an answer, which rests on the solver. If it is true and the cost is null,
+    the robots cannot all be planned. If it is false, the solution is the best known, or null. `proved` is present, and
+    true, if a proof of the answer was written and checked as by `carproof verify`.
     """
 
     cost: int | None
     lower: int | None
-    proved: bool
+    decided: bool
     solution: SolutionDocument | None
-    checked: bool = False
+    proved: bool = False
 
 
-def optimum_document(best: "Optimum", is_checked: bool = False) -> OptimumDocument:
+def optimum_document(best: "Optimum", is_proved: bool = False) -> OptimumDocument:
     """The document of an optimum."""
     solution = None if best.solution is None else solution_document(best.solution)
-    return OptimumDocument(best.cost, best.lower, best.decided, solution, is_checked)
+    return OptimumDocument(best.cost, best.lower, best.decided, solution, is_proved)
 
 
 class ProofDocument(msgspec.Struct, frozen=True):

@@ -26,7 +26,7 @@ LEAVES_AFTER = 50
 FORMAT = "carproof-verdict/1"
 SOLUTION = "carproof-solution/1"
 SKIPS: Response = {"skipped": "no time"}
-UNDECIDED: Response = {"result": {"cost": None, "lower": None, "proved": False, "solution": None}}
+UNDECIDED: Response = {"result": {"cost": None, "lower": None, "decided": False, "solution": None}}
 
 
 def robots(request: Request) -> list[Any]:
@@ -64,7 +64,7 @@ class Evasive:
         return UNDECIDED
 
     def finds_and_does_not_prove(self, request: Request) -> Response:
-        return {"result": {**right(request)["result"], "proved": False}}
+        return {"result": {**right(request)["result"], "decided": False}}
 
     def answers_empty_fleets(self, request: Request) -> Response:
         return SKIPS if robots(request) else right(request)

@@ -149,7 +149,7 @@ def optimum_too_high(case: Case, reply: Reply) -> Reply:
     solution = carp_reference.plan(case.instance, Carp())
     cost = judge(case.instance, solution).cost
     return (
-        reply if solution.unplanned else OptimumDocument(cost, cost, proved=True, solution=solution_document(solution))
+        reply if solution.unplanned else OptimumDocument(cost, cost, decided=True, solution=solution_document(solution))
     )
 
 
@@ -161,7 +161,7 @@ def optimum_without_plans(case: Case, reply: Reply) -> Reply:
 
 def optimum_is_denied(case: Case, reply: Reply) -> Reply:
     del case, reply
-    return OptimumDocument(None, None, proved=True, solution=None)
+    return OptimumDocument(None, None, decided=True, solution=None)
 
 
 def bound_too_high(case: Case, reply: Reply) -> Reply:

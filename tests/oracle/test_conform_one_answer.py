@@ -67,8 +67,8 @@ def goes(*stays: Stay) -> QueryDocument:
     return query_document(plan("new", *stays))
 
 
-def claimed(cost: int | None, lower: int | None, *, proved: bool, solution: Solution | None) -> OptimumDocument:
-    return OptimumDocument(cost, lower, proved, None if solution is None else solution_document(solution))
+def claimed(cost: int | None, lower: int | None, *, decided: bool, solution: Solution | None) -> OptimumDocument:
+    return OptimumDocument(cost, lower, decided, None if solution is None else solution_document(solution))
 
 
 def in_order(solution: Solution, *order: str) -> Solution:
@@ -215,8 +215,8 @@ CHECKS: Sequence[Row] = (
 OPTIMUM = case("optimum", LAST_FIRST)
 BEST: OptimumDocument = OPS["optimum"].handle(replace(request_of(OPTIMUM), limit=PATIENT), engine_named("reference"))
 CARP = right(case("plan", LAST_FIRST, planner=Carp()))
-UNDECIDED = claimed(None, None, proved=False, solution=None)
-NONE = claimed(None, None, proved=True, solution=None)
+UNDECIDED = claimed(None, None, decided=False, solution=None)
+NONE = claimed(None, None, decided=True, solution=None)
 ONE_OF_TWO = committed(BEHIND, first=FIRST_GOES)
 OPTIMA: Sequence[Row] = (
     (OPTIMUM, BEST, {}),
@@ -224,15 +224,15 @@ OPTIMA: Sequence[Row] = (
     (OPTIMUM, changed(UNDECIDED, lower=7), {}),
     (OPTIMUM, changed(UNDECIDED, lower=8), {Level.OPTIMAL: "program/lower"}),
     (OPTIMUM, changed(UNDECIDED, cost=9), {Level.SOUND: "cost/total"}),
-    (OPTIMUM, claimed(9, 7, proved=False, solution=CARP), {}),
-    (OPTIMUM, claimed(9, 7, proved=True, solution=CARP), {Level.OPTIMAL: "program/optimal"}),
-    (OPTIMUM, claimed(7, 7, proved=True, solution=CARP), {Level.SOUND: "cost/total"}),
-    (OPTIMUM, claimed(None, 7, proved=True, solution=CARP), {Level.SOUND: "cost/total"}),
+    (OPTIMUM, claimed(9, 7, decided=False, solution=CARP), {}),
+    (OPTIMUM, claimed(9, 7, decided=True, solution=CARP), {Level.OPTIMAL: "program/optimal"}),
+    (OPTIMUM, claimed(7, 7, decided=True, solution=CARP), {Level.SOUND: "cost/total"}),
+    (OPTIMUM, claimed(None, 7, decided=True, solution=CARP), {Level.SOUND: "cost/total"}),
     (OPTIMUM, NONE, {Level.COMPLETE: "program/complete"}),
-    (case("optimum", BEHIND), claimed(3, 3, proved=False, solution=ONE_OF_TWO), {Level.SOUND: "solution/covers"}),
+    (case("optimum", BEHIND), claimed(3, 3, decided=False, solution=ONE_OF_TWO), {Level.SOUND: "solution/covers"}),
     (
         case("optimum", row([FIRST])),
-        claimed(2, 2, proved=False, solution=committed(row([FIRST]), first=HURRIES)),
+        claimed(2, 2, decided=False, solution=committed(row([FIRST]), first=HURRIES)),
         {Level.SOUND: "plan/duration"},
     ),
     (case("optimum", BLOCKED), NONE, {}),
@@ -325,7 +325,7 @@ def test_where_carproof_is_undecided_nothing_is_called_wrong_nor_counted(monkeyp
         monkeypatch.setattr(module, "found_cost", lambda _: (False, 1))
     monkeypatch.setattr(carp_verify.bound.verify, "verify_bound", lambda *_: 8)
     asked: Sequence[tuple[Case, Answer]] = (
-        (OPTIMUM, claimed(9, 9, proved=True, solution=CARP)),
+        (OPTIMUM, claimed(9, 9, decided=True, solution=CARP)),
         (FREE, ASIDE_SECOND),
         (CLASSICAL, committed(MEETING, first=FIRST_GOES)),
         (case("bound", LAST_FIRST), BOUND),
@@ -343,15 +343,15 @@ def test_where_carproof_is_undecided_nothing_is_called_wrong_nor_counted(monkeyp
     assert why_undecided(POLISH, POLISH.solution, Level.OPTIMAL) is None
 
 
-def test_an_optimum_that_is_not_proved_counts_as_no_answer() -> None:
+def test_an_optimum_that_is_not_decided_counts_as_no_answer() -> None:
     for level in (Level.OPTIMAL, Level.EXACT):
-        for answer in (UNDECIDED, claimed(9, 7, proved=False, solution=CARP)):
+        for answer in (UNDECIDED, claimed(9, 7, decided=False, solution=CARP)):
             assert why_undecided(OPTIMUM, answer, level) == "it leaves the optimum undecided"
     assert why_undecided(OPTIMUM, BEST, Level.OPTIMAL) is None
     assert why_undecided(OPTIMUM, UNDECIDED, Level.COMPLETE) == "it leaves the optimum undecided"
     assert why_undecided(OPTIMUM, UNDECIDED, Level.CONTEXT_OPTIMAL) is None
-    assert why_undecided(OPTIMUM, claimed(9, 7, proved=False, solution=CARP), Level.COMPLETE) is None
-    assert why_undecided(case("optimum", BEHIND), claimed(3, 3, proved=False, solution=ONE_OF_TWO), Level.COMPLETE)
+    assert why_undecided(OPTIMUM, claimed(9, 7, decided=False, solution=CARP), Level.COMPLETE) is None
+    assert why_undecided(case("optimum", BEHIND), claimed(3, 3, decided=False, solution=ONE_OF_TWO), Level.COMPLETE)
     assert why_undecided(case("optimum", BLOCKED), NONE, Level.OPTIMAL) is None
     assert why_undecided(FREE, ASIDE_SECOND, Level.OPTIMAL) is None
 

@@ -21,7 +21,7 @@ GOES = committed(ALONE, new=FIRST_GOES)
 VISITS = [list(stay) for stay in FIRST_GOES]
 SOLUTION = {"format": "carproof-solution/1", "plans": [{"robot": "new", "visits": VISITS}], "order": ["new"]}
 WHOLE = {**SOLUTION, "unplanned": []}
-OPTIMUM = {"cost": 3, "lower": 3, "proved": True, "solution": WHOLE}
+OPTIMUM = {"cost": 3, "lower": 3, "decided": True, "solution": WHOLE}
 VERDICT = {"format": "carproof-verdict/1", "valid": True, "cost": 3, "unplanned": 0, "violations": []}
 
 
@@ -104,9 +104,9 @@ def test_each_op_has_its_answer() -> None:
     assert decoded("query", {"plan": VISITS}).plan_of("new") == GOES.plans[0]
     for op in ("plan", "add", "polish"):
         assert decoded(op, WHOLE) == Solution(GOES.plans, ("new",))
-    assert decoded("optimum", OPTIMUM) == OptimumDocument(3, 3, proved=True, solution=solution_document(GOES))
-    nothing = {"cost": None, "lower": None, "proved": False, "solution": None}
-    assert decoded("optimum", nothing) == OptimumDocument(None, None, proved=False, solution=None)
+    assert decoded("optimum", OPTIMUM) == OptimumDocument(3, 3, decided=True, solution=solution_document(GOES))
+    nothing = {"cost": None, "lower": None, "decided": False, "solution": None}
+    assert decoded("optimum", nothing) == OptimumDocument(None, None, decided=False, solution=None)
     assert isinstance(decoded("check", VERDICT), VerdictDocument)
     bound = {"format": "carproof-bound/1", "instance": "0", "bound": 0, "scale": 1, "horizon": 0}
     lists: dict[str, list[Any]] = {"resources": [], "exchanges": [], "robots": [], "cuts": []}
@@ -130,7 +130,7 @@ def test_each_op_has_its_answer() -> None:
         ("optimum", {**OPTIMUM, "solution": {}}),
         ("optimum", {**OPTIMUM, "solution": []}),
         ("optimum", {**OPTIMUM, "cost": "3"}),
-        ("optimum", {name: value for name, value in OPTIMUM.items() if name != "proved"}),
+        ("optimum", {name: value for name, value in OPTIMUM.items() if name != "decided"}),
         ("bound", {}),
     ],
 )

@@ -38,7 +38,7 @@ def test_the_optimum_is_shown_and_its_plans_are_written(carproof: Run, folder: P
 
 
 def test_the_optimum_as_a_document(carproof: Run) -> None:
-    best = {"cost": 5, "lower": 5, "proved": True, "solution": TWO_PLANNED}
+    best = {"cost": 5, "lower": 5, "decided": True, "solution": TWO_PLANNED}
     assert document_of(carproof, "optimum town.json") == best
 
 
@@ -53,7 +53,7 @@ def test_that_robots_cannot_all_be_planned_is_found_and_with_a_proof_proved(carp
     assert (outcome.code, outcome.stdout) == (0, f"proved: the robots cannot all be planned: {obstacle}\n")
     proved = {"proved": True, "claim": "unsolvable", "obstacle": obstacle}
     assert document_of(carproof, "verify proof") == dict.fromkeys(("cost", "solution", "reason", "by")) | proved
-    none = {"cost": None, "lower": 28, "proved": True, "solution": None}
+    none = {"cost": None, "lower": 28, "decided": True, "solution": None}
     assert document_of(carproof, "optimum lane.json") == none
 
 
@@ -61,7 +61,7 @@ def test_an_undecided_search_says_so_and_gives_its_bound(carproof: Run) -> None:
     assert carproof("generate grid --map 10 --robots 150 -o hard.json").code == 0
     outcome = carproof("optimum hard.json --limit 1 --json")
     document = json.loads(outcome.stdout)
-    assert (outcome.code, document["proved"]) == (3, False)
+    assert (outcome.code, document["decided"]) == (3, False)
     assert document["lower"] > 1000
 
 
@@ -69,7 +69,7 @@ def test_a_proof_is_written_and_checked(carproof: Run) -> None:
     outcome = carproof("optimum town.json --proof proof")
     assert (outcome.code, outcome.stdout.splitlines()[-1].split()[3:5]) == (0, ["5", "proved"])
     document = document_of(carproof, "optimum town.json --proof proof")
-    assert (document["proved"], document["checked"]) == (True, True)
+    assert (document["decided"], document["proved"]) == (True, True)
     outcome = carproof("verify proof --instance town.json")
     assert (outcome.code, outcome.stderr) == (0, "")
     assert outcome.stdout.splitlines()[-1].split() == ["5", "2", "checked", "sat", "unsat"]
@@ -107,7 +107,7 @@ def test_the_gap_of_every_planner_is_shown(carproof: Run) -> None:
 
 def test_the_gap_as_a_document(carproof: Run) -> None:
     document = document_of(carproof, "gap town.json")
-    assert [document[name] for name in ("optimum", "lower", "proved", "best_order")] == [5, 5, True, 5]
+    assert [document[name] for name in ("optimum", "lower", "decided", "best_order")] == [5, 5, True, 5]
     assert document["planners"][0] == {"planner": "carp", "unplanned": 0, "total": 5}
 
 

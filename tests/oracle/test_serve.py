@@ -106,7 +106,7 @@ def test_bound_gives_a_certificate() -> None:
 
 
 def test_optimum_gives_the_least_cost_and_plans_of_it() -> None:
-    best = {"cost": 5, "lower": 5, "proved": True, "solution": TWO_PLANNED}
+    best = {"cost": 5, "lower": 5, "decided": True, "solution": TWO_PLANNED}
     assert result(op="optimum", instance=TWO, limit=30) == best
     head_on = corridor([{**EAST, "goal": "e"}, HEAD_ON])
     assert result(op="optimum", instance=head_on)["cost"] is None

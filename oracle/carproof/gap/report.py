@@ -14,7 +14,7 @@ PLANNERS: tuple[Planner, ...] = (Carp(), Shuffled(), LongestFirst(), Greedy(), F
 def gap_document(gap: Gap) -> dict[str, Any]:
     """The optimum, or null and the lower bound; the least total over all orders, if known; and the planners.
 
-    `proved` means that the search for the optimum ended with an answer, which rests on its solver. The total of a
+    `decided` means that the search for the optimum ended with an answer, which rests on its solver. The total of a
     planner covers the robots that it planned.
     """
     best = gap.optimum
@@ -24,7 +24,7 @@ def gap_document(gap: Gap) -> dict[str, Any]:
     return {
         "optimum": best.cost if best.decided else None,
         "lower": best.lower,
-        "proved": best.decided,
+        "decided": best.decided,
         "best_order": gap.best_order,
         "planners": planners,
     }

@@ -49,8 +49,8 @@ def command(
     writes files with which others can check the least cost, or that the robots cannot all be planned. Writing takes at
     most --limit seconds more, and the files are checked at once (see verify-proof).
 
-    --output writes the plans as a solution; --json prints cost, lower bound and solution. In the document, "proved" is
-    true if the search ended with an answer, and "checked" if the proof of --proof was checked.
+    --output writes the plans as a solution; --json prints cost, lower bound and solution. In the document, "decided" is
+    true if the search ended with an answer, and "proved" if the proof of --proof was checked.
 
     Exit codes: 0 optimum found, 1 the robots cannot all be planned, 2 bad input, 3 undecided within the limit.
     """

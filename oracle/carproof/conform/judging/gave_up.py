@@ -26,7 +26,7 @@ def why_undecided(case: Case, answer: Answer, level: Level) -> str | None:
     """The reason why a right answer does not count: it is undecided, or carproof cannot decide it."""
     if case.op not in ("plan", "optimum") or case.planner is not None or level < Level.COMPLETE:
         return None
-    is_open = isinstance(answer, OptimumDocument) and not answer.proved
+    is_open = isinstance(answer, OptimumDocument) and not answer.decided
     if is_open and (level >= Level.OPTIMAL or not _plans_all(answer)):
         return "it leaves the optimum undecided"
     if (level >= Level.OPTIMAL or not _plans_all(answer)) and not found_cost(case.instance)[0]:

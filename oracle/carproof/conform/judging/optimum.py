@@ -46,7 +46,7 @@ def optimum_findings(instance: Instance, answer: OptimumDocument, level: Level) 
             yield wrong("cost/total", f"the cost must be {total}, the total of the plans, not {answer.cost}")
     elif answer.cost is not None:
         yield wrong("cost/total", f"a cost of {answer.cost} needs a solution that has it")
-    if level >= Level.COMPLETE and answer.proved and answer.solution is None:
+    if level >= Level.COMPLETE and answer.decided and answer.solution is None:
         yield from complete_findings(instance, Solution((), (), tuple(instance.robot)))
     if level >= Level.OPTIMAL:
         yield from _against_proof(instance, answer)
@@ -71,7 +71,7 @@ def bound_findings(instance: Instance, certificate: BoundDocument) -> Iterator[F
 
 def _against_proof(instance: Instance, answer: OptimumDocument) -> Iterator[Finding]:
     is_found, least = found_cost(instance)
-    if is_found and answer.proved and not is_optimal(answer.cost, least):
+    if is_found and answer.decided and not is_optimal(answer.cost, least):
         yield wrong(is_optimal.id, f"the least total cost is {_shown(least)}, not {_shown(answer.cost)}")
     if is_found and answer.lower is not None and not is_lower(answer.lower, least):
         yield wrong(is_lower.id, f"no lower bound is above the least total cost {least}, as {answer.lower} is")
