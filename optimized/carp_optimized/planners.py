@@ -129,8 +129,8 @@ def add(
     instance: Instance,
     solution: Solution,
     robot: RobotId,
-    now: int,
-    options: Neighbourhood,
+    now: int = 0,
+    options: Neighbourhood = BY_DEFAULT,
     reuse: Reuse | None = None,
 ) -> Solution:
     """Add a robot of the instance to a solution of the others at the tick `now`.

@@ -20,7 +20,7 @@ from carp_optimum.sat.solver import Deadline, TimeOver
 from carp_spec import Instance
 from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument
 from carp_spec.documents.instances import digest
-from carp_spec.inputs.options import require_limits
+from carp_spec.inputs.options import BOUND_SECONDS, require_limits
 from carp_spec.inputs.values import require_instance
 from carp_verify.limits import require_following
 
@@ -63,11 +63,13 @@ def lower_bound(
 ) -> BoundDocument:
     """Search for this many seconds or steps, whichever is over first, or until nothing is gained any more.
 
+    Without a limit the search takes 10 seconds.
     With steps alone, the same instance gives the same certificate. `on_step` is called after each step, and now and
     then while cuts are searched for; `clock` gives nanoseconds. `seen` is whether robots with deadlines may be seen at
     ticks, for which the search for an optimum has no literals. Raises `Refusal` for numbers that are too large.
     """
     _require(instance, seconds=seconds, steps=steps)
+    seconds = BOUND_SECONDS if seconds is None and steps is None else seconds
     from carp_optimum.claims.cut_search import CutSearch  # noqa: PLC0415 - numba is slow to load
     from carp_optimum.claims.deadline_search import DeadlineSearch  # noqa: PLC0415
     from carp_optimum.claims.pair_search import SightSearch  # noqa: PLC0415

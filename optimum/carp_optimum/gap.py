@@ -12,11 +12,28 @@ from carp_optimum.optimum import optimum
 from carp_optimum.sat.core_guided import Optimum
 from carp_optimum.sat.solver import Deadline, TimeOver
 from carp_reference import plan, query
-from carp_spec import Instance, Plan, Planner, RobotId, plan_cost, total_cost
+from carp_spec import (
+    Carp,
+    FixedPaths,
+    Greedy,
+    Instance,
+    LongestFirst,
+    Neighbourhood,
+    Plan,
+    Planner,
+    RobotId,
+    Shuffled,
+    plan_cost,
+    total_cost,
+)
+from carp_spec.inputs.options import SEARCH_SECONDS
 from carp_verify.bound.rules import require_kept
 from carp_verify.limits import require_following
 from carp_verify.optimum.encoding import Encoding
 from carp_verify.optimum.rules import MOST_ORDERED, refuse_size
+
+PLANNERS: tuple[Planner, ...] = (Carp(), Shuffled(), LongestFirst(), Greedy(), FixedPaths(), Neighbourhood())
+"""The planners that are compared where none are named."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +54,7 @@ class Gap:
     planners: tuple[PlannerGap, ...]
 
 
-def gap(instance: Instance, planners: Sequence[Planner], limit: float) -> Gap:
+def gap(instance: Instance, planners: Sequence[Planner] = PLANNERS, limit: float = SEARCH_SECONDS) -> Gap:
     """Plan with every planner, and search for the optimum and for the best order, each for `limit` seconds at most."""
     best = optimum(instance, limit)
     reached = []

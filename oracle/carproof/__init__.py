@@ -6,147 +6,138 @@
     verdict = check(instance, plan(instance))
 
 It has the model (`Instance`, `ResourceGraph`, `Resource`, `Robot`, `Solution`, `Plan`, `Visit`) and its documents
-(`read_...`, `write_...`); the checker (`check`, with a `Verdict` of `Violation`s by the rules in `RULES`); the planners
-(`plan`, `plan_within`, `query`, `add`, `polish`) with their options (`Carp`, `Neighbourhood`, ...); and bounds and
-optima (`bound`, `verify_bound`, `optimum`). `carproof.formats` reads and writes other tools' formats,
-`carproof.generate` makes instances, and `carproof.testing.strategies` draws them for hypothesis.
+(`read_...`, `write_...`); the checkers (`check`, `check_trace`, `audit`, `conforms`); the planners (`plan`, `plan_within`, `query`,
+`add`, `polish`) with their options (`Carp`, `Neighbourhood`, ...); bounds and optima (`bound`, `optimum`,
+`optimality_gap`, `verify_...`); executions (`execute`) and pictures (`view`). `carproof.formats` reads and writes
+other tools' formats, `carproof.generate` makes instances, and `carproof.testing.strategies` draws them for hypothesis.
 
-A name is loaded when it is first used, so that importing this page costs nothing.
+The imports below are the one list of public names. Type checkers read them; at run time they are not executed, so that
+importing this page costs nothing: a name is loaded from its module when it is first used.
 """
 
+from functools import cache
 from importlib import import_module
 
 TYPE_CHECKING = False  # typing is slow to load, and type checkers know the name
 if TYPE_CHECKING:
-    from typing import Any
+    from carp_optimized import add as add
+    from carp_optimized import query as query
+    from carp_optimized.improve.anytime import plan_within as plan_within
+    from carp_optimum.gap import Gap as Gap
+    from carp_optimum.gap import PlannerGap as PlannerGap
+    from carp_optimum.sat.core_guided import Optimum as Optimum
+    from carp_optimum.sat.solver import TimeOver as TimeOver
+    from carp_spec import AfterGoal as AfterGoal
+    from carp_spec import Carp as Carp
+    from carp_spec import Fault as Fault
+    from carp_spec import FixedPaths as FixedPaths
+    from carp_spec import Greedy as Greedy
+    from carp_spec import Instance as Instance
+    from carp_spec import LongestFirst as LongestFirst
+    from carp_spec import Move as Move
+    from carp_spec import Neighbourhood as Neighbourhood
+    from carp_spec import Plan as Plan
+    from carp_spec import Planner as Planner
+    from carp_spec import Refusal as Refusal
+    from carp_spec import Resource as Resource
+    from carp_spec import ResourceGraph as ResourceGraph
+    from carp_spec import ResourceId as ResourceId
+    from carp_spec import Robot as Robot
+    from carp_spec import RobotId as RobotId
+    from carp_spec import Rule as Rule
+    from carp_spec import Shuffled as Shuffled
+    from carp_spec import Solution as Solution
+    from carp_spec import TimeExpanded as TimeExpanded
+    from carp_spec import Verdict as Verdict
+    from carp_spec import Violation as Violation
+    from carp_spec import Visit as Visit
+    from carp_spec import check_update as check_update
+    from carp_spec import makespan as makespan
+    from carp_spec import plan_cost as plan_cost
+    from carp_spec import total_cost as total_cost
+    from carp_spec.documents.bounds import BoundDocument as BoundDocument
+    from carp_spec.documents.bounds import read_bound as read_bound
+    from carp_spec.documents.instances import read_instance as read_instance
+    from carp_spec.documents.instances import write_instance as write_instance
+    from carp_spec.documents.query_certificates import QueryCertificateDocument as QueryCertificateDocument
+    from carp_spec.documents.query_certificates import read_query_certificate as read_query_certificate
+    from carp_spec.documents.solutions import read_solution as read_solution
+    from carp_spec.documents.solutions import read_trace as read_trace
+    from carp_spec.documents.solutions import write_solution as write_solution
+    from carp_spec.documents.solutions import write_trace as write_trace
+    from carp_spec.documents.verdicts import write_verdict as write_verdict
+    from carp_spec.execution.traces import Trace as Trace
+    from carp_spec.model import Following as Following
+    from carp_verify.bound.verify import verify_bound as verify_bound
+    from carp_verify.optimum.proof import ProofError as ProofError
+    from carp_verify.optimum.proof import Verified as Verified
+    from carp_verify.optimum.proof import verify_proof as verify_proof
+    from carp_verify.query.verify import verify_query as verify_query
+    from carproof.api.documents import read_verdict as read_verdict
+    from carproof.api.documents import write_bound as write_bound
+    from carproof.api.documents import write_query_certificate as write_query_certificate
+    from carproof.api.executing import execute as execute
+    from carproof.api.judging import audit as audit
+    from carproof.api.judging import check as check
+    from carproof.api.judging import check_trace as check_trace
+    from carproof.api.planning import certified_query as certified_query
+    from carproof.api.planning import plan as plan
+    from carproof.api.planning import polish as polish
+    from carproof.api.searching import bound as bound
+    from carproof.api.searching import optimality_gap as optimality_gap
+    from carproof.api.searching import optimum as optimum
+    from carproof.api.searching import write_proof as write_proof
+    from carproof.api.viewing import view as view
+    from carproof.api.viewing import view_chart as view_chart
+    from carproof.api.viewing import view_map as view_map
+    from carproof.conform.python import LevelName as LevelName
+    from carproof.conform.python import conforms as conforms
+    from carproof.conform.run import Report as Report
+    from carproof.execution.delays import Delay as Delay
+    from carproof.execution.simulation import Driver as Driver
+    from carproof.execution.simulation import Execution as Execution
+    from carproof.formats import MovingAIFiles as MovingAIFiles
+    from carproof.formats import graph_of as graph_of
+    from carproof.formats import instance_from_array as instance_from_array
+    from carproof.formats import instance_from_networkx as instance_from_networkx
+    from carproof.formats import read_foreign_solution as read_foreign_solution
+    from carproof.formats import read_movingai as read_movingai
+    from carproof.formats import write_foreign_solution as write_foreign_solution
+    from carproof.formats import write_movingai as write_movingai
+    from carproof.judging.audit import Audit as Audit
+    from carproof.judging.audit import Late as Late
+    from carproof.planner_options import planner_named as planner_named
+    from carproof.registry import RULES as RULES
 
-    from carp_optimized import add, plan, query
-    from carp_optimized.improve.annealing import polish
-    from carp_optimized.improve.anytime import plan_within
-    from carp_optimum.bound import lower_bound as bound
-    from carp_optimum.optimum import optimum
-    from carp_optimum.sat.core_guided import Optimum
-    from carp_spec import (
-        AfterGoal,
-        Carp,
-        Fault,
-        FixedPaths,
-        Greedy,
-        Instance,
-        LongestFirst,
-        Move,
-        Neighbourhood,
-        Plan,
-        Planner,
-        Refusal,
-        Resource,
-        ResourceGraph,
-        ResourceId,
-        Robot,
-        RobotId,
-        Rule,
-        Shuffled,
-        Solution,
-        TimeExpanded,
-        Verdict,
-        Violation,
-        Visit,
-        check_update,
-        plan_cost,
-        total_cost,
-    )
-    from carp_spec import judge as check
-    from carp_spec.documents.bounds import BoundDocument, read_bound
-    from carp_spec.documents.instances import read_instance, write_instance
-    from carp_spec.documents.solutions import read_solution, write_solution
-    from carp_spec.documents.verdicts import write_verdict
-    from carp_verify.bound.verify import verify_bound
-    from carproof.planner_options import planner_named
-    from carproof.registry import RULES
-
-_ELSEWHERE = {
-    "add": "carp_optimized",
-    "plan": "carp_optimized",
-    "plan_within": "carp_optimized.improve.anytime",
-    "polish": "carp_optimized.improve.annealing",
-    "query": "carp_optimized",
-    "check": "carp_spec:judge",
-    "BoundDocument": "carp_spec.documents.bounds",
-    "read_bound": "carp_spec.documents.bounds",
-    "read_instance": "carp_spec.documents.instances",
-    "read_solution": "carp_spec.documents.solutions",
-    "write_instance": "carp_spec.documents.instances",
-    "write_solution": "carp_spec.documents.solutions",
-    "write_verdict": "carp_spec.documents.verdicts",
-    "RULES": "carproof.registry",
-    "planner_named": "carproof.planner_options",
-    "bound": "carp_optimum.bound:lower_bound",
-    "Optimum": "carp_optimum.sat.core_guided",
-    "optimum": "carp_optimum.optimum",
-    "verify_bound": "carp_verify.bound.verify",
-}
-"""The module of each name and its name there; all other names come from `carp_spec`."""
-
-__all__ = [
-    "RULES",
-    "AfterGoal",
-    "BoundDocument",
-    "Carp",
-    "Fault",
-    "FixedPaths",
-    "Greedy",
-    "Instance",
-    "LongestFirst",
-    "Move",
-    "Neighbourhood",
-    "Optimum",
-    "Plan",
-    "Planner",
-    "Refusal",
-    "Resource",
-    "ResourceGraph",
-    "ResourceId",
-    "Robot",
-    "RobotId",
-    "Rule",
-    "Shuffled",
-    "Solution",
-    "TimeExpanded",
-    "Verdict",
-    "Violation",
-    "Visit",
-    "add",
-    "bound",
-    "check",
-    "check_update",
-    "optimum",
-    "plan",
-    "plan_cost",
-    "plan_within",
-    "planner_named",
-    "polish",
-    "query",
-    "read_bound",
-    "read_instance",
-    "read_solution",
-    "total_cost",
-    "verify_bound",
-    "write_instance",
-    "write_solution",
-    "write_verdict",
-]
+__all__: list[str]
+__version__: str
 
 
-def __getattr__(name: str) -> "Any":  # noqa: ANN401 - any of the names above
-    """Load a name of this page when it is first used."""
-    if name == "__version__":
-        return import_module("importlib.metadata").version("carproof")
-    if name not in __all__:
-        raise AttributeError(f"module 'carproof' has no attribute {name!r}")
-    module, _, original = _ELSEWHERE.get(name, "carp_spec").partition(":")
-    return getattr(import_module(module), original or name)
+@cache
+def _modules() -> dict[str, str]:
+    """The module of each name that the imports above name `as` itself."""
+    import ast  # noqa: PLC0415 - slow to load
+    from importlib.resources import files  # noqa: PLC0415
+
+    page = ast.parse(files(__name__).joinpath("__init__.py").read_text(encoding="utf-8"))
+    listed = (each for each in ast.walk(page) if isinstance(each, ast.ImportFrom))
+    return {name.asname: str(each.module) for each in listed for name in each.names if name.asname}
+
+
+if not TYPE_CHECKING:  # a type checker is to refuse a name that the imports do not name
+
+    def __getattr__(name: str) -> object:
+        """Load a name of this page when it is first used."""
+        if name == "__version__":
+            return import_module("importlib.metadata").version("carproof")
+        if name == "__all__":
+            return sorted(_modules())
+        if name.startswith("_") or name not in _modules():
+            raise AttributeError(f"module 'carproof' has no attribute {name!r}")
+        value = globals()[name] = getattr(import_module(_modules()[name]), name)
+        return value
 
 
 def __dir__() -> list[str]:
     """The names of this page."""
-    return [*__all__, "__version__"]
+    return [*_modules(), "__version__"]

@@ -70,9 +70,9 @@ class FastestEngine:
     def polish(self) -> "Polish":
         """Better plans; with `seconds`, by simulated annealing."""
         compile_what_is_kept()
-        from carp_optimized.improve.annealing import polish  # noqa: PLC0415 - loaded when it is first used
+        from carp_optimized.improve.annealing import polish_or_anneal  # noqa: PLC0415 - loaded when it is first used
 
-        return polish
+        return polish_or_anneal
 
 
 def engine_named(name: str | None) -> Engine:

@@ -10,7 +10,7 @@ import re
 import shlex
 from collections.abc import Callable, Collection
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, cast, overload
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import pytest
 
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from carproof.conform.run import Report
 
 LevelName = Literal["sound", "complete-in-context", "context-optimal", "complete", "optimal"]
+EXAMPLES = 200
 FOLDER = "conform-failure"
 
 
@@ -61,7 +62,7 @@ class Conformance:
         self,
         planner: Callable[..., Any],
         level: LevelName = "sound",
-        examples: int = 100,
+        examples: int = EXAMPLES,
         seed: int = 0,
         documents: bool = False,
         *,
@@ -85,25 +86,22 @@ class Conformance:
             pytest.fail(f"carproof.conforms {advice(error)}", pytrace=False)
         from click import ClickException  # noqa: PLC0415
 
-        from carproof.conform.judging.claims import Claims  # noqa: PLC0415
-        from carproof.conform.levels import LEVELS, WHOLE_LEVELS  # noqa: PLC0415
-        from carproof.conform.programs.function import Function, by_documents  # noqa: PLC0415
+        from carp_spec import Refusal  # noqa: PLC0415
+        from carproof.conform.python import conforms  # noqa: PLC0415
         from carproof.conform.reporting.saved import own_folder, read_saved, save_all  # noqa: PLC0415
         from carproof.conform.reporting.saving import Origin  # noqa: PLC0415
-        from carproof.conform.run import Options, conform  # noqa: PLC0415
 
-        if level not in [each.label for each in WHOLE_LEVELS]:
-            pytest.fail(f"level must be one of {', '.join(each.label for each in WHOLE_LEVELS)}", pytrace=False)
-        claims = Claims(frozenset(without), solvable)
         name = getattr(planner, "__name__", type(planner).__name__)
-        called = by_documents(planner) if documents else cast("Callable[[Instance], Solution]", planner)
         origin = Origin(f"{name} at level {level}", shlex.join(["pytest", self._test]))
         folder = own_folder(self._folder, name, origin.judged)
         before = read_saved(folder, whole=True)
         if before.stale is not None:
             print(before.stale)  # noqa: T201 - pytest shows it
-        options = Options(LEVELS[level], examples, seed, whole=True, claims=claims, large=large)
-        report = conform(Function(called, name), options, saved=before.cases)
+        asked = (level, examples, seed, documents)
+        try:
+            report = conforms(planner, *asked, without=without, solvable=solvable, large=large, saved=before.cases)
+        except Refusal as refusal:
+            pytest.fail(str(refusal), pytrace=False)
         if report.interrupted:
             raise KeyboardInterrupt
         try:
@@ -141,6 +139,6 @@ def _told(report: "Report", folder: Path) -> str:
 
 @pytest.fixture
 def carproof(request: pytest.FixtureRequest) -> Conformance:
-    """Judge planners: `carproof.conforms(planner, level="sound", examples=100, seed=0)`."""
+    """Judge planners: `carproof.conforms(planner, level="sound", examples=200, seed=0)`."""
     test = re.sub(r"[^\w.-]+", "-", request.node.name).strip("-")
     return Conformance(request.config.rootpath / FOLDER / test, request.node.nodeid)

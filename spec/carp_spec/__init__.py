@@ -1,7 +1,7 @@
 """The specification of context-aware route planning: model, rules, checker."""
 
 from carp_spec.check import Verdict, check, check_update, judge
-from carp_spec.inputs.costs import plan_cost, total_cost
+from carp_spec.inputs.costs import makespan, plan_cost, total_cost
 from carp_spec.model import (
     AfterGoal,
     Instance,
@@ -58,6 +58,7 @@ __all__ = [
     "check_update",
     "has_ended",
     "judge",
+    "makespan",
     "plan_cost",
     "total_cost",
 ]

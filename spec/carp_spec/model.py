@@ -146,6 +146,10 @@ class Solution:
     order: tuple[RobotId, ...]
     unplanned: tuple[RobotId, ...] = ()
 
+    def plan_of(self, robot: RobotId) -> Plan | None:
+        """The robot's plan, if it has one."""
+        return next((plan for plan in self.plans if plan.robot == robot), None)
+
     @classmethod
     def of(cls, instance: Instance, plans: Iterable[Plan]) -> "Solution":
         """The plans in their order; all other robots of the instance are unplanned."""

@@ -22,7 +22,7 @@ def uncompiled(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 @pytest.mark.parametrize(
     ("command", "timed"),
     [
-        ("polish town.json plans.json --seconds 0.1", "carp_optimized.improve.annealing.polish"),
+        ("polish town.json plans.json --seconds 0.1", "carp_optimized.improve.annealing.polish_or_anneal"),
         ("bound town.json --seconds 1", "carp_optimum.bound.lower_bound"),
         ("optimum town.json", "carp_optimum.optimum.optimum"),
         ("gap town.json", "carp_optimum.gap.gap"),

@@ -40,7 +40,7 @@ BRIEF = 0.01
 """The seconds of an annealing if a repair took the time."""
 
 
-def polish(
+def polish_or_anneal(
     instance: Instance,
     solution: Solution,
     *,

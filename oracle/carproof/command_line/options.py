@@ -6,13 +6,12 @@ from typing import Any, TypeVar
 import click
 
 from carp_spec import FixedPaths, Neighbourhood, Planner, Shuffled
+from carp_spec.inputs.options import SEARCH_SECONDS
 from carproof.command_line.files import InputFile, OutputFile
 from carproof.engines import ENGINES
 from carproof.generate import Range
 from carproof.planner_options import PLANNERS, planner_named
 
-DEFAULT_LIMIT = 60
-DEFAULT_SECONDS = 10
 F = TypeVar("F", bound=Callable[..., Any])
 
 
@@ -74,7 +73,9 @@ def gives_plans(function: F) -> F:
     return engine_option(output_option(json_option(function)))
 
 
-limit_option = click.option("--limit", type=click.IntRange(min=1), default=DEFAULT_LIMIT, help="The seconds to search.")
+limit_option = click.option(
+    "--limit", type=click.IntRange(min=1), default=SEARCH_SECONDS, help="The seconds to search."
+)
 planner_option = click.option(
     "--planner", metavar="NAME", default=Neighbourhood.name, help=f"One of {', '.join(PLANNERS)}."
 )

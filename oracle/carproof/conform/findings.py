@@ -153,8 +153,12 @@ def all_arrive(standing: Sequence[RobotId]) -> bool:
     return not standing
 
 
+RIGHT_QUESTIONS = Code(
+    "program/questions", "The level and the features left out, by which a function is judged, are known ones.", DESIGN
+)
 PROGRAM_RULES: tuple[Rule[..., Any] | Code, ...] = (
     is_alive,
+    RIGHT_QUESTIONS,
     IN_TIME,
     is_response,
     RIGHT_RESULT,

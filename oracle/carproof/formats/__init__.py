@@ -1,7 +1,9 @@
-"""Solutions in other planners' formats, one per module, and graphs of networkx.
+"""Solutions in other planners' formats, one per module, and instances of other tools.
 
 `read_foreign_solution` reads any format, and recognises it if it is not named; `write_foreign_solution` writes them.
-`walks` defines the semantics of the formats. To add one, write its module and put its adapter into `ADAPTERS`.
+`read_movingai` and `write_movingai` are for files of the MovingAI benchmarks, `instance_from_array` for grids of NumPy,
+`instance_from_networkx` and `graph_of` for graphs of networkx. `walks` defines the semantics of the formats. To add
+one, write its module and put its adapter into `ADAPTERS`.
 """
 
 from collections.abc import Mapping
@@ -13,19 +15,27 @@ from carp_spec.inputs.values import require_instance, require_solution
 from carp_spec.rule import DESIGN
 from carproof.formats import agent_paths, carproof_documents, lacam, libmultirobotplanning, mapf_tracker
 from carproof.formats.adapter import Adapter
-from carproof.formats.networkx_graphs import instance_from_networkx, node_is_right
+from carproof.formats.arrays import RIGHT_ARRAY, instance_from_array
+from carproof.formats.movingai import read_movingai
+from carproof.formats.movingai_writer import MovingAIFiles, write_movingai
+from carproof.formats.networkx_graphs import graph_of, instance_from_networkx, node_is_right
 from carproof.formats.walks import WALK_RULES
 from carproof.input_rules import Code
 
 __all__ = [
     "ADAPTERS",
     "ADAPTER_RULES",
+    "MovingAIFiles",
     "format_of",
+    "graph_of",
+    "instance_from_array",
     "instance_from_networkx",
     "looks_like_none",
     "named_as",
     "read_foreign_solution",
+    "read_movingai",
     "write_foreign_solution",
+    "write_movingai",
 ]
 
 ADAPTERS: Mapping[str, Adapter] = {
@@ -56,6 +66,7 @@ ADAPTER_RULES: tuple[Rule[..., Any] | Code, ...] = (
     mapf_tracker.RIGHT_MOVES,
     agent_paths.RIGHT_PATHS,
     node_is_right,
+    RIGHT_ARRAY,
 )
 """The rules of the formats."""
 

@@ -111,6 +111,15 @@ def _agent(position: int, line: str, grid: GridMap, where: str) -> Robot:
     return Robot(f"r{position}", cell_id(*start), cell_id(*goal))
 
 
+def read_movingai(map: bytes, scenario: bytes, agents: int | None = None, after_goal: AfterGoal = "park") -> Instance:
+    """Read an instance from the contents of a map and a scenario file, with its first agents or all.
+
+    Raises `Refusal` with the file and the line that is wrong.
+    """
+    grid = read_map(map)
+    return movingai_instance(grid, read_scenario(scenario, grid, agents), after_goal)
+
+
 def movingai_instance(grid: GridMap, robots: Sequence[Robot], after_goal: AfterGoal, file: str = "map") -> Instance:
     """Make an instance of a map and robots."""
     cells = [(x, y) for y in range(grid.height) for x in range(grid.width) if grid.is_passable(x, y)]

@@ -92,6 +92,23 @@ def instance_from_networkx(
     return instance
 
 
+def graph_of(instance: Instance) -> "nx.Graph[Any]":
+    """The resource graph as a graph of networkx, from which `instance_from_networkx` makes the same moves.
+
+    It is a `DiGraph` if the edges are directed. Nodes have `capacity` and `duration`, and `x` and `y`
+    if they have a position.
+    """
+    import networkx as nx  # noqa: PLC0415 - slow to load
+
+    require_instance(instance)
+    graph: nx.Graph[Any] = nx.DiGraph() if instance.graph.directed else nx.Graph()
+    for each in instance.graph.resources:
+        place = {name: value for name, value in (("x", each.x), ("y", each.y)) if value is not None}
+        graph.add_node(each.id, capacity=each.capacity, duration=each.duration, **place)
+    graph.add_edges_from(instance.graph.edges)
+    return graph
+
+
 def _plain(value: Any) -> Any:  # noqa: ANN401 - whatever stands in a graph
     """The value, as an int of Python if it is a whole number of NumPy."""
     return int(value) if _is_whole(value) else value

@@ -3,12 +3,9 @@
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from carp_optimum.gap import Gap, PlannerGap
-from carp_spec import Carp, FixedPaths, Greedy, LongestFirst, Neighbourhood, Planner, Shuffled
+from carp_optimum.gap import PLANNERS, Gap, PlannerGap
 from carproof.gap.family import Cell
 from carproof.gap.statistics import Excess
-
-PLANNERS: tuple[Planner, ...] = (Carp(), Shuffled(), LongestFirst(), Greedy(), FixedPaths(), Neighbourhood())
 
 
 def gap_document(gap: Gap) -> dict[str, Any]:

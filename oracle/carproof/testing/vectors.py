@@ -15,6 +15,8 @@ import carp_spec
 from carp_spec.documents.vectors import Flag, Vector, VectorsDocument
 from carproof.registry import RULES
 
+__all__ = ["FOLDER", "Vector", "VectorsDocument", "subjects", "vector_file", "vectors", "vectors_document"]
+
 FOLDER: Final = Path(carp_spec.__file__).with_name("vectors")
 DIGESTS: Final = FOLDER / "digests.txt"
 

@@ -25,6 +25,12 @@ def total_cost(instance: Instance, plans: Sequence[Plan]) -> int:
     return sum(_cost(instance, plan, f"$.plans[{place}]") for place, plan in enumerate(plans))
 
 
+def makespan(instance: Instance, plans: Sequence[Plan]) -> int:
+    """The latest tick at which a plan enters its last visit, 0 without plans; raises `Refusal` as `plan_cost` does."""
+    total_cost(instance, plans)
+    return max((plan.visits[-1].enter for plan in plans), default=0)
+
+
 def _cost(instance: Instance, plan: Plan, path: str) -> int:
     if type(plan) is not Plan or type(plan.visits) is not tuple or not all(map(_is_entered, plan.visits[-1:])):
         require_shape(plan, Plan, path)

@@ -7,10 +7,11 @@ import click
 
 from carp_spec import Instance, judge, total_cost
 from carp_spec.documents.decoding import write
+from carp_spec.inputs.options import BOUND_SECONDS
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import InputFile, naming, print_document, refuse_two_standard_inputs, write_whole
 from carproof.command_line.foreign import MovingAI, Problem, from_option, movingai_options, read_solution_of
-from carproof.command_line.options import DEFAULT_SECONDS, examples, json_option, output_option
+from carproof.command_line.options import examples, json_option, output_option
 from carproof.command_line.tables import print_line, print_table
 from carproof.engines import warm
 from carproof.extras import require
@@ -32,7 +33,7 @@ COLUMNS = ("robots", "shortest paths", "lower bound", "best known", "gap", "step
 @click.argument("instance", type=InputFile(), required=False)
 @movingai_options
 @click.option(
-    "--seconds", type=click.IntRange(min=1), help=f"For how long to search at most.  [default: {DEFAULT_SECONDS}]"
+    "--seconds", type=click.IntRange(min=1), help=f"For how long to search at most.  [default: {BOUND_SECONDS}]"
 )
 @click.option("--steps", type=click.IntRange(min=0), help="End after this many steps; the result is always the same.")
 @click.option("--plans", type=InputFile(), help="A solution in any format, whose total is set against the bound.")
@@ -71,7 +72,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     problem = given.read_instance()
     with naming(given.names[0]):
         known = best_known(problem, plans, format)
-    limit = DEFAULT_SECONDS if seconds is None and steps is None else seconds
+    limit = BOUND_SECONDS if seconds is None and steps is None else seconds
     seen: list[Progress] = []
 
     def keep(progress: Progress) -> None:

@@ -97,9 +97,9 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
 
 def _gap_of(path: str, limit: int, as_json: bool) -> Answer:
-    from carp_optimum.gap import gap  # noqa: PLC0415
+    from carp_optimum.gap import PLANNERS, gap  # noqa: PLC0415
     from carp_verify.optimum.unsolvable import describe  # noqa: PLC0415
-    from carproof.gap.report import PLANNERS, gap_document, gap_rows  # noqa: PLC0415 - loads the planners
+    from carproof.gap.report import gap_document, gap_rows  # noqa: PLC0415 - loads the planners
 
     problem = read_instance_file(path)
     require_following_in(path, problem)
@@ -120,8 +120,9 @@ def _gap_of(path: str, limit: int, as_json: bool) -> Answer:
 
 
 def _gaps_of(family: "Family", limit: int, as_json: bool) -> Answer:
+    from carp_optimum.gap import PLANNERS  # noqa: PLC0415
     from carproof.gap.family import measured  # noqa: PLC0415 - loads the planners
-    from carproof.gap.report import PLANNERS, cell_rows, family_document  # noqa: PLC0415
+    from carproof.gap.report import cell_rows, family_document  # noqa: PLC0415
 
     warm()
     with progress("measuring gaps", len(family.cells) * family.count) as advance:

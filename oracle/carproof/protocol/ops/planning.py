@@ -6,6 +6,7 @@ import msgspec
 
 from carp_spec import Instance, Neighbourhood, Plan, Planner, ResourceId, RobotId, Solution, Visit
 from carp_spec.documents.solutions import visits_document
+from carp_spec.planners import BY_DEFAULT
 from carp_spec.requests import require_new_robot, require_robot, require_tick
 from carproof.engines import Engine, warm
 from carproof.protocol.ops.op import PolishOptions
@@ -61,7 +62,7 @@ class PlanRequest:
 def plan(request: PlanRequest, engine: Engine) -> Solution:
     """Plan all robots."""
     with inside("$.instance"):
-        return engine.plan(request.instance, request.planner or Neighbourhood())
+        return engine.plan(request.instance, request.planner or BY_DEFAULT)
 
 
 @dataclass(frozen=True, slots=True)

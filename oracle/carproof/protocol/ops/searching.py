@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from carp_spec import Instance, Refusal
 from carp_spec.documents.bounds import BoundDocument
-from carproof.command_line.options import DEFAULT_LIMIT, DEFAULT_SECONDS
+from carp_spec.inputs.options import SEARCH_SECONDS
 from carproof.engines import Engine, warm
 from carproof.extras import require
 from carproof.optima import OptimumDocument, optimum_document
@@ -16,7 +16,7 @@ class OptimumRequest:
     """An instance, and the seconds to search."""
 
     instance: Instance
-    limit: float = DEFAULT_LIMIT
+    limit: float = SEARCH_SECONDS
 
 
 def optimum(request: OptimumRequest, engine: Engine) -> OptimumDocument:
@@ -48,10 +48,9 @@ def bound(request: BoundRequest, engine: Engine) -> BoundDocument:
     from carp_optimum.bound import lower_bound  # noqa: PLC0415 - a server that is not asked need not load it
 
     del engine
-    seconds = DEFAULT_SECONDS if request.seconds is None and request.steps is None else request.seconds
-    for name, limit in (("seconds", seconds), ("steps", request.steps)):
+    for name, limit in (("seconds", request.seconds), ("steps", request.steps)):
         if limit is not None and limit <= 0:
             raise Refusal("request", f"$.{name}", POSITIVE_LIMIT.id, f"it must be a number above 0, not {limit}")
     warm()
     with inside("$.instance"):
-        return lower_bound(request.instance, seconds, request.steps)
+        return lower_bound(request.instance, request.seconds, request.steps)

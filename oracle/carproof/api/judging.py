@@ -1,0 +1,39 @@
+"""Solutions and traces checked, and audits."""
+
+from carp_spec import Instance, Solution, Verdict, judge, total_cost
+from carp_spec.check import MOST_LISTED
+from carp_spec.execution.execution_rules import trace_violations
+from carp_spec.execution.traces import Trace
+from carp_spec.requests import require_trace, sound_solution
+from carproof.engines import engine_named
+from carproof.judging.audit import Audit, audit_in_order, audit_in_some_order
+
+
+def check(instance: Instance, solution: Solution, most: int | None = MOST_LISTED) -> Verdict:
+    """Judge a solution by the law, with at most the first `most` violations of each rule (`None`: all).
+
+    Robots without a plan break no rule. Raises `Refusal` for a malformed instance or solution.
+    """
+    return judge(instance, solution, most)
+
+
+def check_trace(instance: Instance, solution: Solution, trace: Trace) -> Verdict:
+    """Judge whether a trace follows a solution: paths, durations and the planned order.
+
+    Cost and unplanned robots are those of the solution. Raises `Refusal` for a solution that breaks a rule.
+    """
+    require_trace(instance, solution, trace)
+    sound = sound_solution(instance, solution)
+    violations = trace_violations(instance, sound, trace)
+    return Verdict(total_cost(instance, sound.plans), len(sound.unplanned), violations)
+
+
+def audit(instance: Instance, solution: Solution, *, find_order: bool = False) -> Audit:
+    """Certify that no robot can arrive earlier beside the plans before its own, or find the earlier plans.
+
+    The order is that of the solution; with `find_order`, any in which each plan is optimal, if there is one. Raises
+    `Refusal` for a solution that breaks a rule.
+    """
+    sound = sound_solution(instance, solution)
+    audited = audit_in_some_order if find_order else audit_in_order
+    return audited(instance, sound, engine_named(None))

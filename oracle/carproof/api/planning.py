@@ -1,0 +1,62 @@
+"""Plans of all robots by any planner, and plans of one robot with their certificates."""
+
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+
+from carp_spec import Instance, Plan, Planner, Refusal, RobotId, Solution
+from carp_spec.documents.query_certificates import QueryCertificateDocument
+from carp_spec.planners import BY_DEFAULT
+from carp_spec.requests import require_query
+from carp_verify.limits import require_following
+from carproof.engines import engine_named
+
+
+def plan(instance: Instance, planner: Planner | None = None, *, repair: bool | None = None) -> Solution:
+    """Plan all robots of the instance at tick 0, by the neighbourhood planner if none is named.
+
+    With `repair`, robots that the planner leaves out are planned together with others; `None` repairs unless a planner
+    is named. Raises `Refusal` for a malformed instance or planner, and for numbers that are too large.
+    """
+    solution = engine_named(None).plan(instance, BY_DEFAULT if planner is None else planner)
+    if solution.unplanned and (planner is None if repair is None else repair):
+        from carp_optimized.improve.repair import repair as repaired  # noqa: PLC0415 - numba is slow to load
+
+        with suppress(Refusal):  # numbers that only the reference holds
+            return repaired(instance, solution)
+    return solution
+
+
+def certified_query(
+    instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0
+) -> tuple[Plan | None, QueryCertificateDocument]:
+    """The plan that `query` finds, and a certificate that no plan arrives earlier, which `verify_query` checks.
+
+    Raises what `query` raises, and `Refusal` where following is forbidden.
+    """
+    require_query(instance, committed, robot, now)
+    require_following(instance)
+    own = [each for each in committed if each.robot == robot]
+    certifier = engine_named(None).certifier(instance)
+    certifier.commit([each for each in committed if each.robot != robot])
+    return certifier.certify(robot, own[-1] if own else None, now)
+
+
+def polish(
+    instance: Instance,
+    solution: Solution,
+    *,
+    iterations: int | None = None,
+    seconds: float | None = None,
+    seed: int = 0,
+    advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
+) -> Solution:
+    """Improve a solution by large neighbourhood search; `advance` gets rounds, unplanned robots and total.
+
+    With `seconds`, robots without a plan are planned first, which may take longer, and rounds may raise the total for a
+    while (simulated annealing); the best plans seen are the result. Otherwise `iterations` rounds of `polish/...` are
+    played, 10,000 unless given. They never raise the total, and equal iterations and seed give an equal solution. All
+    robots are planned from their release on: none is under way. Raises `Refusal` for wrong options, for a solution that
+    breaks a rule, and for numbers that are too large.
+    """
+    polished = engine_named(None).polish
+    return polished(instance, solution, iterations=iterations, seconds=seconds, seed=seed, advance=advance)

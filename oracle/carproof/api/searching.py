@@ -1,0 +1,47 @@
+"""Optima, bounds and gaps, with the time that commands and ops give them; they need the extra `prove`."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from carp_optimum.gap import PLANNERS, Gap, gap
+from carp_optimum.optimum import optimum as found
+from carp_optimum.sat.core_guided import Optimum
+from carp_spec import Instance, Planner
+from carp_spec.documents.bounds import BoundDocument
+from carp_spec.inputs.options import SEARCH_SECONDS
+
+
+def optimum(instance: Instance, limit: float = SEARCH_SECONDS, *, processes: int = 1) -> Optimum:
+    """Search for the least total cost for at most `limit` seconds.
+
+    The answer rests on the solver; `write_proof` writes a proof of it. Two `processes` are faster on two cores, and the
+    answer is the same. Raises `Refusal` for a wrong limit, and if the formula outgrows the memory.
+    """
+    return found(instance, limit, processes=processes)
+
+
+def bound(instance: Instance, seconds: float | None = None, steps: int | None = None) -> BoundDocument:
+    """Search for a lower bound on the total cost, with a certificate that `verify_bound` checks.
+
+    The search takes so many seconds or steps, whichever are over first, and 10 seconds if neither is given. With steps
+    alone, the same instance gives the same certificate. Raises `Refusal` for wrong limits and numbers that are too
+    large.
+    """
+    from carp_optimum.bound import lower_bound  # noqa: PLC0415 - slow to load
+
+    return lower_bound(instance, seconds, steps)
+
+
+def optimality_gap(instance: Instance, planners: Sequence[Planner] = PLANNERS, limit: float = SEARCH_SECONDS) -> Gap:
+    """Plan with every planner, and search for the optimum and the best order, each for at most `limit` seconds."""
+    return gap(instance, planners, limit)
+
+
+def write_proof(instance: Instance, best: Optimum, directory: Path, limit: float = SEARCH_SECONDS) -> None:
+    """Write a proof directory of an answer of `optimum`, which `verify_proof` checks.
+
+    Raises `TimeOver` if that takes more than `limit` seconds, and `Refusal` if the search gave no answer.
+    """
+    from carp_optimum.sat import proving  # noqa: PLC0415 - only for those who ask for a proof
+
+    proving.write_proof(instance, best, directory, limit)

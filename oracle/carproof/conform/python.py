@@ -1,0 +1,53 @@
+"""Python functions that plan, judged: for tests and scripts."""
+
+from collections.abc import Callable, Collection, Sequence
+from typing import Any, Literal, TypeAlias, cast
+
+from carp_spec import Instance, Refusal, Solution
+from carproof.conform.cases import Case
+from carproof.conform.findings import RIGHT_QUESTIONS
+from carproof.conform.judging.claims import FEATURES, Claims
+from carproof.conform.levels import LEVELS, WHOLE_LEVELS
+from carproof.conform.programs.function import Function, by_documents
+from carproof.conform.run import Options, Report, conform
+from carproof.extras import require
+
+DEFAULTS = Options()
+LevelName: TypeAlias = Literal["sound", "complete-in-context", "context-optimal", "complete", "optimal"]
+"""The levels of functions, which plan whole instances."""
+
+
+def conforms(  # noqa: PLR0913 - the options of the command
+    planner: Callable[[Instance], Solution] | Callable[[dict[str, Any]], dict[str, Any]],
+    level: LevelName = "sound",
+    examples: int = DEFAULTS.examples,
+    seed: int = DEFAULTS.seed,
+    documents: bool = False,
+    *,
+    without: Collection[str] = (),
+    solvable: bool = False,
+    large: float = DEFAULTS.large,
+    saved: Sequence[Case] = (),
+) -> Report:
+    """Judge a planner that takes an `Instance` and returns a `Solution`, as `carproof conform` judges a program.
+
+    With `documents`, it takes and returns the documents, as dictionaries. `without` names features that it is not
+    asked, and with `solvable` all robots can have plans. For `large` seconds it is also asked about 10 to 1,000 robots;
+    no other time limits it. `saved` are cases to ask first. The report's `conforms` is the answer, and its `failures`
+    have the smallest cases found. Raises `Refusal` for an unknown level or feature.
+    """
+    require("hypothesis", "pysat")
+    _require_known("level", [level], [each.label for each in WHOLE_LEVELS])
+    _require_known("without", without, [*FEATURES])
+    name = getattr(planner, "__name__", type(planner).__name__)
+    called = by_documents(cast("Any", planner)) if documents else planner
+    claims = Claims(frozenset(without), solvable)
+    options = Options(LEVELS[level], examples, seed, whole=True, claims=claims, large=large)
+    return conform(Function(cast("Callable[[Instance], Solution]", called), name), options, saved=saved)
+
+
+def _require_known(option: str, given: Collection[str], known: Sequence[str]) -> None:
+    for each in given:
+        if each not in known:
+            message = f"it must be one of {', '.join(known)}, not {each!r}"
+            raise Refusal("option", f"$.{option}", RIGHT_QUESTIONS.id, message)
