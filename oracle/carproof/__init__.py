@@ -6,8 +6,8 @@
     verdict = check(instance, plan(instance))
 
 It has the model (`Instance`, `ResourceGraph`, `Resource`, `Robot`, `Solution`, `Plan`, `Visit`) and its documents
-(`read_...`, `write_...`); the checkers (`check`, `check_trace`, `audit`, `conforms`); the planners (`plan`, `plan_within`, `query`,
-`add`, `polish`) with their options (`Carp`, `Neighbourhood`, ...); bounds and optima (`bound`, `optimum`,
+(`read_...`, `write_...`); the checkers (`check`, `check_trace`, `audit`, `conforms`); the planners (`plan`,
+`plan_within`, `query`, `add`, `polish`) with their options (`Carp`, `Neighbourhood`, ...); bounds and optima (`bound`, `optimum`,
 `optimality_gap`, `verify_...`); executions (`execute`) and pictures (`view`). `carproof.formats` reads and writes
 other tools' formats, `carproof.generate` makes instances, and `carproof.testing.strategies` draws them for hypothesis.
 

@@ -1,6 +1,6 @@
 """The specification of context-aware route planning: model, rules, checker."""
 
-from carp_spec.check import Verdict, check, check_update, judge
+from carp_spec.check import Verdict, check_update, judge, violations_of
 from carp_spec.inputs.costs import makespan, plan_cost, total_cost
 from carp_spec.model import (
     AfterGoal,
@@ -54,11 +54,11 @@ __all__ = [
     "Verdict",
     "Violation",
     "Visit",
-    "check",
     "check_update",
     "has_ended",
     "judge",
     "makespan",
     "plan_cost",
     "total_cost",
+    "violations_of",
 ]

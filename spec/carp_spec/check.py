@@ -27,7 +27,7 @@ class Verdict:
         return not self.violations
 
 
-def check(instance: Instance, plans: Sequence[Plan], most: int | None = MOST_LISTED) -> tuple[Violation, ...]:
+def violations_of(instance: Instance, plans: Sequence[Plan], most: int | None = MOST_LISTED) -> tuple[Violation, ...]:
     """The violations of plans, at most `most` of each rule (`None`: all).
 
     Raises `Refusal` for malformed input and unknown robots.

@@ -5,7 +5,7 @@ Rival plans are given to compare with: all rivals decide the rule, some are evid
 
 from collections.abc import Iterable, Sequence
 
-from carp_spec.check import check
+from carp_spec.check import violations_of
 from carp_spec.model import Instance, Plan
 from carp_spec.plan_rules import plan_cost
 from carp_spec.rule import MORS, rule
@@ -13,7 +13,7 @@ from carp_spec.rule import MORS, rule
 
 @rule("query/sound", "The plan returned breaks no rule, alone or together with the committed plans.", MORS)
 def plan_is_sound(instance: Instance, committed: Sequence[Plan], plan: Plan) -> bool:
-    return not check(instance, (*committed, plan))
+    return not violations_of(instance, (*committed, plan))
 
 
 @rule(

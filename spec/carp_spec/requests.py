@@ -6,7 +6,7 @@ The rules are those of `carproof.requests`.
 from collections.abc import Sequence
 from dataclasses import replace
 
-from carp_spec.check import check, judge
+from carp_spec.check import judge, violations_of
 from carp_spec.execution.traces import Trace
 from carp_spec.inputs.options import require_planner
 from carp_spec.inputs.values import require_plans, require_solution
@@ -79,7 +79,9 @@ def sound_solution(instance: Instance, solution: Solution, asked: RobotId | None
     whole = replace(solution, unplanned=(*solution.unplanned, *missing))
     found = judge(instance, whole).violations
     of_all = [each for each in found if asked not in each.robots or not each.rule.startswith("joint/")]
-    of_others = check(instance, [plan for plan in whole.plans if plan.robot != asked]) if found and not of_all else ()
+    of_others = (
+        violations_of(instance, [plan for plan in whole.plans if plan.robot != asked]) if found and not of_all else ()
+    )
     for violation in (*of_all, *of_others):
         raise Refusal("request", path_to(violation, solution), violation.rule, violation.message)
     if not found:

@@ -8,7 +8,7 @@ from tests.twin import find_plan_by_ticks
 import carp_optimized
 import carp_reference
 from carp_optimized import Reuse
-from carp_spec import Carp, Instance, Solution, check, check_update, judge, plan_cost
+from carp_spec import Carp, Instance, Solution, check_update, judge, plan_cost, violations_of
 from carp_spec.permutations import splitmix64
 from carproof.testing.random_instances import Draw, draw_instance, draw_neighbourhood, draw_planner
 
@@ -47,7 +47,7 @@ def test_the_engines_ask_and_add_alike_to_a_fleet_under_way() -> None:
         new, now, options = instance.robots[-1].id, draw.between(0, 6), draw_neighbourhood(draw)
         added = carp_reference.add(instance, before, new, now, options)
         assert carp_optimized.add(instance, before, new, now, options) == added, number
-        assert not check(instance, added.plans)
+        assert not violations_of(instance, added.plans)
         assert not check_update(before.plans, added.plans, now)
         for robot in instance.robot:
             asked = (instance, before.plans, robot, now)
@@ -76,4 +76,4 @@ def test_a_query_arrives_as_early_as_its_naive_twin() -> None:
         assert (found is None) == (twin is None)
         if found is not None and twin is not None:
             assert plan_cost(instance, found) == plan_cost(instance, twin)
-            assert not check(instance, [*others, twin])
+            assert not violations_of(instance, [*others, twin])

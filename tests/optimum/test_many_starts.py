@@ -5,7 +5,7 @@ from typing import Any
 
 from carp_optimized.improve.many_starts import polish_many
 from carp_reference import plan, polish
-from carp_spec import Carp, Instance, Plan, Resource, ResourceGraph, Robot, Solution, Visit, check, total_cost
+from carp_spec import Carp, Instance, Plan, Resource, ResourceGraph, Robot, Solution, Visit, total_cost, violations_of
 
 ROUNDS = 10
 
@@ -72,6 +72,6 @@ def test_many_starts_of_an_engine_give_the_same_lawful_plans_again() -> None:
     instance = Instance(graph, tuple(Robot(f"r{number}", *each) for number, each in enumerate(ends)))
     before = plan(instance, Carp())
     after = polish_many(polish, 4, instance, before, iterations=100)
-    assert not list(check(instance, after.plans))
+    assert not list(violations_of(instance, after.plans))
     assert total_cost(instance, after.plans) <= total_cost(instance, before.plans)
     assert after == polish_many(polish, 4, instance, replace(before), iterations=100)

@@ -14,6 +14,7 @@ from carp_spec import Carp, Plan, RobotId, Solution, check, plan_cost
 from carp_spec.documents.instances import read_instance
 from carp_spec.documents.query_certificates import QueryCertificateDocument
 from carp_spec.documents.solutions import read_solution
+from carp_spec import Carp, Plan, RobotId, Solution, plan_cost, violations_of
 from carp_verify.bound.rules import ContradictionError
 from carproof.engines import engine_named
 from carproof.generate import Fleet, Grid, grid_instance
@@ -97,7 +98,7 @@ def test_a_plan_is_late_just_where_the_reference_finds_an_earlier_one(planned: P
     assert [each.plan for each in audit.late] == late
     assert [each for each in plans if each not in late] == audit.certified
     for each in audit.late:
-        assert check(planned.instance, (*each.before, each.earlier)) == ()
+        assert violations_of(planned.instance, (*each.before, each.earlier)) == ()
         assert each.earlier.visits[-1].enter < each.plan.visits[-1].enter
 
 

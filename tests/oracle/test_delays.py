@@ -9,7 +9,7 @@ from tests.profiles import draws
 from tests.spec.making import RING, TURNING, solution_of
 
 from carp_reference.execution import order_of
-from carp_spec import Instance, Solution, check
+from carp_spec import Instance, Solution, violations_of
 from carp_spec.execution.dependencies import Node
 from carp_spec.execution.execution_rules import is_acyclic, trace_violations
 from carproof.execution.delays import (
@@ -53,7 +53,7 @@ def test_an_execution_in_order_is_safe_ends_and_is_late_by_no_more_than_all_dela
     assert all(tick <= order.visit(node).enter + total for node, tick in enters.items())
     if not stuck(order):
         assert len(enters) == len(order.nodes)
-        assert not {each.rule for each in check(instance, trace.plans)} & {"joint/capacity", "joint/exchange"}
+        assert not {each.rule for each in violations_of(instance, trace.plans)} & {"joint/capacity", "joint/exchange"}
 
 
 @settings(max_examples=draws(200))
@@ -86,7 +86,7 @@ def sets_of_delays(nodes: Sequence[Node], most: int) -> Iterator[tuple[Delay, ..
 def collides(instance: Instance, solution: Solution, delays: Sequence[Delay]) -> bool:
     order = order_of(instance, solution)
     trace = executed(order, on_the_clock(order, delays), delays)
-    return bool({each.rule for each in check(instance, trace.plans)} & {"joint/capacity", "joint/exchange"})
+    return bool({each.rule for each in violations_of(instance, trace.plans)} & {"joint/capacity", "joint/exchange"})
 
 
 @settings(max_examples=draws(100), deadline=None)

@@ -11,6 +11,7 @@ from tests.profiles import draws
 from carp_spec import Solution, check, check_update, judge
 from carp_spec.documents.instances import read_instance
 from carp_spec.documents.solutions import read_solution, read_trace
+from carp_spec import Solution, Visit, check_update, judge, violations_of
 from carp_spec.execution.execution_rules import is_acyclic, trace_violations
 from carproof.engines import engine_named
 from carproof.execution.delays import Delay
@@ -231,7 +232,10 @@ def test_who_switches_follows_the_order_that_came_of_it(case: PlannedInstance) -
     if order.standing:
         return
     assert not trace_violations(instance, switching.followed, switching.trace)
-    assert not {each.rule for each in check(instance, switching.trace.plans)} & {"joint/capacity", "joint/exchange"}
+    assert not {each.rule for each in violations_of(instance, switching.trace.plans)} & {
+        "joint/capacity",
+        "joint/exchange",
+    }
     assert sum(switching.late.values()) <= sum(order.late.values())
 
 

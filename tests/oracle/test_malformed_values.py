@@ -128,7 +128,7 @@ SOLUTIONS: Mapping[str, tuple[Callable[[], Solution], tuple[str | int, ...], obj
 
 OF_INSTANCES: Mapping[str, Callable[[Instance], object]] = {
     "check": lambda instance: carproof.check(instance, SOLVED),
-    "carp_spec.check": lambda instance: carp_spec.check(instance, SOLVED.plans),
+    "carp_spec.violations_of": lambda instance: carp_spec.violations_of(instance, SOLVED.plans),
     "plan_cost": lambda instance: carproof.plan_cost(instance, OF_R),
     "total_cost": lambda instance: carproof.total_cost(instance, SOLVED.plans),
     "plan": carproof.plan,
@@ -220,7 +220,7 @@ def test_malformed_plans_are_refused_like_their_document(engine: Any, fault: str
     make, place, value = SOLUTIONS[fault]
     by_document = refused_document(write_solution(SOLVED), place, value, read_solution)
     assert refused(lambda: engine.query(RIGHT, make().plans, "r")) == by_document
-    assert refused(lambda: carp_spec.check(RIGHT, make().plans)) == by_document
+    assert refused(lambda: carp_spec.violations_of(RIGHT, make().plans)) == by_document
 
 
 def test_an_instance_of_which_no_look_ups_can_be_made_is_refused() -> None:

@@ -6,7 +6,7 @@ import pytest
 
 from carp_reference import plan
 from carp_reference.execution import order_of
-from carp_spec import Carp, Instance, Solution, check, judge
+from carp_spec import Carp, Instance, Solution, judge, violations_of
 from carp_spec.execution.execution_rules import trace_violations
 from carproof.execution import switching
 from carproof.execution.delays import (
@@ -43,7 +43,7 @@ def test_robots_that_change_places_are_safe_and_mostly_earlier(tried: int, monke
         order = order_of(instance, found.solution)
         trace = executed(order, found.enters, delays)
         assert not trace_violations(instance, found.solution, trace)
-        assert not {each.rule for each in check(instance, trace.plans)} & TOGETHER
+        assert not {each.rule for each in violations_of(instance, trace.plans)} & TOGETHER
         lasts = [(each.robot, len(each.visits) - 1) for each in solution.plans]
         unswitched = in_order(order_of(instance, solution), delays)
         earlier += sum(unswitched[node] - found.enters[node] for node in lasts)

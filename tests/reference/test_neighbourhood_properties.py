@@ -16,12 +16,12 @@ from carp_spec import (
     Instance,
     Neighbourhood,
     Plan,
-    check,
     check_update,
     has_ended,
     judge,
     neighbourhood_rules,
     total_cost,
+    violations_of,
 )
 from carproof.testing.strategies import FleetUnderWay, Sizes, fleets_under_way, instances
 
@@ -93,6 +93,6 @@ def test_sharing_the_beginnings_of_orders_changes_no_plan(instance: Instance, da
 @given(fleets_under_way(CROWDED), OPTIONS)
 def test_a_plan_that_has_ended_is_left_alone(fleet: FleetUnderWay, options: Neighbourhood) -> None:
     after = carp_reference.add(fleet.instance, fleet.solution, fleet.robot, fleet.now, options)
-    assert not check(fleet.instance, after.plans)
+    assert not violations_of(fleet.instance, after.plans)
     ended = [plan for plan in fleet.solution.plans if has_ended(plan, fleet.now)]
     assert [plan for plan in ended if plan not in after.plans] == []

@@ -8,7 +8,7 @@ from tests.profiles import rest_in
 from tests.twin import find_plan_by_ticks
 
 from carp_reference import query
-from carp_spec import Instance, Plan, RobotId, check, check_update, plan_cost
+from carp_spec import Instance, Plan, RobotId, check_update, plan_cost, violations_of
 from carproof.testing.strategies import FleetUnderWay, fleets_under_way
 
 SMALL_CASES_OF_A_PATTERN = 52_198
@@ -25,7 +25,7 @@ def arrivals_of_both(
     by_ticks = find_plan_by_ticks(instance, others, robot, now, before[0] if before else None)
     for plan in (by_windows, by_ticks):
         if plan is not None:
-            assert not check(instance, (*others, plan))
+            assert not violations_of(instance, (*others, plan))
             assert not check_update(before, [plan], now)
     return (
         None if by_windows is None else plan_cost(instance, by_windows),

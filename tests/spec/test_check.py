@@ -27,9 +27,9 @@ from carp_spec import (
     Shuffled,
     Solution,
     TimeExpanded,
-    check,
     check_update,
     judge,
+    violations_of,
 )
 from carp_spec.check import MOST_LISTED
 from carproof.testing.strategies import instances
@@ -48,12 +48,12 @@ PLANNERS: tuple[Planner, ...] = (
 
 
 def rules_broken(instance: Instance, plans: tuple[Plan, ...]) -> list[str]:
-    return [violation.rule for violation in check(instance, plans)]
+    return [violation.rule for violation in violations_of(instance, plans)]
 
 
 @pytest.mark.parametrize(("instance", "plans"), [(VANISHING, SOLVED), (PARKING, PARKED)])
 def test_hand_made_correct_plans_break_no_rule(instance: Instance, plans: tuple[Plan, ...]) -> None:
-    assert check(instance, plans) == ()
+    assert violations_of(instance, plans) == ()
     assert judge(instance, solution_of(plans)).valid
 
 
@@ -70,7 +70,7 @@ def test_violations_come_rule_by_rule_then_plan_by_plan_and_in_order_of_time() -
         plan_of("r2", ("b", 1, 2), ("c", 2, 3), ("a", 3, None)),
         plan_of("r3", ("f", 0, 9)),
     )
-    reported = [(violation.rule, violation.robots, violation.start) for violation in check(VANISHING, wrong)]
+    reported = [(violation.rule, violation.robots, violation.start) for violation in violations_of(VANISHING, wrong)]
     assert reported == [
         ("plan/start", ("r1",), 0),
         ("plan/start", ("r2",), 1),
@@ -92,7 +92,7 @@ def test_the_checker_agrees_with_the_rules_spelt_out_plan_by_plan(case: tuple[In
     instance, plans = case
     reported = Counter(
         (each.rule, each.robots, each.resource, each.start, each.end)
-        for each in check(instance, plans, most=None)
+        for each in violations_of(instance, plans, most=None)
         if each.rule.startswith("plan/")
     )
     spelt_out = Counter(
@@ -107,7 +107,7 @@ def test_the_checker_agrees_with_the_rules_spelt_out_plan_by_plan(case: tuple[In
 @given(case=instances_with_plans())
 def test_the_checker_agrees_with_the_rules_spelt_out_tick_by_tick(case: tuple[Instance, tuple[Plan, ...]]) -> None:
     instance, plans = case
-    violations = check(instance, plans, most=None)
+    violations = violations_of(instance, plans, most=None)
     reported = [
         (each, range(each.start, HORIZON if each.end is None else each.end))
         for each in violations
@@ -143,7 +143,7 @@ def robots_in_one_cell(count: int, capacity: int = 1) -> Instance:
 
 def test_very_many_robots_in_one_cell_are_one_violation_in_a_short_message() -> None:
     instance = robots_in_one_cell(MANY)
-    (violation,) = check(instance, [plan_of(name, ("a", name, None)) for name in range(MANY)])
+    (violation,) = violations_of(instance, [plan_of(name, ("a", name, None)) for name in range(MANY)])
     assert violation.robots == tuple(range(MANY))
     assert violation.message == "resource a in [1,for ever): robots 0, 1, 2, 3, 4 and 2995 more (capacity 1)"
 
@@ -154,7 +154,7 @@ def test_a_robot_that_overfills_a_full_cell_again_and_again_is_reported_a_bounde
     visits = [
         visit for tick in range(MANY - 1, 3 * MANY, 2) for visit in (("a", tick, tick + 1), ("b", tick + 1, tick + 2))
     ]
-    violations = check(instance, [*parked, plan_of(MANY - 1, *visits)])
+    violations = violations_of(instance, [*parked, plan_of(MANY - 1, *visits)])
     assert Counter(each.rule for each in violations) == {"plan/goal": 1, "joint/capacity": MOST_LISTED}
 
 
@@ -162,8 +162,8 @@ def test_at_most_so_many_violations_of_each_rule_are_listed_and_all_on_demand() 
     broken = plan_of("r1", *(("x", 3 * tick, 3 * tick - 1) for tick in range(MANY)))
     rules = {"plan/resource": MANY, "plan/contiguous": MANY - 1, "plan/start": 1, "plan/goal": 1}
     assert Counter(rules_broken(VANISHING, (broken,))) == {rule: min(n, MOST_LISTED) for rule, n in rules.items()}
-    assert Counter(each.rule for each in check(VANISHING, [broken], most=None)) == rules
-    assert Counter(each.rule for each in check(VANISHING, [broken], most=2))["plan/contiguous"] == 2
+    assert Counter(each.rule for each in violations_of(VANISHING, [broken], most=None)) == rules
+    assert Counter(each.rule for each in violations_of(VANISHING, [broken], most=2))["plan/contiguous"] == 2
     assert (
         Counter(each.rule for each in judge(VANISHING, solution_of([broken]), most=2).violations)["plan/contiguous"]
         == 2
@@ -187,7 +187,7 @@ def test_a_plan_through_a_hub_of_very_many_moves_is_checked_in_time() -> None:
         for visit in (("hub", 2 * tick, 2 * tick + 1), (tick, 2 * tick + 1, 2 * tick + 2))
     ]
     started = process_time()
-    assert check(instance, [plan_of("r1", *there)]) == ()
+    assert violations_of(instance, [plan_of("r1", *there)]) == ()
     assert process_time() - started < 2
 
 
@@ -239,4 +239,4 @@ def test_an_update_is_checked_robot_by_robot() -> None:
 def test_check_takes_robots_and_resources_of_both_kinds_of_id() -> None:
     instance = instance_on(line("ab"), Robot(7, "a", "b"), Robot("7", "b", "b"))
     plans = (plan_of(7, ("a", 0, 1), ("b", 1, 2)), plan_of("7", ("b", 0, 1)))
-    assert check(instance, plans) == ()
+    assert violations_of(instance, plans) == ()

@@ -10,7 +10,7 @@ from tests.profiles import draws
 from tests.spec.making import is_before
 
 import carp_reference
-from carp_spec import Carp, Instance, Plan, Solution, Visit, check
+from carp_spec import Carp, Instance, Plan, Solution, Visit, violations_of
 from carp_spec.execution.dependencies import Stay, dependencies, shortest_cycle, stays_by_resource
 from carp_spec.execution.execution_rules import is_acyclic, trace_violations
 from carp_spec.execution.traces import Trace
@@ -109,7 +109,7 @@ def test_what_has_happened_by_a_trace_that_follows_breaks_no_rule_of_robots_toge
 ) -> None:
     instance, _, trace = case
     if not trace_violations(*case):
-        together = {violation.rule for violation in check(instance, trace.plans)}
+        together = {violation.rule for violation in violations_of(instance, trace.plans)}
         assert not {rule for rule in together if rule.startswith("joint/")} - {"joint/exchange"}
         rotation_free = "joint/exchange" not in together
         assert rotation_free

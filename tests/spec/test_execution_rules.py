@@ -20,6 +20,7 @@ from tests.spec.making import (
 
 from carp_spec import Instance, Plan, Refusal, Solution, Visit, check
 from carp_spec.documents.solutions import read_trace, trace_document, write_trace
+from carp_spec import Instance, Plan, Refusal, Solution, Visit, violations_of
 from carp_spec.execution.dependencies import Dependency, Node, dependencies, shortest_cycle
 from carp_spec.execution.execution_rules import is_acyclic, trace_violations
 from carp_spec.execution.traces import Trace
@@ -110,7 +111,7 @@ def wide_case(seed: int) -> tuple[Instance, Solution]:
             leave = enter + draw.randint(1, 3)
             stays = (Visit(robot.start, 0, enter), Visit("m", enter, leave), Visit(robot.goal, leave, leave + 1))
             plan = Plan(robot.id, stays)
-            if not check(instance, [*plans, plan]):
+            if not violations_of(instance, [*plans, plan]):
                 plans.append(plan)
                 break
     return instance, solution_of(plans)
@@ -133,7 +134,7 @@ def test_the_shortest_of_several_cycles_is_named() -> None:
     robots = (*(Robot(f"s{at}", ring[at - 1], ring[at]) for at in range(4)), *TURNING[0])
     plans = [Plan(robot.id, (Visit(robot.start, 0, 1), Visit(robot.goal, 1, 2))) for robot in robots]
     instance = Instance(graph, robots)
-    assert not check(instance, plans)
+    assert not violations_of(instance, plans)
     assert len(shortest_cycle(tuple(dependencies(instance, plans)))) == 3
 
 

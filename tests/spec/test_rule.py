@@ -3,7 +3,7 @@
 import pytest
 from tests.spec.making import PARKING, SOLVED, VANISHING, plan_of
 
-from carp_spec import Violation, Visit, check
+from carp_spec import Violation, Visit, violations_of
 from carp_spec.rule import at_visit, interval, is_whole, of_robots, rule
 
 
@@ -36,7 +36,7 @@ def test_the_checker_prints_one_line_a_violation() -> None:
         plan_of("r2", ("e", 1, 2), ("b", 3, 4), ("d", 4, None)),
         plan_of("r3", ("d", 4, 4), ("x", 4, 6), ("c", 6, 7), ("f", 7, 8)),
     )
-    assert [str(violation) for violation in check(VANISHING, plans)] == [
+    assert [str(violation) for violation in violations_of(VANISHING, plans)] == [
         "[plan/start] robot r1 (the first visit must be to a at the release tick 0, and there is no visit)",
         "[plan/start] resource d in [4,4): robot r3 (the first visit must be to f at the release tick 0)",
         "[plan/goal] robot r1 (the last visit must be to d, and there is no visit)",
@@ -51,7 +51,7 @@ def test_the_checker_prints_one_line_a_violation() -> None:
 
 def test_the_checker_prints_how_a_plan_must_end() -> None:
     late = plan_of("r3", ("f", 0, 2))
-    ends = [str(violation) for instance in (VANISHING, PARKING) for violation in check(instance, [late])]
+    ends = [str(violation) for instance in (VANISHING, PARKING) for violation in violations_of(instance, [late])]
     assert ends == [
         "[plan/goal] resource f in [0,2): robot r3 (it must leave the goal at 1)",
         "[plan/goal] resource f in [0,2): robot r3 (it must stay at the goal for ever)",
@@ -60,7 +60,7 @@ def test_the_checker_prints_how_a_plan_must_end() -> None:
 
 def test_the_checker_prints_what_happens_between_robots() -> None:
     first = plan_of("r1", ("a", 0, 4), ("b", 4, 5), ("c", 5, 7), ("d", 7, 8))
-    assert [str(violation) for violation in check(VANISHING, (first, *SOLVED[1:]))] == [
+    assert [str(violation) for violation in violations_of(VANISHING, (first, *SOLVED[1:]))] == [
         "[joint/exchange] resource a in [4,5): robots r1, r2 (they exchange a and b at tick 4)"
     ]
 

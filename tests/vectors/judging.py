@@ -19,10 +19,10 @@ from carp_spec import (
     RobotId,
     Solution,
     Visit,
-    check,
     judge,
     plan_cost,
     total_cost,
+    violations_of,
 )
 from carp_spec.documents.bounds import read_bound
 from carp_spec.documents.decoding import is_json
@@ -123,7 +123,7 @@ def _query(subject: str, vector: Vector) -> Found:
         return set() if right is None else {"query/complete"}, answer
     claimed = _plan(robot, visits)
     others = [plan for plan in solution.plans if plan.robot != robot]
-    violated = {violation.rule for violation in check(instance, (*others, claimed))}
+    violated = {violation.rule for violation in violations_of(instance, (*others, claimed))}
     violated |= {"query/sound"} if violated else set()
     before = [plan for plan in solution.plans if plan.robot == robot]
     violated |= {violation.rule for plan in before for violation in plan_keeps_history(plan, claimed, now)}

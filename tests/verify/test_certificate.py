@@ -11,6 +11,7 @@ from tests.profiles import draws
 from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Solution, Visit, check
 from carp_spec.documents.instances import write_instance
 from carp_spec.documents.solutions import write_solution
+from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Solution, Visit, violations_of
 from carp_verify import certificate
 from carp_verify.certificate import Breach, certify, certify_together
 from carp_verify.lemmas.smt import Solver, Undecided
@@ -26,7 +27,7 @@ STANDING = Plan("r3", (Visit("b", 1, 2),))
 def agree(instance: Instance, plans: tuple[Plan, ...]) -> None:
     """Both find fault with the same resources; the certificate's tick and robots are among the checker's."""
     certified = certify_together(instance, plans)
-    reported = [violation for violation in check(instance, plans) if violation.rule.startswith("joint/")]
+    reported = [violation for violation in violations_of(instance, plans) if violation.rule.startswith("joint/")]
     blamed = {(violation.rule, violation.resource) for violation in reported}
     assert {(breach.rule, breach.resource) for breach in certified.breaches} == blamed
     for breach in certified.breaches:

@@ -5,7 +5,7 @@ from tests.spec.making import row
 from tests.verify.tiny import TINY
 
 from carp_optimum.sat.solver import Deadline, Solver
-from carp_spec import Instance, Refusal, Resource, ResourceGraph, ResourceId, Robot, check, total_cost
+from carp_spec import Instance, Refusal, Resource, ResourceGraph, ResourceId, Robot, total_cost, violations_of
 from carp_verify.optimum.encoding import Conflict, Encoding, violated
 from carp_verify.optimum.joint_search import least_total_cost
 from carproof.testing.strategies import PlannedInstance, instances, planned_instances
@@ -78,7 +78,7 @@ def test_models_with_no_conflict_forbidden_hold_plans_that_break_joint_rules_onl
         plans = [plan for plan in encoding.plans(solver.model()) if plan is not None]
         solver.close()
         assert len(plans) == len(instance.robots)
-        broken = check(instance, plans)
+        broken = violations_of(instance, plans)
         assert {violation.rule for violation in broken} <= {"joint/capacity", "joint/exchange"}
         assert bool(violated(instance, plans)) == bool(broken)
         assert total_cost(instance, plans) >= encoding.shortest

@@ -12,7 +12,7 @@ from carp_experiments.paper.map_cases import FULL_MAP, MapCase, instance_of, pla
 from carp_experiments.paper.quality import ALGORITHMS, seeded
 from carp_experiments.report import ExperimentReport, Figure, Table
 from carp_experiments.store import Row
-from carp_spec import Instance, Solution, check
+from carp_spec import Instance, Solution, violations_of
 from carproof.execution.simulation import DRIVERS, TOGETHER, Driver, execute, random_delays
 from carproof.execution.untangling import untangle
 from carproof.gap.statistics import Interval, mean_interval
@@ -81,7 +81,7 @@ def driven(instance: Instance, solution: Solution, driver: Driver, share: int, s
     """Execute a solution with this share of its visits delayed, in per cent."""
     execution = execute(instance, solution, driver, random_delays(solution, share * A_PER_CENT, MOST_TICKS, seed))
     late = execution.late
-    broken = check(instance, execution.trace.plans, most=None)
+    broken = violations_of(instance, execution.trace.plans, most=None)
     return Executed(
         arrived=len(late),
         last=max((plan.visits[-1].enter for plan in execution.trace.plans if plan.robot in late), default=0),

@@ -8,7 +8,7 @@ import msgspec
 from carp_experiments.paper.map_cases import MapCase, instance_of, rows_by_map
 from carp_experiments.report import ExperimentReport, Table
 from carp_experiments.store import Row
-from carp_spec import RobotId, check, total_cost
+from carp_spec import RobotId, total_cost, violations_of
 
 
 def left_out_row(case: MapCase) -> Row:
@@ -19,7 +19,7 @@ def left_out_row(case: MapCase) -> Row:
     instance = instance_of(case)
     given = engine.plan(instance)
     repaired = repair(instance, given)
-    for violation in check(instance, repaired.plans):
+    for violation in violations_of(instance, repaired.plans):
         raise AssertionError(violation)
     return {"before": len(given.unplanned), "left": repaired.unplanned, "total": total_cost(instance, repaired.plans)}
 

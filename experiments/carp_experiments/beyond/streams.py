@@ -14,7 +14,7 @@ from carp_experiments.paper.map_cases import MapCase, map_instance, place_name, 
 from carp_experiments.paper.quality import ALGORITHMS, seeded
 from carp_experiments.report import ExperimentReport, Figure, Table
 from carp_experiments.store import Row
-from carp_spec import Instance, Neighbourhood, Plan, Resource, ResourceGraph, check, total_cost
+from carp_spec import Instance, Neighbourhood, Plan, Resource, ResourceGraph, total_cost, violations_of
 from carproof.gap.statistics import Interval, mean_interval
 
 PLANNERS = ("CARP", "Proposed_4 + baseline")
@@ -61,7 +61,7 @@ def streamed(case: MapCase, name: str, rate: int) -> Streamed:
             fleet.add(place, robot.release, planner)
     else:
         fleet.carp(range(case.robots))
-    broken = check(instance, fleet.plans)
+    broken = violations_of(instance, fleet.plans)
     if broken or len(fleet.order) < case.robots:
         raise AssertionError(broken)
     shortest = sum(fleet.ticks_to_goal(place) for place in range(case.robots))

@@ -9,7 +9,18 @@ if all others can be planned around it, no lawful update has an earlier arrival 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from carp_spec import Instance, Plan, Refusal, RobotId, Solution, Visit, check, check_update, has_ended, plan_cost
+from carp_spec import (
+    Instance,
+    Plan,
+    Refusal,
+    RobotId,
+    Solution,
+    Visit,
+    check_update,
+    has_ended,
+    plan_cost,
+    violations_of,
+)
 from carp_spec.rule import DESIGN, rule
 from carproof.engines import Engine
 
@@ -32,7 +43,7 @@ def robot_is_first(  # noqa: D103 - its statement stands in its decorator
     def is_lawful(update: Sequence[Plan]) -> bool:
         robots = {plan.robot for plan in update}
         is_whole = robots == {robot, *(plan.robot for plan in before)} and len(robots) == len(update)
-        return is_whole and not check(instance, update) and not check_update(before, update, now)
+        return is_whole and not violations_of(instance, update) and not check_update(before, update, now)
 
     def arrival(update: Sequence[Plan]) -> int:
         return next(plan.visits[-1].enter for plan in update if plan.robot == robot)
@@ -118,8 +129,8 @@ def give_way(
 
 def refuse_route(instance: Instance, fixed: Sequence[Plan], own: Sequence[Plan], route: Plan, now: int) -> None:
     """Raise `Refusal` if the route breaks a rule, alone, with its own history, or with the histories of others."""
-    alone = [each for each in check(instance, [route]) if each.robots == (route.robot,)]
-    together = [each for each in check(instance, [*fixed, route]) if each.rule.startswith("joint/")]
+    alone = [each for each in violations_of(instance, [route]) if each.robots == (route.robot,)]
+    together = [each for each in violations_of(instance, [*fixed, route]) if each.rule.startswith("joint/")]
     for violation in (*alone, *together, *check_update(own, [route], now)):
         raise Refusal("request", "$.route", violation.rule, f"the route breaks a rule: {violation.message}")
 
@@ -169,7 +180,7 @@ def colliding(instance: Instance, first: Sequence[Plan], others: Sequence[Plan])
     while True:
         crowds = [
             [robot for robot in violation.robots if robot not in fixed]
-            for violation in check(instance, [*first, *rest], most=None)
+            for violation in violations_of(instance, [*first, *rest], most=None)
             if violation.rule.startswith("joint/") and not fixed.isdisjoint(violation.robots)
         ]
         out = {max(crowd, key=place.__getitem__) for crowd in crowds if crowd}

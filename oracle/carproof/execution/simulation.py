@@ -8,7 +8,7 @@ from typing import Literal, TypeAlias, get_args
 import msgspec
 
 from carp_reference.execution import Order, order_of
-from carp_spec import Instance, Refusal, ResourceId, RobotId, Solution, Violation, check
+from carp_spec import Instance, Refusal, ResourceId, RobotId, Solution, Violation, violations_of
 from carp_spec.execution.dependencies import Node, shortest_cycle
 from carp_spec.execution.traces import Trace
 from carp_spec.permutations import splitmix64
@@ -130,7 +130,7 @@ def execute(instance: Instance, solution: Solution, driver: Driver, delays: tupl
         delays=delays,
         followed=followed,
         trace=trace,
-        collisions=tuple(each for each in check(instance, trace.plans) if each.rule in TOGETHER),
+        collisions=tuple(each for each in violations_of(instance, trace.plans) if each.rule in TOGETHER),
         standing=tuple(robot for robot, node in lasts_of.items() if node not in enters),
         late={robot: enters[node] - arrivals[robot] for robot, node in lasts_of.items() if node in enters},
         switches=switches,

@@ -9,6 +9,7 @@ import click
 
 from carp_spec import Refusal, check
 from carp_spec.documents.solutions import write_solution
+from carp_spec import Refusal, violations_of
 from carp_spec.inputs.options import require_polish_options
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import naming, read_instance_file
@@ -95,7 +96,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
             with suppress(Refusal):  # numbers that only the reference holds
                 solution, fleet = repaired(problem, solution), None
                 name += ", repaired"
-            for violation in check(problem, solution.plans):
+            for violation in violations_of(problem, solution.plans):
                 raise AssertionError(violation)
     seconds = perf_counter() - started
     write_result(write_solution(solution), output, as_json)

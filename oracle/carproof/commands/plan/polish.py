@@ -10,6 +10,7 @@ import click
 from carp_optimized.improve.many_starts import polish_many
 from carp_spec import Instance, Refusal, Solution, check, total_cost
 from carp_spec.documents.solutions import write_solution
+from carp_spec import Instance, Refusal, Solution, total_cost, violations_of
 from carp_spec.inputs.options import require_polish_options
 from carp_spec.polish_rules import ITERATIONS, last_round
 from carp_spec.requests import sound_solution
@@ -105,7 +106,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
             with suppress(Refusal):  # numbers that only the reference holds
                 after = repair(instance, after)
     time = perf_counter() - started
-    for violation in check(instance, after.plans):
+    for violation in violations_of(instance, after.plans):
         raise AssertionError(violation)
     write_result(write_solution(after), output, as_json)
     if not as_json:

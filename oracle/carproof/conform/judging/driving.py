@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 
-from carp_spec import Instance, Plan, RobotId, Violation, Visit, check
+from carp_spec import Instance, Plan, RobotId, Violation, Visit, violations_of
 from carp_spec.execution.execution_rules import trace_violations
 from carp_spec.execution.traces import Trace
 from carproof.conform.answers import Skipped
@@ -84,7 +84,7 @@ def _standing(case: Case, trace: Trace) -> list[RobotId]:
 def _collisions(instance: Instance, trace: Trace) -> Iterator[Violation]:
     """The rules about robots together that are broken by what has happened."""
     present = [plan for plan in trace.plans if plan.visits]
-    return (violation for violation in check(instance, present) if violation.rule.startswith("joint/"))
+    return (violation for violation in violations_of(instance, present) if violation.rule.startswith("joint/"))
 
 
 def execution_findings(case: Case, trace: Trace, level: Level) -> Iterator[Finding]:

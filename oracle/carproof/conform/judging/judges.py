@@ -10,11 +10,11 @@ from carp_spec import (
     RobotId,
     Solution,
     Visit,
-    check,
     check_update,
     judge,
     plan_cost,
     total_cost,
+    violations_of,
 )
 from carp_spec.documents.bounds import BoundDocument
 from carp_spec.documents.verdicts import VerdictDocument, verdict_document
@@ -74,7 +74,7 @@ def _query_findings(case: Case, answer: QueryDocument, level: Level) -> Iterator
     others = [each for each in committed if each.robot != case.robot]
     if plan is not None:
         before = _followed(case.instance, committed, case.robot, case.now)
-        for violation in (*check(case.instance, (*others, plan)), *check_update(before, [plan], case.now)):
+        for violation in (*violations_of(case.instance, (*others, plan)), *check_update(before, [plan], case.now)):
             yield wrong(violation.rule, violation.message)
     if level >= Level.COMPLETE_IN_CONTEXT:
         own = next((each for each in committed if each.robot == case.robot), None)

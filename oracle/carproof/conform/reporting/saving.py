@@ -12,6 +12,7 @@ import msgspec
 from carp_spec import Refusal, Solution, check
 from carp_spec.documents.instances import instance_document, write_instance
 from carp_spec.documents.solutions import solution_of, write_solution
+from carp_spec import Refusal, Solution, violations_of
 from carp_spec.execution.traces import Trace
 from carproof.command_line.files import write_whole
 from carproof.conform.answers import Answer
@@ -105,7 +106,7 @@ def _title(outcome: Outcome) -> str:
 def _first_tick(outcome: Outcome) -> int:
     """The tick at which a rule is first broken; where no plan breaks one, that of the first release."""
     instance, plans = outcome.case.instance, judged_solution(outcome).plans
-    starts = [violation.start for violation in check(instance, plans) if violation.start is not None]
+    starts = [violation.start for violation in violations_of(instance, plans) if violation.start is not None]
     return min(starts) if starts else min((robot.release for robot in instance.robots), default=0)
 
 
