@@ -52,7 +52,6 @@ if TYPE_CHECKING:
     from carp_spec import Violation as Violation
     from carp_spec import Visit as Visit
     from carp_spec import check_update as check_update
-    from carp_spec import makespan as makespan
     from carp_spec import plan_cost as plan_cost
     from carp_spec import total_cost as total_cost
     from carp_spec.documents.bounds import BoundDocument as BoundDocument
@@ -67,6 +66,7 @@ if TYPE_CHECKING:
     from carp_spec.documents.solutions import write_trace as write_trace
     from carp_spec.documents.verdicts import write_verdict as write_verdict
     from carp_spec.execution.traces import Trace as Trace
+    from carp_spec.inputs.costs import makespan as makespan
     from carp_spec.model import Following as Following
     from carp_verify.bound.verify import verify_bound as verify_bound
     from carp_verify.optimum.proof import ProofError as ProofError

@@ -59,9 +59,7 @@ def plan(instance: Instance, planner: Planner = BY_DEFAULT) -> Solution:
     return known(instance, Solution.of(instance, _plans(prepare(instance, 0), planner)))
 
 
-def add(
-    instance: Instance, solution: Solution, robot: RobotId, now: int = 0, options: Neighbourhood = BY_DEFAULT
-) -> Solution:
+def add(instance: Instance, solution: Solution, robot: RobotId, now: int, options: Neighbourhood) -> Solution:
     """Add a robot to a solution of the others at the tick `now`; if it finds no plan, the other plans stay."""
     require_addition(instance, solution, robot, now, options)
     by_robot = {each.robot: each for each in solution.plans}

@@ -1,7 +1,7 @@
 """The specification of context-aware route planning: model, rules, checker."""
 
 from carp_spec.check import Verdict, check_update, judge, violations_of
-from carp_spec.inputs.costs import makespan, plan_cost, total_cost
+from carp_spec.inputs.costs import plan_cost, total_cost
 from carp_spec.model import (
     AfterGoal,
     Instance,
@@ -57,7 +57,6 @@ __all__ = [
     "check_update",
     "has_ended",
     "judge",
-    "makespan",
     "plan_cost",
     "total_cost",
     "violations_of",

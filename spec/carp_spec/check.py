@@ -15,7 +15,7 @@ MOST_LISTED = 100
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """The checker's answer for a solution; `cost` is the total cost of its plans."""
+    """The answer for a solution; `cost` is the total cost of its plans."""
 
     cost: int
     unplanned: int
@@ -46,7 +46,7 @@ def _violations(instance: Instance, plans: Sequence[Plan], most: int | None) -> 
 
 
 def judge(instance: Instance, solution: Solution, most: int | None = MOST_LISTED) -> Verdict:
-    """Check a whole solution; plans of robots that the instance does not have break `solution/covers` alone."""
+    """Check a whole solution; plans of unknown robots break `solution/covers` alone."""
     require_solution(instance, solution)
     plans = [plan for plan in solution.plans if plan.robot in instance.robot]
     of_solution = [violation for each in SOLUTION_RULES for violation in islice(each(instance, solution), most)]

@@ -1,6 +1,6 @@
 """The model: resources, robots, visits, plans, instances and solutions.
 
-Time is counted in `int` ticks from 0. Intervals are half-open: a robot that leaves at t and one that enters at t never
+Ticks are `int`, from 0. Intervals are half-open: a robot that leaves at t and one that enters at t never
 share the resource. An end of `None` means for ever.
 
 The classes may hold nonsense, which `instance_rules` and `check` find. Source: the paper,
@@ -27,7 +27,7 @@ class Resource:
     """A place that robots occupy: a cell, a lane, a crossing.
 
     `capacity` robots fit in at a time, and each needs `duration` ticks, times its own pace, to traverse it. Its
-    position on the plane, `x` and `y`, is for distances and pictures.
+    position, `x` and `y`, is for distances and pictures.
     """
 
     id: ResourceId
@@ -42,8 +42,8 @@ class ResourceGraph:
     """The resources and the edges between them.
 
     An edge (r, s) of a directed graph is the move from r to s; of an undirected one, also the move back. The order of
-    `resources` breaks ties. The last four fields are look-ups: resources by id, their indices, the resources that one
-    move leads to in that order, and all moves.
+    `resources` breaks ties. The last four fields are look-ups: resources by id, indices, where one move leads in that
+    order, and all moves.
     """
 
     resources: tuple[Resource, ...]
@@ -56,7 +56,7 @@ class ResourceGraph:
 
     @of_shape("$.graph")
     def __post_init__(self) -> None:
-        """Make the look-ups; an edge to or from an unknown resource is left to the rules."""
+        """Make the look-ups; edges of unknown resources are left to the rules."""
         index = {each.id: position for position, each in enumerate(self.resources)}
         backward = () if self.directed else ((target, source) for source, target in self.edges)
         moves = [move for move in (*self.edges, *backward) if move[0] in index and move[1] in index]
@@ -147,7 +147,7 @@ class Solution:
     unplanned: tuple[RobotId, ...] = ()
 
     def plan_of(self, robot: RobotId) -> Plan | None:
-        """The robot's plan, if it has one."""
+        """The robot's plan, if any."""
         return next((plan for plan in self.plans if plan.robot == robot), None)
 
     @classmethod

@@ -61,7 +61,7 @@ class Neighbourhood:
 
 
 BY_DEFAULT = Neighbourhood()
-"""The planner that is used where none is named."""
+"""The planner where none is named."""
 
 
 @dataclass(frozen=True, slots=True)
