@@ -7,9 +7,10 @@
 
 It has the model (`Instance`, `ResourceGraph`, `Resource`, `Robot`, `Solution`, `Plan`, `Visit`) and its documents
 (`read_...`, `write_...`); the checkers (`check`, `check_trace`, `audit`, `conforms`); the planners (`plan`,
-`plan_within`, `query`, `add`, `polish`) with their options (`Carp`, `Neighbourhood`, ...); bounds and optima (`bound`, `optimum`,
-`optimality_gap`, `verify_...`); executions (`execute`) and pictures (`view`). `carproof.formats` reads and writes
-other tools' formats, `carproof.generate` makes instances, and `carproof.testing.strategies` draws them for hypothesis.
+`plan_within`, `query`, `add`, `polish`) with their options (`Carp`, `Neighbourhood`, ...); bounds and optima
+(`bound`, `optimum`, `optimality_gap`, `verify_...`); executions (`execute`) and pictures (`view`). `carproof.formats`
+reads and writes other tools' formats, `carproof.generate` makes instances, and `carproof.testing.strategies` draws them
+for hypothesis.
 
 The imports below are the one list of public names. Type checkers read them; at run time they are not executed, so that
 importing this page costs nothing: a name is loaded from its module when it is first used.
