@@ -10,11 +10,10 @@ from hypothesis import given
 from tests.oracle.running import EAST, EAST_PLAN, TWO_PLANNED, Run, corridor, line, save, solution, town
 
 import carp_reference
-from carp_spec import Carp, Plan, RobotId, Solution, check, plan_cost
+from carp_spec import Carp, Plan, RobotId, Solution, plan_cost, violations_of
 from carp_spec.documents.instances import read_instance
 from carp_spec.documents.query_certificates import QueryCertificateDocument
 from carp_spec.documents.solutions import read_solution
-from carp_spec import Carp, Plan, RobotId, Solution, plan_cost, violations_of
 from carp_verify.bound.rules import ContradictionError
 from carproof.engines import engine_named
 from carproof.generate import Fleet, Grid, grid_instance

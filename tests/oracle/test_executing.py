@@ -8,10 +8,9 @@ from hypothesis import given, settings
 from tests.oracle.running import Document, Outcome, Run, line, save, solution, town
 from tests.profiles import draws
 
-from carp_spec import Solution, check, check_update, judge
+from carp_spec import Solution, check_update, judge, violations_of
 from carp_spec.documents.instances import read_instance
 from carp_spec.documents.solutions import read_solution, read_trace
-from carp_spec import Solution, Visit, check_update, judge, violations_of
 from carp_spec.execution.execution_rules import is_acyclic, trace_violations
 from carproof.engines import engine_named
 from carproof.execution.delays import Delay

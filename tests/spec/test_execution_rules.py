@@ -18,9 +18,8 @@ from tests.spec.making import (
     solution_of,
 )
 
-from carp_spec import Instance, Plan, Refusal, Solution, Visit, check
-from carp_spec.documents.solutions import read_trace, trace_document, write_trace
 from carp_spec import Instance, Plan, Refusal, Solution, Visit, violations_of
+from carp_spec.documents.solutions import read_trace, trace_document, write_trace
 from carp_spec.execution.dependencies import Dependency, Node, dependencies, shortest_cycle
 from carp_spec.execution.execution_rules import is_acyclic, trace_violations
 from carp_spec.execution.traces import Trace

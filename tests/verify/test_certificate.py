@@ -8,10 +8,9 @@ from hypothesis import given, settings
 from tests.oracle.running import Run
 from tests.profiles import draws
 
-from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Solution, Visit, check
+from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Solution, Visit, violations_of
 from carp_spec.documents.instances import write_instance
 from carp_spec.documents.solutions import write_solution
-from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Solution, Visit, violations_of
 from carp_verify import certificate
 from carp_verify.certificate import Breach, certify, certify_together
 from carp_verify.lemmas.smt import Solver, Undecided

@@ -7,9 +7,8 @@ from typing import Any
 
 import click
 
-from carp_spec import Refusal, check
-from carp_spec.documents.solutions import write_solution
 from carp_spec import Refusal, violations_of
+from carp_spec.documents.solutions import write_solution
 from carp_spec.inputs.options import require_polish_options
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import naming, read_instance_file

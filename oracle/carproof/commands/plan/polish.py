@@ -8,9 +8,8 @@ from time import perf_counter
 import click
 
 from carp_optimized.improve.many_starts import polish_many
-from carp_spec import Instance, Refusal, Solution, check, total_cost
-from carp_spec.documents.solutions import write_solution
 from carp_spec import Instance, Refusal, Solution, total_cost, violations_of
+from carp_spec.documents.solutions import write_solution
 from carp_spec.inputs.options import require_polish_options
 from carp_spec.polish_rules import ITERATIONS, last_round
 from carp_spec.requests import sound_solution

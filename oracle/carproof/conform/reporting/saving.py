@@ -9,10 +9,9 @@ from xml.sax.saxutils import escape
 import click
 import msgspec
 
-from carp_spec import Refusal, Solution, check
+from carp_spec import Refusal, Solution, violations_of
 from carp_spec.documents.instances import instance_document, write_instance
 from carp_spec.documents.solutions import solution_of, write_solution
-from carp_spec import Refusal, Solution, violations_of
 from carp_spec.execution.traces import Trace
 from carproof.command_line.files import write_whole
 from carproof.conform.answers import Answer
