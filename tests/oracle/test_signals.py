@@ -120,7 +120,7 @@ def test_a_signal_ends_a_search_and_the_one_beside_it(number: signal.Signals, to
 
 EARLY = """
 import os, sys
-from carproof import start
+from carproof.entry import start
 
 class Interrupting:
     def find_spec(self, name, *_):

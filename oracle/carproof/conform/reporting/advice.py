@@ -31,6 +31,7 @@ _ADVICE = {
     "program/in-time": "Bound the search by a horizon: where no plan exists, it must end as well.",
     "program/response": "Write one line of JSON for each request, flush it, and write all else to standard error.",
     "program/result": "Compare the fields and their types with the schema of the op's result.",
+    "program/questions": "Name a level and features that carproof conform --help lists.",
     "program/accepts": "Answer what you do not offer by skipped, or leave the op out of start.",
     "document": "Validate the document by the JSON Schema of its format.",
     "instance": "Mend the instance at the field that the message names.",
