@@ -168,7 +168,7 @@ kernel:
 kernel-mutants: kernel
 	$(PYTHON) -m tests.verify.kernel_mutants
 
-# Break the kernel's driver in one place after the other, and list what no test notices: an hour or two.
+# Break the kernel's driver in one place after the other, and list what no test notices: hours.
 # tests/verify/kernel_driver_survivors.md explains what is left.
 kernel-driver-mutants: install kernel
 	nice $(BIN)/python -m tests.verify.kernel_driver_mutants

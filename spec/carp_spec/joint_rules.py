@@ -25,8 +25,8 @@ def capacity_is_kept(instance: Instance, plans: Sequence[Plan]) -> Iterator[Brea
 
 @violation_rule(
     "joint/following",
-    "Where following is forbidden, at no tick are more robots in a resource than its capacity if those count that "
-    "leave it at the tick. Where there is room for one, a robot enters only after a free tick.",
+    "Where following is forbidden, at no tick are more robots in a resource than its capacity; a robot that leaves at "
+    "tick t still counts at t. Where there is room for one, a robot enters only after a free tick.",
     DESIGN,
 )
 def following_is_avoided(instance: Instance, plans: Sequence[Plan]) -> Iterator[Breach]:

@@ -73,14 +73,14 @@ def test_a_wrong_answer_is_kept_with_its_finding() -> None:
     assert (found.skipped, found.effort, found.is_judged) == (None, None, True)
 
 
-def test_a_failure_shows_what_another_of_its_rule_and_category_does_that_has_all_its_features() -> None:
+def test_a_failure_subsumes_another_of_its_rule_and_category_does_that_has_all_its_features() -> None:
     jumps, parked = wrong("plan/move", "it jumps"), replace(QUERY, instance=replace(QUERY.instance, after_goal="park"))
     simple, special = Outcome(QUERY, jumps), Outcome(parked, replace(jumps, message="it jumps too"))
-    assert simple.shows_what(special)
-    assert simple.shows_what(simple)
-    assert not special.shows_what(simple)
+    assert simple.subsumes(special)
+    assert simple.subsumes(simple)
+    assert not special.subsumes(simple)
     for other in (CRASH, *(wrong(rule, "it jumps") for rule in ("plan/goal", "plan/start"))):
-        assert not simple.shows_what(Outcome(parked, other))
+        assert not simple.subsumes(Outcome(parked, other))
 
 
 @pytest.mark.parametrize("seconds", [None, 0.5])

@@ -98,7 +98,7 @@ class Report:
         found = ([] if self.smallest is None else [self.smallest]) + self.outcomes
         distinct: list[Outcome] = []
         for outcome in sorted(found, key=lambda outcome: outcome.case.size):
-            if outcome.finding is not None and not any(each.shows_what(outcome) for each in distinct):
+            if outcome.finding is not None and not any(each.subsumes(outcome) for each in distinct):
                 distinct.append(outcome)
         return distinct
 

@@ -59,8 +59,8 @@ class Outcome:
         """Whether the case was answered, rightly or wrongly."""
         return self.skipped is None
 
-    def shows_what(self, other: "Outcome") -> bool:
-        """Whether another failure shows nothing more: of the same rule and category, with all features of this one."""
+    def subsumes(self, other: "Outcome") -> bool:
+        """Same rule and category, and at least this failure's features."""
         assert self.finding is not None  # noqa: S101 - both are failures
         assert other.finding is not None  # noqa: S101
         is_alike = self.finding.key == other.finding.key
