@@ -4,7 +4,7 @@ import os
 from collections.abc import Sequence
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from tests.optimized.test_replanning import fleet_of
 from tests.profiles import draws
@@ -47,7 +47,7 @@ def reasons_among(fleet: PlannedFleet, robot: int, record: int, latest: int, pla
     return [plan for member, plan in enumerate(plans) if found >> member & 1 == 1]
 
 
-@settings(max_examples=draws(100))
+@settings(max_examples=draws(100), suppress_health_check=[HealthCheck.filter_too_much])
 @given(fleets_under_way(SIZES), st.data())
 def test_a_query_does_the_same_without_plans_that_are_no_reasons(under_way: FleetUnderWay, data: st.DataObject) -> None:
     instance, plans = under_way.instance, under_way.solution.plans
