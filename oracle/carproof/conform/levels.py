@@ -35,7 +35,7 @@ class Level(IntEnum):
 
 _STATEMENTS = {
     Level.SOUND: "no plan breaks a rule",
-    Level.COMPLETE_IN_CONTEXT: "a robot is left unplanned only if the earlier plans leave it no plan",
+    Level.COMPLETE_IN_CONTEXT: "a robot is left out only if earlier plans leave no plan",
     Level.CONTEXT_OPTIMAL: "each plan arrives as early as the plans before it allow",
     Level.COMPLETE: "no robot is left out where all can have plans",
     Level.OPTIMAL: "the total cost is the least that carproof's search finds",
