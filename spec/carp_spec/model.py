@@ -11,9 +11,9 @@ from collections import deque
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Literal, TypeAlias
+from typing import Annotated, Literal, TypeAlias
 
-from carp_spec.shapes import of_shape
+from carp_spec.shapes import Number, of_shape
 
 ResourceId: TypeAlias = str | int
 RobotId: TypeAlias = str | int
@@ -31,8 +31,8 @@ class Resource:
     """
 
     id: ResourceId
-    capacity: int = 1
-    duration: int = 1
+    capacity: Annotated[int, Number(1, "capacities")] = 1
+    duration: Annotated[int, Number(1, "durations")] = 1
     x: int | None = None
     y: int | None = None
 
@@ -81,8 +81,8 @@ class Robot:
     id: RobotId
     start: ResourceId
     goal: ResourceId
-    release: int = 0
-    pace: int = 1
+    release: Annotated[int, Number(0, "releases")] = 0
+    pace: Annotated[int, Number(1, "paces")] = 1
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,20 +1,42 @@
 """The types of values: where a value departs from the annotations of its class, at the path of its document."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import is_dataclass
+from dataclasses import dataclass, is_dataclass
 from functools import cache, wraps
 from reprlib import repr as shown
 from types import NoneType
-from typing import Any, TypeVar, cast, get_args, get_origin
+from typing import Annotated, Any, TypeVar, cast, get_args, get_origin
 
 from carp_spec.refusal import Refusal
 
 T = TypeVar("T")
 SHAPE = "document/shape"
-PATHS = {"resources": ".nodes", "resource": "[0]", "enter": "[1]", "leave": "[2]"}
+PATHS = {
+    "ResourceGraph.resources": ".nodes",
+    "Visit.resource": "[0]",
+    "Visit.enter": "[1]",
+    "Visit.leave": "[2]",
+}
 """The fields that have another path than their name."""
 ENDS = (".source", ".target")
 WORDS = {str: "a string", int: "a whole number", bool: "true or false", NoneType: "None"}
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """Of a whole number of the model: the least that it can be, and the feature of an instance in which it is more.
+
+    It annotates the type of a field. Schemas, random drawing, features and smaller questions follow from it.
+    """
+
+    least: int
+    feature: str | None = None
+
+
+def numbers_of(kind: type[Any]) -> Mapping[str, Number]:
+    """The whole numbers of a class of the model, by the names of their fields."""
+    annotations = kind.__annotations__.items()
+    return {name: each for name, of in annotations for each in get_args(of) if isinstance(each, Number)}
 
 
 def require_shape(value: object, kind: Any, path: str = "$") -> None:  # noqa: ANN401 - any type
@@ -26,7 +48,7 @@ def require_shape(value: object, kind: Any, path: str = "$") -> None:  # noqa: A
     is_list = ... in kinds
     if given is not None and isinstance(value, kind):
         for name, of in given.items():
-            require_shape(getattr(value, name), of, path + PATHS.get(name, f".{name}"))
+            require_shape(getattr(value, name), of, path + PATHS.get(f"{kind.__name__}.{name}", f".{name}"))
     elif is_tuple and type(value) is tuple and (is_list or len(value) == len(kinds)):
         for place, each in enumerate(() if _are(value, kinds[0]) else value):
             require_shape(each, kinds[0], path + (f"[{place}]" if is_list else ENDS[place]))
@@ -59,6 +81,8 @@ def _word(kind: Any) -> str:  # noqa: ANN401 - a type, or a value of a `Literal`
 @cache
 def _parts(kind: Any) -> tuple[tuple[Any, ...], bool, Mapping[str, Any] | None]:  # noqa: ANN401 - any type
     """The types that a type is made of, whether it is a tuple, and the fields that the maker of a class gives."""
+    if get_origin(kind) is Annotated:
+        return _parts(get_args(kind)[0])
     given = None
     if is_dataclass(kind):
         names = cast("tuple[str, ...]", cast("Any", kind).__match_args__)
