@@ -30,7 +30,7 @@ class Number:
     """
 
     least: int
-    feature: str | None = None
+    feature: str
 
 
 def numbers_of(kind: type[Any]) -> Mapping[str, Number]:

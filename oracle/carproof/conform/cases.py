@@ -1,9 +1,11 @@
 """A case: one question to a program. It holds nothing of the answer."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, Literal, TypeAlias
 
-from carp_spec import Instance, Neighbourhood, Planner, RobotId, Solution
+from carp_spec import Instance, Neighbourhood, Planner, Resource, ResourceId, Robot, RobotId, Solution
+from carp_spec.shapes import Number, numbers_of
 from carproof.engines import Engine, engine_named
 from carproof.protocol.ops import OPS
 from carproof.protocol.ops import op as wire
@@ -20,6 +22,27 @@ POLISH_ROUNDS = 30
 NO_PLANS = Solution((), ())
 MOST_ROBOTS, MOST_RESOURCES = 8, 24
 """Of a small instance, about which the reference is asked."""
+
+
+@dataclass(frozen=True, slots=True)
+class NumberOf:
+    """A number of the robots or of the resources of an instance."""
+
+    kind: type[Robot | Resource]
+    name: str
+    number: Number
+
+    def parts(self, instance: Instance) -> Sequence[Robot | Resource]:
+        """The robots or the resources."""
+        return instance.robots if self.kind is Robot else instance.graph.resources
+
+    def values(self, instance: Instance) -> Mapping[ResourceId, int]:
+        """The number of each that has more than the least."""
+        values = ((each.id, getattr(each, self.name)) for each in self.parts(instance))
+        return {id: value for id, value in values if value > self.number.least}
+
+
+NUMBERS = tuple(NumberOf(kind, *each) for kind in (Robot, Resource) for each in numbers_of(kind).items())
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,25 +8,16 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Literal, TypeAlias, TypeVar
+from typing import TypeAlias, TypeVar
 
 from carp_reference.execution import order_of
-from carp_spec import Instance, Plan, Refusal, ResourceGraph, ResourceId, RobotId, Visit
+from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, ResourceId, RobotId, Visit
 from carp_spec.requests import sound_solution
-from carproof.conform.cases import EXECUTION, Case
+from carproof.conform.cases import EXECUTION, NUMBERS, Case, NumberOf
 from carproof.execution.delays import stuck
 
 Edit: TypeAlias = Callable[[Case], Case | None]
-Kind: TypeAlias = Literal["resources", "robots"]
 T = TypeVar("T")
-
-NUMBERS: Sequence[tuple[Kind, str, int]] = (
-    ("robots", "release", 0),
-    ("robots", "pace", 1),
-    ("resources", "capacity", 1),
-    ("resources", "duration", 1),
-)
-"""The numbers of an instance, with the least that each can be."""
 LONG_ID = 8
 
 
@@ -259,31 +250,31 @@ def _numbered(case: Case) -> Case | None:
 def _smaller_numbers(case: Case) -> Iterable[Edit]:
     """Each number of resources and robots, for many at once and then alone."""
 
-    def edit(kind: Kind, name: str, least: int, some: frozenset[RobotId], step: int, case: Case) -> Case:
-        return _with_numbers(case, kind, name, dict.fromkeys(some, -step), least)
+    def edit(of: NumberOf, some: frozenset[RobotId], step: int, case: Case) -> Case:
+        return _with_numbers(case, of, dict.fromkeys(some, -step))
 
-    for kind, name, least in NUMBERS:
-        parts = case.instance.robots if kind == "robots" else case.instance.graph.resources
-        values = {each.id: getattr(each, name) for each in parts if getattr(each, name) > least}
+    for of in NUMBERS:
+        values = of.values(case.instance)
         for some in _chunks([*values]):
-            steps = _steps(max(values[id] for id in some), least)
-            yield from (partial(edit, kind, name, least, some, step) for step in steps)
+            steps = _steps(max(values[id] for id in some), of.number.least)
+            yield from (partial(edit, of, some, step) for step in steps)
 
 
-def _with_numbers(case: Case, kind: Kind, name: str, change: Mapping[ResourceId, int], least: int) -> Case:
+def _with_numbers(case: Case, of: NumberOf, change: Mapping[ResourceId, int]) -> Case:
     """The question with some numbers changed, no lower than the least; who is released sooner waits at the start."""
 
     def changed(each: T, id: ResourceId) -> T:
         if id not in change:
             return each
-        return replace(each, **{name: max(least, getattr(each, name) + change[id])})  # type: ignore[type-var]
+        value = max(of.number.least, getattr(each, of.name) + change[id])
+        return replace(each, **{of.name: value})  # type: ignore[type-var]
 
     instance = case.instance
-    if kind == "resources":
+    if of.kind is Resource:
         resources = tuple(changed(each, each.id) for each in instance.graph.resources)
         return _made(case, replace(instance, graph=replace(instance.graph, resources=resources)), case.solution.plans)
     instance = replace(instance, robots=tuple(changed(each, each.id) for each in instance.robots))
-    if name != "release" or case.op == "check":
+    if of.name != "release" or case.op == "check":
         return _made(case, instance, case.solution.plans)
     plans = []
     for plan in case.solution.plans:

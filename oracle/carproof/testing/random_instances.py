@@ -1,6 +1,6 @@
 """Random questions for both engines, small and fast to draw; equal numbers, equal question."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import TypeAlias, TypeVar
@@ -23,6 +23,7 @@ from carp_spec import (
 )
 from carp_spec.permutations import shuffle, splitmix64
 from carp_spec.planners import LARGEST_SEED
+from carp_spec.shapes import numbers_of
 from carproof.testing.timing import path_between, timed_plan
 
 T = TypeVar("T")
@@ -111,9 +112,8 @@ def draw_instance(draw: Draw, mix: Mix = SMALL) -> Instance:
     resources = tuple(
         Resource(
             id,
-            1 if simple else draw.one_of(mix.capacities),
-            1 if simple else draw.one_of(mix.durations),
-            *((None, None) if draw.happens(8) else (draw.between(-2, 3), draw.between(-2, 3))),
+            **_numbers(draw, mix, Resource, lambda: simple),
+            **({} if draw.happens(8) else {"x": draw.between(-2, 3), "y": draw.between(-2, 3)}),
         )
         for id in ids
     )
@@ -126,13 +126,18 @@ def draw_instance(draw: Draw, mix: Mix = SMALL) -> Instance:
             id,
             start,
             goals[place] if goals else draw.one_of(ids),
-            0 if simple or draw.happens(2) else draw.one_of(mix.releases),
-            1 if simple or draw.happens(2) else draw.one_of(mix.paces),
+            **_numbers(draw, mix, Robot, lambda: simple or draw.happens(2)),
         )
         for place, (id, start) in enumerate(zip(draw_ids(draw, count), starts, strict=False))
     )
     policies: tuple[AfterGoal, ...] = ("vanish", "park")
     return Instance(graph, robots, draw.one_of(policies))
+
+
+def _numbers(draw: Draw, mix: Mix, kind: type[Resource | Robot], is_least: Callable[[], bool]) -> dict[str, int]:
+    """The numbers of a resource or a robot by their names; the mix has the values of each under its feature."""
+    numbers = numbers_of(kind).items()
+    return {name: each.least if is_least() else draw.one_of(getattr(mix, each.feature)) for name, each in numbers}
 
 
 def draw_ids(draw: Draw, count: int) -> Sequence[str | int]:

@@ -18,6 +18,7 @@ from itertools import permutations
 from hypothesis import strategies as st
 
 from carp_spec import AfterGoal, Instance, Move, Plan, Resource, ResourceGraph, ResourceId, Robot, RobotId, Solution
+from carp_spec.shapes import numbers_of
 from carproof.testing.mutations import MUTATIONS, BrokenSolution
 from carproof.testing.random_instances import FleetUnderWay
 from carproof.testing.timing import path_between, timed_plan
@@ -70,6 +71,12 @@ def _ids(count: int) -> st.SearchStrategy[list[str | int]]:
     return st.permutations(pool).map(lambda ids: ids[:count])
 
 
+def _numbers(kind: type[Resource | Robot], sizes: Sizes) -> st.SearchStrategy[dict[str, int]]:
+    """The numbers of a resource or a robot, by their names."""
+    numbers = numbers_of(kind).items()
+    return st.fixed_dictionaries({name: st.integers(each.least, getattr(sizes, name)) for name, each in numbers})
+
+
 def _positions(count: int) -> st.SearchStrategy[list[tuple[int | None, int | None]]]:
     """Positions for none, all or some of the resources."""
     absent: st.SearchStrategy[tuple[int | None, int | None]] = st.just((None, None))
@@ -81,12 +88,11 @@ def _positions(count: int) -> st.SearchStrategy[list[tuple[int | None, int | Non
 def resource_graphs(draw: st.DrawFn, sizes: Sizes = SMALL) -> ResourceGraph:
     """Resource graphs, most of them connected, from trees to complete ones, directed and undirected."""
     count = draw(st.integers(1, sizes.resources))
-    numbers = st.tuples(st.integers(1, sizes.capacity), st.integers(1, sizes.duration))
-    attributes = draw(st.lists(numbers, min_size=count, max_size=count))
+    attributes = draw(st.lists(_numbers(Resource, sizes), min_size=count, max_size=count))
     ids = draw(_ids(count))
     resources = tuple(
-        Resource(id, capacity, duration, x, y)
-        for id, (capacity, duration), (x, y) in zip(ids, attributes, draw(_positions(count)), strict=True)
+        Resource(id, x=x, y=y, **numbers)
+        for id, numbers, (x, y) in zip(ids, attributes, draw(_positions(count)), strict=True)
     )
     pairs = draw(_pairs(ids))
     if not draw(st.booleans()):
@@ -133,8 +139,8 @@ def instances(
         return draw(st.permutations(places) if apart else alike)
 
     starts, goals = ends(starts_apart), ends(goals_apart)
-    numbers = st.tuples(st.integers(0, sizes.release), st.integers(1, sizes.pace))
-    robots = tuple(Robot(id, start, goal, *draw(numbers)) for id, start, goal in zip(ids, starts, goals, strict=False))
+    numbers = _numbers(Robot, sizes)
+    robots = tuple(Robot(id, start, goal, **draw(numbers)) for id, start, goal in zip(ids, starts, goals, strict=False))
     policies: list[AfterGoal] = ["vanish", "park"]
     return Instance(graph, robots, draw(st.sampled_from(policies)))
 

@@ -23,7 +23,7 @@ from carp_spec import (
     Solution,
     TimeExpanded,
 )
-from carproof.conform.cases import EXECUTION, Case
+from carproof.conform.cases import EXECUTION, NUMBERS, Case
 from carproof.conform.judging.claims import EVERYTHING, Claims
 from carproof.conform.levels import Level
 from carproof.engines import engine_named
@@ -166,13 +166,8 @@ def execution_cases(claims: Claims = EVERYTHING) -> st.SearchStrategy[Case]:
 
 def _claimed(sizes: Sizes, claims: Claims) -> Sizes:
     """The sizes with which few cases have features that are not claimed."""
-    return replace(
-        sizes,
-        capacity=1 if "capacities" in claims.without else sizes.capacity,
-        duration=1 if "durations" in claims.without else sizes.duration,
-        pace=1 if "paces" in claims.without else sizes.pace,
-        release=0 if "releases" in claims.without else sizes.release,
-    )
+    left_out = {each.name: each.number.least for each in NUMBERS if each.number.feature in claims.without}
+    return replace(sizes, **left_out)
 
 
 def random_cases(

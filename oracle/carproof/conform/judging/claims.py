@@ -2,16 +2,19 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 
 from carp_spec import Carp
-from carproof.conform.cases import Case, engine_for
+from carproof.conform.cases import NUMBERS, Case, NumberOf, engine_for
 from carproof.conform.judging.optimum import found_cost
 
+
+def _has_more(of: NumberOf, case: Case) -> bool:
+    return bool(of.values(case.instance))
+
+
 FEATURES: Mapping[str, Callable[[Case], bool]] = {
-    "capacities": lambda case: any(resource.capacity > 1 for resource in case.instance.graph.resources),
-    "durations": lambda case: any(resource.duration > 1 for resource in case.instance.graph.resources),
-    "paces": lambda case: any(robot.pace > 1 for robot in case.instance.robots),
-    "releases": lambda case: any(robot.release > 0 for robot in case.instance.robots),
+    **{each.number.feature: partial(_has_more, each) for each in sorted(NUMBERS, key=lambda each: each.name)},
     "directed": lambda case: case.instance.graph.directed,
     "park": lambda case: case.instance.after_goal == "park",
     "vanish": lambda case: case.instance.after_goal == "vanish",
