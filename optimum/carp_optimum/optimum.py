@@ -15,14 +15,18 @@ from carp_optimum.narrowing import half_narrowed, narrowed
 from carp_optimum.sat.between import Between
 from carp_optimum.sat.core_guided import CoreGuided, Optimum, core_guided
 from carp_spec import Instance
-from carp_spec.inputs.options import SEARCH_SECONDS
+from carp_spec.inputs.options import PROCESSES, SEARCH_SECONDS
 
 WORK_OF_WAITING = 1_000_000
 """The work after which it is asked for what was found in the other half of a crowd, once this one has ended."""
 
 
 def optimum(
-    instance: Instance, limit: float = SEARCH_SECONDS, clock: Callable[[], int] = monotonic_ns, *, processes: int = 1
+    instance: Instance,
+    limit: float = SEARCH_SECONDS,
+    clock: Callable[[], int] = monotonic_ns,
+    *,
+    processes: int = PROCESSES,
 ) -> Optimum:
     """Search for the optimum for at most `limit` seconds. Raises `Refusal` if the formula outgrows the memory.
 

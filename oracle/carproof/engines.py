@@ -1,6 +1,7 @@
 """The planners to choose from, each loaded when it is first used."""
 
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from importlib import import_module
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Protocol, cast
@@ -119,6 +120,25 @@ def fastest_with(planner: Planner) -> str:
     from carp_optimized import PLANNERS as COMPILED  # noqa: PLC0415 - loaded when it is first used
 
     return "optimized" if isinstance(planner, COMPILED) else "reference"
+
+
+def repairs_by_default(planner: Planner) -> bool:
+    """Whether robots that the planner leaves out are repaired where nobody says: not after planners of the literature.
+
+    The neighbourhood planner is one of them without its baseline, as the paper has it.
+    """
+    return isinstance(planner, Neighbourhood) and planner.baseline
+
+
+def repaired(instance: Instance, solution: Solution) -> Solution:
+    """The solution with plans of the robots left out, if they are found; others may get new plans."""
+    if solution.unplanned:
+        from carp_optimized.improve.repair import repair  # noqa: PLC0415 - numba is slow to load
+
+        compile_what_is_kept()
+        with suppress(Refusal):  # numbers that only the reference holds
+            return repair(instance, solution)
+    return solution
 
 
 def sum_of_shortest_paths(instance: Instance, robots: Iterable[RobotId], fleet: "PlannedFleet | None" = None) -> int:

@@ -14,12 +14,13 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 
 import pytest
 
+from carproof.conform.levels import EXAMPLES, LARGE_SECONDS
+
 if TYPE_CHECKING:
     from carp_spec import Instance, Solution
     from carproof.conform.run import Report
 
 LevelName = Literal["sound", "complete-in-context", "context-optimal", "complete", "optimal"]
-EXAMPLES = 200
 FOLDER = "conform-failure"
 
 
@@ -68,7 +69,7 @@ class Conformance:
         *,
         without: Collection[str] = (),
         solvable: bool = False,
-        large: float = 0.0,
+        large: float = LARGE_SECONDS,
     ) -> None:
         """Fail the test if the planner does not conform to the level.
 

@@ -17,11 +17,14 @@ from tests.oracle.running import (
     Document,
     Outcome,
     Run,
+    asked,
     corridor,
     save,
     solution,
     town,
 )
+
+import carproof as public
 
 HAS_NO_WAY = "the committed plans leave no way to its goal"
 
@@ -171,7 +174,12 @@ def swapping_at_a_pocket() -> Document:
 
 @pytest.mark.usefixtures("pocket")
 @pytest.mark.parametrize(
-    ("options", "name"), [("", "neighbourhood, repaired"), ("--planner carp --repair", "carp, repaired")]
+    ("options", "name"),
+    [
+        ("", "neighbourhood, repaired"),
+        ("--m 2", "neighbourhood, repaired"),
+        ("--planner carp --repair", "carp, repaired"),
+    ],
 )
 def test_plan_leaves_nobody_out_as_it_is_first_called(carproof: Run, options: str, name: str) -> None:
     outcome = carproof(f"plan pocket.json {options}")
@@ -185,6 +193,21 @@ def test_the_pure_result_of_a_planner_is_not_repaired(carproof: Run, options: st
     outcome = carproof(f"plan pocket.json {options}")
     assert outcome.code == 1
     assert "repaired" not in outcome.stdout
+
+
+def test_python_and_the_op_repair_as_the_command_does_but_an_op_gives_the_plans_of_a_planner_that_it_names(
+    pocket: Document,
+) -> None:
+    instance = public.read_instance(json.dumps(pocket).encode())
+    for planner, left_out in (
+        (None, 0),
+        (public.Neighbourhood(m=2), 0),
+        (public.Neighbourhood(baseline=False), 1),
+        (public.Carp(), 1),
+    ):
+        assert len(public.plan(instance, planner).unplanned) == left_out
+    for fields, left_out in (({}, 0), ({"m": 2}, 1), ({"planner": "neighbourhood"}, 1)):
+        assert len(asked("plan", instance=pocket, **fields)["result"]["unplanned"]) == left_out
 
 
 @pytest.mark.usefixtures("pocket")

@@ -23,7 +23,7 @@ from carproof import Delay, Plan, Refusal, Resource, ResourceGraph, Robot, Solut
 from carproof.conform.run import Options
 from carproof.entry.cli import carproof as command
 from carproof.protocol.ops import planning, searching
-from carproof.pytest_plugin import EXAMPLES
+from carproof.pytest_plugin import Conformance
 
 ROOT = Path(__file__).parents[2]
 INSTANCE = lane()
@@ -182,7 +182,7 @@ def test_what_is_not_lawful_is_not_executed() -> None:
 
 
 def test_a_function_is_judged() -> None:
-    assert carproof.conforms(carproof.plan, examples=5).findings == []
+    assert carproof.conforms(carproof.plan, examples=5, large=1).findings == []
     assert carproof.conforms(lambda _: PLANNED, examples=5).conforms is False
     with pytest.raises(Refusal, match="it must be one of sound, "):
         carproof.conforms(carproof.plan, level="fast")  # type: ignore[arg-type]
@@ -223,7 +223,13 @@ def test_defaults_are_the_same_in_python_on_the_command_line_and_in_ops() -> Non
         (of_function(carproof.plan, "repair"), of_command("plan", "repair")),
         (of_function(carproof.conforms, "examples"), of_command("conform", "number"), Options().examples),
         (of_function(carproof.conforms, "level"), of_command("conform", "level")),
-        (EXAMPLES, of_command("conform", "number")),
+        (
+            of_function(carproof.conforms, "large"),
+            of_command("conform", "large"),
+            of_function(Conformance.conforms, "large"),
+        ),
+        (of_function(Conformance.conforms, "examples"), of_command("conform", "number")),
+        (of_function(carproof.optimum, "processes"), of_command("optimum", "processes")),
         (
             of_function(carproof.instance_from_array, "after_goal"),
             of_function(carproof.instance_from_networkx, "after_goal"),

@@ -58,8 +58,8 @@ def pytest_of_another_project(folder: Path, *tests: str) -> subprocess.Completed
 def test_planners_that_are_right_pass(tmp_path: Path) -> None:
     done = pytest_of_another_project(
         tmp_path,
-        'carproof.conforms(right, level="context-optimal", examples=30, seed=3)',
-        "carproof.conforms(right_documents, examples=20, documents=True)",
+        'carproof.conforms(right, level="context-optimal", examples=30, seed=3, large=1)',
+        "carproof.conforms(right_documents, examples=20, documents=True, large=0)",
     )
     assert "2 passed" in done.stdout, done.stdout
 
@@ -104,7 +104,7 @@ def test_all_findings_are_saved_and_asked_first_by_the_next_run(tmp_path: Path) 
 @pytest.mark.parametrize(
     ("test", "reason"),
     [
-        ('carproof.conforms(gives_up, level="sound")', "it gave up"),
+        ('carproof.conforms(gives_up, level="sound", large=0)', "it gave up"),
         ('carproof.conforms(right, level="sound", examples=0)', "no random case decided it"),
     ],
 )

@@ -1,29 +1,25 @@
 """Plans of all robots by any planner, and plans of one robot with their certificates."""
 
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 
-from carp_spec import Instance, Plan, Planner, Refusal, RobotId, Solution
+from carp_spec import Instance, Plan, Planner, RobotId, Solution
 from carp_spec.documents.query_certificates import QueryCertificateDocument
 from carp_spec.planners import BY_DEFAULT
 from carp_spec.requests import require_query
 from carp_verify.limits import require_following
-from carproof.engines import engine_named
+from carproof.engines import engine_named, repaired, repairs_by_default
 
 
 def plan(instance: Instance, planner: Planner | None = None, *, repair: bool | None = None) -> Solution:
     """Plan all robots of the instance at tick 0, by the neighbourhood planner if none is named.
 
-    With `repair`, robots that the planner leaves out are planned together with others; `None` repairs unless a planner
-    is named. Raises `Refusal` for a malformed instance or planner, and for numbers that are too large.
+    With `repair`, robots that the planner leaves out are planned together with others; `None` repairs after the
+    neighbourhood planner with its baseline. Raises `Refusal` for a malformed instance or planner, and for numbers that
+    are too large.
     """
-    solution = engine_named(None).plan(instance, BY_DEFAULT if planner is None else planner)
-    if solution.unplanned and (planner is None if repair is None else repair):
-        from carp_optimized.improve.repair import repair as repaired  # noqa: PLC0415 - numba is slow to load
-
-        with suppress(Refusal):  # numbers that only the reference holds
-            return repaired(instance, solution)
-    return solution
+    chosen = BY_DEFAULT if planner is None else planner
+    solution = engine_named(None).plan(instance, chosen)
+    return repaired(instance, solution) if (repairs_by_default(chosen) if repair is None else repair) else solution
 
 
 def certified_query(

@@ -8,10 +8,10 @@ from carp_optimum.optimum import optimum as found
 from carp_optimum.sat.core_guided import Optimum
 from carp_spec import Instance, Planner
 from carp_spec.documents.bounds import BoundDocument
-from carp_spec.inputs.options import SEARCH_SECONDS
+from carp_spec.inputs.options import PROCESSES, SEARCH_SECONDS
 
 
-def optimum(instance: Instance, limit: float = SEARCH_SECONDS, *, processes: int = 1) -> Optimum:
+def optimum(instance: Instance, limit: float = SEARCH_SECONDS, *, processes: int = PROCESSES) -> Optimum:
     """Search for the least total cost for at most `limit` seconds.
 
     The answer rests on the solver; `write_proof` writes a proof of it. Two `processes` are faster on two cores, and the

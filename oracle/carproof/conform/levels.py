@@ -7,6 +7,11 @@ There are two kinds of completeness. A prioritized planner can find each robot's
 from collections.abc import Mapping
 from enum import IntEnum
 
+EXAMPLES = 200
+"""The number of random cases, unless one is given."""
+LARGE_SECONDS = 30.0
+"""The time for large cases, unless one is given."""
+
 
 class Level(IntEnum):
     """The level at which a program is judged; each level demands everything that the lower ones demand.

@@ -7,12 +7,11 @@ from carp_spec import Instance, Refusal, Solution
 from carproof.conform.cases import Case
 from carproof.conform.findings import RIGHT_QUESTIONS
 from carproof.conform.judging.claims import FEATURES, Claims
-from carproof.conform.levels import LEVELS, WHOLE_LEVELS
+from carproof.conform.levels import EXAMPLES, LARGE_SECONDS, LEVELS, WHOLE_LEVELS
 from carproof.conform.programs.function import Function, by_documents
 from carproof.conform.run import Options, Report, conform
 from carproof.extras import require
 
-DEFAULTS = Options()
 LevelName: TypeAlias = Literal["sound", "complete-in-context", "context-optimal", "complete", "optimal"]
 """The levels of functions, which plan whole instances."""
 
@@ -20,13 +19,13 @@ LevelName: TypeAlias = Literal["sound", "complete-in-context", "context-optimal"
 def conforms(  # noqa: PLR0913 - the options of the command
     planner: Callable[[Instance], Solution] | Callable[[dict[str, Any]], dict[str, Any]],
     level: LevelName = "sound",
-    examples: int = DEFAULTS.examples,
-    seed: int = DEFAULTS.seed,
+    examples: int = EXAMPLES,
+    seed: int = 0,
     documents: bool = False,
     *,
     without: Collection[str] = (),
     solvable: bool = False,
-    large: float = DEFAULTS.large,
+    large: float = LARGE_SECONDS,
     saved: Sequence[Case] = (),
 ) -> Report:
     """Judge a planner that takes an `Instance` and returns a `Solution`, as `carproof conform` judges a program.

@@ -14,7 +14,7 @@ from carproof.conform.judging.claims import EVERYTHING, Claims
 from carproof.conform.judging.deciding import Extent, Tally, random_shortfalls, smoke_shortfalls
 from carproof.conform.judging.gave_up import Effort
 from carproof.conform.judging.outcome import Outcome, Subject, ask
-from carproof.conform.levels import EXECUTOR_LEVELS, JUDGED_OPS, Level
+from carproof.conform.levels import EXAMPLES, EXECUTOR_LEVELS, JUDGED_OPS, Level
 from carproof.conform.shrinking import SHRINK_SECONDS, FailureSearch
 
 _IN_CONTEXT = Level.COMPLETE_IN_CONTEXT
@@ -35,7 +35,7 @@ class Options:
     """
 
     level: Level = Level.SOUND
-    examples: int = 200
+    examples: int = EXAMPLES
     seed: int = 0
     limit: float = 5.0
     shrink_seconds: float = SHRINK_SECONDS

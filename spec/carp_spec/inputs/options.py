@@ -12,6 +12,8 @@ from carp_spec.rule import DESIGN, Found, fault_rule, is_between
 LARGEST_SAMPLE = 1_000_000
 SEARCH_SECONDS = 60
 """The time of a search for an optimum where none is given."""
+PROCESSES = 1
+"""The processes of a search for an optimum, unless two are asked for."""
 BOUND_SECONDS = 10
 """The time of a search for a bound where neither a time nor a number of steps is given."""
 

@@ -19,7 +19,15 @@ from carproof.command_line.options import examples, json_option, kernel_option
 from carproof.command_line.tables import counted, print_line, print_table, printable, remark
 from carproof.conform.cases import ASKED_OPS
 from carproof.conform.judging.claims import FEATURES, Claims
-from carproof.conform.levels import CLASSICAL_LEVELS, EXECUTOR_LEVELS, LEVELS, WHOLE_LEVELS, Level
+from carproof.conform.levels import (
+    CLASSICAL_LEVELS,
+    EXAMPLES,
+    EXECUTOR_LEVELS,
+    LARGE_SECONDS,
+    LEVELS,
+    WHOLE_LEVELS,
+    Level,
+)
 from carproof.engines import warm
 from carproof.extras import require
 from carproof.formats import ADAPTERS
@@ -59,7 +67,7 @@ _LEVELS = "\n".join(
 )
 @click.argument("program", nargs=-1, required=True, metavar="-- PROGRAM ...")
 @click.option("--level", type=click.Choice(list(LEVELS)), default=Level.SOUND.label, help="The level to judge by.")
-@click.option("--examples", "number", type=click.IntRange(0), default=200, help="The number of random cases.")
+@click.option("--examples", "number", type=click.IntRange(0), default=EXAMPLES, help="The number of random cases.")
 @click.option(
     "--seed",
     type=click.IntRange(0, 2**64 - 1),
@@ -76,7 +84,7 @@ _LEVELS = "\n".join(
 @click.option(
     "--large",
     type=click.FloatRange(0),
-    default=30.0,
+    default=LARGE_SECONDS,
     help="Seconds for large cases, of 10 to 1000 robots; 0: none are asked.",
 )
 @click.option("--shrinking", type=click.FloatRange(0), default=15.0, help="Seconds for shrinking a failure.")

@@ -9,6 +9,7 @@ import click
 from carp_spec import Instance
 from carp_spec.documents.decoding import write
 from carp_spec.documents.solutions import write_solution
+from carp_spec.inputs.options import PROCESSES
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import print_document, read_instance_file, require_following_in, write_whole
 from carproof.command_line.options import examples, instance_argument, json_option, limit_option, output_option
@@ -34,9 +35,7 @@ COLUMNS = ("robots", "shortest paths", "lower bound", "cost", "answer", "time")
 )
 @instance_argument
 @limit_option
-@click.option(
-    "--processes", type=click.IntRange(1, 2), default=2, help="Search in one process, or in two on two cores."
-)
+@click.option("--processes", type=click.IntRange(1, 2), default=PROCESSES, help="Two search faster on two cores.")
 @click.option("--proof", type=click.Path(file_okay=False, path_type=Path), help="Write a proof into this folder.")
 @output_option
 @json_option

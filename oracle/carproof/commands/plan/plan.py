@@ -1,6 +1,5 @@
 """`carproof plan`: plan all robots of an instance."""
 
-from contextlib import suppress
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -23,7 +22,7 @@ from carproof.command_line.options import (
 )
 from carproof.command_line.output import show_solution, write_result
 from carproof.command_line.planning import plan_showing
-from carproof.engines import warm
+from carproof.engines import repaired, repairs_by_default, warm
 from carproof.progress import found_so_far, search_progress
 
 SHORTEST = 0.01
@@ -47,7 +46,7 @@ SHORTEST = 0.01
 @click.option(
     "--repair/--no-repair",
     default=None,
-    help="Plan robots that are left out together with others.  [default: unless --planner or --no-baseline is given]",
+    help="Plan robots that are left out together with others.  [default: after neighbourhood, if not --no-baseline]",
 )
 @click.option("--seconds", type=float, help="Give the best plans found in this time, by all means at hand.")
 @click.option("--iterations", type=int, help="The same by first plans and this many rounds, in place of a time.")
@@ -89,12 +88,9 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     with naming(instance):
         solution, fleet = plan_showing("planning", engine, problem, chosen)
         name = chosen.name
-        if solution.unplanned and (repairs_unasked(context, options) if repair is None else repair):
-            from carp_optimized.improve.repair import repair as repaired  # noqa: PLC0415 - numba is slow to load
-
-            with suppress(Refusal):  # numbers that only the reference holds
-                solution, fleet = repaired(problem, solution), None
-                name += ", repaired"
+        if solution.unplanned and (repairs_by_default(chosen) if repair is None else repair):
+            solution, fleet = repaired(problem, solution), None
+            name += ", repaired"
             for violation in violations_of(problem, solution.plans):
                 raise AssertionError(violation)
     seconds = perf_counter() - started
@@ -102,12 +98,6 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     if not as_json:
         show_solution(problem, solution, name, seconds, fleet)
     return Answer.of(not solution.unplanned)
-
-
-def repairs_unasked(context: click.Context, options: dict[str, Any]) -> bool:
-    """Whether plans are repaired by default: not if a planner is named, nor in paper mode."""
-    is_named = context.get_parameter_source("planner") is not click.core.ParameterSource.DEFAULT
-    return not is_named and options["baseline"] is not False
 
 
 def _refuse_planner_options(context: click.Context) -> None:

@@ -1,6 +1,5 @@
 """`carproof polish`: improve a solution by replanning neighbourhoods."""
 
-from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from time import perf_counter
@@ -8,7 +7,7 @@ from time import perf_counter
 import click
 
 from carp_optimized.improve.many_starts import polish_many
-from carp_spec import Instance, Refusal, Solution, total_cost, violations_of
+from carp_spec import Instance, Solution, total_cost, violations_of
 from carp_spec.documents.solutions import write_solution
 from carp_spec.inputs.options import require_polish_options
 from carp_spec.polish_rules import ITERATIONS, last_round
@@ -19,7 +18,7 @@ from carproof.command_line.foreign import Problem, solution_files
 from carproof.command_line.options import examples, gives_plans
 from carproof.command_line.output import show_unplanned, write_result
 from carproof.command_line.tables import print_table
-from carproof.engines import engine_named, sum_of_shortest_paths, warm
+from carproof.engines import engine_named, repaired, sum_of_shortest_paths, warm
 from carproof.progress import found_so_far, gap, search_progress
 
 COLUMNS = ("plans", "unplanned", "total cost", "bound", "gap", "rounds", "time")
@@ -99,11 +98,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
         if starts > 1:
             improve = partial(polish_many, engine_named(engine or "optimized").polish, starts)
         after = improve(instance, before, iterations=iterations, seconds=seconds, seed=seed, advance=advance)
-        if after.unplanned and seconds is None:
-            from carp_optimized.improve.repair import repair  # noqa: PLC0415 - numba is slow to load
-
-            with suppress(Refusal):  # numbers that only the reference holds
-                after = repair(instance, after)
+        if seconds is None:
+            after = repaired(instance, after)
     time = perf_counter() - started
     for violation in violations_of(instance, after.plans):
         raise AssertionError(violation)

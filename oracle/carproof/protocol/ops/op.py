@@ -62,9 +62,11 @@ def _neighbourhood(request: Request) -> Planner:
     return planner_named(Neighbourhood.name, request.options())
 
 
-def _planner(request: Request) -> Planner:
-    name = request.take("planner", value_of(str)) if "planner" in request else Neighbourhood.name
-    return planner_named(name, request.options())
+def _planner(request: Request) -> Planner | None:
+    if "planner" in request:
+        return planner_named(request.take("planner", value_of(str)), request.options())
+    options = request.options()
+    return planner_named(Neighbourhood.name, options) if options else None
 
 
 def _polish_options(request: Request) -> PolishOptions:

@@ -8,7 +8,7 @@ from carp_spec import Instance, Neighbourhood, Plan, Planner, ResourceId, RobotI
 from carp_spec.documents.solutions import visits_document
 from carp_spec.planners import BY_DEFAULT
 from carp_spec.requests import require_new_robot, require_robot, require_tick
-from carproof.engines import Engine, warm
+from carproof.engines import Engine, repaired, warm
 from carproof.protocol.ops.op import PolishOptions
 from carproof.requests import inside, sound_within
 
@@ -60,9 +60,14 @@ class PlanRequest:
 
 
 def plan(request: PlanRequest, engine: Engine) -> Solution:
-    """Plan all robots."""
+    """Plan all robots: exactly as the planner does, if it or one of its options is named.
+
+    Otherwise robots that are left out are planned together with others.
+    """
     with inside("$.instance"):
-        return engine.plan(request.instance, request.planner or BY_DEFAULT)
+        if request.planner is not None:
+            return engine.plan(request.instance, request.planner)
+        return repaired(request.instance, engine.plan(request.instance, BY_DEFAULT))
 
 
 @dataclass(frozen=True, slots=True)
