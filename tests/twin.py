@@ -30,4 +30,4 @@ def find_plan_by_ticks(
 def allows(table: Table, visits: Sequence[Visit]) -> bool:
     """Whether one more robot could make these visits."""
     stays = all(table.is_free_during(visit.resource, visit.enter, visit.leave) for visit in visits)
-    return stays and not any((to.resource, at.resource, to.enter) in table.moves for at, to in pairwise(visits))
+    return stays and not any(table.is_exchange(to.enter, at.resource, to.resource) for at, to in pairwise(visits))

@@ -22,7 +22,7 @@ from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument
 from carp_spec.documents.instances import digest
 from carp_spec.inputs.options import BOUND_SECONDS, require_limits
 from carp_spec.inputs.values import require_instance
-from carp_verify.limits import require_following
+from carp_spec.limits import refuse
 
 if TYPE_CHECKING:
     from carp_optimum.claims.cut_search import CutSearch
@@ -131,7 +131,7 @@ def lower_bound(
 def _require(instance: Instance, **limits: float | None) -> None:
     require_instance(instance)
     require_limits(**limits)
-    require_following(instance)
+    refuse(instance, "following", "groups")
 
 
 def _limit(seconds: float | None, steps: int | None, parts: int, clock: Callable[[], int]) -> Callable[[int], None]:

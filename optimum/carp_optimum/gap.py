@@ -27,8 +27,8 @@ from carp_spec import (
     total_cost,
 )
 from carp_spec.inputs.options import SEARCH_SECONDS
+from carp_spec.limits import refuse
 from carp_verify.bound.rules import require_kept
-from carp_verify.limits import require_following
 from carp_verify.optimum.encoding import Encoding
 from carp_verify.optimum.rules import MOST_ORDERED, refuse_size
 
@@ -80,7 +80,7 @@ def best_order(instance: Instance, limit: float, floor: int = 0) -> int | None:
     than `floor`; if an order reaches it, the others are not tried. Raises `TimeOver` after `limit` seconds, and
     `Refusal` for more than `MOST_ORDERED` robots.
     """
-    require_following(instance)
+    refuse(instance, "following", "groups")
     refuse_size("the robots whose orders are all tried", len(instance.robots), MOST_ORDERED)
     encoding = Encoding(instance)
     if encoding.wayless:

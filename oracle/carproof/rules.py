@@ -3,10 +3,10 @@
 from typing import Any
 
 from carp_spec import Rule
+from carp_spec.limits import following_is_allowed, groups_are_absent
 from carp_spec.planners import ticks_are_held
 from carp_verify.bound.rules import BOUND_RULES
 from carp_verify.kernel import KERNEL_RULES
-from carp_verify.limits import following_is_allowed
 from carp_verify.optimum.rules import OPTIMUM_RULES
 from carp_verify.query.rules import QUERY_CERTIFICATE_RULES
 from carproof.conform.findings import PROGRAM_RULES
@@ -25,6 +25,7 @@ ALL_RULES: tuple[Rule[..., Any] | Code, ...] = (
     *RULES,
     ticks_are_held,
     following_is_allowed,
+    groups_are_absent,
     INSTALLED,
     *REQUEST_RULES,
     delays_are_right,

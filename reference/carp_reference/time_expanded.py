@@ -3,33 +3,46 @@
 It shares no code with the query over windows, which is tested against it: both find the same tick of arrival.
 """
 
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from heapq import heappop, heappush
 from itertools import count, groupby, pairwise
 
-from carp_spec import Instance, Plan, Refusal, ResourceId, RobotId, Visit
+from carp_spec import Group, Instance, Move, Plan, Refusal, ResourceId, RobotId, Visit
 from carp_spec.planners import LARGEST_TABLE, ticks_are_held
 
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """The committed plans tick by tick; nothing changes from the tick `still` on."""
+    """The committed plans tick by tick, by constraint; nothing changes from the tick `still` on."""
 
     instance: Instance
-    occupied: Counter[tuple[ResourceId, int]]
-    moves: frozenset[tuple[ResourceId, ResourceId, int]]
+    constraints: Sequence[Group]
+    occupied: Counter[tuple[int, int]]
+    moves: Mapping[int, Sequence[Move]]
     still: int
 
     def is_free(self, resource: ResourceId, tick: int) -> bool:
         """Whether one more robot may occupy the resource at the tick."""
-        return self.occupied[resource, min(tick, self.still)] < self.instance.graph.resource[resource].capacity
+        return all(
+            self.occupied[each, min(tick, self.still)] < self.constraints[each].capacity
+            for each in self.instance.graph.constraints_of(resource)
+        )
 
     def is_free_during(self, resource: ResourceId, enter: int, leave: int | None) -> bool:
         """Whether one more robot may occupy the resource in [enter, leave), and a tick longer without following."""
         last = max(enter, self.still) + 1 if leave is None else leave + self.instance.gap
         return all(self.is_free(resource, tick) for tick in range(enter, last))
+
+    def is_exchange(self, tick: int, source: ResourceId, target: ResourceId) -> bool:
+        """Whether a committed robot moves at the tick from next to the target to next to the source."""
+        back = self.moves.get(tick, ())
+        return any(self._are_close(target, away) and self._are_close(source, to) for away, to in back)
+
+    def _are_close(self, one: ResourceId, other: ResourceId) -> bool:
+        groups = self.instance.graph.groups
+        return one == other or any(each.capacity == 1 and {one, other} <= {*each.resources} for each in groups)
 
     def may_end(self, robot: RobotId, resource: ResourceId, enter: int) -> bool:
         """Whether a robot that enters the resource at the tick may end there."""
@@ -55,12 +68,20 @@ def table_of(instance: Instance, committed: Sequence[Plan]) -> Table:
     still = max((tick for visit in visits for tick in (visit.enter, visit.leave or 0)), default=0) + instance.gap
     size = sum((still + 1 if visit.leave is None else visit.leave) - visit.enter for visit in visits)
     _refuse_too_many("the committed plans occupy", size)
-    occupied: Counter[tuple[ResourceId, int]] = Counter()
-    for visit in visits:
-        leave = still + 1 if visit.leave is None else visit.leave + instance.gap
-        occupied.update((visit.resource, tick) for tick in range(visit.enter, leave))
-    moves = ((at.resource, to.resource, to.enter) for plan in committed for at, to in pairwise(plan.visits))
-    return Table(instance, occupied, frozenset(moves), still)
+    occupied: Counter[tuple[int, int]] = Counter()
+    moves: dict[int, list[Move]] = defaultdict(list)
+    for plan in committed:
+        occupied.update(
+            {
+                (constraint, tick)
+                for visit in plan.visits
+                for tick in range(visit.enter, still + 1 if visit.leave is None else visit.leave + instance.gap)
+                for constraint in instance.graph.constraints_of(visit.resource)
+            }
+        )
+        for at, to in pairwise(plan.visits):
+            moves[to.enter].append((at.resource, to.resource))
+    return Table(instance, instance.graph.constraints, occupied, moves, still)
 
 
 def _refuse_too_many(what: str, ticks: int) -> None:
@@ -108,7 +129,7 @@ def _next_moments(table: Table, robot: RobotId, moment: Moment) -> Iterator[Mome
         yield Moment(moment.resource, tick, max(moment.rest - 1, 0), False, moment)
     if moment.rest == 0 and (table.instance.following == "allowed" or table.is_free(moment.resource, tick)):
         for target in table.instance.graph.successors[moment.resource]:
-            if table.is_free(target, tick) and (target, moment.resource, tick) not in table.moves:
+            if table.is_free(target, tick) and not table.is_exchange(tick, moment.resource, target):
                 rest = table.instance.duration(robot, target) - 1
                 yield Moment(target, tick, rest, table.may_end(robot, target, tick), moment)
 

@@ -4,6 +4,7 @@ from carp_spec.check import Verdict, check_update, judge, violations_of
 from carp_spec.inputs.costs import plan_cost, total_cost
 from carp_spec.model import (
     AfterGoal,
+    Group,
     Instance,
     Move,
     Plan,
@@ -35,6 +36,7 @@ __all__ = [
     "Fault",
     "FixedPaths",
     "Greedy",
+    "Group",
     "Instance",
     "LongestFirst",
     "Move",

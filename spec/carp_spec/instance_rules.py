@@ -2,13 +2,13 @@
 
 from collections.abc import Iterator, Sequence
 
-from carp_spec.model import Instance, Resource, Robot
+from carp_spec.model import Group, Instance, Resource, Robot
 from carp_spec.rule import DESIGN, MORS, Fault, Found, Rule, fault_rule, is_whole
 
 PAPER = "paper, section II"
 
 
-def _wrong_ids(path: str, entries: Sequence[Resource | Robot]) -> Found:
+def _wrong_ids(path: str, entries: Sequence[Resource | Robot | Group]) -> Found:
     first_at: dict[object, int] = {}
     for position, entry in enumerate(entries):
         here = f"{path}[{position}].id"
@@ -18,7 +18,7 @@ def _wrong_ids(path: str, entries: Sequence[Resource | Robot]) -> Found:
             yield here, f"{entry.id!r} is the id of entry {first_at[entry.id]} too; ids must be unique"
 
 
-def _wrong_numbers(path: str, entries: Sequence[Resource | Robot], name: str, least: int) -> Found:
+def _wrong_numbers(path: str, entries: Sequence[Resource | Robot | Group], name: str, least: int) -> Found:
     for position, entry in enumerate(entries):
         value = getattr(entry, name)
         if not is_whole(value) or value < least:
@@ -70,6 +70,28 @@ def edges_join_resources(instance: Instance) -> Found:
             yield path, f"it must be listed once, and is entry {first_at[edge]} too"
 
 
+@fault_rule(
+    "instance/group",
+    "Group ids are strings or whole numbers, and no two are the same. A group names at least one resource, each of the "
+    "graph and each once; its capacity is a whole number of at least 1.",
+    DESIGN,
+)
+def groups_are_of_resources(instance: Instance) -> Found:
+    graph = instance.graph
+    yield from _wrong_ids("$.graph.groups", graph.groups)
+    yield from _wrong_numbers("$.graph.groups", graph.groups, "capacity", 1)
+    for position, group in enumerate(graph.groups):
+        path = f"$.graph.groups[{position}].resources"
+        if not group.resources:
+            yield path, "a group must name at least one resource"
+        first_at: dict[object, int] = {}
+        for place, resource in enumerate(group.resources):
+            if resource not in graph.index:
+                yield f"{path}[{place}]", f"{resource!r} must be the id of a resource, and is not"
+            elif first_at.setdefault(resource, place) < place:
+                yield f"{path}[{place}]", f"{resource!r} must be named once, and is entry {first_at[resource]} too"
+
+
 @fault_rule("instance/robot-id", "Robot ids are strings or whole numbers, and no two are the same.", DESIGN)
 def robot_ids_are_unique(instance: Instance) -> Found:
     return _wrong_ids("$.robots", instance.robots)
@@ -116,6 +138,7 @@ INSTANCE_RULES: tuple[Rule[[Instance], Iterator[Fault]], ...] = (
     durations_are_positive,
     positions_are_whole,
     edges_join_resources,
+    groups_are_of_resources,
     robot_ids_are_unique,
     endpoints_are_resources,
     releases_are_ticks,

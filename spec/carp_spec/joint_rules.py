@@ -1,16 +1,17 @@
 """The rules of plans together: `joint/...` and `solution/...`."""
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Sequence
-from itertools import groupby, pairwise
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from itertools import groupby, pairwise, product
 from operator import itemgetter
 from typing import TypeAlias
 
-from carp_spec.model import Instance, Move, Plan, ResourceId, RobotId, Solution
+from carp_spec.model import Group, Instance, Move, Plan, ResourceGraph, ResourceId, RobotId, Solution
 from carp_spec.rule import DESIGN, MORS, Breach, Rule, Violation, of_robots, violation_rule
 
 Change: TypeAlias = tuple[int, int, RobotId]
 """A tick at which a stay of the robot begins, with 1, or ends, with -1."""
+TimedMove: TypeAlias = tuple[int, Move]
 
 
 @violation_rule(
@@ -20,22 +21,36 @@ Change: TypeAlias = tuple[int, int, RobotId]
     f"paper, section II; {MORS}",
 )
 def capacity_is_kept(instance: Instance, plans: Sequence[Plan]) -> Iterator[Breach]:
-    return _crowded(instance, plans)
+    return _crowded(instance, plans, instance.graph.constraints[: len(instance.graph.resources)])
+
+
+@violation_rule(
+    "joint/group",
+    "At no tick are more robots in the resources of a group than its capacity. A robot counts once, also while it "
+    "moves within the group.",
+    DESIGN,
+)
+def groups_are_kept(instance: Instance, plans: Sequence[Plan]) -> Iterator[Breach]:
+    if instance.graph.groups:
+        yield from _crowded(instance, plans, instance.graph.groups)
 
 
 @violation_rule(
     "joint/following",
-    "Where following is forbidden, at no tick are more robots in a resource than its capacity; a robot that leaves at "
-    "tick t still counts at t. Where there is room for one, a robot enters only after a free tick.",
+    "Where following is forbidden, at no tick are more robots in a resource or a group than its capacity; a robot that "
+    "leaves it at tick t still counts at t. Where there is room for one, a robot enters only after a free tick.",
     DESIGN,
 )
 def following_is_avoided(instance: Instance, plans: Sequence[Plan]) -> Iterator[Breach]:
     if instance.following == "forbidden":
-        yield from _crowded(instance, plans, instance.gap, ", with a free tick after each robot")
+        more = ", with a free tick after each robot"
+        yield from _crowded(instance, plans, instance.graph.constraints, instance.gap, more)
 
 
-def _crowded(instance: Instance, plans: Sequence[Plan], gap: int = 0, more: str = "") -> Iterator[Breach]:
-    """The resources that are too full if each stay lasts `gap` ticks longer."""
+def _crowded(
+    instance: Instance, plans: Sequence[Plan], constraints: Sequence[Group], gap: int = 0, more: str = ""
+) -> Iterator[Breach]:
+    """The constraints with too many robots if each stay lasts `gap` ticks longer, and where a robot is the first."""
     changes: dict[ResourceId, list[Change]] = defaultdict(list)
     for plan in plans:
         for visit in plan.visits:
@@ -44,10 +59,13 @@ def _crowded(instance: Instance, plans: Sequence[Plan], gap: int = 0, more: str 
             elif visit.enter < visit.leave:
                 changes[visit.resource] += [(visit.enter, 1, plan.robot), (visit.leave + gap, -1, plan.robot)]
     arrival = {robot: position for position, robot in enumerate(instance.robot)}
-    for resource in instance.graph.resources:
-        for start, end, crowd in _crowds(resource.capacity, changes[resource.id]):
+    for group in constraints:
+        inside = [change for resource in group.resources for change in changes[resource]]
+        for start, end, crowd in _crowds(group.capacity, inside):
             robots = tuple(sorted(crowd, key=arrival.__getitem__))
-            yield robots, resource.id, start, end, f"capacity {resource.capacity}{more}"
+            at = next(each for each in group.resources if any(one[:2] == (start, 1) for one in changes[each]))
+            of = "" if group.resources == (group.id,) else f" of group {group.id}"
+            yield robots, at, start, end, f"capacity {group.capacity}{of}{more}"
 
 
 def _crowds(capacity: int, changes: list[Change]) -> Iterator[tuple[int, int | None, set[RobotId]]]:
@@ -76,26 +94,53 @@ def _crowds(capacity: int, changes: list[Change]) -> Iterator[tuple[int, int | N
 
 @violation_rule(
     "joint/exchange",
-    "No two robots make the moves (r, s) and (s, r) at the same tick, whatever the capacities. A robot makes the move "
-    "(r, s) at the tick at which it leaves r and enters s.",
+    "No two robots make moves (r, s) and (s', r') at the same tick, whatever the capacities, where r is close to r' "
+    "and s to s'. A robot makes the move (r, s) at the tick at which it leaves r and enters s. Resources are close if "
+    "they are the same or lie in one group of capacity 1.",
     DESIGN,
 )
 def exchanges_are_avoided(instance: Instance, plans: Sequence[Plan]) -> Iterator[Breach]:
-    movers: dict[tuple[int, Move], list[RobotId]] = defaultdict(list)
+    graph, index = instance.graph, instance.graph.index
+    movers: dict[TimedMove, list[RobotId]] = defaultdict(list)
     for plan in plans:
         for visit, following in pairwise(plan.visits):
-            if visit.resource in instance.graph.index and following.resource in instance.graph.index:
+            known = visit.resource in index and following.resource in index
+            if known and visit.resource != following.resource:
                 movers[following.enter, (visit.resource, following.resource)].append(plan.robot)
-    index = instance.graph.index
-    met = [(tick, move) for tick, move in movers if index[move[0]] < index[move[1]] and (tick, move[::-1]) in movers]
-    for tick, (source, target) in sorted(met, key=lambda key: (key[0], index[key[1][0]], index[key[1][1]])):
-        robots = tuple(dict.fromkeys(movers[tick, (source, target)] + movers[tick, (target, source)]))
-        if len(robots) > 1:
-            yield robots, source, tick, tick + 1, f"they exchange {source} and {target} at tick {tick}"
+
+    def place(move: TimedMove) -> tuple[int, int, int]:
+        return move[0], index[move[1][0]], index[move[1][1]]
+
+    opposite = _opposite(graph, movers)
+    for one in sorted(filter(opposite, movers), key=place):
+        for other in sorted((each for each in opposite(one) if place(one) <= place(each)), key=place):
+            robots = tuple(dict.fromkeys(movers[one] + movers[other]))
+            if len(robots) > 1:
+                tick, (source, target) = one
+                to = f"{source} and {target}" if other[1] == (target, source) else f"{one[1]} and {other[1]}"
+                yield robots, source, tick, tick + 1, f"they exchange {to} at tick {tick}"
+
+
+def _opposite(graph: ResourceGraph, moves: Collection[TimedMove]) -> Callable[[TimedMove], Collection[TimedMove]]:
+    """The moves at the same tick that lead from the areas that a move leads to into those that it leads from."""
+    if not graph.groups:
+        return lambda move: [back] if (back := (move[0], move[1][::-1])) in moves else []
+    leading: dict[tuple[int, ...], list[TimedMove]] = defaultdict(list)
+    for tick, (source, target) in moves:
+        for areas in product(graph.areas_of(source), graph.areas_of(target)):
+            leading[tick, *areas].append((tick, (source, target)))
+
+    def opposite(move: TimedMove) -> Collection[TimedMove]:
+        tick, (source, target) = move
+        back = product(graph.areas_of(target), graph.areas_of(source))
+        return {each for areas in back for each in leading.get((tick, *areas), ())}
+
+    return opposite
 
 
 JOINT_RULES: tuple[Rule[[Instance, Sequence[Plan]], Iterator[Violation]], ...] = (
     capacity_is_kept,
+    groups_are_kept,
     exchanges_are_avoided,
     following_is_avoided,
 )

@@ -38,25 +38,40 @@ class Resource:
 
 
 @dataclass(frozen=True, slots=True)
+class Group:
+    """Resources that `capacity` robots fit in together, whatever the capacity of each: a block, an intersection."""
+
+    id: ResourceId
+    resources: tuple[ResourceId, ...]
+    capacity: Annotated[int, Number(1, "capacities")] = 1
+
+
+@dataclass(frozen=True, slots=True)
 class ResourceGraph:
-    """The resources and the edges between them.
+    """The resources, the edges between them and groups of resources.
 
     An edge (r, s) of a directed graph is the move from r to s; of an undirected one, also the move back. The order of
-    `resources` breaks ties. The last four fields are look-ups: resources by id, indices, where one move leads in that
-    order, and all moves.
+    `resources` breaks ties. The last five fields are look-ups: resources by id, indices, where one move leads in that
+    order, all moves, and for each resource of a group the indices of its groups.
     """
 
     resources: tuple[Resource, ...]
     edges: tuple[Move, ...]
     directed: bool = False
+    groups: tuple[Group, ...] = ()
     resource: Mapping[ResourceId, Resource] = field(init=False, repr=False, compare=False)
     index: Mapping[ResourceId, int] = field(init=False, repr=False, compare=False)
     successors: Mapping[ResourceId, tuple[ResourceId, ...]] = field(init=False, repr=False, compare=False)
     moves: frozenset[Move] = field(init=False, repr=False, compare=False)
+    groups_of: Mapping[ResourceId, tuple[int, ...]] = field(init=False, repr=False, compare=False)
 
     @of_shape("$.graph")
     def __post_init__(self) -> None:
         """Make the look-ups; edges of unknown resources are left to the rules."""
+        groups_of: dict[ResourceId, tuple[int, ...]] = {}
+        for place, group in enumerate(self.groups):
+            for resource in group.resources:
+                groups_of[resource] = (*groups_of.get(resource, ()), place)
         index = {each.id: position for position, each in enumerate(self.resources)}
         backward = () if self.directed else ((target, source) for source, target in self.edges)
         moves = [move for move in (*self.edges, *backward) if move[0] in index and move[1] in index]
@@ -68,10 +83,26 @@ class ResourceGraph:
         in_order = {source: tuple(targets) for source, targets in successors.items()}
         object.__setattr__(self, "successors", MappingProxyType(in_order))
         object.__setattr__(self, "moves", frozenset(moves))
+        object.__setattr__(self, "groups_of", MappingProxyType(groups_of))
 
     def __reduce__(self) -> tuple[type["ResourceGraph"], tuple[object, ...]]:
         """Pickle the fields alone."""
-        return type(self), (self.resources, self.edges, self.directed)
+        return type(self), (self.resources, self.edges, self.directed, self.groups)
+
+    @property
+    def constraints(self) -> tuple[Group, ...]:
+        """What limits the robots: each resource's own capacity, as a group of it alone, then the groups."""
+        return (*(Group(each.id, (each.id,), each.capacity) for each in self.resources), *self.groups)
+
+    def constraints_of(self, resource: ResourceId) -> tuple[int, ...]:
+        """The indices of the constraints on a resource: of its own capacity, and of its groups."""
+        count = len(self.resources)
+        return (self.index[resource], *(count + group for group in self.groups_of.get(resource, ())))
+
+    def areas_of(self, resource: ResourceId) -> tuple[int, ...]:
+        """Of these, the resource's own and the groups of capacity 1: resources that share one are close."""
+        own, *groups = self.constraints_of(resource)
+        return (own, *(each for each in groups if self.groups[each - len(self.resources)].capacity == 1))
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,7 @@ from carp_spec.check import judge, violations_of
 from carp_spec.execution.traces import Trace
 from carp_spec.inputs.options import require_planner
 from carp_spec.inputs.values import require_plans, require_solution
+from carp_spec.limits import refuse
 from carp_spec.model import Instance, Plan, RobotId, Solution
 from carp_spec.planners import Neighbourhood
 from carp_spec.refusal import Refusal
@@ -60,6 +61,7 @@ def require_trace(instance: Instance, solution: Solution, trace: Trace) -> None:
     require_shape(trace, Trace)
     if trace.now < 0:
         raise Refusal("document", "$.now", SHAPE, f"it must be at least 0, not {trace.now}")
+    refuse(instance, "groups")
     sound_solution(instance, solution)
 
 

@@ -1,15 +1,18 @@
-"""Free time windows, `window/...`: pure functions on the occupations of one resource."""
+"""Free time windows, `window/...`: pure functions on the occupations of a resource and of the groups that hold it."""
 
-from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import groupby, pairwise
+from operator import itemgetter
 from typing import TypeAlias
 
+from carp_spec.model import Plan, ResourceGraph, ResourceId
 from carp_spec.rule import MORS, rule
 
 Occupation: TypeAlias = tuple[int, int | None]
-"""A committed stay [enter, leave) in the resource; a leave of `None` is for ever."""
+"""A committed stay [enter, leave) in a resource or a group; a leave of `None` is for ever."""
+Constraint: TypeAlias = tuple[Sequence[Occupation], int]
+"""The occupations of a resource or a group, and its capacity."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,26 +32,41 @@ def occupancy(occupations: Sequence[Occupation], tick: int) -> int:
     return sum(enter <= tick and (leave is None or tick < leave) for enter, leave in occupations)
 
 
-def free_windows(occupations: Sequence[Occupation], capacity: int, gap: int = 0) -> tuple[Window, ...]:
+def stays_within(plans: Iterable[Plan], resources: Container[ResourceId]) -> list[Occupation]:
+    """The occupations of a group of resources by plans; a robot that moves within the group stays in it."""
+    runs = [
+        [*run]
+        for plan in plans
+        for inside, run in groupby(plan.visits, key=lambda visit: visit.resource in resources)
+        if inside
+    ]
+    return [(run[0].enter, run[-1].leave) for run in runs]
+
+
+def constraints_on(graph: ResourceGraph, plans: Sequence[Plan], resource: ResourceId) -> list[Constraint]:
+    """What limits the use of a resource beside the plans: its own capacity, and its groups."""
+    limits = [graph.constraints[each] for each in graph.constraints_of(resource)]
+    return [(stays_within(plans, limit.resources), limit.capacity) for limit in limits]
+
+
+def free_windows(constraints: Sequence[Constraint], gap: int = 0) -> tuple[Window, ...]:
     """The windows that `window/free` describes, in order of time; `gap` is that of the instance."""
-    if gap > 0:
-        longer = free_windows(_longer(occupations, gap), capacity)
-        shorter = (Window(each.start, None if each.end is None else each.end - gap) for each in longer)
-        return tuple(each for each in shorter if each.end is None or each.start < each.end)
-    change = Counter({0: 0})
-    for enter, leave in occupations:
-        change[enter] += 1
-        if leave is not None:
-            change[leave] -= 1
+    changes = [(0, 0, 0)]
+    for place, (occupations, _) in enumerate(constraints):
+        for enter, leave in _longer(occupations, gap):
+            changes.append((enter, place, 1))
+            changes += [] if leave is None else [(leave, place, -1)]
     windows: list[Window] = []
-    inside = 0
+    inside = [0] * len(constraints)
     opened: int | None = None
-    for tick in sorted(change):
-        inside += change[tick]
-        if opened is None and inside < capacity:
+    for tick, at_tick in groupby(sorted(changes), key=itemgetter(0)):
+        for _, place, change in at_tick:
+            inside[place] += change
+        is_free = all(count < capacity for count, (_, capacity) in zip(inside, constraints, strict=True))
+        if opened is None and is_free:
             opened = tick
-        elif opened is not None and inside >= capacity:
-            windows.append(Window(opened, tick))
+        elif opened is not None and not is_free:
+            windows.extend([Window(opened, tick - gap)] if opened < tick - gap else [])
             opened = None
     return tuple(windows) if opened is None else (*windows, Window(opened, None))
 
@@ -56,17 +74,18 @@ def free_windows(occupations: Sequence[Occupation], capacity: int, gap: int = 0)
 @rule(
     "window/free",
     "The free windows of a resource are the maximal intervals, from tick 0, in which fewer committed plans occupy it "
-    "than its capacity. Where following is forbidden, a plan counts for a tick longer, and a window ends a tick "
-    "earlier.",
+    "than its capacity, and fewer each group that contains it than the group's. Where following is forbidden, a plan "
+    "counts for a tick longer (in a group, after it leaves the group), and a window ends a tick earlier.",
     f"paper, section III; {MORS}",
 )
-def windows_are_free(windows: Sequence[Window], occupations: Sequence[Occupation], capacity: int, gap: int = 0) -> bool:
-    longer = _longer(occupations, gap)
+def windows_are_free(windows: Sequence[Window], constraints: Sequence[Constraint], gap: int = 0) -> bool:
+    limits = [(_longer(occupations, gap), capacity) for occupations, capacity in constraints]
+    longer = [each for occupations, _ in limits for each in occupations]
     bounds = [*longer, *((enter - gap, enter) for enter, _ in longer), *((each.start, each.end) for each in windows)]
     changes = {0, *(max(tick, 0) for pair in bounds for tick in pair if tick is not None)}
     are_right = all(
         any(window.start <= tick and window.lasts_until(tick + 1) for window in windows)
-        == all(occupancy(longer, each) < capacity for each in (tick, tick + gap))
+        == all(occupancy(stays, each) < capacity for stays, capacity in limits for each in (tick, tick + gap))
         for tick in changes
     )
     each_lasts = all(each.start >= 0 and (each.end is None or each.start < each.end) for each in windows)

@@ -50,7 +50,7 @@ def assert_windows_are(fleet: PlannedFleet, instance: Instance, plans: Sequence[
             for start, end, *_ in rows(fleet._state.windows, position)
             if start < end  # between two stays without a tick between, too, there is a window, of no length
         )
-        assert windows == free_windows(occupations(plans, resource.id), resource.capacity)
+        assert windows == free_windows([(occupations(plans, resource.id), resource.capacity)])
 
 
 @settings(max_examples=draws(300))

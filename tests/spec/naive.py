@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations
 from typing import TypeAlias
 
-from carp_spec import Instance, Plan, ResourceId, Visit
+from carp_spec import Instance, Move, Plan, ResourceId, Visit
 
 FIRST, HORIZON = -15, 45
 Blamed: TypeAlias = tuple[str, Plan, Visit | None]
@@ -37,9 +37,9 @@ def broken_plan_rules(instance: Instance, plan: Plan) -> Iterator[Blamed]:
             yield "plan/contiguous", plan, following
 
 
-def occupies(plan: Plan, resource: ResourceId, tick: int) -> bool:
+def occupies(plan: Plan, resources: Sequence[ResourceId], tick: int) -> bool:
     return any(
-        visit.resource == resource and tick >= visit.enter and (visit.leave is None or tick < visit.leave)
+        visit.resource in resources and tick >= visit.enter and (visit.leave is None or tick < visit.leave)
         for visit in plan.visits
     )
 
@@ -48,9 +48,18 @@ def crowds(instance: Instance, plans: Sequence[Plan]) -> Iterator[tuple[Resource
     """Each resource and tick with too many robots, and which."""
     for resource in instance.graph.resources:
         for tick in range(FIRST, HORIZON):
-            robots = frozenset(plan.robot for plan in plans if occupies(plan, resource.id, tick))
+            robots = frozenset(plan.robot for plan in plans if occupies(plan, [resource.id], tick))
             if len(robots) > resource.capacity:
                 yield resource.id, tick, robots
+
+
+def crowded_groups(instance: Instance, plans: Sequence[Plan]) -> Iterator[tuple[ResourceId, int, frozenset[object]]]:
+    """Each group and tick with too many robots, and which."""
+    for group in instance.graph.groups:
+        for tick in range(FIRST, HORIZON):
+            robots = frozenset(plan.robot for plan in plans if occupies(plan, group.resources, tick))
+            if len(robots) > group.capacity:
+                yield group.id, tick, robots
 
 
 def moves_at(instance: Instance, plan: Plan, tick: int) -> set[tuple[ResourceId, ResourceId]]:
@@ -59,10 +68,18 @@ def moves_at(instance: Instance, plan: Plan, tick: int) -> set[tuple[ResourceId,
     return {step for step in steps if set(step) <= instance.graph.index.keys() and len(set(step)) == 2}
 
 
-def exchanges(instance: Instance, plans: Sequence[Plan]) -> Iterator[tuple[int, frozenset[ResourceId]]]:
-    """Each tick and pair of resources that two robots exchange."""
+def close(instance: Instance, one: ResourceId, other: ResourceId) -> bool:
+    return one == other or any(
+        group.capacity == 1 and one in group.resources and other in group.resources for group in instance.graph.groups
+    )
+
+
+def exchanges(instance: Instance, plans: Sequence[Plan]) -> Iterator[tuple[int, frozenset[Move]]]:
+    """Each tick and two moves, as a set, by which two robots exchange places."""
     for tick in range(FIRST, HORIZON):
         for one, other in combinations(plans, 2):
-            back = {(target, source) for source, target in moves_at(instance, other, tick)}
             if one.robot != other.robot:
-                yield from ((tick, frozenset(step)) for step in moves_at(instance, one, tick) & back)
+                for r, s in moves_at(instance, one, tick):
+                    for away, to in moves_at(instance, other, tick):
+                        if close(instance, r, to) and close(instance, s, away):
+                            yield tick, frozenset({(r, s), (away, to)})

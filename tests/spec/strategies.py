@@ -12,7 +12,7 @@ FEWER = settings(max_examples=draws(250))
 
 IDS = st.one_of(st.integers(-5, 5), st.text(max_size=3))
 NOWHERE = "nowhere"
-SIZES = Sizes(capacity=3)
+SIZES = Sizes(capacity=3, groups=2)
 
 
 @st.composite

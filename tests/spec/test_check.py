@@ -2,13 +2,14 @@
 
 from collections import Counter
 from dataclasses import replace
+from itertools import combinations_with_replacement, pairwise
 from time import process_time
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from tests.spec.making import PARKED, PARKING, SOLVED, VANISHING, instance_on, line, plan_of, solution_of
-from tests.spec.naive import HORIZON, broken_plan_rules, crowds, exchanges
+from tests.spec.naive import HORIZON, broken_plan_rules, crowded_groups, crowds, exchanges
 from tests.spec.strategies import FEWER, SIZES, instances_with_plans
 
 import carp_reference
@@ -18,6 +19,7 @@ from carp_spec import (
     Greedy,
     Instance,
     LongestFirst,
+    Move,
     Neighbourhood,
     Plan,
     Planner,
@@ -34,7 +36,7 @@ from carp_spec import (
 from carp_spec.check import MOST_LISTED
 from carproof.testing.strategies import instances
 
-FEW = replace(SIZES, robots=3)
+FEW = replace(SIZES, robots=3, groups=2)
 PLANNERS: tuple[Planner, ...] = (
     Carp(),
     Shuffled(attempts=2),
@@ -122,15 +124,41 @@ def test_the_checker_agrees_with_the_rules_spelt_out_tick_by_tick(case: tuple[In
         assert (each.resource, ticks.stop) not in crowded
         assert set(each.robots) == frozenset[object]().union(*(crowded[each.resource, tick] for tick in ticks))
     exchanged = [
-        (each.start, each.resource, other)
+        (each.start, frozenset({one, other}))
         for each in violations
         if each.rule == "joint/exchange"
-        for other in instance.graph.index
-        if f"exchange {each.resource} and {other} at" in each.reason
+        for one, other in combinations_with_replacement(sorted(instance.graph.moves | steps(plans), key=repr), 2)
+        if each.reason in (said(one, other, each.start), said(other, one, each.start))
     ]
-    index = instance.graph.index
-    spelt_out = {(tick, *sorted(pair, key=index.__getitem__)) for tick, pair in exchanges(instance, plans)}
-    assert Counter(exchanged) == Counter(spelt_out)
+    assert Counter(exchanged) == Counter({*exchanges(instance, plans)})
+
+
+def steps(plans: tuple[Plan, ...]) -> set[Move]:
+    """All pairs of resources visited one after the other."""
+    return {(at.resource, to.resource) for plan in plans for at, to in pairwise(plan.visits)}
+
+
+def said(one: Move, other: Move, tick: int | None) -> str:
+    """What is said of two moves in that order."""
+    ways = f"{one[0]} and {one[1]}" if one == other[::-1] else f"{one} and {other}"
+    return f"they exchange {ways} at tick {tick}"
+
+
+@FEWER
+@given(case=instances_with_plans())
+def test_the_checker_agrees_with_groups_spelt_out_tick_by_tick(case: tuple[Instance, tuple[Plan, ...]]) -> None:
+    instance, plans = case
+    found = {
+        (each.reason, tick): frozenset(each.robots)
+        for each in violations_of(instance, plans, most=None)
+        if each.rule == "joint/group"
+        for tick in range(each.start or 0, HORIZON if each.end is None else each.end)
+    }
+    spelt_out = {(group, tick): robots for group, tick, robots in crowded_groups(instance, plans)}
+    capacity = {group.id: group.capacity for group in instance.graph.groups}
+    assert found.keys() == {(f"capacity {capacity[id]} of group {id}", tick) for id, tick in spelt_out}
+    for (id, tick), robots in spelt_out.items():
+        assert robots <= found[f"capacity {capacity[id]} of group {id}", tick]
 
 
 MANY = 3_000

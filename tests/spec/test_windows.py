@@ -6,7 +6,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from carp_spec.windows import Occupation, Window, free_windows, occupancy, stay_fits, windows_are_free
+from carp_spec.windows import Constraint, Occupation, Window, free_windows, occupancy, stay_fits, windows_are_free
 
 HORIZON = 30
 STAYS = st.tuples(st.integers(0, 12), st.integers(1, 6) | st.none()).map(
@@ -14,14 +14,16 @@ STAYS = st.tuples(st.integers(0, 12), st.integers(1, 6) | st.none()).map(
 )
 OCCUPATIONS = st.lists(STAYS, max_size=6)
 CAPACITIES = st.integers(1, 3)
+CONSTRAINTS = st.lists(st.tuples(OCCUPATIONS, CAPACITIES), min_size=1, max_size=3)
 GAPS = st.integers(0, 1)
 
 
-def room(occupations: Sequence[Occupation], capacity: int, gap: int = 0) -> list[bool]:
-    """Tick by tick, whether one more robot has room, in that tick and the `gap` ticks after it."""
-    ticks = range(HORIZON + gap)
-    stays = [range(enter, HORIZON + gap if leave is None else leave + gap) for enter, leave in occupations]
-    free = [capacity > sum(tick in stay for stay in stays) for tick in ticks]
+def room(constraints: Sequence[Constraint], gap: int = 0) -> list[bool]:
+    """Tick by tick, whether each constraint has room for one robot more, in that tick and the `gap` ticks after it."""
+    free = [True] * (HORIZON + gap)
+    for occupations, capacity in constraints:
+        stays = [range(enter, HORIZON + gap if leave is None else leave + gap) for enter, leave in occupations]
+        free = [has and capacity > sum(tick in stay for stay in stays) for tick, has in enumerate(free)]
     return [all(free[tick : tick + gap + 1]) for tick in range(HORIZON)]
 
 
@@ -34,37 +36,30 @@ def runs(ticks: Sequence[bool]) -> list[Window]:
 
 @given(occupations=OCCUPATIONS, tick=st.integers(0, HORIZON - 1), capacity=CAPACITIES)
 def test_occupancy_counts_the_stays_that_hold_the_tick(occupations: list[Occupation], tick: int, capacity: int) -> None:
-    assert (occupancy(occupations, tick) < capacity) == room(occupations, capacity)[tick]
+    assert (occupancy(occupations, tick) < capacity) == room([(occupations, capacity)])[tick]
 
 
-@given(occupations=OCCUPATIONS, capacity=CAPACITIES, gap=GAPS)
-@example(occupations=[(0, 1), (3, None)], capacity=1, gap=1)  # the tick between them is no window
-def test_free_windows_are_the_maximal_runs_of_free_ticks(
-    occupations: list[Occupation], capacity: int, gap: int
-) -> None:
-    windows = free_windows(occupations, capacity, gap)
-    assert list(windows) == runs(room(occupations, capacity, gap))
-    assert windows_are_free(windows, occupations, capacity, gap)
+@given(constraints=CONSTRAINTS, gap=GAPS)
+@example(constraints=[([(0, 1), (3, None)], 1)], gap=1)  # the tick between them is no window
+def test_free_windows_are_the_maximal_runs_of_free_ticks(constraints: list[Constraint], gap: int) -> None:
+    windows = free_windows(constraints, gap)
+    assert list(windows) == runs(room(constraints, gap))
+    assert windows_are_free(windows, constraints, gap)
 
 
 @given(
-    occupations=OCCUPATIONS,
-    capacity=CAPACITIES,
+    constraints=CONSTRAINTS,
     gap=GAPS,
     reported=st.lists(st.builds(Window, st.integers(-1, 14), st.integers(-1, 14) | st.none()), max_size=4),
 )
-def test_no_other_list_of_windows_is_free(
-    occupations: list[Occupation], capacity: int, gap: int, reported: list[Window]
-) -> None:
-    is_right = reported == runs(room(occupations, capacity, gap))
-    assert windows_are_free(reported, occupations, capacity, gap) == is_right
+def test_no_other_list_of_windows_is_free(constraints: list[Constraint], gap: int, reported: list[Window]) -> None:
+    is_right = reported == runs(room(constraints, gap))
+    assert windows_are_free(reported, constraints, gap) == is_right
 
 
-@given(occupations=OCCUPATIONS, capacity=CAPACITIES, gap=GAPS)
-def test_every_small_change_to_the_free_windows_is_refused(
-    occupations: list[Occupation], capacity: int, gap: int
-) -> None:
-    windows = free_windows(occupations, capacity, gap)
+@given(constraints=CONSTRAINTS, gap=GAPS)
+def test_every_small_change_to_the_free_windows_is_refused(constraints: list[Constraint], gap: int) -> None:
+    windows = free_windows(constraints, gap)
     for at, window in enumerate(windows):
         last = HORIZON if window.end is None else window.end
         for others in (
@@ -77,9 +72,9 @@ def test_every_small_change_to_the_free_windows_is_refused(
             (window, window),
             (window, Window(last, last)),
         ):
-            assert not windows_are_free((*windows[:at], *others, *windows[at + 1 :]), occupations, capacity, gap)
+            assert not windows_are_free((*windows[:at], *others, *windows[at + 1 :]), constraints, gap)
     if len(windows) > 1:
-        assert not windows_are_free(windows[::-1], occupations, capacity, gap)
+        assert not windows_are_free(windows[::-1], constraints, gap)
 
 
 @given(
@@ -110,6 +105,6 @@ def test_a_window_lasts_until_its_end(end: int | None, tick: int | None, expecte
 
 def test_a_window_of_no_ticks_is_no_free_window() -> None:
     occupations: list[Occupation] = [(2, 3), (3, 6), (8, None)]
-    assert windows_are_free([Window(0, 2), Window(6, 8)], occupations, 1)
+    assert windows_are_free([Window(0, 2), Window(6, 8)], [(occupations, 1)])
     for empty in (Window(4, 4), Window(4, 3)):
-        assert not windows_are_free([Window(0, 2), empty, Window(6, 8)], occupations, 1)
+        assert not windows_are_free([Window(0, 2), empty, Window(6, 8)], [(occupations, 1)])

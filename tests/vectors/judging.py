@@ -255,10 +255,12 @@ _JUDGED: Mapping[str, Callable[[Fields], bool]] = {
 
 
 def _free(vector: Vector) -> Fields:
-    occupations = [(enter, leave) for enter, leave in vector.input["occupations"]]
-    capacity = vector.input["capacity"]
-    windows = free_windows(occupations, capacity)
-    assert windows_are_free(windows, occupations, capacity)
+    limits = [
+        ([(enter, leave) for enter, leave in each["occupations"]], each["capacity"])
+        for each in (vector.input, *vector.input.get("groups", ()))
+    ]
+    windows = free_windows(limits)
+    assert windows_are_free(windows, limits)
     return {"windows": [[window.start, window.end] for window in windows]}
 
 

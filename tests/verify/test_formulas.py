@@ -162,10 +162,10 @@ def test_the_parts_of_a_split_window_are_the_free_windows_of_capacity_one() -> N
     term = held_by_parts(interval("window"), interval("stay"), integer("tick"))
     for start, end in STAYS:
         before = outside(start, end)
-        (window,) = free_windows(before, 1)
+        (window,) = free_windows([(before, 1)])
         for enter, leave in STAYS:
             if windows.stay_fits(window, enter, leave, 1):
-                after = free_windows([*before, (enter, leave)], 1)
+                after = free_windows([([*before, (enter, leave)], 1)])
                 values = {**values_of("window", (start, end)), **values_of("stay", (enter, leave))}
                 for tick in TICKS:
                     assert evaluate(term, values, {"tick": tick}) == held(after, tick)

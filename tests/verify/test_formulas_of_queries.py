@@ -65,7 +65,7 @@ def trace(monkeypatch: pytest.MonkeyPatch) -> Trace:
 
     def watched(*arguments: object) -> Context:
         context = context_of(*arguments)  # type: ignore[arg-type]
-        watching = Watched(context.instance, context.occupations, context.moves)
+        watching = Watched(context.instance, context.capacities, context.occupations, context.moves)
         object.__setattr__(watching, "trace", seen)
         return watching
 

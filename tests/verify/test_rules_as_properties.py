@@ -13,6 +13,7 @@ from tests.profiles import draws
 
 from carp_spec import (
     FixedPaths,
+    Group,
     Instance,
     Neighbourhood,
     Plan,
@@ -30,10 +31,10 @@ from carp_spec.neighbourhood_rules import baseline_is_tried, next_trajectory, re
 from carp_spec.plan_rules import is_plan_cost, is_total_cost
 from carp_spec.planners import LARGEST_SEED
 from carp_spec.query_rules import expansion_key
-from carproof.testing.strategies import PlannedInstance, instances, planned_instances
+from carproof.testing.strategies import PlannedInstance, Sizes, instances, planned_instances
 
 Plant: TypeAlias = Callable[[Instance, st.DataObject], Instance]
-WITH_ROBOTS = instances(least_robots=1)
+WITH_ROBOTS = instances(Sizes(groups=2), least_robots=1)
 TOO_SMALL = st.integers(max_value=0) | st.sampled_from([True, 1.0, "1", None])
 NOWHERE = "no resource of the graph"
 
@@ -64,8 +65,17 @@ def _edge(instance: Instance, data: st.DataObject) -> Instance:
     wrong = [(some, some), (some, NOWHERE), (NOWHERE, some), *graph.edges[:1]]
     return replace(
         instance,
-        graph=ResourceGraph(graph.resources, (*graph.edges, data.draw(st.sampled_from(wrong))), graph.directed),
+        graph=replace(graph, edges=(*graph.edges, data.draw(st.sampled_from(wrong)))),
     )
+
+
+def _group(instance: Instance, data: st.DataObject) -> Instance:
+    graph = instance.graph
+    some = data.draw(st.sampled_from([resource.id for resource in graph.resources]))
+    wrong = [Group("x", ()), Group("x", (some, NOWHERE)), Group("x", (some, some)), *graph.groups[:1]]
+    zero = st.builds(Group, st.just("x"), st.just((some,)), TOO_SMALL)
+    groups = (*graph.groups, data.draw(st.sampled_from(wrong) | zero))
+    return replace(instance, graph=replace(graph, groups=groups))
 
 
 def _repeated_robot(instance: Instance, data: st.DataObject) -> Instance:
@@ -76,7 +86,7 @@ def _repeated_robot(instance: Instance, data: st.DataObject) -> Instance:
 def _repeated_resource(instance: Instance, data: st.DataObject) -> Instance:
     graph = instance.graph
     again = data.draw(st.sampled_from(graph.resources))
-    return replace(instance, graph=ResourceGraph((*graph.resources, again), graph.edges, graph.directed))
+    return replace(instance, graph=replace(graph, resources=(*graph.resources, again)))
 
 
 def _policy(instance: Instance, data: st.DataObject) -> Instance:
@@ -95,6 +105,7 @@ PLANTS: Mapping[str, Plant] = {
     "instance/duration": _resource("duration", TOO_SMALL),
     "instance/position": _resource("x", st.sampled_from([True, 1.0, "1"])),
     "instance/edge": _edge,
+    "instance/group": _group,
     "instance/robot-id": _repeated_robot,
     "instance/endpoint": _robot("goal", st.just(NOWHERE)),
     "instance/release": _robot("release", st.integers(max_value=-1) | st.sampled_from([False, 0.0, None])),

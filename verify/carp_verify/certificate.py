@@ -13,9 +13,9 @@ from itertools import pairwise
 from typing import TypeAlias
 
 from carp_spec import Instance, Plan, Resource, ResourceId, RobotId, Solution, Violation, Visit, judge
+from carp_spec.limits import refuse
 from carp_spec.rule import named
 from carp_verify.lemmas.smt import Bool, Int, Model, Solver, any_of, at_least, between, equal, integer
-from carp_verify.limits import require_following
 
 Stays: TypeAlias = dict[RobotId, list[Visit]]
 Ticks: TypeAlias = dict[RobotId, list[int]]
@@ -101,7 +101,7 @@ def certify_together(
     instance: Instance, plans: Sequence[Plan], advance: Callable[[], None] = lambda: None
 ) -> Certificate:
     """Ask z3 about every resource that is visited: `joint/capacity` and `joint/exchange` alone."""
-    require_following(instance)
+    refuse(instance, "following", "groups")
     solver, terms = Solver(), Terms()
     index = instance.graph.index
     stays = stays_by_resource(instance, plans)

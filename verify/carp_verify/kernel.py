@@ -12,8 +12,8 @@ import msgspec
 
 from carp_spec import Instance, Refusal, Rule
 from carp_spec.documents.instances import instance_document
+from carp_spec.limits import refuse
 from carp_spec.rule import DESIGN, rule
-from carp_verify.limits import require_following
 
 PROGRAM: Final = "carproof-kernel"
 VARIABLE: Final = "CARPROOF_KERNEL"
@@ -95,7 +95,7 @@ def program() -> str:
 
 def request(op: str, instance: Instance, **documents: object) -> bytes:
     """One line that asks the kernel; raises `Refusal` if it does not know the instance's rules."""
-    require_following(instance)
+    refuse(instance, "following", "groups")
     return msgspec.json.encode({"op": op, "instance": instance_document(instance), **documents}) + b"\n"
 
 

@@ -22,10 +22,10 @@ from carp_spec.documents.decoding import require_json
 from carp_spec.documents.instances import digest, read_instance
 from carp_spec.documents.query_certificates import QueryCertificateDocument, read_query_certificate
 from carp_spec.documents.solutions import read_solution, solution_document
+from carp_spec.limits import refuse
 from carp_spec.permutations import splitmix64
 from carp_verify.bound.verify import verify_bound
 from carp_verify.kernel import KernelVerdict, is_answer, replies, request, verdict_of
-from carp_verify.limits import require_following
 from carp_verify.query.verify import Traffic, require_certificate, verify_query
 from carproof.testing.random_instances import Draw, draw_fleet, draw_instance
 
@@ -102,7 +102,7 @@ def decided(text: bytes) -> Decided:
         asked = msgspec.json.decode(text, type=Request)
         decide = QUESTIONS[asked.op, tuple(name for name in DOCUMENTS if getattr(asked, name) is not ABSENT)]
         instance = read_instance(bytes(asked.instance))
-        require_following(instance)
+        refuse(instance, "following", "groups")
         answer = decide(instance, asked)
     except (Refusal, msgspec.DecodeError, KeyError):
         return Decided("bad input")

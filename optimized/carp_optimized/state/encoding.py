@@ -32,6 +32,7 @@ from carp_optimized.state.arrays import (
     Work,
 )
 from carp_spec import Fault, Instance, Refusal
+from carp_spec.limits import refuse
 
 DETOUR = 8  # of the durations by which a guide goes further than to the start: seldom more are needed on large maps
 GUIDE_PLACES = 1 << 26  # how many entries all guides together have at most, if that is room for 64 of them
@@ -42,7 +43,8 @@ NO_LIMIT_THERE = "the reference engine has no such limit, but finds no bounds"
 
 
 def refuse_what_is_too_large(instance: Instance) -> None:
-    """Raise `Refusal` where a number of the instance does not fit."""
+    """Raise `Refusal` where a number of the instance does not fit, and for what is not known here."""
+    refuse(instance, "groups")
     for fault in _too_large(instance):
         raise Refusal("limit", fault.path, fault.rule, f"{fault.message}; {NO_LIMIT_THERE}")
 

@@ -32,8 +32,8 @@ from carp_optimum.sat.solver import Deadline, Solver, TimeOver
 from carp_spec import Instance, Plan, Refusal, Solution, judge, total_cost
 from carp_spec.inputs.options import require_limits
 from carp_spec.inputs.values import require_instance
+from carp_spec.limits import refuse
 from carp_verify.bound.rules import ContradictionError, require_kept
-from carp_verify.limits import require_following
 from carp_verify.optimum.clauses import Literal, Unary
 from carp_verify.optimum.encoding import Encoding, Evidence, violated
 from carp_verify.optimum.joint_search import least_total_cost
@@ -85,7 +85,7 @@ def core_guided(
     """
     require_instance(instance)
     require_limits(limit=limit)
-    require_following(instance)
+    refuse(instance, "following", "groups")
     deadline = Deadline(limit, clock)
     try:
         encoding = Encoding(instance, deadline.check)

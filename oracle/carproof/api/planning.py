@@ -4,9 +4,9 @@ from collections.abc import Callable, Sequence
 
 from carp_spec import Instance, Plan, Planner, RobotId, Solution
 from carp_spec.documents.query_certificates import QueryCertificateDocument
+from carp_spec.limits import refuse
 from carp_spec.planners import BY_DEFAULT
 from carp_spec.requests import require_query
-from carp_verify.limits import require_following
 from carproof.engines import engine_named, repaired, repairs_by_default
 
 
@@ -30,7 +30,7 @@ def certified_query(
     Raises what `query` raises, and `Refusal` where following is forbidden.
     """
     require_query(instance, committed, robot, now)
-    require_following(instance)
+    refuse(instance, "following", "groups")
     own = [each for each in committed if each.robot == robot]
     certifier = engine_named(None).certifier(instance)
     certifier.commit([each for each in committed if each.robot != robot])

@@ -14,8 +14,8 @@ from click.shell_completion import CompletionItem
 from carp_spec import Instance, Refusal, Solution
 from carp_spec.documents.instances import read_instance
 from carp_spec.documents.solutions import read_solution
+from carp_spec.limits import Feature, refuse
 from carp_spec.requests import sound_solution
-from carp_verify.limits import require_following
 from carproof.formats.layouts import layout_named
 
 T = TypeVar("T")
@@ -143,10 +143,10 @@ def naming(name: str) -> Iterator[None]:
         raise click.ClickException(f"{shown(name)}: {refusal}") from refusal
 
 
-def require_following_in(name: str, instance: Instance) -> None:
-    """Refuse the instance of that file if it forbids following, for commands that do not know this."""
+def refuse_in(name: str, instance: Instance, *features: Feature) -> None:
+    """Refuse the instance of that file if it has one of the features, for commands that do not know them."""
     with naming(name):
-        require_following(instance)
+        refuse(instance, *features)
 
 
 def shown(name: str) -> str:

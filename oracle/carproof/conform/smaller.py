@@ -11,7 +11,7 @@ from functools import partial
 from typing import TypeAlias, TypeVar
 
 from carp_reference.execution import order_of
-from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, ResourceId, RobotId, Visit
+from carp_spec import Group, Instance, Plan, Refusal, Resource, ResourceGraph, ResourceId, RobotId, Visit
 from carp_spec.requests import sound_solution
 from carproof.conform.cases import EXECUTION, NUMBERS, Case, NumberOf
 from carproof.execution.delays import stuck
@@ -167,7 +167,12 @@ def _moved(case: Case, gone: frozenset[ResourceId], became: Mapping[ResourceId, 
     distinct = {(move if graph.directed else frozenset(move)): move for move in moves if move[0] != move[1]}
     resources = tuple(each for each in graph.resources if each.id not in gone)
     robots = tuple(replace(each, start=became[each.start], goal=became[each.goal]) for each in case.instance.robots)
-    smaller = ResourceGraph(resources, tuple(distinct.values()), graph.directed)
+    groups = tuple(
+        replace(group, resources=tuple(dict.fromkeys(became[each] for each in group.resources if each in became)))
+        for group in graph.groups
+    )
+    kept = tuple(group for group in groups if group.resources)
+    smaller = ResourceGraph(resources, tuple(distinct.values()), graph.directed, kept)
     if any(visit.resource not in became for plan in case.solution.plans for visit in plan.visits):
         return None  # a plan to check may be anywhere
     places: dict[tuple[RobotId, int], int] = {}
@@ -205,7 +210,7 @@ def _simpler(case: Case) -> Iterable[Edit]:
     def both_ways(case: Case) -> Case:
         graph = case.instance.graph
         edges = {frozenset(edge): edge for edge in graph.edges}
-        undirected = ResourceGraph(graph.resources, tuple(edges.values()))
+        undirected = ResourceGraph(graph.resources, tuple(edges.values()), groups=graph.groups)
         return _made(case, replace(case.instance, graph=undirected), case.solution.plans)
 
     def stay(robot: RobotId, case: Case) -> Case | None:
@@ -225,6 +230,10 @@ def _numbered(case: Case) -> Case | None:
     number: dict[RobotId, RobotId] = {robot: position for position, robot in enumerate(instance.robot)}
     resources = tuple(replace(each, id=place[each.id]) for each in instance.graph.resources)
     edges = tuple((place[source], place[target]) for source, target in instance.graph.edges)
+    groups = tuple(
+        Group(number, tuple(place[each] for each in group.resources), group.capacity)
+        for number, group in enumerate(instance.graph.groups)
+    )
     robots = tuple(
         replace(each, id=number[each.id], start=place[each.start], goal=place[each.goal]) for each in instance.robots
     )
@@ -240,7 +249,9 @@ def _numbered(case: Case) -> Case | None:
     )
     return replace(
         case,
-        instance=replace(instance, graph=ResourceGraph(resources, edges, instance.graph.directed), robots=robots),
+        instance=replace(
+            instance, graph=ResourceGraph(resources, edges, instance.graph.directed, groups), robots=robots
+        ),
         solution=replace(solution, plans=plans, order=order, unplanned=unplanned),
         robot=None if case.robot is None else number[case.robot],
         delays=tuple((number[robot], visit, ticks) for robot, visit, ticks in case.delays),

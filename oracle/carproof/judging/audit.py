@@ -13,9 +13,9 @@ import msgspec
 
 from carp_spec import Instance, Plan, Refusal, Solution
 from carp_spec.documents.solutions import solution_document
+from carp_spec.limits import refuse
 from carp_verify.bound.rules import ContradictionError
 from carp_verify.kernel import ask, request
-from carp_verify.limits import require_following
 from carp_verify.query.rules import plans_are_lawful, size_fits
 from carp_verify.query.verify import Traffic, require_certificate
 from carproof.engines import Engine
@@ -54,7 +54,7 @@ class Auditor:
     """Compares plans with the best ones beside those committed so far."""
 
     def __init__(self, instance: Instance, engine: Engine) -> None:
-        require_following(instance)
+        refuse(instance, "following", "groups")
         self._instance = instance
         self._certifier = engine.certifier(instance)
         self._traffic = Traffic(instance)

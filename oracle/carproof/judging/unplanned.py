@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from carp_spec import Instance, Plan, ResourceGraph, ResourceId, RobotId
-from carp_spec.windows import Window, free_windows, stay_fits
+from carp_spec.windows import Window, constraints_on, free_windows, stay_fits
 
 
 def why_unplanned(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0) -> str:
@@ -35,5 +35,4 @@ def leads(graph: ResourceGraph, start: ResourceId, goal: ResourceId) -> bool:
 
 def windows(instance: Instance, committed: Sequence[Plan], resource: ResourceId) -> tuple[Window, ...]:
     """The free windows that the committed plans leave at one resource."""
-    stays = [(visit.enter, visit.leave) for plan in committed for visit in plan.visits if visit.resource == resource]
-    return free_windows(stays, instance.graph.resource[resource].capacity, instance.gap)
+    return free_windows(constraints_on(instance.graph, committed, resource), instance.gap)

@@ -10,7 +10,7 @@ from itertools import pairwise
 from typing import TypeAlias
 
 from carp_spec import Instance, Plan, ResourceId, Solution, Visit
-from carp_spec.windows import occupancy
+from carp_spec.windows import constraints_on, occupancy
 
 NO_RESOURCE = "no resource of the graph"
 NO_ROBOT = "no robot of the instance"
@@ -100,23 +100,23 @@ def robot_hurries(instance: Instance, solution: Solution) -> Iterator[BrokenSolu
 
 
 def robot_overstays(instance: Instance, solution: Solution) -> Iterator[BrokenSolution]:
-    """A robot stays until another is in the same resource too, and they exceed its capacity."""
+    """A robot stays until another is in the same resource or group too, and they exceed its capacity."""
     for plan, position in _visits(solution):
         visit = plan.visits[position]
         others = [other for other in solution.plans if other is not plan]
-        stays = [
-            (each.enter, each.leave) for other in others for each in other.visits if each.resource == visit.resource
-        ]
-        capacity = instance.graph.resource[visit.resource].capacity
-        for enter, _ in stays:
-            if visit.leave is not None and visit.leave <= enter and occupancy(stays, enter) == capacity:
-                rest = later(plan.visits[position + 1 :], enter + 1 - visit.leave)
-                visits = (*plan.visits[:position], replace(visit, leave=enter + 1), *rest)
-                yield _with_visits(instance, solution, plan, visits, "joint/capacity")
+        for place, (stays, capacity) in enumerate(constraints_on(instance.graph, others, visit.resource)):
+            for enter, _ in stays:
+                if visit.leave is not None and visit.leave <= enter and occupancy(stays, enter) == capacity:
+                    rest = later(plan.visits[position + 1 :], enter + 1 - visit.leave)
+                    visits = (*plan.visits[:position], replace(visit, leave=enter + 1), *rest)
+                    broken = "joint/group" if place else "joint/capacity"
+                    yield _with_visits(instance, solution, plan, visits, broken)
 
 
 def robot_goes_against_another(instance: Instance, solution: Solution) -> Iterator[BrokenSolution]:
-    """A robot waits where another robot will go, makes the opposite move at the same tick, comes back and continues."""
+    """A robot waits where another will go, or close, makes the opposite move at the same tick, and comes back."""
+    graph = instance.graph
+    areas = {resource: {*graph.areas_of(resource)} for resource in graph.index}
     moves = [
         (mover, following.enter, visit.resource, following.resource)
         for mover in solution.plans
@@ -126,10 +126,10 @@ def robot_goes_against_another(instance: Instance, solution: Solution) -> Iterat
         visit = plan.visits[position]
         for mover, tick, source, target in moves:
             ready = visit.enter + instance.duration(plan.robot, visit.resource) <= tick
-            possible = visit.resource == target and (target, source) in instance.graph.moves
-            if mover is not plan and ready and possible:
-                detour = _detour(instance, plan, position, tick, source)
-                yield _with_visits(instance, solution, plan, detour, "joint/exchange")
+            if mover is not plan and ready and areas[visit.resource] & areas[target]:
+                for over in (each for each in graph.successors[visit.resource] if areas[each] & areas[source]):
+                    detour = _detour(instance, plan, position, tick, over)
+                    yield _with_visits(instance, solution, plan, detour, "joint/exchange")
 
 
 MUTATIONS: tuple[Mutation, ...] = (

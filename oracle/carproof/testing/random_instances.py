@@ -9,6 +9,7 @@ from carp_spec import (
     AfterGoal,
     Carp,
     Greedy,
+    Group,
     Instance,
     LongestFirst,
     Neighbourhood,
@@ -16,6 +17,7 @@ from carp_spec import (
     Planner,
     Resource,
     ResourceGraph,
+    ResourceId,
     Robot,
     RobotId,
     Shuffled,
@@ -59,6 +61,7 @@ class Mix:
     paces: Sequence[int] = (1, 2)
     more: int = 6
     both_ways: bool = False
+    groups: Sequence[int] = (0,)
     goals_apart: bool = False
 
 
@@ -157,7 +160,20 @@ def draw_graph(draw: Draw, resources: tuple[Resource, ...], mix: Mix) -> Resourc
     directed = draw.happens(4)
     if directed and mix.both_ways:
         moves += [(target, source) for source, target in moves if not draw.happens(4)]
-    return ResourceGraph(resources, tuple(moves), directed)
+    groups = draw_groups(draw, ids, draw.one_of(mix.groups)) if any(mix.groups) else ()
+    return ResourceGraph(resources, tuple(moves), directed, groups)
+
+
+def draw_groups(draw: Draw, ids: Sequence[ResourceId], count: int) -> tuple[Group, ...]:
+    """Groups, most of which have room for one robot; they may overlap, and one may have all resources."""
+    return tuple(
+        Group(
+            id,
+            tuple(shuffle(ids, draw.stream)[: draw.between(1, min(len(ids), 4))]),
+            draw.one_of((1, 1, 1, 2)),
+        )
+        for id in draw_ids(draw, count)
+    )
 
 
 def draw_planner(draw: Draw) -> Planner:

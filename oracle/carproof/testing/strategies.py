@@ -17,7 +17,19 @@ from itertools import permutations
 
 from hypothesis import strategies as st
 
-from carp_spec import AfterGoal, Instance, Move, Plan, Resource, ResourceGraph, ResourceId, Robot, RobotId, Solution
+from carp_spec import (
+    AfterGoal,
+    Group,
+    Instance,
+    Move,
+    Plan,
+    Resource,
+    ResourceGraph,
+    ResourceId,
+    Robot,
+    RobotId,
+    Solution,
+)
 from carp_spec.shapes import numbers_of
 from carproof.testing.mutations import MUTATIONS, BrokenSolution
 from carproof.testing.random_instances import FleetUnderWay
@@ -42,7 +54,8 @@ __all__ = [
 class Sizes:
     """The largest values that are drawn.
 
-    `wait` is the most ticks that a drawn plan stays in a resource beyond the need.
+    `wait` is the most ticks that a drawn plan stays in a resource beyond the need. Only planners that know groups are
+    asked with `groups`.
     """
 
     resources: int = 5
@@ -52,6 +65,7 @@ class Sizes:
     release: int = 4
     pace: int = 2
     wait: int = 2
+    groups: int = 0
 
 
 SMALL = Sizes()
@@ -95,15 +109,25 @@ def resource_graphs(draw: st.DrawFn, sizes: Sizes = SMALL) -> ResourceGraph:
         for id, numbers, (x, y) in zip(ids, attributes, draw(_positions(count)), strict=True)
     )
     pairs = draw(_pairs(ids))
+    groups = draw(_groups(ids, sizes)) if sizes.groups else ()
     if not draw(st.booleans()):
-        return ResourceGraph(resources, pairs)
+        return ResourceGraph(resources, pairs, groups=groups)
     directions = draw(st.lists(st.integers(0, 2), min_size=len(pairs), max_size=len(pairs)))
     edges = [
         move
         for (source, target), direction in zip(pairs, directions, strict=True)
         for move in [[(source, target), (target, source)], [(source, target)], [(target, source)]][direction]
     ]
-    return ResourceGraph(resources, tuple(edges), directed=True)
+    return ResourceGraph(resources, tuple(edges), directed=True, groups=groups)
+
+
+@st.composite
+def _groups(draw: st.DrawFn, ids: list[ResourceId], sizes: Sizes) -> tuple[Group, ...]:
+    """Groups, which may overlap."""
+    members = st.lists(st.sampled_from(ids), min_size=1, unique=True).map(tuple)
+    drawn = draw(st.lists(st.tuples(members, st.integers(1, sizes.capacity)), max_size=sizes.groups))
+    names = draw(_ids(len(drawn)))
+    return tuple(Group(id, *each) for id, each in zip(names, drawn, strict=True))
 
 
 @st.composite

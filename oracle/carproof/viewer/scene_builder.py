@@ -161,7 +161,7 @@ def places(stage: Stage, start: str) -> Iterator[Place]:
 
 def free_of(capacity: int, stays: Stays) -> tuple[tuple[int, int | None], ...]:
     """The free windows of a resource."""
-    windows = free_windows([occupation for _, _, occupation in stays], capacity)
+    windows = free_windows([([occupation for _, _, occupation in stays], capacity)])
     return tuple((window.start, window.end) for window in windows)
 
 

@@ -33,7 +33,7 @@ class GraphAttributesDocument(msgspec.Struct, frozen=True, forbid_unknown_fields
 
 @describes(ResourceGraph, "resources")
 class GraphDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The resource graph as networkx node-link data."""
+    """The resource graph as networkx node-link data, and its groups."""
 
     nodes: tuple[NodeDocument, ...]
     edges: tuple[EdgeDocument, ...]

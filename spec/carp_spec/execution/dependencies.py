@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+from carp_spec.limits import refuse
 from carp_spec.model import Instance, Plan, ResourceId, RobotId, Visit
 
 Node: TypeAlias = tuple[RobotId, int]
@@ -53,6 +54,7 @@ def stays_by_resource(plans: Sequence[Plan]) -> dict[ResourceId, list[Stay]]:
 
 def dependencies(instance: Instance, plans: Sequence[Plan]) -> Iterator[Dependency]:
     """The edges of the dependency graph of lawful plans, without those that follow from others."""
+    refuse(instance, "groups")
     for plan in plans:
         for place, visit in enumerate(plan.visits[:-1]):
             ticks = instance.duration(plan.robot, visit.resource)

@@ -35,6 +35,7 @@ from carp_spec import Instance, Refusal, ResourceGraph, ResourceId, Robot, Robot
 from carp_spec.documents.bounds import BoundDocument, CutDocument, DeadlinesDocument
 from carp_spec.documents.instances import digest
 from carp_spec.inputs.values import require_instance
+from carp_spec.limits import refuse
 from carp_spec.rule import is_whole
 from carp_verify.bound.rules import (
     LARGEST_FORMULA,
@@ -50,7 +51,6 @@ from carp_verify.bound.rules import (
     is_weight,
     size_fits,
 )
-from carp_verify.limits import require_following
 
 Before: TypeAlias = Mapping[ResourceId, Sequence[ResourceId]]
 
@@ -101,7 +101,7 @@ def verify_bound(instance: Instance, certificate: BoundDocument) -> int:
     No plans of all robots that can reach their goals have a smaller total cost. Where one cannot, `robots` has null.
     """
     require_instance(instance)
-    require_following(instance)
+    refuse(instance, "following", "groups")
     _require(is_about, is_about(certificate.instance, digest(instance)), "$.instance", "it is about another instance")
     scale = certificate.scale
     _require(is_scale, is_scale(scale), "$.scale", f"the scale must be a power of two, and is {scale!r}")

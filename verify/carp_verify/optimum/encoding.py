@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from itertools import pairwise, zip_longest
 
 from carp_spec import Instance, Move, Plan, ResourceId, Robot
-from carp_verify.limits import require_following
+from carp_spec.limits import refuse
 from carp_verify.optimum.clauses import Clause, Formula, Literal
 from carp_verify.optimum.robot_clauses import RobotClauses, predecessors
 from carp_verify.optimum.rules import LARGEST_FORMULA, LARGEST_PROOF
@@ -180,7 +180,7 @@ def beat_formula(instance: Instance, cost: int | None, evidence: Evidence, most:
 
 
 def _bounded(instance: Instance, bound: int | None, evidence: Evidence, most: int) -> Encoding:
-    require_following(instance)
+    refuse(instance, "following", "groups")
     encoding = Encoding(instance, most=most)
     encoding.grow_to(evidence.horizons)
     encoding.forbid_all()

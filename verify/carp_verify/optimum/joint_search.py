@@ -13,7 +13,7 @@ from typing import Literal, TypeAlias
 
 from carp_spec import Instance, ResourceId, Robot
 from carp_spec.inputs.values import require_instance
-from carp_verify.limits import require_following
+from carp_spec.limits import refuse
 from carp_verify.optimum.rules import LARGEST_SEARCH, refuse_size
 
 Phase: TypeAlias = Literal["waits", "moves", "arrived"]
@@ -108,7 +108,7 @@ def least_total_cost(
     Raises `Refusal` before more than `most` joint states are looked at; `on_step` is called at each, and may raise.
     """
     require_instance(instance)
-    require_following(instance)
+    refuse(instance, "following", "groups")
     search = _Search(instance)
     queue: list[tuple[int, int, int, Joint]] = [(0, 0, -1, tuple(WAITS for _ in instance.robots))]
     settled: set[tuple[int, Joint]] = set()

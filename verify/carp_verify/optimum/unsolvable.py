@@ -17,7 +17,7 @@ from typing import TypeAlias
 import msgspec
 
 from carp_spec import Instance, Refusal, ResourceId, RobotId
-from carp_verify.limits import require_following
+from carp_spec.limits import refuse
 from carp_verify.optimum.encoding import Encoding
 from carp_verify.optimum.joint_search import joint_states, least_total_cost
 
@@ -66,7 +66,7 @@ def describe(instance: Instance, obstacle: Obstacle) -> str:
 
 def why_no_obstacle(instance: Instance, obstacle: Obstacle) -> str | None:
     """The reason why the instance does not have the obstacle, `None` if it has it; clauses are still to be refuted."""
-    require_following(instance)
+    refuse(instance, "following", "groups")
     match obstacle:
         case NoWay(id):
             return _why_way(instance, id)

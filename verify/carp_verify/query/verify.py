@@ -22,8 +22,8 @@ from itertools import pairwise
 from carp_spec import Instance, Plan, Refusal, ResourceId, Robot, Rule, Solution, Visit, has_ended
 from carp_spec.documents.query_certificates import QueryCertificateDocument
 from carp_spec.inputs.values import require_solution
+from carp_spec.limits import refuse
 from carp_spec.windows import Window
-from carp_verify.limits import require_following
 from carp_verify.query.rules import (
     LARGEST_CHECK,
     is_closed,
@@ -126,7 +126,7 @@ def require_certificate(traffic: Traffic, certificate: QueryCertificateDocument,
 
     The plan followed until now, and the plans committed, must be lawful.
     """
-    require_following(traffic.instance)
+    refuse(traffic.instance, "following", "groups")
     if followed is not None and has_ended(followed, certificate.now):
         if traffic.allows(followed.visits):
             arrival = followed.visits[-1].enter

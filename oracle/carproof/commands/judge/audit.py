@@ -14,8 +14,8 @@ from carproof.command_line.files import (
     print_document,
     read_bytes,
     read_instance_file,
+    refuse_in,
     refuse_two_standard_inputs,
-    require_following_in,
     shown,
 )
 from carproof.command_line.foreign import MovingAI, from_option, movingai_options, read_movingai
@@ -77,7 +77,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
         raise click.UsageError("Give INSTANCE and SOLUTION, or --map, --scen and SOLUTION.")
     refuse_two_standard_inputs(*files, *(benchmark.names if benchmark else ()))
     instance = read_movingai(benchmark) if benchmark else read_instance_file(instances[0])
-    require_following_in(files[0], instance)
+    refuse_in(files[0], instance, "following", "groups")
     data, name = read_bytes(solution), shown(solution)
     format = format or format_of(data, instance, name)
     given = read_foreign_solution(data, instance, name, format)

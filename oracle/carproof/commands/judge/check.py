@@ -13,7 +13,7 @@ from carp_spec.documents.verdicts import write_verdict
 from carp_verify.bound.rules import ContradictionError
 from carp_verify.kernel import KernelVerdict, ask, request
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import print_document, require_following_in, write_whole
+from carproof.command_line.files import print_document, refuse_in, write_whole
 from carproof.command_line.foreign import Problem, solution_files
 from carproof.command_line.options import examples, json_option, kernel_option, output_option
 from carproof.command_line.tables import print_line, print_table, say
@@ -72,7 +72,7 @@ def command(  # noqa: PLR0913 - an argument an option
     """
     instance, given = problem.read(as_named=True)
     if kernel or z3:
-        require_following_in(problem.names[0], instance)
+        refuse_in(problem.names[0], instance, "following", "groups")
     if z3:
         return certified(instance, given, as_json)
     most = None if everything else MOST_LISTED

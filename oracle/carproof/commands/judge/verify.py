@@ -16,8 +16,8 @@ from carproof.command_line.files import (
     read_file,
     read_instance_file,
     read_solution_file,
+    refuse_in,
     refuse_two_standard_inputs,
-    require_following_in,
 )
 from carproof.command_line.options import examples, json_option, kernel_option
 from carproof.command_line.tables import print_line, print_table
@@ -74,7 +74,7 @@ def command(*, files: tuple[str, ...], instance: str | None, kernel: bool, as_js
     if not others:
         _refuse("a certificate needs its instance")
     problem = read_instance_file(others[0])
-    require_following_in(others[0], problem)
+    refuse_in(others[0], problem, "following", "groups")
     if len(others) > 1:
         return _query(problem, others[1], file, kernel, as_json)
     return _bound(problem, file, kernel, as_json)

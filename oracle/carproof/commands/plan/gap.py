@@ -8,7 +8,7 @@ from carp_spec import AfterGoal
 from carp_spec.documents.decoding import write
 from carp_spec.planners import LARGEST_SEED
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import InputFile, print_document, read_instance_file, require_following_in
+from carproof.command_line.files import InputFile, print_document, read_instance_file, refuse_in
 from carproof.command_line.options import RangeType, examples, json_option, limit_option
 from carproof.command_line.tables import print_line, print_table
 from carproof.engines import warm
@@ -102,7 +102,7 @@ def _gap_of(path: str, limit: int, as_json: bool) -> Answer:
     from carproof.gap.report import gap_document, gap_rows  # noqa: PLC0415 - loads the planners
 
     problem = read_instance_file(path)
-    require_following_in(path, problem)
+    refuse_in(path, problem, "following", "groups")
     warm()
     measured = gap(problem, PLANNERS, limit)
     best = measured.optimum

@@ -13,8 +13,8 @@ from carproof.command_line.files import (
     naming,
     read_instance_file,
     read_solution_file,
+    refuse_in,
     refuse_two_standard_inputs,
-    require_following_in,
     write_whole,
 )
 from carproof.command_line.options import asks_for_a_robot, examples, gives_plans
@@ -60,7 +60,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     problem = read_instance_file(instance)
     given = read_solution_file(solution)
     if certificate is not None:
-        require_following_in(instance, problem)
+        refuse_in(instance, problem, "following", "groups")
     id = robot_called(problem, robot)
     with naming(solution):
         committed = sound_solution(problem, given, id)

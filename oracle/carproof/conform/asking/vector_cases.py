@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from carp_spec import Carp
+from carp_spec import Carp, Instance
 from carp_spec.documents.decoding import write
 from carp_spec.documents.vectors import Vector
 from carproof.conform.cases import ASKED_OPS, Case
@@ -16,15 +16,18 @@ from carproof.testing.vectors import vectors
 def vector_cases(ops: Sequence[str], level: Level, whole: bool) -> Iterator[Case]:
     """The vectors of the ops that are offered; those with malformed documents are for readers of documents.
 
-    A program need not support instances that forbid following.
+    A program need not support instances that forbid following or have groups.
     """
     for vector in vectors():
         op = next((op for op in ASKED_OPS if op == vector.op), None)
-        is_known = "refused" not in vector.answer and "following" not in (vector.instance or {})
-        if op is not None and op in ops and is_known:
+        if op is not None and op in ops and "refused" not in vector.answer and _is_known(vector.read_instance()):
             case = case_of(vector, op)
             if _is_asked(case, level, whole):
                 yield replace(case, planner=None) if whole else case
+
+
+def _is_known(instance: Instance) -> bool:
+    return instance.following == "allowed" and not instance.graph.groups
 
 
 def _is_asked(case: Case, level: Level, whole: bool) -> bool:

@@ -3,6 +3,7 @@
 _ADVICE = {
     "joint/capacity": "Keep each resource for a robot up to the tick at which it leaves, also at its goal.",
     "joint/exchange": "Look at the moves of the robots before, not only at their places.",
+    "joint/group": "Count the robots in the resources of a group together, each of them once.",
     "joint/following": "Enter a resource only after a free tick, where the instance forbids following.",
     "plan/duration": "Let a robot stay as long as the resource's duration times its pace asks, also at its goal.",
     "plan/start": "Begin the first visit at the robot's start, at its release.",

@@ -1,0 +1,41 @@
+"""What part of an instance a search or a checker does not know, and so refuses: `limit/...`."""
+
+from collections.abc import Mapping
+from typing import Literal, TypeAlias
+
+from carp_spec.model import Instance
+from carp_spec.refusal import Refusal
+from carp_spec.rule import DESIGN, Rule, rule
+
+Feature: TypeAlias = Literal["following", "groups"]
+
+
+@rule("limit/following", "What does not know forbidden following refuses an instance that forbids it.", DESIGN)
+def following_is_allowed(instance: Instance) -> bool:  # noqa: D103 - its statement stands in its decorator
+    return instance.following == "allowed"
+
+
+@rule("limit/groups", "What does not know groups refuses an instance that has any.", DESIGN)
+def groups_are_absent(instance: Instance) -> bool:  # noqa: D103 - its statement stands in its decorator
+    return not instance.graph.groups
+
+
+LIMITS: Mapping[Feature, tuple[Rule[[Instance], bool], str, str]] = {
+    "following": (
+        following_is_allowed,
+        "$.following",
+        "following must be allowed here: checks and planners alone know of instances that forbid it",
+    ),
+    "groups": (
+        groups_are_absent,
+        "$.graph.groups",
+        "there must be no groups here: checks and planners alone know of instances that have them",
+    ),
+}
+
+
+def refuse(instance: Instance, *features: Feature) -> None:
+    """Raise `Refusal` if the instance has one of the features."""
+    for keeps, path, message in (LIMITS[feature] for feature in features):
+        if not keeps(instance):
+            raise Refusal("limit", path, keeps.id, message)
