@@ -14,7 +14,7 @@ from tests.verify.bound_examples import crossing, cut_certificate
 from tests.verify.kernel_program import Json, program, run
 from tests.verify.test_kernel_optimum import claim
 
-from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
+from carp_spec import AfterGoal, Instance, Refusal, Resource, ResourceGraph, Robot
 from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, DeadlinesDocument
 from carp_spec.documents.decoding import write
 from carp_spec.documents.instances import digest, instance_document, read_instance, write_instance
@@ -59,8 +59,14 @@ def answered(folder: Path, instance: Instance, document: BoundDocument) -> tuple
 LANE = Instance(ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),)), (Robot("r", "a", "b"),))
 
 
+FORK = Instance(
+    ResourceGraph(tuple(map(Resource, "abcx")), (("a", "b"), ("b", "c"), ("b", "x"))),
+    (Robot("r", "a", "c"), Robot("s", "c", "a")),
+)
+
+
 def bound_of(instance: Instance, **fields: object) -> BoundDocument:
-    """A bound without prices of instances with one robot."""
+    """A bound without prices, with a claim for one robot."""
     plain = BoundDocument(
         format=BOUND_FORMAT,
         instance=digest(instance),
@@ -102,6 +108,21 @@ def test_a_formula_of_too_late_deadlines_is_not_made(tick: int, tmp_path: Path) 
     deadlines = DeadlinesDocument(("r",), (tick,), 0, "")
     document = bound_of(LANE, deadlines=(deadlines,))
     assert answered(tmp_path, LANE, document) == ("refused", "bound/size")
+
+
+@pytest.mark.parametrize("tick", [10**6, 10**50])
+def test_a_formula_of_robots_that_are_seen_too_late_is_not_made(tick: int, tmp_path: Path) -> None:
+    """Nor is a cost looked for: a claim that far above the least cost would take long to refute."""
+    deadlines = DeadlinesDocument(("r", "s"), (0, 0), 10**6, "2 0 1 0\n", seen=((0, ("a",)), (tick, ("c",))))
+    document = bound_of(FORK, robots=(("r", 10**6 + 2), ("s", 10**6 + 2)), deadlines=(deadlines,))
+    assert answered(tmp_path, FORK, document) == ("refused", "bound/size")
+
+
+@pytest.mark.parametrize("after_goal", ["vanish", "park"])
+def test_a_claim_far_above_the_least_cost_is_refused(after_goal: AfterGoal, tmp_path: Path) -> None:
+    instance = replace(FORK, after_goal=after_goal)
+    document = bound_of(instance, resources=(("a", 10**6, 5),), robots=(("r", 10**6), ("s", 10**6)))
+    assert answered(tmp_path, instance, document) == ("refused", "bound/robots")
 
 
 def test_a_formula_of_too_late_cuts_is_not_made(tmp_path: Path) -> None:

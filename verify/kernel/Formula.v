@@ -442,7 +442,7 @@ Definition groups_refuted (i : instance) (c : certificate)
 (** The instance is well-formed, and the certificate proves its bound. *)
 Definition bound_proved (i : instance) (c : certificate) (all : list (unit -> evidence))
     (of_cuts of_deadlines : list (unit -> blueprint * list (list word))) : bool :=
-  instance_accepted i && bound_accepted i c all && groups_refuted i c of_cuts of_deadlines.
+  instance_accepted i && groups_refuted i c of_cuts of_deadlines && bound_accepted i c all.
 
 (** The claim of a proof is that no plans cost less, or, without a cost, that there are none. *)
 Definition demand_of (cost : option Z) : demand :=

@@ -1229,7 +1229,7 @@ Theorem bound_with_refuted_groups_is_below_every_solution i c all of_cuts of_dea
   bound_proved i c all of_cuts of_deadlines = true -> Well_formed i /\
   forall s, Lawful i s -> Plans_every_plannable_robot i s -> bound c <= total_cost i s.
 Proof.
-  unfold bound_proved. rewrite !andb_true_iff. intros [[right H] R].
+  unfold bound_proved. rewrite !andb_true_iff. intros [[right R] H].
   apply instance_is_well_formed_exactly_when_accepted in right. split; [exact right |].
   intros s lawful complete. apply andb_true_iff in R as [Cuts Deadlines].
   apply (accepted_bound_is_below_every_solution i s c all); auto.

@@ -165,14 +165,21 @@ let grow draft clerk =
     clerk.unfinished <- List.filter (fun node -> not (go_on draft clerk node)) (clerk.unfinished @ added);
     arrive_at_horizon draft clerk)
 
-(* At most as many nodes as the robot has at a horizon: those that follow the first one in each resource. *)
+(* At most as many nodes as the robot has at a horizon: those that follow the first one in each resource, if the robot
+   can be there before it was seen. *)
 let nodes_within clerk horizon =
+  let is_described place first =
+    match clerk.seen with
+    | Some sight when not (Z.equal place clerk.robot.start) -> Z.leq (Z.sub first (clerk.takes place)) sight.seen_at
+    | _ -> true
+  in
   let within place first =
     match rest clerk place with
-    | Some _ -> Z.max Z.zero (Z.sub (Z.of_int (horizon + 1)) (least_delay clerk (place, first)))
-    | None -> Z.zero
+    | Some _ when is_described place first ->
+        Z.max Z.zero (Z.sub (Z.of_int (horizon + 1)) (least_delay clerk (place, first)))
+    | _ -> Z.zero
   in
-  if stands_still clerk || clerk.seen <> None then Z.zero
+  if stands_still clerk then Z.zero
   else Collections.Map.fold (fun place first sum -> Z.add sum (within place first)) clerk.guide.firsts Z.zero
 
 (* Refuse horizons whose nodes alone need too many clauses. *)

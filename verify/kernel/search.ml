@@ -62,45 +62,73 @@ let spend budget first until dues =
   budget.work <- budget.work - Z.to_int ticks - dues - 1;
   if budget.work < 0 then raise Too_much_work
 
-(* Labels for all that costs less than is claimed, tick by tick; none once the claim is seen to be too high. *)
-let labels_below budget claimed weight (tariff : Labels.tariff) dues horizon takes onwards ticks (a : Law.robot) =
-  let amounts = Hashtbl.create 1024 and queue = ref Queue.empty and too_high = ref false in
+(* Entries of a queue: the estimate of what is paid at the goal, and a resource with the tick of leaving it. *)
+module Estimates = Set.Make (struct
+  type t = Z.t * Z.t * Z.t
+
+  let compare (estimate, t, r) (other, u, s) =
+    match Z.compare estimate other with 0 -> (match Z.compare u t with 0 -> Z.compare r s | order -> order) | order -> order
+end)
+
+module Ticks = Map.Make (Z)
+
+(* What a robot pays from a tick on that parks in a resource with these prices. *)
+let paid_by_parking prices =
+  let last (x : Prices.price) = if x.other = None then x.tick else Z.pred x.tick in
+  let add (sum, sums) (x : Prices.price) =
+    let sum = Z.add sum x.amount in
+    (sum, Ticks.add (last x) sum sums)
+  in
+  let _, sums = List.fold_left add (Z.zero, Ticks.empty) (List.sort (fun x y -> Z.compare (last y) (last x)) prices) in
+  fun t -> Option.fold ~none:Z.zero ~some:snd (Ticks.find_first_opt (Z.leq t) sums)
+
+(* Labels for all that costs less than is claimed, the least estimate first (A star); none once the claim is seen to be
+   too high. *)
+let labels_below budget claimed weight (tariff : Labels.tariff) dues horizon takes onwards ticks parked (a : Law.robot) =
+  let amounts = Hashtbl.create 1024 and settled = Hashtbl.create 1024 in
+  let queue = ref Estimates.empty and too_high = ref false in
   let reach amount r t =
     match Hashtbl.find_opt ticks r with
     | None -> ()
     | Some rest ->
-        if Z.lt (Z.add amount (Z.mul weight (Z.sub (Z.add t rest) a.release))) claimed then
+        let estimate = Z.add amount (Z.mul weight (Z.sub (Z.add t rest) a.release)) in
+        if Z.lt estimate claimed then
           if Z.geq t horizon then too_high := true
-          else (
-            queue := Queue.add (t, r) !queue;
+          else
             match Hashtbl.find_opt amounts (r, t) with
             | Some known when Z.leq known amount -> ()
-            | _ -> Hashtbl.replace amounts (r, t) amount)
+            | _ -> Hashtbl.replace amounts (r, t) amount; queue := Estimates.add (estimate, t, r) !queue
   in
   let count_of_dues = List.length dues in
   let enter amount r t =
     let ready = Z.add t (takes r) in
     spend budget t (Z.min ready tariff.horizon) count_of_dues;
-    let paid = Z.add (Labels.stay_price tariff r t ready) (Bound.fees_on_the_way dues r t ready) in
-    reach (Z.add amount paid) r ready
+    let stayed = Z.add amount (Labels.stay_price tariff r t ready) in
+    if Z.equal r a.goal then (
+      let paid = match parked with None -> stayed | Some paid_from -> Z.add amount (paid_from t) in
+      let total = Z.add paid (Z.add (Bound.fees_at_arrival dues t) (Z.mul weight (Z.sub t a.release))) in
+      if Z.lt total claimed then too_high := true);
+    reach (Z.add stayed (Bound.fees_on_the_way dues r t ready)) r ready
   in
-  enter Z.zero a.start a.release;
+  let leave r t =
+    budget.steps <- budget.steps - 1;
+    if budget.steps < 0 then raise Too_many_steps;
+    let amount = Hashtbl.find amounts (r, t) and later = Z.succ t in
+    let paid = Z.add (Labels.wait_price tariff r t) (Bound.fees_on_the_way dues r t later) in
+    reach (Z.add amount paid) r later;
+    List.iter (fun s -> enter (Z.add amount (Labels.move_price tariff r s t)) s t) (resources_to onwards r)
+  in
   let rec settle () =
-    match Queue.min_elt_opt !queue with
-    | Some ((t, r) as first) when not !too_high ->
-        queue := Queue.remove first !queue;
-        budget.steps <- budget.steps - 1;
-        if budget.steps < 0 then raise Too_many_steps;
-        let amount = Hashtbl.find amounts (r, t) in
-        let later = Z.succ t in
-        let paid = Z.add (Labels.wait_price tariff r t) (Bound.fees_on_the_way dues r t later) in
-        reach (Z.add amount paid) r later;
-        List.iter (fun s -> enter (Z.add amount (Labels.move_price tariff r s t)) s t) (resources_to onwards r);
+    match Estimates.min_elt_opt !queue with
+    | Some ((_, t, r) as first) when not !too_high ->
+        queue := Estimates.remove first !queue;
+        if not (Hashtbl.mem settled (r, t)) then (Hashtbl.add settled (r, t) (); leave r t);
         settle ()
     | _ -> ()
   in
+  enter Z.zero a.start a.release;
   settle ();
-  Hashtbl.fold (fun place amount labels -> (place, amount) :: labels) amounts []
+  if !too_high then [] else Hashtbl.fold (fun place amount labels -> (place, amount) :: labels) amounts []
 
 (* The evidence of each robot's claim, looked for when it is asked for. Raises [Too_many_steps] and [Too_much_work]. *)
 let evidence (instance : Law.instance) (certificate : Bound.certificate) =
@@ -114,6 +142,8 @@ let evidence (instance : Law.instance) (certificate : Bound.certificate) =
   in
   let deadlines = List.concat_map (fun (g : Bound.group) -> g.deadlines) certificate.groups in
   let horizon = List.fold_left after tariff.horizon deadlines in
+  let priced = Hashtbl.create 1024 in
+  List.iter (fun (x : Prices.price) -> Hashtbl.add priced x.place x) certificate.prices;
   let known = Hashtbl.create 64 and budget = { steps = most_steps; work = most_work } in
   let of_robot (a : Law.robot) () =
     let takes = Tables.takes_in table a in
@@ -126,7 +156,9 @@ let evidence (instance : Law.instance) (certificate : Bound.certificate) =
       match Hashtbl.find_opt claims a.robot_id with
       | Some (Some claimed) ->
           let weight = Bound.weight_of certificate a.robot_id and dues = Bound.dues_of certificate a.robot_id in
-          labels_below budget claimed weight tariff dues horizon takes onwards ticks a
+          let parks = instance.after_goal = Law.Park in
+          let parked = if parks then Some (paid_by_parking (Hashtbl.find_all priced a.goal)) else None in
+          labels_below budget claimed weight tariff dues horizon takes onwards ticks parked a
       | _ -> []
     in
     { Bound.ticks_after = Hashtbl.fold (fun r rest all -> (r, rest) :: all) ticks []; labels;

@@ -298,9 +298,11 @@ let proof_of_deadlines (read : Reading.instance) left (g : Bound.group) refutati
     Error (Refused ("bound/deadline", "it must name robots of the instance, each once, or again where it is seen later"))
   else if List.exists (is_never read) g.deadlines then
     Error (Refused ("bound/deadline", "a robot must be seen at a tick of at least 0, in resources of the graph"))
-  else if List.exists (is_long read group) g.deadlines then
-    Error (Undecided "a robot is seen in a place where it takes too many ticks for the kernel")
-  else proof_of_group read left group (Formula.In_time g.deadlines) { horizons = []; order = [] } refutation
+  else
+    match proof_of_group read left group (Formula.In_time g.deadlines) { horizons = []; order = [] } refutation with
+    | Ok _ when List.exists (is_long read group) g.deadlines ->
+        Error (Undecided "a robot is seen in a place where it takes too many ticks for the kernel")
+    | made -> made
 
 (* A group without a proof that can be checked. *)
 exception Unproved of verdict
@@ -325,16 +327,15 @@ let first_unrefuted refuted claims proofs =
   let numbered = List.mapi (fun number each -> (number, each)) (List.combine claims proofs) in
   Option.map fst (List.find_opt is_unrefuted numbered)
 
-(* Why the groups of a bound are not refuted. *)
+(* Why the groups of a bound are not refuted, if they are not. *)
 let group_fault (read : Reading.instance) (bound : Reading.bound) =
   let instance = read.instance and { Bound.cuts; groups; _ } = bound.certificate in
   let of_cuts, of_deadlines = proofs_of read bound in
   match first_unrefuted (Formula.cut_refuted instance) cuts of_cuts with
-  | Some number -> in_proof_of_cut number no_refutation
-  | None -> (
-      match first_unrefuted (Formula.deadlines_refuted instance) groups of_deadlines with
-      | Some number -> in_proof_of_deadlines number no_refutation
-      | None -> Undecided "the kernel accepts each part and not the whole")
+  | Some number -> Some (in_proof_of_cut number no_refutation)
+  | None ->
+      let number = first_unrefuted (Formula.deadlines_refuted instance) groups of_deadlines in
+      Option.map (fun number -> in_proof_of_deadlines number no_refutation) number
 
 (* Each robot is looked for in all cuts and deadlines, and each deadline beside all others. *)
 let most_pairs = 10_000_000_000
@@ -345,34 +346,43 @@ let pairs_of (read : Reading.instance) { Bound.cuts; groups; _ } =
   let deadlines = List.fold_left (fun sum (g : Bound.group) -> sum + List.length g.deadlines) 0 groups in
   (robots * (members + deadlines)) + (deadlines * deadlines)
 
-let bound_fault (read : Reading.instance) (bound : Reading.bound) =
-  match Bound.broken_rule read.instance bound.certificate (Search.evidence read.instance bound.certificate) with
-  | Some Bound.Scale -> Refused ("bound/scale", "the scale must be a power of two")
-  | Some Bound.Price_rule ->
-      Refused ("bound/price", "a price must be at least 0, at a place of the graph and a tick before the horizon")
-  | Some Bound.Once -> Refused ("bound/once", "a place must have one price at a tick")
-  | Some Bound.Size -> Refused ("bound/size", "robots, cuts, deadlines or prices would not fit into a table")
-  | Some Bound.Cut_rule ->
+(* Why a bound is refused: by the first rule that is broken. *)
+let broken (read : Reading.instance) = function
+  | Bound.Scale -> Refused ("bound/scale", "the scale must be a power of two")
+  | Price_rule -> Refused ("bound/price", "a price must be at least 0, at a place of the graph and a tick before the horizon")
+  | Once -> Refused ("bound/once", "a place must have one price at a tick")
+  | Size -> Refused ("bound/size", "robots, cuts, deadlines or prices would not fit into a table")
+  | Cut_rule ->
       Refused ("bound/cut", "a cut names robots, its numbers are at least 0, and no robot's exceed the scale together")
-  | Some Bound.Deadline_rule -> Refused ("bound/deadline", "the price of deadlines must be at least 0")
-  | Some (Bound.Robots (a :: _)) ->
-      let claim = "the claim of robot " ^ named read a.robot_id in
-      Refused ("bound/robots", claim ^ " must be no more than its least priced cost")
-  | Some (Bound.Robots []) -> Refused ("bound/robots", "each robot must be named once, in the instance's order")
-  | Some Bound.Total -> Refused ("bound/total", "the bound must be the sum of all parts, rounded up")
-  | None -> group_fault read bound
+  | Deadline_rule -> Refused ("bound/deadline", "the price of deadlines must be at least 0")
+  | Robots (a :: _) ->
+      Refused ("bound/robots", "the claim of robot " ^ named read a.robot_id ^ " must be no more than its least priced cost")
+  | Robots [] -> Refused ("bound/robots", "each robot must be named once, in the instance's order")
+  | Total -> Refused ("bound/total", "the bound must be the sum of all parts, rounded up")
 
+let bound_fault (read : Reading.instance) (bound : Reading.bound) =
+  match group_fault read bound with
+  | Some fault -> fault
+  | None ->
+      let rule = Bound.broken_rule read.instance bound.certificate (Search.evidence read.instance bound.certificate) in
+      Option.fold ~none:(Undecided "the kernel accepts each part and not the whole") ~some:(broken read) rule
+
+(* First what needs no evidence, then the groups, and then the search for the least costs, as in carp_verify. *)
 let verify_bound (read : Reading.instance) (bound : Reading.bound) =
   let instance = read.instance and certificate = bound.certificate in
   let of_cuts, of_deadlines = proofs_of read bound in
   if pairs_of read certificate > most_pairs then Undecided "the bound has too many robots and groups for the kernel"
   else
-    try
-      if Formula.bound_proved instance certificate (Search.evidence instance certificate) of_cuts of_deadlines then
-        Accepted [ ("bound", whole certificate.bound) ]
-      else bound_fault read bound
-    with
-    | Unproved verdict -> verdict
-    | Search.Too_many_steps ->
-        Refused ("bound/size", Printf.sprintf "the search for least costs takes more than %d steps" Search.most_steps)
-    | Search.Too_much_work -> Undecided "the search goes through stays under prices that are too long for the kernel"
+    match Bound.broken_rule instance certificate [] with
+    | Some ((Scale | Price_rule | Once | Size | Cut_rule | Deadline_rule) as rule) -> broken read rule
+    | Some (Robots _ | Total) | None -> (
+        try
+          if Formula.bound_proved instance certificate (Search.evidence instance certificate) of_cuts of_deadlines then
+            Accepted [ ("bound", whole certificate.bound) ]
+          else bound_fault read bound
+        with
+        | Unproved verdict -> verdict
+        | Search.Too_many_steps ->
+            Refused ("bound/size", Printf.sprintf "the search for least costs takes more than %d steps" Search.most_steps)
+        | Search.Too_much_work ->
+            Undecided "the kernel's search goes through stays under prices that are too long for it")
