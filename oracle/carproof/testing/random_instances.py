@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TypeAlias, TypeVar
+from typing import Any, TypeAlias, TypeVar
 
 from carp_spec import (
     AfterGoal,
@@ -137,7 +137,7 @@ def draw_instance(draw: Draw, mix: Mix = SMALL) -> Instance:
     return Instance(graph, robots, draw.one_of(policies))
 
 
-def _numbers(draw: Draw, mix: Mix, kind: type[Resource | Robot], is_least: Callable[[], bool]) -> dict[str, int]:
+def _numbers(draw: Draw, mix: Mix, kind: type[Resource | Robot], is_least: Callable[[], bool]) -> dict[str, Any]:
     """The numbers of a resource or a robot by their names; the mix has the values of each under its feature."""
     numbers = numbers_of(kind).items()
     return {name: each.least if is_least() else draw.one_of(getattr(mix, each.feature)) for name, each in numbers}

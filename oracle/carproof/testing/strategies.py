@@ -14,6 +14,7 @@ filtered out, so drawing is fast. Examples shrink to few resources, few robots, 
 
 from dataclasses import dataclass
 from itertools import permutations
+from typing import Any
 
 from hypothesis import strategies as st
 
@@ -85,7 +86,7 @@ def _ids(count: int) -> st.SearchStrategy[list[str | int]]:
     return st.permutations(pool).map(lambda ids: ids[:count])
 
 
-def _numbers(kind: type[Resource | Robot], sizes: Sizes) -> st.SearchStrategy[dict[str, int]]:
+def _numbers(kind: type[Resource | Robot], sizes: Sizes) -> st.SearchStrategy[dict[str, Any]]:
     """The numbers of a resource or a robot, by their names."""
     numbers = numbers_of(kind).items()
     return st.fixed_dictionaries({name: st.integers(each.least, getattr(sizes, name)) for name, each in numbers})
