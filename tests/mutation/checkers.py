@@ -42,6 +42,7 @@ LEMMAS = ("verify/test_lemmas", "verify/test_formulas")
 TESTS: Mapping[str, Sequence[str]] = {
     "carp_spec.polish_rules": ("spec/test_polish_rules",),
     "carp_spec.windows": ("spec/test_windows",),
+    "carp_spec.documents.fields": ("spec/test_described_documents", "verify/test_documents"),
     "carp_spec.documents.instances": ("verify/test_documents",),
     "carp_spec.documents.solutions": ("verify/test_documents",),
     "carp_spec.documents.decoding": ("verify/test_documents",),
@@ -83,6 +84,8 @@ TESTS: Mapping[str, Sequence[str]] = {
     "carproof.conform.judging.claims": ("oracle/test_conform_claims",),
     "carproof.conform.judging.by_kernel": ("oracle/test_conform_kernel",),
     "carproof.conform.shrinking": ("oracle/test_conform_shrinking",),
+    "carproof.conform.smaller": ("oracle/test_conform_large",),
+    "carproof.conform.asking.ladder": ("oracle/test_conform_large",),
     "carproof.conform.judging.driving": ("oracle/test_conform_executor",),
     "carproof.conform.programs.executor": ("oracle/test_conform_executor",),
 }
