@@ -11,6 +11,8 @@ from carp_experiments.beyond.people import people_report, people_row
 from carp_experiments.beyond.streams import stream_report, stream_row
 from carp_experiments.beyond.unplanned import unplanned_report, unplanned_row
 from carp_experiments.paper.adding_time import PAPERS_MAP, time_report, time_row
+from carp_experiments.paper.conventions import conventions_row
+from carp_experiments.paper.conventions_report import conventions_report
 from carp_experiments.paper.map_cases import FULL_MAP, WAREHOUSE, MapCase
 from carp_experiments.paper.polishing import polish_report, polish_row
 from carp_experiments.paper.quality import quality_row
@@ -124,6 +126,14 @@ EXPERIMENTS = (
         Profile(8, 20, (10, 20)),
         polish_row,
         polish_report,
+    ),
+    Experiment(
+        "conventions",
+        "What the paper leaves open: under which conventions its numbers come out.",
+        Profile(100, 100, (10, FULL_MAP)),
+        Profile(2, 30, (10, FULL_MAP)),
+        conventions_row,
+        conventions_report,
     ),
     Experiment(
         "unplanned",

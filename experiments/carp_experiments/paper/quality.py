@@ -161,10 +161,11 @@ def summarise(rows: Iterable[Row], robots: int = ROBOTS) -> QualitySummary:
     """Summaries by map and algorithm; an assignment with an unplanned robot is a failure."""
     maps = rows_by_map(rows, QualityRow).items()
     everything = [row for _, each in maps for row in each]
-    algorithms = [summary_of(map, name, each, robots) for map, each in maps for name in ALGORITHMS]
+    names = [name for name in ALGORITHMS if any(name in row.results for row in everything)]
+    algorithms = [summary_of(map, name, each, robots) for map, each in maps for name in names]
     places: list[tuple[int | None, list[QualityRow]]] = [*maps, (None, everything)]
-    savings = [saving for map, each in places for saving in savings_on(map, each, robots)]
-    failures = [failure_difference(name, rival, everything, robots) for name, rival in pairs_of_rivals()]
+    savings = [saving for map, each in places for saving in savings_on(map, each, robots, names)]
+    failures = [failure_difference(name, rival, everything, robots) for name, rival in pairs_of_rivals(names)]
     assignments = len({row.assignment for row in everything})
     return QualitySummary(robots, assignments, tuple(algorithms), tuple(savings), tuple(failures))
 
@@ -177,15 +178,15 @@ def summary_of(map: int, name: str, rows: Sequence[QualityRow], robots: int) -> 
     return Summary(map, name, failures, len(rows), rate, mean_interval(totals) if totals else None)
 
 
-def pairs_of_rivals() -> Iterator[tuple[str, str]]:
+def pairs_of_rivals(names: Iterable[str]) -> Iterator[tuple[str, str]]:
     """Each algorithm with each rival that it is compared with."""
-    for name in ALGORITHMS:
+    for name in names:
         yield from ((name, rival) for rival in RIVALS if rival != name)
 
 
-def savings_on(map: int | None, rows: Sequence[QualityRow], robots: int) -> Iterator[Saving]:
+def savings_on(map: int | None, rows: Sequence[QualityRow], robots: int, names: Sequence[str]) -> Iterator[Saving]:
     """The savings on a map, or on all, where there are cases on which neither fails."""
-    for name, rival in pairs_of_rivals():
+    for name, rival in pairs_of_rivals(names):
         saved: dict[int, list[int]] = defaultdict(list)
         totals = []
         for row in rows:

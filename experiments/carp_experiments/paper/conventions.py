@@ -1,0 +1,402 @@
+"""Under which conventions the paper's numbers come out: its algorithms under rules that it leaves open.
+
+The paper does not say how long a robot stays at its goal, whether robots may swap or follow, how ties are broken, nor
+what happens where CARP fails. Each convention answers these questions; the planner of `space_time` obeys it. The
+distance of a convention from the paper is fixed here, before any run: the relative errors of the two savings that the
+paper states, and 1 for each of its comparisons that fails (`conventions_report`).
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from functools import cache
+from itertools import permutations
+from math import isqrt
+from typing import TYPE_CHECKING, Literal
+
+from carp_experiments.paper.map_cases import FULL_MAP, MapCase
+from carp_experiments.paper.quality import ALGORITHMS
+from carp_experiments.store import Row
+from carp_spec import Neighbourhood
+from carp_spec.permutations import orders, shuffle, splitmix64
+
+if TYPE_CHECKING:
+    from carp_experiments.paper.space_time import World
+    from carp_optimized.jit.kinds import Ints
+
+SIDE = 20
+FOR_EVER = -1
+
+
+@dataclass(frozen=True, slots=True)
+class Convention:
+    """Answers to what the paper leaves open; by default, those of carproof and of the listing."""
+
+    stay: int = 0
+    """Ticks for which a robot stays at its goal, beyond the tick of its arrival; -1: it parks."""
+    swaps: bool = False
+    """Whether two robots may swap places."""
+    following: bool = True
+    """Whether a robot may enter a cell at the tick at which another leaves it."""
+    ties: Literal["deep", "shallow"] = "deep"
+    """Which of equally promising nodes A* expands first: the last reached, or the first."""
+    failure: Literal["next round", "stop"] = "next round"
+    """What follows where CARP fails at line 10: no candidate in this round, or the end of the algorithm."""
+    order: Literal["appended", "kept"] = "appended"
+    """Whether the neighbours come last in the order of planning afterwards, or keep their places in it."""
+    interval: Literal["either moves", "both move"] = "either moves"
+    """The ticks over which the distance of two robots is the mean."""
+    initial: Literal["shortest", "planned"] = "shortest"
+    """The new robot's first trajectory: its shortest path, or its plan beside the others where there is one."""
+    rounds: Literal["all", "first"] = "all"
+    """Whether the listing's `return`, which stands within the loop, ends the algorithm after the first round."""
+    repeated: bool = False
+    """Whether starts and goals are drawn with replacement; robots then appear once their start is free."""
+    late: bool = False
+    """Whether a robot may appear at its start after its release."""
+    spread: bool = False
+    """Whether robot k is released at tick k, or all at tick 0."""
+    tree: Literal["Kruskal", "depth first", "random walk"] = "Kruskal"
+    """How the spanning tree is drawn."""
+    moves_alone: bool = False
+    """Whether moves alone are actions, or also ticks of waiting."""
+    map_seed: int = 0
+    """The seed of the maps."""
+
+    @property
+    def name(self) -> str:
+        """What differs from carproof's conventions."""
+        named = [
+            (each.name, getattr(self, each.name)) for each in fields(self) if getattr(self, each.name) != each.default
+        ]
+        return (
+            ", ".join(
+                name.replace("_", " ") if value is True else f"{name.replace('_', ' ')} {value}"
+                for name, value in named
+            )
+            or "carproof"
+        )
+
+    @property
+    def traffic(self) -> "Convention":
+        """The same for the algorithms without neighbours: what concerns these alone is left out."""
+        plain = Convention()
+        return replace(
+            self,
+            failure=plain.failure,
+            order=plain.order,
+            interval=plain.interval,
+            initial=plain.initial,
+            rounds=plain.rounds,
+        )
+
+
+ALONE = (
+    Convention(),
+    *(Convention(stay=ticks) for ticks in (1, 2, 3, 5, 10, 20, FOR_EVER)),
+    Convention(swaps=True),
+    Convention(following=False),
+    Convention(ties="shallow"),
+    Convention(failure="stop"),
+    Convention(order="kept"),
+    Convention(interval="both move"),
+    Convention(initial="planned"),
+    Convention(rounds="first"),
+    Convention(repeated=True),
+    Convention(late=True),
+    Convention(spread=True),
+    Convention(tree="depth first"),
+    Convention(tree="random walk"),
+    Convention(moves_alone=True),
+    Convention(map_seed=1),
+    Convention(map_seed=2),
+)
+"""The screening: carproof's conventions, and one answer changed at a time."""
+
+CONVENTIONS = ALONE
+
+
+PASSES: Mapping[str, int] = {"CARP": 1, "CARP10": 10, "CARP100": 100}
+LISTED = ("Proposed_4", "Proposed_5", "Proposed_6", "Proposed_10")
+PROPOSED: Mapping[str, Neighbourhood] = {
+    name: options
+    for name, options in ALGORITHMS.items()
+    if name.removesuffix(" + baseline") in LISTED
+    if isinstance(options, Neighbourhood)
+}
+LONGEST_FIRST = "LF"
+
+
+def conventions_row(case: MapCase) -> Row:
+    """For each convention and algorithm the robots planned, their total cost, and their moves."""
+    results: dict[str, dict[str, tuple[int, int]]] = {}
+    for convention in CONVENTIONS:
+        results[convention.name] = {**rivals(case, convention.traffic), **proposed(case, convention)}
+    return {"results": results}
+
+
+@cache
+def rivals(case: MapCase, convention: Convention) -> Mapping[str, tuple[int, int]]:
+    """The algorithms that plan one robot after the other."""
+    world = world_of(case, convention)
+    in_turn = range(case.robots)
+    found = {name: shuffled(world, passes, case.assignment) for name, passes in PASSES.items()}
+    longest = sorted(in_turn, key=lambda robot: -int(world.steps[world.start[robot], world.goal[robot]]))
+    return {**found, LONGEST_FIRST: one_pass(world, longest)}
+
+
+def one_pass(world: "World", order: Sequence[int]) -> tuple[int, int]:
+    """CARP in an order: how many robots it plans before it fails, and their cost."""
+    from carp_experiments.paper.space_time import lay, total  # noqa: PLC0415 - each worker loads it
+
+    robots = ints(order)
+    planned = int(lay(world, robots, 0))
+    return planned, int(total(world, robots[:planned]))
+
+
+def shuffled(world: "World", passes: int, seed: int) -> tuple[int, int]:
+    """The best of several passes: one that plans everybody, with the least cost."""
+    stream = splitmix64(seed)
+    order: Sequence[int] = range(len(world.start))
+    best = one_pass(world, order)
+    for _ in range(passes - 1):
+        order = shuffle(order, stream)
+        best = min(best, one_pass(world, order), key=lambda each: (-each[0], each[1]))
+    return best
+
+
+def proposed(case: MapCase, convention: Convention) -> Mapping[str, tuple[int, int]]:
+    """The paper's algorithm, robot by robot until one finds no plan."""
+    return {name: add_all(world_of(case, convention), convention, options, case) for name, options in PROPOSED.items()}
+
+
+def add_all(world: "World", convention: Convention, options: Neighbourhood, case: MapCase) -> tuple[int, int]:
+    """Add the robots in turn; how many are planned, and their cost."""
+    from carp_experiments.paper.space_time import total  # noqa: PLC0415 - each worker loads it
+
+    order: Sequence[int] = []
+    for robot in range(case.robots):
+        updated = add_robot(world, convention, options, order, robot, splitmix64(case.assignment * 1000 + robot))
+        if updated is None:
+            return len(order), 0
+        order = updated
+    return len(order), int(total(world, ints(order)))
+
+
+@dataclass(frozen=True, slots=True)
+class Held:
+    """Plans set aside: their cost, their order, and copies of the arrays that hold them."""
+
+    cost: int
+    order: Sequence[int]
+    arrays: tuple["Ints", "Ints", "Ints"]
+
+
+def add_robot(
+    world: "World",
+    convention: Convention,
+    options: Neighbourhood,
+    order: Sequence[int],
+    robot: int,
+    stream: Iterator[int],
+) -> Sequence[int] | None:
+    """Algorithm 1: the order of planning afterwards, with the plans in the world; `None` if there is no candidate."""
+    from carp_experiments.paper import space_time  # noqa: PLC0415 - each worker loads it
+
+    best = baseline(world, order, robot) if options.baseline or not order else None
+    if not new_trajectory(world, convention, order, robot):  # line 2
+        return None
+    trajectories = world._replace(path=world.path.copy(), entered=world.entered.copy(), arrival=world.arrival.copy())
+    outside, members, planned = [*order], [robot], len(order)
+    rounds = 1 if convention.rounds == "first" else options.m - 1
+    for _ in range(min(rounds, len(order))):
+        # lines 7 to 9: take in the nearest robot
+        both_move = convention.interval == "both move"
+        near = int(space_time.nearest(world, trajectories, ints(outside), ints(members), both_move))
+        members.append(outside.pop(near))
+        # line 10: plan the others again
+        first = min(near, planned)
+        planned = int(space_time.lay(world, ints(outside), first))
+        copy_plans(world, trajectories, outside[first:planned])
+        if planned < len(outside) and convention.failure == "stop":
+            break
+        # lines 11 to 16: the best order of the neighbourhood
+        last = best_members(world, members, options, stream) if planned == len(outside) else []
+        if last:
+            space_time.lay(world, ints([*outside, *last]), len(outside))
+            copy_plans(world, trajectories, last)
+            best = cheaper(best, held(world, [*outside, *last]))
+    if best is None:  # line 17
+        return None
+    put_back(world, best)
+    return best.order if convention.order == "appended" else [*order, robot]
+
+
+def baseline(world: "World", order: Sequence[int], robot: int) -> Held | None:
+    """All plans as they are, and the new robot's beside them."""
+    from carp_experiments.paper.space_time import lay  # noqa: PLC0415 - each worker loads it
+
+    everybody = [*order, robot]
+    return held(world, everybody) if lay(world, ints(everybody), len(order)) == len(everybody) else None
+
+
+def new_trajectory(world: "World", convention: Convention, order: Sequence[int], robot: int) -> bool:
+    """Make the new robot's first trajectory its plan in the world; whether it has one."""
+    from carp_experiments.paper.space_time import lay  # noqa: PLC0415 - each worker loads it
+
+    if convention.initial == "planned" and lay(world, ints([*order, robot]), len(order)) > len(order):
+        return True
+    return bool(lay(world, ints([robot]), 0))
+
+
+def best_members(
+    world: "World", members: Sequence[int], options: Neighbourhood, stream: Iterator[int]
+) -> Sequence[int]:
+    """The neighbourhood in its best order, empty if it cannot be planned in any."""
+    from carp_experiments.paper.space_time import NONE, best_order  # noqa: PLC0415 - each worker loads it
+
+    rows = orders_of(len(members), options.sample, stream)
+    least = ints([int(world.steps[world.start[each], world.goal[each]]) for each in members])
+    found = int(best_order(world, ints(members), rows, ints([0] * len(members)), least))
+    return [] if found == NONE else [members[position] for position in rows[found]]
+
+
+def held(world: "World", order: Sequence[int]) -> Held:
+    """The plans of these robots, set aside."""
+    from carp_experiments.paper.space_time import total  # noqa: PLC0415 - each worker loads it
+
+    arrays = world.path.copy(), world.entered.copy(), world.arrival.copy()
+    return Held(int(total(world, ints(order))), order, arrays)
+
+
+def cheaper(best: Held | None, other: Held) -> Held:
+    """Line 14: the other if it costs less."""
+    return other if best is None or other.cost < best.cost else best
+
+
+def put_back(world: "World", plans: Held) -> None:
+    """Make these plans those of the world."""
+    for array, kept in zip((world.path, world.entered, world.arrival), plans.arrays, strict=True):
+        array[:] = kept
+
+
+def ints(numbers: Sequence[int]) -> "Ints":
+    """An array of int32."""
+    import numpy as np  # noqa: PLC0415 - each worker loads it
+
+    return np.array(numbers, np.int32)
+
+
+def copy_plans(world: "World", trajectories: "World", robots: Sequence[int]) -> None:
+    """Make plans trajectories."""
+    for robot in robots:
+        trajectories.path[robot] = world.path[robot]
+        trajectories.entered[robot] = world.entered[robot]
+        trajectories.arrival[robot] = world.arrival[robot]
+
+
+def orders_of(size: int, sample: int | None, stream: Iterator[int]) -> "Ints":
+    """The orders of a neighbourhood, int32 (orders, size), rising."""
+    import numpy as np  # noqa: PLC0415 - each worker loads it
+
+    if sample is None:
+        return every_order(size)
+    return np.array(list(orders(size, sample, stream)), np.int32)
+
+
+@cache
+def every_order(size: int) -> "Ints":
+    """All orders of that many."""
+    import numpy as np  # noqa: PLC0415 - each worker loads it
+
+    return np.array(list(permutations(range(size))), np.int32)
+
+
+def world_of(case: MapCase, convention: Convention) -> "World":
+    """The map and the robots of a case, without plans."""
+    import numpy as np  # noqa: PLC0415 - each worker loads it
+
+    from carp_experiments.paper.space_time import new_world  # noqa: PLC0415
+
+    neighbours, apart = map_arrays(case.map, convention.tree, convention.map_seed)
+    robots = np.array(drawn_robots(case, convention), np.int32)
+    return new_world(
+        neighbours,
+        apart,
+        robots,
+        stay=convention.stay,
+        swaps=convention.swaps,
+        following=convention.following,
+        shallow=convention.ties == "shallow",
+        late=convention.late or convention.repeated,
+        moves_alone=convention.moves_alone,
+    )
+
+
+def drawn_robots(case: MapCase, convention: Convention) -> list[tuple[int, int, int]]:
+    """Start, goal and release of each robot."""
+    from carproof.generate import Fleet, Grid, grid_instance  # noqa: PLC0415 - each worker loads it
+
+    fleet = Fleet(robots=case.robots, seed=case.assignment, distinct="none" if convention.repeated else "both")
+    instance = grid_instance(Grid(SIDE, SIDE), fleet)
+    index = instance.graph.index
+    releases = range(case.robots) if convention.spread else [0] * case.robots
+    return [(index[each.start], index[each.goal], tick) for each, tick in zip(instance.robots, releases, strict=True)]
+
+
+@cache
+def map_arrays(map: int, tree: str, seed: int) -> tuple["Ints", "Ints"]:
+    """The neighbours of each cell, int32 (cells, 4), and the distances of all pairs times 2^16, int64."""
+    import numpy as np  # noqa: PLC0415 - each worker loads it
+
+    cells = [(number % SIDE, number // SIDE) for number in range(SIDE * SIDE)]
+    neighbours = np.full((len(cells), 4), -1, np.int32)
+    used = [0] * len(cells)
+    for source, target in map_edges(map, tree, seed):
+        for one, other in ((source, target), (target, source)):
+            neighbours[one, used[one]] = other
+            used[one] += 1
+    apart = [[isqrt(((x - u) ** 2 + (y - v) ** 2) << 32) for u, v in cells] for x, y in cells]
+    return neighbours, np.array(apart, np.int64)
+
+
+def map_edges(map: int, tree: str, seed: int) -> list[tuple[int, int]]:
+    """The edges of a map, between indices of cells."""
+    from carproof.generate import Grid, grid_instance  # noqa: PLC0415 - each worker loads it
+
+    if tree == "Kruskal":
+        graph = grid_instance(Grid(SIDE, SIDE, map, seed)).graph
+        return [(graph.index[source], graph.index[target]) for source, target in graph.edges]
+    grid = grid_edges()
+    stream = splitmix64(seed)
+    kept = drawn_tree(grid, tree == "depth first", stream)
+    others = shuffle([edge for edge in grid if edge not in kept], stream)
+    return sorted(kept | set(others[: len(others) * map // FULL_MAP]))
+
+
+def grid_edges() -> list[tuple[int, int]]:
+    """The edges of the full grid: from each cell to the right, then downwards."""
+    cells = range(SIDE * SIDE)
+    across = [(cell, cell + 1) for cell in cells if cell % SIDE < SIDE - 1]
+    return sorted([*across, *((cell, cell + SIDE) for cell in cells if cell + SIDE in cells)])
+
+
+def drawn_tree(edges: Sequence[tuple[int, int]], is_depth_first: bool, stream: Iterator[int]) -> set[tuple[int, int]]:
+    """A spanning tree: of a depth-first search with random neighbours, or of a random walk (Aldous and Broder)."""
+    around: dict[int, list[int]] = {}
+    for one, other in edges:
+        around.setdefault(one, []).append(other)
+        around.setdefault(other, []).append(one)
+    tree: set[tuple[int, int]] = set()
+    seen, path = {0}, [0]
+    while len(seen) < len(around):
+        here = path[-1]
+        choices = [each for each in around[here] if each not in seen or not is_depth_first]
+        if not choices:
+            path.pop()
+            continue
+        there = choices[next(stream) % len(choices)]
+        if there not in seen:
+            seen.add(there)
+            tree.add((min(here, there), max(here, there)))
+        path.append(there)
+    return tree

@@ -1,0 +1,169 @@
+"""The report on conventions: how near each brings carproof's measurements to the paper's figures and comparisons."""
+
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from statistics import fmean
+
+import msgspec
+
+from carp_experiments.paper.claims import TENTH_MAP, Claim, quality_claims
+from carp_experiments.paper.map_cases import FULL_MAP
+from carp_experiments.paper.quality import QualitySummary, summarise
+from carp_experiments.report import ExperimentReport, Table
+from carp_experiments.store import Row
+
+PAPERS = {TENTH_MAP: (65, ("Proposed_6",)), FULL_MAP: (35, ("Proposed_6", "Proposed_10"))}
+"""By map: fewer actions than CARP's, as the paper states them, and its algorithms of which it says so."""
+VARIANTS = {"as published": "", "with the baseline": " + baseline"}
+MEANS = ("neither fails", "own successes", "nobody fails")
+
+
+@dataclass(frozen=True, slots=True)
+class Nearness:
+    """A convention and a variant of the algorithm beside the paper.
+
+    `savings` are those of the paper's algorithms over CARP by map and kind of mean, `None` where there is no case.
+    `broken` are the paper's comparisons that the measurements contradict; `distance` is as `conventions` defines it,
+    with the mean over the assignments on which neither fails.
+    """
+
+    convention: str
+    variant: str
+    assignments: int
+    savings: dict[str, dict[str, float | None]]
+    failures: dict[str, dict[str, int]]
+    verdicts: dict[str, str]
+    broken: int
+    distance: float | None
+
+
+class ConventionsRow(msgspec.Struct, frozen=True):
+    """A stored row of the experiment."""
+
+    map: int
+    assignment: int
+    results: dict[str, dict[str, tuple[int, int]]]
+
+
+def conventions_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
+    """The conventions by their distance, and for each comparison of the paper where it holds."""
+    stored = [msgspec.convert(row, ConventionsRow) for row in rows]
+    summary = [
+        nearness_of(name, variant, [row for row in stored if name in row.results], robots)
+        for name in dict.fromkeys(name for row in stored for name in row.results)
+        for variant in VARIANTS
+    ]
+    ordered = sorted(summary, key=lambda each: (each.distance is None, each.distance or 0.0))
+    return ExperimentReport(tuple(ordered), (distance_table(ordered), claims_table(ordered)))
+
+
+def nearness_of(convention: str, variant: str, stored: Sequence[ConventionsRow], robots: int) -> Nearness:
+    """One convention, with the algorithms as published or with the baseline."""
+    rows: list[Row] = [
+        {"map": row.map, "assignment": row.assignment, "shortest": 0, "results": row.results[convention]}
+        for row in stored
+    ]
+    summary = summarise(rows, robots)
+    verdicts = {claim.claim: verdict_of(claim, variant) for claim in comparisons_of(summary)}
+    savings = {
+        str(map): {means: saving_of(stored, convention, variant, map, means, robots) for means in MEANS}
+        for map in PAPERS
+    }
+    failures = {
+        str(map): {
+            each.algorithm: each.failures
+            for each in summary.algorithms
+            if each.map == map and (" + " in each.algorithm) in (False, bool(VARIANTS[variant]))
+        }
+        for map in PAPERS
+    }
+    broken = sum(verdict == "not reproduced" for verdict in verdicts.values())
+    apart = [
+        None if (saved := savings[str(map)][MEANS[0]]) is None else abs(saved / papers - 1)
+        for map, (papers, _) in PAPERS.items()
+    ]
+    known = [each for each in apart if each is not None]
+    distance = sum(known) + broken if len(known) == len(apart) else None
+    assignments = len({row.assignment for row in stored})
+    return Nearness(convention, variant, assignments, savings, failures, verdicts, broken, distance)
+
+
+def comparisons_of(summary: QualitySummary) -> list[Claim]:
+    """The paper's claims that name no number."""
+    return [claim for claim in quality_claims(summary) if not claim.claim.startswith("up to")]
+
+
+def verdict_of(claim: Claim, variant: str) -> str:
+    """The verdict on the algorithms as published, or with the baseline where the claim has one of its own."""
+    return claim.with_baseline or claim.verdict if VARIANTS[variant] else claim.verdict
+
+
+def saving_of(
+    stored: Sequence[ConventionsRow], convention: str, variant: str, map: int, means: str, robots: int
+) -> float | None:
+    """The mean of the actions that the paper's algorithms of a map save against CARP."""
+    savings = []
+    for name in (each + VARIANTS[variant] for each in PAPERS[map][1]):
+        totals: dict[str, list[int]] = defaultdict(list)
+        for row in (each for each in stored if each.map == map):
+            found = {each: total for each, (planned, total) in row.results[convention].items() if planned == robots}
+            compared = {
+                MEANS[0]: "CARP" in found and name in found,
+                MEANS[1]: True,
+                MEANS[2]: len(found) == len(row.results[convention]),
+            }
+            if compared[means]:
+                for each in {"CARP", name} & found.keys():
+                    totals[each].append(found[each])
+        if totals["CARP"] and totals[name]:
+            savings.append(fmean(totals["CARP"]) - fmean(totals[name]))
+    return fmean(savings) if savings else None
+
+
+def distance_table(ordered: Sequence[Nearness]) -> Table:
+    """Each convention with its savings and failures, the nearest first."""
+    columns = ("convention", "variant", "saved, map 10", "saved, map 20", "failures, map 10", "broken", "distance")
+    rows = tuple(
+        (
+            each.convention,
+            each.variant,
+            " / ".join(number(each.savings[str(TENTH_MAP)][means]) for means in MEANS),
+            " / ".join(number(each.savings[str(FULL_MAP)][means]) for means in MEANS),
+            " / ".join(
+                str(each.failures[str(TENTH_MAP)].get(name, "-"))
+                for name in ("CARP", "CARP10", "Proposed_6" + VARIANTS[each.variant])
+            ),
+            str(each.broken),
+            number(each.distance, 2),
+        )
+        for each in ordered
+    )
+    title = (
+        f"Conventions by their distance from the paper, over {max((each.assignments for each in ordered), default=0)} "
+        f"assignments: actions saved against CARP, where {', '.join(MEANS)} (the paper: 65 and 35); failures of CARP, "
+        "CARP10, Proposed_6; comparisons that are contradicted"
+    )
+    return Table("conventions", title, columns, rows, columns[2:])
+
+
+def claims_table(ordered: Sequence[Nearness]) -> Table:
+    """For each comparison, under how many conventions it is reproduced, and under which it is contradicted."""
+    columns = ("comparison", "variant", "reproduced", "in part", "undecided", "contradicted", "contradicted under")
+    rows = []
+    for claim in dict.fromkeys(claim for each in ordered for claim in each.verdicts):
+        for variant in VARIANTS:
+            verdicts = {each.convention: each.verdicts[claim] for each in ordered if each.variant == variant}
+            kinds = ("reproduced", "in part", "undecided", "not reproduced")
+            counts = [sum(verdict == kind for verdict in verdicts.values()) for kind in kinds]
+            where = sorted(name for name, verdict in verdicts.items() if verdict == kinds[-1])
+            shown = "; ".join(where) if len(where) < len(verdicts) else "every convention"
+            rows.append((claim, variant, *map(str, counts), shown))
+    return Table(
+        "conventions-claims", "The paper's comparisons over the conventions", columns, tuple(rows), columns[2:6]
+    )
+
+
+def number(value: float | None, digits: int = 0) -> str:
+    """The number, or a dash."""
+    return "-" if value is None else f"{value:.{digits}f}"
