@@ -107,6 +107,10 @@ if TYPE_CHECKING:
     from carproof.formats import write_movingai as write_movingai
     from carproof.judging.audit import Audit as Audit
     from carproof.judging.audit import Late as Late
+    from carproof.layouts import Footprint as Footprint
+    from carproof.layouts import Imported as Imported
+    from carproof.layouts import Settings as Settings
+    from carproof.layouts import import_layout as import_layout
     from carproof.planner_options import planner_named as planner_named
     from carproof.registry import RULES as RULES
 

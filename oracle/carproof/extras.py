@@ -6,6 +6,7 @@ from carp_spec.rule import DESIGN
 from carproof.input_rules import Code
 
 EXTRAS = {
+    "defusedxml": ("defusedxml", "layouts"),
     "distributed": ("distributed", "experiments"),
     "hypothesis": ("hypothesis", "test"),
     "joblib": ("joblib", "experiments"),

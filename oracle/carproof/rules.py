@@ -16,6 +16,7 @@ from carproof.formats import ADAPTER_RULES
 from carproof.formats.movingai import MOVINGAI_RULES
 from carproof.generate.options import GENERATE_RULES
 from carproof.input_rules import Code
+from carproof.layouts import LAYOUT_RULES
 from carproof.protocol.lines import PROTOCOL_RULES
 from carproof.registry import RULES
 from carproof.requests import REQUEST_RULES
@@ -32,6 +33,7 @@ ALL_RULES: tuple[Rule[..., Any] | Code, ...] = (
     *GENERATE_RULES,
     *MOVINGAI_RULES,
     *ADAPTER_RULES,
+    *LAYOUT_RULES,
     *PROTOCOL_RULES,
     *PROGRAM_RULES,
     *VIEW_RULES,

@@ -21,6 +21,7 @@ COMMANDS = (
 FINDS = {
     "check --z3 town.json plans.json": "z3-solver",
     "theorems": "z3-solver",
+    "convert plant.xml": "defusedxml",
     "verify .": "z3-solver",
     "optimum town.json": "python-sat",
     "bound town.json": "python-sat",
@@ -60,7 +61,7 @@ def test_each_extra_is_one_of_the_project_and_has_the_distribution() -> None:
         for extra, listed in project["optional-dependencies"].items()
     }
     assert [each for each in EXTRAS.values() if each[0] not in extras[each[1]]] == []
-    optional = {name for extra in ("prove", "experiments", "test") for name in extras[extra]}
+    optional = {name for extra in ("layouts", "prove", "experiments", "test") for name in extras[extra]}
     assert optional == {distribution for distribution, _ in EXTRAS.values()}
     assert not optional & {bounded.sub("", each).strip() for each in project["dependencies"]}
 
@@ -72,6 +73,7 @@ def test_checking_and_planning_need_no_extra(folder: Path) -> None:
 
 @pytest.mark.parametrize("command", FINDS)
 def test_a_command_without_its_extra_names_it_and_does_nothing(command: str, folder: Path) -> None:
+    (folder / "plant.xml").write_text("<model/>")
     before = sorted(folder.iterdir())
     done = run(COMMAND, folder, *command.split())
     assert (done.returncode, done.stdout) == (2, b"")

@@ -222,7 +222,7 @@ KINDS = {
     "room.yaml": "a map for ROS",
 }
 OTHERS = tuple(
-    (command.replace("FILE", file), f"{file}: this is ", kind, "which carproof does not read")
+    (command.replace("FILE", file), f"{file}: this is ", kind, "carproof convert")
     for file, kind in KINDS.items()
     for command in ("plan FILE", "check FILE plans.json", "check town.json FILE", "convert FILE m.scen")
 )

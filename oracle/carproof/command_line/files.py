@@ -93,16 +93,17 @@ def target(path: Path) -> Path:
     return Path(os.path.realpath(path))
 
 
-def read_bytes(name: str) -> bytes:
-    """Read a file, or standard input for `-`, without the byte order mark that some systems put before UTF-8."""
+def read_bytes(name: str, *, layouts: bool = False) -> bytes:
+    """Read a file, or standard input for `-`, without the byte order mark that some systems put before UTF-8.
+
+    A layout is refused by its name, unless layouts are expected.
+    """
     try:
         data = sys.stdin.buffer.read() if name == STANDARD_INPUT else Path(name).read_bytes()
     except OSError as error:
         raise click.ClickException(f"{name}: it cannot be read: {error.strerror}") from error
-    if (layout := layout_named(data)) is not None:
-        message = (
-            f"{shown(name)}: this is {layout}, which carproof does not read; an instance can be made of it in Python."
-        )
+    if not layouts and (layout := layout_named(data)) is not None:
+        message = f"{shown(name)}: this is {layout}, not an instance; carproof convert makes instances of layouts."
         raise click.ClickException(message)
     return data.removeprefix(BYTE_ORDER_MARK)
 

@@ -1,4 +1,4 @@
-"""Plant layouts and maps of other systems, which carproof does not read, and names when it is given one."""
+"""Plant layouts and maps of other systems, named where a command is given one in place of a document."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""`carproof convert`: instances and solutions from and to the formats of other tools."""
+"""`carproof convert`: instances of benchmarks and layouts, and solutions in the formats of other tools."""
 
 from pathlib import Path
 from typing import get_args
@@ -16,23 +16,26 @@ from carproof.command_line.files import (
     refuse_two_standard_inputs,
     write_whole,
 )
-from carproof.command_line.foreign import AGENTS_HELP, MovingAI, from_option, read_movingai, read_solution_of
+from carproof.command_line.foreign import AGENTS_HELP, MovingAI, formats, read_movingai, read_solution_of
+from carproof.command_line.layouts import LayoutOptions, layout_formats, layout_options, show_layout
 from carproof.command_line.options import examples, json_option, output_option
 from carproof.command_line.output import show_instance
 from carproof.formats import ADAPTERS, write_foreign_solution
+from carproof.layouts import READERS
 
 
 @click.command(
-    short_help="Convert MovingAI files and solutions.",
+    short_help="Convert layouts, MovingAI files and solutions.",
     epilog=examples(
+        "carproof convert plant.xml --robots 10 --tick 0.5s -o plant.json",
         "carproof convert demo/depot.map demo/depot.scen -o depot.json",
         "carproof convert town.map town.scen --agents 40 | carproof plan -",
         "carproof convert town.json plans.json --to lacam -o result.txt",
         "carproof convert town.json result.txt --to carproof -o plans.json",
     ),
 )
-@click.argument("first", metavar="MAP|INSTANCE", type=InputFile())
-@click.argument("second", metavar="SCEN|SOLUTION", type=InputFile())
+@click.argument("first", metavar="LAYOUT|MAP|INSTANCE", type=InputFile())
+@click.argument("second", metavar="[SCEN|SOLUTION]", type=InputFile(), required=False)
 @click.option("--agents", type=click.IntRange(min=0), help=AGENTS_HELP)
 @click.option(
     "--after-goal",
@@ -40,21 +43,32 @@ from carproof.formats import ADAPTERS, write_foreign_solution
     help="Robots vanish or park after their goals.  [default: park]",
 )
 @click.option("--to", type=click.Choice([*ADAPTERS]), metavar="FORMAT", help="Convert a solution to this format.")
-@from_option
+@click.option(
+    "--from",
+    "format",
+    type=click.Choice([*READERS, *ADAPTERS]),
+    metavar="FORMAT",
+    help=f"The format of LAYOUT or SOLUTION. {layout_formats()}; {formats()}.  [default: the one that it looks like]",
+)
+@layout_options
 @output_option
 @json_option
 def command(  # noqa: PLR0913 - one parameter for each argument and option
     *,
     first: str,
-    second: str,
+    second: str | None,
     agents: int | None,
     after_goal: AfterGoal | None,
     to: str | None,
     format: str | None,
     output: Path | None,
     as_json: bool,
+    layout: LayoutOptions,
 ) -> Answer:
-    """Make an instance from a MovingAI .map and .scen file or, with --to, convert a solution of an instance.
+    """Make an instance of a layout or of a MovingAI .map and .scen file, or convert a solution of an instance by --to.
+
+    Points and lanes of a layout become resources, and what only one vehicle may use becomes a group. What the instance
+    does not express is listed on standard error, or by --json beside -o, with the lines of the file.
 
     With --after-goal park, the default, an instance is classical multi-agent path finding: 4-connected, capacities and
     durations of one, and the cost is the sum of costs. The scenario's lengths are for octile moves and are not used.
@@ -65,6 +79,12 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
     The result goes to standard output, or with -o to a file.
     """
+    if second is None:
+        if agents is not None or to is not None:
+            raise click.UsageError("--agents concerns a scenario and --to a solution: give a second file.")
+        return show_layout(first, format, layout, after_goal or "park", output, as_json=as_json)
+    if layout.given:
+        raise click.UsageError(f"{layout.given} concerns a layout, which is one file.")
     refuse_two_standard_inputs(first, second)
     if to is None:
         if format is not None:

@@ -1,0 +1,192 @@
+"""A layout: points, lanes between them, blocks, vehicles, and notes of what an instance cannot express.
+
+Lengths and positions are whole millimetres, speeds are millimetres a second.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from math import isqrt
+
+from carproof.layouts.located import LARGEST, Tree
+
+
+@dataclass(frozen=True, slots=True)
+class Point:
+    """A place at which a vehicle can be; `stands` is whether it may stay there for long."""
+
+    id: str
+    x: int | None
+    y: int | None
+    stands: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Lane:
+    """A way from one point to another; `None` is no length, which takes a tick, or no limit of the speed.
+
+    `share` is the part of its speed that a vehicle may use; `backwards` is whether it looks back. Lanes of one `strip`
+    are the same piece of the floor, such as the two directions of a lane.
+    """
+
+    id: str
+    source: str
+    target: str
+    length: int | None
+    speed: Fraction | None
+    strip: str
+    share: Fraction = Fraction(1)
+    backwards: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """Points and lanes, as many vehicles at a time."""
+
+    id: str
+    members: tuple[str, ...]
+    capacity: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Vehicle:
+    """A vehicle of the file, with its place and perhaps where it goes."""
+
+    id: str
+    start: str
+    goal: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class Note:
+    """A feature that the instance does not express, with the lines of the file that have it."""
+
+    feature: str
+    lines: tuple[int, ...]
+
+
+@dataclass(slots=True)
+class Layout:
+    """What a reader has found so far.
+
+    `holds_ends`: who is on a lane holds both its ends too. `straight` has the strips of straight lanes by their ends.
+    """
+
+    tree: Tree
+    holds_ends: bool = False
+    points: dict[str, Point] = field(default_factory=dict)
+    lanes: dict[str, Lane] = field(default_factory=dict)
+    blocks: dict[str, Block] = field(default_factory=dict)
+    vehicles: dict[str, Vehicle] = field(default_factory=dict)
+    left_out: dict[str, list[int]] = field(default_factory=dict)
+    straight: dict[tuple[str, str], str] = field(default_factory=dict)
+
+    @property
+    def notes(self) -> tuple[Note, ...]:
+        """What is not expressed, in the order in which it was found."""
+        return tuple(Note(feature, tuple(dict.fromkeys(lines))) for feature, lines in self.left_out.items())
+
+    def note(self, feature: str, at: Tree | None) -> None:
+        """Note a feature that is not expressed, if it is there."""
+        if at is not None and at.value not in ([], {}, "", "null"):
+            self.left_out.setdefault(feature, []).append(at.line)
+
+    def point(self, at: Tree, id: str, place: tuple[Fraction, Fraction] | None, *, stands: bool = True) -> None:
+        """Add a point, at a place in mm."""
+        if id in self.points:
+            raise at.refuse(f"the point {id!r} must be given once")
+        x, y = (None, None) if place is None else (self._rounded(at, place[0]), self._rounded(at, place[1]))
+        self.points[id] = Point(id, x, y, stands)
+
+    def lane(  # noqa: PLR0913 - one for each fact of a lane
+        self,
+        at: Tree,
+        id: str | None,
+        ends: tuple[str, str],
+        *,
+        speed: Fraction | None = None,
+        length: Fraction | None = None,
+        back: bool = False,
+        back_speed: Fraction | None = None,
+        share: Fraction | None = None,
+        backwards: bool = False,
+    ) -> tuple[str, ...]:
+        """Add a lane, and with `back` a second one the other way; without a name it is called by its ends.
+
+        `backwards` is whether vehicles drive backwards on the second, or on the one.
+        """
+        for end in ends:
+            if end not in self.points:
+                raise at.refuse(f"the point {end!r} must be one of the layout")
+        name = id
+        if name is None:
+            name = f"{ends[0]} -> {ends[1]}"
+            while name in self.lanes or name in self.points:
+                name += "'"
+        if name in self.lanes or name in self.points:
+            raise at.refuse(f"the name {name!r} must be given once")
+        one, two = self.points[ends[0]], self.points[ends[1]]
+        distance = self.distance(at, one, two)
+        millimetres = distance if length is None else -(-length // 1)
+        strip = self.straight.get((ends[1], ends[0]), name) if millimetres == distance else name
+        if millimetres == distance:
+            self.straight.setdefault(ends, strip)
+        self.lanes[name] = Lane(name, *ends, millimetres, speed, strip, share or Fraction(1), backwards and not back)
+        if not back:
+            return (name,)
+        return name, *self._reverse(at, self.lanes[name], back_speed, backwards=backwards)
+
+    def _reverse(self, at: Tree, lane: Lane, speed: Fraction | None, *, backwards: bool) -> tuple[str, ...]:
+        name = f"{lane.id} (reverse)"
+        if name in self.lanes or name in self.points:
+            raise at.refuse(f"the name {name!r} must be given once")
+        self.lanes[name] = Lane(name, lane.target, lane.source, lane.length, speed, lane.strip, lane.share, backwards)
+        return (name,)
+
+    def block(self, at: Tree, id: str, members: Sequence[tuple[Tree, str]], capacity: int = 1) -> None:
+        """Add a block of points and lanes; a member is each lane of its strip."""
+        if id in self.blocks:
+            raise at.refuse(f"the block {id!r} must be given once")
+        named: dict[str, None] = {}
+        for place, member in members:
+            if member in named:
+                raise place.refuse(f"the member {member!r} must be named once in a block")
+            if member not in self.points and member not in self.lanes:
+                raise place.refuse(f"the member {member!r} must be a point or a lane of the layout")
+            named[member] = None
+        self.blocks[id] = Block(id, tuple(named), capacity)
+
+    def vehicle(self, at: Tree, id: str, start: str, goal: str | None = None) -> None:
+        """Add a vehicle at a point."""
+        if id in self.vehicles:
+            raise at.refuse(f"the vehicle {id!r} must be given once")
+        for end in (start, goal):
+            if end is not None and end not in self.points:
+                raise at.refuse(f"the point {end!r} must be one of the layout")
+        self.vehicles[id] = Vehicle(id, start, goal)
+
+    @staticmethod
+    def _rounded(at: Tree, value: Fraction) -> int:
+        if abs(value) > LARGEST:
+            raise at.refuse(f"a position must be between -{LARGEST} and {LARGEST} mm")
+        return round(value)
+
+    @staticmethod
+    def distance(at: Tree, one: Point, two: Point) -> int | None:
+        """The distance of two points in mm, rounded up; `None` where they have no positions."""
+        if one.x is None or one.y is None or two.x is None or two.y is None:
+            return None
+        square = (one.x - two.x) ** 2 + (one.y - two.y) ** 2
+        if square == 0:
+            raise at.refuse(f"the length of a lane must be above 0, and {one.id!r} and {two.id!r} are at one place")
+        return 1 + isqrt(square - 1)
+
+
+@dataclass(frozen=True, slots=True)
+class Reader:
+    """A format of layouts: how it is recognised, and how it is read."""
+
+    name: str
+    description: str
+    looks_like: Callable[[Tree], bool]
+    read: Callable[[Tree], Layout]

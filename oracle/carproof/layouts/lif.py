@@ -1,0 +1,112 @@
+"""The Layout Interchange Format (LIF) of VDMA, versions 1 and 2.
+
+Fields: LIF.md of the repository Intralogistics-2X-LIF/Layout-Interchange-Format, section 8.3, in the branches
+release/V1.0 and dev/V2. Positions and lengths are in m, speeds in m/s. An edge leads from its start to its end. Version
+2 has layouts within origins, and robot types in place of vehicle types.
+"""
+
+from fractions import Fraction
+
+from carproof.layouts.layout import Layout, Reader
+from carproof.layouts.located import Tree
+
+METRE = 1000
+NODES = ("vehicleTypeNodeProperties", "mobileRobotTypeNodeProperties")
+EDGES = ("vehicleTypeEdgeProperties", "mobileRobotTypeEdgeProperties")
+LEFT_OUT = {
+    "actions": "actions of nodes and edges",
+    "loadRestriction": "restrictions by load",
+    "corridor": "corridors",
+    "rotationAtStartNodeAllowed": "directions of rotation at nodes",
+    "rotationAtEndNodeAllowed": "directions of rotation at nodes",
+    "vehicleOrientation": "orientations on edges",
+    "mobileRobotOrientations": "orientations on edges",
+    "theta": "orientations at nodes",
+}
+
+
+def _looks_like(tree: Tree) -> bool:
+    return isinstance(tree.value, dict) and tree.get("metaInformation") is not None
+
+
+def read(tree: Tree) -> Layout:
+    """Read all layouts of the file."""
+    version = tree["metaInformation"]["lifVersion"]
+    if version.text.partition(".")[0] not in ("1", "2"):
+        raise version.refuse(f"the version must be 1 or 2, not {version.shown}")
+    if version.text.startswith("1"):
+        layouts = tree["layouts"].entries
+    else:
+        layouts = [each for origin in tree["origins"].entries for each in origin["layouts"].entries]
+    layout = Layout(tree)
+    stations = [(each, station) for each in layouts for station in each.all("stations")]
+    served = {node.text for _, station in stations for node in station["interactionNodeIds"].entries}
+    for each in layouts:
+        for node in each["nodes"].entries:
+            name, place = node["nodeId"].text, node["nodePosition"]
+            at = (METRE * place["x"].number, METRE * place["y"].number)
+            layout.point(node, name, at, stands=not served or name in served)
+            _types(layout, node, NODES)
+    for _, station in stations:
+        for node in station["interactionNodeIds"].entries:
+            if node.text not in layout.points:
+                raise node.refuse(f"the node {node.text!r} must be one of the layout")
+        layout.note("stations; their nodes are where vehicles stand", station)
+    for each in layouts:
+        for edge in each["edges"].entries:
+            _edge(layout, edge)
+    return layout
+
+
+def _types(layout: Layout, thing: Tree, names: tuple[str, ...]) -> list[Tree]:
+    """The properties of each type of vehicle."""
+    found = thing.get(*names)
+    types = [] if found is None else found.entries
+    if len(types) > 1:
+        layout.note("differences between types of vehicles; lanes are open to all, at the lowest speed", found)
+    for each in types:
+        for name, feature in LEFT_OUT.items():
+            layout.note(feature, each.get(name))
+    return types
+
+
+def _edge(layout: Layout, edge: Tree) -> None:
+    ends = edge["startNodeId"].text, edge["endNodeId"].text
+    speeds: list[Fraction] = []
+    lengths: list[Fraction] = []
+    for each in _types(layout, edge, EDGES):
+        speed, curve = each.get("maxSpeed", "maximumSpeed"), each.get("trajectory")
+        guided = each.get("physicalLineGuidedProperty")
+        length = None if guided is None else guided.get("length")
+        if speed is not None:
+            speeds.append(METRE * speed.positive)
+        if length is not None:
+            lengths.append(METRE * length.positive)
+        if curve is not None:
+            layout.note(
+                "the shape of trajectories; their length is that of the control polygon, which is no less", curve
+            )
+            lengths.append(_polygon(curve))
+    layout.lane(
+        edge,
+        edge["edgeId"].text,
+        ends,
+        speed=min(speeds, default=None),
+        length=max((each for each in lengths if each), default=None),
+    )
+
+
+def _polygon(curve: Tree) -> Fraction:
+    """The length of the polygon of the control points; a curve with weights above 0 is no longer."""
+    layout, places = Layout(curve), curve["controlPoints"].entries
+    total = 0
+    for number, place in enumerate(places):
+        at = (METRE * place["x"].number, METRE * place["y"].number)
+        layout.point(place, str(number), at)
+        one, two = layout.points[str(max(0, number - 1))], layout.points[str(number)]
+        if (one.x, one.y) != (two.x, two.y):
+            total += layout.distance(place, one, two) or 0
+    return Fraction(total)
+
+
+READER = Reader("lif", "the Layout Interchange Format (LIF) of VDMA, versions 1 and 2", _looks_like, read)

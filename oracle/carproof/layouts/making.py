@@ -1,0 +1,136 @@
+"""Makes an instance of a layout: points and lanes become resources, strips and blocks become groups.
+
+A point takes a tick. A lane takes its length by the speed, in ticks, rounded up. Positions are in mm; a lane is at the
+middle of its ends.
+"""
+
+import csv
+import io
+from collections.abc import Iterator
+from fractions import Fraction
+
+from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
+from carp_spec.inputs.values import require_instance
+from carp_spec.model import Group
+from carproof.generate import Fleet
+from carproof.generate.fleet import random_robots
+from carproof.generate.options import ends_suffice, refuse_wrong_options
+from carproof.layouts.footprint import conflicts
+from carproof.layouts.layout import Lane, Layout, Point
+from carproof.layouts.settings import RIGHT_SETTINGS, Settings
+from carproof.layouts.turning import with_headings
+
+DEFAULT_SPEED = Fraction(1000)
+
+
+def instance_of(layout: Layout, settings: Settings) -> Instance:
+    """Make the instance; raises `Refusal` where the robots do not fit the layout."""
+    if not layout.points:
+        raise layout.tree.refuse("the layout must have at least one point that a lane joins to another")
+    points = [Resource(each.id, 1, 1, each.x, each.y) for each in layout.points.values()]
+    lanes = [_resource(each, layout, settings) for each in layout.lanes.values()]
+    edges = tuple(move for each in layout.lanes.values() for move in ((each.source, each.id), (each.id, each.target)))
+    graph = ResourceGraph((*points, *lanes), edges, directed=True, groups=tuple(_groups(layout, settings)))
+    instance = Instance(graph, _robots(layout, graph, settings), settings.after_goal)
+    if settings.turning is not None:
+        instance = with_headings(layout, instance, -int(-settings.turning / settings.tick // 1))
+    require_instance(instance)
+    return instance
+
+
+def _resource(lane: Lane, layout: Layout, settings: Settings) -> Resource:
+    limits = [each for each in (lane.speed, settings.speed) if each is not None]
+    fast = lane.share * min(limits, default=DEFAULT_SPEED)
+    duration = 1 if lane.length is None else max(1, -int(-lane.length / (fast * settings.tick) // 1))
+    one, two = layout.points[lane.source], layout.points[lane.target]
+    return Resource(lane.id, 1, duration, _middle(one.x, two.x), _middle(one.y, two.y))
+
+
+def _middle(one: int | None, two: int | None) -> int | None:
+    return None if one is None or two is None else (one + two) // 2
+
+
+def _groups(layout: Layout, settings: Settings) -> Iterator[Group]:
+    """The strips with two lanes, the ends that vehicles on lanes hold, the blocks, and what a footprint forbids."""
+    strips: dict[str, list[str]] = {}
+    at: dict[str, list[str]] = {each: [each] for each in layout.points}
+    for lane in layout.lanes.values():
+        strips.setdefault(lane.strip, []).append(lane.id)
+        at[lane.source].append(lane.id)
+        if lane.target != lane.source:
+            at[lane.target].append(lane.id)
+    taken = set(layout.blocks)
+
+    def named(name: str) -> str:
+        while name in taken:
+            name += "'"
+        taken.add(name)
+        return name
+
+    if layout.holds_ends:
+        yield from (Group(named(f"at {point}"), tuple(held)) for point, held in at.items() if len(held) > 1)
+    yield from (Group(named(f"strip {name}"), tuple(lanes)) for name, lanes in strips.items() if len(lanes) > 1)
+    yield from (Group(each.id, each.members, each.capacity) for each in layout.blocks.values())
+    if settings.footprint is not None:
+        for each in conflicts(layout, settings.footprint):
+            yield Group(named(str(each.id)), each.resources)
+
+
+def _robots(layout: Layout, graph: ResourceGraph, settings: Settings) -> tuple[Robot, ...]:
+    if settings.requests is not None:
+        return tuple(_requested(layout, settings.requests))
+    if settings.robots is None:
+        return _vehicles(layout, graph, settings)
+    places = [each.id for each in _standing(layout, graph)]
+    fleet = Fleet(settings.robots, settings.seed, settings.after_goal)
+    refuse_wrong_options(fleet=(fleet, Fleet))
+    return random_robots(fleet, places, places)
+
+
+def _standing(layout: Layout, graph: ResourceGraph) -> list[Point]:
+    """The points where vehicles may stand, of the largest part of the layout in which each is reached from each."""
+    import networkx as nx  # noqa: PLC0415 - slow to load
+
+    moves: nx.DiGraph[object] = nx.DiGraph(list(graph.edges))
+    moves.add_nodes_from(layout.points)
+    stands = [each for each in layout.points.values() if each.stands]
+    parts = [[each for each in stands if each.id in part] for part in nx.strongly_connected_components(moves)]
+    return max(parts, key=lambda part: (len(part), [each.id for each in part]), default=[])
+
+
+def _vehicles(layout: Layout, graph: ResourceGraph, settings: Settings) -> tuple[Robot, ...]:
+    """The vehicles of the file; who has no goal gets one of the seed."""
+    without = [each for each in layout.vehicles.values() if each.goal is None]
+    goals: dict[str, str] = {}
+    if without:
+        taken = {each.goal for each in layout.vehicles.values()}
+        places = [each.id for each in _standing(layout, graph) if each.id not in taken]
+        if not ends_suffice(len(places), len(without)):
+            message = f"{len(without)} vehicles without goals need as many places, and the layout has {len(places)}"
+            raise Refusal("option", "$.robots", ends_suffice.id, message)
+        drawn = random_robots(Fleet(len(without), settings.seed, settings.after_goal), places, places)
+        goals = {each.id: str(robot.goal) for each, robot in zip(without, drawn, strict=True)}
+    return tuple(Robot(each.id, each.start, each.goal or goals[each.id]) for each in layout.vehicles.values())
+
+
+def _requested(layout: Layout, data: bytes) -> Iterator[Robot]:
+    """The robots of a table."""
+
+    def refuse(line: int, message: str) -> Refusal:
+        return Refusal("document", f"requests:{line}", RIGHT_SETTINGS.id, message)
+
+    try:
+        reader = csv.DictReader(io.StringIO(data.decode("utf-8-sig")), strict=True)
+        rows = [(reader.line_num, row) for row in reader]
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise refuse(1, f"it must be CSV in UTF-8: {error}") from None
+    for line, row in rows:
+        if any(row.get(name) is None for name in ("robot", "start", "goal")) or None in row:
+            raise refuse(line, "the row must have the columns robot, start and goal, and perhaps release")
+        for name in ("start", "goal"):
+            if row[name] not in layout.points:
+                raise refuse(line, f"the {name} must be a point of the layout, not {row[name]!r}")
+        release = row.get("release") or "0"
+        if not (release.isascii() and release.isdigit() and len(release) < 10):  # noqa: PLR2004 - below 2^30
+            raise refuse(line, f"the release must be a whole number, not {release!r}")
+        yield Robot(row["robot"], row["start"], row["goal"], int(release))

@@ -1,0 +1,79 @@
+"""Graphs of Nav2's route server, in GeoJSON.
+
+Fields: `nav2_route/README.md` of ros-navigation/navigation2, and its sample graphs. Points are nodes, lines are edges
+from `startid` to `endid`; the course of a line is not used there either. Positions are in m, `abs_speed_limit` is in
+m/s, and `speed_limit` in percent of the speed of the robot.
+"""
+
+from fractions import Fraction
+
+from carproof.layouts.layout import Layout, Reader
+from carproof.layouts.located import Tree
+
+METRE = 1000
+WHOLE = 100
+LINES = ("LineString", "MultiLineString")
+LEFT_OUT = {
+    "penalty": "costs of edges",
+    "class": "classes of nodes and edges",
+    "abs_time_taken": "times measured on edges",
+}
+
+
+def _looks_like(tree: Tree) -> bool:
+    kind = tree.get("type") if isinstance(tree.value, dict) else None
+    return kind is not None and kind.value == "FeatureCollection"
+
+
+def read(tree: Tree) -> Layout:
+    """Read a graph."""
+    layout = Layout(tree)
+    features = tree["features"].entries
+    for each in features:
+        kind, properties = each["geometry"]["type"], each["properties"]
+        if kind.value == "Point":
+            place = each["geometry"]["coordinates"]
+            x, y = _pair(place)
+            layout.point(each, properties["id"].text, (METRE * x.number, METRE * y.number))
+            frame = properties.get("frame")
+            layout.note("frames of nodes other than map", frame if frame is not None and frame.value != "map" else None)
+        elif kind.value not in LINES:
+            raise kind.refuse(f"the type must be Point, LineString or MultiLineString, not {kind.shown}")
+        layout.note("operations at nodes and edges", properties.get("operations"))
+        metadata = properties.get("metadata")
+        for name, feature in LEFT_OUT.items():
+            layout.note(feature, None if metadata is None else metadata.get(name))
+    for each in features:
+        if each["geometry"]["type"].value in LINES:
+            _edge(layout, each["properties"])
+    return layout
+
+
+def _pair(place: Tree) -> tuple[Tree, Tree]:
+    if len(place.entries) < 2:  # noqa: PLR2004 - a position
+        raise place.refuse("a position must have x and y")
+    return place.entries[0], place.entries[1]
+
+
+def _edge(layout: Layout, edge: Tree) -> None:
+    layout.note("costs of edges", edge.get("cost"))
+    metadata = edge.get("metadata")
+    limit = None if metadata is None else metadata.get("abs_speed_limit")
+    share = None if metadata is None else metadata.get("speed_limit")
+    ends = edge["startid"].text, edge["endid"].text
+    if ends[0] == ends[1]:
+        layout.note("edges from a node to itself", edge)
+        return
+    name = edge["id"].text
+    is_new = name not in layout.lanes and name not in layout.points
+    layout.note("ids that are given twice; such an edge is named by its ends", None if is_new else edge)
+    layout.lane(
+        edge,
+        name if is_new else None,
+        ends,
+        speed=None if limit is None else METRE * limit.positive,
+        share=None if share is None else min(share.positive / WHOLE, Fraction(1)),
+    )
+
+
+READER = Reader("nav2", "a graph of Nav2's route server, GeoJSON", _looks_like, read)

@@ -1,0 +1,173 @@
+"""Maps of Open-RMF: buildings as the traffic editor saves them, and navigation graphs as fleet adapters read them.
+
+Fields: `rmf_building_map_tools/building_map` of open-rmf/rmf_traffic_editor for buildings, `parse_graph.cpp` of
+open-rmf/rmf_ros2 for graphs. A building has positions in pixels of its drawing, with y downwards; the scale is the mean
+over the measurements of a level of distance by length, in m for each pixel. Mutexes name lanes and vertices in which
+one robot may be at a time.
+"""
+
+from collections.abc import Mapping
+from fractions import Fraction
+from math import isqrt
+
+from carproof.layouts.layout import Layout, Reader
+from carproof.layouts.located import Tree
+
+METRE = 1000
+FINE = 10**9
+"""Steps of a pixel to which the lengths of measurements are known."""
+STANDS = ("is_parking_spot", "is_charger", "is_holding_point")
+LEFT_OUT = {
+    "door_name": "doors",
+    "orientation": "orientations of robots on lanes",
+    "orientation_constraint": "orientations of robots on lanes",
+    "dock_name": "docks",
+    "undock_name": "docks",
+    "demo_mock_lift_name": "lifts that lanes stand for",
+}
+
+
+Groups = dict[str, list[tuple[Tree, str]]]
+
+
+def _looks_like(tree: Tree) -> bool:
+    return isinstance(tree.value, dict) and tree.get("levels") is not None
+
+
+def read(tree: Tree) -> Layout:
+    """Read a building or a navigation graph."""
+    levels = tree["levels"].fields
+    system = tree.get("coordinate_system")
+    if system is not None and system.value not in ("reference_image", "cartesian_meters"):
+        raise system.refuse(f"the coordinate system must be reference_image or cartesian_meters, not {system.shown}")
+    is_drawn = "building_name" not in tree.fields and (system is None or system.value == "reference_image")
+    layout, groups = Layout(tree), Groups()
+    scale: Fraction | None = None
+    for name, level in levels.items():
+        scale = _scale(layout, level, scale) if is_drawn else None
+        ids = _vertices(layout, level, scale, f"{name}/" if len(levels) > 1 else "")
+        for lane in level.all("lanes"):
+            _lane(layout, lane, ids, groups)
+        for (vertex, options), id in zip(_options(level), ids, strict=True):
+            for kind, field in (("mutex", "mutex"), ("lift", "lift"), ("lift", "lift_cabin")):
+                _add(groups, kind, options.get(field), vertex, id)
+        layout.note("doors", level.get("doors"))
+    _remove_unused(layout, {end for lane in layout.lanes.values() for end in (lane.source, lane.target)})
+    if len(levels) > 1:
+        layout.note("the alignment of levels by fiducials; each level keeps its own positions", tree["levels"])
+    for group, members in groups.items():
+        there = [(at, each) for at, each in members if each in layout.points or each in layout.lanes]
+        if there:
+            layout.block(there[0][0], group, there)
+    layout.note("lifts between levels; a cabin holds one robot, on all levels together", tree.get("lifts"))
+    return layout
+
+
+def _add(groups: Groups, kind: str, named: Tree | None, at: Tree, *members: str) -> None:
+    """Add members to the group that is named, if any."""
+    name = _plain(named)
+    if name is not None and name.value:
+        groups.setdefault(f"{kind} {name.text}", []).extend((at, each) for each in members)
+
+
+def _plain(value: Tree | None) -> Tree | None:
+    """The value of a parameter; a building writes it behind the number of its type."""
+    if value is not None and isinstance(value.value, list):
+        if len(value.value) != 2:  # noqa: PLR2004 - type and value
+            raise value.refuse("a parameter must be a type and a value")
+        return value.value[1]
+    return value
+
+
+def _scale(layout: Layout, level: Tree, before: Fraction | None) -> Fraction:
+    """The mm of a pixel."""
+    places = [_place(vertex) for vertex in level.all("vertices")]
+    found = []
+    for each in level.all("measurements"):
+        one, two = (places[_index(end, len(places))] for end in _ends(each))
+        square = (one[0] - two[0]) ** 2 + (one[1] - two[1]) ** 2
+        distance = _plain(each.entries[2].get("distance")) if len(each.entries) > 2 else None  # noqa: PLR2004
+        if distance is None or not square:
+            raise each.refuse("a measurement must have two places and a distance")
+        found.append(distance.positive * METRE * FINE / isqrt(int(square * FINE**2)))
+    if found:
+        return sum(found, Fraction(0)) / len(found)
+    layout.note("the scale of a level without measurements; it is that of the level before, or 1 m a pixel", level)
+    return before or Fraction(METRE)
+
+
+def _place(vertex: Tree) -> tuple[Fraction, Fraction]:
+    if len(vertex.entries) < 2:  # noqa: PLR2004 - a position
+        raise vertex.refuse("a vertex must have x and y")
+    return vertex.entries[0].number, vertex.entries[1].number
+
+
+def _ends(thing: Tree) -> tuple[Tree, Tree]:
+    if len(thing.entries) < 2:  # noqa: PLR2004 - both ends
+        raise thing.refuse("it must have two ends")
+    return thing.entries[0], thing.entries[1]
+
+
+def _index(end: Tree, count: int) -> int:
+    if (index := end.whole) >= count:
+        raise end.refuse(f"it must be one of the {count} vertices of the level, counted from 0, not {index}")
+    return index
+
+
+def _options(level: Tree) -> list[tuple[Tree, Mapping[str, Tree]]]:
+    """The vertices, each with its parameters."""
+    return [
+        (each, each.entries[-1].fields if isinstance(each.entries[-1].value, dict) else {})
+        for each in level.all("vertices")
+        if each.entries
+    ]
+
+
+def _vertices(layout: Layout, level: Tree, scale: Fraction | None, prefix: str) -> list[str]:
+    """Add the vertices, and return their ids: the name, or the index where there is none or a second."""
+    ids = []
+    for number, (vertex, options) in enumerate(_options(level)):
+        given = options.get("name")
+        if given is None and len(vertex.entries) > 3:  # noqa: PLR2004 - x, y, z, name
+            given = vertex.entries[3]
+        name = "" if given is None else given.text
+        id = f"{prefix}{name or number}"
+        if id in layout.points:
+            id = f"{prefix}{name} {number}"
+        x, y = _place(vertex)
+        at = (METRE * x, METRE * y) if scale is None else (x * scale, -y * scale)
+        flags = [_plain(options.get(each)) for each in STANDS]
+        layout.point(vertex, id, at, stands=bool(name) or any(each is not None and each.is_true for each in flags))
+        layout.note("docks", options.get("dock_name"))
+        robot = _plain(options.get("spawn_robot_name"))
+        if robot is not None and robot.value:
+            layout.vehicle(vertex, robot.text, id)
+        ids.append(id)
+    return ids
+
+
+def _lane(layout: Layout, lane: Tree, ids: list[str], groups: Groups) -> None:
+    source, target = (ids[_index(end, len(ids))] for end in _ends(lane))
+    options = lane.entries[2].fields if len(lane.entries) > 2 else {}  # noqa: PLR2004 - both ends and parameters
+    both = _plain(options.get("bidirectional") or options.get("is_bidirectional"))
+    limit = _plain(options.get("speed_limit"))
+    speed = None if limit is None or limit.number == 0 else METRE * limit.positive
+    back = both is not None and both.is_true
+    lanes = layout.lane(lane, None, (source, target), speed=speed, back=back, back_speed=speed)
+    for name, feature in LEFT_OUT.items():
+        layout.note(feature, _plain(options.get(name)))
+    graph = _plain(options.get("graph_idx"))
+    if graph is not None and graph.whole:
+        layout.note("the fleets to which graphs of lanes belong; lanes of all graphs are open to all", lane)
+    _add(groups, "mutex", options.get("mutex"), lane, *lanes)
+
+
+def _remove_unused(layout: Layout, used: set[str]) -> None:
+    """Vertices without lanes are corners of walls and floors."""
+    for name in [each for each in layout.points if each not in used]:
+        del layout.points[name]
+    for name in [each.id for each in layout.vehicles.values() if each.start not in layout.points]:
+        del layout.vehicles[name]
+
+
+READER = Reader("open-rmf", "a building or navigation graph of Open-RMF, YAML", _looks_like, read)

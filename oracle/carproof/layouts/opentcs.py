@@ -1,0 +1,125 @@
+"""Plant models of openTCS, in XML of the versions 0.0.4, 0.0.5, 6 and 7.
+
+Attributes: the samples of each version in openTCS's `opentcs-common`. Meaning: openTCS's user's guide, "Plant model
+elements" and "Default scheduler": positions and lengths are in mm, speeds in mm/s; a path that is locked is not used,
+nor is a direction with a speed of 0. A vehicle allocates a path with the point to which it leads, before it moves, and
+frees what lies behind when it has arrived. So who is on a path holds both its ends.
+"""
+
+from carproof.layouts.layout import Layout, Reader
+from carproof.layouts.located import Tree, elements
+
+VERSIONS = ("0.0.4", "0.0.5", "6.", "7.")
+
+
+def _looks_like(tree: Tree) -> bool:
+    return tree.get("<>") is not None and tree["<>"].value == "model" and tree.get("version") is not None
+
+
+def read(tree: Tree) -> Layout:
+    """Read a plant model."""
+    version = tree["version"]
+    if not version.text.startswith(VERSIONS):
+        raise version.refuse(f"the version must be 0.0.4, 0.0.5, 6 or 7, not {version.shown}")
+    layout = Layout(tree, holds_ends=True)
+    served = {link["point"].text for location in elements(tree, "location") for link in elements(location, "link")}
+    for point in elements(tree, "point"):
+        name, kind = point["name"].text, point.get("type")
+        x, y = (point.get(each, other) or point[each] for each, other in _PLACES)
+        stands = (kind is not None and kind.value == "PARK_POSITION") or name in served
+        layout.point(point, name, (x.number, y.number), stands=stands)
+        if kind is not None and kind.value == "REPORT_POSITION":
+            layout.note("report positions, at which vehicles may not halt", point)
+        layout.note("vehicle envelopes of points", point.get("<vehicleEnvelope>"))
+        angle = point.get("vehicleOrientationAngle")
+        layout.note("orientations at points", angle if angle is not None and angle.value != "NaN" else None)
+    paths = {path["name"].text: _path(layout, path) for path in elements(tree, "path")}
+    locations = {location["name"].text for location in elements(tree, "location")}
+    for location in elements(tree, "location"):
+        for link in elements(location, "link"):
+            if link["point"].text not in layout.points:
+                raise link.refuse(f"the point {link['point'].text!r} must be one of the layout")
+        layout.note("locations; the points that they are linked to are where vehicles stand", location)
+    for block in elements(tree, "block"):
+        _block(layout, block, paths, locations)
+    for vehicle in elements(tree, "vehicle"):
+        _vehicle(layout, vehicle)
+    return layout
+
+
+_PLACES = (("positionX", "xPosition"), ("positionY", "yPosition"))
+
+
+def _path(layout: Layout, path: Tree) -> tuple[str, ...]:
+    """Add a path, and return its lanes; none if it is locked."""
+    name, source, target = (path[each].text for each in ("name", "sourcePoint", "destinationPoint"))
+    forward, backward = (path[each].number for each in ("maxVelocity", "maxReverseVelocity"))
+    if min(forward, backward) < 0:
+        raise path.refuse("the speeds of a path must not be below 0")
+    layout.note("peripheral operations", path.get("<peripheralOperation>"))
+    layout.note("vehicle envelopes of paths", path.get("<vehicleEnvelope>"))
+    locked = path.get("locked")
+    if (locked is not None and locked.is_true) or not (forward or backward):
+        for end in (source, target):
+            if end not in layout.points:
+                raise path.refuse(f"the point {end!r} must be one of the layout")
+        return ()
+    length = path["length"].positive
+    if forward:
+        return layout.lane(
+            path,
+            name,
+            (source, target),
+            speed=forward,
+            length=length,
+            back=bool(backward),
+            back_speed=backward,
+            backwards=bool(backward),
+        )
+    return layout.lane(path, name, (target, source), speed=backward, length=length, backwards=True)
+
+
+def _block(layout: Layout, block: Tree, paths: dict[str, tuple[str, ...]], locations: set[str]) -> None:
+    """Add a block. Its group has its paths, its points, and the lanes on which a vehicle holds one of these points."""
+    kind = block.get("type")
+    if kind is not None and kind.value not in ("SINGLE_VEHICLE_ONLY", "SAME_DIRECTION_ONLY"):
+        raise kind.refuse(f"the type must be SINGLE_VEHICLE_ONLY or SAME_DIRECTION_ONLY, not {kind.shown}")
+    members: list[tuple[Tree, str]] = []
+    seen: set[str] = set()
+    for member in elements(block, "member"):
+        name = member["name"].text
+        if name in seen:
+            raise member.refuse(f"the member {name!r} must be named once in a block")
+        seen.add(name)
+        if name in locations:
+            layout.note("locations as members of blocks", member)
+        elif name in paths:
+            members += [(member, lane) for lane in paths[name]]
+        else:
+            members.append((member, name))
+    if kind is not None and kind.value == "SAME_DIRECTION_ONLY":
+        layout.note("blocks of the type SAME_DIRECTION_ONLY", block)
+        return
+    named = {name for _, name in members}
+    for _, name in tuple(members):
+        if name in layout.points:
+            held = [each.id for each in layout.lanes.values() if name in (each.source, each.target)]
+            members += [(block, lane) for lane in held if lane not in named]
+            named.update(held)
+    if members:
+        layout.block(block, block["name"].text, members)
+
+
+def _vehicle(layout: Layout, vehicle: Tree) -> None:
+    """Add a vehicle, if the file says where it is; other vehicles are left to `--robots`."""
+    layout.note("speeds of vehicles; --speed sets one for all", vehicle.get("maxVelocity"))
+    start = [
+        each["value"] for each in elements(vehicle, "property") if each["name"].value == "loopback:initialPosition"
+    ]
+    if start:
+        layout.vehicle(vehicle, vehicle["name"].text, start[0].text)
+    else:
+        layout.note("vehicles without a position", vehicle)
+
+
+READER = Reader("opentcs", "a plant model of openTCS, XML of the versions 0.0.4, 0.0.5, 6 and 7", _looks_like, read)

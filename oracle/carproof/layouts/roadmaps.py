@@ -1,0 +1,136 @@
+"""Roadmaps: annotated ones of libMultiRobotPlanning, and graphs as networkx writes them, in GraphML or JSON.
+
+Annotated: fields as in `tools/annotate_roadmap.py` and `example/cbs_roadmap.cpp` of whoenig/libMultiRobotPlanning. An
+edge from a vertex to itself is to wait there; the conflicts of an edge are the numbers of those that may not be used
+with it. Plain: the node-link form of networkx, or GraphML, with `x` and `y` of nodes, and `length` and `speed` of edges
+if they are known. Positions and lengths are in m, speeds in m/s.
+"""
+
+from fractions import Fraction
+
+from carproof.layouts.layout import Layout, Reader
+from carproof.layouts.located import Tree, elements
+
+METRE = 1000
+
+
+def _looks_annotated(tree: Tree) -> bool:
+    return isinstance(tree.value, dict) and tree.get("roadmap") is not None
+
+
+def read_annotated(tree: Tree) -> Layout:
+    """Read an annotated roadmap."""
+    layout, roadmap = Layout(tree), tree["roadmap"]
+    edges = roadmap["edges"].entries
+    vertices = roadmap.get("vertices")
+    if vertices is not None:
+        for name, place in vertices.fields.items():
+            layout.point(place, name, _place(place))
+    else:
+        for edge in edges:
+            for end in edge.entries:
+                if end.text not in layout.points:
+                    layout.point(end, end.text, None)
+    both = roadmap["undirected"].is_true
+    lanes: list[tuple[str, ...]] = []
+    for edge in edges:
+        if len(edge.entries) != 2:  # noqa: PLR2004 - both ends
+            raise edge.refuse("an edge must have two ends")
+        source, target = (end.text for end in edge.entries)
+        if source not in layout.points:
+            raise edge.refuse(f"the vertex {source!r} must be one of the roadmap")
+        lanes.append((source,) if source == target else layout.lane(edge, None, (source, target), back=both))
+    _conflicts(layout, roadmap, lanes)
+    for agent in tree.all("agents"):
+        layout.vehicle(agent, agent["name"].text, agent["start"].text, agent["goal"].text)
+    return layout
+
+
+def _conflicts(layout: Layout, roadmap: Tree, lanes: list[tuple[str, ...]]) -> None:
+    """Add a block of two for each pair of edges in conflict."""
+    listed = roadmap.all("conflicts")
+    if listed and len(listed) != len(lanes):
+        raise roadmap["conflicts"].refuse(f"there must be conflicts of each of {len(lanes)} edges, not {len(listed)}")
+    done: set[frozenset[str]] = set()
+    for number, entry in enumerate(listed):
+        seen: set[int] = set()
+        for other in entry.entries:
+            if (index := other.whole) >= len(lanes) or index == number or index in seen:
+                raise other.refuse(f"a conflict must be another of the {len(lanes)} edges, counted from 0, and once")
+            seen.add(index)
+            for one in lanes[number]:
+                for two in lanes[index]:
+                    if one != two and frozenset((one, two)) not in done:
+                        done.add(frozenset((one, two)))
+                        layout.block(other, f"{one} | {two}", [(other, one), (other, two)])
+
+
+def _place(place: Tree) -> tuple[Fraction, Fraction]:
+    if len(place.entries) != 2:  # noqa: PLR2004 - a position
+        raise place.refuse("a position must be x and y")
+    return METRE * place.entries[0].number, METRE * place.entries[1].number
+
+
+def _looks_plain(tree: Tree) -> bool:
+    if not isinstance(tree.value, dict):
+        return False
+    is_graphml = "<>" in tree.value and tree["<>"].value == "graphml"
+    return is_graphml or ("nodes" in tree.value and tree.get("links", "edges") is not None)
+
+
+def read_plain(tree: Tree) -> Layout:
+    """Read a graph."""
+    layout = Layout(tree)
+    graphml = "<>" in tree.fields
+    nodes, edges, directed = _graphml(tree) if graphml else _node_link(tree)
+    for node in nodes:
+        pos = node.get("pos")
+        at = _place(pos) if pos is not None else (METRE * node["x"].number, METRE * node["y"].number)
+        layout.point(node, node["id"].text, at)
+    for edge in edges:
+        length, speed = edge.get("length"), edge.get("speed")
+        fast = None if speed is None else METRE * speed.positive
+        layout.lane(
+            edge,
+            None,
+            (edge["source"].text, edge["target"].text),
+            speed=fast,
+            length=None if length is None else METRE * length.positive,
+            back=not directed,
+            back_speed=fast,
+        )
+    return layout
+
+
+def _node_link(tree: Tree) -> tuple[list[Tree], list[Tree], bool]:
+    directed, edges = tree.get("directed"), tree.get("links", "edges")
+    assert edges is not None  # noqa: S101 - by its looks
+    return tree["nodes"].entries, edges.entries, directed is not None and directed.is_true
+
+
+def _graphml(tree: Tree) -> tuple[list[Tree], list[Tree], bool]:
+    """The nodes and edges as mappings of their attributes' names."""
+    names = {key["id"].text: key["attr.name"] for key in elements(tree, "key")}
+    graphs = list(elements(tree, "graph"))
+    if len(graphs) != 1:
+        raise tree.refuse(f"the file must have one graph, not {len(graphs)}")
+
+    def plain(thing: Tree) -> Tree:
+        fields = {name: value for name, value in thing.fields.items() if not name.startswith("<")}
+        for each in elements(thing, "data"):
+            if each["key"].text not in names:
+                raise each.refuse(f"the key {each['key'].text!r} must be one of the file")
+            fields[names[each["key"].text].text] = each.get("text") or Tree(each.file, each.line, "")
+        return Tree(thing.file, thing.line, fields)
+
+    kind = graphs[0]["edgedefault"]
+    if kind.value not in ("directed", "undirected"):
+        raise kind.refuse(f"edgedefault must be directed or undirected, not {kind.shown}")
+    nodes, edges = ([plain(each) for each in elements(graphs[0], tag)] for tag in ("node", "edge"))
+    return nodes, edges, kind.value == "directed"
+
+
+ANNOTATED = Reader(
+    "annotated-roadmap", "a roadmap of libMultiRobotPlanning with its conflicts, YAML", _looks_annotated, read_annotated
+)
+PLAIN = Reader("roadmap", "a graph with positions in GraphML or networkx's JSON", _looks_plain, read_plain)

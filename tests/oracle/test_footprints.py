@@ -1,0 +1,114 @@
+"""Footprints and turning: which points and lanes vehicles of a size may not use together, and what a turn takes."""
+
+from fractions import Fraction
+from math import hypot
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from carp_spec import Instance
+from carproof.engines import engine_named
+from carproof.layouts import Settings, import_layout
+from carproof.layouts.settings import Footprint
+
+Place = tuple[int, int]
+
+
+def roadmap(lanes: list[tuple[Place, Place]], **settings: object) -> Instance:
+    """One-way lanes with ends in mm; a point is named by its place."""
+    places = dict.fromkeys(place for lane in lanes for place in lane)
+    nodes = "".join(
+        f'<node id="{x},{y}"><data key="x">{x}e-3</data><data key="y">{y}e-3</data></node>' for x, y in places
+    )
+    edges = "".join(f'<edge source="{a},{b}" target="{c},{d}"/>' for (a, b), (c, d) in lanes)
+    keys = "".join(f'<key id="{name}" attr.name="{name}"/>' for name in "xy")
+    text = f'<graphml>{keys}<graph edgedefault="directed">{nodes}{edges}</graph></graphml>'
+    made = import_layout(text.encode(), settings=Settings(**({"robots": 0} | settings)))  # type: ignore[arg-type]
+    return made.instance
+
+
+def apart(lanes: list[tuple[Place, Place]], size: Footprint) -> bool:
+    """Whether the first two lanes may be used together."""
+    names = {f"{a},{b} -> {c},{d}" for (a, b), (c, d) in lanes[:2]}
+    return not any(names <= set(each.resources) for each in roadmap(lanes, footprint=size).graph.groups)
+
+
+@pytest.mark.parametrize(
+    ("gap", "size", "are_apart"),
+    [
+        (600, Footprint(900, 600), True),  # they touch
+        (599, Footprint(900, 600), False),
+        (900, Footprint(900, 900, round=True), True),
+        (899, Footprint(900, 900, round=True), False),
+    ],
+)
+def test_parallel_lanes_may_be_used_together_if_vehicles_only_touch(gap: int, size: Footprint, are_apart: bool) -> None:
+    assert apart([((0, 0), (5000, 0)), ((0, gap), (5000, gap))], size) == are_apart
+
+
+def test_slanted_lanes_are_compared_without_rounding() -> None:
+    """Along (3, 4) the distance of parallel lanes is whole: 5 for a shift of (0, 25 / 3) times three fifths."""
+    lanes = [((0, 0), (3000, 4000)), ((400, -300), (3400, 3700))]  # 500 apart
+    assert apart(lanes, Footprint(10, 500))
+    assert not apart(lanes, Footprint(10, 501))
+    lanes = [((0, 0), (1000, 2000)), ((1000, 0), (2000, 2000))]  # 1000 * 2 / sqrt(5) = 894.427 apart
+    assert apart(lanes, Footprint(10, 894))
+    assert not apart(lanes, Footprint(10, 895))
+
+
+def test_a_vehicle_that_turns_sweeps_a_disc_and_one_that_goes_on_does_not() -> None:
+    size = Footprint(800, 600)  # half a diagonal is 500
+
+    def meets(bend: Place, gap: int) -> bool:
+        lanes = [((0, 0), (5000, 0)), ((5000, 0), bend), ((0, -gap), (9000, -gap))]
+        groups = roadmap(lanes, footprint=size).graph.groups
+        return any({"5000,0", f"0,{-gap} -> 9000,{-gap}"} <= set(each.resources) for each in groups)
+
+    assert meets((5000, 5000), 799)
+    assert not meets((5000, 5000), 800)
+    assert meets((9000, 0), 599)
+    assert not meets((9000, 0), 600)
+
+
+coordinates = st.integers(0, 20)
+places = st.tuples(coordinates, coordinates)
+segments = st.tuples(places, places).filter(lambda ends: ends[0] != ends[1])
+
+
+def swept(lane: tuple[Place, Place], size: Footprint, x: int, y: int) -> bool:
+    """Whether the place is well within what a vehicle sweeps on the lane."""
+    (a, b), (c, d) = lane
+    long = hypot(c - a, d - b)
+    across = ((c - a) * (y - b) - (d - b) * (x - a)) / long
+    along = ((c - a) * (x - a) + (d - b) * (y - b)) / long
+    beyond = max(-along, along - long)
+    if size.round:
+        return hypot(max(beyond, 0), across) < size.length / 2 - 1e-6
+    return abs(across) < size.width / 2 - 1e-6 and beyond < size.length / 2 - 1e-6
+
+
+@given(st.lists(segments, min_size=2, max_size=2, unique=True), st.integers(1, 9), st.integers(1, 9), st.booleans())
+def test_lanes_that_sweep_one_place_are_never_used_together(
+    lanes: list[tuple[Place, Place]], length: int, width: int, round: bool
+) -> None:
+    size = Footprint(length, length if round else width, round=round)
+    common = any(all(swept(lane, size, x, y) for lane in lanes) for x in range(-6, 27) for y in range(-6, 27))
+    if common and lanes[0] != lanes[1][::-1]:
+        assert not apart(lanes, size)
+
+
+def test_a_turn_takes_its_time_and_a_straight_way_none() -> None:
+    corner = [((0, 0), (1000, 0)), ((1000, 0), (2000, 0)), ((1000, 0), (1000, 1000)), ((1000, 0), (0, 1000))]
+    instance = roadmap(corner, turning=Fraction(3))
+    rows = [("0,0", "2000,0", 0), ("0,0", "1000,1000", 3), ("0,0", "0,1000", 6)]
+    for start, goal, turning in rows:
+        asked = f'robot,start,goal\nr1,"{start}","{goal}"\n'.encode()
+        plans = [
+            engine_named("reference").find(roadmap(corner, turning=time, requests=asked, robots=None), [], "r1")
+            for time in (Fraction(3), None)
+        ]
+        slow, fast = (plan.visits[-1].enter for plan in plans if plan is not None)
+        # the heading before and after a turn, and the goal itself, take a tick each
+        assert slow - fast == (turning + 1 if turning else 0) + 1, (start, goal)
+    assert any({"1000,0", "1000,0 @1,0", "1000,0 @0,1"} <= set(each.resources) for each in instance.graph.groups)

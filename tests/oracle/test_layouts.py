@@ -1,0 +1,234 @@
+"""Layouts of fleet systems: what becomes of each feature, what is listed instead, and where a broken file is wrong."""
+
+import json
+from fractions import Fraction
+from itertools import permutations
+from pathlib import Path
+
+import pytest
+from tests.oracle.layout_files import ANNOTATED, BUILDING, LAYOUTS, NAV_GRAPH, NODE_LINK, OPENTCS, lif, nav2
+from tests.oracle.running import Run
+
+from carp_spec import Instance, Plan, Refusal, Robot, Solution, Visit, judge
+from carp_spec.documents.instances import read_instance
+from carproof.layouts import Settings, import_layout
+
+
+def imported(text: str, **settings: object) -> Instance:
+    return import_layout(text.encode(), settings=Settings(**settings)).instance  # type: ignore[arg-type]
+
+
+def groups(instance: Instance) -> dict[object, set[object]]:
+    return {each.id: set(each.resources) for each in instance.graph.groups}
+
+
+@pytest.mark.parametrize("name", LAYOUTS)
+def test_each_format_gives_the_same_row_of_points_with_its_lanes_in_millimetres(name: str) -> None:
+    graph = imported(LAYOUTS[name], robots=0, tick=Fraction(1, 2)).graph
+    assert {each: (graph.resource[each].x, graph.resource[each].y) for each in "abc"} == {
+        "a": (0, 0),
+        "b": (3000, 0),
+        "c": (3000, 4000),
+    }
+    lanes = {
+        (before, after): each.duration
+        for each in graph.resources
+        for before, into in graph.moves
+        for out, after in graph.moves
+        if into == out == each.id and each.id not in tuple("abc")
+    }
+    assert {ends for ends in lanes if ends[0] != ends[1]} == {("a", "b"), ("b", "c"), ("c", "b")}
+    assert lanes["a", "b"] == 6
+    slow = {"opentcs": (6, 16), "old opentcs": (6, 16), "annotated": (8, 8)}.get(name, (16, 16))
+    assert (lanes["b", "c"], lanes["c", "b"]) == slow
+
+
+@pytest.mark.parametrize("name", sorted(set(LAYOUTS) - {"annotated"}))
+def test_two_robots_never_meet_on_the_two_directions_of_a_lane(name: str) -> None:
+    instance = imported(LAYOUTS[name], robots=0)
+    there, back = (
+        next(lane for source, lane in instance.graph.moves if source == one and (lane, two) in instance.graph.moves)
+        for one, two in ("bc", "cb")
+    )
+    assert any({there, back} <= members for members in groups(instance).values())
+
+
+def test_the_tick_and_the_speed_of_vehicles_decide_durations_which_are_rounded_up() -> None:
+    assert imported(OPENTCS, tick=Fraction(7, 10), robots=0).graph.resource["bc"].duration == 4  # 2.67 s
+    assert imported(OPENTCS, speed=Fraction(100), robots=0).graph.resource["bc"].duration == 40
+    assert imported(OPENTCS, speed=Fraction(9000), robots=0).graph.resource["bc"].duration == 3
+
+
+def test_vehicles_of_the_file_are_the_robots_and_goals_are_drawn_from_the_seed() -> None:
+    assert imported(ANNOTATED).robots == (Robot("agent0", "a", "c"),)
+    assert imported(BUILDING, seed=5).robots == imported(BUILDING, seed=5).robots
+    assert [each.id for each in imported(BUILDING).robots] == ["tiny"]
+
+
+def test_robots_are_drawn_on_points_where_vehicles_may_stand_and_that_reach_each_other() -> None:
+    drawn = imported(NAV_GRAPH, robots=2, seed=3).robots
+    assert {each.start for each in drawn} | {each.goal for each in drawn} <= {"b", "c"}  # a is not reached again
+    with pytest.raises(Refusal, match=r"3 robots need as many distinct starts, and the map has 2 \[generate/ends\]"):
+        imported(NAV_GRAPH, robots=3)
+
+
+def test_requests_name_robots_starts_goals_and_releases() -> None:
+    rows = b"robot,start,goal,release\nr1,a,c,5\nr2,b,c,\n"
+    assert imported(OPENTCS, requests=rows).robots == (Robot("r1", "a", "c", 5), Robot("r2", "b", "c"))
+    for rows, where in ((b"robot,start\nr1,a\n", "requests:2"), (b"robot,start,goal\nr1,a,z\n", "requests:2")):
+        with pytest.raises(Refusal, match=where):
+            imported(OPENTCS, requests=rows)
+
+
+def test_mutexes_and_conflicts_become_groups() -> None:
+    for text in (BUILDING, NAV_GRAPH):
+        assert groups(imported(text, robots=0))["mutex door way"] >= {"a -> b", "b -> c"}
+    conflicts = [members for members in groups(imported(ANNOTATED)).values() if len(members) == 2]
+    assert {"a -> b", "b -> c"} in conflicts
+    assert {"b -> c", "a"} in conflicts
+
+
+def test_what_is_not_expressed_is_listed_with_its_lines() -> None:
+    notes = {each.feature: each.lines for each in import_layout(OPENTCS.encode()).notes}
+    assert notes["vehicle envelopes of points"] == (6,)
+    assert notes["blocks of the type SAME_DIRECTION_ONLY"] == (13,)
+    assert any("doors" in each.feature for each in import_layout(BUILDING.encode()).notes)
+
+
+# openTCS, user's guide, "Block" and "Default scheduler": a path is allocated with the point to which it leads before
+# the vehicle moves, and freed when it has arrived; a request for a member of a SINGLE_VEHICLE_ONLY block is granted if
+# all members are free for the vehicle.
+PLANT = """<model version="6.0.0" name="cross">
+{points}
+{paths}
+<block name="block" type="SINGLE_VEHICLE_ONLY">{members}</block>
+</model>
+"""
+
+
+def cross(members: str) -> Instance:
+    """Paths ab, bc, cd in a row and xy beside it, with members in a block."""
+    points = "".join(f'<point name="{each}" positionX="{n}000" positionY="0"/>' for n, each in enumerate("abcdxy"))
+    paths = "".join(
+        f'<path name="{each}" sourcePoint="{each[0]}" destinationPoint="{each[1]}" length="2" maxVelocity="1"'
+        ' maxReverseVelocity="0"/>'
+        for each in ("ab", "bc", "cd", "xy")
+    )
+    named = "".join(f'<member name="{each}"/>' for each in members.split())
+    return imported(PLANT.format(points=points, paths=paths, members=named), robots=0)
+
+
+@pytest.mark.parametrize(
+    ("members", "places", "granted"),
+    [
+        pytest.param("ab xy", "ab xy", False, id="two vehicles on two paths of a block"),
+        pytest.param("ab xy", "ab cd", True, id="one in the block, one outside"),
+        pytest.param("ab xy", "a x", True, id="points before the paths of a block are not in it"),
+        pytest.param("b xy", "b xy", False, id="a point of a block is held by who stands there"),
+        pytest.param("b xy", "ab xy", False, id="a path holds the point to which it leads"),
+        pytest.param("b xy", "bc xy", False, id="a path holds the point that it left until the vehicle has arrived"),
+        pytest.param("b xy", "c xy", True, id="the point is free after that"),
+        pytest.param("xy", "ab bc", False, id="without a block too, two paths of one point are not used together"),
+        pytest.param("xy", "ab c", True, id="a path and the point after the next"),
+        pytest.param("xy", "ab b", False, id="a path to a point where a vehicle stands"),
+        pytest.param("a cd xy", "a cd xy", False, id="three vehicles in a block"),
+        pytest.param("cd xy", "a cd y", True, id="three vehicles, one behind a path of the block"),
+        pytest.param("cd xy", "a cd x", True, id="three vehicles, one of them before the block"),
+        pytest.param("ab", "ab cd xy", True, id="three vehicles on paths that share nothing"),
+    ],
+)
+def test_blocks_of_opentcs_admit_what_its_scheduler_grants(members: str, places: str, granted: bool) -> None:
+    instance = cross(members)
+    for order in permutations(places.split()):
+        robots = tuple(Robot(f"r{number}", place, place) for number, place in enumerate(order))
+        standing = Instance(instance.graph, robots, "park", instance.following)
+        plans = [Plan(robot.id, (Visit(robot.start, 0, None),)) for robot in robots]
+        verdict = judge(standing, Solution.of(standing, plans))
+        assert {each.rule for each in verdict.violations} == (set() if granted else {"joint/group"})
+
+
+BROKEN = {
+    "wrong version": (OPENTCS.replace('"7.0.0"', '"5.0.0"'), 2, "the version must be"),
+    "external entity": ('<!DOCTYPE m [<!ENTITY e SYSTEM "file:///etc/passwd">]>\n' + OPENTCS[39:], 1, "document type"),
+    "bomb": ('<!DOCTYPE m [<!ENTITY e "ha"><!ENTITY f "&e;&e;">]>\n<model version="7">&f;</model>', 1, "document type"),
+    "no end": (OPENTCS[:-10], 13, "it must be XML"),
+    "dangling path": (OPENTCS.replace('sourcePoint="a"', 'sourcePoint="z"'), 8, "'z' must be one of the layout"),
+    "dangling member": (OPENTCS.replace('<member name="bc"/>', '<member name="zz"/>'), 12, "'zz' must be a point or"),
+    "repeated member": (OPENTCS.replace('<member name="bc"/>', '<member name="ab"/>'), 12, "must be named once"),
+    "repeated point": (OPENTCS.replace('name="b" ', 'name="a" '), 4, "'a' must be given once"),
+    "position that is no number": (OPENTCS.replace('positionX="3000"', 'positionX="NaN"', 1), 4, "must be a number"),
+    "infinite position": (OPENTCS.replace('positionX="3000"', 'positionX="1e99"', 1), 4, "must be between"),
+    "length of zero": (OPENTCS.replace('length="3000"', 'length="0"'), 8, "must be above 0"),
+    "negative speed": (OPENTCS.replace('maxVelocity="1500"', 'maxVelocity="-1"'), 9, "must not be below 0"),
+    "aliases without end": ("levels: &a [*a]", 1, "must name an anchor that is complete"),
+    "billion laughs": (
+        "a: &a [x]\n"
+        + "".join(f"{b}: &{b} [{','.join(['*' + a] * 99)}]\n" for a, b in zip("abcde", "bcdef", strict=True)),
+        4,
+        "at most 2000000 values",
+    ),
+    "tabs": ("levels:\n\tL1: {}", 2, "it must be YAML"),
+    "vertex that is none": (NAV_GRAPH.replace("[0, 1, {m", "[0, 9, {m"), 6, "must be one of the 3 vertices"),
+    "negative limit": (NAV_GRAPH.replace("0.5}", "-0.5}"), 7, "must be above 0"),
+    "infinite coordinate": (NAV_GRAPH.replace("[3.0, 4.0", "[.inf, 4.0"), 12, "must be a number"),
+    "field twice": (NAV_GRAPH.replace("building_name: row", "levels: {}"), 4, "must be given once"),
+    "degrees": (BUILDING.replace("reference_image", "wgs84"), 2, "must be reference_image or cartesian_meters"),
+    "lif 3": (lif("3.0"), 3, "the version must be 1 or 2"),
+    "lif node": (lif("1.0").replace('"endNodeId": "b"', '"endNodeId": "q"', 1), 42, "'q' must be one of the layout"),
+    "not a number in JSON": (nav2().replace("3.0", "NaN", 1), 25, "must be a number, not 'NaN'"),
+    "unfinished JSON": (nav2()[:-2], 86, "it must be JSON"),
+    "conflict with itself": (ANNOTATED.replace("    - [1]\n", "    - [0]\n", 1), 12, "must be another of the 4 edges"),
+    "too few conflicts": (ANNOTATED.replace("    - []\n", ""), 12, "conflicts of each of 4 edges, not 3"),
+    "points at one place": (
+        NODE_LINK.replace('"x": 3, "y": 0', '"x": 0, "y": 0'),
+        1,
+        "length of a lane must be above 0",
+    ),
+    "nothing": ("", 1, "must hold one document"),
+    "an instance": ('{"format": "carproof-instance/1"}', 1, "it looks like none of"),
+    "deep": ('{"nodes":' + "[" * 5000, 1, "it must"),
+}
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_a_broken_layout_is_refused_with_its_line_and_nothing_is_written(
+    name: str, carproof: Run, elsewhere: Path
+) -> None:
+    text, line, message = BROKEN[name]
+    (elsewhere / "plant").write_text(text)
+    outcome = carproof("convert plant -o plant.json")
+    assert outcome.code == 2, outcome
+    assert outcome.stderr.startswith(f"Error: plant:{line}: "), outcome.stderr
+    assert message in outcome.stderr
+    assert outcome.stderr.count("\n") == 1
+    assert not (elsewhere / "plant.json").exists()
+
+
+def test_convert_finds_out_the_format_writes_the_instance_and_lists_the_rest(carproof: Run, elsewhere: Path) -> None:
+    (elsewhere / "plant.xml").write_text(OPENTCS)
+    outcome = carproof("convert plant.xml -o plant.json --requests -", stdin="robot,start,goal\nr1,a,c\n")
+    assert outcome.code == 0
+    assert "plant.xml: not expressed: vehicle envelopes of points (line 6)" in outcome.stderr
+    assert read_instance((elsewhere / "plant.json").read_bytes()).robots == (Robot("r1", "a", "c"),)
+    listed = json.loads(carproof("convert plant.xml -o plant.json --robots 0 --json").stdout)
+    assert listed["format"] == "opentcs"
+    assert {"feature": "vehicle envelopes of points", "lines": [6]} in listed["not_expressed"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ("--tick 0s", "--tick: it must be a number above 0"),
+        ("--tick 1", "--tick: it must be a number above 0"),
+        ("--speed 3kn", "--speed: it must be a number above 0"),
+        ("--footprint 0x3mm", "--footprint: it must be a length and a width"),
+        ("--from nav2", "plant.xml:2: it must have features"),
+        ("--json", "--json lists what is not expressed"),
+        ("--agents 3", "--agents concerns a scenario"),
+    ],
+)
+def test_wrong_options_are_refused(arguments: str, message: str, carproof: Run, elsewhere: Path) -> None:
+    (elsewhere / "plant.xml").write_text(OPENTCS)
+    outcome = carproof(f"convert plant.xml {arguments}")
+    assert outcome.code == 2
+    assert message in outcome.stderr
