@@ -7,6 +7,7 @@ from carp_reference.orderings import Plans
 from carp_reference.problem import Problem
 from carp_reference.query import find_plan
 from carp_spec import FixedPaths, Plan, ResourceId, Robot, plan_cost
+from carp_spec.limits import refuse
 
 Path = tuple[ResourceId, ...]
 Flow = dict[tuple[str, ResourceId], dict[tuple[str, ResourceId], int]]
@@ -14,6 +15,7 @@ Flow = dict[tuple[str, ResourceId], dict[tuple[str, ResourceId], int]]
 
 def fixed_paths(problem: Problem, options: FixedPaths) -> Plans:
     """Plan the robots in the order given, each on its best path, the first of equals."""
+    refuse(problem.instance, "stops")
     paths_of = shortest_paths if options.paths == "shortest" else disjoint_paths
     plans: list[Plan] = []
     for robot in problem.instance.robots:

@@ -14,9 +14,10 @@ from carp_spec.model import (
     Robot,
     RobotId,
     Solution,
+    Stop,
     Visit,
 )
-from carp_spec.plan_rules import has_ended
+from carp_spec.plan_rules import has_ended, stops_served
 from carp_spec.planners import (
     Carp,
     FixedPaths,
@@ -52,6 +53,7 @@ __all__ = [
     "Rule",
     "Shuffled",
     "Solution",
+    "Stop",
     "TimeExpanded",
     "Verdict",
     "Violation",
@@ -60,6 +62,7 @@ __all__ = [
     "has_ended",
     "judge",
     "plan_cost",
+    "stops_served",
     "total_cost",
     "violations_of",
 ]

@@ -97,13 +97,40 @@ def robot_ids_are_unique(instance: Instance) -> Found:
     return _wrong_ids("$.robots", instance.robots)
 
 
-@fault_rule("instance/endpoint", "A robot's start and goal are resources of the graph.", PAPER)
+@fault_rule(
+    "instance/endpoint",
+    "A robot's start is a resource of the graph, and so is its goal, where it has one in place of stops.",
+    PAPER,
+)
 def endpoints_are_resources(instance: Instance) -> Found:
     for position, robot in enumerate(instance.robots):
-        for name, end in (("start", robot.start), ("goal", robot.goal)):
+        for name, end in (("start", robot.start), *([("goal", robot.goal)] if robot.has_goal_alone else [])):
             if end not in instance.graph.index:
                 message = f"the {name} must be the id of a resource, and {end!r} is not"
                 yield f"$.robots[{position}].{name}", message
+
+
+@fault_rule(
+    "instance/stops",
+    "A robot has at least one stop. Each names a resource of the graph, other than the stop before it does, and its "
+    "service is a whole number of ticks, at least 0.",
+    DESIGN,
+)
+def stops_are_places_to_serve(instance: Instance) -> Found:
+    for position, robot in enumerate(instance.robots):
+        path = f"$.robots[{position}].stops"
+        if not robot.stops:
+            yield path, "there must be at least one stop"
+        for place, stop in enumerate(() if robot.has_goal_alone else robot.stops):
+            if stop.resource not in instance.graph.index:
+                message = f"it must be the id of a resource, and {stop.resource!r} is not"
+                yield f"{path}[{place}].resource", message
+            if not is_whole(stop.service) or stop.service < 0:
+                message = f"the service must be a whole number of at least 0, not {stop.service!r}"
+                yield f"{path}[{place}].service", message
+            if place > 0 and stop.resource == robot.stops[place - 1].resource:
+                message = f"it must be at another resource than the stop before it, and both are at {stop.resource!r}"
+                yield f"{path}[{place}].resource", message
 
 
 @fault_rule("instance/release", "A robot's release is a tick: a whole number of at least 0.", DESIGN)
@@ -141,6 +168,7 @@ INSTANCE_RULES: tuple[Rule[[Instance], Iterator[Fault]], ...] = (
     groups_are_of_resources,
     robot_ids_are_unique,
     endpoints_are_resources,
+    stops_are_places_to_serve,
     releases_are_ticks,
     paces_are_positive,
     after_goal_is_known,

@@ -7,7 +7,7 @@ from carp_spec.model import Instance
 from carp_spec.refusal import Refusal
 from carp_spec.rule import DESIGN, Rule, rule
 
-Feature: TypeAlias = Literal["following", "groups"]
+Feature: TypeAlias = Literal["following", "groups", "stops"]
 
 
 @rule("limit/following", "What does not know forbidden following refuses an instance that forbids it.", DESIGN)
@@ -20,6 +20,11 @@ def groups_are_absent(instance: Instance) -> bool:  # noqa: D103 - its statement
     return not instance.graph.groups
 
 
+@rule("limit/stops", "What knows goals alone refuses robots with several stops or with service.", DESIGN)
+def goals_stand_alone(instance: Instance) -> bool:  # noqa: D103 - its statement stands in its decorator
+    return all(robot.has_goal_alone for robot in instance.robots)
+
+
 LIMITS: Mapping[Feature, tuple[Rule[[Instance], bool], str, str]] = {
     "following": (
         following_is_allowed,
@@ -30,6 +35,11 @@ LIMITS: Mapping[Feature, tuple[Rule[[Instance], bool], str, str]] = {
         groups_are_absent,
         "$.graph.groups",
         "there must be no groups here: checks and planners alone know of instances that have them",
+    ),
+    "stops": (
+        goals_stand_alone,
+        "$.robots",
+        "each robot must have a goal alone here: checks and planners alone know robots with stops",
     ),
 }
 

@@ -8,8 +8,8 @@ section II; ter Mors 2010 for capacities and durations.
 """
 
 from collections import deque
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Annotated, Literal, TypeAlias
 
@@ -106,23 +106,63 @@ class ResourceGraph:
 
 
 @dataclass(frozen=True, slots=True)
+class Stop:
+    """A place that a robot serves: it stays there for at least `service` ticks, whatever its pace."""
+
+    resource: ResourceId
+    service: Annotated[int, Number(0, "stops")] = 0
+
+
+@dataclass(frozen=True, slots=True, init=False)
 class Robot:
-    """A request: go from `start` to `goal`, not before the tick `release`, at `pace` times each duration."""
+    """A request: serve `stops` in order, from `start`, not before the tick `release`, at `pace` times each duration.
+
+    A `goal` in place of stops is short for one stop there without service.
+    """
 
     id: RobotId
     start: ResourceId
-    goal: ResourceId
+    stops: tuple[Stop, ...]
     release: Annotated[int, Number(0, "releases")] = 0
     pace: Annotated[int, Number(1, "paces")] = 1
+
+    def __init__(
+        self,
+        id: RobotId,
+        start: ResourceId,
+        goal: ResourceId | None = None,
+        release: int = 0,
+        pace: int = 1,
+        *,
+        stops: tuple[Stop, ...] = (),
+    ) -> None:
+        values = (id, start, stops if goal is None else (Stop(goal),), release, pace)
+        for name, value in zip(self.__match_args__, values, strict=True):
+            object.__setattr__(self, name, value)
+
+    @property
+    def goal(self) -> ResourceId:
+        """The resource of the last stop."""
+        return self.stops[-1].resource
+
+    def in_names(self, name: Callable[[ResourceId], ResourceId]) -> "Robot":
+        """The robot with other names of resources."""
+        stops = tuple(Stop(name(stop.resource), stop.service) for stop in self.stops)
+        return replace(self, start=name(self.start), stops=stops)
+
+    @property
+    def has_goal_alone(self) -> bool:
+        """Whether it has one stop without service."""
+        return len(self.stops) == 1 and self.stops[0].service == 0
 
 
 @dataclass(frozen=True, slots=True)
 class Instance:
     """A resource graph, robots in the order of their arrival, and what a robot does after its goal.
 
-    `vanish`: it leaves the system one duration after it enters its goal for the last time. `park`: it stays. Where
-    `following` is forbidden, a robot enters a resource only after a free tick. `robot` is a look-up by id,
-    `seen` of `inputs`.
+    `vanish`: it leaves the system once it has served its last stop, the goal: at the earliest tick after its last
+    entry. `park`: it stays. Where `following` is forbidden, a robot enters a resource only after a free tick. `robot`
+    is a look-up by id, `seen` of `inputs`.
     """
 
     graph: ResourceGraph
@@ -145,6 +185,10 @@ class Instance:
     def duration(self, robot: RobotId, resource: ResourceId) -> int:
         """The least ticks that the robot needs in the resource."""
         return self.robot[robot].pace * self.graph.resource[resource].duration
+
+    def stay(self, robot: RobotId, stop: Stop) -> int:
+        """The least ticks of a visit in which the robot serves the stop."""
+        return max(self.duration(robot, stop.resource), stop.service)
 
     @property
     def gap(self) -> int:

@@ -1,9 +1,9 @@
 """The rules of one plan: `plan/...`, `cost/...` and `fleet/history`."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise, zip_longest
 
-from carp_spec.model import Instance, Plan
+from carp_spec.model import Instance, Plan, Stop, Visit
 from carp_spec.rule import DESIGN, MORS, Breach, Rule, Violation, at_visit, of_robots, rule, violation_rule
 
 
@@ -21,22 +21,52 @@ def plan_starts_at_release(instance: Instance, plan: Plan) -> Iterator[Breach]:
 
 @violation_rule(
     "plan/goal",
-    "The last visit is to the robot's goal. With `vanish` it is left exactly one duration (times the robot's pace) "
-    "after its entry; with `park` it is never left.",
+    "The last visit is to the robot's goal, the resource of its last stop. With `vanish` it is left exactly one "
+    "duration (times the robot's pace) after its entry, or the last stop's service if that is longer; with `park` it "
+    "is never left.",
     "paper, section IV (experiments); decision of carproof",
 )
 def plan_ends_at_goal(instance: Instance, plan: Plan) -> Iterator[Breach]:
-    goal = instance.robot[plan.robot].goal
+    stop = instance.robot[plan.robot].stops[-1]
+    goal = stop.resource
     if not plan.visits:
         yield of_robots([plan.robot], f"the last visit must be to {goal}, and there is no visit")
         return
     last = plan.visits[-1]
-    leave = None if instance.after_goal == "park" else last.enter + instance.duration(plan.robot, goal)
+    leave = None if instance.after_goal == "park" else last.enter + instance.stay(plan.robot, stop)
     if last.resource != goal:
         yield at_visit(plan.robot, last, f"the last visit must be to {goal}")
     elif last.leave != leave:
         right = "stay at the goal for ever" if leave is None else f"leave the goal at {leave}"
         yield at_visit(plan.robot, last, f"it must {right}")
+
+
+def stops_served(stops: Sequence[Stop], visits: Iterable[Visit]) -> int:
+    """How many of the stops the visits have served, in order: each that is left serves the next stop if it can."""
+    served = 0
+    for visit in visits:
+        if served == len(stops):
+            break
+        long_enough = visit.leave is not None and visit.leave - visit.enter >= stops[served].service
+        served += long_enough and visit.resource == stops[served].resource
+    return served
+
+
+@violation_rule(
+    "plan/stops",
+    "For each stop but the last, the plan has a visit to its resource that lasts at least its service: later than the "
+    "visits that serve the stops before it, and before the last visit, which serves the last stop. The first visit may "
+    "serve the first stop, and a robot may visit a stop's resource without serving it.",
+    DESIGN,
+)
+def plan_serves_stops(instance: Instance, plan: Plan) -> Iterator[Breach]:
+    *stops, _ = instance.robot[plan.robot].stops
+    served = stops_served(stops, plan.visits[:-1])
+    if served < len(stops):
+        stop = stops[served]
+        reason = f"it serves {served} of {len(stops) + 1} stops: no later visit to {stop.resource}"
+        more = f" of at least {stop.service} ticks" if stop.service else ""
+        yield of_robots([plan.robot], f"{reason}{more} comes before the last visit")
 
 
 @violation_rule("plan/resource", "Every visit is to a resource of the graph.", DESIGN)
@@ -83,6 +113,7 @@ def plan_respects_durations(instance: Instance, plan: Plan) -> Iterator[Breach]:
 PLAN_RULES: tuple[Rule[[Instance, Plan], Iterator[Violation]], ...] = (
     plan_starts_at_release,
     plan_ends_at_goal,
+    plan_serves_stops,
     plan_visits_resources,
     plan_follows_moves,
     plan_is_contiguous,

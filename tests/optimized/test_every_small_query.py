@@ -11,7 +11,7 @@ from tests.profiles import rest_in
 from carp_optimized.fleet import PlannedFleet
 from carp_reference.problem import Problem, ticks_to_goal
 from carp_reference.query import find_plan
-from carp_spec import Instance, Plan, ResourceGraph, ResourceId, Robot, RobotId
+from carp_spec import Instance, Plan, ResourceGraph, ResourceId, Robot, RobotId, Stop
 
 SMALL_CASES_OF_A_PATTERN = 52_198
 RICHEST = 3
@@ -21,7 +21,7 @@ def fleet_of_all(instance: Instance) -> PlannedFleet:
     """A fleet with, for each robot of the instance, one on every way; ids are (id, start, goal)."""
     nodes = [resource.id for resource in instance.graph.resources]
     everyone = (
-        replace(robot, id=f"{robot.id} {start} {goal}", start=start, goal=goal)
+        replace(robot, id=f"{robot.id} {start} {goal}", start=start, stops=(Stop(goal),))
         for robot in instance.robots
         for start, goal in product(nodes, repeat=2)
     )

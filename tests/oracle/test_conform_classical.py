@@ -58,7 +58,7 @@ def with_robots(*robots: Robot) -> Instance:
         with_robots(replace(FIRST, release=1), SECOND),
         with_robots(FIRST, replace(SECOND, pace=2)),
         with_robots(FIRST, replace(SECOND, start=FIRST.start)),
-        with_robots(FIRST, replace(SECOND, goal=FIRST.goal)),
+        with_robots(FIRST, replace(SECOND, stops=FIRST.stops)),
         with_graph((replace(RESOURCES[0], capacity=2), *RESOURCES[1:])),
         with_graph((*RESOURCES[:-1], replace(RESOURCES[-1], duration=2))),
         with_graph((replace(RESOURCES[0], x=None), *RESOURCES[1:])),

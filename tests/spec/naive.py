@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations
 from typing import TypeAlias
 
-from carp_spec import Instance, Move, Plan, ResourceId, Visit
+from carp_spec import Instance, Move, Plan, ResourceId, Stop, Visit
 
 FIRST, HORIZON = -15, 45
 Blamed: TypeAlias = tuple[str, Plan, Visit | None]
@@ -15,13 +15,14 @@ def broken_plan_rules(instance: Instance, plan: Plan) -> Iterator[Blamed]:
     graph = instance.graph
     known = {resource.id: resource.duration * robot.pace for resource in graph.resources}
     moves = set(graph.edges) if graph.directed else {*graph.edges, *((s, r) for r, s in graph.edges)}
+    yield from [] if serves_all(robot.stops[:-1], plan.visits[:-1]) else [("plan/stops", plan, None)]
     if not plan.visits:
         yield from (("plan/start", plan, None), ("plan/goal", plan, None))
         return
     first, last = plan.visits[0], plan.visits[-1]
     if not (first.resource == robot.start and first.enter == robot.release):
         yield "plan/start", plan, first
-    ends = {"vanish": last.enter + known[robot.goal], "park": None}
+    ends = {"vanish": last.enter + max(known[robot.goal], robot.stops[-1].service), "park": None}
     if not (last.resource == robot.goal and last.leave == ends[instance.after_goal]):
         yield "plan/goal", plan, last
     for visit in plan.visits:
@@ -35,6 +36,17 @@ def broken_plan_rules(instance: Instance, plan: Plan) -> Iterator[Blamed]:
             yield "plan/move", plan, following
         if visit.leave != following.enter:
             yield "plan/contiguous", plan, following
+
+
+def serves_all(stops: Sequence[Stop], visits: Sequence[Visit]) -> bool:
+    """Whether some of the visits, in order, serve one stop each."""
+    return any(
+        all(
+            visit.resource == stop.resource and visit.leave is not None and visit.leave >= visit.enter + stop.service
+            for stop, visit in zip(stops, chosen, strict=True)
+        )
+        for chosen in combinations(visits, len(stops))
+    )
 
 
 def occupies(plan: Plan, resources: Sequence[ResourceId], tick: int) -> bool:

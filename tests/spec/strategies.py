@@ -12,7 +12,7 @@ FEWER = settings(max_examples=draws(250))
 
 IDS = st.one_of(st.integers(-5, 5), st.text(max_size=3))
 NOWHERE = "nowhere"
-SIZES = Sizes(capacity=3, groups=2)
+SIZES = Sizes(capacity=3, groups=2, stops=3, service=3)
 
 
 @st.composite
@@ -31,9 +31,9 @@ def walks(draw: st.DrawFn, instance: Instance, robot: RobotId) -> Plan:
         following = graph.successors.get(resource, ())
         resource = draw(st.sampled_from(following) if following and draw(slip) == 0 else anywhere)
     if draw(st.booleans()) and visits:
-        goal = instance.robot[robot].goal
-        leave = None if instance.after_goal == "park" else visits[-1].enter + instance.duration(robot, goal)
-        visits[-1] = Visit(goal, visits[-1].enter, leave)
+        stop = instance.robot[robot].stops[-1]
+        leave = None if instance.after_goal == "park" else visits[-1].enter + instance.stay(robot, stop)
+        visits[-1] = Visit(stop.resource, visits[-1].enter, leave)
     return Plan(robot, tuple(visits))
 
 

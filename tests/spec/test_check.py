@@ -36,7 +36,7 @@ from carp_spec import (
 from carp_spec.check import MOST_LISTED
 from carproof.testing.strategies import instances
 
-FEW = replace(SIZES, robots=3, groups=2)
+FEW = replace(SIZES, robots=3, groups=2, stops=1, service=0)
 PLANNERS: tuple[Planner, ...] = (
     Carp(),
     Shuffled(attempts=2),

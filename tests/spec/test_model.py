@@ -63,8 +63,7 @@ def test_look_ups_are_no_part_of_equality() -> None:
 def test_look_ups_are_no_part_of_the_hash_or_of_what_is_printed() -> None:
     twin = Instance(ResourceGraph(VANISHING.graph.resources, VANISHING.graph.edges), VANISHING.robots)
     assert hash(twin) == hash(VANISHING)
-    printed = repr(VANISHING)
-    assert not any(f"{look_up}=" in printed for look_up in ("resource", "index", "successors", "robot"))
+    assert "mappingproxy" not in repr(VANISHING)
 
 
 def test_robots_without_a_plan_are_unplanned_in_the_solution_of_some_plans() -> None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from tests.spec.making import plan_of
 
 from carp_reference.certifying import Certifier
-from carp_spec import AfterGoal, Instance, Plan, Resource, ResourceGraph, Robot, RobotId, Solution
+from carp_spec import AfterGoal, Instance, Plan, Resource, ResourceGraph, Robot, RobotId, Solution, Stop
 from carp_spec.documents.query_certificates import QueryCertificateDocument
 
 
@@ -47,17 +47,17 @@ EAST = Robot("r", "a", "d")
 WEST = Robot("s", "d", "a")
 WESTWARDS = plan_of("s", ("d", 0, 1), ("c", 1, 3), ("b", 3, 4), ("a", 4, 5))
 VANISHING = town("vanish", EAST, WEST)
-PARKING = town("park", EAST, replace(WEST, goal="e"))
+PARKING = town("park", EAST, replace(WEST, stops=(Stop("e"),)))
 HOME = town("vanish", Robot("r", "b", "b"), WEST)
 QUESTIONS = {
     "alone": beside(VANISHING, "r"),
     "head-on": beside(VANISHING, "r", WESTWARDS),
     "blocked for ever": beside(
-        town("park", EAST, replace(WEST, goal="c")), "r", plan_of("s", ("d", 0, 1), ("c", 1, None))
+        town("park", EAST, replace(WEST, stops=(Stop("c"),))), "r", plan_of("s", ("d", 0, 1), ("c", 1, None))
     ),
     "parking": beside(PARKING, "r", plan_of("s", ("d", 0, 1), ("c", 1, 3), ("b", 3, 4), ("e", 4, None))),
     "a goal that is passed later": beside(
-        town("park", replace(EAST, goal="b"), replace(WEST, goal="e")),
+        town("park", replace(EAST, stops=(Stop("b"),)), replace(WEST, stops=(Stop("e"),))),
         "r",
         plan_of("s", ("d", 0, 1), ("c", 1, 3), ("b", 3, 4), ("e", 4, None)),
     ),

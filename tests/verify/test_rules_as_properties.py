@@ -21,6 +21,7 @@ from carp_spec import (
     ResourceGraph,
     Shuffled,
     Solution,
+    Stop,
     Visit,
     plan_cost,
 )
@@ -99,6 +100,20 @@ def _following(instance: Instance, data: st.DataObject) -> Instance:
     return replace(instance, following=data.draw(wrong))
 
 
+def _stops(instance: Instance, data: st.DataObject) -> Instance:
+    goal = instance.robots[0].stops[-1]
+    wrong: list[Any] = [
+        (),
+        (Stop(goal.resource, -1),),
+        (Stop(goal.resource, True),),
+        (Stop(NOWHERE, 1),),
+        (Stop(NOWHERE), goal),
+        (goal, replace(goal, service=2)),
+    ]
+    robot = replace(instance.robots[0], stops=data.draw(st.sampled_from(wrong)))
+    return replace(instance, robots=(robot, *instance.robots[1:]))
+
+
 PLANTS: Mapping[str, Plant] = {
     "instance/resource-id": _repeated_resource,
     "instance/capacity": _resource("capacity", TOO_SMALL),
@@ -107,7 +122,8 @@ PLANTS: Mapping[str, Plant] = {
     "instance/edge": _edge,
     "instance/group": _group,
     "instance/robot-id": _repeated_robot,
-    "instance/endpoint": _robot("goal", st.just(NOWHERE)),
+    "instance/endpoint": _robot("stops", st.just((Stop(NOWHERE),))),
+    "instance/stops": _stops,
     "instance/release": _robot("release", st.integers(max_value=-1) | st.sampled_from([False, 0.0, None])),
     "instance/pace": _robot("pace", TOO_SMALL),
     "instance/after-goal": _policy,

@@ -26,6 +26,7 @@ from carproof.testing.strategies import (
 
 SHRINK = settings(max_examples=20_000, derandomize=True, database=None, suppress_health_check=list(HealthCheck))
 SEARCH = settings(SHRINK, phases=[Phase.generate])
+WITH_ALL = Sizes(groups=2, stops=2, service=3)
 
 
 @given(instances())
@@ -33,19 +34,19 @@ def test_instances_have_no_faults(instance: Instance) -> None:
     assert instance_faults(instance) == ()
 
 
-@given(planned_instances())
+@given(planned_instances() | planned_instances(WITH_ALL))
 def test_planned_instances_break_no_rule(planned: PlannedInstance) -> None:
     assert judge(planned.instance, planned.solution).violations == ()
 
 
-@given(broken_solutions())
+@given(broken_solutions() | broken_solutions(WITH_ALL))
 def test_broken_solutions_break_the_rules_they_name(broken: BrokenSolution) -> None:
     reported = {violation.rule for violation in judge(broken.instance, broken.solution).violations}
     assert broken.rules
     assert reported >= set(broken.rules)
 
 
-@given(fleets_under_way())
+@given(fleets_under_way() | fleets_under_way(WITH_ALL))
 def test_fleets_under_way_are_sound_and_lack_the_robot_to_add(fleet: FleetUnderWay) -> None:
     assert judge(fleet.instance, fleet.solution).violations == ()
     assert fleet.robot in fleet.solution.unplanned
@@ -68,13 +69,12 @@ RULE_IDS = [
 
 @pytest.mark.parametrize("rule", RULE_IDS)
 def test_every_rule_of_a_solution_is_broken_by_some_mutation(rule: str) -> None:
-    planned = planned_instances(instances_to_plan=instances(Sizes(groups=2)))
-    find(broken_solutions(planned=planned), lambda broken: rule in broken.rules, settings=SEARCH)
+    find(broken_solutions(WITH_ALL), lambda broken: rule in broken.rules, settings=SEARCH)
 
 
 @pytest.mark.parametrize("mutation", MUTATIONS)
 def test_every_mutation_finds_a_place(mutation: Mutation) -> None:
-    find(planned_instances(), lambda each: any(mutation(each.instance, each.solution)), settings=SEARCH)
+    find(planned_instances(WITH_ALL), lambda each: any(mutation(each.instance, each.solution)), settings=SEARCH)
 
 
 def _shares_starts(instance: Instance) -> bool:

@@ -101,7 +101,7 @@ def certify_together(
     instance: Instance, plans: Sequence[Plan], advance: Callable[[], None] = lambda: None
 ) -> Certificate:
     """Ask z3 about every resource that is visited: `joint/capacity` and `joint/exchange` alone."""
-    refuse(instance, "following", "groups")
+    refuse(instance, "following", "groups", "stops")
     solver, terms = Solver(), Terms()
     index = instance.graph.index
     stays = stays_by_resource(instance, plans)

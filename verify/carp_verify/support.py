@@ -18,6 +18,8 @@ UNSUPPORTED: Mapping[str, str] = {
     "instance/after-goal": _DATA,
     "instance/following": _DATA,
     "joint/group": "the kernel does not know groups yet; a second checker goes tick by tick",
+    "instance/stops": _DATA,
+    "plan/stops": "it is a greedy count over the visits, and a later visit in place of an earlier one serves no more",
     "trace/robots": _DATA,
     "trace/prefix": _DATA,
     "trace/ticks": _DATA,

@@ -44,7 +44,7 @@ NO_LIMIT_THERE = "the reference engine has no such limit, but finds no bounds"
 
 def refuse_what_is_too_large(instance: Instance) -> None:
     """Raise `Refusal` where a number of the instance does not fit, and for what is not known here."""
-    refuse(instance, "groups")
+    refuse(instance, "groups", "stops")
     for fault in _too_large(instance):
         raise Refusal("limit", fault.path, fault.rule, f"{fault.message}; {NO_LIMIT_THERE}")
 

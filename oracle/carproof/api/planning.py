@@ -30,7 +30,7 @@ def certified_query(
     Raises what `query` raises, and `Refusal` where following is forbidden.
     """
     require_query(instance, committed, robot, now)
-    refuse(instance, "following", "groups")
+    refuse(instance, "following", "groups", "stops")
     own = [each for each in committed if each.robot == robot]
     certifier = engine_named(None).certifier(instance)
     certifier.commit([each for each in committed if each.robot != robot])

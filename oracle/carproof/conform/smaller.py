@@ -11,7 +11,7 @@ from functools import partial
 from typing import TypeAlias, TypeVar
 
 from carp_reference.execution import order_of
-from carp_spec import Group, Instance, Plan, Refusal, Resource, ResourceGraph, ResourceId, RobotId, Visit
+from carp_spec import Group, Instance, Plan, Refusal, Resource, ResourceGraph, ResourceId, RobotId, Stop, Visit
 from carp_spec.requests import sound_solution
 from carproof.conform.cases import EXECUTION, NUMBERS, Case, NumberOf
 from carproof.execution.delays import stuck
@@ -109,7 +109,8 @@ def _fewer_resources(case: Case) -> Iterable[Edit]:
     """Take away resources in which nobody starts, ends or stays."""
 
     def edit(some: frozenset[ResourceId], case: Case) -> Case:
-        used = {end for robot in case.instance.robots for end in (robot.start, robot.goal)}
+        used = {robot.start for robot in case.instance.robots}
+        used |= {stop.resource for robot in case.instance.robots for stop in robot.stops}
         used |= {visit.resource for plan in case.solution.plans for visit in plan.visits}
         gone, graph = some - used, case.instance.graph
         resources = tuple(each for each in graph.resources if each.id not in gone)
@@ -166,7 +167,7 @@ def _moved(case: Case, gone: frozenset[ResourceId], became: Mapping[ResourceId, 
     moves = [(became[source], became[target]) for source, target in graph.edges]
     distinct = {(move if graph.directed else frozenset(move)): move for move in moves if move[0] != move[1]}
     resources = tuple(each for each in graph.resources if each.id not in gone)
-    robots = tuple(replace(each, start=became[each.start], goal=became[each.goal]) for each in case.instance.robots)
+    robots = tuple(each.in_names(became.__getitem__) for each in case.instance.robots)
     groups = tuple(
         replace(group, resources=tuple(dict.fromkeys(became[each] for each in group.resources if each in became)))
         for group in graph.groups
@@ -214,7 +215,7 @@ def _simpler(case: Case) -> Iterable[Edit]:
         return _made(case, replace(case.instance, graph=undirected), case.solution.plans)
 
     def stay(robot: RobotId, case: Case) -> Case | None:
-        robots = tuple(replace(r, goal=r.start) if r.id == robot else r for r in case.instance.robots)
+        robots = tuple(replace(r, stops=(Stop(r.start),)) if r.id == robot else r for r in case.instance.robots)
         planned = any(plan.robot == robot for plan in case.solution.plans)
         return None if planned else replace(case, instance=replace(case.instance, robots=robots))
 
@@ -234,9 +235,7 @@ def _numbered(case: Case) -> Case | None:
         Group(number, tuple(place[each] for each in group.resources), group.capacity)
         for number, group in enumerate(instance.graph.groups)
     )
-    robots = tuple(
-        replace(each, id=number[each.id], start=place[each.start], goal=place[each.goal]) for each in instance.robots
-    )
+    robots = tuple(replace(each.in_names(place.__getitem__), id=number[each.id]) for each in instance.robots)
     plans = tuple(
         Plan(
             number.get(plan.robot, plan.robot),

@@ -25,14 +25,14 @@ def is_classical(instance: Instance) -> bool:
     """Whether the files can express the instance, and it is one of classical multi-agent path finding.
 
     It has robots, which all start in different cells, end in different cells and park. They are present from tick 0,
-    and paces, durations and capacities are one. Cells are joined exactly to those beside them.
+    have goals alone, and paces, durations and capacities are one. Cells are joined exactly to those beside them.
     """
     resources, robots = instance.graph.resources, instance.robots
     starts, goals = {robot.start for robot in robots}, {robot.goal for robot in robots}
     return (
         instance.after_goal == "park"
         and len(starts) == len(goals) == len(robots) > 0
-        and all((robot.release, robot.pace) == (0, 1) for robot in robots)
+        and all(robot.has_goal_alone and (robot.release, robot.pace) == (0, 1) for robot in robots)
         and all((resource.capacity, resource.duration) == (1, 1) for resource in resources)
         and _is_grid(instance)
     )

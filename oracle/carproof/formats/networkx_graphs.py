@@ -123,7 +123,7 @@ def _robot(robot: Any) -> Any:  # noqa: ANN401 - if it is no robot, `document/sh
     if type(robot) is not Robot:
         return robot
     numbers = {name: _plain(getattr(robot, name)) for name in ("id", "release", "pace")}
-    return replace(robot, start=_named(robot.start), goal=_named(robot.goal), **numbers)
+    return replace(robot.in_names(_named), **numbers)
 
 
 def _resource(node: Any, attributes: Mapping[str, Any], scale: int | None) -> Resource:  # noqa: ANN401 - `node_is_right`

@@ -62,9 +62,21 @@ def robot_stops_short(instance: Instance, solution: Solution) -> Iterator[Broken
 def goal_is_left_wrongly(instance: Instance, solution: Solution) -> Iterator[BrokenSolution]:
     """A robot that must vanish stays a tick longer; a robot that must park leaves."""
     for plan in solution.plans:
-        last = plan.visits[-1]
-        leave = last.enter + instance.duration(plan.robot, last.resource) if last.leave is None else last.leave + 1
+        last, stop = plan.visits[-1], instance.robot[plan.robot].stops[-1]
+        leave = last.enter + instance.stay(plan.robot, stop) if last.leave is None else last.leave + 1
         yield _with_visits(instance, solution, plan, (*plan.visits[:-1], replace(last, leave=leave)), "plan/goal")
+
+
+def stop_is_left_out(instance: Instance, solution: Solution) -> Iterator[BrokenSolution]:
+    """A robot gets a longer service at a stop before its last than it can have given."""
+    for plan in solution.plans:
+        robot = instance.robot[plan.robot]
+        too_long = max((visit.leave - visit.enter for visit in plan.visits if visit.leave is not None), default=0) + 1
+        for place, stop in enumerate(robot.stops[:-1]):
+            longer = replace(stop, service=too_long)
+            stops = (*robot.stops[:place], longer, *robot.stops[place + 1 :])
+            robots = tuple(replace(each, stops=stops) if each is robot else each for each in instance.robots)
+            yield BrokenSolution(replace(instance, robots=robots), solution, ("plan/stops",))
 
 
 def resource_is_unknown(instance: Instance, solution: Solution) -> Iterator[BrokenSolution]:
@@ -139,6 +151,7 @@ MUTATIONS: tuple[Mutation, ...] = (
     robot_starts_late,
     robot_stops_short,
     goal_is_left_wrongly,
+    stop_is_left_out,
     resource_is_unknown,
     robot_moves_nowhere,
     robot_is_nowhere_for_a_tick,

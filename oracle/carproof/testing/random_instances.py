@@ -1,7 +1,7 @@
 """Random questions for both engines, small and fast to draw; equal numbers, equal question."""
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Any, TypeAlias, TypeVar
 
@@ -22,11 +22,12 @@ from carp_spec import (
     RobotId,
     Shuffled,
     Solution,
+    Stop,
 )
 from carp_spec.permutations import shuffle, splitmix64
 from carp_spec.planners import LARGEST_SEED
 from carp_spec.shapes import numbers_of
-from carproof.testing.timing import path_between, timed_plan
+from carproof.testing.timing import path_over, serving, timed_plan
 
 T = TypeVar("T")
 
@@ -50,7 +51,7 @@ class Mix:
 
     Graphs are trees with at most `more` further edges. A directed one has each edge in one direction or, with
     `both_ways`, three in four edges in both. With `goals_apart`, the goals of most instances are as distinct as the
-    starts.
+    starts. A robot has up to `stops` stops with these services.
     """
 
     sizes: Sequence[int] = (1, 2, 3, 4, 4, 5, 5, 6)
@@ -63,6 +64,8 @@ class Mix:
     both_ways: bool = False
     groups: Sequence[int] = (0,)
     goals_apart: bool = False
+    stops: int = 1
+    services: Sequence[int] = (0,)
 
 
 SMALL = Mix()
@@ -134,6 +137,8 @@ def draw_instance(draw: Draw, mix: Mix = SMALL) -> Instance:
         for place, (id, start) in enumerate(zip(draw_ids(draw, count), starts, strict=False))
     )
     policies: tuple[AfterGoal, ...] = ("vanish", "park")
+    if mix.stops > 1:
+        robots = tuple(replace(robot, stops=draw_stops(draw, ids, robot, mix)) for robot in robots)
     return Instance(graph, robots, draw.one_of(policies))
 
 
@@ -141,6 +146,14 @@ def _numbers(draw: Draw, mix: Mix, kind: type[Resource | Robot], is_least: Calla
     """The numbers of a resource or a robot by their names; the mix has the values of each under its feature."""
     numbers = numbers_of(kind).items()
     return {name: each.least if is_least() else draw.one_of(getattr(mix, each.feature)) for name, each in numbers}
+
+
+def draw_stops(draw: Draw, ids: Sequence[ResourceId], robot: Robot, mix: Mix) -> tuple[Stop, ...]:
+    """Stops of which the last is at the robot's goal."""
+    places = [robot.goal]
+    for _ in range(draw.between(0, mix.stops - 1 if len(ids) > 1 else 0)):
+        places.append(draw.one_of([id for id in ids if id != places[-1]]))
+    return tuple(Stop(place, draw.one_of(mix.services)) for place in reversed(places))
 
 
 def draw_ids(draw: Draw, count: int) -> Sequence[str | int]:
@@ -213,10 +226,9 @@ def draw_fleet(draw: Draw, instance: Instance) -> FleetUnderWay:
 def draw_plan(draw: Draw, instance: Instance, committed: Sequence[Plan], robot: Robot) -> Plan | None:
     """A plan over some resource that stays longer than needed in each; `None` if there is no way, or none is free."""
     over = draw.one_of(instance.graph.resources).id
-    there, back = path_between(instance.graph, robot.start, over), path_between(instance.graph, over, robot.goal)
-    path = (*there[:-1], *back) if there and back else path_between(instance.graph, robot.start, robot.goal)
+    path = path_over(instance.graph, robot, over) or path_over(instance.graph, robot, robot.start)
     if not path:
         return None
     waits = [draw.between(0, 2) if draw.happens(2) else 0 for _ in path[1:]] + [0]
-    stays = [instance.duration(robot.id, resource) + wait for resource, wait in zip(path, waits, strict=True)]
+    stays = serving(instance, robot, path, waits)
     return timed_plan(instance, committed, robot.id, path, stays)

@@ -12,7 +12,7 @@ Drawn instances obey every rule `instance/...`, and drawn plans break no rule un
 filtered out, so drawing is fast. Examples shrink to few resources, few robots, short plans and small numbers.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import permutations
 from typing import Any
 
@@ -30,11 +30,12 @@ from carp_spec import (
     Robot,
     RobotId,
     Solution,
+    Stop,
 )
 from carp_spec.shapes import numbers_of
 from carproof.testing.mutations import MUTATIONS, BrokenSolution
 from carproof.testing.random_instances import FleetUnderWay
-from carproof.testing.timing import path_between, timed_plan
+from carproof.testing.timing import path_over, serving, timed_plan
 
 __all__ = [
     "BrokenSolution",
@@ -56,7 +57,7 @@ class Sizes:
     """The largest values that are drawn.
 
     `wait` is the most ticks that a drawn plan stays in a resource beyond the need. Only planners that know groups are
-    asked with `groups`.
+    asked with `groups`, and those that know stops with more than one stop, or with service.
     """
 
     resources: int = 5
@@ -67,6 +68,8 @@ class Sizes:
     pace: int = 2
     wait: int = 2
     groups: int = 0
+    stops: int = 1
+    service: int = 0
 
 
 SMALL = Sizes()
@@ -166,8 +169,19 @@ def instances(
     starts, goals = ends(starts_apart), ends(goals_apart)
     numbers = _numbers(Robot, sizes)
     robots = tuple(Robot(id, start, goal, **draw(numbers)) for id, start, goal in zip(ids, starts, goals, strict=False))
+    if (sizes.stops, sizes.service) != (1, 0):
+        robots = tuple(replace(robot, stops=draw(_stops(places, robot, sizes))) for robot in robots)
     policies: list[AfterGoal] = ["vanish", "park"]
     return Instance(graph, robots, draw(st.sampled_from(policies)))
+
+
+@st.composite
+def _stops(draw: st.DrawFn, places: list[ResourceId], robot: Robot, sizes: Sizes) -> tuple[Stop, ...]:
+    """Stops of which the last is at the robot's goal."""
+    order = [robot.goal]
+    for _ in range(draw(st.integers(0, sizes.stops - 1 if len(places) > 1 else 0))):
+        order.append(draw(st.sampled_from([place for place in places if place != order[-1]])))
+    return tuple(Stop(place, draw(st.integers(0, sizes.service))) for place in reversed(order))
 
 
 @st.composite
@@ -185,18 +199,16 @@ def committed_plans(
         waits = draw(st.lists(st.integers(0, sizes.wait), min_size=len(path), max_size=len(path)))
         if path:
             waits[-1] = 0
-            stays = [instance.duration(robot.id, resource) + wait for resource, wait in zip(path, waits, strict=True)]
-            plan = timed_plan(instance, plans, robot.id, path, stays)
+            plan = timed_plan(instance, plans, robot.id, path, serving(instance, robot, path, waits))
             plans = plans if plan is None else (*plans, plan)
     return plans
 
 
 @st.composite
 def _paths(draw: st.DrawFn, graph: ResourceGraph, robot: Robot) -> tuple[ResourceId, ...]:
-    """A path to the robot's goal over a drawn resource, a direct one if none exists, or no resource."""
+    """A path over the robot's stops, and before them over a drawn resource if one exists, or no resource."""
     over = draw(st.sampled_from([robot.start, *graph.index]))
-    there, back = path_between(graph, robot.start, over), path_between(graph, over, robot.goal)
-    return (*there[:-1], *back) if there and back else path_between(graph, robot.start, robot.goal)
+    return path_over(graph, robot, over) or path_over(graph, robot, robot.start)
 
 
 def solutions(instance: Instance, sizes: Sizes = SMALL) -> st.SearchStrategy[Solution]:

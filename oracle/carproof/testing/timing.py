@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from carp_reference.context import Context, context_of
-from carp_spec import Instance, Plan, ResourceGraph, ResourceId, RobotId, Visit
+from carp_spec import Instance, Plan, ResourceGraph, ResourceId, Robot, RobotId, Visit
 from carp_spec.windows import Window, stay_fits
 
 
@@ -29,6 +29,30 @@ def path_between(graph: ResourceGraph, source: ResourceId, target: ResourceId) -
     return paths.get(target, ())
 
 
+def path_over(graph: ResourceGraph, robot: Robot, over: ResourceId) -> tuple[ResourceId, ...]:
+    """A path from the robot's start over a resource and then its stops, or no resource at all if none exists."""
+    path = [robot.start]
+    for target in (over, *(stop.resource for stop in robot.stops)):
+        further = path_between(graph, path[-1], target)
+        if not further:
+            return ()
+        path.extend(further[1:])
+    return tuple(path)
+
+
+def serving(instance: Instance, robot: Robot, path: Sequence[ResourceId], waits: Sequence[int]) -> list[int]:
+    """The least stays of a robot on a path over its stops, each longer by a wait; it serves each where it may."""
+    stays = [instance.duration(robot.id, resource) + wait for resource, wait in zip(path, waits, strict=True)]
+    *first, last = robot.stops
+    served = 0
+    for place, resource in enumerate(path[:-1]):
+        if served < len(first) and resource == first[served].resource:
+            stays[place] = max(stays[place], first[served].service)
+            served += 1
+    stays[-1] = max(stays[-1], last.service)
+    return stays
+
+
 def timed_plan(
     instance: Instance,
     committed: Sequence[Plan],
@@ -38,7 +62,7 @@ def timed_plan(
 ) -> Plan | None:
     """The plan along the path that stays at least so long in each resource and arrives first, or `None`.
 
-    The path leads from the robot's start to its goal; the last stay is the robot's duration there.
+    The path leads from the robot's start over its stops to its goal; the last stay is what its last stop takes.
     """
     context = context_of(instance, committed)
     release = instance.robot[robot].release

@@ -1,14 +1,14 @@
 """The document of an instance: `carproof-instance/1`. Reading refuses a broken `instance/...` rule too."""
 
 from hashlib import sha256
-from typing import Annotated, Final, Literal
+from typing import Annotated, Any, Final, Literal
 
 import msgspec
 
 from carp_spec.documents.decoding import decode, write
 from carp_spec.documents.fields import all_converted, converted, describes
 from carp_spec.inputs.values import require_instance
-from carp_spec.model import AfterGoal, Instance, Resource, ResourceGraph, ResourceId, Robot
+from carp_spec.model import AfterGoal, Instance, Resource, ResourceGraph, ResourceId, Robot, RobotId, Stop
 
 INSTANCE_FORMAT: Final = "carproof-instance/1"
 
@@ -47,9 +47,24 @@ class GraphDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
             raise ValueError("expected multigraph to be false")
 
 
+@describes(Stop)
+class StopDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A place that a robot serves: it stays there for at least `service` ticks, whatever its pace."""
+
+
 @describes(Robot)
 class RobotDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A robot."""
+    """A robot, with its stops, or with a goal alone, which is short for one stop there without service."""
+
+    id: RobotId
+    start: ResourceId
+    goal: ResourceId | msgspec.UnsetType = msgspec.UNSET
+    stops: tuple[StopDocument, ...] | msgspec.UnsetType = msgspec.UNSET
+
+    def __post_init__(self) -> None:
+        """Refuse both, and neither."""
+        if (self.goal is msgspec.UNSET) == (self.stops is msgspec.UNSET):
+            raise ValueError("expected either a goal or stops")
 
 
 @describes(Instance)
@@ -63,6 +78,17 @@ class InstanceDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     schema: str | msgspec.UnsetType = msgspec.field(default=msgspec.UNSET, name="$schema")
 
 
+def _robot(robot: Any) -> Robot:  # noqa: ANN401 - its document, with fields that the model describes
+    stops = (Stop(robot.goal),) if robot.stops is msgspec.UNSET else all_converted(robot.stops, Stop)
+    return Robot(robot.id, robot.start, None, robot.release, robot.pace, stops=stops)
+
+
+def _robot_document(robot: Robot) -> RobotDocument:
+    ends = {"goal": robot.goal} if robot.has_goal_alone else {"stops": all_converted(robot.stops, StopDocument)}
+    numbers: dict[str, Any] = {"release": robot.release, "pace": robot.pace, **ends}
+    return RobotDocument(robot.id, robot.start, **numbers)
+
+
 def read_instance(data: bytes) -> Instance:
     """Read an instance document; raises `Refusal` on its first fault."""
     document = decode(data, InstanceDocument, INSTANCE_FORMAT)
@@ -72,7 +98,7 @@ def read_instance(data: bytes) -> Instance:
         resources=all_converted(document.graph.nodes, Resource),
         edges=tuple((each.source, each.target) for each in document.graph.edges),
     )
-    instance = converted(document, Instance, graph=graph)
+    instance = converted(document, Instance, graph=graph, robots=tuple(map(_robot, document.robots)))
     require_instance(instance)
     return instance
 
@@ -86,7 +112,8 @@ def instance_document(instance: Instance) -> InstanceDocument:
         nodes=all_converted(instance.graph.resources, NodeDocument),
         edges=tuple(EdgeDocument(source, target) for source, target in instance.graph.edges),
     )
-    return converted(instance, InstanceDocument, format=INSTANCE_FORMAT, graph=graph)
+    robots = tuple(map(_robot_document, instance.robots))
+    return converted(instance, InstanceDocument, format=INSTANCE_FORMAT, graph=graph, robots=robots)
 
 
 def write_instance(instance: Instance) -> bytes:

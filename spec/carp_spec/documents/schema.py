@@ -13,7 +13,7 @@ import msgspec
 
 import carp_spec
 from carp_spec.documents.bounds import BoundDocument
-from carp_spec.documents.instances import InstanceDocument
+from carp_spec.documents.instances import InstanceDocument, RobotDocument
 from carp_spec.documents.query_certificates import QueryCertificateDocument
 from carp_spec.documents.solutions import SolutionDocument, TraceDocument
 from carp_spec.documents.vectors import VectorsDocument
@@ -37,6 +37,8 @@ def schema_text(name: str, schema: Mapping[str, Any]) -> str:
     for each in schema["$defs"].values():
         if "description" in each:  # from Python 3.13 on they are without indentation anyway
             each["description"] = cleandoc(each["description"])
+        if each.get("title") == RobotDocument.__name__:
+            each["oneOf"] = [{"required": ["goal"]}, {"required": ["stops"]}]
     head = {"$schema": DRAFT, "$id": f"urn:carproof:{name}:1"}
     return msgspec.json.format(msgspec.json.encode({**head, **schema}, order="sorted"), indent=2).decode() + "\n"
 

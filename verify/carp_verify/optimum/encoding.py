@@ -180,7 +180,7 @@ def beat_formula(instance: Instance, cost: int | None, evidence: Evidence, most:
 
 
 def _bounded(instance: Instance, bound: int | None, evidence: Evidence, most: int) -> Encoding:
-    refuse(instance, "following", "groups")
+    refuse(instance, "following", "groups", "stops")
     encoding = Encoding(instance, most=most)
     encoding.grow_to(evidence.horizons)
     encoding.forbid_all()

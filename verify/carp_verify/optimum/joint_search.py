@@ -108,7 +108,7 @@ def least_total_cost(
     Raises `Refusal` before more than `most` joint states are looked at; `on_step` is called at each, and may raise.
     """
     require_instance(instance)
-    refuse(instance, "following", "groups")
+    refuse(instance, "following", "groups", "stops")
     search = _Search(instance)
     queue: list[tuple[int, int, int, Joint]] = [(0, 0, -1, tuple(WAITS for _ in instance.robots))]
     settled: set[tuple[int, Joint]] = set()

@@ -126,7 +126,7 @@ def require_certificate(traffic: Traffic, certificate: QueryCertificateDocument,
 
     The plan followed until now, and the plans committed, must be lawful.
     """
-    refuse(traffic.instance, "following", "groups")
+    refuse(traffic.instance, "following", "groups", "stops")
     if followed is not None and has_ended(followed, certificate.now):
         if traffic.allows(followed.visits):
             arrival = followed.visits[-1].enter

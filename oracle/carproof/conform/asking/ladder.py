@@ -257,8 +257,7 @@ def _far(instance: Instance, draw: Draw) -> Instance:
     resources = tuple(replace(each, id=ids[each.id]) for each in graph.resources)
     edges = tuple((ids[source], ids[target]) for source, target in graph.edges)
     robots = tuple(
-        replace(each, id=far(number), start=ids[each.start], goal=ids[each.goal])
-        for number, each in enumerate(instance.robots)
+        replace(each.in_names(ids.__getitem__), id=far(number)) for number, each in enumerate(instance.robots)
     )
     return Instance(ResourceGraph(resources, edges, graph.directed), robots, instance.after_goal)
 

@@ -21,6 +21,7 @@ from carp_spec import (
     RobotId,
     Shuffled,
     Solution,
+    Stop,
     TimeExpanded,
 )
 from carproof.conform.cases import EXECUTION, NUMBERS, Case
@@ -87,7 +88,7 @@ def _swaps(sizes: Sizes) -> st.SearchStrategy[Instance]:
 
 def _swapped(instance: Instance) -> Instance:
     following = (*instance.robots[1:], instance.robots[0])
-    robots = (replace(each, goal=after.start) for each, after in zip(instance.robots, following, strict=True))
+    robots = (replace(each, stops=(Stop(after.start),)) for each, after in zip(instance.robots, following, strict=True))
     return replace(instance, robots=tuple(robots))
 
 

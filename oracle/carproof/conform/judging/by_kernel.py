@@ -9,7 +9,7 @@ following.
 from carp_spec import Carp, Instance, Plan, Solution
 from carp_spec.documents.solutions import solution_document
 from carp_spec.documents.verdicts import VerdictDocument
-from carp_spec.limits import following_is_allowed, groups_are_absent
+from carp_spec.limits import following_is_allowed, goals_stand_alone, groups_are_absent
 from carp_verify.bound.rules import ContradictionError
 from carp_verify.kernel import ask, request
 from carproof.conform.answers import Answer
@@ -24,7 +24,7 @@ EARLY = ("query/complete", "query/optimal")
 
 def require_agreement(case: Case, answer: Answer, level: Level, finding: Finding | None) -> None:
     """Raise `ContradictionError` if the kernel refuses what was accepted, or accepts what breaks a rule of its own."""
-    if not (following_is_allowed(case.instance) and groups_are_absent(case.instance)):
+    if not all(keeps(case.instance) for keeps in (following_is_allowed, groups_are_absent, goals_stand_alone)):
         return
     match answer:
         case VerdictDocument():

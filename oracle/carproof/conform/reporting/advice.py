@@ -8,6 +8,7 @@ _ADVICE = {
     "plan/duration": "Let a robot stay as long as the resource's duration times its pace asks, also at its goal.",
     "plan/start": "Begin the first visit at the robot's start, at its release.",
     "plan/goal": "End at the goal: for ever where robots park, and after the goal's duration where they vanish.",
+    "plan/stops": "Stay at each stop's resource for its service, in the order of the stops.",
     "plan/move": "Follow edges only, in their direction if the graph is directed.",
     "plan/resource": 'Name only resources of the instance; the number 1 and the text "1" are different ids.',
     "plan/contiguous": "Enter each resource at the tick at which the one before is left.",
