@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import cast
 
 from carp_spec import Instance, Plan, ResourceId, Robot, RobotId
+from carp_spec.limits import refuse
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +29,7 @@ def prepare(instance: Instance, now: int) -> Problem:
 
 def ticks_to_goal(instance: Instance, robot: Robot) -> Mapping[ResourceId, int]:
     """Dijkstra backwards from the goal; the cost of a move is the time in the resource that it leaves."""
+    refuse(instance, "stops")
     import networkx as nx  # noqa: PLC0415 - loaded only where used
 
     backward: nx.DiGraph[ResourceId] = nx.DiGraph()

@@ -54,7 +54,7 @@ def stays_by_resource(plans: Sequence[Plan]) -> dict[ResourceId, list[Stay]]:
 
 def dependencies(instance: Instance, plans: Sequence[Plan]) -> Iterator[Dependency]:
     """The edges of the dependency graph of lawful plans, without those that follow from others."""
-    refuse(instance, "groups")
+    refuse(instance, "groups", "stops")
     for plan in plans:
         for place, visit in enumerate(plan.visits[:-1]):
             ticks = instance.duration(plan.robot, visit.resource)
