@@ -165,7 +165,7 @@ def may_move(world: World, tick: int, source: int, target: int) -> bool:
     """Whether a robot may be in the source until the tick, and in the target, another cell, from it on."""
     before, after = world.occupant[tick - 1, target], world.occupant[tick, source]
     if not world.following:
-        return before == NONE and after == NONE
+        return bool(before == NONE and after == NONE)
     return bool(world.swaps or before == NONE or before != after)
 
 
