@@ -112,7 +112,14 @@ ALONE = (
 )
 """The screening: carproof's conventions, and one answer changed at a time."""
 
-CONVENTIONS = ALONE
+TOGETHER = tuple(
+    replace(each, stay=ticks)
+    for ticks in (1, 2, 3, 5)
+    for each in (Convention(late=True), Convention(swaps=True), Convention(interval="both move"))
+)
+"""Stays, which bring the savings nearest in the screening, with what changes failures and neighbours most."""
+
+CONVENTIONS = (*ALONE, *TOGETHER)
 
 
 PASSES: Mapping[str, int] = {"CARP": 1, "CARP10": 10, "CARP100": 100}
