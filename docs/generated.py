@@ -10,6 +10,7 @@ from functools import partial
 from importlib.resources import files as files_of
 from itertools import groupby
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import click
@@ -20,6 +21,7 @@ from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 
 from carp_experiments.page import RESULTS, results
+from carp_experiments.printed import write_printed
 from carp_spec import Rule
 from carp_spec.documents.vectors import Vector
 from carproof.entry.cli import carproof
@@ -41,11 +43,14 @@ COPIED = {
 
 
 def on_files(files: Files, *, config: MkDocsConfig) -> Files:
-    """Add schemas, test vectors and figures."""
+    """Add schemas, test vectors, figures, and the report of the experiments to print."""
     for place, folder in COPIED.items():
         for path in sorted(folder.iterdir()):
             if path.suffix in {".json", ".svg"}:
                 files.append(File.generated(config, f"{place}/{path.name}", abs_src_path=str(path)))
+    with TemporaryDirectory() as place:
+        for path in write_printed(Path(place), RESULTS):
+            files.append(File.generated(config, f"results/{path.name}", content=path.read_bytes()))
     return files
 
 

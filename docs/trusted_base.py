@@ -43,9 +43,9 @@ VERDICTS: dict[str, tuple[tuple[str, ...], str]] = {
 
 
 def module_file(name: str) -> Path:
-    """The file of a module of `carp_verify` or, for a document, of `carp_spec`."""
-    package = "spec/carp_spec" if name.startswith("documents/") else "verify/carp_verify"
-    return ROOT / package / f"{name}.py"
+    """The file of a module of `carp_verify` or, for documents and limits, of `carp_spec`."""
+    places = (ROOT / package / f"{name}.py" for package in ("verify/carp_verify", "spec/carp_spec"))
+    return next(path for path in places if path.exists())
 
 
 def lines_of_code(path: Path) -> int:

@@ -45,6 +45,7 @@ F = TypeVar("F", bound=Callable[..., Any])
         "carproof experiment kernel --verdicts 100000",
         "carproof experiment texts --store texts.sqlite",
         "carproof experiment executions --executions 100000",
+        "carproof experiment report -o report",
     )
 )
 def command() -> None:
@@ -193,6 +194,32 @@ def texts(quick: bool, texts: int, seed: int, **campaign: Any) -> Answer:  # noq
     cases = text_cases(size, seed)
     command = f"carproof experiment texts --texts {size} --seed {seed}"
     return go("texts", "texts", command, f"{size} texts", cases, text_report, **campaign)
+
+
+@command.command("report")
+@click.option(
+    "--results",
+    "stored",
+    type=click.Path(path_type=Path, file_okay=False, exists=True),
+    help="The folder that --report has written; by default the results of this copy of carproof.",
+)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path, file_okay=False),
+    default=Path("report"),
+    show_default=True,
+    help="The folder of the report.",
+)
+def report(stored: Path | None, output: Path) -> Answer:
+    """Write one report on all runs of a folder, as HTML and as PDF."""
+    require("matplotlib", "markdown", "fpdf")
+    from carp_experiments.page import RESULTS  # noqa: PLC0415 - loads the experiments
+    from carp_experiments.printed import write_printed  # noqa: PLC0415
+
+    for path in write_printed(output, stored or RESULTS):
+        print_line(f"wrote {path}")
+    return Answer.of(True)
 
 
 def go(  # noqa: PLR0913 - the campaign's options

@@ -104,24 +104,24 @@ def summary_of(run: Run, type: type[T]) -> T:
     return msgspec.json.decode(run.summary, type=type)
 
 
-def results() -> str:
-    """The claims, then each experiment with its run, tables and figures."""
-    runs = {name: read_run(path) for name in TITLES if (path := RESULTS / f"{name}.json").exists()}
+def results(stored: Path = RESULTS) -> str:
+    """The claims, then each experiment with its run, tables and figures, of the runs stored in a folder."""
+    runs = {name: read_run(path) for name in TITLES if (path := stored / f"{name}.json").exists()}
     claims = [claim for run in runs.values() for claim in claims_of(run)]
     lines = [
         f"| {claim.claim} | **{claim.verdict}** | {claim.with_baseline or ''} | {claim.found} |\n" for claim in claims
     ]
     head = "| the paper says | as published | with the baseline | we find |\n| --- | --- | --- | --- |\n"
     parts = [f"## The paper's claims\n\n{head}{''.join(lines)}\n{EXPLANATIONS}"]
-    parts += [section(name, run) for name, run in runs.items()]
+    parts += [section(name, run, stored) for name, run in runs.items()]
     return "\n".join(parts)
 
 
-def section(name: str, run: Run) -> str:
+def section(name: str, run: Run, stored: Path) -> str:
     """An experiment: the run, its tables, its figures."""
     made = f"`{run.command}`: {run.size}; {run.cases} cases took {run.processor_seconds} s of processor time."
     note = f"{run.note} Digest: `{run.digest}`.".strip()
     meaning = f"{MEANINGS[name]}\n\n" if name in MEANINGS else ""
-    tables = (RESULTS / f"{name}.md").read_text(encoding="utf-8")
-    figures = "".join(f"\n![{path.stem}](figures/{path.name})\n" for path in sorted(RESULTS.glob(f"{name}*.svg")))
+    tables = (stored / f"{name}.md").read_text(encoding="utf-8")
+    figures = "".join(f"\n![{path.stem}](figures/{path.name})\n" for path in sorted(stored.glob(f"{name}*.svg")))
     return f"## {TITLES[name]}\n\n{made}\n{note}\n\n{meaning}{tables}{figures}"

@@ -8,8 +8,10 @@ from carproof.input_rules import Code
 EXTRAS = {
     "defusedxml": ("defusedxml", "layouts"),
     "distributed": ("distributed", "experiments"),
+    "fpdf": ("fpdf2", "experiments"),
     "hypothesis": ("hypothesis", "test"),
     "joblib": ("joblib", "experiments"),
+    "markdown": ("Markdown", "experiments"),
     "matplotlib": ("matplotlib", "experiments"),
     "pysat": ("python-sat", "prove"),
     "z3": ("z3-solver", "prove"),

@@ -1,0 +1,103 @@
+"""The stored results as one report to print: HTML with its figures inside, and PDF."""
+
+import platform
+import re
+from base64 import b64encode
+from datetime import UTC, datetime
+from importlib.metadata import version
+from os import cpu_count
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from carp_experiments.figures import line_figure
+from carp_experiments.page import read_run, results
+from carp_experiments.redrawing import FIGURES
+from carproof.command_line.files import write_whole
+
+TITLE = "Context-aware route planning for automated warehouses: the experiments again"
+IMAGE = re.compile(r'src="figures/([a-z-]+)\.svg"')
+STYLE = """\
+body { font: 15px/1.5 Georgia, serif; max-width: 62em; margin: 3em auto; padding: 0 1em; color: #111; background: #fff }
+table { border-collapse: collapse; font: 12px/1.4 Arial, sans-serif; margin: 1em 0 }
+th, td { border-bottom: 1px solid #bbb; padding: 0.25em 0.6em; text-align: left; vertical-align: top }
+svg, img { width: 100%; height: auto }
+"""
+WIDTHS = {"the paper says": 22, "as published": 10, "with the baseline": 10, "we find": 58}
+"""The parts of the width of a page that the columns of the claims take."""
+ABOUT = """\
+The experiments of Hvězda, Rybecký, Kulich and Přeučil (ITSC 2018) with the planners of carproof {version}. Each
+section has the command of its run, its size, its processor time, and the digest of its rows, which depends neither on
+the machine nor on the number of workers. Intervals are those of 95 %. This report was made on {machine}.
+"""
+
+
+def write_printed(folder: Path, stored: Path) -> tuple[Path, Path]:
+    """Write `report.html` and `report.pdf` about the runs stored in a folder; returns their paths.
+
+    Raises `Refusal` if a file cannot be written, and `OSError` if a run cannot be read.
+    """
+    about = ABOUT.format(version=version("carproof"), machine=machine())
+    body = html_of(f"# {TITLE}\n\n{about}\n{results(stored)}")
+    folder.mkdir(parents=True, exist_ok=True)
+    html, pdf = folder / "report.html", folder / "report.pdf"
+    write_whole(html, page_of(body, stored).encode())
+    write_whole(pdf, pdf_of(body, stored))
+    return html, pdf
+
+
+def machine() -> str:
+    """The machine, in words."""
+    return f"{platform.machine()} with {cpu_count()} cores, {platform.system()}, Python {platform.python_version()}"
+
+
+def html_of(text: str) -> str:
+    """Markdown as HTML."""
+    from markdown import markdown  # noqa: PLC0415 - only the report needs it
+
+    return markdown(text, extensions=["tables"])
+
+
+def page_of(body: str, stored: Path) -> str:
+    """A whole page, with the figures inside it."""
+
+    def inside(image: re.Match[str]) -> str:
+        data = b64encode((stored / f"{image[1]}.svg").read_bytes()).decode()
+        return f'src="data:image/svg+xml;base64,{data}"'
+
+    head = f'<meta charset="utf-8"><title>{TITLE}</title><style>{STYLE}</style>'
+    return f"<!doctype html><html lang=en><head>{head}</head><body>{IMAGE.sub(inside, body)}</body></html>\n"
+
+
+def pdf_of(body: str, stored: Path) -> bytes:
+    """The same as PDF, the figures drawn as pixels, 300 to the inch of a page."""
+    from fpdf import FPDF, FontFace  # noqa: PLC0415 - only the report needs it
+    from matplotlib import get_data_path  # noqa: PLC0415 - has fonts
+
+    pdf = FPDF(orientation="landscape", format="a4")
+    for style, file in {"": "DejaVuSans", "B": "DejaVuSans-Bold", "I": "DejaVuSans-Oblique"}.items():
+        pdf.add_font("DejaVu", style, Path(get_data_path()) / "fonts" / "ttf" / f"{file}.ttf")
+    pdf.add_font("DejaVu Mono", "", Path(get_data_path()) / "fonts" / "ttf" / "DejaVuSansMono.ttf")
+    pdf.set_font("DejaVu", size=8)
+    pdf.set_title(TITLE)
+    pdf.set_creation_date(datetime(2000, 1, 1, tzinfo=UTC))  # the same bytes for the same runs
+    pdf.add_page()
+    with TemporaryDirectory() as place:
+        drawn = draw_pixels(stored, Path(place))
+        printed = IMAGE.sub(lambda image: f'src="{drawn[image[1]]}" width="750"', body)
+        printed = printed.replace("<td>", '<td align="left">')
+        for heading, width in WIDTHS.items():
+            printed = printed.replace(f"<th>{heading}</th>", f'<th width="{width}%">{heading}</th>')
+        faces = {"code": FontFace(family="DejaVu Mono", size_pt=7)}
+        pdf.write_html(printed, font_family="DejaVu", tag_styles=faces, table_line_separators=True)
+        return bytes(pdf.output())
+
+
+def draw_pixels(stored: Path, folder: Path) -> dict[str, Path]:
+    """Draw the figures of all runs as PNG; their files by name."""
+    drawn = {}
+    for name, figures_of in FIGURES.items():
+        if (run := stored / f"{name}.json").exists():
+            for each in figures_of(read_run(run)):
+                drawn[each.name] = folder / f"{each.name}.png"
+                line_figure(drawn[each.name], each.title, each.axes, each.lines, each.logarithmic)
+    return drawn
