@@ -8,11 +8,15 @@ then by a repair and an annealing, if there is enough time for these. Nothing he
 from collections.abc import Callable
 from time import perf_counter
 
+import numpy as np
+
 import carp_optimized
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.improve.annealing import anneal
-from carp_optimized.improve.planning import plan_crowd
-from carp_spec import Instance, Solution
+from carp_optimized.improve.crowds import crowd_of, near
+from carp_optimized.improve.planning import Found, plan_crowd, time_of_visit
+from carp_spec import Instance, Solution, total_cost
+from carp_spec.documents.solutions import visits_document
 from carp_spec.inputs.options import require_polish_options
 from carp_spec.inputs.values import require_instance
 
@@ -22,6 +26,10 @@ ENOUGH = 4
 """The annealing begins if CARP has left this many times its own time, as it takes up the plans again."""
 AMPLE = 20
 """A repair of robots that are left out begins if CARP has taken at most one of this many parts of the time."""
+
+
+SORTING = 4
+"""The shortest ways of all robots are looked up if that takes at most one of this many parts of the time."""
 
 
 def plan_within(
@@ -40,32 +48,75 @@ def plan_within(
     compilation of the planner, which happens once, is not part of the time: `python -m carp_optimum` makes it happen.
     Raises `Refusal` for wrong options, and for numbers that are too large.
     """
+    found = find_within(instance, Found.solution, iterations, seconds, seed=seed, advance=advance, clock=clock)
+    return found.solution()
+
+
+def find_within(
+    instance: Instance,
+    finish: Callable[[Found], object],
+    iterations: int | None,
+    seconds: float | None,
+    *,
+    seed: int = 0,
+    advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
+    clock: Callable[[], float] = perf_counter,
+) -> Found:
+    """The same, where the caller has to `finish` within the seconds."""
     require_instance(instance)
     require_polish_options(iterations, seconds, seed)
     if iterations is None and seconds is None:
         seconds = SECONDS
     started = clock()
-    found = plan_crowd(instance, iterations=iterations, seconds=seconds, seed=seed, advance=advance, clock=clock)
+    found = plan_crowd(
+        instance, iterations=iterations, seconds=seconds, seed=seed, advance=advance, clock=clock, finish=finish
+    )
     if found is not None:
         return found
-    solution = _first_plans(instance, lambda: seconds is None or clock() - started < seconds)
+    visit = 0.0 if seconds is None or not instance.robots else time_of_visit(instance, finish, clock)
+    solution = _first_plans(instance, lambda: clock() - started, seconds, visit)
     if seconds is None:
-        return carp_optimized.polish(instance, solution, iterations=iterations, seed=seed, advance=advance)
+        solution = carp_optimized.polish(instance, solution, iterations=iterations, seed=seed, advance=advance)
+        return _found(instance, solution)
     spent = clock() - started
-    left = seconds - ENOUGH * spent
-    if left <= 0:
-        return solution
-    repairs = AMPLE * spent < seconds
-    return anneal(instance, solution, seconds - spent, seed=seed, advance=advance, clock=clock, repairs=repairs)
+    left = seconds - visit * sum(len(each.visits) for each in solution.plans)
+    if left > (1 + ENOUGH) * spent:
+        repairs = AMPLE * spent < seconds
+        time = left - spent
+        solution = anneal(instance, solution, time, seed=seed, advance=advance, clock=clock, repairs=repairs)
+    return _found(instance, solution)
 
 
-def _first_plans(instance: Instance, goes_on: Callable[[], bool]) -> Solution:
+def _first_plans(instance: Instance, spent: Callable[[], float], seconds: float | None, visit: float) -> Solution:
     """The plans of CARP, the shortest way first, for as many robots as there is time for."""
     fleet = PlannedFleet(instance)
-    for robot in sorted(range(len(instance.robots)), key=fleet.ticks_to_goal):
-        if not goes_on():
+    visits = 0
+    for robot in _nearest_first(fleet, lambda: seconds is None or SORTING * spent() < seconds):
+        if seconds is not None and spent() + visit * visits >= seconds:
             break
         plan = fleet.find(robot, None, 0)
         if plan is not None:
             fleet.commit([plan])
+            visits += len(plan.visits)
     return Solution.of(instance, fleet.plans)
+
+
+def _nearest_first(fleet: PlannedFleet, goes_on: Callable[[], bool]) -> list[int]:
+    """The robots by their shortest ways, or about so if there is no time to look for these."""
+    ways = []
+    for robot in range(len(fleet.instance.robots)):
+        if not goes_on():
+            about = near(crowd_of(fleet.instance)) * [each.pace for each in fleet.instance.robots]
+            return [int(each) for each in np.argsort(about, kind="stable")]
+        ways.append(fleet.ticks_to_goal(robot))
+    return sorted(range(len(ways)), key=ways.__getitem__)
+
+
+def _found(instance: Instance, solution: Solution) -> Found:
+    """The solution as something found."""
+    return Found(
+        instance,
+        lambda: ((each.robot, visits_document(each)) for each in solution.plans),
+        total_cost(instance, solution.plans),
+        None,
+    )

@@ -7,21 +7,25 @@ what a step takes; the distances are the least ticks from each resource to the g
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from carp_optimized.jit.compiling import entry
-from carp_optimized.jit.kinds import Ints, IntTable
+from carp_optimized.jit.kinds import Ints, ShortTable
 from carp_optimized.jit.references import Native, dereference
 from carp_optimized.state.encoding import encode_graph
 from carp_spec import Instance
 
 GONE = -1
 """The place of a robot that has vanished."""
+FAR = 2**15 - 1
+"""More than any distance that is measured."""
+LANDMARKS = 8
 
 
 class Crowd(NamedTuple):
     """Moves lead from r to `target[first[r]:first[r + 1]]`, and come to it from `source[backward_first[r]:...]`.
 
-    `distance[robot][r]` is the number of resources where the goal cannot be reached: more than any distance.
+    `distance[robot][r]` is `FAR` where the goal cannot be reached in fewer ticks. `queue` is scratch.
     """
 
     first: Ints
@@ -30,7 +34,7 @@ class Crowd(NamedTuple):
     source: Ints
     start: Ints
     goal: Ints
-    distance: IntTable
+    distance: ShortTable
     queue: Ints
     parks: bool
 
@@ -42,6 +46,7 @@ def is_stepwise(instance: Instance) -> bool:
     """Whether all robots are there from tick 0, and each needs one tick and a place of its own."""
     return (
         instance.following == "allowed"
+        and not instance.graph.groups
         and all(each.capacity == 1 and each.duration == 1 for each in instance.graph.resources)
         and all(each.release == 0 and each.pace == 1 for each in instance.robots)
     )
@@ -59,42 +64,97 @@ def crowd_of(instance: Instance) -> Crowd:
         graph.source,
         np.array([index[each.start] for each in instance.robots], np.int32),
         np.array([index[each.goal] for each in instance.robots], np.int32),
-        np.empty((len(instance.robots), resources), np.int32),
+        np.empty((len(instance.robots), resources), np.int16),
         np.empty(resources, np.int32),
         instance.after_goal == "park",
     )
 
 
+def ways_of(crowd: Crowd) -> Ints:
+    """The least ticks that each robot needs, after `measure`."""
+    return crowd.distance[np.arange(crowd.start.size), crowd.start].astype(np.int32)
+
+
+def are_apart(crowd: Crowd) -> npt.NDArray[np.bool_]:
+    """Of each robot, whether none before it starts in its place, or parks in its goal."""
+    found = np.zeros(crowd.start.size, np.bool_)
+    found[np.unique(crowd.start, return_index=True)[1]] = True
+    if crowd.parks:
+        rows = np.flatnonzero(found)
+        found[:] = False
+        found[rows[np.unique(crowd.goal[rows], return_index=True)[1]]] = True
+    return found
+
+
 def can_begin(crowd: Crowd) -> bool:
-    """Whether no two robots start in one place, or park in one, and each has a way to its goal; after `measure`."""
-    robots = crowd.start.size
-    far = crowd.queue.size
-    has_ways = all(int(crowd.distance[robot, crowd.start[robot]]) < far for robot in range(robots))
-    goals_differ = not crowd.parks or np.unique(crowd.goal).size == robots
-    return has_ways and goals_differ and np.unique(crowd.start).size == robots
+    """Whether all robots `are_apart` and have ways to their goals; after `measure`."""
+    return bool(are_apart(crowd).all() and (ways_of(crowd) < FAR).all())
+
+
+def only(crowd: Crowd, robots: npt.NDArray[np.bool_]) -> Crowd:
+    """Some of the robots of a crowd."""
+    if robots.all():
+        return crowd
+    return crowd._replace(start=crowd.start[robots], goal=crowd.goal[robots], distance=crowd.distance[robots])
+
+
+def near(crowd: Crowd) -> Ints:
+    """About how far each robot has to go: the most by which its places differ in the distance to some landmark.
+
+    On undirected graphs it is no further than that (Goldberg and Harrelson 2005).
+    """
+    resources = crowd.queue.size
+    marks = crowd._replace(
+        start=np.zeros(LANDMARKS, np.int32),
+        goal=np.zeros(LANDMARKS, np.int32),
+        distance=np.empty((LANDMARKS, resources), np.int16),
+    )
+    native = Native(marks)
+    least = np.full(resources, FAR, np.int32)
+    found = np.zeros(crowd.start.size, np.int32)
+    for mark in range(LANDMARKS):
+        marks.goal[mark] = np.argmax(np.where(least < FAR, least, -1))
+        measure(native, np.arange(LANDMARKS, dtype=np.int32), mark, mark + 1, FAR)
+        distance = marks.distance[mark].astype(np.int32)
+        found = np.maximum(found, np.abs(distance[crowd.start] - distance[crowd.goal]))
+        least = np.minimum(least, distance)
+    return found
 
 
 @entry
-def measure(native: Native[Crowd], begin: int, end: int) -> None:
-    """Measure the distances of these robots, by breadth-first search from their goals."""
+def measure(native: Native[Crowd], order: Ints, begin: int, end: int, beyond: int) -> None:
+    """Measure the distances of the robots `order[begin:end]`, by breadth-first search from their goals.
+
+    It goes so many steps beyond the start. What is further away then gets the next distance: less than its own, and
+    right for A*, as it differs from those around it by at most one.
+    """
     crowd = crowd_at(native)
     queue = crowd.queue
-    far = queue.size
-    for robot in range(begin, end):
+    for number in range(begin, end):
+        robot = int(order[number])
         distance = crowd.distance[robot]
-        for resource in range(far):
-            distance[resource] = far
+        for resource in range(queue.size):
+            distance[resource] = FAR
+        start = int(crowd.start[robot])
         queue[0] = crowd.goal[robot]
         distance[int(crowd.goal[robot])] = 0
         size = 1
         k = 0
+        last = FAR - 1
         while k < size:
             place = int(queue[k])
             k += 1
             further = int(distance[place]) + 1
+            if further > last:
+                break
+            if place == start:
+                last = min(last, further - 1 + beyond)
             for edge in range(int(crowd.backward_first[place]), int(crowd.backward_first[place + 1])):
                 source = int(crowd.source[edge])
-                if distance[source] == far:
+                if distance[source] == FAR:
                     distance[source] = further
                     queue[size] = source
                     size += 1
+        if k < size and last < FAR - 1:
+            for resource in range(queue.size):
+                distance[resource] = min(int(distance[resource]), last + 1)

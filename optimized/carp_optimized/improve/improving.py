@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from carp_optimized.improve.crowds import GONE, Crowd
+from carp_optimized.improve.crowds import GONE, Crowd, ways_of
 from carp_optimized.improve.rounds import (
     BEST,
     CHANCE,
@@ -12,6 +12,7 @@ from carp_optimized.improve.rounds import (
     FIRST_WEIGHT,
     FULL,
     KINDS,
+    MISSED,
     MOST_MEMBERS,
     ROUNDS,
     SURE,
@@ -27,8 +28,10 @@ from carp_optimized.improve.stays import Paths, no_paths, no_stays, with_more_ro
 from carp_optimized.jit.kinds import Ints, IntTable
 from carp_optimized.jit.references import Native
 
-PART = 8
-"""The robots that one compiled call plans."""
+WORK = 1 << 15
+"""The labels that one compiled call expands before it looks whether to go on: some milliseconds."""
+PART = 256
+"""The robots whose stays one compiled call adds."""
 LONGER = 32
 """The visits that a path may have beyond the longest one given."""
 
@@ -50,14 +53,14 @@ class Improving:
             paths=paths,
             best=no_paths(robots, room),
             tried=no_paths(MOST_MEMBERS, room),
-            least=crowd.distance[np.arange(robots), crowd.start],
+            least=ways_of(crowd),
             members=np.zeros(MOST_MEMBERS, np.int32),
             key=np.zeros(MOST_MEMBERS, np.int64),
             mark=np.zeros(robots, np.int32),
             changed=np.zeros(robots, np.int32),
             is_changed=np.zeros(robots, np.int32),
             weight=np.full(KINDS, FIRST_WEIGHT, np.int64),
-            counts=np.zeros(8, np.int64),
+            counts=np.zeros(9, np.int64),
             stream=np.array([seed], np.uint64),
         )
         self._native = Native(self.rounds)
@@ -73,18 +76,29 @@ class Improving:
         return int(self.rounds.counts[TOTAL])
 
     @property
+    def missed(self) -> int:
+        """The robots for which `plan_first` has found no path."""
+        return int(self.rounds.counts[MISSED])
+
+    @property
     def played(self) -> int:
         """The rounds so far."""
         return int(self.rounds.counts[ROUNDS])
 
-    def begin(self) -> None:
-        """Take the paths for the best."""
+    def begin(self, goes_on: Callable[[], bool]) -> bool:
+        """Take the paths for the best, if there is time for it; whether there was."""
         robots = self.rounds.paths.size.size
         done = 0
-        while (done := put_all(self._native, done)) < robots:
-            self._make_room()
+        while done < robots:
+            if not goes_on():
+                return False
+            end = min(done + PART, robots)
+            done = put_all(self._native, done, end)
+            if done < end:
+                self._make_room()
         self.rounds.counts[TOTAL] = arrivals(self.rounds.paths).sum()
         self._remember()
+        return True
 
     def _remember(self) -> None:
         counts = self.rounds.counts
@@ -94,14 +108,12 @@ class Improving:
         counts[DIRTY] = 0
         self.rounds.is_changed[:] = 0
 
-    def return_to_best(self) -> None:
-        """Go on from the best paths."""
+    def return_to_best(self, goes_on: Callable[[], bool]) -> bool:
+        """Go on from the best paths, if there is time for it; whether there was."""
         for best, paths in zip(self.rounds.best, self.rounds.paths, strict=True):
             paths[...] = best
         self.rounds.stays.size[:] = 0
-        self.rounds.counts[DIRTY] = 0
-        self.rounds.is_changed[:] = 0
-        self.begin()
+        return self.begin(goes_on)
 
     def play(self, rounds: int, work: int, chance: int = 0) -> int:
         """Play that many rounds, or as many as take that much work; how many."""
@@ -125,9 +137,9 @@ class Improving:
     ) -> None:
         done = 0
         while done < order.size and goes_on():
-            end = min(done + PART, order.size)
-            done = step(self._native, order, done, end)
-            if done < end:
+            done = step(self._native, order, done, WORK)
+            if done < 0:
+                done = ~done
                 self._make_room()
 
     def _make_room(self) -> None:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carp_optimized.improve.crowds import GONE, Crowd, can_begin, crowd_of, is_stepwise, measure
+from carp_optimized.improve.crowds import FAR, GONE, Crowd, can_begin, crowd_of, is_stepwise, measure, ways_of
 from carp_optimized.improve.pibt import NOWHERE, Step, begin, choose, end, is_open, no_step, rank_choices, take
 from carp_optimized.jit.compiling import compiled, entry
 from carp_optimized.jit.kinds import Ints, IntTable, Longs, Numbers
@@ -26,8 +26,6 @@ FOUND, FAILED, FULL, RUNNING = range(4)
 NODES, DEMANDS, DEPTH, TRIED = range(4)  # the counts
 ROOM = 256
 """The configurations for which there is room at first."""
-PART = 64
-"""Robots whose distances are measured in one compiled call."""
 
 
 class Nodes(NamedTuple):
@@ -71,7 +69,7 @@ def plans_by_steps(instance: Instance, steps: int = STEPS) -> tuple[Plan, ...] |
     if not is_stepwise(instance):
         return None
     crowd = crowd_of(instance)
-    measure(Native(crowd), 0, crowd.start.size)
+    measure(Native(crowd), np.arange(crowd.start.size, dtype=np.int32), 0, crowd.start.size, FAR)
     if not can_begin(crowd):
         return None
     search = Search(crowd)
@@ -149,8 +147,7 @@ def _enlarged(crowd: Crowd, nodes: Nodes) -> Nodes:
 def _place_root(lacam: Lacam) -> None:
     """The configuration at tick 0; robots with the longest ways come first."""
     crowd, step, nodes = lacam
-    robots = crowd.start.size
-    distance = crowd.distance[np.arange(robots), crowd.start]
+    distance = ways_of(crowd)
     by_distance = np.argsort(-distance, kind="stable").astype(np.int32)
     present = by_distance if crowd.parks else by_distance[distance[by_distance] > 0]
     nodes.order[0, : present.size] = present

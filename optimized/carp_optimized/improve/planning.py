@@ -5,32 +5,42 @@ and those that come later go around them. Then rounds improve the better ones. T
 (simulated annealing, Kirkpatrick et al. 1983): on average by a share of a robot's mean delay, which falls to 0 as the
 cube of what is left of the cycle. There are several cycles, each from the best paths so far.
 
-A clock is looked at after each few milliseconds of work. What takes time at the end is timed on a part before.
+A clock is looked at after each few milliseconds of work. What takes time at the end is timed on a part before. Where
+there is no time to measure all distances, the nearest robots are planned, with distances that end a little beyond
+their starts.
 """
 
 import gc
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import starmap
 from time import perf_counter
 
 import numpy as np
 
 from carp_optimized.improve.checking import require_lawful
-from carp_optimized.improve.crowds import Crowd, can_begin, crowd_of, is_stepwise, measure
+from carp_optimized.improve.crowds import FAR, Crowd, are_apart, crowd_of, is_stepwise, measure, near, only, ways_of
 from carp_optimized.improve.improving import Improving, arrivals, paths_of
 from carp_optimized.improve.lacam import RUNNING, STEPS, Search
 from carp_optimized.improve.rounds import SURE
 from carp_optimized.improve.stays import Paths, no_paths
-from carp_optimized.jit.kinds import IntTable
+from carp_optimized.jit.kinds import Ints, IntTable
 from carp_optimized.jit.references import Native
 from carp_optimized.state.arrays import NO_LIMIT
-from carp_spec import Instance, Plan, Solution, Visit
+from carp_spec import Instance, Plan, Robot, RobotId, Solution, Visit
+from carp_spec.documents.solutions import SOLUTION_FORMAT, PlanDocument, SolutionDocument, VisitDocument
 
 Advance = Callable[[int, int, int], None]
 
 WORK = 1 << 15
 """The work of one compiled call: some milliseconds."""
+PART = 32
+"""The robots whose distances one compiled call measures."""
+MEASURING = 0.6
+"""The part of the time in which the distances of all robots must be measured; else only the nearest are planned."""
+BEYOND = 64
+"""How much further than to its start the distances of a robot are then measured."""
 ATTEMPTS = 50
 """Orders of prioritized planning where LaCAM finds no plans; else one that fails is not worth another."""
 SHARE = 3
@@ -55,7 +65,11 @@ class Clock:
     seconds: float | None
     now: Callable[[], float]
     started: float
+    visit: float = 0.0
+    """The seconds that each visit takes at the end."""
     reserved: float = 0.0
+    begun: float = 0.0
+    """When those began that share the rest of the time."""
 
     @property
     def spent(self) -> float:
@@ -63,8 +77,56 @@ class Clock:
         return self.now() - self.started
 
     def goes_on(self, share: int = 1) -> bool:
-        """Whether the time, or one of so many parts of it, is not over."""
-        return self.seconds is None or self.spent < (self.seconds - self.reserved) / share
+        """Whether the time, or one of so many parts of what was left of it, is not over."""
+        return self.seconds is None or self.spent - self.begun < (self.seconds - self.reserved - self.begun) / share
+
+    def reserve(self, visits: int) -> None:
+        """Leave time for that many visits."""
+        self.reserved = self.visit * visits
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """What a search has found: the visits of robots that have plans, and the sum of their costs.
+
+    `shortest` is the sum if each were alone, where it is known.
+    """
+
+    instance: Instance
+    rows: Callable[[], Iterator[tuple[RobotId, Iterable[VisitDocument]]]]
+    total: int
+    shortest: int | None
+
+    def solution(self) -> Solution:
+        """The plans."""
+        with _without_collection():
+            plans = (Plan(robot, tuple(starmap(Visit, visits))) for robot, visits in self.rows())
+            return Solution.of(self.instance, plans)
+
+    def document(self) -> SolutionDocument:
+        """The document of that solution; to make it takes a third of the time."""
+        with _without_collection():
+            plans = {robot: PlanDocument(robot, tuple(visits)) for robot, visits in self.rows()}
+            unplanned = tuple(each.id for each in self.instance.robots if each.id not in plans)
+            return SolutionDocument(SOLUTION_FORMAT, tuple(plans.values()), tuple(plans), unplanned)
+
+
+def found_along(instance: Instance, robots: Iterable[Robot], paths: Paths, least: Ints) -> Found:
+    """The paths of robots, and the least ticks that each needs; a row without visits is no path."""
+    names = [each.id for each in instance.graph.resources]
+    parks = instance.after_goal == "park"
+    sizes = paths.size.tolist()
+    has_path = paths.size > 0
+
+    def rows() -> Iterator[tuple[RobotId, Iterable[VisitDocument]]]:
+        for row, (robot, size) in enumerate(zip(robots, sizes, strict=True)):
+            if size > 0:
+                enters: list[int] = paths.enter[row, :size].tolist()
+                leaves = [*enters[1:], None if parks else enters[-1] + 1]
+                places = paths.place[row, :size].tolist()
+                yield robot.id, zip(map(names.__getitem__, places), enters, leaves, strict=True)
+
+    return Found(instance, rows, int(arrivals(paths)[has_path].sum()), int(least[has_path].sum()))
 
 
 def plan_crowd(
@@ -75,32 +137,76 @@ def plan_crowd(
     seed: int = 0,
     advance: Advance = lambda _, __, ___: None,
     clock: Callable[[], float] = perf_counter,
-) -> Solution | None:
-    """Plans for as many robots as possible, by that many rounds or in that many seconds.
+    finish: Callable[[Found], object] = Found.solution,
+) -> Found | None:
+    """Paths for as many robots as possible, by that many rounds or in that many seconds.
 
-    `advance` gets the rounds, the robots without a plan, and the total. Equal iterations and seed give an equal
-    solution. `None` for an instance that is not `is_stepwise`, and where robots cannot all have plans.
+    `advance` gets the rounds, the robots without a plan, and the total. The time for `finish`, which the caller does
+    with what is found, is part of the seconds: it is timed on a few visits. Equal iterations and seed give an equal
+    result. `None` for an instance that is not `is_stepwise`.
     """
     timer = Clock(seconds, clock, clock())
     if not is_stepwise(instance) or not instance.robots:
         return None
     crowd = crowd_of(instance)
-    native = Native(crowd)
-    robots = crowd.start.size
-    for robot in range(0, robots, 8):
-        if not timer.goes_on():
-            return Solution.of(instance, ())
-        measure(native, robot, min(robot + 8, robots))
-    if not can_begin(crowd):
-        return None
-    timer.reserved = _time_to_end(instance, int(crowd.distance[np.arange(robots), crowd.start].sum()), clock)
-    paths = first_paths(crowd, timer, seed)
-    if paths.size.all():
-        timer.reserved = _time_to_end(instance, int(paths.size.sum()), clock)
-        paths = improved(crowd, paths, iterations, timer, seed, advance)
+    apart = are_apart(crowd)
+    rows, crowd = np.flatnonzero(apart), only(crowd, apart)
+    timer.visit = time_of_visit(instance, finish, clock)
+    is_measured = _measured(crowd, timer)
+    if is_measured:
+        has_way = ways_of(crowd) < FAR
+        rows, crowd = rows[has_way], only(crowd, has_way)
+    paths = _paths(crowd, timer, is_measured, iterations, seed, advance)
     require_lawful(crowd, paths)
-    with _without_collection():
-        return Solution.of(instance, plans_along(instance, paths))
+    return found_along(instance, [instance.robots[row] for row in rows], paths, ways_of(crowd))
+
+
+def _measured(crowd: Crowd, timer: Clock) -> bool:
+    """Whether the distances of all robots are measured, as there is time for it."""
+    native = Native(crowd)
+    robots = np.arange(crowd.start.size, dtype=np.int32)
+    began = timer.spent
+    for done in range(0, robots.size, PART):
+        expected = (timer.spent - began) * (robots.size - done) / max(done, 1)
+        if timer.seconds is not None and timer.spent + expected > MEASURING * timer.seconds:
+            return False
+        measure(native, robots, done, min(done + PART, robots.size), FAR)
+        if done == 0:  # the machine code may have to be loaded first
+            began = timer.spent
+    return True
+
+
+def _paths(crowd: Crowd, timer: Clock, is_measured: bool, iterations: int | None, seed: int, advance: Advance) -> Paths:
+    """The paths of as many robots as possible, and the best ones if all have some."""
+    if crowd.start.size == 0:
+        return no_paths(0, 1)
+    if is_measured:
+        timer.reserve(int(ways_of(crowd).sum()))
+        timer.begun = timer.spent
+        paths = first_paths(crowd, timer, seed)
+        timer.begun = 0.0
+    else:
+        paths = _nearest(crowd, timer)
+    timer.reserve(int(paths.size.sum()))
+    if paths.size.all() and timer.goes_on():
+        return improved(crowd, paths, iterations, timer, seed, advance)
+    advance(0, int(np.count_nonzero(paths.size == 0)), int(arrivals(paths)[paths.size > 0].sum()))
+    return paths
+
+
+def _nearest(crowd: Crowd, timer: Clock) -> Paths:
+    """The paths of as many robots as there is time for, about the nearest first, each measured when it is planned."""
+    native = Native(crowd)
+    order = np.argsort(near(crowd), kind="stable").astype(np.int32)
+    improving = Improving(crowd, no_paths(order.size, LONGEST))
+    for begin in range(0, order.size, PART):
+        part = order[begin : begin + PART]
+        if not timer.goes_on():
+            break
+        measure(native, part, 0, part.size, BEYOND)
+        improving.plan_first(part, timer.goes_on)
+        timer.reserve(int(improving.rounds.paths.size.sum()))
+    return improving.rounds.paths
 
 
 def first_paths(crowd: Crowd, timer: Clock, seed: int) -> Paths:
@@ -130,12 +236,15 @@ def _searched(search: Search, steps: int, goes_on: Callable[[], bool]) -> IntTab
 def _planned_in_order(crowd: Crowd, timer: Clock, share: int, room: int, attempts: int) -> Paths:
     """The paths of the best of some passes, each with the robots first that the one before left out."""
     robots = crowd.start.size
-    ways = crowd.distance[np.arange(robots), crowd.start]
-    order = np.argsort(ways, kind="stable").astype(np.int32)
+    order = np.argsort(ways_of(crowd), kind="stable").astype(np.int32)
     best = no_paths(robots, room)
     for _ in range(attempts):
         improving = Improving(crowd, no_paths(robots, room))
-        improving.plan_first(order, lambda: timer.goes_on(share))
+
+        def goes_on(improving: Improving = improving) -> bool:
+            return timer.goes_on(share) and (attempts > 1 or improving.missed == 0)
+
+        improving.plan_first(order, goes_on)
         paths = improving.rounds.paths
         if np.count_nonzero(paths.size) > np.count_nonzero(best.size):
             best = paths
@@ -148,7 +257,8 @@ def _planned_in_order(crowd: Crowd, timer: Clock, share: int, room: int, attempt
 def improved(crowd: Crowd, paths: Paths, iterations: int | None, timer: Clock, seed: int, advance: Advance) -> Paths:
     """The best paths that rounds make of these."""
     improving = Improving(crowd, paths, seed)
-    improving.begin()
+    if not improving.begin(timer.goes_on):
+        return paths
     robots = crowd.start.size
     least = int(improving.rounds.least.sum())
     delays = arrivals(paths) - improving.rounds.least
@@ -158,8 +268,8 @@ def improved(crowd: Crowd, paths: Paths, iterations: int | None, timer: Clock, s
         cycle, part = divmod(CYCLES * gone, PARTS)
         if cycle > current:
             current = cycle
-            if improving.total > improving.best:
-                improving.return_to_best()
+            if improving.total > improving.best and not improving.return_to_best(timer.goes_on):
+                break
         expected = iterations or PARTS * improving.played // max(gone, 1)
         heat = (REHEAT if cycle else HEAT) * (improving.total - least)
         improving.play(rounds, WORK, _chance(heat, robots, expected, PARTS - part))
@@ -204,24 +314,12 @@ def _without_collection() -> Iterator[None]:
             gc.enable()
 
 
-def plans_along(instance: Instance, paths: Paths) -> Iterator[Plan]:
-    """The plans of robots with these paths, but for those without any."""
-    names = [each.id for each in instance.graph.resources]
-    parks = instance.after_goal == "park"
-    for row, (robot, size) in enumerate(zip(instance.robots, paths.size.tolist(), strict=True)):
-        if size == 0:
-            continue
-        enters: list[int] = paths.enter[row, :size].tolist()
-        leaves = [*enters[1:], None if parks else enters[-1] + 1]
-        yield Plan(
-            robot.id, tuple(map(Visit, map(names.__getitem__, paths.place[row, :size].tolist()), enters, leaves))
-        )
-
-
-def _time_to_end(instance: Instance, visits: int, clock: Callable[[], float]) -> float:
-    """The seconds that it takes to check paths with that many visits, and to make plans of them."""
-    resource = instance.graph.resources[0].id
-    with _without_collection():
-        started = clock()
-        made = tuple(Visit(resource, tick, tick + 1) for tick in range(SAMPLE))
-        return SLOWER * (clock() - started) * visits / len(made)
+def time_of_visit(instance: Instance, finish: Callable[[Found], object], clock: Callable[[], float]) -> float:
+    """The seconds that it takes to check a path, for each visit, and to do with it what is done at the end."""
+    ticks = np.arange(SAMPLE, dtype=np.int32)[np.newaxis]
+    paths = Paths(np.full(1, SAMPLE, np.int32), 0 * ticks, ticks)
+    sample = found_along(instance, instance.robots[:1], paths, ticks[0, :1])
+    finish(sample)  # the first time takes longer
+    started = clock()
+    finish(sample)
+    return SLOWER * (clock() - started) / SAMPLE

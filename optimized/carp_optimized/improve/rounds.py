@@ -21,7 +21,7 @@ from carp_optimized.jit.references import Native, dereference
 from carp_optimized.neighbourhood.orders import next_number
 from carp_optimized.state.arrays import NEVER, NONE
 
-TOTAL, BEST, CHANCE, DIRTY, MARK, SIZE, WORK, ROUNDS = range(8)  # the counts
+TOTAL, BEST, CHANCE, DIRTY, MARK, SIZE, WORK, ROUNDS, MISSED = range(9)  # the counts
 SURE = 1 << 16  # a chance is in parts of this
 IN_WAY, CROSSING, TURNS, DRAWN = range(4)  # the kinds
 KINDS = 4
@@ -83,41 +83,50 @@ def play(native: Native[Rounds], rounds: int, work: int) -> int:
 
 
 @entry
-def plan_each(native: Native[Rounds], order: Ints, begin: int, end: int) -> int:
-    """Plan robots again, one by one, that have paths; the first that is not planned, as a row is full, or `end`."""
+def plan_each(native: Native[Rounds], order: Ints, begin: int, work: int) -> int:
+    """Plan robots again, one by one, that have paths, from `order[begin]` on, until that many labels are expanded.
+
+    Returns the number of the next one, with all bits inverted if a row is too full for it.
+    """
     state = rounds_at(native)
-    for k in range(begin, end):
+    until = int(state.query.counts[EXPANDED]) + work
+    for k in range(begin, order.size):
+        if state.query.counts[EXPANDED] >= until:
+            return k
         state.members[0] = order[k]
         state.counts[SIZE] = 1
         state.counts[CHANCE] = 0
         if not replan(state):
-            return k
-    return end
+            return ~k
+    return int(order.size)
 
 
 @entry
-def plan_first(native: Native[Rounds], order: Ints, begin: int, end: int) -> int:
+def plan_first(native: Native[Rounds], order: Ints, begin: int, work: int) -> int:
     """Plan robots, one by one, that have no paths yet; those without any get none. As `plan_each`."""
     state = rounds_at(native)
-    for k in range(begin, end):
+    until = int(state.query.counts[EXPANDED]) + work
+    for k in range(begin, order.size):
+        if state.query.counts[EXPANDED] >= until:
+            return k
         robot = int(order[k])
         state.paths.size[robot] = 0
-        if find_path(state.crowd, state.stays, state.query, robot, NEVER - 1, state.paths, robot) and not put(
-            state.crowd, state.stays, state.paths, robot, robot
-        ):
-            return k
-    return end
+        if not find_path(state.crowd, state.stays, state.query, robot, NEVER - 1, state.paths, robot):
+            state.counts[MISSED] += 1
+        elif not put(state.crowd, state.stays, state.paths, robot, robot):
+            state.paths.size[robot] = 0
+            return ~k
+    return int(order.size)
 
 
 @entry
-def put_all(native: Native[Rounds], begin: int) -> int:
-    """Add the stays of all paths from this one on; the first that is not added, as a row is full."""
+def put_all(native: Native[Rounds], begin: int, end: int) -> int:
+    """Add the stays of the paths from one on up to another; the first that is not added, as a row is full."""
     state = rounds_at(native)
-    robots = int(state.paths.size.size)
-    for robot in range(begin, robots):
+    for robot in range(begin, end):
         if not put(state.crowd, state.stays, state.paths, robot, robot):
             return robot
-    return robots
+    return end
 
 
 @compiled

@@ -60,11 +60,8 @@ def no_stays(visits: Ints) -> Stays:
 
 
 def with_more_room(stays: Stays) -> Stays:
-    """The same stays, with more room in the row that was full."""
-    rooms = np.diff(stays.first)
-    visits = np.maximum(stays.size, (rooms - SPARE) * 2 // 3)
-    visits[stays.full[0]] = rooms[stays.full[0]] + SPARE
-    larger = no_stays(visits.astype(np.int32))
+    """The same stays, with more room in each row: when one is full, others nearly are."""
+    larger = no_stays(stays.size + SPARE)
     ranks = np.arange(int(stays.size.sum())) - np.repeat(np.cumsum(stays.size) - stays.size, stays.size)
     before = np.repeat(stays.first[:-1], stays.size) + ranks
     after = np.repeat(larger.first[:-1], stays.size) + ranks

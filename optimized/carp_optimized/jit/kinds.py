@@ -1,4 +1,4 @@
-"""The kinds of arrays that compiled functions take: whole numbers of one width, in one dimension or two."""
+"""The kinds of arrays that compiled functions take: whole numbers, in one dimension or two."""
 
 from typing import Annotated, TypeAlias
 
@@ -9,4 +9,5 @@ Ints: TypeAlias = npt.NDArray[np.int32]
 Longs: TypeAlias = npt.NDArray[np.int64]
 Numbers: TypeAlias = npt.NDArray[np.uint64]
 IntTable: TypeAlias = Annotated[npt.NDArray[np.int32], 2]
+ShortTable: TypeAlias = Annotated[npt.NDArray[np.int16], 2]
 LongTable: TypeAlias = Annotated[npt.NDArray[np.int64], 2]

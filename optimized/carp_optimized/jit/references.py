@@ -26,7 +26,7 @@ from numba.core.imputils import lower_builtin, lower_getattr_generic
 from numba.core.typing.templates import AbstractTemplate, AttributeTemplate, infer_getattr, infer_global, signature
 from numba.extending import intrinsic, register_model
 
-from carp_optimized.jit.kinds import Ints, IntTable, Longs, LongTable, Numbers
+from carp_optimized.jit.kinds import Ints, IntTable, Longs, LongTable, Numbers, ShortTable
 
 F = TypeVar("F", bound=tuple[Any, ...])
 
@@ -36,6 +36,7 @@ ARRAYS: dict[object, tuple[type[np.generic], int]] = {
     Longs: (np.int64, 1),
     Numbers: (np.uint64, 1),
     IntTable: (np.int32, 2),
+    ShortTable: (np.int16, 2),
     LongTable: (np.int64, 2),
 }
 

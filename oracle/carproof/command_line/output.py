@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from carp_spec import Instance, Plan, RobotId, Solution, total_cost
+from carp_spec.check import MOST_LISTED
 from carp_spec.documents.instances import write_instance
 from carp_spec.rule import interval
 from carproof.command_line.answer import Answer
@@ -15,6 +16,7 @@ from carproof.judging.unplanned import why_unplanned
 
 if TYPE_CHECKING:
     from carp_optimized.fleet import PlannedFleet
+    from carp_optimized.improve.planning import Found
 
 COLUMNS = ("planner", "robots", "unplanned", "total cost", "shortest paths", "ratio", "time")
 NOT_FOUND = "the planner found no plan for it, though there is one beside the plans of the others"
@@ -46,13 +48,27 @@ def show_solution(
     instance: Instance, solution: Solution, planner: str, seconds: float, fleet: "PlannedFleet | None"
 ) -> None:
     """Print a table of the result, and the reasons why robots are unplanned; a fleet holds the plans."""
-    total = total_cost(instance, solution.plans)
     shortest = sum_of_shortest_paths(instance, (plan.robot for plan in solution.plans), fleet)
-    ratio = f"{total / shortest:.4f}" if shortest else "-"
-    unplanned = len(instance.robots) - len(solution.plans)
-    row = (planner, len(instance.robots), unplanned, total, shortest, ratio, f"{seconds:.2f} s")
-    print_table(COLUMNS, [row], numbers=COLUMNS[1:])
+    _show_row(instance, planner, len(solution.unplanned), total_cost(instance, solution.plans), shortest, seconds)
     show_unplanned(instance, solution, solution.unplanned, fleet=fleet)
+
+
+def show_found(instance: Instance, found: "Found", unplanned: Sequence[RobotId], planner: str, seconds: float) -> None:
+    """Print what was found within a time, in no time: of robots that are left out nobody asks why."""
+    _show_row(instance, planner, len(unplanned), found.total, found.shortest, seconds)
+    for robot in unplanned[:MOST_LISTED]:
+        print_line(f"unplanned: robot {robot}: no plan was found for it in this time")
+    if len(unplanned) > MOST_LISTED:
+        print_line(f"unplanned: and {len(unplanned) - MOST_LISTED} more")
+
+
+def _show_row(
+    instance: Instance, planner: str, unplanned: int, total: int, shortest: int | None, seconds: float
+) -> None:
+    ratio = f"{total / shortest:.4f}" if shortest else "-"
+    known = "-" if shortest is None else shortest
+    row = (planner, len(instance.robots), unplanned, total, known, ratio, f"{seconds:.2f} s")
+    print_table(COLUMNS, [row], numbers=COLUMNS[1:])
 
 
 def show_unplanned(

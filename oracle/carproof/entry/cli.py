@@ -8,6 +8,7 @@ import traceback
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from errno import EBADF
+from time import perf_counter
 
 import click
 from click.shell_completion import shell_complete
@@ -54,21 +55,22 @@ def carproof() -> None:
     """Plan robots in an automated warehouse, and judge any planner's plans by stable rules."""
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command line, by default that of this process, and return its exit code."""
+def main(arguments: Sequence[str] | None = None, began: float | None = None) -> int:
+    """Run one command line, by default that of this process, which began then, and return its exit code."""
+    began = perf_counter() if began is None else began
     _open_closed_streams()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
     if arguments is not None:
-        return _run(arguments)
+        return _run(arguments, began)
     gc.set_threshold(ALLOCATIONS)
-    return supervised(lambda: _run(sys.argv[1:]))
+    return supervised(lambda: _run(sys.argv[1:], began))
 
 
-def _run(arguments: Sequence[str]) -> int:
+def _run(arguments: Sequence[str], began: float) -> int:
     try:
-        answer = _answer(arguments) if COMPLETION not in os.environ else _complete()
+        answer = _answer(arguments, began) if COMPLETION not in os.environ else _complete()
         sys.stdout.flush()
     except BrokenPipeError:
         _forget_output()
@@ -93,9 +95,9 @@ def _complete() -> int:
     return shell_complete(carproof, {}, "carproof", COMPLETION, os.environ[COMPLETION])
 
 
-def _answer(arguments: Sequence[str]) -> int:
+def _answer(arguments: Sequence[str], began: float) -> int:
     try:
-        with carproof.make_context("carproof", list(arguments)) as context, _naming_extras(context):
+        with carproof.make_context("carproof", list(arguments), obj=began) as context, _naming_extras(context):
             answer = carproof.invoke(context)
     except click.exceptions.Exit as done:
         return done.exit_code

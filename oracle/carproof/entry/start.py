@@ -3,6 +3,7 @@
 import _signal  # type: ignore[import-not-found] # Python has loaded it already; signal is slow to load
 import os
 import sys
+from time import perf_counter
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -11,12 +12,13 @@ if TYPE_CHECKING:
 
 def main() -> int:
     """Run the command line of this process, and return its exit code."""
+    began = perf_counter()
     for number in (_signal.SIGINT, _signal.SIGTERM):
         if _signal.getsignal(number) != _signal.SIG_IGN:
             _signal.signal(number, leave)
     from carproof.entry import cli  # noqa: PLC0415 - an interruption while it is loaded must show no traceback
 
-    return cli.main()
+    return cli.main(began=began)
 
 
 def leave(number: int, _: "FrameType | None") -> None:

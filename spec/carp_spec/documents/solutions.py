@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import fields
 from types import GenericAlias
-from typing import Annotated, Final, Literal
+from typing import Annotated, Final, Literal, TypeAlias
 
 import msgspec
 
@@ -16,11 +16,14 @@ SOLUTION_FORMAT: Final = "carproof-solution/1"
 TRACE_FORMAT: Final = "carproof-trace/1"
 
 
+VisitDocument: TypeAlias = tuple[ResourceId, int, int | None]
+
+
 class PlanDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A plan: each visit is [resource, enter, leave], and a leave of null means for ever."""
 
     robot: RobotId
-    visits: tuple[tuple[ResourceId, int, int | None], ...]
+    visits: tuple[VisitDocument, ...]
 
 
 class SolutionDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -81,7 +84,7 @@ def read_trace(data: bytes) -> Trace:
     return Trace(document.now, _plans(document.plans))
 
 
-def visits_document(plan: Plan) -> tuple[tuple[ResourceId, int, int | None], ...]:
+def visits_document(plan: Plan) -> tuple[VisitDocument, ...]:
     """The visits of a plan as documents write them."""
     return tuple((visit.resource, visit.enter, visit.leave) for visit in plan.visits)
 

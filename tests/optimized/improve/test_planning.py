@@ -2,21 +2,31 @@
 
 from dataclasses import replace
 from time import process_time
+from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given
 
+from carp_optimized.improve import planning
 from carp_optimized.improve.checking import require_lawful
-from carp_optimized.improve.crowds import Crowd, crowd_of, is_stepwise, measure
+from carp_optimized.improve.crowds import FAR, Crowd, crowd_of, is_stepwise, measure
 from carp_optimized.improve.lacam import plans_by_steps
 from carp_optimized.improve.planning import Clock as Timer
-from carp_optimized.improve.planning import first_paths, plan_crowd
+from carp_optimized.improve.planning import first_paths
 from carp_optimized.improve.stays import Paths
 from carp_optimized.jit.references import Native
-from carp_spec import AfterGoal, Instance, judge, total_cost
+from carp_spec import AfterGoal, Instance, RobotId, Solution, judge, total_cost
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.testing.strategies import Sizes, instances
+
+
+def plan_crowd(instance: Instance, **options: Any) -> Solution:  # noqa: ANN401 - those of the function
+    """What is found for a crowd, as a solution."""
+    found = planning.plan_crowd(instance, **options)
+    assert found is not None
+    return found.solution()
+
 
 STEPWISE = Sizes(resources=7, robots=5, capacity=1, duration=1, release=0, pace=1)
 
@@ -27,12 +37,10 @@ def crowd(side: int, robots: int, after_goal: AfterGoal = "park", seed: int = 0)
     return replace(made, after_goal=after_goal)
 
 
-@given(instances(STEPWISE).filter(is_stepwise))
+@given(instances(STEPWISE).filter(lambda each: is_stepwise(each) and len(each.robots) > 0))
 def test_plans_break_no_rule_are_the_same_again_and_no_worse_than_the_first(instance: Instance) -> None:
     found = plan_crowd(instance, iterations=30, seconds=None, seed=3)
     assert found == plan_crowd(instance, iterations=30, seconds=None, seed=3)
-    if found is None:
-        return
     assert judge(instance, found).valid
     first = plans_by_steps(instance)
     if first is not None:
@@ -45,7 +53,6 @@ def test_rounds_improve_a_crowd_and_its_best_total_never_rises(after_goal: After
     instance = crowd(12, 60, after_goal)
     seen: list[int] = []
     found = plan_crowd(instance, iterations=3000, seconds=None, advance=lambda _, __, total: seen.append(total))
-    assert found is not None
     assert judge(instance, found).valid
     assert seen == sorted(seen, reverse=True)
     assert total_cost(instance, found.plans) == seen[-1] < seen[0]
@@ -57,7 +64,6 @@ def test_rounds_improve_a_crowd_and_its_best_total_never_rises(after_goal: After
 def test_robots_that_no_order_plans_get_plans() -> None:
     instance = crowd(8, 60)
     found = plan_crowd(instance, iterations=10, seconds=None)
-    assert found is not None
     assert not found.unplanned
     assert judge(instance, found).valid
 
@@ -71,7 +77,6 @@ def test_the_time_is_kept_at_several_sizes(side: int, robots: int, seconds: floa
     started = process_time()
     found = plan_crowd(instance, iterations=None, seconds=seconds, clock=process_time)
     assert process_time() - started < 1.5 * seconds + 0.5
-    assert found is not None
     if robots < 3000:
         assert not found.unplanned
 
@@ -80,13 +85,35 @@ def test_nobody_has_a_plan_where_the_time_is_over_at_once() -> None:
     ticks = iter(range(10**9))
     instance = crowd(5, 4)
     found = plan_crowd(instance, iterations=None, seconds=0.5, clock=lambda: float(next(ticks)))
-    assert found is not None
     assert len(found.unplanned) == 4
+
+
+def test_robots_that_nobody_could_plan_do_not_keep_the_others_from_plans() -> None:
+    instance = crowd(8, 20)
+    first = instance.robots[0]
+    hopeless = (replace(first, id="same start"), replace(first, id="same goal", start=first.goal))
+    found = plan_crowd(replace(instance, robots=(*instance.robots, *hopeless)), iterations=10, seconds=None)
+    assert set(found.unplanned) == {"same start", "same goal"}
+
+
+def test_the_nearest_robots_are_planned_where_there_is_no_time_for_all() -> None:
+    instance = crowd(60, 1200)
+    ticks = iter(range(10**9))
+    found = plan_crowd(instance, iterations=None, seconds=40, clock=lambda: float(next(ticks)))
+    assert judge(instance, found).valid
+    assert 50 < len(found.plans) < 1200
+    graph = instance.graph.resource
+
+    def way(robot: RobotId) -> int:
+        start, goal = (graph[each] for each in (instance.robot[robot].start, instance.robot[robot].goal))
+        return abs((start.x or 0) - (goal.x or 0)) + abs((start.y or 0) - (goal.y or 0))
+
+    assert max(way(plan.robot) for plan in found.plans) < min(sorted(map(way, found.unplanned))[len(found.plans) :])
 
 
 def paths_on_a_grid() -> tuple[Crowd, Paths]:
     made = crowd_of(crowd(6, 12))
-    measure(Native(made), 0, 12)
+    measure(Native(made), np.arange(12, dtype=np.int32), 0, 12, FAR)
     return made, first_paths(made, Timer(None, lambda: 0.0, 0.0), 0)
 
 

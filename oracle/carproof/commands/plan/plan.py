@@ -7,6 +7,7 @@ from typing import Any
 import click
 
 from carp_spec import Refusal, violations_of
+from carp_spec.documents.decoding import write
 from carp_spec.documents.solutions import write_solution
 from carp_spec.inputs.options import require_polish_options
 from carproof.command_line.answer import Answer
@@ -20,13 +21,15 @@ from carproof.command_line.options import (
     planner_option,
     planner_options,
 )
-from carproof.command_line.output import show_solution, write_result
+from carproof.command_line.output import show_found, show_solution, write_result
 from carproof.command_line.planning import plan_showing
 from carproof.engines import repaired, repairs_by_default, warm
 from carproof.progress import found_so_far, search_progress
 
-SHORTEST = 0.01
+SHORTEST = 0.15
 """The seconds left at least."""
+ENDING = 0.05
+"""The seconds that it takes to print the table, and to end."""
 
 
 @click.command(
@@ -74,14 +77,14 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
     With --seconds, the first plans are those of CARP or of a search over the places of all robots (LaCAM), and large
     neighbourhood search improves them until the time is over; what the machine does in that time decides the plans.
-    Reading INSTANCE is part of the time, and neither compiling the planner nor writing the plans is. Equal
-    --iterations and --seed give equal plans on every machine.
+    The time is that of the whole command, but for compiling the planner, which happens once. Robots for which it is
+    too short are left out. Equal --iterations and --seed give equal plans on every machine.
 
     Exit codes: 0 every robot has a plan, 1 some robot has none, 2 bad input.
     """
     if seconds is not None or iterations is not None:
         _refuse_planner_options(context)
-        return _plan_within(instance, seconds, iterations, options["seed"] or 0, output, as_json=as_json)
+        return _plan_within(context, instance, seconds, iterations, options["seed"] or 0, output, as_json=as_json)
     chosen = chosen_planner(planner, options)
     problem = read_instance_file(instance)
     started = perf_counter()
@@ -109,14 +112,23 @@ def _refuse_planner_options(context: click.Context) -> None:
             raise Refusal("option", f"$.{name}", "planner/options", message)
 
 
-def _plan_within(
-    name: str, seconds: float | None, iterations: int | None, seed: int, output: Path | None, *, as_json: bool
+def _plan_within(  # noqa: PLR0913 - they are the command's
+    context: click.Context,
+    name: str,
+    seconds: float | None,
+    iterations: int | None,
+    seed: int,
+    output: Path | None,
+    *,
+    as_json: bool,
 ) -> Answer:
-    from carp_optimized.improve.anytime import plan_within  # noqa: PLC0415 - numba is slow to load
+    from carp_optimized.improve.anytime import find_within  # noqa: PLC0415 - numba is slow to load
 
     require_polish_options(iterations, seconds, seed)
-    warm()
-    started = perf_counter()
+    started: float = context.find_root().obj
+    compiling = perf_counter()
+    if warm():
+        started += perf_counter() - compiling
     problem = read_instance_file(name)
     played = 0
     with naming(name), search_progress("planning", iterations, seconds) as show:
@@ -126,10 +138,11 @@ def _plan_within(
             played = rounds
             show(rounds, found_so_far(total, 0, unplanned))
 
-        left = None if seconds is None else max(seconds - (perf_counter() - started), SHORTEST)
-        solution = plan_within(problem, iterations=iterations, seconds=left, seed=seed, advance=advance)
-    time = perf_counter() - started
-    write_result(write_solution(solution), output, as_json)
+        left = None if seconds is None else max(seconds - (perf_counter() - started) - ENDING, SHORTEST)
+        found = find_within(problem, lambda each: write(each.document()), iterations, left, seed=seed, advance=advance)
+    document = found.document()
+    write_result(write(document), output, as_json)
     if not as_json:
-        show_solution(problem, solution, f"best of {played} rounds", time, None)
-    return Answer.of(not solution.unplanned)
+        time = perf_counter() - started
+        show_found(problem, found, document.unplanned, f"best of {played} rounds", time)
+    return Answer.of(not document.unplanned)
