@@ -162,12 +162,23 @@ def _word(name: str) -> str:
     return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name.removesuffix("Document")).lower()
 
 
+def figures() -> str:
+    """Each figure of the site as wide as the page, under its name."""
+    parts = []
+    for folder in ("assets", "results/figures"):
+        for path in sorted(COPIED[folder].glob("*.svg")):
+            name = path.stem.replace("-", ", ").capitalize()
+            parts.append(f"## {name}\n\n![{name}](../{folder}/{path.name}){{ .figure }}\n")
+    return "\n".join(parts)
+
+
 DOCUMENTS = ("instance", "solution", "verdict", "trace", "bound", "query")
 TYPES = {"integer": "whole number", "boolean": "true or false"}
 PARTS: Mapping[str, Callable[[], str]] = {
     "commands": commands,
     "law": law,
     "other rules": other_rules,
+    "figures": figures,
     "paper": results,
     "ops": ops,
     "trusted base": trusted_base,

@@ -17,7 +17,7 @@ ENCODER = ("optimum/encoding", "optimum/robot_clauses", "optimum/clauses", "opti
 UNSOLVABLE = ("optimum/proof", "optimum/unsolvable")
 CHECK = "`check`: no rule is broken"
 VERDICTS: dict[str, tuple[tuple[str, ...], str]] = {
-    CHECK: (("documents/decoding", "documents/instances", "documents/solutions"), ""),
+    CHECK: (("documents/decoding", "documents/fields", "documents/instances", "documents/solutions"), ""),
     "`verify-bound`, without cuts": (BOUND, ""),
     "`verify-bound`, with cuts": ((*BOUND, "bound/cuts", *ENCODER[:-1], "optimum/refutation"), ""),
     "`verify-query` and `audit`": (("query/verify", "query/rules", "documents/query_certificates", "limits"), ""),
