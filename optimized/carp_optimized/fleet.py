@@ -20,6 +20,7 @@ from carp_optimized.state.arrays import (
     BOUND,
     KEPT,
     LARGEST,
+    NEVER,
     NONE,
     PREFIX,
     SHARED,
@@ -33,7 +34,7 @@ from carp_optimized.state.arrays import (
     State,
 )
 from carp_optimized.state.records import keep_records
-from carp_spec import Instance, Neighbourhood, Plan, Refusal, RobotId, Shuffled
+from carp_spec import Instance, Neighbourhood, Plan, Refusal, Robot, RobotId, Shuffled
 from carp_spec.inputs.values import require_instance
 from carp_spec.permutations import shuffle, splitmix64
 
@@ -41,6 +42,7 @@ T = TypeVar("T")
 Labels: TypeAlias = list[tuple[int, int]]
 
 PART = 512  # robots of a pass
+MORE = 64  # robots for which there is room
 MANY = 1 << 16  # visits and expansions of records that are no longer held
 
 
@@ -62,7 +64,11 @@ class PlannedFleet:
         self.reuse = reuse or Reuse()
         self._adding: Native[Adding] | None = None
         self._take(encoding.encode(instance, shortcuts=shortcuts))
-        self._index = {robot.id: position for position, robot in enumerate(instance.robots)}
+        self._ids = [robot.id for robot in instance.robots]
+        self._index = {id: position for position, id in enumerate(self._ids)}
+        self._vacant: list[int] = []
+        ends = zip(self._state.guides.goal.tolist(), self._state.guides.pace.tolist(), strict=True)
+        self._destinations = {end: number for number, end in enumerate(ends)}
         self._order = np.zeros(0, np.int32)
         self._records = np.full(len(instance.robots), NONE, np.int32)
         self._plans: dict[int, Plan] = {}
@@ -100,6 +106,73 @@ class PlannedFleet:
     def ticks_to_goal(self, robot: int) -> int:
         """The cost of a robot's shortest path on the empty graph; 0 if none exists."""
         return self._call(lambda: passes.shortest(self._native, robot))
+
+    def require_robots(self, instance: Instance) -> None:
+        """Raise `Refusal` unless the robots of an instance with the same resource graph can be taken up."""
+        encoding.refuse_robots(instance, self._state.longest)
+
+    def enlist(self, robot: Robot) -> int:
+        """Take up a robot of a new id, without a plan yet; its index, which no other has while it is there."""
+        if not self._vacant:
+            size = 2 * len(self._ids) + MORE
+            self._vacant = [*range(size - 1, len(self._ids) - 1, -1)]
+            self._make_room(size, robot.pace)
+        goal = self.instance.graph.index[robot.goal], robot.pace
+        is_full = len(self._destinations) == self._state.guides.goal.size
+        if goal not in self._destinations and (is_full or not encoding.has_scale(self._state, robot.pace)):
+            self._make_room(len(self._ids), robot.pace)
+        destination = self._destinations.setdefault(goal, len(self._destinations))
+        index = self._vacant.pop()
+        encoding.write_robot(self._state, self.instance, robot, index, destination)
+        self._ids[index] = robot.id
+        self._index[robot.id] = index
+        return index
+
+    def dismiss(self, robots: Sequence[int]) -> None:
+        """Forget robots, with the plans of those that have one; others may get their indices."""
+        gone = np.array(robots, np.int32)
+        held = self._records[gone]
+        self._withdraw(held[held != NONE])
+        order = self._order[~np.isin(self._order, gone)]
+        self._hold(order, self._records[order])
+        for index in robots:
+            del self._index[self._ids[index]]
+            self._vacant.append(index)
+
+    @property
+    def places(self) -> tuple[Ints, list[RobotId]]:
+        """The robots that have a plan, in planning order, and the ids of all indices; neither changes any more."""
+        return self._order, self._ids.copy()
+
+    def ended(self, now: int) -> tuple[int, ...]:
+        """The robots whose plans are in nobody's way from the tick `now` on."""
+        leave = self._state.records.leave[self._records[self._order]]
+        return tuple(self._order[(leave != NEVER) & (leave <= now - self._state.gap)].tolist())
+
+    @property
+    def records(self) -> Ints:
+        """The number by which the plan of each robot is known, `NONE` without a plan."""
+        return self._records.copy()
+
+    def changed_since(self, records: Ints) -> tuple[Plan, ...]:
+        """The plans that have another number than they had then, in planning order; robots may have come since."""
+        before = np.full(self._records.size, NONE, np.int32)
+        before[: records.size] = records
+        held = self._records[self._order]
+        return tuple(self._plan(int(record)) for record in held[held != before[self._order]])
+
+    def replan(self, plans: Sequence[Plan], order: Sequence[RobotId]) -> None:
+        """Take over other plans of robots that have one, and the planning order of all."""
+        changed = np.array([self._index[plan.robot] for plan in plans], np.int32)
+        records = np.array([self.record(plan) for plan in plans], np.int32)
+        self._withdraw(self._records[changed])
+        rest = self._order[~np.isin(self._order, changed)]
+        after = self._records.copy()
+        self._hold(rest, self._records[rest])
+        self._call(lambda: passes.reserve_all(self._native, records))
+        after[changed] = records
+        robots = np.array([self._index[id] for id in order], np.int32)
+        self._hold(robots, after[robots])
 
     def commit(self, plans: Sequence[Plan]) -> None:
         """Take over plans made elsewhere, which must fit the plans of the fleet."""
@@ -217,16 +290,19 @@ class PlannedFleet:
         for _ in range(planned):
             advance()
 
-    def add(self, robot: int, now: int, options: Neighbourhood) -> bool:
-        """Add a robot by the neighbourhood planner; if it stays unplanned, all plans stay as they are."""
+    def add(self, robot: int, now: int, options: Neighbourhood, number: int | None = None) -> bool:
+        """Add a robot by the neighbourhood planner; if it stays unplanned, all plans stay as they are.
+
+        Orders are drawn for its `number` in the instance, which is its index unless given.
+        """
         encoding.refuse_tick("$.now", now)
-        self._forget_old_records()
+        self.forget_old_records()
         order = np.empty(self._order.size + 1, np.int32)
 
         def attempt() -> bool:
             adding = self._adding_with(options)
             if options.sample is not None:  # orders are drawn
-                adding.fields.work.stream[0] = (options.seed + robot) % 2**64
+                adding.fields.work.stream[0] = (options.seed + (robot if number is None else number)) % 2**64
             return add_robot(adding, self._order, robot, now, order)
 
         if self._call(attempt):
@@ -252,7 +328,7 @@ class PlannedFleet:
 
     def polish(self, polishing: Native[Polish], rounds: int) -> int:
         """Play rounds of `polish/...`; returns how many were played before nothing was left to do."""
-        self._forget_old_records()
+        self.forget_old_records()
         work = polishing.fields
         size, turn, stream = self._order.size, int(work.counts[TURN]), int(work.stream[0])
 
@@ -299,6 +375,14 @@ class PlannedFleet:
         self._native = Native(state)
         self._empty = Native(encoding.without_reservations(state))
         self._adding = None
+
+    def _make_room(self, size: int, pace: int) -> None:
+        """Make room for that many robots, up to that pace, and as many more destinations; guides are made again."""
+        state, self._destinations = encoding.with_robots(self._state, size, pace)
+        self._take(state)
+        more = size - len(self._ids)
+        self._ids += more * [""]
+        self._records = np.concatenate([self._records, np.full(more, NONE, np.int32)])
 
     def _withdraw(self, records: Ints) -> None:
         self._call(lambda: passes.withdraw_all(self._native, records))
@@ -366,7 +450,7 @@ class PlannedFleet:
         held = self._records[self._order]
         self._call(lambda: passes.reserve_all(self._native, held))
 
-    def _forget_old_records(self) -> None:
+    def forget_old_records(self) -> None:
         """Forget records of plans that are no longer held, if they have become many."""
         _, visits, expansions = self._state.records.used.tolist()
         if visits + expansions > self._many:
@@ -391,5 +475,5 @@ class PlannedFleet:
 
     def _plan(self, record: int) -> Plan:
         if record not in self._plans:
-            self._plans[record] = read_plan(self._state, self.instance, record)
+            self._plans[record] = read_plan(self._state, self.instance.graph, record, self._ids)
         return self._plans[record]

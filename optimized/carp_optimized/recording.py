@@ -1,5 +1,6 @@
 """Records of plans, seen from Python: writing plans made elsewhere, reading plans, making room."""
 
+from collections.abc import Sequence
 from typing import TypeVar
 
 import numpy as np
@@ -8,7 +9,7 @@ import numpy.typing as npt
 from carp_optimized.jit.references import Native
 from carp_optimized.passes import record_plan
 from carp_optimized.state.arrays import NEVER, Records, State
-from carp_spec import Instance, Plan, Visit
+from carp_spec import Instance, Plan, ResourceGraph, RobotId, Visit
 
 T = TypeVar("T", bound=np.generic)
 
@@ -21,17 +22,17 @@ def write_plan(native: Native[State], instance: Instance, robot: int, plan: Plan
     return record_plan(native, robot, resources, enters, NEVER if leave is None else leave)
 
 
-def read_plan(state: State, instance: Instance, record: int) -> Plan:
-    """The plan of a record."""
+def read_plan(state: State, graph: ResourceGraph, record: int, robots: Sequence[RobotId]) -> Plan:
+    """The plan of a record; robots are given by their indices."""
     records = state.records
     first = int(records.visits_at[record])
     end = first + int(records.visits[record])
     entered = records.enter[first:end].tolist()
     last = int(records.leave[record])
     leaves = [*entered[1:], None if last == NEVER else last]
-    resources = [instance.graph.resources[resource].id for resource in records.resource[first:end].tolist()]
+    resources = [graph.resources[resource].id for resource in records.resource[first:end].tolist()]
     visits = tuple(Visit(*visit) for visit in zip(resources, entered, leaves, strict=True))
-    return Plan(instance.robots[int(records.robot[record])].id, visits)
+    return Plan(robots[int(records.robot[record])], visits)
 
 
 def enlarged(records: Records) -> Records:

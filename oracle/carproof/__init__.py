@@ -78,6 +78,8 @@ if TYPE_CHECKING:
     from carproof.api.documents import write_bound as write_bound
     from carproof.api.documents import write_query_certificate as write_query_certificate
     from carproof.api.executing import execute as execute
+    from carproof.api.fleet import Change as Change
+    from carproof.api.fleet import Fleet as Fleet
     from carproof.api.judging import audit as audit
     from carproof.api.judging import check as check
     from carproof.api.judging import check_trace as check_trace

@@ -18,6 +18,7 @@ from carproof.generate.options import GENERATE_RULES
 from carproof.input_rules import Code
 from carproof.layouts import LAYOUT_RULES
 from carproof.protocol.lines import PROTOCOL_RULES
+from carproof.protocol.ops.keeping import FLEET_RULES
 from carproof.registry import RULES
 from carproof.requests import REQUEST_RULES
 from carproof.viewer.limits import VIEW_RULES
@@ -36,6 +37,7 @@ ALL_RULES: tuple[Rule[..., Any] | Code, ...] = (
     *ADAPTER_RULES,
     *LAYOUT_RULES,
     *PROTOCOL_RULES,
+    *FLEET_RULES,
     *PROGRAM_RULES,
     *VIEW_RULES,
     *OPTIMUM_RULES,

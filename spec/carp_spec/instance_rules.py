@@ -159,6 +159,14 @@ def following_is_known(instance: Instance) -> Found:
         yield "$.following", f'it must be "allowed" or "forbidden", not {instance.following!r}'
 
 
+ROBOT_RULES: tuple[Rule[[Instance], Iterator[Fault]], ...] = (
+    robot_ids_are_unique,
+    endpoints_are_resources,
+    stops_are_places_to_serve,
+    releases_are_ticks,
+    paces_are_positive,
+)
+"""Those about robots, which take no longer on large graphs."""
 INSTANCE_RULES: tuple[Rule[[Instance], Iterator[Fault]], ...] = (
     resource_ids_are_unique,
     capacities_are_positive,
@@ -166,11 +174,7 @@ INSTANCE_RULES: tuple[Rule[[Instance], Iterator[Fault]], ...] = (
     positions_are_whole,
     edges_join_resources,
     groups_are_of_resources,
-    robot_ids_are_unique,
-    endpoints_are_resources,
-    stops_are_places_to_serve,
-    releases_are_ticks,
-    paces_are_positive,
+    *ROBOT_RULES,
     after_goal_is_known,
     following_is_known,
 )

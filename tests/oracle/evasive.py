@@ -16,6 +16,7 @@ from carproof.conform.asking.vector_cases import vector_cases
 from carproof.conform.cases import ASKED_OPS, request_fields
 from carproof.conform.levels import Level
 from carproof.engines import engine_named
+from carproof.protocol.ops.op import Session
 from carproof.protocol.server import respond
 
 Request = dict[str, Any]
@@ -34,7 +35,7 @@ def robots(request: Request) -> list[Any]:
 
 
 def right(request: Request) -> Response:
-    response, _ = respond(json.dumps(request).encode(), engine_named("reference"))
+    response, _ = respond(json.dumps(request).encode(), Session(engine_named("reference")))
     answer: Response = json.loads(msgspec.json.encode(response))
     return answer
 

@@ -120,6 +120,16 @@ REQUESTS: dict[str, Document] = {
         "now": 1,
         "route": EAST_PLAN,
     },
+    "fleet/open": {"fleet": "f", "instance": TWO, "solution": ONE_PLANNED, "now": 0, "m": 2},
+    "fleet/add": {"fleet": "f", "robot": {"id": "r4", "start": "a", "goal": "b", "release": 3}, "now": 1},
+    "fleet/advance": {"fleet": "f", "now": 3},
+    "fleet/trace": {
+        "fleet": "f",
+        "trace": {"format": "carproof-trace/1", "now": 2, "plans": [{"robot": "r1", "visits": [["a", 0, None]]}]},
+    },
+    "fleet/polish": {"fleet": "f", "iterations": 3},
+    "fleet/rest": {"fleet": "f"},
+    "fleet/close": {"fleet": "f"},
     "stop": {},
 }
 """A right request of each op."""
@@ -135,8 +145,12 @@ def asked(op: str, **fields: object) -> Document:
     import msgspec
 
     from carproof.engines import engine_named
+    from carproof.protocol.ops.op import Session
     from carproof.protocol.server import respond
 
-    response, _ = respond(line(id=1, op=op, **fields), engine_named("reference"))
+    session = Session(engine_named("reference"))
+    if op.startswith("fleet/") and op != "fleet/open":
+        respond(line(id=0, op="fleet/open", **REQUESTS["fleet/open"]), session)
+    response, _ = respond(line(id=1, op=op, **fields), session)
     answer: Document = json.loads(msgspec.json.encode(response))
     return answer

@@ -33,6 +33,7 @@ from carproof.conform.run import Options, Report, conform
 from carproof.engines import engine_named
 from carproof.execution.delays import Delay, executed, in_order
 from carproof.protocol.ops.executing import DriveDocument, DriveRequest, drive
+from carproof.protocol.ops.op import Session
 from carproof.protocol.server import respond
 
 SERVE = [sys.executable, "-m", "carproof", "serve", "--engine", "reference"]
@@ -90,7 +91,7 @@ def test_a_program_that_can_stand_for_ever_is_found_and_shrunk_to_few_robots(pro
     saved = json.loads(next((elsewhere / "conform-failure").glob("*/request.json")).read_bytes())
     assert len(saved["instance"]["robots"]) == 2
     assert (saved["driver"], saved["delays"], "now" in saved) == ("order", [], False)
-    response, _ = respond(json.dumps(saved).encode(), engine_named("reference"))
+    response, _ = respond(json.dumps(saved).encode(), Session(engine_named("reference")))
     assert json.loads(msgspec.json.encode(response))["result"]["standing"] == []
 
 

@@ -105,7 +105,7 @@ def test_an_op_in_the_table_is_answered_and_shows_up_everywhere(monkeypatch: pyt
     monkeypatch.setattr("carproof.conform.cases.ASKED_OPS", (*ASKED_OPS, "fly-low"))
     for module in (serve_command, conform_command):
         text = CliRunner().invoke(importlib.reload(module).command, ["--help"]).output
-        assert "fly-low       Fly over it\n" in text
+        assert "fly-low        Fly over it\n" in text
     monkeypatch.undo()
     for module in (serve_command, conform_command):
         assert "fly-low" not in CliRunner().invoke(importlib.reload(module).command, ["--help"]).output

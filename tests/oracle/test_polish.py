@@ -12,6 +12,7 @@ from carp_spec.documents.instances import read_instance
 from carp_spec.documents.solutions import read_solution
 from carproof import polish
 from carproof.engines import engine_named
+from carproof.protocol.ops.op import Session
 from carproof.protocol.server import respond
 
 LATE = solution({"r1": [["a", 0, 2], ["b", 2, 4], ["c", 4, 5]], "r2": TWO_PLANNED["plans"][1]["visits"]})
@@ -71,7 +72,7 @@ def test_for_a_time_the_command_python_and_the_op_anneal(carproof: Run, monkeypa
     assert carproof("polish town.json late.json --seconds 0.1").code == 0
     assert polish(INSTANCE, GIVEN, seconds=0.2) == GIVEN
     op = {"id": 1, "op": "polish", "instance": TWO, "solution": LATE, "seconds": 0.3}
-    response, _ = respond(msgspec.json.encode(op), engine_named(None))
+    response, _ = respond(msgspec.json.encode(op), Session(engine_named(None)))
     assert json.loads(msgspec.json.encode(response))["result"] == LATE
     assert times == [0.1, 0.2, 0.3]
 

@@ -31,6 +31,7 @@ from carp_spec.documents.bounds import read_bound
 from carproof.engines import engine_named
 from carproof.protocol.lines import LONGEST_LINE
 from carproof.protocol.ops import OPS
+from carproof.protocol.ops.op import Session
 from carproof.protocol.server import respond, serve
 from carproof.rules import ALL_RULES
 
@@ -268,7 +269,7 @@ def test_a_refusal_of_the_engine_has_its_place_in_the_request() -> None:
         line(id=1, op="query", instance=large, solution=solution({}), robot="r1"),
         line(id=1, op="add", instance=large, solution=solution({}), robot="r1"),
     ):
-        response, _ = respond(request, engine_named("optimized"))
+        response, _ = respond(request, Session(engine_named("optimized")))
         reported = json.loads(msgspec.json.encode(response))["error"]
         assert (reported["kind"], reported["path"]) == ("limit", "$.instance.graph.nodes[1].duration")
 
@@ -287,7 +288,7 @@ class Faulty:
 def test_a_fault_of_ours_is_an_error_of_kind_internal(
     capsys: pytest.CaptureFixture[str], fault: type[Exception]
 ) -> None:
-    response, running = respond(line(id=5, op="plan", instance=TWO), Faulty(fault))
+    response, running = respond(line(id=5, op="plan", instance=TWO), Session(Faulty(fault)))
     assert running
     reported = json.loads(msgspec.json.encode(response))
     assert (reported["id"], reported["error"]["kind"], reported["error"]["rule"]) == (5, "internal", None)
@@ -309,3 +310,60 @@ def test_the_process_answers_each_line_before_it_reads_the_next() -> None:
 
 def test_plans_that_a_query_returns_are_those_of_the_command_line() -> None:
     assert result(op="query", instance=TWO, solution=TWO_PLANNED, robot="r1") == {"plan": EAST_PLAN}
+
+
+FLEET = line(id=0, op="fleet/open", fleet="f", instance=corridor([EAST]))
+NEW = {"id": "r2", "start": "b", "goal": "e", "release": 2}
+
+
+def test_a_server_keeps_fleets_and_tells_what_changed() -> None:
+    opened, added, gone, rest, closed, unknown = ask(
+        FLEET,
+        line(id=1, op="fleet/add", fleet="f", robot=NEW, now=1, audit=True),
+        line(id=2, op="fleet/advance", fleet="f", now=4),
+        line(id=3, op="fleet/rest", fleet="f"),
+        line(id=4, op="fleet/close", fleet="f"),
+        line(id=5, op="fleet/rest", fleet="f"),
+    )
+    assert opened["result"] == {
+        "now": 0,
+        "plans": [{"robot": "r1", "visits": EAST_PLAN}],
+        "unplanned": [],
+        "left": [],
+    }
+    assert [plan["robot"] for plan in added["result"]["plans"]] == added["result"]["audit"]["certified"]
+    assert gone["result"] == {"now": 4, "plans": [], "unplanned": [], "left": ["r1"]}
+    assert [robot["id"] for robot in rest["result"]["instance"]["robots"]] == ["r2"]
+    assert result(op="check", instance=rest["result"]["instance"], solution=rest["result"]["solution"])["valid"]
+    assert closed["result"] == {"fleets": []}
+    assert unknown["error"]["rule"] == "fleet/name"
+
+
+@pytest.mark.parametrize(
+    ("op", "fields", "path", "rule"),
+    [
+        ("open", {"instance": TWO}, "$.fleet", "fleet/name"),
+        ("open", {"fleet": "x" * 101, "instance": TWO}, "$.fleet", "fleet/name"),
+        ("open", {"fleet": "g", "instance": BAD_GOAL}, "$.instance.robots[1].goal", "instance/endpoint"),
+        ("open", {"fleet": "g", "instance": TWO, "now": 1}, "$.instance.robots[0].release", "fleet/now"),
+        ("open", {"fleet": "g", "instance": TWO, "solution": FOREIGN}, "$.solution.plans[2]", "solution/covers"),
+        ("add", {"fleet": "g", "robot": NEW}, "$.fleet", "fleet/name"),
+        ("add", {"robot": EAST}, "$.robot.id", "fleet/robot"),
+        ("add", {"robot": {**NEW, "goal": "z"}}, "$.robot.goal", "instance/endpoint"),
+        ("add", {"robot": {**NEW, "colour": 1}}, "$.robot", "protocol/request"),
+        ("add", {"robot": {**NEW, "pace": 2**40}}, "$.robot.pace", "limit/ticks"),
+        ("add", {"robot": NEW, "now": 3}, "$.robot.release", "fleet/now"),
+        ("add", {"robot": NEW, "m": 2}, "$.m", "protocol/request"),
+        ("trace", {"trace": UNDER_WAY}, "$.trace.plans[1].robot", "fleet/robot"),
+        ("advance", {"now": True}, "$.now", "protocol/request"),
+        ("polish", {"iterations": -1}, "$.iterations", "polish/options"),
+    ],
+)
+def test_wrong_news_for_a_fleet_is_refused_by_name(op: str, fields: dict[str, object], path: str, rule: str) -> None:
+    _, refused = ask(FLEET, line(id=1, op=f"fleet/{op}", **{"fleet": "f", **fields}))
+    assert (refused["error"]["path"], refused["error"]["rule"]) == (path, rule)
+
+
+def test_a_server_keeps_few_fleets() -> None:
+    opened = [line(id=n, op="fleet/open", fleet=str(n), instance=TWO) for n in range(9)]
+    assert [answer.get("error", {}).get("rule") for answer in ask(*opened)] == [*8 * [None], "fleet/name"]

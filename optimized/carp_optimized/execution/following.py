@@ -136,6 +136,23 @@ def retime(instance: Instance, solution: Solution, trace: Trace) -> Solution:
     return after
 
 
+def held_up(instance: Instance, solution: Solution, trace: Trace) -> Solution:
+    """The solution with what a trace tells of some robots, and others later where they wait in the planned order.
+
+    Raises `Refusal` for numbers that are too large.
+    """
+    table = timetable(instance, solution)
+    told = {plan.robot: plan for plan in trace.plans}
+    least = table.enter.copy()
+    for plan, start in zip(solution.plans, table.starts.tolist(), strict=False):
+        if plan.robot in told:
+            done = [visit.enter for visit in told[plan.robot].visits][: len(plan.visits)]
+            least[start : start + len(done)] = done
+            rest = slice(start + len(done), start + len(plan.visits))
+            least[rest] = np.maximum(least[rest], trace.now + 1)
+    return table.solution_at(table.times(least))
+
+
 def timetable(instance: Instance, solution: Solution) -> Timetable:
     """Make the dependency graph of a lawful solution; raises `Refusal` for numbers that are too large."""
     refuse_what_is_too_large(instance)

@@ -18,6 +18,7 @@ from carp_optimized.state.arrays import (
     NEVER,
     NONE,
     PLANS,
+    UNKNOWN,
     Answers,
     Ending,
     Freed,
@@ -31,21 +32,32 @@ from carp_optimized.state.arrays import (
     State,
     Work,
 )
-from carp_spec import Fault, Instance, Refusal
-from carp_spec.limits import refuse
+from carp_spec import Fault, Instance, Refusal, Robot
+from carp_spec.limits import Feature, refuse
 
 DETOUR = 8  # of the durations by which a guide goes further than to the start: seldom more are needed on large maps
 GUIDE_PLACES = 1 << 26  # how many entries all guides together have at most, if that is room for 64 of them
 ROOTS = 1024
 STRIPS = 7  # its square is the number of regions; a number of 64 bits has room for 63
 LARGEST_COORDINATE = 2**29
+UNKNOWN_HERE: tuple[Feature, ...] = ("groups", "stops")
 NO_LIMIT_THERE = "the reference engine has no such limit, but finds no bounds"
 
 
 def refuse_what_is_too_large(instance: Instance) -> None:
     """Raise `Refusal` where a number of the instance does not fit, and for what is not known here."""
-    refuse(instance, "groups", "stops")
-    for fault in _too_large(instance):
+    refuse(instance, *UNKNOWN_HERE)
+    _refuse(_too_large(instance))
+
+
+def refuse_robots(instance: Instance, longest: int) -> None:
+    """The same for the robots alone, where that is the longest duration."""
+    refuse(instance, *UNKNOWN_HERE)
+    _refuse(_large_robots(instance, longest))
+
+
+def _refuse(faults: Iterator[Fault]) -> None:
+    for fault in faults:
         raise Refusal("limit", fault.path, fault.rule, f"{fault.message}; {NO_LIMIT_THERE}")
 
 
@@ -69,6 +81,10 @@ def _too_large(instance: Instance) -> Iterator[Fault]:
             if abs(value) > LARGEST_COORDINATE:
                 message = f"{name} must be between -{LARGEST_COORDINATE} and {LARGEST_COORDINATE}, and is {value}"
                 yield Fault("limit/ticks", f"{path}.{name}", message)
+    yield from _large_robots(instance, longest)
+
+
+def _large_robots(instance: Instance, longest: int) -> Iterator[Fault]:
     for position, robot in enumerate(instance.robots):
         path = f"$.robots[{position}]"
         if robot.release > LARGEST:
@@ -137,11 +153,56 @@ def encode_robots(instance: Instance) -> tuple[Robots, Ints, Ints]:
     return robots, goals, np.array([pace for _, pace in destinations], np.int32)
 
 
+def write_robot(state: State, instance: Instance, robot: Robot, place: int, destination: int) -> None:
+    """Write a robot over the one at that place, and its destination over the one of that number."""
+    index, guides = instance.graph.index, state.guides
+    guides.goal[destination], guides.pace[destination] = index[robot.goal], robot.pace
+    values = index[robot.start], index[robot.goal], robot.release, robot.pace, destination
+    for array, value in zip(state.robots, values, strict=True):
+        array[place] = value
+
+
+def with_robots(state: State, size: int, pace: int) -> tuple[State, dict[tuple[int, int], int]]:
+    """The state with room for that many robots, up to that pace, and as many more destinations than are in use.
+
+    Also returns the numbers of those in use. Guides are made again. What queries have read is forgotten if their keys
+    change.
+    """
+
+    def enlarged(array: Ints, value: int) -> Ints:
+        return np.concatenate([array, np.full(size - array.size, value, np.int32)])
+
+    robots = state.robots
+    destinations: dict[tuple[int, int], int] = {}
+    ends = zip(robots.goal.tolist(), robots.pace.tolist(), strict=True)
+    destination = np.array([destinations.setdefault(end, len(destinations)) for end in ends], np.int32)
+    used = np.array([*destinations], np.int32).reshape(-1, 2)
+    more = np.zeros((size, 2), np.int32)
+    goals, paces = np.ascontiguousarray(np.concatenate([used, more]).T)
+    places = [enlarged(each, 0) for each in (*robots[:-1], destination)]
+    resources = state.graph.duration.size
+    scale = scale_of_tolls(resources, state.longest, np.append(paces, np.int32(pace))) if state.scale else 0
+    if scale != state.scale:
+        state.records.expansions[:] = UNKNOWN
+    return state._replace(
+        robots=Robots._make(places),
+        guides=no_guides(resources, goals.copy(), paces.copy(), has_ranks=scale == 0),
+        reserved=enlarged(state.reserved, NONE),
+        rank=enlarged(state.rank, 0),
+        scale=scale,
+    ), destinations
+
+
 def scale_of_tolls(resources: int, longest: int, paces: Ints) -> int:
     """2^32 plus the power of two above all indices; 0 if ticks to the goal times that might not fit into 32 bits."""
     bits = resources.bit_length()
     most = resources * longest * int(paces.max(initial=1))
     return 0 if most >> (32 - bits) else (1 << 32) + (1 << bits)
+
+
+def has_scale(state: State, pace: int) -> bool:
+    """Whether tolls are scaled right for robots of that pace too."""
+    return state.scale in (0, scale_of_tolls(state.graph.duration.size, state.longest, np.array([pace], np.int32)))
 
 
 def no_guides(resources: int, goals: Ints, paces: Ints, has_ranks: bool) -> Guides:

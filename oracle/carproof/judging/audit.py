@@ -6,12 +6,12 @@ fault. An audit does not judge the choice between plans that arrive at the same 
 without a plan.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Container, Iterator
 from dataclasses import dataclass, field, replace
 
 import msgspec
 
-from carp_spec import Instance, Plan, Refusal, Solution
+from carp_spec import Instance, Plan, Refusal, RobotId, Solution
 from carp_spec.documents.solutions import solution_document
 from carp_spec.limits import refuse
 from carp_verify.bound.rules import ContradictionError
@@ -96,12 +96,16 @@ class Auditor:
 
 
 def audit_in_order(
-    instance: Instance, solution: Solution, engine: Engine, advance: Callable[[], None] = lambda: None
+    instance: Instance,
+    solution: Solution,
+    engine: Engine,
+    advance: Callable[[], None] = lambda: None,
+    only: Container[RobotId] | None = None,
 ) -> Audit:
-    """Audit a solution that breaks no rule in its planning order."""
+    """Audit a solution that breaks no rule in its planning order, or only some robots of it."""
     auditor = Auditor(instance, engine)
     for plan in in_order(solution):
-        earlier = auditor.earlier_plan(plan)
+        earlier = auditor.earlier_plan(plan) if only is None or plan.robot in only else None
         if earlier is not None:
             auditor.is_late(plan, earlier)
         auditor.commit(plan)

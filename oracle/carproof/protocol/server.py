@@ -10,17 +10,19 @@ from carproof.engines import Engine
 from carproof.extras import INSTALLED, advice
 from carproof.protocol.lines import LONGEST_LINE, MISSING, NULL, SHORT_LINE, ErrorDocument, Request, Response, refused
 from carproof.protocol.ops import answer
+from carproof.protocol.ops.op import Session
 
 _PIECE = 2**20
 
 
 def serve(requests: BinaryIO, responses: BinaryIO, engine: Engine) -> None:
-    """Answer every line by one line."""
+    """Answer every line by one line. Fleets that are open at the end are forgotten."""
+    session = Session(engine)
     running = True
     while running and (line := requests.readline(LONGEST_LINE + 1)):
         line = line.removesuffix(b"\n")
         if len(line) <= LONGEST_LINE:
-            response, running = respond(line, engine)
+            response, running = respond(line, session)
         else:
             _skip_line(requests)
             response = Response(NULL, error=refused(_too_long()))
@@ -28,14 +30,14 @@ def serve(requests: BinaryIO, responses: BinaryIO, engine: Engine) -> None:
         responses.flush()
 
 
-def respond(line: bytes, engine: Engine) -> tuple[Response, bool]:
+def respond(line: bytes, session: Session) -> tuple[Response, bool]:
     """Answer one line, and return whether to continue."""
     id, op = NULL, ""
     try:
         request = Request(line)
         id = NULL if request.id is MISSING else request.id
         op = request.op()
-        return Response(id, result=answer(request, op, engine)), op != "stop"
+        return Response(id, result=answer(request, op, session)), op != "stop"
     except Refusal as refusal:
         return Response(id, error=refused(refusal)), True
     except Exception as fault:  # noqa: BLE001 - whatever goes wrong with one request, the next is answered

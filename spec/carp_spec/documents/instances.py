@@ -78,12 +78,14 @@ class InstanceDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     schema: str | msgspec.UnsetType = msgspec.field(default=msgspec.UNSET, name="$schema")
 
 
-def _robot(robot: Any) -> Robot:  # noqa: ANN401 - its document, with fields that the model describes
+def robot_of(robot: Any) -> Robot:  # noqa: ANN401 - its document, with fields that the model describes
+    """The robot of a document."""
     stops = (Stop(robot.goal),) if robot.stops is msgspec.UNSET else all_converted(robot.stops, Stop)
     return Robot(robot.id, robot.start, None, robot.release, robot.pace, stops=stops)
 
 
-def _robot_document(robot: Robot) -> RobotDocument:
+def robot_document(robot: Robot) -> RobotDocument:
+    """The document of a robot."""
     ends = {"goal": robot.goal} if robot.has_goal_alone else {"stops": all_converted(robot.stops, StopDocument)}
     numbers: dict[str, Any] = {"release": robot.release, "pace": robot.pace, **ends}
     return RobotDocument(robot.id, robot.start, **numbers)
@@ -98,7 +100,7 @@ def read_instance(data: bytes) -> Instance:
         resources=all_converted(document.graph.nodes, Resource),
         edges=tuple((each.source, each.target) for each in document.graph.edges),
     )
-    instance = converted(document, Instance, graph=graph, robots=tuple(map(_robot, document.robots)))
+    instance = converted(document, Instance, graph=graph, robots=tuple(map(robot_of, document.robots)))
     require_instance(instance)
     return instance
 
@@ -112,7 +114,7 @@ def instance_document(instance: Instance) -> InstanceDocument:
         nodes=all_converted(instance.graph.resources, NodeDocument),
         edges=tuple(EdgeDocument(source, target) for source, target in instance.graph.edges),
     )
-    robots = tuple(map(_robot_document, instance.robots))
+    robots = tuple(map(robot_document, instance.robots))
     return converted(instance, InstanceDocument, format=INSTANCE_FORMAT, graph=graph, robots=robots)
 
 

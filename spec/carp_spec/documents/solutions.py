@@ -89,20 +89,21 @@ def visits_document(plan: Plan) -> tuple[VisitDocument, ...]:
     return tuple((visit.resource, visit.enter, visit.leave) for visit in plan.visits)
 
 
-def _plan_documents(plans: Sequence[Plan]) -> tuple[PlanDocument, ...]:
+def plan_documents(plans: Sequence[Plan]) -> tuple[PlanDocument, ...]:
+    """The documents of plans."""
     return tuple(PlanDocument(plan.robot, visits_document(plan)) for plan in plans)
 
 
 def solution_document(solution: Solution) -> SolutionDocument:
     """The document of a solution; raises `Refusal` if it is malformed."""
     require_shape(solution, Solution)
-    return SolutionDocument(SOLUTION_FORMAT, _plan_documents(solution.plans), solution.order, solution.unplanned)
+    return SolutionDocument(SOLUTION_FORMAT, plan_documents(solution.plans), solution.order, solution.unplanned)
 
 
 def trace_document(trace: Trace) -> TraceDocument:
     """The document of a trace; raises `Refusal` if it is malformed."""
     require_shape(trace, Trace)
-    return TraceDocument(TRACE_FORMAT, trace.now, _plan_documents(trace.plans))
+    return TraceDocument(TRACE_FORMAT, trace.now, plan_documents(trace.plans))
 
 
 def write_solution(solution: Solution) -> bytes:

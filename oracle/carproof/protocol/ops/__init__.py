@@ -18,7 +18,16 @@ from carproof.engines import Engine
 from carproof.protocol.lines import RIGHT_FIELDS, SPOKEN_VERSION, VERSION, Request
 from carproof.protocol.ops.executing import check_trace, dependencies, drive, execute, give_way, retime, untangle
 from carproof.protocol.ops.judging import audit, check, verify_bound, verify_query
-from carproof.protocol.ops.op import Op, op_of
+from carproof.protocol.ops.keeping import (
+    fleet_add,
+    fleet_advance,
+    fleet_close,
+    fleet_open,
+    fleet_polish,
+    fleet_rest,
+    fleet_trace,
+)
+from carproof.protocol.ops.op import Op, Session, op_of
 from carproof.protocol.ops.planning import add, plan, plan_within, polish, query
 from carproof.protocol.ops.searching import bound, optimum
 
@@ -62,7 +71,7 @@ def stop(request: StopRequest, engine: Engine) -> StopDocument:
     return StopDocument()
 
 
-_HANDLERS: tuple[Callable[[Any, Engine], object], ...] = (
+_HANDLERS: tuple[Callable[[Any, Any], object], ...] = (
     start,
     check,
     query,
@@ -82,12 +91,19 @@ _HANDLERS: tuple[Callable[[Any, Engine], object], ...] = (
     retime,
     untangle,
     give_way,
+    fleet_open,
+    fleet_add,
+    fleet_advance,
+    fleet_trace,
+    fleet_polish,
+    fleet_rest,
+    fleet_close,
     stop,
 )
 OPS: Mapping[str, Op] = {op.name: op for op in map(op_of, _HANDLERS)}
 
 
-def answer(request: Request, name: str, engine: Engine) -> object:
+def answer(request: Request, name: str, session: Session) -> object:
     """The result of a request, as JSON holds it."""
     if name not in OPS:
         near = get_close_matches(name, OPS, 1)
@@ -95,6 +111,6 @@ def answer(request: Request, name: str, engine: Engine) -> object:
         message = f"there is no op {name!r}; {meant} op start lists all"
         raise Refusal("request", "$.op", RIGHT_FIELDS.id, message)
     try:
-        return OPS[name].answer(request, engine)
+        return OPS[name].answer(request, session)
     except UndecidedError as error:
         raise Refusal("limit", "$.kernel", is_answer.id, str(error)) from error

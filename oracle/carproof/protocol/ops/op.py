@@ -12,9 +12,16 @@ from typing import Any, Literal, Union, get_args, get_type_hints
 
 import msgspec
 
-from carp_spec import Instance, Neighbourhood, Planner, Refusal, Solution
+from carp_spec import Instance, Neighbourhood, Planner, Refusal, Robot, Solution
 from carp_spec.documents.bounds import BoundDocument, read_bound
-from carp_spec.documents.instances import InstanceDocument, instance_document, read_instance
+from carp_spec.documents.instances import (
+    InstanceDocument,
+    RobotDocument,
+    instance_document,
+    read_instance,
+    robot_document,
+    robot_of,
+)
 from carp_spec.documents.query_certificates import QueryCertificateDocument, read_query_certificate
 from carp_spec.documents.solutions import (
     SolutionDocument,
@@ -26,6 +33,7 @@ from carp_spec.documents.solutions import (
 )
 from carp_spec.execution.traces import Trace
 from carp_spec.inputs.options import require_polish_options
+from carproof.api.fleet import Fleet
 from carproof.engines import Engine
 from carproof.planner_options import PLANNERS, planner_named
 from carproof.protocol.lines import RIGHT_FIELDS, Request, value_of
@@ -42,6 +50,11 @@ class Form:
 
 DOCUMENTS: Mapping[Any, Form] = {
     Instance: Form(InstanceDocument, read_instance, instance_document),
+    Robot: Form(
+        RobotDocument,
+        lambda data: robot_of(value_of(RobotDocument)(data)),
+        robot_document,
+    ),
     Solution: Form(SolutionDocument, read_solution, solution_document),
     BoundDocument: Form(BoundDocument, read_bound),
     Trace: Form(TraceDocument, read_trace, trace_document),
@@ -106,18 +119,31 @@ class Field:
 
 
 @dataclass(frozen=True, slots=True)
+class Session:
+    """What a server has between requests: its planners, and the fleets that it keeps, by name."""
+
+    engine: Engine
+    fleets: dict[str, Fleet] = dataclasses.field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
 class Op:
-    """An op: `request` is a dataclass, `result` what the handler returns."""
+    """An op: `request` is a dataclass of these `parts`, `result` what the handler returns.
+
+    The handler gets the session or the engine.
+    """
 
     name: str
     request: type[Any]
     result: Any
-    handle: Callable[[Any, Engine], Any]
+    handle: Callable[[Any, Any], Any]
+    is_of_session: bool
+    parts: tuple[tuple[dataclasses.Field[Any], Any], ...]
 
     def read(self, request: Request) -> Any:  # noqa: ANN401 - the op's own request
         """Read the fields of a request; raises `Refusal` for the first wrong one, and for an unknown one."""
         values = {}
-        for field, hint in _hints(self.request):
+        for field, hint in self.parts:
             if hint in OPTIONS:
                 values[field.name] = OPTIONS[hint].take(request)
             elif field.default is MISSING or field.name in request:
@@ -125,9 +151,9 @@ class Op:
         request.end()
         return self.request(**values)
 
-    def answer(self, request: Request, engine: Engine) -> object:
+    def answer(self, request: Request, session: Session) -> object:
         """The result of a request, as JSON holds it."""
-        return made(self.handle(self.read(request), engine))
+        return made(self.handle(self.read(request), session if self.is_of_session else session.engine))
 
     @property
     def statement(self) -> str:
@@ -137,7 +163,7 @@ class Op:
     @property
     def fields(self) -> Iterator[Field]:
         """The fields of its request besides id and op."""
-        for field, hint in _hints(self.request):
+        for field, hint in self.parts:
             if hint not in OPTIONS:
                 yield Field(field.name, document_of(hint), field.default)
                 continue
@@ -148,15 +174,17 @@ class Op:
             yield from {each.name: Field(each.name, of, each.default) for each, of in options}.values()
 
 
-def op_of(handle: Callable[[Any, Engine], Any]) -> Op:
-    """The op of a handler, by its annotations; `_` in the handler's name is `-` in the op's."""
+def op_of(handle: Callable[[Any, Any], Any]) -> Op:
+    """The op of a handler, by its annotations; `_` in the handler's name is `-` in the op's, and `/` after fleet."""
     hints = get_type_hints(handle)
-    return Op(handle.__name__.replace("_", "-"), hints["request"], hints["return"], handle)
+    name = handle.__name__.replace("fleet_", "fleet/").replace("_", "-")
+    request = hints["request"]
+    return Op(name, request, hints["return"], handle, "session" in hints, _hints(request))
 
 
-def _hints(kind: type[Any]) -> Iterator[tuple[dataclasses.Field[Any], Any]]:
+def _hints(kind: type[Any]) -> tuple[tuple[dataclasses.Field[Any], Any], ...]:
     hints = get_type_hints(kind)
-    return ((field, hints[field.name]) for field in dataclasses.fields(kind))
+    return tuple((field, hints[field.name]) for field in dataclasses.fields(kind))
 
 
 def _required(hint: Any) -> Any:  # noqa: ANN401 - a type hint

@@ -1,0 +1,318 @@
+"""A fleet in memory: news goes in, and the plans that changed come out."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from carp_spec import Instance, Neighbourhood, Plan, Refusal, Robot, RobotId, Solution, Visit
+from carp_spec.execution.traces import Trace
+from carp_spec.inputs.options import require_planner
+from carp_spec.inputs.values import require_instance
+from carp_spec.instance_rules import ROBOT_RULES
+from carp_spec.limits import refuse
+from carp_spec.planners import BY_DEFAULT
+from carp_spec.requests import require_tick, sound_solution
+from carp_spec.rule import DESIGN
+from carp_spec.shapes import require_shape
+from carproof.engines import compile_what_is_kept, engine_named
+from carproof.execution.delays import until
+from carproof.input_rules import Code
+from carproof.judging.audit import Audit, audit_in_order
+
+if TYPE_CHECKING:
+    from carp_optimized.fleet import PlannedFleet
+    from carp_optimized.jit.kinds import Ints
+
+MOST_ROBOTS = 10_000
+NOT_BACK = Code(
+    "fleet/now",
+    "News for a fleet have no earlier tick than those before, and a robot to add is released no earlier than its news.",
+    DESIGN,
+)
+OWN_ROBOTS = Code(
+    "fleet/robot", "A robot to add has an id that no robot of the fleet has; a trace names robots of the fleet.", DESIGN
+)
+FEW_ROBOTS = Code("fleet/size", f"A fleet has at most {MOST_ROBOTS} robots.", DESIGN)
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """What news changed: the plans that are new or other than before, and who is no longer in the fleet.
+
+    `unplanned` were to be added and found no plan, and `left` have vanished by the tick `now`: they are not in the
+    fleet. `audit` is the proof, if it was asked for.
+    """
+
+    now: int
+    plans: tuple[Plan, ...]
+    unplanned: tuple[RobotId, ...]
+    left: tuple[RobotId, ...]
+    audit: Audit | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class _Known:
+    """What a fleet knows: robots in the order of their arrival, their plans, and how many came so far.
+
+    `empty` is the instance without robots; `places` are the numbers of the robots in planning order, and `ids` the ids
+    by number.
+    """
+
+    empty: Instance
+    now: int
+    robots: Mapping[RobotId, Robot]
+    plans: Mapping[RobotId, Plan]
+    places: "Ints"
+    ids: Sequence[RobotId]
+    count: int
+
+    @property
+    def order(self) -> tuple[RobotId, ...]:
+        return tuple(self.ids[place] for place in self.places.tolist())
+
+    @property
+    def instance(self) -> Instance:
+        return replace(self.empty, robots=tuple(self.robots.values()))
+
+    @property
+    def solution(self) -> Solution:
+        return Solution(tuple(self.plans[id] for id in self.robots), self.order)
+
+    def rest(self) -> tuple[Instance, Solution]:
+        ahead = [self._ahead(robot, self.plans[id]) for id, robot in self.robots.items()]
+        plans = tuple(plan for _, plan in ahead)
+        return replace(self.empty, robots=tuple(robot for robot, _ in ahead)), Solution(plans, self.order)
+
+    def _ahead(self, robot: Robot, plan: Plan) -> tuple[Robot, Plan]:
+        """The robot in the place where it is, released so late that it cannot leave by now, and its plan from there."""
+        place = _entered(plan, self.now) - 1
+        if place < 0:
+            return robot, plan
+        here, later = plan.visits[place], plan.visits[place + 1 :]
+        ends = not later and here.leave is not None
+        ticks = robot.pace * self.empty.graph.resource[here.resource].duration
+        release = here.enter if ends else max(here.enter, self.now + 1 - ticks)
+        visits = (Visit(here.resource, release, here.leave), *later)
+        return replace(robot, start=here.resource, release=release), Plan(plan.robot, visits)
+
+
+class Fleet:
+    """Robots under way on a resource graph, with plans that break no rule together, while time goes on.
+
+    What is not told is taken to have happened as planned. With `vanish` a robot leaves the fleet when its plan has
+    ended. What is refused or fails leaves the fleet as it was. Plans are those that `add` makes at the same ticks.
+    With `audit` a change is proved: the law judges all plans, and no robot of a changed plan can arrive earlier beside
+    the plans before its own, after the moves of the tick `now`. That is refused where following is forbidden.
+    """
+
+    def __init__(
+        self,
+        instance: Instance,
+        solution: Solution | None = None,
+        now: int = 0,
+        planner: Neighbourhood = BY_DEFAULT,
+        *,
+        audit: bool = False,
+    ) -> None:
+        """Take over the plans of a solution, and plan the instance's other robots at the tick `now`, one by one.
+
+        `opening` is the change by that. Raises `Refusal` for a malformed instance, solution, tick or planner, for a
+        solution that breaks a rule, and for numbers or fleets that are too large.
+        """
+        require_instance(instance)
+        require_planner(planner, Neighbourhood)
+        require_tick(now)
+        sound = sound_solution(instance, solution or Solution((), ()))
+        by_robot = {plan.robot: plan for plan in sound.plans}
+        robots = {id: robot for id, robot in instance.robot.items() if id in by_robot}
+        for place, robot in enumerate(instance.robots):
+            if robot.id not in by_robot:
+                _require_time(robot, now, f"$.robots[{place}]")
+        self._planner = planner
+        empty = replace(instance, robots=())
+        core = _compiled(replace(instance, robots=tuple(robots.values())), [by_robot[id] for id in sound.order])
+        self._core: PlannedFleet | None = core
+        self._known = _Known(empty, now, robots, by_robot, *core.places, len(robots))
+        self.opening = self.add(*(each for each in instance.robots if each.id not in by_robot), now=now, audit=audit)
+
+    @property
+    def now(self) -> int:
+        """The tick of the last news."""
+        return self._known.now
+
+    @property
+    def instance(self) -> Instance:
+        """The resource graph with the robots of the fleet, in the order of their arrival."""
+        return self._known.instance
+
+    @property
+    def solution(self) -> Solution:
+        """The plans of the fleet."""
+        return self._known.solution
+
+    def rest(self) -> tuple[Instance, Solution]:
+        """What is to come after the moves of the tick `now`, as an instance and a solution of their own.
+
+        A robot under way starts where it is.
+        """
+        return self._known.rest()
+
+    def add(self, *robots: Robot, now: int | None = None, audit: bool = False) -> Change:
+        """Add robots one by one by the neighbourhood planner; those near them may get new plans from `now` on.
+
+        Raises `Refusal` for a tick that has passed, a malformed robot, one released before `now` or of an id in use,
+        and for numbers or fleets that are too large.
+        """
+        now = self._tick(now)
+        self._require_new(robots, now)
+        size = len(self._known.robots) + len(robots)
+        if size > MOST_ROBOTS and size - len(self._made().ended(now)) > MOST_ROBOTS:
+            message = f"the fleet must have at most {MOST_ROBOTS} robots, and would have more"
+            raise Refusal("limit", "$.robots", FEW_ROBOTS.id, message)
+        unplanned = []
+        with self._changing(audit=audit) as core:
+            core.forget_old_records()
+            before = core.records
+            for number, robot in enumerate(robots, self._known.count):
+                place = core.enlist(robot)
+                if not core.add(place, now, self._planner, number):
+                    core.dismiss([place])
+                    unplanned.append(robot.id)
+            changed = [plan for plan in core.changed_since(before) if plan != self._known.plans.get(plan.robot)]
+            known = replace(
+                self._known,
+                robots={**self._known.robots, **{robot.id: robot for robot in robots}},
+                count=self._known.count + len(robots),
+            )
+            return self._take_over(core, replace(known, now=now), changed, unplanned, audit=audit)
+
+    def advance(self, now: int, *, audit: bool = False) -> Change:
+        """Let time go on as planned. Raises `Refusal` for a tick that has passed."""
+        return self.add(now=now, audit=audit)
+
+    def trace(self, trace: Trace, *, audit: bool = False) -> Change:
+        """Report what robots have done by the tick of a trace, where it is not what was planned; plans are retimed.
+
+        Robots that the trace does not name have done what was planned, later only where they wait for others in the
+        planned order. Raises `Refusal` for a tick that has passed, unknown robots, and a trace that does not follow
+        the plans.
+        """
+        require_shape(trace, Trace)
+        now = self._tick(trace.now)
+        for place, plan in enumerate(trace.plans):
+            if plan.robot not in self._known.robots:
+                message = f"it must be a robot of the fleet, which has no {plan.robot!r}"
+                raise Refusal("request", f"$.plans[{place}].robot", OWN_ROBOTS.id, message)
+        compile_what_is_kept()
+        from carp_optimized.execution.following import held_up, retime  # noqa: PLC0415 - numba is slow to load
+
+        instance, solution = self.instance, self.solution
+        told = {plan.robot for plan in trace.plans}
+        others = tuple(plan for plan in held_up(instance, solution, trace).plans if plan.robot not in told)
+        whole = Trace(now, (*trace.plans, *until(Trace(now, others), now).plans))
+        after = retime(instance, solution, whole)
+        return self._replan(now, after, audit=audit)
+
+    def polish(
+        self, *, iterations: int | None = None, seconds: float | None = None, seed: int = 0, audit: bool = False
+    ) -> Change:
+        """Improve the plans of the rest of the way as `carproof.polish` does; raises `Refusal` for wrong options."""
+        polish = engine_named("optimized").polish
+        better = polish(*self.rest(), iterations=iterations, seconds=seconds, seed=seed)
+        plans = tuple(_joined(self._known.plans[plan.robot], plan, self.now) for plan in better.plans)
+        return self._replan(self.now, replace(better, plans=plans), audit=audit)
+
+    def _replan(self, now: int, solution: Solution, *, audit: bool) -> Change:
+        changed = [plan for plan in solution.plans if plan != self._known.plans[plan.robot]]
+        with self._changing(audit=audit) as core:
+            core.replan(changed, solution.order)
+            return self._take_over(core, replace(self._known, now=now), changed, (), audit=audit)
+
+    def _tick(self, now: int | None) -> int:
+        if now is None:
+            return self.now
+        require_tick(now)
+        if now < self.now:
+            raise Refusal("request", "$.now", NOT_BACK.id, f"the tick must be at least {self.now}, and is {now}")
+        return now
+
+    def _require_new(self, robots: tuple[Robot, ...], now: int) -> None:
+        require_shape(robots, tuple[Robot, ...], "$.robots")
+        alone = replace(self._known.empty, robots=robots)
+        for fault in (fault for rule in ROBOT_RULES for fault in rule(alone)):
+            raise Refusal("document", fault.path, fault.rule, fault.message)
+        self._made().require_robots(alone)
+        for place, robot in enumerate(robots):
+            path = f"$.robots[{place}]"
+            if robot.id in self._known.robots:
+                message = f"the id must be new to the fleet, which has a robot {robot.id!r}"
+                raise Refusal("request", f"{path}.id", OWN_ROBOTS.id, message)
+            _require_time(robot, now, path)
+
+    @contextmanager
+    def _changing(self, *, audit: bool) -> Iterator["PlannedFleet"]:
+        """The compiled fleet; after an error it is made again from what was known."""
+        if audit:
+            refuse(self._known.empty, "following")
+        core, self._core = self._made(), None
+        yield core
+        self._core = core
+
+    def _made(self) -> "PlannedFleet":
+        if self._core is None:
+            self._core = _compiled(self.instance, [self._known.plans[id] for id in self._known.order])
+        return self._core
+
+    def _take_over(
+        self, core: "PlannedFleet", known: _Known, changed: Sequence[Plan], unplanned: Sequence[RobotId], *, audit: bool
+    ) -> Change:
+        """Know what the compiled fleet holds, without the plans that have ended by now."""
+        ended = core.ended(known.now)
+        robots, plans = {**known.robots}, {**known.plans, **{plan.robot: plan for plan in changed}}
+        left = tuple(core.places[1][place] for place in ended)
+        core.dismiss(ended)
+        for id in (*left, *unplanned):
+            del robots[id]
+            plans.pop(id, None)
+        places, ids = core.places
+        after = replace(known, robots=robots, plans=plans, places=places, ids=ids)
+        found = self._audited(after, changed) if audit else None
+        self._known = after
+        return Change(known.now, tuple(changed), tuple(unplanned), left, found)
+
+    def _audited(self, known: _Known, changed: Sequence[Plan]) -> Audit:
+        sound_solution(known.instance, known.solution)
+        instance, solution = known.rest()
+        only = {plan.robot for plan in changed}
+        return audit_in_order(instance, sound_solution(instance, solution), engine_named("optimized"), only=only)
+
+
+def _require_time(robot: Robot, now: int, path: str) -> None:
+    if robot.release < now:
+        message = f"the release must be at least {now}, the tick at which it is added, and is {robot.release}"
+        raise Refusal("request", f"{path}.release", NOT_BACK.id, message)
+
+
+def _compiled(instance: Instance, plans: Sequence[Plan]) -> "PlannedFleet":
+    """The compiled fleet with these plans, in planning order."""
+    compile_what_is_kept()
+    from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415 - numba is slow to load
+
+    core = PlannedFleet(instance)
+    core.commit(plans)
+    return core
+
+
+def _entered(plan: Plan, now: int) -> int:
+    """How many visits of a plan are entered by the tick now."""
+    return sum(visit.enter <= now for visit in plan.visits)
+
+
+def _joined(before: Plan, ahead: Plan, now: int) -> Plan:
+    """The visits of a plan that are entered by now, and those of a plan of the rest of the way."""
+    count = _entered(before, now)
+    if count == 0:
+        return ahead
+    here = replace(before.visits[count - 1], leave=ahead.visits[0].leave)
+    return replace(before, visits=(*before.visits[: count - 1], here, *ahead.visits[1:]))

@@ -1,0 +1,86 @@
+"""How long a client of `carproof serve` takes to have a robot added to a fleet, beside the compiled core's own time.
+
+`python -m tests.bench.bench_fleet 100 1000 3000`: a robot comes every tick into a warehouse of 123 by 122 cells. Some
+have plans by CARP, and 40 more are added by the client and by the core in turns. Times are medians of the processor's,
+for the client those of client and server together, and of the wall's.
+"""
+
+import json
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+from statistics import median
+from time import perf_counter, process_time
+
+import msgspec
+
+from carp_optimized import plan
+from carp_optimized.fleet import PlannedFleet
+from carp_spec import Carp, Instance, Neighbourhood
+from carp_spec.documents.instances import instance_document, robot_document
+from carp_spec.documents.solutions import solution_document
+from carproof.generate import Fleet, Range, Warehouse, warehouse_instance
+
+TIMES = 40
+
+
+class Client:
+    """A server and the lines to and from it."""
+
+    def __init__(self) -> None:
+        command = [sys.executable, "-m", "carproof", "serve"]
+        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        self.ask(op="start", version=1)
+        children = Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text()
+        self.worker = children.split()[0]
+
+    def ask(self, **fields: object) -> dict[str, object]:
+        """The result of a request."""
+        assert self.process.stdin is not None
+        assert self.process.stdout is not None
+        self.process.stdin.write(msgspec.json.encode({"id": 1, **fields}) + b"\n")
+        self.process.stdin.flush()
+        answer: dict[str, dict[str, object]] = json.loads(self.process.stdout.readline())
+        return answer["result"]
+
+    def processor_seconds(self) -> float:
+        """What the server has used."""
+        return int(Path(f"/proc/{self.worker}/schedstat").read_text().split()[0]) / 1e9
+
+
+def measure(robots: int) -> str:
+    """A line of the table."""
+    whole = warehouse(robots + TIMES)
+    first, more = replace(whole, robots=whole.robots[:robots]), whole.robots[robots:]
+    solution = plan(first, Carp())
+    client, core = Client(), PlannedFleet(first)
+    core.commit(solution.plans)
+    client.ask(op="fleet/open", fleet="f", instance=instance_document(first), solution=solution_document(solution))
+    alone, walls, used = [], [], []
+    for number, robot in enumerate(more, robots):
+        before = perf_counter(), process_time(), client.processor_seconds()
+        answer = client.ask(op="fleet/add", fleet="f", robot=robot_document(robot))
+        after = perf_counter(), process_time(), client.processor_seconds()
+        walls.append(after[0] - before[0])
+        used.append(after[1] - before[1] + after[2] - before[2])
+        assert answer["now"] == 0
+        start = process_time()
+        core.add(core.enlist(robot), 0, Neighbourhood(), number)
+        alone.append(process_time() - start)
+    client.ask(op="stop")
+    client.process.wait()
+    core_ms, client_ms, wall_ms = (1000 * median(each) for each in (alone, used, walls))
+    return f"{robots:6} {core_ms:10.2f} {client_ms:12.2f} {client_ms / core_ms:7.2f} {wall_ms:10.2f}\n"
+
+
+def warehouse(robots: int) -> Instance:
+    """Robots that come one a tick."""
+    plan = Warehouse(columns=12, rows=30, stations=60)
+    return warehouse_instance(plan, Fleet(robots=robots, distinct="none", release=Range(0, robots)))
+
+
+if __name__ == "__main__":
+    sys.stdout.write("robots   core, ms   client, ms   ratio   wall, ms\n")
+    for asked in map(int, sys.argv[1:]):
+        sys.stdout.write(measure(asked))
