@@ -12,17 +12,17 @@ from carproof.markdown import markdown_table
 ROOT = Path(__file__).parents[1]
 KERNEL = ROOT / "verify" / "kernel"
 LAW = ("check", "joint_rules", "plan_rules", "instance_rules", "model", "rule", "refusal")
-BOUND = ("bound/verify", "bound/rules", "documents/bounds", "limits")
-ENCODER = ("optimum/encoding", "optimum/robot_clauses", "optimum/clauses", "optimum/rules", "limits")
+BOUND = ("bound/verify", "bound/rules", "documents/bounds")
+ENCODER = ("optimum/encoding", "optimum/robot_clauses", "optimum/clauses", "optimum/rules")
 UNSOLVABLE = ("optimum/proof", "optimum/unsolvable")
 CHECK = "`check`: no rule is broken"
 VERDICTS: dict[str, tuple[tuple[str, ...], str]] = {
     CHECK: (("documents/decoding", "documents/fields", "documents/instances", "documents/solutions"), ""),
     "`verify-bound`, without cuts": (BOUND, ""),
-    "`verify-bound`, with cuts": ((*BOUND, "bound/cuts", *ENCODER[:-1], "optimum/refutation"), ""),
-    "`verify-query` and `audit`": (("query/verify", "query/rules", "documents/query_certificates", "limits"), ""),
+    "`verify-bound`, with cuts": ((*BOUND, "bound/cuts", *ENCODER, "optimum/refutation"), ""),
+    "`verify-query` and `audit`": (("query/verify", "query/rules", "documents/query_certificates"), ""),
     "with `--kernel`": (
-        ("kernel", "documents/bounds", "limits"),
+        ("kernel", "documents/bounds"),
         "[the proved kernel](#the-proved-kernel), and not the law in Python",
     ),
     "`verify-proof`, an optimum": (("optimum/proof", "plain_files", *ENCODER, "optimum/refutation"), ""),
@@ -31,10 +31,10 @@ VERDICTS: dict[str, tuple[tuple[str, ...], str]] = {
         "",
     ),
     "`verify-proof`, unsolvable otherwise": (
-        ("optimum/proof", "optimum/unsolvable", "optimum/joint_search", "optimum/rules", "limits"),
+        ("optimum/proof", "optimum/unsolvable", "optimum/joint_search", "optimum/rules"),
         "",
     ),
-    "`certify`: z3 agrees on capacity and exchange": (("certificate", "lemmas/smt", "limits"), "z3"),
+    "`certify`: z3 agrees on capacity and exchange": (("certificate", "lemmas/smt"), "z3"),
     "`theorems`: a lemma holds": (
         ("lemmas/engine", "lemmas/smt", "lemmas/vocabulary", "lemmas/derivation"),
         "z3, the argument by hand in the docstring",

@@ -29,7 +29,7 @@ LIMITS: Mapping[Feature, tuple[Rule[[Instance], bool], str, str]] = {
     "following": (
         following_is_allowed,
         "$.following",
-        "following must be allowed here: checks and planners alone know of instances that forbid it",
+        "following must be allowed here: searches for optima do not know instances that forbid it",
     ),
     "groups": (
         groups_are_absent,

@@ -1,6 +1,5 @@
 """The questions to the kernel's program, and the results of its answers. Shell scripts stand in for it."""
 
-from dataclasses import replace
 from pathlib import Path
 
 import msgspec
@@ -92,14 +91,6 @@ def test_a_proof_is_verified_from_its_files(folder: Path) -> None:
     assert (verdict.accepted, verdict.rule, verdict.message) == (False, "bound/total", "too much")
     command, directory = (folder / "arguments").read_text().splitlines()
     assert (command, Path(directory).exists()) == ("verify-proof", False)
-
-
-def test_where_following_is_forbidden_nothing_is_asked(folder: Path) -> None:
-    answers(folder, ACCEPTED)
-    forbidding = replace(INSTANCE, following="forbidden")
-    with pytest.raises(Refusal, match="limit/following"):
-        request("check", forbidding)
-    assert not (folder / "arguments").exists()
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ instead. The rules of single plans and of the list of plans get no second opinio
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TypeAlias
 
@@ -100,8 +100,8 @@ def certify(instance: Instance, solution: Solution, advance: Callable[[], None] 
 def certify_together(
     instance: Instance, plans: Sequence[Plan], advance: Callable[[], None] = lambda: None
 ) -> Certificate:
-    """Ask z3 about every resource that is visited: `joint/capacity` and `joint/exchange` alone."""
-    refuse(instance, "following", "groups", "stops")
+    """Ask z3 about every resource that is visited: the rules `joint/...` alone."""
+    refuse(instance, "groups", "stops")
     solver, terms = Solver(), Terms()
     index = instance.graph.index
     stays = stays_by_resource(instance, plans)
@@ -109,7 +109,10 @@ def certify_together(
     opposite = [(one, other) for one, other in moves if index[one] < index[other] and (other, one) in moves]
     breaches: list[Breach] = []
     for resource, visitors in stays.items():
-        breaches.extend(overfull(solver, terms, instance.graph.resource[resource], visitors))
+        place = instance.graph.resource[resource]
+        breaches.extend(overfull(solver, terms, "joint/capacity", place, visitors))
+        if instance.gap:
+            breaches.extend(overfull(solver, terms, "joint/following", place, longer(visitors, instance.gap)))
         advance()
     for one, other in opposite:
         breaches.extend(exchanged(solver, terms, (one, other), moves[one, other], moves[other, one]))
@@ -138,14 +141,21 @@ def moves_by_pair(instance: Instance, plans: Sequence[Plan]) -> Mapping[Pair, Ti
     return moves
 
 
-def overfull(solver: Solver, terms: Terms, resource: Resource, stays: Stays) -> Iterator[Breach]:
+def longer(stays: Stays, gap: int) -> Stays:
+    """The visits, each `gap` ticks longer."""
+    return {
+        robot: [each if each.leave is None else replace(each, leave=each.leave + gap) for each in visits]
+        for robot, visits in stays.items()
+    }
+
+
+def overfull(solver: Solver, terms: Terms, rule: str, resource: Resource, stays: Stays) -> Iterator[Breach]:
     """A tick at which more robots are in the resource than its capacity, if there is one."""
     occupies = {robot: any_of(*map(terms.in_visit, visits)) for robot, visits in stays.items()}
     model = solver.find_model([at_least(resource.capacity + 1, list(occupies.values()))])
     if model is not None:
         reason = f"capacity {resource.capacity}"
-        robots = _robots_of(model, occupies)
-        yield Breach("joint/capacity", robots, resource.id, int(model.value(terms.tick)), reason)
+        yield Breach(rule, _robots_of(model, occupies), resource.id, int(model.value(terms.tick)), reason)
 
 
 def exchanged(solver: Solver, terms: Terms, pair: Pair, there: Ticks, back: Ticks) -> Iterator[Breach]:

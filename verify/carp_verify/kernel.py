@@ -95,7 +95,7 @@ def program() -> str:
 
 def request(op: str, instance: Instance, **documents: object) -> bytes:
     """One line that asks the kernel; raises `Refusal` if it does not know the instance's rules."""
-    refuse(instance, "following", "groups", "stops")
+    refuse(instance, "stops")
     return msgspec.json.encode({"op": op, "instance": instance_document(instance), **documents}) + b"\n"
 
 

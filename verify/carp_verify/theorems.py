@@ -21,7 +21,7 @@ class Theorem:
         return f"verify/kernel/{self.module}.v"
 
 
-_OF_INSTANCES = ("resource-id", "capacity", "duration", "edge", "robot-id", "endpoint", "release", "pace")
+_OF_INSTANCES = ("resource-id", "capacity", "duration", "edge", "group", "robot-id", "endpoint", "release", "pace")
 _OF_PLANS = ("start", "goal", "resource", "move", "contiguous", "duration")
 
 THEOREMS = (
@@ -41,6 +41,8 @@ THEOREMS = (
             *(f"plan/{name}" for name in _OF_PLANS),
             "joint/capacity",
             "joint/exchange",
+            "joint/following",
+            "joint/group",
         ),
     ),
     Theorem(
@@ -58,7 +60,7 @@ THEOREMS = (
     Theorem(
         "Windows",
         "free_windows_are_maximal",
-        "the computed windows are exactly the maximal intervals with room for one more robot",
+        "the computed windows are exactly the maximal intervals in which one more robot has room, in groups too",
         ("window/free",),
     ),
     Theorem(
@@ -75,9 +77,9 @@ THEOREMS = (
     ),
     Theorem(
         "QuerySound",
-        "stays_that_fit_keep_capacity",
-        "a stay within a free window leaves no tick with more robots than the capacity",
-        ("window/fits", "joint/capacity", "query/sound"),
+        "stays_that_fit_have_room",
+        "at each tick of a stay within a free window the resource has room for one more robot",
+        ("window/fits", "joint/capacity", "joint/following", "joint/group", "query/sound"),
     ),
     Theorem(
         "QuerySearch",
@@ -200,7 +202,7 @@ THEOREMS = (
     Theorem(
         "Execution",
         "order_preserving_execution_is_safe",
-        "robots that keep the order of a lawful solution break no joint rule, whatever the delays",
+        "robots that keep the order of a lawful solution break no joint rule, whatever the delays; without groups",
         ("execution/order", "execution/exchange", "joint/capacity", "joint/exchange"),
     ),
     Theorem(
@@ -260,13 +262,13 @@ THEOREMS = (
     Theorem(
         "Retiming",
         "retimed_solution_is_lawful",
-        "if each robot appears at its release, the retimed plans are a lawful solution",
+        "if each robot appears at its release, the retimed plans are a lawful solution; without groups",
         ("execution/duration", "execution/order"),
     ),
     Theorem(
         "Switching",
         "switched_order_is_safe",
-        "plans at ticks that keep the edges of a switched order break no joint rule",
+        "plans at ticks that keep the edges of a switched order break no joint rule; without groups",
         ("joint/capacity", "joint/exchange"),
     ),
     Theorem(

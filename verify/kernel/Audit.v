@@ -151,7 +151,7 @@ Theorem audited_plans_are_optimal certificates : audit i s certificates = None -
 Proof.
   intros H before id later committed p a rival O C.
   exact (audit_from_is_right (index fst certificates) (order s) [] [] empty_context eq_refl (Forall2_nil _)
-    (empty_context_represents i) H before id later committed p a rival O C).
+    (empty_context_represents i well_formed) H before id later committed p a rival O C).
 Qed.
 End Instance.
 

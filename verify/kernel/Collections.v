@@ -165,3 +165,10 @@ Proof.
   induction l as [|x l IH]; simpl; intros N; [constructor|]. inversion N as [|? ? H K]; subst.
   constructor; auto. intros X. apply H, in_or_app. auto.
 Qed.
+
+Lemma distinct_together {A} (l m : list A) : NoDup l -> NoDup m -> (forall x, In x l -> ~ In x m) -> NoDup (l ++ m).
+Proof.
+  intros L M D. induction L as [|x l X L IH]; simpl; auto. constructor.
+  - intros H. apply in_app_or in H as [H|H]; [tauto|]. exact (D x (or_introl eq_refl) H).
+  - apply IH. intros y Y. apply D. right. exact Y.
+Qed.

@@ -3,7 +3,7 @@
     An execution has the form of plans: the visits that each robot has entered, the last of them perhaps not left. Its
     ticks are what happened, whatever the delays were. A robot that has not left a place counts as there for ever. *)
 Require Import ZArith List Bool Lia.
-From Carproof Require Import Law.
+From Carproof Require Import Law Ways.
 Import ListNotations.
 Open Scope Z_scope.
 
@@ -12,10 +12,9 @@ Definition Visit_of (ps : list plan) (id : Z) (n : nat) (v : visit) : Prop :=
   exists p, In p ps /\ plan_robot p = id /\ nth_error (visits p) n = Some v.
 
 Section Execution.
-Variables (i : instance) (following_is_forbidden : bool).
+Variable i : instance.
 
-(** The ticks for which a place that a robot has left stays free. *)
-Definition gap : Z := if following_is_forbidden then 1 else 0.
+Local Notation gap := (gap i).
 
 (** joint/capacity, and joint/following where following is forbidden: no tick has more robots in a resource than its
     capacity if each stay counts [gap] ticks longer. *)
@@ -109,12 +108,13 @@ Proof. intros (p & P & <- & _). apply in_map. exact P. Qed.
 Lemma visit_by_membership ps p v : In p ps -> In v (visits p) -> exists n, Visit_of ps (plan_robot p) n v.
 Proof. intros P V. apply In_nth_error in V as (n & V). exists n, p. auto. Qed.
 
-(** Room with no gap is capacity. *)
-Lemma room_is_capacity ps : Room_is_kept ps -> Capacity_is_kept i ps.
+(** Without groups, room in the resources is all that limits ask for. *)
+Lemma room_keeps_limits ps : groups i = [] -> Room_is_kept ps -> Limits_are_kept i ps.
 Proof.
-  intros K r tick ids R N O. apply (K r tick ids R N). intros id H. destruct (O id H) as (p & v & P & <- & V & E & T).
-  destruct (visit_by_membership ps p v P V) as (n & X). exists n, v. destruct T as [T U]. repeat split; auto.
-  unfold Before in *. destruct (leave v); simpl; auto. unfold gap. destruct following_is_forbidden; lia.
+  intros G K l tick ids L N C. unfold limits in L. rewrite G, app_nil_r in L. apply in_map_iff in L as (r & <- & R).
+  apply (K r tick ids R N). intros id I. destruct (C id I) as (place & back & [<-|[]] & B & p & v & P & <- & V & E & T).
+  destruct (visit_by_membership ps p v P V) as (n & X). exists n, v. destruct T as [T U]. repeat split; auto; [lia|].
+  unfold Before in *. destruct (leave v); simpl; auto. lia.
 Qed.
 
 (** * Safety *)
@@ -194,7 +194,7 @@ Proof.
   exists p, v, w. repeat split; auto. apply consecutive_by_number. eauto.
 Qed.
 
-Lemma exchanges_stay_avoided : Exchanges_are_avoided i ps -> Exchanges_are_avoided i ts.
+Lemma exchanges_stay_avoided : Swaps_are_avoided i ps -> Swaps_are_avoided i ts.
 Proof.
   intros A one other r s tick N R Q M O.
   destruct (moves_of_execution one r s tick M) as (m & v & v' & x & V & V' & E & E' & X & <-).
@@ -216,12 +216,12 @@ Proof.
   constructor; auto. intros X. apply H, in_or_app. auto.
 Qed.
 
-(** An execution that keeps the order of a lawful solution breaks no joint rule, whatever its delays. *)
-Theorem order_preserving_execution_is_safe s ts : Lawful i s -> Room_is_kept (plans s) -> Executes (plans s) ts ->
-  Room_is_kept ts /\ Capacity_is_kept i ts /\ Exchanges_are_avoided i ts.
+(** An execution that keeps the order of a lawful solution breaks no joint rule, whatever its delays; without groups. *)
+Theorem order_preserving_execution_is_safe s ts : groups i = [] -> Lawful i s -> Room_is_kept (plans s) ->
+  Executes (plans s) ts -> Room_is_kept ts /\ Limits_are_kept i ts /\ Exchanges_are_avoided i ts.
 Proof.
-  intros L K E. pose proof (planned_once s L) as N. pose proof (room_stays_kept (plans s) ts E K) as R.
-  split; [exact R|]. split; [exact (room_is_capacity ts R)|].
-  exact (exchanges_stay_avoided (plans s) ts N E (exchanges_are_avoided i s L)).
+  intros G L K E. pose proof (planned_once s L) as N. pose proof (room_stays_kept (plans s) ts E K) as R.
+  split; [exact R|]. split; [exact (room_keeps_limits ts G R)|]. apply (exchanges_without_groups i _ G).
+  exact (exchanges_stay_avoided (plans s) ts N E (swaps_are_avoided i s L)).
 Qed.
 End Execution.

@@ -130,34 +130,10 @@ Proof.
   - destruct (IH x C w W) as (l & _ & _ & T). repeat split; auto; lia.
 Qed.
 
-(** How many of the visits are to the place and hold the tick. *)
-Definition holding (place tick : Z) (v : visit) : bool :=
-  (visit_resource v =? place) && holds (enter v, leave v) tick.
-
 Lemma holds_iff v tick : holds (enter v, leave v) tick = true <-> Holds v tick.
 Proof.
   unfold holds, Holds, before, Before. simpl. rewrite andb_true_iff, Z.leb_le.
   destruct (leave v); rewrite ?Z.ltb_lt; tauto.
-Qed.
-
-Lemma holding_iff place tick v : holding place tick v = true <-> visit_resource v = place /\ Holds v tick.
-Proof. unfold holding. rewrite andb_true_iff, Z.eqb_eq, holds_iff. tauto. Qed.
-
-Lemma chain_holds_once place tick v later : Chain i a v later ->
-  (length (filter (holding place tick) (v :: later)) <= 1)%nat.
-Proof.
-  revert v. induction later as [|w rest IH]; intros v C.
-  - simpl. destruct (holding place tick v); simpl; lia.
-  - pose proof (chain_later v (w :: rest) C) as L. destruct C as (_ & _ & _ & C). specialize (IH w C).
-    change (filter (holding place tick) (v :: w :: rest)) with
-      (if holding place tick v
-       then v :: filter (holding place tick) (w :: rest) else filter (holding place tick) (w :: rest)).
-    destruct (holding place tick v) eqn:H; [|exact IH].
-    enough (E : filter (holding place tick) (w :: rest) = []) by (rewrite E; simpl; lia).
-    destruct (filter (holding place tick) (w :: rest)) as [|x l] eqn:E; auto.
-    assert (X : In x (filter (holding place tick) (w :: rest))) by (rewrite E; left; auto).
-    apply filter_In in X as [X G]. apply holding_iff in H, G. destruct H as [_ [_ H]], G as [_ [G _]].
-    destruct (L x X) as (l' & F & T & _). rewrite F in H. simpl in H. lia.
 Qed.
 
 Lemma chain_enters_once v later : Chain i a v later -> forall x y z w,
@@ -180,77 +156,112 @@ End Robot.
 
 (** * Plans together *)
 
-(** The stays of plans by resource. *)
+(** Robots are counted in limits, which have keys. *)
+Section Keys.
+(** The keys of the limits that a place is in, and the ticks for which a robot still counts that has left them. *)
+Variables (keys : Z -> list Z) (gap : Z).
+
+Definition has_key (key place : Z) : bool := existsb (Z.eqb key) (keys place).
+
+Definition end_of_count (end_ : option Z) : option Z := match end_ with Some l => Some (l + gap) | None => None end.
+
+(** The stays of plans by the keys of limits. A stay ends later by the gap, unless its robot moves on within the limit:
+    so a robot counts once. *)
+Fixpoint add_from (m : Map.t (list stay)) (v : visit) (here : list Z) (later : list visit) : Map.t (list stay) :=
+  let next := match later with [] => [] | w :: _ => keys (visit_resource w) end in
+  let end_for key := if existsb (Z.eqb key) next then leave v else end_of_count (leave v) in
+  let m := fold_left (fun m key => enlist key (enter v, end_for key) m) here m in
+  match later with [] => m | w :: rest => add_from m w next rest end.
+
 Definition add_visits (m : Map.t (list stay)) (p : plan) : Map.t (list stay) :=
-  fold_left (fun m v => enlist (visit_resource v) (enter v, leave v) m) (visits p) m.
+  match visits p with [] => m | v :: later => add_from m v (keys (visit_resource v)) later end.
 Definition timetable (ps : list plan) : Map.t (list stay) := fold_left add_visits ps (Map.empty (list stay)).
 
-Definition occupies (p : plan) (place tick : Z) : bool := existsb (holding place tick) (visits p).
+(** The visit counts in the limit of the key at the tick. *)
+Definition counts_in (key tick : Z) (v : visit) : bool :=
+  has_key key (visit_resource v) && holds (enter v, end_of_count (leave v)) tick.
+Definition counts (p : plan) (key tick : Z) : bool := existsb (counts_in key tick) (visits p).
 
-(** How many of the plans occupy the place at the tick. *)
-Definition occupants (ps : list plan) (place tick : Z) : Z :=
-  Z.of_nat (length (filter (fun p => occupies p place tick) ps)).
+(** How many of the plans count in the limit at the tick. *)
+Definition occupants (ps : list plan) (key tick : Z) : Z :=
+  Z.of_nat (length (filter (fun p => counts p key tick) ps)).
 
-(** No plan has two visits that hold the same tick in the same place. *)
-Definition Holds_once (p : plan) : Prop :=
-  forall place tick, (length (filter (holding place tick) (visits p)) <= 1)%nat.
+(** The stays of one plan in one limit. *)
+Fixpoint stays_from (key : Z) (v : visit) (later : list visit) : list stay :=
+  let goes_on := match later with [] => false | w :: _ => has_key key (visit_resource w) end in
+  let rest := match later with [] => [] | w :: rest => stays_from key w rest end in
+  if has_key key (visit_resource v)
+  then (enter v, if goes_on then leave v else end_of_count (leave v)) :: rest else rest.
 
-Lemma occupancy_of_add_visits p place tick m :
-  occupancy (listed (add_visits m p) place) tick
-  = Z.of_nat (length (filter (holding place tick) (visits p))) + occupancy (listed m place) tick.
+Definition stays_of_plan (key : Z) (p : plan) : list stay :=
+  match visits p with [] => [] | v :: later => stays_from key v later end.
+
+(** The stays of a plan in a limit hold a tick once if the plan counts then. *)
+Definition Counts_once (p : plan) : Prop :=
+  forall key tick, occupancy (stays_of_plan key p) tick = Z.b2z (counts p key tick).
+
+Hypothesis keys_are_different : forall place, NoDup (keys place).
+
+Lemma occupancy_of_cons s l tick : occupancy (s :: l) tick = Z.b2z (holds s tick) + occupancy l tick.
+Proof. unfold occupancy. simpl. destruct (holds s tick); simpl length; unfold Z.b2z; lia. Qed.
+
+Lemma listed_by_keys (f : Z -> stay) key here : NoDup here -> forall m,
+  listed (fold_left (fun m k => enlist k (f k) m) here m) key
+  = if existsb (Z.eqb key) here then f key :: listed m key else listed m key.
 Proof.
-  unfold add_visits. revert m. induction (visits p) as [|v vs IH]; intros m; simpl; [lia|].
-  rewrite IH, listed_enlist. unfold holding at 2.
-  destruct (Z.eqb_spec (visit_resource v) place) as [->|N]; simpl; [|lia].
-  unfold occupancy at 1. simpl. destruct (holds (enter v, leave v) tick); simpl length; unfold occupancy; lia.
+  induction 1 as [|k here N D IH]; intros m; simpl; auto. rewrite IH, listed_enlist.
+  destruct (Z.eqb_spec key k) as [->|E]; simpl.
+  - rewrite Z.eqb_refl. destruct (existsb (Z.eqb k) here) eqn:X; auto.
+    destruct N. apply existsb_exists in X as (j & J & X). apply Z.eqb_eq in X. congruence.
+  - destruct (Z.eqb_spec k key); [congruence|]. reflexivity.
 Qed.
 
-Lemma holds_once_counts p place tick : Holds_once p ->
-  Z.of_nat (length (filter (holding place tick) (visits p))) = if occupies p place tick then 1 else 0.
+Lemma occupancy_of_add_from key tick later : forall v m,
+  occupancy (listed (add_from m v (keys (visit_resource v)) later) key) tick
+  = occupancy (stays_from key v later) tick + occupancy (listed m key) tick.
 Proof.
-  intros O. specialize (O place tick). destruct (occupies p place tick) eqn:E.
-  - apply existsb_exists in E as (v & V & H).
-    assert (F : In v (filter (holding place tick) (visits p))) by (apply filter_In; auto).
-    destruct (filter (holding place tick) (visits p)) as [|x l]; [destruct F | simpl in *; lia].
-  - destruct (filter (holding place tick) (visits p)) as [|x l] eqn:F; auto.
-    assert (X : In x (filter (holding place tick) (visits p))) by (rewrite F; left; auto).
-    apply filter_In in X as [X H]. enough (occupies p place tick = true) by congruence.
-    apply existsb_exists. eauto.
+  induction later as [|w rest IH]; intros v m; cbn [add_from stays_from]; cbv zeta; rewrite ?IH;
+    rewrite (listed_by_keys (fun k => (enter v, _))) by apply keys_are_different;
+    fold (has_key key (visit_resource v)); destruct (has_key key (visit_resource v)); rewrite ?occupancy_of_cons.
+  - simpl. unfold occupancy. simpl. lia.
+  - reflexivity.
+  - unfold has_key. lia.
+  - lia.
 Qed.
 
-(** In the timetable the stays that hold a tick are as many as the plans that occupy the place. *)
-Theorem occupancy_of_timetable ps place tick : (forall p, In p ps -> Holds_once p) ->
-  occupancy (listed (timetable ps) place) tick = occupants ps place tick.
+Lemma occupancy_of_add_visits p key tick m :
+  occupancy (listed (add_visits m p) key) tick
+  = occupancy (stays_of_plan key p) tick + occupancy (listed m key) tick.
 Proof.
-  intros O. unfold timetable. assert (H : forall m, occupancy (listed (fold_left add_visits ps m) place) tick
-    = occupants ps place tick + occupancy (listed m place) tick).
+  unfold add_visits, stays_of_plan. destruct (visits p) as [|v later]; [reflexivity | apply occupancy_of_add_from].
+Qed.
+
+(** In the timetable the stays that hold a tick are as many as the plans that count in the limit. *)
+Theorem occupancy_of_timetable ps key tick : (forall p, In p ps -> Counts_once p) ->
+  occupancy (listed (timetable ps) key) tick = occupants ps key tick.
+Proof.
+  intros O. unfold timetable. assert (H : forall m, occupancy (listed (fold_left add_visits ps m) key) tick
+    = occupants ps key tick + occupancy (listed m key) tick).
   - induction ps as [|p ps IH]; intros m; simpl; [unfold occupants; simpl; lia|].
     rewrite IH by (intros; apply O; right; auto). rewrite occupancy_of_add_visits.
-    rewrite holds_once_counts by (apply O; left; auto). unfold occupants. simpl.
-    destruct (occupies p place tick); simpl length; lia.
+    rewrite (O p (or_introl eq_refl)). unfold occupants. simpl.
+    destruct (counts p key tick); simpl length; unfold Z.b2z; lia.
   - rewrite H, listed_empty. unfold occupancy. simpl. lia.
 Qed.
 
-Lemma occupies_iff p place tick : occupies p place tick = true <->
-  exists v, In v (visits p) /\ visit_resource v = place /\ Holds v tick.
-Proof.
-  unfold occupies. rewrite existsb_exists. split; intros (v & V & H); exists v; split; auto; apply holding_iff; auto.
-Qed.
-
 (** For plans of different robots, "at most [most] of the robots" is a number of plans. *)
-Lemma occupants_iff ps place tick most : NoDup (map plan_robot ps) ->
-  (forall ids, NoDup ids -> (forall id, In id ids -> Occupies ps id place tick) -> Z.of_nat (length ids) <= most)
-  <-> occupants ps place tick <= most.
+Lemma occupants_iff (P : Z -> Prop) ps key tick most : NoDup (map plan_robot ps) ->
+  (forall id, P id <-> exists p, In p ps /\ plan_robot p = id /\ counts p key tick = true) ->
+  (forall ids, NoDup ids -> (forall id, In id ids -> P id) -> Z.of_nat (length ids) <= most)
+  <-> occupants ps key tick <= most.
 Proof.
-  intros N. set (here := filter (fun p => occupies p place tick) ps).
-  assert (I : forall id, In id (map plan_robot here) <-> Occupies ps id place tick).
-  { intros id. rewrite in_map_iff. unfold here, Occupies. setoid_rewrite filter_In. setoid_rewrite occupies_iff.
-    split.
-    - intros (p & <- & P & v & V). exists p, v. tauto.
-    - intros (p & v & P & <- & V). exists p. repeat split; eauto. }
+  intros N E. set (here := filter (fun p => counts p key tick) ps).
+  assert (I : forall id, In id (map plan_robot here) <-> P id).
+  { intros id. rewrite in_map_iff, E. unfold here. setoid_rewrite filter_In.
+    split; intros (p & H); exists p; tauto. }
   assert (D : NoDup (map plan_robot here)).
   { unfold here. clear -N. induction ps as [|p ps IH]; simpl; [constructor|].
-    inversion N as [|? ? P Q]; subst. destruct (occupies p place tick); simpl; auto.
+    inversion N as [|? ? P Q]; subst. destruct (counts p key tick); simpl; auto.
     constructor; auto. intros H. apply P. apply in_map_iff in H as (q & <- & H).
     apply in_map. apply filter_In in H. tauto. }
   unfold occupants. fold here. rewrite <- (map_length plan_robot here). split.
@@ -258,6 +269,80 @@ Proof.
   - intros H ids M O. enough (length ids <= length (map plan_robot here))%nat by lia.
     apply NoDup_incl_length; auto. intros id J. apply I, O, J.
 Qed.
+
+Section Chain.
+Variables (i : instance) (a : robot).
+Hypothesis well_formed : Well_formed i.
+Hypothesis of_instance : In a (robots i).
+Hypothesis gap_is_short : 0 <= gap <= 1.
+
+(** A visit counts in a limit at the ticks at which it is there, and for the gap after them. *)
+Lemma counts_in_iff key tick v : Stay_lawful i a v -> counts_in key tick v = true <->
+  In key (keys (visit_resource v)) /\ exists back, 0 <= back <= gap /\ Holds v (tick - back).
+Proof.
+  intros S. unfold counts_in, has_key, holds, Holds, before, Before. simpl. rewrite !andb_true_iff, Z.leb_le.
+  assert (K : existsb (Z.eqb key) (keys (visit_resource v)) = true <-> In key (keys (visit_resource v))).
+  { rewrite existsb_exists. split; [intros (k & H & E); apply Z.eqb_eq in E; congruence|].
+    intros H. exists key. split; auto. apply Z.eqb_refl. }
+  rewrite K. destruct (leave v) as [l|] eqn:L; simpl.
+  - pose proof (stay_is_positive i a well_formed of_instance v l S L) as P. rewrite Z.ltb_lt. split.
+    + intros (H & T & B). split; auto. exists (Z.max 0 (tick - l + 1)). lia.
+    + intros (H & back & B & T & U). repeat split; auto; lia.
+  - split.
+    + intros (H & T & _). split; auto. exists 0. rewrite Z.sub_0_r. repeat split; auto; lia.
+    + intros (H & back & B & T & _). repeat split; auto. lia.
+Qed.
+
+Lemma later_counts_later key tick v later : Chain i a v later -> tick < enter v ->
+  existsb (counts_in key tick) (v :: later) = false.
+Proof.
+  intros C T. apply not_true_iff_false. intros H. apply existsb_exists in H as (x & X & H).
+  assert (enter v <= enter x).
+  { destruct X as [<-|X]; [lia|]. destruct (chain_later i a well_formed of_instance v later C x X) as (_ & _ & _ & L). lia. }
+  unfold counts_in, holds in H. simpl in H. lia.
+Qed.
+
+Lemma chain_counts_once key tick later : forall v, Chain i a v later ->
+  occupancy (stays_from key v later) tick = Z.b2z (existsb (counts_in key tick) (v :: later)).
+Proof.
+  induction later as [|w rest IH]; intros v C.
+  - cbn [stays_from existsb]. cbv zeta. unfold counts_in.
+    destruct (has_key key (visit_resource v)); simpl; [|reflexivity].
+    rewrite occupancy_of_cons, orb_false_r. unfold occupancy. simpl. lia.
+  - pose proof C as (_ & L & _ & D). specialize (IH w D).
+    assert (Sw : Stay_lawful i a w) by (destruct rest; apply D).
+    pose proof (later_counts_later key tick w rest D) as N.
+    cbn [stays_from]. cbv zeta. change (existsb (counts_in key tick) (v :: w :: rest)) with
+      (counts_in key tick v || existsb (counts_in key tick) (w :: rest)).
+    fold (stays_from key w rest).
+    assert (A : ~ In key (keys (visit_resource w)) -> tick < enter w + gap ->
+      existsb (counts_in key tick) (w :: rest) = false).
+    { intros K T. cbn [existsb]. destruct (counts_in key tick w) eqn:W.
+      { apply (counts_in_iff key tick w Sw) in W as [W _]. tauto. }
+      simpl. destruct rest as [|x rest]; auto. destruct D as (_ & M & _ & D).
+      pose proof (stay_is_positive i a well_formed of_instance w _ Sw M).
+      apply (later_counts_later key tick x rest D). lia. }
+    unfold counts_in at 1. destruct (has_key key (visit_resource v)) eqn:V; [|exact IH].
+    rewrite occupancy_of_cons, IH, L. unfold holds, before. cbn [end_of_count fst snd].
+    destruct (has_key key (visit_resource w)) eqn:W.
+    + unfold before. destruct (Z.leb_spec (enter v) tick) as [T|T].
+      2:{ simpl. reflexivity. }
+      destruct (Z.ltb_spec tick (enter w)) as [U|U]; simpl.
+      * change (counts_in key tick w || existsb (counts_in key tick) rest) with
+          (existsb (counts_in key tick) (w :: rest)). rewrite N by exact U.
+        destruct (Z.ltb_spec tick (enter w + gap)); [reflexivity | lia].
+      * destruct (Z.ltb_spec tick (enter w + gap)); [|reflexivity].
+        replace (counts_in key tick w) with true; [reflexivity|]. symmetry. unfold counts_in. rewrite W. simpl.
+        unfold holds. simpl. apply andb_true_iff. split; [lia|]. unfold before.
+        destruct (leave w) as [l|] eqn:M; simpl; auto.
+        pose proof (stay_is_positive i a well_formed of_instance w l Sw M). lia.
+    + unfold before. destruct ((enter v <=? tick) && (tick <? enter w + gap)) eqn:U; [|reflexivity].
+      rewrite A; [reflexivity | | lia].
+      intros K. apply not_true_iff_false in W. apply W. unfold has_key. apply existsb_exists. exists key.
+      split; auto. apply Z.eqb_refl.
+Qed.
+End Chain.
+End Keys.
 
 (** * Moves *)
 

@@ -7,9 +7,9 @@ Import ListNotations.
 Open Scope Z_scope.
 
 Section Lateness.
-Variables (i : instance) (following_is_forbidden : bool).
-Notation Executes := (Executes i following_is_forbidden).
-Notation dependencies := (dependencies i following_is_forbidden).
+Variable i : instance.
+Notation Executes := (Executes i).
+Notation dependencies := (dependencies i).
 
 (** The robot needs that number of ticks more for the visit than the duration. *)
 Definition delays := node -> Z.
@@ -62,25 +62,25 @@ Proof.
   pose proof (delays_are_positive (fst m)). destruct (enter (snd m) <? tick); lia.
 Qed.
 
-Lemma staying_takes_time e : Edge i following_is_forbidden ps e -> by_staying e = true -> 1 <= ticks e.
+Lemma staying_takes_time e : Edge i ps e -> by_staying e = true -> 1 <= ticks e.
 Proof.
   pose proof (needs_are_positive i s well_formed lawful) as P.
   intros [n v w V W|m v v' n w V W _ _ V'|m v n w V W _ _ _]; simpl; [|discriminate|]; intros _.
   - exact (P _ _ _ V).
-  - specialize (P _ _ _ V). unfold Execution.gap. destruct following_is_forbidden; lia.
+  - specialize (P _ _ _ V). unfold Law.gap. destruct (following_is_forbidden i); lia.
 Qed.
 
 Lemma latest_entries_keep_edges e : In e (dependencies ps) -> Keeps (latest_entry ps late) (delayed late e).
 Proof.
-  intros E. pose proof (edges_join_nodes i following_is_forbidden s lawful e E) as [M N].
+  intros E. pose proof (edges_join_nodes i s lawful e E) as [M N].
   rewrite in_nodes in M, N. destruct M as (v & V), N as (w & W).
-  apply (in_dependencies i following_is_forbidden ps one_plan_each) in E.
-  destruct (execution_keeps_edges i following_is_forbidden s well_formed lawful ps e w) as (v0 & V0 & K);
+  apply (in_dependencies i ps one_plan_each) in E.
+  destruct (execution_keeps_edges i s well_formed lawful ps e w) as (v0 & V0 & K);
     [apply lawful_solution_executes_itself; auto | exact E | exact W |].
   assert (v0 = v) as -> by eauto using visit_is_unique. unfold Keeps, delayed, latest_entry. simpl.
   rewrite (proj2 (visit_at_iff ps (earlier e) v one_plan_each) V).
   rewrite (proj2 (visit_at_iff ps (later e) w one_plan_each) W).
-  destruct (edges_take_time i following_is_forbidden s well_formed lawful e E) as [P _].
+  destruct (edges_take_time i s well_formed lawful e E) as [P _].
   destruct (delay_grows (enter v) (enter w)) as [D G]; [lia|].
   destruct (by_staying e) eqn:B; [|lia]. pose proof (staying_takes_time e E B).
   specialize (G (earlier e, v)). simpl in G. specialize (G (proj2 (in_stays ps (earlier e) v) V)). lia.
@@ -105,15 +105,15 @@ Proof.
   set (t := entry_in_order ps late). assert (K : forall e, In e (dependencies ps) -> Keeps t (delayed late e)).
   { intros e E. apply settled_keeps_edges with (latest_entry ps late) (nodes ps).
     - intros f F. apply in_map_iff in F as (g & <- & G). split; [apply latest_entries_keep_edges, G|].
-      apply (edges_join_nodes i following_is_forbidden s lawful g G).
+      apply (edges_join_nodes i s lawful g G).
     - exact latest_entries_are_allowed.
     - destruct (distance_is_positive release_entry (latest_entry ps late) (nodes ps)) as [D _];
         [exact latest_entries_are_allowed | lia].
     - apply in_map. exact E. }
   split; [exact K|]. split; [|split].
   - intros other L R n. apply settled_is_least; [|exact R]. intros e E. apply in_map_iff in E as (f & <- & F). auto.
-  - apply (ticks_that_keep_the_edges_are_an_execution i following_is_forbidden s well_formed lawful).
-    + intros e E. apply (in_dependencies i following_is_forbidden ps one_plan_each) in E. specialize (K e E).
+  - apply (ticks_that_keep_the_edges_are_an_execution i s well_formed lawful).
+    + intros e E. apply (in_dependencies i ps one_plan_each) in E. specialize (K e E).
       unfold Keeps, delayed in *. simpl in K. pose proof (delays_are_positive (earlier e)).
       destruct (by_staying e); lia.
     + intros a v A _. rewrite <- (release_of_robot i well_formed a A).

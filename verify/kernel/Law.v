@@ -11,6 +11,9 @@ Open Scope Z_scope.
 (** A place that robots occupy: [capacity] robots fit in at a time, each needs [duration] ticks, times its pace. *)
 Record resource := Resource { resource_id : Z; capacity : Z; duration : Z }.
 
+(** Resources in which, all together, at most [group_capacity] robots fit at a time. *)
+Record group := Group { group_id : Z; group_resources : list Z; group_capacity : Z }.
+
 (** A request: go from [start] to [goal], not before the tick [release]. *)
 Record robot := Robot { robot_id : Z; start : Z; goal : Z; release : Z; pace : Z }.
 
@@ -22,7 +25,9 @@ Record instance := Instance {
   resources : list resource;
   edges : list (Z * Z);
   directed : bool;
+  groups : list group;
   after_goal : after;
+  following_is_forbidden : bool;
   robots : list robot
 }.
 
@@ -74,6 +79,13 @@ Record Well_formed (i : instance) : Prop := {
   (** ... and no edge is listed twice, in an undirected graph not in the other direction either. *)
   edges_are_unique : NoDup (edges i);
   edges_have_one_direction : directed i = false -> forall r s, In (r, s) (edges i) -> ~ In (s, r) (edges i);
+  (** instance/group: no two groups have the same id, a group names at least one resource, each of the graph and each
+      once, and its capacity is at least 1. *)
+  group_ids_are_unique : NoDup (map group_id (groups i));
+  groups_name_resources : forall g, In g (groups i) -> group_resources g <> [];
+  groups_are_of_the_graph : forall g r, In g (groups i) -> In r (group_resources g) -> In r (resource_ids i);
+  groups_name_resources_once : forall g, In g (groups i) -> NoDup (group_resources g);
+  group_capacities_are_positive : forall g, In g (groups i) -> 1 <= group_capacity g;
   (** instance/robot-id: no two robots have the same id. *)
   robot_ids_are_unique : NoDup (robot_ids i);
   (** instance/endpoint: start and goal are resources of the graph. *)
@@ -137,20 +149,41 @@ Definition Plans_lawful (i : instance) (ps : list plan) : Prop :=
 Definition Occupies (ps : list plan) (id place tick : Z) : Prop :=
   exists p v, In p ps /\ plan_robot p = id /\ In v (visits p) /\ visit_resource v = place /\ Holds v tick.
 
-(** joint/capacity: at no tick do more robots occupy a resource than its capacity. *)
-Definition Capacity_is_kept (i : instance) (ps : list plan) : Prop :=
-  forall r tick ids, In r (resources i) -> NoDup ids ->
-  (forall id, In id ids -> Occupies ps id (resource_id r) tick) -> Z.of_nat (length ids) <= capacity r.
+(** Resources that robots share: a resource by itself, or a group. *)
+Record limit := Limit { limit_places : list Z; limit_capacity : Z }.
+
+Definition limits (i : instance) : list limit :=
+  map (fun r => Limit [resource_id r] (capacity r)) (resources i)
+  ++ map (fun g => Limit (group_resources g) (group_capacity g)) (groups i).
+
+(** joint/following: where following is forbidden, a robot that leaves at a tick still counts at that tick. *)
+Definition gap (i : instance) : Z := if following_is_forbidden i then 1 else 0.
+
+(** A robot counts at the ticks at which it occupies one of the resources, and for the gap after them. *)
+Definition Counts (i : instance) (ps : list plan) (id : Z) (l : limit) (tick : Z) : Prop :=
+  exists place back, In place (limit_places l) /\ 0 <= back <= gap i /\ Occupies ps id place (tick - back).
+
+(** joint/capacity of a resource, joint/group of a group, and joint/following of both: at no tick do more robots count
+    than the capacity. A robot counts once, also while it moves within a group. *)
+Definition Limits_are_kept (i : instance) (ps : list plan) : Prop :=
+  forall l tick ids, In l (limits i) -> NoDup ids ->
+  (forall id, In id ids -> Counts i ps id l tick) -> Z.of_nat (length ids) <= limit_capacity l.
 
 (** A robot makes the move (source, target) at the tick at which it leaves the source and enters the target. *)
 Definition Makes_move (ps : list plan) (id source target tick : Z) : Prop :=
   exists p v w, In p ps /\ plan_robot p = id /\ Consecutive p v w /\
   visit_resource v = source /\ visit_resource w = target /\ enter w = tick.
 
-(** joint/exchange: no two robots make the moves (r, s) and (s, r) at the same tick, whatever the capacities. *)
+(** Two resources are close if they are the same or lie in one group of capacity 1. *)
+Definition Close (i : instance) (r s : Z) : Prop :=
+  r = s \/ exists g, In g (groups i) /\ group_capacity g = 1 /\ In r (group_resources g) /\ In s (group_resources g).
+
+(** joint/exchange: no two robots make moves (r, s) and (s', r') at the same tick where r is close to r' and s to s',
+    whatever the capacities. *)
 Definition Exchanges_are_avoided (i : instance) (ps : list plan) : Prop :=
-  forall one other r s tick, one <> other -> In r (resource_ids i) -> In s (resource_ids i) ->
-  Makes_move ps one r s tick -> Makes_move ps other s r tick -> False.
+  forall one other r s s' r' tick, one <> other ->
+  In r (resource_ids i) -> In s (resource_ids i) -> In s' (resource_ids i) -> In r' (resource_ids i) ->
+  Makes_move ps one r s tick -> Makes_move ps other s' r' tick -> Close i r r' -> Close i s s' -> False.
 
 (** * The rules of a solution *)
 
@@ -167,7 +200,7 @@ Record Lawful (i : instance) (s : solution) : Prop := {
   covers_robots : Covers_robots i s;
   orders_plans : Orders_plans s;
   plans_lawful : Plans_lawful i (plans s);
-  capacity_is_kept : Capacity_is_kept i (plans s);
+  limits_are_kept : Limits_are_kept i (plans s);
   exchanges_are_avoided : Exchanges_are_avoided i (plans s)
 }.
 

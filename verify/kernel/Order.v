@@ -3,7 +3,7 @@
 
     The functions are there for their proofs: none is faster than it must be to be right. *)
 Require Import ZArith List Bool Lia Relations.
-From Carproof Require Import Law Execution Dependencies.
+From Carproof Require Import Law Ways Execution Dependencies.
 Import ListNotations.
 Open Scope Z_scope.
 
@@ -33,10 +33,10 @@ Proof.
 Qed.
 
 Section Order.
-Variables (i : instance) (following_is_forbidden : bool).
-Notation gap := (gap following_is_forbidden).
-Notation Executes := (Executes i following_is_forbidden).
-Notation Left_before := (Left_before following_is_forbidden).
+Variable i : instance.
+Notation gap := (gap i).
+Notation Executes := (Executes i).
+Notation Left_before := (Left_before i).
 
 (** The ticks that the robot needs in the place at least. *)
 Definition needs (id place : Z) : Z :=
@@ -335,21 +335,21 @@ Lemma execution_keeps_edges ts e y : Executes ps ts -> Edge e -> Visit_of ts (fs
 Proof.
   intros X [n v w V W|m v v' n w V W E L V'|m v n w V W E L M] Y; simpl in *.
   - destruct (visit_before _ _ _ _ Y) as (x & X'). exists x. split; [exact X'|].
-    destruct (visits_are_planned _ _ ps ts X _ _ _ X') as (u & U & F).
+    destruct (visits_are_planned _ ps ts X _ _ _ X') as (u & U & F).
     assert (u = v) as -> by eauto using visit_is_unique.
     destruct (visit_is_known _ _ _ V) as (p & a & r & _ & _ & _ & A & G & _ & R & H).
-    pose proof (visits_are_contiguous _ _ ps ts X _ _ _ _ X' Y) as D. rewrite <- G, <- H, needs_of by auto.
-    rewrite <- G in X'. pose proof (durations_are_kept _ _ ps ts X a r _ x (enter y) A R X') as K.
+    pose proof (visits_are_contiguous _ ps ts X _ _ _ _ X' Y) as D. rewrite <- G, <- H, needs_of by auto.
+    rewrite <- G in X'. pose proof (durations_are_kept _ ps ts X a r _ x (enter y) A R X') as K.
     rewrite F in K. specialize (K (eq_sym H) D). lia.
-  - destruct (order_is_kept _ _ ps ts X _ _ v _ _ w y V W E L Y) as (x & X' & l & D & G).
-    destruct (stays_until_it_moves _ _ ps ts X _ _ x l X' D) as [(x' & Z')|[_ M]]; [|destruct (M v' V')].
-    exists x'. split; [exact Z'|]. pose proof (visits_are_contiguous _ _ ps ts X _ _ _ _ X' Z') as D'.
+  - destruct (order_is_kept _ ps ts X _ _ v _ _ w y V W E L Y) as (x & X' & l & D & G).
+    destruct (stays_until_it_moves _ ps ts X _ _ x l X' D) as [(x' & Z')|[_ M]]; [|destruct (M v' V')].
+    exists x'. split; [exact Z'|]. pose proof (visits_are_contiguous _ ps ts X _ _ _ _ X' Z') as D'.
     destruct (is_opposite ps m n) eqn:O; [|rewrite D in D'; injection D' as ->; exact G].
     apply (is_opposite_iff ps one_plan_each) in O as (k & u & w' & K & U & W' & F).
     assert (u = v') as -> by eauto using visit_is_unique. rewrite K in *.
-    destruct (exchange_order_is_kept _ _ ps ts X _ _ v v' _ k w w' y V V' W' W E F) as (z & Z0 & S0); [|exact Y|].
+    destruct (exchange_order_is_kept _ ps ts X _ _ v v' _ k w w' y V V' W' W E F) as (z & Z0 & S0); [|exact Y|].
     + destruct L as (l' & D2 & L). rewrite (leaves_as_it_moves _ _ v v' V V') in D2. injection D2 as <-.
-      assert (enter v' <= enter w) by (unfold Execution.gap in L; destruct following_is_forbidden; lia).
+      assert (enter v' <= enter w) by (unfold Law.gap in L; destruct (following_is_forbidden i); lia).
       destruct (Z.eq_dec (enter v') (enter w)) as [T|T]; [|lia]. exfalso.
       pose proof (move_of_plans ps one_plan_each _ _ v v' V V') as MV.
       pose proof (move_of_plans ps one_plan_each _ _ w' w W' W) as MW.
@@ -361,17 +361,17 @@ Proof.
         -- rewrite I in V'. pose proof (later_visits_are_later _ _ _ _ _ W V' (proj1 (Nat.succ_lt_mono _ _) C)). lia.
       * destruct (visit_is_known _ _ _ V) as (_ & _ & r & _ & _ & _ & _ & _ & _ & R & B).
         destruct (visit_is_known _ _ _ V') as (_ & _ & r' & _ & _ & _ & _ & _ & _ & R' & B').
-        apply (exchanges_are_avoided i s lawful (fst m) (fst n)) with (visit_resource v) (visit_resource v') (enter v');
+        apply (swaps_are_avoided i s lawful (fst m) (fst n)) with (visit_resource v) (visit_resource v') (enter v');
           auto.
         -- rewrite <- B. apply in_map. exact R.
         -- rewrite <- B'. apply in_map. exact R'.
         -- rewrite T, F, E. exact MW.
-    + rewrite (executed_once _ _ ps ts X _ _ x' z Z' Z0). lia.
-  - destruct (order_is_kept _ _ ps ts X _ _ v _ _ w y V W E L Y) as (x & X' & l & D & G).
-    exists x. split; [exact X'|]. destruct (visits_are_planned _ _ ps ts X _ _ _ X') as (u & U & F).
+    + rewrite (executed_once _ ps ts X _ _ x' z Z' Z0). lia.
+  - destruct (order_is_kept _ ps ts X _ _ v _ _ w y V W E L Y) as (x & X' & l & D & G).
+    exists x. split; [exact X'|]. destruct (visits_are_planned _ ps ts X _ _ _ X') as (u & U & F).
     assert (u = v) as -> by eauto using visit_is_unique.
     destruct (visit_is_known _ _ _ V) as (p & a & r & _ & _ & _ & A & B & _ & R & H).
-    rewrite <- B in X'. pose proof (durations_are_kept _ _ ps ts X a r _ x l A R X') as K.
+    rewrite <- B in X'. pose proof (durations_are_kept _ ps ts X a r _ x l A R X') as K.
     rewrite F in K. specialize (K (eq_sym H) D). rewrite <- B, <- H, needs_of by auto. lia.
 Qed.
 End Lawful.

@@ -299,7 +299,7 @@ Proof.
         destruct (Z.eq_dec mover (plan_robot p)) as [Same | Different].
         -- destruct M as (q & v' & w' & Hq & <- & (first & rest & C) & S1 & S2 & S3).
            destruct (mover_occupies q first v' w' rest Hq C) as [Hv' _]. rewrite S1, S3, Same in Hv'. exact Hv'.
-        -- destruct (exchanges_are_avoided i s lawful mover (plan_robot p) (place x) r (tick x)); auto.
+        -- destruct (swaps_are_avoided i s lawful mover (plan_robot p) (place x) r (tick x)); auto.
            exists p, v, w. repeat split; auto. exists before, later. auto.
     + apply occupants_have_room with (t := tick x); auto using payers_are_different.
       intros p Hp. apply payer_pays in Hp as [Hp T].

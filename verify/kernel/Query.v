@@ -38,7 +38,7 @@ Variables (i : instance) (known : lookup) (c : context) (a : robot) (now : Z).
     as [moves_left] may be skipped. *)
 Fixpoint first_allowed (from to : Z) (moves_left : nat) (tick : Z) : Z :=
   match moves_left with
-  | S fewer => if is_exchange c from to tick then first_allowed from to fewer (tick + 1) else tick
+  | S fewer => if is_exchange known c from to tick then first_allowed from to fewer (tick + 1) else tick
   | O => tick
   end.
 

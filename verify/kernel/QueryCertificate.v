@@ -24,17 +24,18 @@ Record certificate := Certificate { bound : option Z; labels : list (Z * Z); pot
 Definition successors_of (i : instance) : Map.t (list Z) :=
   fold_left (fun m move => enlist (fst move) (snd move) m) (moves_of_graph i) (Map.empty (list Z)).
 
+(** The stays in the limits that a robot enters that makes an opposite move: there are no more of these than stays. *)
+Definition stays_before_exchanges (known : lookup) (c : context) (source : Z) : list stay :=
+  flat_map (listed (stays_of c)) (listed (swap_keys known) source).
+
 (** The first tick from [tick] on at which no committed robot makes the opposite move; looked for as often as there
-    are stays in the source, as each such robot enters it. *)
-Fixpoint wait_for_room (c : context) (source target : Z) (entries : list stay) (tick : Z) : Z :=
+    are [entries]. *)
+Fixpoint wait_for_room (known : lookup) (c : context) (source target : Z) (entries : list stay) (tick : Z) : Z :=
   match entries with
   | [] => tick
-  | _ :: later => if is_exchange c source target tick then wait_for_room c source target later (tick + 1) else tick
+  | _ :: later =>
+    if is_exchange known c source target tick then wait_for_room known c source target later (tick + 1) else tick
   end.
-
-(** The least tick from [ready] on at which a robot can move from the source into the window. *)
-Definition earliest_entry (c : context) (source target ready : Z) (w : window) : Z :=
-  wait_for_room c source target (listed (stays_of c) source) (Z.max ready (opens w)).
 
 Section Checker.
 Variables (i : instance) (known : lookup) (successors : Map.t (list Z)).
@@ -63,20 +64,21 @@ Definition has_label (id : Z) (w : window) (tick : Z) : bool :=
 
 (** Every window of the target that the robot can enter early enough, if it is in the window [w] of the source and may
     leave at [ready], has a label. *)
-Definition move_is_closed (source : Z) (w : window) (ready target : Z) : bool :=
+Definition move_is_closed (source : Z) (entries : list stay) (w : window) (ready target : Z) : bool :=
   match Map.find target (resource_of known) with
   | None => true
   | Some r =>
     forallb (fun x =>
       if lasts w (Some (opens x)) && lasts x (Some (Z.max ready (opens x) + least_stay a r)) then
-        let tick := earliest_entry c source target ready x in
+        let tick := wait_for_room known c source target entries (Z.max ready (opens x)) in
         if lasts w (Some tick) && lasts x (Some (tick + least_stay a r)) && negb (is_late target tick)
         then has_label target x tick else true
       else true) (windows_in c r)
   end.
 
 Definition is_closed (source : Z) (w : window) (ready : Z) : bool :=
-  forallb (move_is_closed source w ready) (listed successors source).
+  let entries := stays_before_exchanges known c source in
+  forallb (move_is_closed source entries w ready) (listed successors source).
 
 (** The robot can end its plan in the window of the resource, if it may. *)
 Definition ends_in (id : Z) (w : window) (may_vanish : bool) : bool :=
@@ -195,18 +197,18 @@ Proof.
 Qed.
 
 (** No tick is passed over at which the robot may move. *)
-Lemma wait_for_room_is_least c source target entries later : forall tick, tick <= later ->
-  is_exchange c source target later = false -> wait_for_room c source target entries tick <= later.
+Lemma wait_for_room_is_least known c source target entries later : forall tick, tick <= later ->
+  is_exchange known c source target later = false -> wait_for_room known c source target entries tick <= later.
 Proof.
   induction entries as [|e entries IH]; intros tick T E; simpl; auto.
-  destruct (is_exchange c source target tick) eqn:F; auto. apply IH; auto.
+  destruct (is_exchange known c source target tick) eqn:F; auto. apply IH; auto.
   enough (tick <> later) by lia. congruence.
 Qed.
 
-Lemma wait_for_room_waits c source target entries : forall tick, tick <= wait_for_room c source target entries tick.
+Lemma wait_for_room_waits known c source target entries : forall tick, tick <= wait_for_room known c source target entries tick.
 Proof.
   induction entries as [|e entries IH]; intros tick; simpl; [lia|].
-  destruct (is_exchange c source target tick); [|lia]. specialize (IH (tick + 1)). lia.
+  destruct (is_exchange known c source target tick); [|lia]. specialize (IH (tick + 1)). lia.
 Qed.
 
 Section Instance.
@@ -279,14 +281,15 @@ Lemma closed_step source w ready v x : Consecutive p v x -> visit_resource v = s
   leave v = Some (enter x) -> ready <= enter x -> Move i source (visit_resource x) -> Stay_lawful i a x ->
   closed source w ready = true -> forall r wx, Visited x r wx -> Followed x wx.
 Proof.
-  intros C E L X T M [_ D] H r wx (R & F & W & O & U). unfold is_closed in H. rewrite forallb_forall in H.
+  intros C E L X T M [_ D] H r wx (R & F & W & O & U). unfold is_closed in H. cbv zeta in H. rewrite forallb_forall in H.
   apply in_successors in M. specialize (H _ M). unfold move_is_closed in H.
   rewrite (find_own r (visit_resource x) R F) in H. rewrite forallb_forall in H. specialize (H wx W). cbv zeta in H.
-  set (tick := earliest_entry c source (visit_resource x) ready wx) in H.
+  set (tick := wait_for_room known c source (visit_resource x) (stays_before_exchanges known c source)
+    (Z.max ready (opens wx))) in H.
   assert (T' : Z.max ready (opens wx) <= tick) by apply wait_for_room_waits.
   assert (K : tick <= enter x).
   { apply wait_for_room_is_least; [lia|]. rewrite <- E.
-    apply (sound_move_is_free i a committed c others represents p sound). exact C. }
+    apply (sound_move_is_free i well_formed a committed c others represents p sound). exact C. }
   assert (A : forall t, t <= enter x -> lasts w (Some t) = true).
   { intros t Q. destruct L as [_ L]. unfold lasts. destruct (closes w) as [last|]; auto.
     destruct (L last eq_refl) as (l & G & N). rewrite X in G. injection G as <-. apply Z.leb_le. lia. }
@@ -412,8 +415,8 @@ Proof.
   - destruct (Map.find (visit_resource u) (resource_of known)) as [r|]; auto.
     destruct (existsb (fun x => holds_stay x (enter u) (leave u)) (windows_in c r)); auto.
     destruct vs as [|x vs]; cbn [app] in *.
-    + rewrite P, T. destruct (is_exchange c (visit_resource u) (visit_resource v) (enter v)); auto.
-    + destruct (is_exchange c (visit_resource u) (visit_resource x) (enter x)); auto.
+    + rewrite P, T. destruct (is_exchange known c (visit_resource u) (visit_resource v) (enter v)); auto.
+    + destruct (is_exchange known c (visit_resource u) (visit_resource x) (enter x)); auto.
 Qed.
 
 (** What the robot has done does not collide with the committed plans if it has a sound plan. *)

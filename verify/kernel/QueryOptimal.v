@@ -64,7 +64,7 @@ Qed.
 
 Lemma dominance_goes_on l v w : In l (labels from) -> Dominates l v ->
   leave v = Some (enter w) -> Move i (visit_resource v) (visit_resource w) ->
-  is_exchange c (visit_resource v) (visit_resource w) (enter w) = false -> Stay_lawful i a w -> Has_room i c w ->
+  is_exchange known c (visit_resource v) (visit_resource w) (enter w) = false -> Stay_lawful i a w -> Has_room i c w ->
   exists again, In again (labels from) /\ Dominates again w.
 Proof.
   intros L [[R E] H T Y _] Z M X S (r & room & Q & F & W & I). rewrite Z in *.
@@ -145,9 +145,9 @@ Proof.
   2:{ rewrite (find_none _ _ X w W) in K. discriminate. }
   apply find_some in X as [X J].
   assert (U : x = w).
-  { rewrite (has_windows _ _ _ represents r R) in X, W.
-    apply (free_windows_are_maximal i) in X, W; auto;
-      try exact (are_of_robots _ _ _ others); try exact (are_lawful _ _ _ others).
+  { rewrite (has_windows _ _ _ represents r) in X, W.
+    apply (free_windows_are_maximal i committed well_formed (are_of_robots _ _ _ others) (are_lawful _ _ _ others)
+      (are_distinct _ _ _ others) r _ R) in X, W.
     unfold holds_stay, lasts in J, K. apply andb_true_iff in J as [J J'], K as [K K'].
     apply (free_windows_are_unique _ x w (since s) X W); split; try lia.
     - destruct (closes x); simpl; auto. lia.
@@ -176,7 +176,7 @@ Proof.
   rewrite (arrival_behind _ _ _ _ _ V). unfold plan_of, arrival. simpl. rewrite fold_left_app. simpl. lia.
 Qed.
 
-Hypothesis capacity_is_kept : Capacity_is_kept i committed.
+Hypothesis limits_are_kept : Limits_are_kept i committed.
 Hypothesis exchanges_are_avoided : Exchanges_are_avoided i committed.
 
 (** query/sound: the plan breaks no rule, alone or with the committed plans, and keeps what the robot has done. *)
@@ -197,7 +197,7 @@ Proof.
   { apply (labels_are_reached i known c a (least_stay_is_positive i a well_formed of_instance)) in L as [->|L];
       [constructor | exact (entered_is_reached i known c a from l L)]. }
   split.
-  - exact (right_way_is_sound i a well_formed c committed others represents capacity_is_kept exchanges_are_avoided
+  - exact (right_way_is_sound i a well_formed of_instance c committed others represents limits_are_kept exchanges_are_avoided
       now l Rl Q).
   - exact (history_is_kept i a well_formed of_instance now followed is_under_way l Kl Q).
 Qed.
@@ -211,7 +211,7 @@ Hypothesis well_formed : Well_formed i.
 Hypothesis of_instance : In a (robots i).
 (** The committed plans are lawful plans of other robots, alone and together. *)
 Hypothesis others : Committed i a committed.
-Hypothesis capacity_is_kept : Capacity_is_kept i committed.
+Hypothesis limits_are_kept : Limits_are_kept i committed.
 Hypothesis exchanges_are_avoided : Exchanges_are_avoided i committed.
 (** What the robot has followed until now, if anything, is a lawful plan of it. *)
 Hypothesis followed_is_lawful : forall p, followed = Some p -> plan_robot p = robot_id a /\ Plan_lawful i a p.
@@ -263,13 +263,13 @@ Proof.
       destruct (allows known c (visits p)); [injection Q; auto | discriminate]. }
     destruct M as [<- A]. destruct (followed_is_lawful p E) as [I L]. split.
     + split.
-      * apply (free_plan_is_sound i a well_formed c committed others R capacity_is_kept exchanges_are_avoided p I L).
+      * apply (free_plan_is_sound i a well_formed of_instance c committed others R limits_are_kept exchanges_are_avoided p I L).
         apply (allows_iff i well_formed). exact A.
       * rewrite E. apply (ended_plan_keeps_itself i a well_formed of_instance p now L). apply has_ended_iff. exact H.
     + intros rival X. destruct (ended_plan_is_returned p rival E H X) as [V _]. unfold arrival. rewrite V. lia.
   - destruct (under_way H) as [-> U] in Q. split.
     + exact (plan_from_is_sound i a committed c now well_formed of_instance others R followed U
-        capacity_is_kept exchanges_are_avoided made Q).
+        limits_are_kept exchanges_are_avoided made Q).
     + intros rival [S F].
       destruct (plan_from_is_least i a committed c now well_formed of_instance others R followed U rival S F)
         as (best & B & T).

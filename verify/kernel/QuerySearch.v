@@ -7,7 +7,7 @@ Open Scope Z_scope.
 (** * The least allowed entry *)
 
 Section Entry.
-Variable c : context.
+Variables (known : lookup) (c : context).
 
 (** How many of the committed moves are made at the tick or later. *)
 Definition moves_from (tick : Z) : nat :=
@@ -27,21 +27,23 @@ Proof.
   pose proof (filter_is_shorter f g b H). pose proof (filter_is_shorter f g r H). lia.
 Qed.
 
-Lemma exchange_is_passed from to tick : is_exchange c from to tick = true ->
+Lemma exchange_is_passed from to tick : is_exchange known c from to tick = true ->
   (moves_from (tick + 1) < moves_from tick)%nat.
 Proof.
-  unfold is_exchange, Triples.contains. intros E. apply Triples.S.mem_2, Triples.S.elements_1 in E.
-  apply InA_alt in E as (m & <- & M). apply (filter_is_strictly_shorter _ _ (tick, (to, from))); simpl; auto; lia.
+  unfold is_exchange, Triples.contains. intros E. apply existsb_exists in E as (n & N & E).
+  apply in_flat_map in N as (one & _ & N). apply in_map_iff in N as (other & <- & _).
+  apply Triples.S.mem_2, Triples.S.elements_1 in E. apply InA_alt in E as (m & <- & M).
+  refine (filter_is_strictly_shorter _ _ _ _ _ M _ _); simpl; intros; lia.
 Qed.
 
-Lemma first_allowed_skips from to moves_left : forall tick, let found := first_allowed c from to moves_left tick in
-  tick <= found /\ (forall other, tick <= other < found -> is_exchange c from to other = true) /\
-  ((moves_from tick <= moves_left)%nat -> is_exchange c from to found = false).
+Lemma first_allowed_skips from to moves_left : forall tick, let found := first_allowed known c from to moves_left tick in
+  tick <= found /\ (forall other, tick <= other < found -> is_exchange known c from to other = true) /\
+  ((moves_from tick <= moves_left)%nat -> is_exchange known c from to found = false).
 Proof.
   induction moves_left as [|fewer IH]; intros tick; simpl.
-  - repeat split; [lia | lia|]. intros M. destruct (is_exchange c from to tick) eqn:E; auto.
+  - repeat split; [lia | lia|]. intros M. destruct (is_exchange known c from to tick) eqn:E; auto.
     apply exchange_is_passed in E. lia.
-  - destruct (is_exchange c from to tick) eqn:E; [|repeat split; auto; lia].
+  - destruct (is_exchange known c from to tick) eqn:E; [|repeat split; auto; lia].
     destruct (IH (tick + 1)) as (L & S & A). repeat split; [lia| |].
     + intros other O. destruct (Z.eq_dec other tick) as [->|]; [exact E | apply S; lia].
     + intros M. apply A. apply exchange_is_passed in E. lia.
@@ -49,9 +51,9 @@ Qed.
 
 (** The first tick allowed is no exchange, and no tick before it is allowed. *)
 Theorem entry_is_the_least_allowed from to tick :
-  let found := first_allowed c from to (Triples.S.cardinal (moves_made c)) tick in
-  tick <= found /\ is_exchange c from to found = false /\
-  forall other, tick <= other -> is_exchange c from to other = false -> found <= other.
+  let found := first_allowed known c from to (Triples.S.cardinal (moves_made c)) tick in
+  tick <= found /\ is_exchange known c from to found = false /\
+  forall other, tick <= other -> is_exchange known c from to other = false -> found <= other.
 Proof.
   cbv zeta. destruct (first_allowed_skips from to (Triples.S.cardinal (moves_made c)) tick) as (L & S & A).
   repeat split; auto.
@@ -97,7 +99,7 @@ Record Moved (l e : label) : Prop := {
   has_resource : In (target e) (resources i);
   has_window : In (room e) (windows_in c (target e));
   makes_move : has_move known (resource_id (target l)) (resource_id (target e)) = true;
-  is_no_exchange : is_exchange c (resource_id (target l)) (resource_id (target e)) (entry e) = false;
+  is_no_exchange : is_exchange known c (resource_id (target l)) (resource_id (target e)) (entry e) = false;
   is_ready : ready_from l <= entry e;
   was_in_room : lasts (room l) (Some (entry e)) = true;
   fits : holds_stay (room e) (entry e) (Some (ready_from e)) = true;
@@ -105,17 +107,17 @@ Record Moved (l e : label) : Prop := {
   comes_from : behind e = behind l ++ [visit_until l (Some (entry e))]
 }.
 
-Lemma first_entry_is_least l r w : let found := first_entry c l r w in
-  Z.max (ready_from l) (opens w) <= found /\ is_exchange c (resource_id (target l)) (resource_id r) found = false /\
+Lemma first_entry_is_least l r w : let found := first_entry known c l r w in
+  Z.max (ready_from l) (opens w) <= found /\ is_exchange known c (resource_id (target l)) (resource_id r) found = false /\
   forall tick, Z.max (ready_from l) (opens w) <= tick ->
-  is_exchange c (resource_id (target l)) (resource_id r) tick = false -> found <= tick.
+  is_exchange known c (resource_id (target l)) (resource_id r) tick = false -> found <= tick.
 Proof. apply entry_is_the_least_allowed. Qed.
 
 Lemma expansion_is_moved l e : In e (expand i known c a l) -> Moved l e.
 Proof.
   unfold expand. intros E. apply in_flat_map in E as (r & R & E). apply filter_In in R as [R M].
   apply in_flat_map in E as (w & W & E). unfold move_into in E. cbv zeta in E.
-  destruct (first_entry_is_least l r w) as (L & X & _). set (tick := first_entry c l r w) in *.
+  destruct (first_entry_is_least l r w) as (L & X & _). set (tick := first_entry known c l r w) in *.
   destruct (lasts (room l) (Some tick)) eqn:Q; [|destruct E].
   destruct (holds_stay w tick (Some (tick + least_stay a r))) eqn:F; [|destruct E].
   destruct E as [<-|[]]. split; simpl; auto. lia.
@@ -124,13 +126,13 @@ Qed.
 (** If the robot may move into a window at some tick, the search enters it then or before. *)
 Lemma allowed_entry_is_found l r w tick : In r (resources i) -> In w (windows_in c r) ->
   has_move known (resource_id (target l)) (resource_id r) = true ->
-  is_exchange c (resource_id (target l)) (resource_id r) tick = false ->
+  is_exchange known c (resource_id (target l)) (resource_id r) tick = false ->
   ready_from l <= tick -> lasts (room l) (Some tick) = true ->
   holds_stay w tick (Some (tick + least_stay a r)) = true ->
   exists e, In e (expand i known c a l) /\ target e = r /\ room e = w /\ entry e <= tick.
 Proof.
   intros R W M X T Q F.
-  destruct (first_entry_is_least l r w) as (L & _ & A). set (first := first_entry c l r w) in *.
+  destruct (first_entry_is_least l r w) as (L & _ & A). set (first := first_entry known c l r w) in *.
   unfold holds_stay, lasts in *. apply andb_true_iff in F as [O F]. specialize (A tick ltac:(lia) X).
   exists (Label r w first (first + least_stay a r) (behind l ++ [visit_until l (Some first)])).
   repeat split; auto. unfold expand. apply in_flat_map. exists r. split; [apply filter_In; auto|].

@@ -99,7 +99,7 @@ Definition Has_room (v : visit) : Prop := exists r w, In r (resources i) /\ reso
 Record Free (vs : list visit) : Prop := {
   has_room : forall v, In v vs -> Has_room v;
   makes_no_exchange : forall v w, Adjacent vs v w ->
-    is_exchange c (visit_resource v) (visit_resource w) (enter w) = false
+    is_exchange known c (visit_resource v) (visit_resource w) (enter w) = false
 }.
 
 Lemma allows_iff vs : allows known c vs = true <-> Free vs.
@@ -122,7 +122,7 @@ Proof.
     2:{ split; [discriminate|]. intros [H _]. apply R, H. left. auto. }
     destruct later as [|x rest].
     + split; auto. intros _. split; [intros w [<-|[]]; tauto|]. intros y z Y. destruct (not_adjacent_in_one v y z Y).
-    + destruct (is_exchange c (visit_resource v) (visit_resource x) (enter x)) eqn:X.
+    + destruct (is_exchange known c (visit_resource v) (visit_resource x) (enter x)) eqn:X.
       * split; [discriminate|]. intros [_ H]. rewrite H in X; [discriminate|]. exists [], rest. reflexivity.
       * rewrite IH. split; intros [H K]; split.
         -- intros w [<-|W]; auto. tauto.
@@ -138,7 +138,7 @@ Proof.
   - intros x y X. apply (adjacent_with_another_end b v w) in X as [X|[-> X]]; auto. rewrite T, R. auto.
 Qed.
 
-Lemma free_goes_on b v w : Free (b ++ [v]) -> is_exchange c (visit_resource v) (visit_resource w) (enter w) = false ->
+Lemma free_goes_on b v w : Free (b ++ [v]) -> is_exchange known c (visit_resource v) (visit_resource w) (enter w) = false ->
   Has_room w -> Free ((b ++ [v]) ++ [w]).
 Proof.
   intros [H K] X N. split.
@@ -151,22 +151,20 @@ Qed.
 Variable committed : list plan.
 Hypothesis others : Committed i a committed.
 Hypothesis represents : Represents i c committed.
-Hypothesis capacity_is_kept : Capacity_is_kept i committed.
+Hypothesis limits_are_kept : Limits_are_kept i committed.
 Hypothesis exchanges_are_avoided : Exchanges_are_avoided i committed.
 
-(** Where a visit has room, fewer committed plans than its capacity occupy the resource. *)
-Lemma stays_that_fit_keep_capacity v r tick : Has_room v -> In r (resources i) -> resource_id r = visit_resource v ->
-  Holds v tick -> occupants committed (resource_id r) tick + 1 <= capacity r.
+(** Where a visit has room, there is room for one robot more than those committed. *)
+Lemma stays_that_fit_have_room v r tick : Has_room v -> In r (resources i) -> resource_id r = visit_resource v ->
+  Holds v tick -> Room_for_one_more i committed r tick.
 Proof.
   intros (s & w & S & E & W & H) R F [T U]. rewrite (resource_is_unique i well_formed s r) in * by congruence.
-  rewrite (has_windows _ _ _ represents r R) in W.
-  apply (free_windows_are_maximal i) in W; auto;
-    [|exact (are_of_robots _ _ _ others) | exact (are_lawful _ _ _ others)].
+  rewrite (has_windows _ _ _ represents r) in W.
+  apply (free_windows_are_maximal i committed well_formed (are_of_robots _ _ _ others) (are_lawful _ _ _ others)
+    (are_distinct _ _ _ others) r w R) in W.
   unfold holds_stay, lasts in H. apply andb_true_iff in H as [O H].
-  assert (I : In_window w tick).
-  { split; [lia|]. destruct (closes w) as [last|]; simpl; auto.
-    destruct (leave v) as [l|]; [|discriminate]. simpl in U. lia. }
-  destruct (holds_inside _ _ W tick I). lia.
+  apply (holds_inside _ _ W tick). split; [lia|]. destruct (closes w) as [last|]; simpl; auto.
+  destruct (leave v) as [l|]; [|discriminate]. simpl in U. lia.
 Qed.
 
 Lemma distinct_with_the_robot p : plan_robot p = robot_id a -> NoDup (map plan_robot (committed ++ [p])).
@@ -175,42 +173,67 @@ Proof.
   rewrite app_nil_r. split; [exact (are_distinct _ _ _ others) | exact (are_of_others _ _ _ others)].
 Qed.
 
-(** The robot makes the moves of its plan, and others those of theirs. *)
-Lemma makes_move_iff p id r s tick : plan_robot p = robot_id a -> Makes_move (committed ++ [p]) id r s tick <->
-  Makes_move committed id r s tick \/ id = robot_id a /\ Moves p (tick, (r, s)).
+Section Free_plan.
+Variable p : plan.
+Hypothesis of_robot : plan_robot p = robot_id a.
+Hypothesis lawful : Plan_lawful i a p.
+Hypothesis free : Free (visits p).
+
+Lemma free_plan_keeps_limits : Limits_are_kept i (committed ++ [p]).
 Proof.
-  intros E. unfold Makes_move, Moves. split.
-  - intros (q & v & w & Q & I & C & R & S & T). apply in_app_or in Q as [Q|[<-|[]]].
-    + left. exists q, v, w. auto 10.
-    + right. split; [congruence|]. exists v, w. split; auto. congruence.
-  - intros [(q & v & w & Q & H)|[-> (v & w & C & M)]].
-    + exists q, v, w. split; auto. apply in_or_app. auto.
-    + injection M as -> -> ->. exists p, v, w. repeat split; auto. apply in_or_app. right. left. auto.
+  assert (A : forall id l tick, id <> robot_id a -> Counts i (committed ++ [p]) id l tick -> Counts i committed id l tick).
+  { intros id l tick N (place & back & L & B & q & v & Q & E & H). exists place, back. repeat split; auto; try lia.
+    exists q, v. apply in_app_or in Q as [Q|[<-|[]]]; [auto|]. congruence. }
+  intros l tick ids L N C. destruct (in_dec Z.eq_dec (robot_id a) ids) as [I|I].
+  2:{ apply (limits_are_kept l tick ids L N). intros id J. apply A; auto. intros ->. tauto. }
+  apply in_split in I as (b & r & ->).
+  assert (D : forall id, In id (b ++ r) -> Counts i committed id l tick).
+  { intros id J. apply A.
+    - intros ->. exact (NoDup_remove_2 _ _ _ N J).
+    - apply C. apply in_app_or in J. apply in_or_app. simpl. tauto. }
+  destruct (C (robot_id a)) as (place & back & P & B & q & v & Q & E & V & F & T); [apply in_or_app; simpl; auto|].
+  apply in_app_or in Q as [Q|[<-|[]]].
+  { destruct (are_of_others _ _ _ others). rewrite <- E. apply in_map. exact Q. }
+  pose proof (visits_resources _ _ _ lawful v V) as R. apply in_map_iff in R as (x & G & R).
+  destruct (stays_that_fit_have_room v x _ (has_room _ free v V) R G T) as [_ M].
+  specialize (M back B l (b ++ r) L). replace (tick - back + back) with tick in M by lia.
+  rewrite app_length in *. simpl. enough (Z.of_nat (length b + length r) < limit_capacity l) by lia.
+  apply M; auto; [congruence | exact (NoDup_remove_1 _ _ _ N)].
 Qed.
 
-Theorem free_plan_is_sound p : plan_robot p = robot_id a -> Plan_lawful i a p -> Free (visits p) ->
-  Sound i a committed p.
+Lemma free_plan_crosses_no_other q v w x y : In q committed -> Consecutive p v w -> Consecutive q x y ->
+  enter w = enter y -> Close i (visit_resource v) (visit_resource y) -> Close i (visit_resource w) (visit_resource x) ->
+  False.
 Proof.
-  intros E L [H X]. split; auto.
-  - intros r tick ids R. revert ids.
-    refine (proj2 (occupants_iff _ _ _ _ (distinct_with_the_robot p E)) _).
-    assert (K : occupants committed (resource_id r) tick <= capacity r).
-    { apply occupants_iff; [exact (are_distinct _ _ _ others)|]. intros ids. apply capacity_is_kept. exact R. }
-    unfold occupants in *. rewrite filter_app, app_length. simpl.
-    destruct (occupies p (resource_id r) tick) eqn:O; [|simpl; lia].
-    apply occupies_iff in O as (v & V & F & T).
-    pose proof (stays_that_fit_keep_capacity v r tick (H v V) R (eq_sym F) T). unfold occupants in *. simpl. lia.
-  - assert (N : forall id r s tick, Makes_move committed id r s tick -> Moves p (tick, (s, r)) -> False).
-    { intros id r s tick (q & v & w & Q & _ & C & F & G & T) (x & y & D & M). injection M as -> -> ->.
-      specialize (X x y D). apply not_true_iff_false in X. apply X. apply (has_moves _ _ _ represents).
-      exists q. split; auto. exists v, w. split; auto. congruence. }
-    intros one other r s tick D R S M K. apply (makes_move_iff p) in M, K; auto.
-    destruct M as [M|[-> M]], K as [K|[-> K]].
-    + exact (exchanges_are_avoided one other r s tick D R S M K).
-    + exact (N one r s tick M K).
-    + exact (N other s r tick K M).
-    + apply D. reflexivity.
+  intros Q C D T Cv Cw. destruct (close_moves_cross i well_formed (committed ++ [p])) with (p := p) (v := v) (w := w)
+    (q := q) (x := x) (y := y) as (m & M & O); auto.
+  - intros z Z0. apply in_app_or in Z0 as [Z0|[<-|[]]]; [exact (are_of_robots _ _ _ others z Z0)|].
+    exists a. auto.
+  - intros z b Z0 B E. apply in_app_or in Z0 as [Z0|[<-|[]]]; [exact (are_lawful _ _ _ others z b Z0 B E)|].
+    enough (b = a) as -> by exact lawful. apply (robot_is_unique i well_formed); congruence.
+  - exact free_plan_keeps_limits.
+  - apply in_or_app. simpl. auto.
+  - apply in_or_app. auto.
+  - intros E. apply (are_of_others _ _ _ others). rewrite <- of_robot, E. apply in_map. exact Q.
+  - pose proof (makes_no_exchange _ free v w C) as X. apply not_true_iff_false in X. apply X.
+    unfold is_exchange. apply existsb_exists. exists m. split; auto. apply (has_moves _ _ _ represents).
+    exists q. eexists. split; [exact Q|]. split; [exists x, y; auto | exact O].
 Qed.
+
+Theorem free_plan_is_sound : Sound i a committed p.
+Proof.
+  split; auto; [exact free_plan_keeps_limits|].
+  assert (S : forall r s, Close i r s -> Close i s r).
+  { intros r s [<-|(g & G & K & R & S)]; [left | right; exists g]; auto. }
+  intros one other r s s' r' tick N R Rs Rs' Rr' (q & v & w & Q & I & C & E & F & T) (z & x & y & Z0 & J & D & G & H & U) Cr Cs.
+  subst. apply in_app_or in Q as [Q|[<-|[]]]; apply in_app_or in Z0 as [Z0|[<-|[]]].
+  - apply (exchanges_are_avoided (plan_robot q) (plan_robot z) (visit_resource v) (visit_resource w) (visit_resource x)
+      (visit_resource y) (enter w)); auto; [exists q, v, w | exists z, x, y]; auto 10.
+  - apply (free_plan_crosses_no_other q x y v w Q D C); auto.
+  - apply (free_plan_crosses_no_other z v w x y Z0 C D); auto.
+  - apply N. reflexivity.
+Qed.
+End Free_plan.
 
 (** * The labels of the search *)
 

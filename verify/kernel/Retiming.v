@@ -7,10 +7,10 @@ Import ListNotations.
 Open Scope Z_scope.
 
 Section Retiming.
-Variables (i : instance) (following_is_forbidden : bool).
-Notation Executes := (Executes i following_is_forbidden).
-Notation Room_is_kept := (Room_is_kept i following_is_forbidden).
-Notation dependencies := (dependencies i following_is_forbidden).
+Variable i : instance.
+Notation Executes := (Executes i).
+Notation Room_is_kept := (Room_is_kept i).
+Notation dependencies := (dependencies i).
 Notation needs := (needs i).
 
 (** * Visits at given ticks *)
@@ -68,14 +68,14 @@ Variable s : solution.
 Hypothesis well_formed : Well_formed i.
 Hypothesis lawful : Lawful i s.
 Notation ps := (plans s).
-Notation Edge := (Edge i following_is_forbidden (plans s)).
+Notation Edge := (Edge i (plans s)).
 Let one_plan_each : NoDup (map plan_robot ps) := planned_once i s lawful.
-Let keeps_edges := execution_keeps_edges i following_is_forbidden s well_formed lawful.
+Let keeps_edges := execution_keeps_edges i s well_formed lawful.
 Let known := visit_is_known i s lawful.
 Let needed := needs_of i well_formed.
 
 Lemma is_edge e : In e (dependencies ps) <-> Edge e.
-Proof. exact (in_dependencies i following_is_forbidden ps one_plan_each e). Qed.
+Proof. exact (in_dependencies i ps one_plan_each e). Qed.
 
 Lemma nth_timed t id vs : forall k n x, nth_error (timed_visits t id k vs) n = Some x ->
   exists v, nth_error vs n = Some v /\ visit_resource x = visit_resource v /\ enter x = t (id, (k + n)%nat) /\
@@ -135,26 +135,26 @@ Proof.
     + right. rewrite E in L. destruct (leave v) as [k|] eqn:D; [|discriminate].
       destruct (last_visit_ends i s lawful _ _ v k V D) as [(w & W)|H]; [destruct (M w W) | exact H].
   - intros a r n x l A I X E D. destruct (timed_visit _ _ _ _ X) as (v & V & F & T & [[(w & W) L]|[M L]]).
-    + pose proof (K _ (Travel i _ ps (robot_id a, n) v w V W)) as G. unfold Keeps, next in G. simpl in G.
+    + pose proof (K _ (Travel i ps (robot_id a, n) v w V W)) as G. unfold Keeps, next in G. simpl in G.
       rewrite <- F, E, needed in G by auto. rewrite L in D. injection D as <-. lia.
     + rewrite D in L. destruct (leave v); [|discriminate]. injection L as ->. rewrite <- F, E, needed by auto. lia.
   - intros one m v other n w y V W E B Y. destruct (visit_timed t _ _ _ V) as (x & X & T). exists x.
     split; [exact X|]. destruct (timed_visit _ _ _ _ Y) as (_ & _ & _ & U & _).
     destruct (timed_visit _ _ _ _ X) as (v0 & V0 & F & _ & [[(v' & V') L]|[M L]]).
     + exists (t (one, S m)). split; [exact L|].
-      pose proof (K _ (Order_moving i _ ps (one, m) v v' (other, n) w V W E B V')) as G.
-      unfold Keeps, next in G. simpl in G. unfold Execution.gap in *.
-      destruct (is_opposite _ _ _), following_is_forbidden; lia.
+      pose proof (K _ (Order_moving i ps (one, m) v v' (other, n) w V W E B V')) as G.
+      unfold Keeps, next in G. simpl in G. unfold Law.gap in *.
+      destruct (is_opposite _ _ _), (following_is_forbidden i); lia.
     + assert (v0 = v) as -> by eauto using visit_is_unique.
-      pose proof (K _ (Order_ending i _ ps (one, m) v (other, n) w V W E B M)) as G. unfold Keeps in G. simpl in G.
+      pose proof (K _ (Order_ending i ps (one, m) v (other, n) w V W E B M)) as G. unfold Keeps in G. simpl in G.
       destruct B as (l & B & _). rewrite B in L. simpl in L. exists (enter x + needs one (visit_resource v)).
       split; [exact L | lia].
   - intros one m v v' other n w w' y V V' W' W E F L Y. destruct (visit_timed t _ _ _ V') as (x & X & T). exists x.
     split; [exact X|]. destruct (timed_visit _ _ _ _ Y) as (_ & _ & _ & U & _).
-    assert (B : Left_before following_is_forbidden v w).
+    assert (B : Left_before i v w).
     { exists (enter v'). split; [apply (leaves_as_it_moves i s lawful one m v v' V V')|].
-      unfold Execution.gap. destruct following_is_forbidden; lia. }
-    pose proof (K _ (Order_moving i _ ps (one, m) v v' (other, S n) w V W E B V')) as G.
+      unfold Law.gap. destruct (following_is_forbidden i); lia. }
+    pose proof (K _ (Order_moving i ps (one, m) v v' (other, S n) w V W E B V')) as G.
     assert (O : is_opposite ps (one, m) (other, S n) = true).
     { apply (is_opposite_iff ps one_plan_each). simpl. eauto 7. }
     unfold Keeps, next in G. simpl in G. rewrite O in G. lia.
@@ -206,7 +206,7 @@ Lemma longest_wait_is_positive : 0 <= longest_wait ps.
 Proof. unfold longest_wait. induction (dependencies ps); simpl; lia. Qed.
 
 Lemma happened_at id n x : Visit_of ts id n x <-> visit_at ts (id, n) = Some x.
-Proof. rewrite visit_at_iff; [tauto | exact (robots_are_named_once _ _ ps ts executed)]. Qed.
+Proof. rewrite visit_at_iff; [tauto | exact (robots_are_named_once _ ps ts executed)]. Qed.
 
 Lemma planned_at id n v : Visit_of ps id n v <-> visit_at ps (id, n) = Some v.
 Proof. rewrite visit_at_iff; [tauto | exact one_plan_each]. Qed.
@@ -222,7 +222,7 @@ Lemma late_entries_keep_edges e : Edge e -> Keeps (late_entry ps ts now) e.
 Proof.
   intros E. destruct (edge_joins_visits e E) as [(v & V) (w & W)]. unfold Keeps, late_entry, least_entry.
   pose proof (wait_is_no_longer e E) as L. pose proof longest_wait_is_positive as P.
-  destruct (keeps_edges ps e w (lawful_solution_executes_itself i _ s well_formed lawful) E W) as (v0 & V0 & K).
+  destruct (keeps_edges ps e w (lawful_solution_executes_itself i s well_formed lawful) E W) as (v0 & V0 & K).
   assert (v0 = v) as -> by eauto using visit_is_unique.
   pose proof (no_visit_is_before_its_release _ _ _ W).
   destruct (earlier e) as [a m] eqn:D, (later e) as [b n] eqn:F. simpl in V, W.
@@ -264,14 +264,14 @@ Proof.
   apply ticks_that_keep_the_edges_are_an_execution; [exact earliest_entries_keep_edges|].
   intros a v A V. pose proof (earliest_entry_is_allowed (robot_id a, 0%nat)) as L. unfold least_entry in L. simpl in L.
   destruct (visit_at ts (robot_id a, 0%nat)) as [x|] eqn:X.
-  - apply happened_at in X. pose proof (first_entry_is_late _ _ ps ts executed a x A X). lia.
+  - apply happened_at in X. pose proof (first_entry_is_late _ ps ts executed a x A X). lia.
   - rewrite release_of_robot in L by exact A. lia.
 Qed.
 
 Lemma retimed_plans_continue : Continues ts (retimed ps ts now) now.
 Proof.
   split.
-  - intros id n x X. destruct (visits_are_planned _ _ ps ts executed _ _ _ X) as (v & V & _).
+  - intros id n x X. destruct (visits_are_planned _ ps ts executed _ _ _ X) as (v & V & _).
     destruct (visit_timed (earliest_entry ps ts now) _ _ _ V) as (y & Y & T). exists y. split; [exact Y|].
     rewrite T. apply earliest_entry_of_happened. exact X.
   - intros id n y Y. destruct (timed_visit _ _ _ _ Y) as (_ & _ & _ & T & _). rewrite T.
@@ -290,7 +290,7 @@ Proof.
   intros X C Y. set (t := earliest_entry ps ts now).
   set (other := fun n => match visit_at after n with Some y => Z.min (enter y) (t n) | None => t n end).
   assert (A : forall id n y, Visit_of after id n y <-> visit_at after (id, n) = Some y).
-  { intros. rewrite visit_at_iff; [tauto | exact (robots_are_named_once _ _ ps after X)]. }
+  { intros. rewrite visit_at_iff; [tauto | exact (robots_are_named_once _ ps after X)]. }
   assert (L : t (id, n) <= other (id, n)).
   { unfold t at 1, earliest_entry. apply settled_is_least.
     - intros e E. apply is_edge in E. pose proof (earliest_entries_keep_edges e E) as K. fold t in K.
@@ -302,11 +302,11 @@ Proof.
       destruct (visit_at after (a, m)) as [w|] eqn:W; [|exact L]. apply Z.min_glb; [|exact L].
       apply A in W. unfold least_entry. simpl. destruct (visit_at ts (a, m)) as [x|] eqn:V.
       + apply happened_at in V. destruct (what_happened_is_kept _ _ _ C _ _ _ V) as (z & Z0 & E).
-        rewrite (executed_once _ _ ps after X _ _ w z W Z0). lia.
+        rewrite (executed_once _ ps after X _ _ w z W Z0). lia.
       + destruct (the_rest_is_later _ _ _ C _ _ _ W) as [(x & H)|H]; [apply happened_at in H; congruence|].
-        destruct m as [|m]; [|lia]. destruct (visits_are_planned _ _ ps after X _ _ _ W) as (v & U & _).
+        destruct m as [|m]; [|lia]. destruct (visits_are_planned _ ps after X _ _ _ W) as (v & U & _).
         destruct (known _ _ _ U) as (_ & r & _ & _ & _ & _ & R & <- & _).
-        rewrite release_of_robot by exact R. pose proof (first_entry_is_late _ _ ps after X r w R W). lia. }
+        rewrite release_of_robot by exact R. pose proof (first_entry_is_late _ ps after X r w R W). lia. }
   unfold other in L. rewrite (proj1 (A _ _ _) Y) in L. fold t. lia.
 Qed.
 End Retimed.
@@ -323,7 +323,7 @@ Proof.
   - apply retimed_plans_execute; auto.
   - apply retimed_plans_are_complete.
   - apply retimed_plans_continue; auto.
-  - intros other O C id n y Y. destruct (visits_are_planned _ _ _ _ O _ _ _ Y) as (v & V & _).
+  - intros other O C id n y Y. destruct (visits_are_planned _ _ _ O _ _ _ Y) as (v & V & _).
     destruct (visit_timed (earliest_entry ps ts now) _ _ _ V) as (x & V' & T).
     exists x. split; [exact V'|]. rewrite T. eapply retimed_is_least; eauto.
 Qed.
@@ -362,19 +362,19 @@ Proof.
     destruct (V n x N) as (_ & v & W & F), (V (S n) y M) as (_ & w & U & G). rewrite F, G in *.
     apply (follows_moves i a q L); auto. apply consecutive_by_number. eauto.
   - intros x y C. apply consecutive_by_number in C as (n & N & M).
-    apply (visits_are_contiguous _ _ _ _ X (robot_id a) n); apply V; auto.
+    apply (visits_are_contiguous _ _ _ X (robot_id a) n); apply V; auto.
   - intros x r l N R F D. apply In_nth_error in N as (n & N).
-    apply (durations_are_kept _ _ _ _ X a r n x l A R (proj1 (V n x N)) (eq_sym F) D).
+    apply (durations_are_kept _ _ _ X a r n x l A R (proj1 (V n x N)) (eq_sym F) D).
 Qed.
 
-(** If each robot appears at its release, the retimed plans are a lawful solution, with the same room. *)
-Theorem retimed_solution_is_lawful ts now : Room_is_kept ps -> Executes ps ts -> Happened_by ts now ->
+(** If each robot appears at its release, the retimed plans are a lawful solution, with the same room; without groups. *)
+Theorem retimed_solution_is_lawful ts now : groups i = [] -> Room_is_kept ps -> Executes ps ts -> Happened_by ts now ->
   let after := Solution (retimed ps ts now) (order s) (unplanned s) in
   (forall p a, In p (plans after) -> In a (robots i) -> robot_id a = plan_robot p -> Starts_at_release a p) ->
   Lawful i after /\ Room_is_kept (plans after).
 Proof.
-  intros K E H after R. pose proof (retimed_plans_execute ts now E H) as X.
-  destruct (order_preserving_execution_is_safe i _ s (plans after) lawful K X) as (F & C & D).
+  intros N0 K E H after R. pose proof (retimed_plans_execute ts now E H) as X.
+  destruct (order_preserving_execution_is_safe i s (plans after) N0 lawful K X) as (F & C & D).
   assert (M : planned after = planned s) by apply robots_of_timed.
   split; [split; unfold Covers_robots, Orders_plans; rewrite ?M; simpl | exact F]; auto.
   - exact (covers_robots i s lawful).

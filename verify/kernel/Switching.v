@@ -1,17 +1,17 @@
 (** Switching: robots enter places for one in another order than planned. Ticks that keep the switched edges break no
     joint rule, so an executor may switch whatever leaves the graph without a cycle. *)
 Require Import ZArith List Bool Lia Sorted.
-From Carproof Require Import Law Execution Dependencies Order Waiting Retiming.
+From Carproof Require Import Law Ways Execution Dependencies Order Waiting Retiming.
 Import ListNotations.
 Open Scope Z_scope.
 
 Section Switching.
-Variables (i : instance) (following_is_forbidden : bool).
-Notation gap := (gap following_is_forbidden).
-Notation Room_is_kept := (Room_is_kept i following_is_forbidden).
-Notation Left_before := (Left_before following_is_forbidden).
-Notation wait := (wait i following_is_forbidden).
-Notation direct_waits := (direct_waits i following_is_forbidden).
+Variable i : instance.
+Notation gap := (gap i).
+Notation Room_is_kept := (Room_is_kept i).
+Notation Left_before := (Left_before i).
+Notation wait := (wait i).
+Notation direct_waits := (direct_waits i).
 
 (** A place in which the order of visits is given, first to last. *)
 Record row := Row { row_place : Z; sequence : list (node * visit) }.
@@ -102,7 +102,7 @@ Proof.
   destruct (first_has_left _ _ _ _ _ _ A' X Y) as (l & L & H & _).
   destruct (first_has_left _ _ _ _ _ _ B' Y Z0) as (l' & L' & H' & G').
   split; [exact M|]. split; [exact N|]. split; [exact D|]. simpl in *.
-  assert (0 <= gap <= 1) by (unfold Execution.gap; destruct following_is_forbidden; lia).
+  assert (0 <= gap <= 1) by (unfold Law.gap; destruct (following_is_forbidden i); lia).
   assert (J : forall a b : bool, (if a then 1 else gap) <= (if b then 1 else gap) + 1) by (intros [] []; lia).
   unfold Keeps, Order.wait in *. destruct (visit_at ps (next m)); simpl in *.
   - specialize (J (is_opposite ps m n) (is_opposite ps m k)).
@@ -138,7 +138,7 @@ Lemma order_is_unchanged m v n w : In (m, v) (stays ps) -> In (n, w) (stays ps) 
   visit_resource v = visit_resource w -> Left_before v w -> has_row rows (m, v) = false -> Goes_first (m, v) (n, w).
 Proof.
   intros M N E L H. split; [exact M|]. split; [exact N|]. split; [destruct L as (l & L & _); eauto|].
-  destruct (way_along_direct_edges i following_is_forbidden s well_formed lawful (switched ps rows) (visit_resource v)
+  destruct (way_along_direct_edges i s well_formed lawful (switched ps rows) (visit_resource v)
     (Z.to_nat (enter w - enter v))) with (one := (m, v)) (other := (n, w)) as (k & K & W); auto.
   - intros u U e F. apply in_or_app. left. apply in_flat_map. eauto.
   - intros one other A B P e F. apply in_or_app. right. apply in_or_app. left. apply in_flat_map. exists one.
@@ -162,7 +162,7 @@ Proof. rewrite robots_of_timed. exact one_plan_each. Qed.
 Lemma room_in_switched_order : Room_is_kept (timed t ps).
 Proof.
   intros r tick ids R. revert tick ids.
-  assert (G : 0 <= gap <= 1) by (unfold Execution.gap; destruct following_is_forbidden; lia).
+  assert (G : 0 <= gap <= 1) by (unfold Law.gap; destruct (following_is_forbidden i); lia).
   destruct (row_or_none (resource_id r)) as [(x & X & P)|U].
   - intros tick ids N C. rewrite (row_is_for_one ps x (rows_are_right x X) r R (eq_sym P)).
     destruct ids as [|a [|b ids]]; simpl; [lia | lia | exfalso].
@@ -178,7 +178,7 @@ Proof.
       destruct (is_opposite ps (a, m) (b, n)); lia.
     + destruct (first_has_left _ _ _ _ _ _ O Z0 Y) as (l & H & J & _). rewrite H in B'. simpl in B'.
       destruct (is_opposite ps (b, n) (a, m)); lia.
-  - apply (order_keeps_room following_is_forbidden ps (timed t ps) r timed_once).
+  - apply (order_keeps_room i ps (timed t ps) r timed_once).
     + intros id n x X. destruct (timed_visit _ _ _ _ X) as (v & V & E & _). eauto.
     + intros one m v other n w y V W E F L Y.
       assert (O : Goes_first ((one, m), v) ((other, n), w)).
@@ -198,7 +198,7 @@ Lemma no_exchange_here one m v v' other n w w' : one <> other ->
 Proof.
   intros D V V' W' W E F H T.
   destruct (visit_timed i s lawful t _ _ _ V) as (x & X & XT), (visit_timed i s lawful t _ _ _ W) as (y & Y & YT).
-  assert (G : 0 <= gap) by (unfold Execution.gap; destruct following_is_forbidden; lia).
+  assert (G : 0 <= gap) by (unfold Law.gap; destruct (following_is_forbidden i); lia).
   pose proof (travel_is_kept one m v v' V V') as K.
   assert (A : Goes_first ((one, m), v) ((other, S n), w) -> False).
   { intros O. assert (P : is_opposite ps (one, m) (other, S n) = true).
@@ -216,7 +216,7 @@ Proof.
     destruct (is_opposite ps (other, S n) (one, m)); lia.
 Qed.
 
-Lemma exchanges_in_switched_order : Exchanges_are_avoided i (timed t ps).
+Lemma exchanges_in_switched_order : Swaps_are_avoided i (timed t ps).
 Proof.
   intros one other r q tick D R Q M N.
   assert (A : forall id r q, Makes_move (timed t ps) id r q tick -> exists n v w, Visit_of ps id n v /\
@@ -228,7 +228,7 @@ Proof.
   destruct (A _ _ _ M) as (m & v & v' & V & V' & E & E' & T), (A _ _ _ N) as (n & w' & w & W' & W & F' & F & T').
   assert (there : visit_resource v = visit_resource w) by congruence.
   assert (back : visit_resource w' = visit_resource v') by congruence.
-  assert (G : 0 <= gap <= 1) by (unfold Execution.gap; destruct following_is_forbidden; lia).
+  assert (G : 0 <= gap <= 1) by (unfold Law.gap; destruct (following_is_forbidden i); lia).
   assert (H : (exists x, In x rows /\ row_place x = visit_resource v) \/ Goes_first ((one, m), v) ((other, S n), w) ->
     False).
   { intros H. apply (no_exchange_here one m v v' other n w w' D V V' W' W there (eq_sym back) H). congruence. }
@@ -243,21 +243,21 @@ Proof.
     exists (enter v'). split; [exact (leaves_as_it_moves i s lawful one m v v' V V') | lia].
   - pose proof (move_of_plans ps one_plan_each one m v v' V V') as MV.
     pose proof (move_of_plans ps one_plan_each other n w' w W' W) as MW.
-    rewrite E, E', L in MV. rewrite F, F' in MW. exact (exchanges_are_avoided i s lawful one other r q _ D R Q MV MW).
+    rewrite E, E', L in MV. rewrite F, F' in MW. exact (swaps_are_avoided i s lawful one other r q _ D R Q MV MW).
   - apply I. right. apply order_is_unchanged; auto; try (apply in_stays; assumption).
     exists (enter w). split; [exact (leaves_as_it_moves i s lawful other n w' w W' W) | lia].
 Qed.
 End Lawful.
 
 (** Ticks that keep the edges of a lawful solution, with other orders in places for one, make plans that break no joint
-    rule. *)
-Theorem switched_order_is_safe s rows t : Well_formed i -> Lawful i s -> Room_is_kept (plans s) ->
+    rule; without groups. *)
+Theorem switched_order_is_safe s rows t : groups i = [] -> Well_formed i -> Lawful i s -> Room_is_kept (plans s) ->
   (forall x, In x rows -> Right_row (plans s) x) -> (forall e, In e (switched (plans s) rows) -> Keeps t e) ->
-  Room_is_kept (timed i t (plans s)) /\ Capacity_is_kept i (timed i t (plans s)) /\
+  Room_is_kept (timed i t (plans s)) /\ Limits_are_kept i (timed i t (plans s)) /\
   Exchanges_are_avoided i (timed i t (plans s)).
 Proof.
-  intros W L K R E. assert (F : Room_is_kept (timed i t (plans s))) by (eapply room_in_switched_order; eauto).
-  split; [exact F|]. split; [exact (room_is_capacity i following_is_forbidden _ F)|].
+  intros G W L K R E. assert (F : Room_is_kept (timed i t (plans s))) by (eapply room_in_switched_order; eauto).
+  split; [exact F|]. split; [exact (room_keeps_limits i _ G F)|]. apply (exchanges_without_groups i _ G).
   eapply exchanges_in_switched_order; eauto.
 Qed.
 End Switching.

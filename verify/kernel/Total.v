@@ -823,7 +823,7 @@ Proof.
   assert (Known : forall p u, In p (plans s) -> In u (visits p) -> In (visit_resource u) (resource_ids i)).
   { intros p' u' Hp' Hu'. destruct (planned_robot_is_known i s lawful p' Hp') as (a' & Ha' & E').
     apply (visits_resources i a' p' (plans_lawful i s lawful p' a' Hp' Ha' E') u' Hu'). }
-  apply (exchanges_are_avoided i s lawful (robot_id a) (robot_id b) r x t); auto.
+  apply (swaps_are_avoided i s lawful (robot_id a) (robot_id b) r x t); auto.
   - rewrite <- Rv. exact (Known q v Hq Hv).
   - rewrite <- Ru. exact (Known p u Hp Hu).
   - apply (robot_free_elsewhere_makes_the_move (a, g)); auto.

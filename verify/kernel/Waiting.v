@@ -5,17 +5,17 @@ Import ListNotations.
 Open Scope Z_scope.
 
 Section Waiting.
-Variables (i : instance) (following_is_forbidden : bool).
-Notation gap := (gap following_is_forbidden).
-Notation Executes := (Executes i following_is_forbidden).
-Notation Left_before := (Left_before following_is_forbidden).
+Variable i : instance.
+Notation gap := (gap i).
+Notation Executes := (Executes i).
+Notation Left_before := (Left_before i).
 Notation needs := (needs i).
-Notation wait := (wait i following_is_forbidden).
-Notation waits := (waits i following_is_forbidden).
-Notation direct_waits := (direct_waits i following_is_forbidden).
-Notation is_direct := (is_direct following_is_forbidden).
-Notation dependencies := (dependencies i following_is_forbidden).
-Notation direct_dependencies := (direct_dependencies i following_is_forbidden).
+Notation wait := (wait i).
+Notation waits := (waits i).
+Notation direct_waits := (direct_waits i).
+Notation is_direct := (is_direct i).
+Notation dependencies := (dependencies i).
+Notation direct_dependencies := (direct_dependencies i).
 Notation travels := (travels i).
 
 Section Lawful.
@@ -23,7 +23,7 @@ Variable s : solution.
 Hypothesis well_formed : Well_formed i.
 Hypothesis lawful : Lawful i s.
 Notation ps := (plans s).
-Notation Edge := (Edge i following_is_forbidden (plans s)).
+Notation Edge := (Edge i (plans s)).
 Let one_plan_each : NoDup (map plan_robot ps) := planned_once i s lawful.
 Let needs_are_positive := needs_are_positive i s well_formed lawful.
 Let visits_take_time := visits_take_time i s well_formed lawful.
@@ -39,7 +39,7 @@ Lemma way_along_direct_edges edges place size : (forall n, In n (stays ps) -> in
   enter (snd other) - enter (snd one) <= Z.of_nat size ->
   exists k, ticks (wait ps one (fst other)) <= k /\ Way edges (earlier (wait ps one (fst other))) (fst other) k.
 Proof.
-  intros T D. assert (G : 0 <= gap <= 1) by (unfold Execution.gap; destruct following_is_forbidden; lia).
+  intros T D. assert (G : 0 <= gap <= 1) by (unfold Law.gap; destruct (following_is_forbidden i); lia).
   induction size as [|size IH]; intros one other A B P Q L Z0.
   { destruct one as [m v]. destruct L as (l & E & L). apply in_stays in A. simpl in *.
     pose proof (visits_take_time _ _ v l A E). lia. }
@@ -89,7 +89,7 @@ Lemma in_waits ps' one other e : In e (waits ps' one other) <-> visit_resource (
   Left_before (snd one) (snd other) /\ e = wait ps' one (fst other).
 Proof.
   unfold Order.waits. destruct other as [n w]. simpl.
-  rewrite <- (is_left_before_iff following_is_forbidden), <- Z.eqb_eq.
+  rewrite <- (is_left_before_iff i), <- Z.eqb_eq.
   destruct (visit_resource (snd one) =? visit_resource w), (is_left_before _ (snd one) w); simpl; intuition congruence.
 Qed.
 
@@ -135,14 +135,14 @@ Qed.
 
 Lemma edges_join_nodes e : In e (dependencies ps) -> In (earlier e) (nodes ps) /\ In (later e) (nodes ps).
 Proof.
-  intros E. apply (in_dependencies i following_is_forbidden ps one_plan_each) in E. rewrite !in_nodes.
+  intros E. apply (in_dependencies i ps one_plan_each) in E. rewrite !in_nodes.
   destruct E as [n v w V W|m v v' n w V W _ _ V'|m v n w V W _ _ _]; simpl; eauto.
 Qed.
 
-Lemma edges_take_time e : Edge e -> 0 <= ticks e /\ (following_is_forbidden = true -> 1 <= ticks e).
+Lemma edges_take_time e : Edge e -> 0 <= ticks e /\ (following_is_forbidden i = true -> 1 <= ticks e).
 Proof.
-  assert (G : 0 <= gap /\ (following_is_forbidden = true -> 1 <= gap)).
-  { unfold Execution.gap. destruct following_is_forbidden; split; intros; lia. }
+  assert (G : 0 <= gap /\ (following_is_forbidden i = true -> 1 <= gap)).
+  { unfold Law.gap. destruct (following_is_forbidden i); split; intros; lia. }
   intros [n v w V W|m v v' n w V W _ _ V'|m v n w V W _ _ _]; simpl.
   - pose proof (needs_are_positive _ _ v V). split; intros; lia.
   - destruct (is_opposite ps m n); [split; intros; lia | exact G].
@@ -151,11 +151,11 @@ Qed.
 
 Lemma plans_keep_ways m n v w : clos_trans node (Waits (dependencies ps)) m n ->
   Visit_of ps (fst m) (snd m) v -> Visit_of ps (fst n) (snd n) w ->
-  enter v <= enter w /\ (following_is_forbidden = true -> enter v < enter w).
+  enter v <= enter w /\ (following_is_forbidden i = true -> enter v < enter w).
 Proof.
   intros C. revert v w. induction C as [m n (e & E & <- & <-)|m k n _ IH C IK]; intros v w V W.
-  - apply (in_dependencies i following_is_forbidden ps one_plan_each) in E. pose proof (edges_take_time e E) as [P G].
-    destruct (execution_keeps_edges i following_is_forbidden s well_formed lawful ps e w) as (v0 & V0 & K);
+  - apply (in_dependencies i ps one_plan_each) in E. pose proof (edges_take_time e E) as [P G].
+    destruct (execution_keeps_edges i s well_formed lawful ps e w) as (v0 & V0 & K);
       [apply lawful_solution_executes_itself; auto | exact E | exact W|].
     assert (v0 = v) as -> by eauto using visit_is_unique. split; [lia | intros F; specialize (G F); lia].
   - assert (K : exists u, Visit_of ps (fst k) (snd k) u).
@@ -171,7 +171,7 @@ Theorem cycles_are_rotations m n v w : clos_trans node (Waits (dependencies ps))
 Proof. intros C D V W. destruct (plans_keep_ways m n v w C V W), (plans_keep_ways n m w v D W V). lia. Qed.
 
 (** Where following is forbidden, nobody rotates. *)
-Theorem without_following_no_cycle : following_is_forbidden = true -> Acyclic (dependencies ps).
+Theorem without_following_no_cycle : following_is_forbidden i = true -> Acyclic (dependencies ps).
 Proof.
   intros F n C. assert (K : exists v, Visit_of ps (fst n) (snd n) v).
   { destruct (waits_in_a_cycle (dependencies ps) n C) as (m & (e & E & _ & <-) & _).
@@ -185,7 +185,7 @@ Theorem late_robots_never_deadlock ts : Acyclic (dependencies ps) -> Executes ps
   exists id n v, Visit_of ps id n v /\ (forall x, ~ Visit_of ts id n x) /\
   forall e, In e (dependencies ps) -> later e = (id, n) -> exists x, Visit_of ts (fst (earlier e)) (snd (earlier e)) x.
 Proof.
-  intros A X (id & n & v & V & M). pose proof (robots_are_named_once _ _ ps ts X) as N.
+  intros A X (id & n & v & V & M). pose proof (robots_are_named_once _ ps ts X) as N.
   set (waiting := filter (fun n => match visit_at ts n with Some _ => false | None => true end) (nodes ps)).
   assert (W : forall k, In k waiting <-> (exists u, Visit_of ps (fst k) (snd k) u) /\
     forall x, ~ Visit_of ts (fst k) (snd k) x).

@@ -23,6 +23,40 @@ Inductive Leads (i : instance) : Z -> Z -> Prop :=
 (** A way leads to the robot's goal. *)
 Definition Plannable (i : instance) (a : robot) : Prop := Leads i (start a) (goal a).
 
+(** * What the rules of plans together say of single resources *)
+
+(** No resource has more robots than fit in. *)
+Definition Capacity_is_kept (i : instance) (ps : list plan) : Prop :=
+  forall r tick ids, In r (resources i) -> NoDup ids ->
+  (forall id, In id ids -> Occupies ps id (resource_id r) tick) -> Z.of_nat (length ids) <= capacity r.
+
+Lemma capacity_is_kept i s : Lawful i s -> Capacity_is_kept i (plans s).
+Proof.
+  intros L r tick ids R N O. change (capacity r) with (limit_capacity (Limit [resource_id r] (capacity r))).
+  apply (limits_are_kept i s L _ tick ids).
+  - apply in_or_app. left. apply in_map_iff. eauto.
+  - exact N.
+  - intros id I. exists (resource_id r), 0. rewrite Z.sub_0_r. unfold gap.
+    destruct (following_is_forbidden i); simpl; repeat split; auto; lia.
+Qed.
+
+(** No two robots swap two resources. *)
+Definition Swaps_are_avoided (i : instance) (ps : list plan) : Prop :=
+  forall one other r s tick, one <> other -> In r (resource_ids i) -> In s (resource_ids i) ->
+  Makes_move ps one r s tick -> Makes_move ps other s r tick -> False.
+
+Lemma swaps_are_avoided i s : Lawful i s -> Swaps_are_avoided i (plans s).
+Proof.
+  intros L one other r t tick N R T M O. apply (exchanges_are_avoided i s L one other r t t r tick); auto; left;
+    reflexivity.
+Qed.
+
+Lemma exchanges_without_groups i ps : groups i = [] -> Swaps_are_avoided i ps -> Exchanges_are_avoided i ps.
+Proof.
+  intros G A one other r s s' r' tick N R S _ _ M O [<-|(g & H & _)] [<-|(h & K & _)]; rewrite ?G in *; try tauto.
+  exact (A one other r s tick N R S M O).
+Qed.
+
 Section Well_formed_instance.
 Variables (i : instance) (a : robot).
 Hypothesis right : Well_formed i.

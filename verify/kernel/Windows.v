@@ -252,19 +252,150 @@ Proof.
   - destruct (not_behind _ _ W last C). apply F; [|exact Logic.I]. rewrite C in J. simpl in J. lia.
 Qed.
 
-(** window/free: for lawful plans of different robots, exactly the maximal intervals, from tick 0, in which fewer of the
-    committed plans occupy the resource than its capacity. *)
-Definition Room_for_one_more (committed : list plan) (r : resource) (tick : Z) : Prop :=
-  0 <= tick /\ occupants committed (resource_id r) tick < capacity r.
+(** * Limits *)
 
-Definition windows_of (committed : list plan) (r : resource) : list window :=
-  free_windows (listed (timetable committed) (resource_id r)) (capacity r).
+(** When as many of the stays hold as fit in, or more: the windows of the changes turned round. *)
+Definition full_stays (stays : list stay) (capacity : Z) : list stay :=
+  map (fun w => (opens w, closes w)) (sweep (1 - capacity) 0 None (map (fun c => (fst c, - snd c)) (changes stays))).
 
-Theorem free_windows_are_maximal i committed r w : Well_formed i ->
-  (forall p, In p committed -> exists a, In a (robots i) /\ robot_id a = plan_robot p) -> Plans_lawful i committed ->
-  In w (windows_of committed r) <-> Maximal (Room_for_one_more committed r) w.
+(** The windows in which none of the limits is full, now or when the gap is over. *)
+Definition windows_between (gap : Z) (full : list stay) : list window :=
+  free_windows (map (fun s => (fst s - gap, snd s)) full) 1.
+
+(** The limits of a resource, each as often as it is full. *)
+Definition full_at (known : lookup) (full : Z -> list stay) (place : Z) : list stay :=
+  flat_map full (keys_at known place).
+
+Definition full_in_timetable (known : lookup) (stays : Map.t (list stay)) (key : Z) : list stay :=
+  match Map.find key (limit_of known) with Some (_, l) => full_stays (listed stays key) (limit_capacity l) | None => [] end.
+
+Definition windows_of (known : lookup) (committed : list plan) (r : resource) : list window :=
+  let stays := stays_in_limits known (counts_longer known) committed in
+  windows_between (counts_longer known) (full_at known (full_in_timetable known stays) (resource_id r)).
+
+Lemma turned_changes_are_in_order l : In_order l -> In_order (map (fun c => (fst c, - snd c)) l).
 Proof.
-  intros W R L. unfold windows_of. rewrite free_windows_are_maximal_intervals. apply maximal_iff.
-  intros tick. unfold Free, Room_for_one_more. rewrite occupancy_of_timetable; [tauto|].
-  exact (plan_holds_once i W committed R L).
+  intros O. unfold In_order in *. induction O as [|c l O IH A]; simpl; constructor; auto.
+  rewrite Forall_forall in *. intros d D. apply in_map_iff in D as (e & <- & E). exact (A e E).
 Qed.
+
+Lemma level_of_turned_changes l tick : level (map (fun c => (fst c, - snd c)) l) tick = - level l tick.
+Proof. induction l as [|c l IH]; simpl; [reflexivity|]. rewrite IH. destruct (fst c <=? tick); lia. Qed.
+
+Lemma full_stays_iff stays capacity tick : 1 <= capacity -> 0 <= tick ->
+  (exists s, In s (full_stays stays capacity) /\ holds s tick = true) <-> capacity <= occupancy stays tick.
+Proof.
+  intros C T. unfold full_stays. set (turned := map (fun c => (fst c, - snd c)) (changes stays)).
+  pose proof (turned_changes_are_in_order _ (changes_are_in_order stays)) as O. fold turned in O.
+  pose proof (level_of_turned_changes (changes stays) tick) as L. fold turned in L.
+  rewrite level_of_changes in L by exact T.
+  assert (K : Consistent (1 - capacity) 0 None turned) by (unfold Consistent; lia). split.
+  - intros (s & S & H). apply in_map_iff in S as (w & <- & W). apply (sweep_iff _ _ O _ _ K) in W.
+    enough (X : Open (1 - capacity) 0 None turned tick) by (unfold Open in X; lia). apply (holds_inside _ _ W).
+    unfold holds, In_window, before, Before in *. simpl in H. destruct (closes w); lia.
+  - intros H. destruct (sweep_covers _ _ O _ _ K tick) as (w & W & I); [unfold Open; split; auto; lia|].
+    exists (opens w, closes w). split; [apply (in_map (fun w => (opens w, closes w))); exact W|]. unfold holds, In_window, before, Before in *. simpl.
+    destruct (closes w); lia.
+Qed.
+
+Lemma full_stays_last stays capacity s : 1 <= capacity -> In s (full_stays stays capacity) -> Before (fst s) (snd s).
+Proof.
+  intros C S. unfold full_stays in S. apply in_map_iff in S as (w & <- & W).
+  apply sweep_iff in W; [exact (is_not_empty _ _ W) | | unfold Consistent; lia].
+  exact (turned_changes_are_in_order _ (changes_are_in_order stays)).
+Qed.
+
+Section Room.
+Variables (i : instance) (committed : list plan).
+Hypothesis well_formed : Well_formed i.
+Hypothesis robots_are_known : forall p, In p committed -> exists a, In a (robots i) /\ robot_id a = plan_robot p.
+Hypothesis plans_are_lawful : Plans_lawful i committed.
+Hypothesis robots_are_distinct : NoDup (map plan_robot committed).
+Local Notation known := (lookup_of i).
+
+(** There is room in each limit of the resource for one robot more than those that count. *)
+Definition Room_beside (r : resource) (tick : Z) : Prop :=
+  forall l ids, In l (limits i) -> In (resource_id r) (limit_places l) -> NoDup ids ->
+  (forall id, In id ids -> Counts i committed id l tick) -> Z.of_nat (length ids) < limit_capacity l.
+
+(** The robot may be in the resource at the tick: there is room then, and for as long as it still counts. *)
+Definition Room_for_one_more (r : resource) (tick : Z) : Prop :=
+  0 <= tick /\ forall longer, 0 <= longer <= gap i -> Room_beside r (tick + longer).
+
+Lemma room_beside_iff r tick : Room_beside r tick <-> forall key l, In (key, l) (keyed_limits i) ->
+  In (resource_id r) (limit_places l) -> occupants (keys_at known) (gap i) committed key tick < limit_capacity l.
+Proof.
+  assert (E : forall key l, In (key, l) (keyed_limits i) ->
+    (forall ids, NoDup ids -> (forall id, In id ids -> Counts i committed id l tick) ->
+      Z.of_nat (length ids) <= limit_capacity l - 1) <->
+    occupants (keys_at known) (gap i) committed key tick <= limit_capacity l - 1).
+  { intros key l L. apply (occupants_iff _ _ (fun id => Counts i committed id l tick)); auto.
+    intros id. apply (counts_iff i well_formed committed); auto. }
+  unfold Room_beside. split.
+  - intros H key l L P. enough (occupants (keys_at known) (gap i) committed key tick <= limit_capacity l - 1) by lia.
+    apply (E key l L). intros ids N C. enough (Z.of_nat (length ids) < limit_capacity l) by lia.
+    apply (H l); auto. apply in_limits; eauto.
+  - intros H l ids L P N C. apply in_limits in L as (key & L); auto. specialize (H key l L P).
+    enough (Z.of_nat (length ids) <= limit_capacity l - 1) by lia. apply (E key l L); auto. lia.
+Qed.
+
+Lemma windows_are_of_room r tick : In r (resources i) ->
+  Free (map (fun s => (fst s - gap i, snd s)) (full_at known (full_in_timetable known
+    (stays_in_limits known (gap i) committed)) (resource_id r))) 1 tick <-> Room_for_one_more r tick.
+Proof.
+  intros R. unfold Free, Room_for_one_more. setoid_rewrite room_beside_iff. pose proof (gap_is_short i) as G.
+  set (stays := stays_in_limits known (gap i) committed).
+  set (full := full_at known (full_in_timetable known stays) (resource_id r)).
+  assert (F : forall t, 0 <= t -> (exists s, In s full /\ holds s t = true) <-> exists key l,
+    In (key, l) (keyed_limits i) /\ In (resource_id r) (limit_places l) /\
+    limit_capacity l <= occupants (keys_at known) (gap i) committed key t).
+  { intros t T. unfold full, full_at. setoid_rewrite in_flat_map. split.
+    - intros (s & (key & K & S) & H). apply in_keys_at in K as (l & L & P). exists key, l. repeat split; auto.
+      unfold full_in_timetable in S. rewrite (proj2 (find_limit i well_formed key l) L) in S.
+      rewrite <- (occupancy_of_timetable _ _ (keys_are_different i well_formed) committed key t)
+        by exact (plan_counts_once i well_formed committed robots_are_known plans_are_lawful).
+      apply full_stays_iff; eauto using limit_capacity_is_positive.
+    - intros (key & l & L & P & H).
+      rewrite <- (occupancy_of_timetable _ _ (keys_are_different i well_formed) committed key t) in H
+        by exact (plan_counts_once i well_formed committed robots_are_known plans_are_lawful).
+      apply full_stays_iff in H as (s & S & H); eauto using limit_capacity_is_positive.
+      exists s. split; auto. exists key. split; [apply in_keys_at; eauto|].
+      unfold full_in_timetable. rewrite (proj2 (find_limit i well_formed key l) L). exact S. }
+  assert (D : forall s, In s full -> Before (fst s) (snd s)).
+  { intros s S. unfold full, full_at in S. apply in_flat_map in S as (key & _ & S). unfold full_in_timetable in S.
+    destruct (Map.find key (limit_of known)) as [[k l]|] eqn:L; [|destruct S].
+    apply (find_in_index fst) in L as [L <-]; [|exact (keys_are_unique i well_formed)].
+    eapply full_stays_last; [exact (limit_capacity_is_positive i well_formed _ _ L) | exact S]. }
+  assert (Z0 : occupancy (map (fun s => (fst s - gap i, snd s)) full) tick < 1 <->
+    forall s, In s full -> holds (fst s - gap i, snd s) tick = false).
+  { unfold occupancy. split.
+    - intros H s S. apply not_true_iff_false. intros X.
+      assert (Y : In (fst s - gap i, snd s) (filter (fun s => holds s tick) (map (fun s => (fst s - gap i, snd s)) full))).
+      { apply filter_In. split; auto. apply (in_map (fun s => (fst s - gap i, snd s))). exact S. }
+      destruct (filter _ _); [destruct Y | simpl in H; lia].
+    - intros H. destruct (filter (fun s => holds s tick) (map (fun s => (fst s - gap i, snd s)) full)) as [|x y] eqn:E;
+        [simpl; lia|].
+      assert (Y : In x (x :: y)) by (left; auto). rewrite <- E in Y. apply filter_In in Y as [Y X].
+      apply in_map_iff in Y as (s & <- & S). rewrite (H s S) in X. discriminate. }
+  rewrite Z0. split; intros [T H]; split; auto.
+  - intros longer L key l K P. apply Z.nle_gt. intros C. destruct (proj2 (F (tick + longer) ltac:(lia))) as (s & S & X);
+      [eauto|].
+    specialize (H s S). apply not_true_iff_false in H. apply H. unfold holds, before in *. simpl.
+    destruct (snd s); lia.
+  - intros s S. apply not_true_iff_false. intros X. specialize (D s S).
+    assert (exists longer, 0 <= longer <= gap i /\ holds s (tick + longer) = true) as (longer & L & Y).
+    { unfold holds, before, Before in *. simpl in X.
+      exists (Z.max 0 (fst s - tick)). split; [lia|]. destruct (snd s); lia. }
+    destruct (proj1 (F (tick + longer) ltac:(lia))) as (key & l & K & P & C); [eauto|].
+    specialize (H longer L key l K P). lia.
+Qed.
+
+(** window/free: for lawful plans of different robots, exactly the maximal intervals, from tick 0, in which one more
+    robot may be in the resource. *)
+Theorem free_windows_are_maximal r w : In r (resources i) ->
+  In w (windows_of known committed r) <-> Maximal (Room_for_one_more r) w.
+Proof.
+  intros R. unfold windows_of, windows_between. cbv zeta. rewrite free_windows_are_maximal_intervals.
+  apply maximal_iff. intros tick. exact (windows_are_of_room r tick R).
+Qed.
+End Room.

@@ -193,7 +193,7 @@ let require_format path format json =
 type instance = { instance : Law.instance; resource_numbers : numbers; robot_numbers : numbers }
 
 (* Refuse an instance that the kernel does not accept, by the first rule that is seen to be broken. *)
-let name_fault path { Law.resources; edges; directed; robots; _ } =
+let name_fault path { Law.resources; edges; directed; groups; robots; _ } =
   let known id = Z.lt id (Z.of_int (List.length resources)) in
   let at_least_one rule path name value =
     if Z.lt value Z.one then
@@ -212,6 +212,23 @@ let name_fault path { Law.resources; edges; directed; robots; _ } =
     Hashtbl.add met (source, target) ()
   in
   each ".graph.edges" edge edges;
+  let ids = Hashtbl.create 16 in
+  let group path (g : Law.group) =
+    let fault where message = refuse (path ^ where) "instance/group" message in
+    if Hashtbl.mem ids g.group_id then fault ".id" "ids must be unique among groups";
+    Hashtbl.add ids g.group_id ();
+    if g.group_resources = [] then fault ".resources" "it must name at least one resource";
+    let members = Hashtbl.create 16 in
+    let member position place =
+      let fault = fault (Printf.sprintf ".resources[%d]" position) in
+      if not (known place) then fault "it must be the id of a resource, and is not";
+      if Hashtbl.mem members place then fault "it must be named once";
+      Hashtbl.add members place ()
+    in
+    List.iteri member g.group_resources;
+    at_least_one "instance/group" path "capacity" g.group_capacity
+  in
+  each ".graph.groups" group groups;
   each ".robots" (fun path a -> if not (known a.Law.start) then
     refuse (path ^ ".start") "instance/endpoint" "the start must be the id of a resource") robots;
   each ".robots" (fun path a -> if not (known a.Law.goal) then
@@ -224,7 +241,7 @@ let name_fault path { Law.resources; edges; directed; robots; _ } =
 let instance_of_json path json =
   require_format path "carproof-instance/1" json;
   let one = Z.one in
-  let resource_numbers = no_numbers () and robot_numbers = no_numbers () in
+  let resource_numbers = no_numbers () and robot_numbers = no_numbers () and group_numbers = no_numbers () in
   let resource_id path json = number resource_numbers (id path json) in
   let node path json =
     let field = fields path ~required:[ "id" ] ~optional:[ "capacity"; "duration"; "x"; "y" ] json in
@@ -244,13 +261,20 @@ let instance_of_json path json =
     let field = fields path ~required:[ "source"; "target" ] ~optional:[] json in
     (required field "source" resource_id, required field "target" resource_id)
   in
+  let group path json =
+    let field = fields path ~required:[ "id"; "resources" ] ~optional:[ "capacity" ] json in
+    { Law.group_id = number group_numbers (required field "id" id);
+      group_resources = required field "resources" (elements resource_id);
+      group_capacity = optional one field "capacity" whole }
+  in
   let graph path json =
-    let field = fields path ~required:[ "nodes"; "edges" ] ~optional:[ "directed"; "multigraph"; "graph" ] json in
+    let field = fields path ~required:[ "nodes"; "edges" ] ~optional:[ "directed"; "multigraph"; "graph"; "groups" ] json in
     let attributes path json = present (fields path ~required:[] ~optional:[ "name" ] json) "name" text in
     ignore (present field "graph" attributes);
     if optional false field "multigraph" truth then shape (path ^ ".multigraph") "false";
     let nodes = required field "nodes" (elements node) in
-    (nodes, required field "edges" (elements edge), optional false field "directed" truth)
+    let edges = required field "edges" (elements edge) and directed = optional false field "directed" truth in
+    (nodes, edges, directed, optional [] field "groups" (elements group))
   in
   let robot path json =
     let field = fields path ~required:[ "id"; "start"; "goal" ] ~optional:[ "release"; "pace" ] json in
@@ -269,20 +293,20 @@ let instance_of_json path json =
     | "park" -> Law.Park
     | _ -> shape path "\"vanish\" or \"park\""
   in
-  let following path json =
+  let is_forbidden path json =
     match text path json with
-    | "allowed" -> ()
-    | "forbidden" -> refuse path "limit/following" "following must be allowed: the kernel does not know joint/following"
+    | "allowed" -> false
+    | "forbidden" -> true
     | _ -> shape path "\"allowed\" or \"forbidden\""
   in
   let required_fields = [ "format"; "graph"; "after_goal"; "robots" ] in
   let field = fields path ~required:required_fields ~optional:[ "following"; "$schema" ] json in
   ignore (present field "$schema" text);
-  ignore (present field "following" following);
-  let resources, edges, directed = required field "graph" graph in
+  let following_is_forbidden = optional false field "following" is_forbidden in
+  let resources, edges, directed, groups = required field "graph" graph in
   let after_goal = required field "after_goal" after in
   let robots = required field "robots" (elements robot) in
-  let instance = { Law.resources; edges; directed; after_goal; robots } in
+  let instance = { Law.resources; edges; directed; groups; after_goal; following_is_forbidden; robots } in
   if not (Checker.instance_accepted instance) then name_fault path instance;
   { instance; resource_numbers; robot_numbers }
 

@@ -50,10 +50,16 @@ let solution_fault (read : Reading.instance) (solution : Law.solution) =
         let rule = match robot_of p with Some a -> broken_plan_rule instance known a p | None -> "solution/covers" in
         Some (rule, "the plan of robot " ^ named read p.plan_robot)
     | None ->
-        if not (Checker.capacity_accepted instance solution.plans) then
+        let kept longer limits = Checker.limits_accepted known longer limits solution.plans in
+        let of_resources = Checker.resource_limits instance and of_groups = Checker.group_limits instance.groups in
+        if not (kept Z.zero of_resources) then
           Some ("joint/capacity", "more robots occupy a resource than its capacity")
-        else if not (Checker.exchanges_accepted solution.plans) then
-          Some ("joint/exchange", "two robots exchange two resources")
+        else if not (kept Z.zero of_groups) then
+          Some ("joint/group", "more robots are in the resources of a group than its capacity")
+        else if not (Checker.exchanges_accepted known solution.plans) then
+          Some ("joint/exchange", "two robots exchange two resources, or resources close to them")
+        else if not (kept known.counts_longer (of_resources @ of_groups)) then
+          Some ("joint/following", "a robot enters a resource or a group too soon after another")
         else None
 
 let refused_for = function

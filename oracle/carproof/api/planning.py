@@ -27,10 +27,10 @@ def certified_query(
 ) -> tuple[Plan | None, QueryCertificateDocument]:
     """The plan that `query` finds, and a certificate that no plan arrives earlier, which `verify_query` checks.
 
-    Raises what `query` raises, and `Refusal` where following is forbidden.
+    Raises what `query` raises.
     """
     require_query(instance, committed, robot, now)
-    refuse(instance, "following", "groups", "stops")
+    refuse(instance, "groups", "stops")
     own = [each for each in committed if each.robot == robot]
     certifier = engine_named(None).certifier(instance)
     certifier.commit([each for each in committed if each.robot != robot])

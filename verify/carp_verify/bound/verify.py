@@ -101,7 +101,7 @@ def verify_bound(instance: Instance, certificate: BoundDocument) -> int:
     No plans of all robots that can reach their goals have a smaller total cost. Where one cannot, `robots` has null.
     """
     require_instance(instance)
-    refuse(instance, "following", "groups", "stops")
+    refuse(instance, "groups", "stops")
     _require(is_about, is_about(certificate.instance, digest(instance)), "$.instance", "it is about another instance")
     scale = certificate.scale
     _require(is_scale, is_scale(scale), "$.scale", f"the scale must be a power of two, and is {scale!r}")

@@ -49,7 +49,8 @@ class Traffic:
         for visit in plan.visits:
             first = self._cut(visit.resource, visit.enter)
             inside = self._inside[visit.resource]
-            last = len(inside) if visit.leave is None else self._cut(visit.resource, visit.leave)
+            gap = self.instance.gap
+            last = len(inside) if visit.leave is None else self._cut(visit.resource, visit.leave + gap)
             for position in range(first, last):
                 inside[position] += 1
         for visit, following in pairwise(plan.visits):
@@ -80,7 +81,9 @@ class Traffic:
             if opened is None and inside[place] < capacity:
                 opened = changes[place]
             elif opened is not None and inside[place] >= capacity:
-                yield Window(opened, changes[place])
+                closed = changes[place] - self.instance.gap
+                if closed > max(opened, tick):
+                    yield Window(opened, closed)
                 opened = None
         if opened is not None:
             yield Window(opened, None)
@@ -126,7 +129,7 @@ def require_certificate(traffic: Traffic, certificate: QueryCertificateDocument,
 
     The plan followed until now, and the plans committed, must be lawful.
     """
-    refuse(traffic.instance, "following", "groups", "stops")
+    refuse(traffic.instance, "groups", "stops")
     if followed is not None and has_ended(followed, certificate.now):
         if traffic.allows(followed.visits):
             arrival = followed.visits[-1].enter

@@ -72,7 +72,7 @@ def command(  # noqa: PLR0913 - an argument an option
     """
     instance, given = problem.read(as_named=True)
     if kernel or z3:
-        refuse_in(problem.names[0], instance, "following", "groups", "stops")
+        refuse_in(problem.names[0], instance, "stops", *(("groups",) if z3 else ()))
     if z3:
         return certified(instance, given, as_json)
     most = None if everything else MOST_LISTED

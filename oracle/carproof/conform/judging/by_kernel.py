@@ -2,14 +2,13 @@
 
 The kernel checks all plans together. From the level complete-in-context on, it gets a certificate for each robot beside
 the plans before it: no plan arrives before the best one that carproof finds. It also checks that this plan breaks no
-rule. The kernel does not cover `fleet/history`, the rules about a planner's choices, and instances that forbid
-following.
+rule. The kernel does not cover `fleet/history` and the rules about a planner's choices.
 """
 
 from carp_spec import Carp, Instance, Plan, Solution
 from carp_spec.documents.solutions import solution_document
 from carp_spec.documents.verdicts import VerdictDocument
-from carp_spec.limits import following_is_allowed, goals_stand_alone, groups_are_absent
+from carp_spec.limits import goals_stand_alone, groups_are_absent
 from carp_verify.bound.rules import ContradictionError
 from carp_verify.kernel import ask, request
 from carproof.conform.answers import Answer
@@ -24,7 +23,7 @@ EARLY = ("query/complete", "query/optimal")
 
 def require_agreement(case: Case, answer: Answer, level: Level, finding: Finding | None) -> None:
     """Raise `ContradictionError` if the kernel refuses what was accepted, or accepts what breaks a rule of its own."""
-    if not all(keeps(case.instance) for keeps in (following_is_allowed, groups_are_absent, goals_stand_alone)):
+    if not all(keeps(case.instance) for keeps in (groups_are_absent, goals_stand_alone)):
         return
     match answer:
         case VerdictDocument():
