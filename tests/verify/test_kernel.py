@@ -1,16 +1,20 @@
 """The proved kernel: it agrees with `carp_spec` on every verdict, and refuses what it should not read."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
+from typing import get_args
 
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
 from tests.verify.kernel_program import ask, check, encoded, run, served
 
-from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, Solution, judge
+from carp_spec import Group, Instance, Refusal, Resource, ResourceGraph, Robot, Solution, judge
 from carp_spec.documents.instances import instance_document, read_instance
 from carp_spec.documents.solutions import read_solution
 from carp_spec.documents.vectors import Vector
+from carp_spec.model import Following
 from carproof.testing.mutations import BrokenSolution
 from carproof.testing.strategies import PlannedInstance, broken_solutions, instances, planned_instances
 from carproof.testing.vectors import vectors
@@ -19,7 +23,17 @@ _kernel = pytest.fixture(scope="module", autouse=True)(served)
 
 
 def vectors_of(op: str) -> list[Vector]:
-    return [case for case in vectors() if case.op == op]
+    return [case for case in vectors() if case.op == op and not has_stops(case)]
+
+
+def has_stops(case: Vector) -> bool:
+    return '"stops"' in json.dumps(case.instance)
+
+
+@pytest.mark.parametrize("case", [*filter(has_stops, vectors("plan/stops"))], ids=lambda case: case.id)
+def test_the_kernel_refuses_robots_with_stops_by_name(case: Vector) -> None:
+    verdict = ask(encoded(**case.request))
+    assert (verdict["verdict"], verdict["rule"]) == ("bad input", "limit/stops")
 
 
 def test_the_kernel_ends_with_2_where_a_trace_is_no_solution(tmp_path: Path) -> None:
@@ -93,6 +107,21 @@ def test_the_kernel_refuses_what_breaks_a_rule(case: BrokenSolution) -> None:
     rules = {violation.rule for violation in judge(case.instance, case.solution).violations}
     assert verdict["verdict"] == "refused"
     assert verdict["rule"] in rules
+
+
+@given(planned_instances(), st.data())
+def test_the_kernel_counts_robots_in_groups_and_a_tick_longer_as_the_checker_does(
+    case: PlannedInstance, data: st.DataObject
+) -> None:
+    graph = case.instance.graph
+    members = st.lists(st.sampled_from([*graph.resource]), min_size=1, unique=True)
+    drawn = data.draw(st.lists(st.tuples(members, st.integers(1, 2)), max_size=3))
+    groups = tuple(Group(number, tuple(resources), capacity) for number, (resources, capacity) in enumerate(drawn))
+    following = data.draw(st.sampled_from(get_args(Following)))
+    instance = replace(case.instance, graph=replace(graph, groups=groups), following=following)
+    verdict, judged = check(instance, case.solution), judge(instance, case.solution)
+    assert (verdict["verdict"] == "accepted") == judged.valid
+    assert judged.valid or verdict["rule"] in {violation.rule for violation in judged.violations}
 
 
 @given(instances())

@@ -276,14 +276,24 @@ let instance_of_json path json =
     let edges = required field "edges" (elements edge) and directed = optional false field "directed" truth in
     (nodes, edges, directed, optional [] field "groups" (elements group))
   in
+  let stop path json =
+    let field = fields path ~required:[ "resource" ] ~optional:[ "service" ] json in
+    (required field "resource" resource_id, not (Z.equal Z.zero (optional Z.zero field "service" whole)))
+  in
   let robot path json =
-    let field = fields path ~required:[ "id"; "start"; "goal" ] ~optional:[ "release"; "pace" ] json in
+    let field = fields path ~required:[ "id"; "start" ] ~optional:[ "goal"; "stops"; "release"; "pace" ] json in
     let known = required field "id" id in
+    let goal =
+      match (present field "goal" resource_id, present field "stops" (elements stop)) with
+      | Some goal, None | None, Some [ (goal, false) ] -> goal
+      | None, Some _ -> refuse (path ^ ".stops") "limit/stops" "it must be one stop without service, a goal"
+      | _ -> shape path "a goal or stops"
+    in
     if Hashtbl.mem robot_numbers.known known then
       refuse (path ^ ".id") "instance/robot-id" ("ids must be unique, and a robot before it has the id " ^ shown known);
     { Law.robot_id = number robot_numbers known;
       start = required field "start" resource_id;
-      goal = required field "goal" resource_id;
+      goal;
       release = optional Z.zero field "release" whole;
       pace = optional one field "pace" whole }
   in
