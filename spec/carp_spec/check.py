@@ -8,6 +8,7 @@ from carp_spec.inputs.values import require_known, require_plans, require_soluti
 from carp_spec.joint_rules import JOINT_RULES, SOLUTION_RULES
 from carp_spec.model import Instance, Plan, Solution
 from carp_spec.plan_rules import PLAN_RULES, plan_keeps_history, total_cost
+from carp_spec.quick_check import breaks_no_rule, is_large
 from carp_spec.rule import Violation
 
 MOST_LISTED = 100
@@ -37,6 +38,8 @@ def violations_of(instance: Instance, plans: Sequence[Plan], most: int | None = 
 
 
 def _violations(instance: Instance, plans: Sequence[Plan], most: int | None) -> tuple[Violation, ...]:
+    if is_large(plans) and breaks_no_rule(instance, plans):
+        return ()
     violations: list[Violation] = []
     for each in PLAN_RULES:
         violations += islice((violation for plan in plans for violation in each(instance, plan)), most)

@@ -16,6 +16,7 @@ from time import perf_counter
 
 import carp_optimized
 from carp_optimized.fleet import PlannedFleet
+from carp_optimized.improve.planning import improve_crowd
 from carp_optimized.improve.repair import repair
 from carp_optimized.neighbourhood.polishing import CHANCE, SURE
 from carp_optimized.planners import rounds_between_looks
@@ -60,6 +61,10 @@ def polish_or_anneal(
     require_polish_options(iterations, seconds, seed)
     if seconds is None:
         return carp_optimized.polish(instance, solution, iterations=iterations, seed=seed, advance=advance)
+    whole = sound_solution(instance, solution)
+    found = improve_crowd(instance, whole, seconds, seed=seed, advance=advance)
+    if found is not None:
+        return found
     return anneal(instance, solution, seconds, seed=seed, advance=advance)
 
 

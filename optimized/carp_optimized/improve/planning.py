@@ -21,7 +21,7 @@ import numpy as np
 
 from carp_optimized.improve.checking import require_lawful
 from carp_optimized.improve.crowds import FAR, Crowd, are_apart, crowd_of, is_stepwise, measure, near, only, ways_of
-from carp_optimized.improve.improving import Improving, arrivals, paths_of
+from carp_optimized.improve.improving import LONGER, Improving, arrivals, paths_of
 from carp_optimized.improve.lacam import RUNNING, STEPS, Search
 from carp_optimized.improve.rounds import SURE
 from carp_optimized.improve.stays import Paths, no_paths
@@ -159,6 +159,43 @@ def plan_crowd(
     paths = _paths(crowd, timer, is_measured, iterations, seed, advance)
     require_lawful(crowd, paths)
     return found_along(instance, [instance.robots[row] for row in rows], paths, ways_of(crowd))
+
+
+def improve_crowd(
+    instance: Instance,
+    solution: Solution,
+    seconds: float,
+    *,
+    seed: int = 0,
+    advance: Advance = lambda _, __, ___: None,
+    clock: Callable[[], float] = perf_counter,
+) -> Solution | None:
+    """Better plans by that many seconds of rounds; `None` if a robot has no plan, or the instance is not stepwise."""
+    timer = Clock(seconds, clock, clock())
+    if len(solution.plans) < len(instance.robots) or not is_stepwise(instance) or not instance.robots:
+        return None
+    crowd = crowd_of(instance)
+    timer.visit = time_of_visit(instance, Found.solution, clock)
+    paths = _paths_of_plans(instance, solution)
+    timer.reserve(int(paths.size.sum()))
+    if not _measured(crowd, timer):
+        return solution
+    paths = improved(crowd, paths, None, timer, seed, advance)
+    require_lawful(crowd, paths)
+    return found_along(instance, instance.robots, paths, ways_of(crowd)).solution()
+
+
+def _paths_of_plans(instance: Instance, solution: Solution) -> Paths:
+    """The plans as paths."""
+    index = dict(instance.graph.index)
+    row = {robot.id: position for position, robot in enumerate(instance.robots)}
+    paths = no_paths(len(row), max(len(each.visits) for each in solution.plans) + LONGER)
+    for plan in solution.plans:
+        robot, size = row[plan.robot], len(plan.visits)
+        paths.size[robot] = size
+        paths.place[robot, :size] = [index[each.resource] for each in plan.visits]
+        paths.enter[robot, :size] = [each.enter for each in plan.visits]
+    return paths
 
 
 def _measured(crowd: Crowd, timer: Clock) -> bool:

@@ -13,7 +13,7 @@ from carp_optimized.improve.checking import require_lawful
 from carp_optimized.improve.crowds import FAR, Crowd, crowd_of, is_stepwise, measure
 from carp_optimized.improve.lacam import plans_by_steps
 from carp_optimized.improve.planning import Clock as Timer
-from carp_optimized.improve.planning import first_paths
+from carp_optimized.improve.planning import first_paths, improve_crowd
 from carp_optimized.improve.stays import Paths
 from carp_optimized.jit.references import Native
 from carp_spec import AfterGoal, Instance, RobotId, Solution, judge, total_cost
@@ -109,6 +109,18 @@ def test_the_nearest_robots_are_planned_where_there_is_no_time_for_all() -> None
         return abs((start.x or 0) - (goal.x or 0)) + abs((start.y or 0) - (goal.y or 0))
 
     assert max(way(plan.robot) for plan in found.plans) < min(sorted(map(way, found.unplanned))[len(found.plans) :])
+
+
+def test_given_plans_get_better_within_the_time() -> None:
+    instance = crowd(70, 1500)
+    given = plan_crowd(instance, iterations=0, seconds=None)
+    started = process_time()
+    found = improve_crowd(instance, given, 1.5, clock=process_time)
+    assert process_time() - started < 3
+    assert found is not None
+    assert judge(instance, found).valid
+    assert total_cost(instance, found.plans) < total_cost(instance, given.plans)
+    assert improve_crowd(instance, given, 0.001, clock=process_time) == given
 
 
 def paths_on_a_grid() -> tuple[Crowd, Paths]:

@@ -1,0 +1,68 @@
+"""The quick check of many plans says that they break no rule only if the rules say so, and says it of most."""
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from tests.spec.making import PARKED, PARKING, SOLVED, VANISHING
+from tests.spec.strategies import SIZES, instances_with_plans
+
+import carp_optimized
+import carp_reference
+from carp_spec import Carp, Instance, Plan, Visit, judge, violations_of
+from carp_spec.quick_check import LATEST, breaks_no_rule, is_large
+from carproof.generate import Fleet, Grid, grid_instance
+from carproof.testing.mutations import MUTATIONS
+from carproof.testing.strategies import instances
+from carproof.testing.vectors import vectors
+
+KNOWN = replace(SIZES, groups=0, stops=1, service=0)
+
+
+def test_no_broken_vector_passes() -> None:
+    passed = 0
+    for case in vectors():
+        if case.op == "check" and case.id.startswith(("plan-", "joint-")):
+            instance, solution = case.read_instance(), case.read_solution()
+            plans = [plan for plan in solution.plans if plan.robot in instance.robot]
+            if breaks_no_rule(instance, plans):
+                assert not violations_of(instance, plans), case.id
+                passed += 1
+    assert passed > 20
+
+
+@given(instances_with_plans())
+def test_what_passes_breaks_no_rule(case: tuple[Instance, tuple[Plan, ...]]) -> None:
+    instance, plans = case
+    assert not breaks_no_rule(instance, plans) or not violations_of(instance, plans)
+
+
+@given(instances(KNOWN))
+def test_right_plans_pass_and_no_mutant_does(instance: Instance) -> None:
+    solution = carp_reference.plan(instance, Carp())
+    if not solution.plans:
+        return
+    assert breaks_no_rule(instance, solution.plans)
+    for mutation in MUTATIONS:
+        for mutant in mutation(instance, solution):
+            known = [plan for plan in mutant.solution.plans if plan.robot in mutant.instance.robot]
+            assert not breaks_no_rule(mutant.instance, known) or not violations_of(mutant.instance, known)
+
+
+@pytest.mark.parametrize(("instance", "plans"), [(VANISHING, SOLVED), (PARKING, PARKED)])
+def test_ticks_that_arrays_do_not_hold_are_left_to_the_rules(instance: Instance, plans: tuple[Plan, ...]) -> None:
+    assert breaks_no_rule(instance, plans)
+    for tick in (LATEST, 2**63, 2**64, -1):
+        last = replace(plans[0].visits[-1], leave=tick)
+        assert not breaks_no_rule(instance, (replace(plans[0], visits=(*plans[0].visits[:-1], last)), *plans[1:]))
+
+
+def test_the_checker_words_the_violation_in_many_plans() -> None:
+    instance = grid_instance(Grid(width=150, height=150), Fleet(robots=250))
+    solution = carp_optimized.plan(instance, Carp())
+    assert is_large(solution.plans)
+    assert judge(instance, solution).valid
+    first = solution.plans[0]
+    late = tuple(Visit(each.resource, each.enter + 1, each.leave and each.leave + 1) for each in first.visits)
+    wrong = replace(solution, plans=(replace(first, visits=late), *solution.plans[1:]))
+    assert "plan/start" in {each.rule for each in judge(instance, wrong).violations}
