@@ -100,18 +100,6 @@ def test_a_full_grid_is_searched_as_far_as_its_optimum(seed: int) -> None:
     assert searched_by_halves(instance, least - 1) == least
 
 
-@pytest.mark.parametrize("parts", [3, 8, 64])
-@pytest.mark.parametrize("seed", range(4))
-def test_two_halves_have_all_parts(seed: int, parts: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    instance = grid_instance(Grid(4, 4, 20), Fleet(16, seed))
-    least = core_guided(instance, SECONDS).cost
-    assert least is not None
-    for name in ("FIRST_STEPS", "STEPS"):
-        monkeypatch.setattr(f"carp_optimum.branching.branching.{name}", 3)
-    monkeypatch.setattr("carp_optimum.branching.branching.PARTS_TO_SHARE", parts)
-    assert searched_by_halves(instance, least) == searched_by_halves(instance, least - 1) == least
-
-
 def test_the_bound_of_all_parts_together_is_below_the_optimum_and_above_the_shortest_paths() -> None:
     instance = grid_instance(Grid(4, 4, 20), Fleet(16, 2))
     least = core_guided(instance, SECONDS)

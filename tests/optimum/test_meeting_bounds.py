@@ -1,0 +1,66 @@
+"""Robots that meet raise a bound above what prices alone give, by claims of deadlines with and without sight."""
+
+from itertools import pairwise
+
+import pytest
+from hypothesis import given, settings
+from tests.profiles import draws
+from tests.verify.tiny import TINY
+
+from carp_optimum.bound import lower_bound
+from carp_spec import Instance, Resource, ResourceGraph, Robot
+from carp_verify.bound.verify import verify_bound
+from carp_verify.optimum.joint_search import least_total_cost
+from carproof.generate import Fleet, Grid, grid_instance
+from carproof.testing.strategies import instances
+
+
+def two_lanes() -> Instance:
+    """`long` meets `first` head-on in a lane, then `second` in another; there is a bay between the lanes."""
+    cells = [*(f"west{number}" for number in range(4)), "bay", "hall", *(f"east{number}" for number in range(4))]
+    lane = [cell for cell in cells if cell != "bay"]
+    edges = (*pairwise(lane), ("bay", "hall"))
+    robots = (Robot("long", "west0", "east3"), Robot("first", "hall", "west0"), Robot("second", "east3", "bay"))
+    return Instance(ResourceGraph(tuple(map(Resource, cells)), edges), robots)
+
+
+def dead_end() -> Instance:
+    """`in` has to leave the dead end by the place where `out` is, which wants to be in the dead end at once."""
+    cells = tuple(Resource(name) for name in ("end", "door", "left", "right", "yard"))
+    graph = ResourceGraph(cells, (("end", "door"), ("door", "left"), ("door", "right"), ("right", "yard")))
+    robots = (Robot("out", "door", "end"), Robot("in", "end", "left"), Robot("far", "yard", "right"))
+    return Instance(graph, robots)
+
+
+def way_round() -> Instance:
+    """Robots that could make way for each other by detours."""
+    return grid_instance(Grid(width=5, height=5, map=5, map_seed=5), Fleet(robots=8, seed=5))
+
+
+@pytest.mark.parametrize(
+    ("instance", "seen", "expected"),
+    [(two_lanes(), False, 24), (two_lanes(), True, 24), (dead_end(), False, 7), (way_round(), True, 52)],
+)
+def test_claims_about_robots_that_meet_raise_the_bound(instance: Instance, seen: bool, expected: int) -> None:
+    certificate = lower_bound(instance, steps=1600, seen=seen)
+    assert certificate.bound == verify_bound(instance, certificate) >= expected
+    assert certificate.bound > lower_bound(instance, steps=0).bound
+    assert certificate.deadlines
+    assert certificate == lower_bound(instance, steps=1600, seen=seen)
+
+
+def test_robots_that_are_seen_more_than_once_raise_the_bound(monkeypatch: pytest.MonkeyPatch) -> None:
+    instance = way_round()
+    certificate = lower_bound(instance, steps=1600)
+    assert sum(len(each.robots) > len(set(each.robots)) for each in certificate.deadlines) > 1
+    monkeypatch.setattr("carp_optimum.claims.pair_constraints.MOST_SIGHTS", -1)
+    assert certificate.bound > lower_bound(instance, steps=1600).bound
+
+
+@settings(max_examples=draws(60))
+@given(instances(TINY, least_robots=2))
+def test_no_claim_raises_a_bound_above_the_optimum(instance: Instance) -> None:
+    least = least_total_cost(instance)
+    certificate = lower_bound(instance, steps=300)
+    assert certificate.bound == verify_bound(instance, certificate)
+    assert least is None or certificate.bound <= least
