@@ -1,10 +1,11 @@
 """The naive planner for robots under way: it keeps what they have done, and searches on by ticks."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 
-from carp_reference.time_expanded import Moment, Table, search, table_of, visits_of
-from carp_spec import Instance, Plan, RobotId, Visit, has_ended
+from carp_reference.time_expanded import Table, entries, search, table_of, visits_of
+from carp_spec import Instance, Plan, RobotId, Visit, has_ended, stops_served
 
 
 def find_plan_by_ticks(
@@ -17,13 +18,18 @@ def find_plan_by_ticks(
     request = instance.robot[robot]
     entered = [] if before is None else [visit for visit in before.visits if visit.enter <= now]
     *past, current = entered or [Visit(request.start, request.release, None)]
+    *stops, last_stop = request.stops
     due = current.enter + instance.duration(robot, current.resource)
     ready = max(due, now)
     if not allows(table, [*past, Visit(current.resource, current.enter, ready)]):
         return None
-    is_in_time = ready == due or instance.after_goal == "park"
-    ends = is_in_time and table.may_end(robot, current.resource, current.enter)
-    last = search(table, robot, Moment(current.resource, current.enter, ready - current.enter - 1, ends, None))
+    served = stops_served(stops, past)
+    starts = []
+    for start in entries(table, robot, current.resource, current.enter, served, None):
+        is_in_time = current.enter + instance.stay(robot, last_stop) >= now or instance.after_goal == "park"
+        rest = max(start.rest, ready - current.enter - 1)
+        starts.append(replace(start, rest=rest, arrived=start.arrived and is_in_time))
+    last = search(table, robot, starts)
     return None if last is None else Plan(robot, (*past, *visits_of(instance, robot, last)))
 
 

@@ -7,6 +7,7 @@ from carp_reference.problem import prepare
 from carp_reference.query import Node, find_plan
 from carp_spec import Instance, Plan, RobotId
 from carp_spec.documents.query_certificates import QUERY_FORMAT, QueryCertificateDocument
+from carp_spec.limits import refuse
 
 
 class Certifier:
@@ -28,8 +29,9 @@ class Certifier:
         `followed` is its plan until the tick `now`. The labels are the nodes expanded after the start from which the
         goal is reached before the bound.
         """
+        refuse(self._problem.instance, "stops")
         problem = replace(self._problem, now=now, before={} if followed is None else {robot: followed})
-        ticks_to_goal = problem.ticks_to_goal[robot]
+        ticks_to_goal = problem.ticks_to_goal[robot][-1]
         expanded: list[Node] = []
         plan = find_plan(problem, self._committed, robot, expanded=expanded)
         bound = None if plan is None else plan.visits[-1].enter

@@ -9,6 +9,7 @@ from carp_spec import Instance, Plan, RobotId, Solution, Visit
 from carp_spec.execution.dependencies import Dependency, Node, dependencies
 from carp_spec.execution.execution_rules import require_followed, require_lawful_ends
 from carp_spec.execution.traces import Trace
+from carp_spec.plan_rules import least_stays
 from carp_spec.requests import require_trace
 
 
@@ -22,6 +23,7 @@ class Order:
     nodes: tuple[Node, ...]
     edges: tuple[Dependency, ...]
     out_of: Mapping[Node, Sequence[Dependency]]
+    least: Mapping[RobotId, Sequence[int]]
 
     def visit(self, node: Node) -> Visit:
         """The visit of the plan."""
@@ -29,7 +31,7 @@ class Order:
 
     def duration(self, node: Node) -> int:
         """Ticks that the visit takes at least."""
-        return self.instance.duration(node[0], self.visit(node).resource)
+        return self.least[node[0]][node[1]]
 
 
 def order_of(instance: Instance, solution: Solution) -> Order:
@@ -44,7 +46,8 @@ def order_with(instance: Instance, solution: Solution, edges: tuple[Dependency, 
         out_of[edge.before].append(edge)
     plans = {plan.robot: plan for plan in solution.plans}
     enters = {(plan.robot, place): visit.enter for plan in solution.plans for place, visit in enumerate(plan.visits)}
-    return Order(instance, solution, plans, tuple(sorted(enters, key=enters.__getitem__)), edges, out_of)
+    least = {plan.robot: least_stays(instance, plan) for plan in solution.plans}
+    return Order(instance, solution, plans, tuple(sorted(enters, key=enters.__getitem__)), edges, out_of, least)
 
 
 def earliest(order: Order, least: Mapping[Node, int]) -> dict[Node, int]:

@@ -36,7 +36,7 @@ def shortest_paths(problem: Problem, robot: Robot, k: int) -> list[Path]:
     """The k shortest simple paths (Yen 1971), shortest first."""
     import networkx as nx  # noqa: PLC0415 - loaded only where used
 
-    if robot.start not in problem.ticks_to_goal[robot.id]:
+    if robot.start not in problem.ticks_to_goal[robot.id][0]:
         return []
     graph: nx.DiGraph[ResourceId] = nx.DiGraph()
     for source, targets in problem.instance.graph.successors.items():

@@ -39,7 +39,7 @@ def _worth(problem: Problem, plans: Plans) -> tuple[int, int]:
 
 def longest_first(problem: Problem) -> Plans:
     """CARP with the longest shortest path first."""
-    shortest = {robot.id: problem.ticks_to_goal[robot.id].get(robot.start, 0) for robot in problem.instance.robots}
+    shortest = {robot.id: problem.ticks_to_goal[robot.id][0].get(robot.start, 0) for robot in problem.instance.robots}
     return carp(problem, sorted(shortest, key=shortest.__getitem__, reverse=True))
 
 

@@ -1,29 +1,33 @@
 """The CARP query: A* over free time windows (ter Mors 2010), a close relative of SIPP (Phillips and Likhachev 2011).
 
-A node is a free window of a resource (a safe interval in SIPP), entered as early as possible. A robot can wait in a
-window at no cost, so each window needs only one entry.
+A node is a free window of a resource (a safe interval in SIPP) with the number of stops that have been served, entered
+as early as possible. A robot can wait in a window at no cost, so each window needs only one entry for each number.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from heapq import heappop, heappush
 from itertools import pairwise
 
 from carp_reference.context import Context, context_of
 from carp_reference.problem import Problem
-from carp_spec import Instance, Plan, ResourceId, RobotId, Visit, has_ended
+from carp_spec import Instance, Plan, ResourceId, RobotId, Visit, has_ended, stops_served
 from carp_spec.query_rules import expansion_key
 from carp_spec.windows import Window, stay_fits
 
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """A window entered at `enter`, which the robot may leave from `ready` on; `parent` is where it came from."""
+    """A window entered at `enter`, with so many stops `served`, which the robot may leave from `ready` on.
+
+    `parent` is where it came from; if that is the same resource, the robot has served a stop there.
+    """
 
     resource: ResourceId
     window: Window
     enter: int
     ready: int
+    served: int
     parent: "Node | None"
 
 
@@ -61,7 +65,8 @@ def _start(problem: Problem, context: Context, robot: RobotId) -> tuple[Sequence
     window = context.window_around(stay)
     if window is None or not context.allows([*past, stay]):
         return past, None
-    return past, Node(current.resource, window, current.enter, ready, None)
+    served = stops_served(request.stops[:-1], past)
+    return past, Node(current.resource, window, current.enter, ready, served, None)
 
 
 def _search(
@@ -76,15 +81,16 @@ def _search(
 
     The start is not among the windows entered: a robot that has stayed at its goal too long to end there may come back.
     """
-    ticks_to_goal = problem.ticks_to_goal[robot]
-    entered: dict[tuple[ResourceId, Window], int] = {}
-    queue: list[tuple[tuple[int, int, int, int], Node]] = []
+    entered: dict[tuple[ResourceId, Window, int], int] = {}
+    queue: list[tuple[tuple[int, ...], Node]] = []
 
     def push(node: Node) -> None:
+        ticks_to_goal = problem.ticks_to_goal[robot][node.served]
         if node.resource in ticks_to_goal:
-            f = node.enter + ticks_to_goal[node.resource]
+            g = node.ready - problem.instance.duration(robot, node.resource)
             index = problem.instance.graph.index[node.resource]
-            heappush(queue, (expansion_key(f, node.enter, index, node.window.start), node))
+            key = expansion_key(g + ticks_to_goal[node.resource], g, index, node.window.start, node.served)
+            heappush(queue, (key, node))
 
     push(start)
     while queue:
@@ -92,22 +98,34 @@ def _search(
         if _can_end(problem, robot, node):
             return node
         expanded.append(node)
-        for following in _expand(context, robot, node, successors.get(node.resource, ())):
-            key = (following.resource, following.window)
-            if key not in entered or following.enter < entered[key]:
-                entered[key] = following.enter
+        targets = successors.get(node.resource, ())
+        for following in (*_serve(context, robot, node), *_expand(context, robot, node, targets)):
+            key = (following.resource, following.window, following.served)
+            if key not in entered or following.ready < entered[key]:
+                entered[key] = following.ready
                 push(following)
     return None
 
 
 def _can_end(problem: Problem, robot: RobotId, node: Node) -> bool:
-    """Whether the plan can end in the node: the goal, for ever (`park`) or a duration that is not over (`vanish`)."""
+    """Whether the plan can end in the node: at the last stop, for ever (`park`), or until its end (`vanish`)."""
     instance = problem.instance
-    if node.resource != instance.robot[robot].goal:
+    *stops, last = instance.robot[robot].stops
+    if node.resource != last.resource or node.served < len(stops):
         return False
     if instance.after_goal == "park":
         return node.window.end is None
-    return node.enter + instance.duration(robot, node.resource) >= problem.now
+    leave = node.enter + instance.stay(robot, last)
+    return leave >= problem.now and node.window.lasts_until(leave)
+
+
+def _serve(context: Context, robot: RobotId, node: Node) -> Iterator[Node]:
+    """The same window once the next stop but the last is served, if it is here."""
+    *stops, _ = context.instance.robot[robot].stops
+    if node.served < len(stops) and stops[node.served].resource == node.resource:
+        ready = max(node.ready, node.enter + stops[node.served].service)
+        if node.window.lasts_until(ready):
+            yield replace(node, ready=ready, served=node.served + 1, parent=node)
 
 
 def _expand(context: Context, robot: RobotId, node: Node, targets: Sequence[ResourceId]) -> Iterator[Node]:
@@ -119,7 +137,7 @@ def _expand(context: Context, robot: RobotId, node: Node, targets: Sequence[Reso
             while context.is_exchange(enter, node.resource, target):
                 enter += 1
             if node.window.lasts_until(enter) and stay_fits(window, enter, enter + duration, duration):
-                yield Node(target, window, enter, enter + duration, node)
+                yield Node(target, window, enter, enter + duration, node.served, node)
 
 
 def _visits(instance: Instance, robot: RobotId, last: Node) -> tuple[Visit, ...]:
@@ -127,7 +145,8 @@ def _visits(instance: Instance, robot: RobotId, last: Node) -> tuple[Visit, ...]
     path = [last]
     while path[-1].parent is not None:
         path.append(path[-1].parent)
-    path.reverse()
-    leave = None if instance.after_goal == "park" else last.enter + instance.duration(robot, last.resource)
+    path = [node for node in reversed(path) if node.parent is None or node.resource != node.parent.resource]
+    stay = instance.stay(robot, instance.robot[robot].stops[-1])
+    leave = None if instance.after_goal == "park" else last.enter + stay
     stays = [Visit(node.resource, node.enter, following.enter) for node, following in pairwise(path)]
     return (*stays, Visit(last.resource, last.enter, leave))

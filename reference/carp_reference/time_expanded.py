@@ -47,17 +47,22 @@ class Table:
     def may_end(self, robot: RobotId, resource: ResourceId, enter: int) -> bool:
         """Whether a robot that enters the resource at the tick may end there."""
         parks = self.instance.after_goal == "park"
-        leave = None if parks else enter + self.instance.duration(robot, resource)
-        return resource == self.instance.robot[robot].goal and self.is_free_during(resource, enter, leave)
+        stop = self.instance.robot[robot].stops[-1]
+        leave = None if parks else enter + self.instance.stay(robot, stop)
+        return resource == stop.resource and self.is_free_during(resource, enter, leave)
 
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """The robot is in the resource at the tick, and must stay `rest` ticks more; `arrived`: its plan ends here."""
+    """The robot is in the resource at the tick, and must stay `rest` ticks more; `arrived`: its plan ends here.
+
+    It has `served` so many stops, with the one that it serves in these ticks.
+    """
 
     resource: ResourceId
     tick: int
     rest: int
+    served: int
     arrived: bool
     before: "Moment | None"
 
@@ -94,26 +99,39 @@ def find_plan_by_ticks(instance: Instance, committed: Sequence[Plan], robot: Rob
     """A plan with the earliest arrival, or `None`; raises `Refusal` by `limit/ticks`."""
     table = table_of(instance, committed)
     at, release = instance.robot[robot].start, instance.robot[robot].release
-    longest_way = sum(instance.duration(robot, resource) for resource in instance.graph.index)
+    stops = instance.robot[robot].stops
+    longest_way = len(stops) * sum(instance.duration(robot, resource) for resource in instance.graph.index)
+    longest_way += sum(stop.service for stop in stops)
     _refuse_too_many(f"robot {robot} may be under way for", max(table.still - release, 0) + longest_way)
     if not table.is_free(at, release):
         return None
-    rest = instance.duration(robot, at) - 1
-    last = search(table, robot, Moment(at, release, rest, table.may_end(robot, at, release), None))
+    last = search(table, robot, [*entries(table, robot, at, release, 0, None)])
     return None if last is None else Plan(robot, visits_of(instance, robot, last))
 
 
-def search(table: Table, robot: RobotId, start: Moment) -> Moment | None:
+def entries(
+    table: Table, robot: RobotId, resource: ResourceId, tick: int, served: int, before: Moment | None
+) -> Iterator[Moment]:
+    """The moments in which a robot enters the resource: it passes or ends there, or it serves its next stop."""
+    *stops, _ = table.instance.robot[robot].stops
+    rest = table.instance.duration(robot, resource) - 1
+    ends = served == len(stops) and table.may_end(robot, resource, tick)
+    yield Moment(resource, tick, rest, served, ends, before)
+    if served < len(stops) and stops[served].resource == resource:
+        yield Moment(resource, tick, table.instance.stay(robot, stops[served]) - 1, served + 1, False, before)
+
+
+def search(table: Table, robot: RobotId, starts: Sequence[Moment]) -> Moment | None:
     """The first moment at which the plan can end, or `None`."""
     hops = _hops_to_goal(table.instance, robot)
     pushes = count()
-    queue = [(start.tick, next(pushes), start)]
-    seen: set[tuple[ResourceId, int, int]] = set()
+    queue = [(start.tick, next(pushes), start) for start in starts]
+    seen: set[tuple[ResourceId, int, int, int]] = set()
     while queue:
         _, _, moment = heappop(queue)
         if moment.arrived:
             return moment
-        state = (moment.resource, min(moment.tick, table.still), moment.rest)
+        state = (moment.resource, min(moment.tick, table.still), moment.rest, moment.served)
         if state not in seen:
             seen.add(state)
             for following in _next_moments(table, robot, moment):
@@ -126,12 +144,11 @@ def search(table: Table, robot: RobotId, start: Moment) -> Moment | None:
 def _next_moments(table: Table, robot: RobotId, moment: Moment) -> Iterator[Moment]:
     tick = moment.tick + 1
     if table.is_free(moment.resource, tick):
-        yield Moment(moment.resource, tick, max(moment.rest - 1, 0), False, moment)
+        yield Moment(moment.resource, tick, max(moment.rest - 1, 0), moment.served, False, moment)
     if moment.rest == 0 and (table.instance.following == "allowed" or table.is_free(moment.resource, tick)):
         for target in table.instance.graph.successors[moment.resource]:
             if table.is_free(target, tick) and not table.is_exchange(tick, moment.resource, target):
-                rest = table.instance.duration(robot, target) - 1
-                yield Moment(target, tick, rest, table.may_end(robot, target, tick), moment)
+                yield from entries(table, robot, target, tick, moment.served, moment)
 
 
 def _hops_to_goal(instance: Instance, robot: RobotId) -> Mapping[ResourceId, int]:
@@ -152,7 +169,8 @@ def visits_of(instance: Instance, robot: RobotId, last: Moment) -> tuple[Visit, 
         moments.append(moments[-1].before)
     entries = [next(stay) for _, stay in groupby(reversed(moments), key=lambda moment: moment.resource)]
     visits = [Visit(at.resource, at.tick, to.tick) for at, to in pairwise(entries)]
-    leave = None if instance.after_goal == "park" else last.tick + instance.duration(robot, last.resource)
+    stay = instance.stay(robot, instance.robot[robot].stops[-1])
+    leave = None if instance.after_goal == "park" else last.tick + stay
     return (*visits, Visit(last.resource, entries[-1].tick, leave))
 
 

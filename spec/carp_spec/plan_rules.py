@@ -52,6 +52,18 @@ def stops_served(stops: Sequence[Stop], visits: Iterable[Visit]) -> int:
     return served
 
 
+def least_stays(instance: Instance, plan: Plan) -> list[int]:
+    """The least ticks of each visit of a lawful plan: the duration, or more in those that serve its stops."""
+    *stops, last = instance.robot[plan.robot].stops
+    least = [instance.duration(plan.robot, visit.resource) for visit in plan.visits]
+    served = 0
+    for place in range(len(least)):
+        if stops_served(stops[served : served + 1], plan.visits[place : place + 1]):
+            least[place] = instance.stay(plan.robot, stops[served])
+            served += 1
+    return [*least[:-1], instance.stay(plan.robot, last)]
+
+
 @violation_rule(
     "plan/stops",
     "For each stop but the last, the plan has a visit to its resource that lasts at least its service: later than the "

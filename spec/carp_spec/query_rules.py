@@ -39,9 +39,12 @@ def absence_is_true(instance: Instance, committed: Sequence[Plan], rivals: Itera
 @rule(
     "query/ties",
     "A* expands the smallest f = g + h first, then the largest g, then the smallest index of the resource in the "
-    "instance, then the earliest window; a window keeps the first parent that gave its earliest arrival. g is the tick "
-    "of entering the window, h the least ticks from entering its resource to entering the goal on the empty graph.",
+    "instance, then the earliest window, then the fewest stops served. A window with a number of stops served keeps "
+    "the first parent that gave its smallest g; serving a stop there comes before moving on. g is the tick from which"
+    " the robot may leave, less the duration: the tick of entering the window, or a later one after a long service. h"
+    " is the least ticks from entering its resource, over the stops left, to entering the goal on the empty graph. "
+    "The smallest g is enough: who may leave earlier can wait, and only who has just entered ends, or serves a stop.",
     "decision of carproof",
 )
-def expansion_key(f: int, g: int, resource_index: int, window_start: int) -> tuple[int, int, int, int]:
-    return (f, -g, resource_index, window_start)
+def expansion_key(f: int, g: int, resource_index: int, window_start: int, served: int = 0) -> tuple[int, ...]:
+    return (f, -g, resource_index, window_start, served)

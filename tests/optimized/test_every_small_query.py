@@ -1,6 +1,6 @@
 """The optimised planner answers every enumerated small query like the reference, visit for visit."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby, product
 
@@ -53,7 +53,7 @@ def answers(pattern: Pattern) -> Iterator[tuple[SmallCase, Plan | None]]:
 def test_every_small_query_has_the_same_answer(pattern: Pattern) -> None:
     asked = 0
     graph: ResourceGraph | None = None
-    to_goal: dict[ResourceId, Mapping[ResourceId, int]] = {}
+    to_goal: dict[ResourceId, Sequence[Mapping[ResourceId, int]]] = {}
     for case, plan in answers(pattern):
         asked += 1
         robot = case.instance.robot[ASKED]

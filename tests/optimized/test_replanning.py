@@ -54,7 +54,7 @@ def may_differ(fleet: PlannedFleet, robot: RobotId, record: int, freed: Hulls) -
         return True
     resources = [instance.graph.resources[k].id for k in records.expanded[first : first + count].tolist()]
     expanded = list(zip(resources, records.ready[first : first + count].tolist(), strict=True))
-    to_goal = ticks_to_goal(instance, instance.robot[robot])
+    to_goal = ticks_to_goal(instance, instance.robot[robot])[0]
     arrival = fleet._plan(record).visits[-1].enter
 
     def in_time(ready: int, target: ResourceId) -> bool:

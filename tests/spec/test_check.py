@@ -15,7 +15,6 @@ from tests.spec.strategies import FEWER, SIZES, instances_with_plans
 import carp_reference
 from carp_spec import (
     Carp,
-    FixedPaths,
     Greedy,
     Instance,
     LongestFirst,
@@ -36,7 +35,7 @@ from carp_spec import (
 from carp_spec.check import MOST_LISTED
 from carproof.testing.strategies import instances
 
-FEW = replace(SIZES, robots=3, groups=2, stops=1, service=0)
+FEW = replace(SIZES, robots=3, groups=2)
 PLANNERS: tuple[Planner, ...] = (
     Carp(),
     Shuffled(attempts=2),
@@ -44,7 +43,6 @@ PLANNERS: tuple[Planner, ...] = (
     Greedy(),
     Neighbourhood(m=3),
     Neighbourhood(m=3, baseline=False),
-    FixedPaths(k=2),
     TimeExpanded(),
 )
 

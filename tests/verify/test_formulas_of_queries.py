@@ -134,7 +134,7 @@ def plans_with_and_without(trace: Trace, pattern: Pattern, formula: Lateness) ->
     """The plans of queries with a plan committed, and without it, where all its stays come too late."""
     for case in cases(pattern):
         problem = problem_of(case)
-        to_goal, successors = problem.ticks_to_goal[ASKED], case.instance.graph.successors
+        to_goal, successors = problem.ticks_to_goal[ASKED][0], case.instance.graph.successors
         for freed in case.committed:
             plan = ask(case, case.committed, trace)
             if plan is None:

@@ -1,3 +1,5 @@
+from collections.abc import Mapping
+
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from tests.profiles import draws
@@ -8,7 +10,19 @@ from carp_optimum.sat.heuristics import plans_of_all
 from carp_optimum.sat.solver import TimeOver
 from carp_reference import plan
 from carp_reference.problem import prepare
-from carp_spec import Carp, Instance, Plan, Resource, ResourceGraph, Robot, Solution, judge, total_cost
+from carp_spec import (
+    Carp,
+    Instance,
+    Plan,
+    Resource,
+    ResourceGraph,
+    ResourceId,
+    Robot,
+    RobotId,
+    Solution,
+    judge,
+    total_cost,
+)
 from carp_verify.optimum.encoding import Encoding
 from carproof.testing.strategies import Sizes, instances
 
@@ -28,8 +42,18 @@ def engine(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> N
         monkeypatch.setattr("carp_optimized.jit.compiling.is_cached", lambda _: True)
 
 
+def distances(instance: Instance) -> Mapping[RobotId, Mapping[ResourceId, int]]:
+    return {robot: to_goal for robot, (to_goal,) in prepare(instance, 0).ticks_to_goal.items()}
+
+
 def found(instance: Instance, enough: int = 0) -> tuple[Plan, ...] | None:
-    return plans_of_all(instance, prepare(instance, 0).ticks_to_goal, never, enough, attempts=30)
+    return plans_of_all(
+        instance,
+        distances(instance),
+        never,
+        enough,
+        attempts=30,
+    )
 
 
 @pytest.mark.usefixtures("engine")
@@ -55,7 +79,7 @@ def test_a_robot_that_found_no_plan_is_planned_earlier(instance: Instance) -> No
 @given(instances(SMALL))
 def test_the_distances_of_the_encoding_are_those_of_the_planner(instance: Instance) -> None:
     ticks_to_goal = {robot.robot.id: robot.ticks_to_goal for robot in Encoding(instance).robots}
-    assert ticks_to_goal == prepare(instance, 0).ticks_to_goal
+    assert ticks_to_goal == distances(instance)
 
 
 @pytest.mark.usefixtures("engine")
@@ -69,8 +93,7 @@ def test_what_was_found_before_the_end_of_the_time_is_kept() -> None:
         if looks > 240:
             raise TimeOver
 
-    ticks_to_goal = prepare(instance, 0).ticks_to_goal
-    assert plans_of_all(instance, ticks_to_goal, check) == found(instance)
+    assert plans_of_all(instance, distances(instance), check) == found(instance)
 
 
 @pytest.mark.usefixtures("engine")
@@ -85,7 +108,7 @@ def test_the_search_ends_where_the_plans_are_good_enough() -> None:
         looks += 1
 
     enough = total_cost(instance, plans)
-    assert plans_of_all(instance, prepare(instance, 0).ticks_to_goal, check, enough) == plans
+    assert plans_of_all(instance, distances(instance), check, enough) == plans
     assert looks <= 30 * len(instance.robots)
 
 

@@ -35,7 +35,7 @@ def query_certificate(problem: Problem, committed: Sequence[Plan], robot: RobotI
     instance = problem.instance
     plan = find_plan(problem, committed, robot)
     bound = None if plan is None else plan.visits[-1].enter
-    context, potential = context_of(instance, committed), problem.ticks_to_goal[robot]
+    context, potential = context_of(instance, committed), problem.ticks_to_goal[robot][0]
     _, start = _start(problem, context, robot)
     entered: dict[tuple[ResourceId, int], int] = {}
     queue = [] if start is None else [start]

@@ -139,7 +139,7 @@ def _read(
     from carp_reference.problem import Problem  # noqa: PLC0415 - slow to load
     from carp_reference.query import find_plan  # noqa: PLC0415
 
-    problem = Problem(instance, ticks_to_goal, 0)
+    problem = Problem(instance, {robot: [ticks] for robot, ticks in ticks_to_goal.items()}, 0)
 
     def attempt(order: Sequence[RobotId]) -> tuple[Plan, ...]:
         plans: list[Plan] = []

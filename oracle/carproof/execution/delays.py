@@ -12,6 +12,7 @@ from carp_reference.execution import Order, earliest, order_with
 from carp_spec import Instance, Plan, RobotId, Solution, Visit
 from carp_spec.execution.dependencies import Dependency, Node, stays_by_resource
 from carp_spec.execution.traces import Trace
+from carp_spec.plan_rules import least_stays
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,6 +112,7 @@ def _worth(delays: Sequence[Delay]) -> tuple[int, int]:
 
 def _collisions(instance: Instance, solution: Solution) -> Iterator[tuple[Delay, ...]]:
     """The shortest delays that make a collision, for each visit and all robots that may be there when it begins."""
+    least = {plan.robot: least_stays(instance, plan) for plan in solution.plans}
     for resource, stays in stays_by_resource(solution.plans).items():
         capacity = instance.graph.resource[resource].capacity
         for stay in stays:
@@ -125,7 +127,7 @@ def _collisions(instance: Instance, solution: Solution) -> Iterator[tuple[Delay,
                 robot, place = each.node
                 if robot in present or each.visit.leave is None or each.visit.leave > tick:
                     continue
-                ticks = tick + 1 - each.visit.enter - instance.duration(robot, resource)
+                ticks = tick + 1 - each.visit.enter - least[robot][place]
                 if each.target is not None and each.target == stay.source and ticks > 1:
                     yield (Delay(robot, place, ticks - 1),)
                 found[robot] = Delay(robot, place, ticks)  # of a later visit of the same robot, the shorter one

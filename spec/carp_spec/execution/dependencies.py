@@ -12,6 +12,7 @@ from typing import Literal, TypeAlias
 
 from carp_spec.limits import refuse
 from carp_spec.model import Instance, Plan, ResourceId, RobotId, Visit
+from carp_spec.plan_rules import least_stays
 
 Node: TypeAlias = tuple[RobotId, int]
 """A robot and the position of a visit in its plan."""
@@ -31,8 +32,8 @@ class Stay:
 class Dependency:
     """The visit `after` is entered no earlier than `ticks` after the visit `before`.
 
-    `travel` keeps a robot in a resource for the duration. `order` lets a robot enter `resource` only after another has
-    left it, by entering its next visit or by staying for the duration of its last one.
+    `travel` keeps a robot in a resource for the duration, or for the service of a stop. `order` lets a robot enter
+    `resource` only after another has left it, by entering its next visit or by staying as long as its last takes.
     """
 
     kind: Literal["travel", "order"]
@@ -54,10 +55,11 @@ def stays_by_resource(plans: Sequence[Plan]) -> dict[ResourceId, list[Stay]]:
 
 def dependencies(instance: Instance, plans: Sequence[Plan]) -> Iterator[Dependency]:
     """The edges of the dependency graph of lawful plans, without those that follow from others."""
-    refuse(instance, "groups", "stops")
+    refuse(instance, "groups")
+    least = {plan.robot: least_stays(instance, plan) for plan in plans}
     for plan in plans:
         for place, visit in enumerate(plan.visits[:-1]):
-            ticks = instance.duration(plan.robot, visit.resource)
+            ticks = least[plan.robot][place]
             yield Dependency("travel", (plan.robot, place), (plan.robot, place + 1), ticks, visit.resource)
     for resource, stays in stays_by_resource(plans).items():
         for one, other in _direct(instance, stays):
@@ -65,8 +67,7 @@ def dependencies(instance: Instance, plans: Sequence[Plan]) -> Iterator[Dependen
             ticks = max(instance.gap, int(is_opposite))
             robot, place = one.node
             if one.target is None:
-                duration = instance.duration(robot, resource)
-                yield Dependency("order", one.node, other.node, duration + ticks, resource)
+                yield Dependency("order", one.node, other.node, least[robot][place] + ticks, resource)
             else:
                 yield Dependency("order", (robot, place + 1), other.node, ticks, resource)
 

@@ -13,7 +13,7 @@ from carp_spec.execution.dependencies import Node, Stay, dependencies, shortest_
 from carp_spec.execution.traces import Trace
 from carp_spec.joint_rules import misnamed
 from carp_spec.model import Instance, Plan, ResourceId, RobotId, Solution, Visit
-from carp_spec.plan_rules import plan_ends_at_goal, plan_starts_at_release
+from carp_spec.plan_rules import least_stays, plan_ends_at_goal, plan_starts_at_release
 from carp_spec.refusal import Refusal
 from carp_spec.rule import DESIGN, Breach, Rule, Violation, at_visit, interval, violation_rule
 
@@ -66,14 +66,16 @@ def trace_keeps_time(instance: Instance, solution: Solution, trace: Trace) -> It
 
 
 @violation_rule(
-    "execution/duration", "A visit that is left has lasted at least the resource's duration times the pace.", ADG
+    "execution/duration",
+    "A visit that is left has lasted at least the resource's duration times the pace, and at least the service of the "
+    "stop that the plan serves in it.",
+    ADG,
 )
 def durations_are_kept(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Breach]:
-    del solution
-    for (robot, _), visit in trace.happened.items():
-        least = instance.duration(robot, visit.resource)
-        if visit.leave is not None and visit.leave - visit.enter < least:
-            yield at_visit(robot, visit, f"it stayed {visit.leave - visit.enter} of at least {least} ticks")
+    for plan, done in _pairs(solution, trace):
+        for visit, least in zip(done.visits, least_stays(instance, plan), strict=False):
+            if visit.leave is not None and visit.leave - visit.enter < least:
+                yield at_visit(plan.robot, visit, f"it stayed {visit.leave - visit.enter} of at least {least} ticks")
 
 
 @violation_rule(
