@@ -5,9 +5,9 @@
     instance = read_instance(Path("town.json").read_bytes())
     verdict = check(instance, plan(instance))
 
-It has the model (`Instance`, `ResourceGraph`, `Resource`, `Robot`, `Solution`, `Plan`, `Visit`) and its documents
-(`read_...`, `write_...`); the checkers (`check`, `check_trace`, `audit`, `conforms`); the planners (`plan`,
-`plan_within`, `query`, `add`, `polish`) with their options (`Carp`, `Neighbourhood`, ...); bounds and optima
+It has the model (`Instance`, `ResourceGraph`, `Resource`, `Robot`, `Stop`, `Solution`, `Plan`, `Visit`) and its
+documents (`read_...`, `write_...`); the checkers (`check`, `check_trace`, `audit`, `conforms`); the planners (`plan`,
+`plan_within`, `query`, `add`, `assign`, `polish`) with their options (`Carp`, `Neighbourhood`, ...); bounds and optima
 (`bound`, `optimum`, `optimality_gap`, `verify_...`); executions (`execute`) and pictures (`view`). `carproof.formats`
 reads and writes other tools' formats, `carproof.generate` makes instances, and `carproof.testing.strategies` draws them
 for hypothesis.
@@ -48,12 +48,14 @@ if TYPE_CHECKING:
     from carp_spec import Rule as Rule
     from carp_spec import Shuffled as Shuffled
     from carp_spec import Solution as Solution
+    from carp_spec import Stop as Stop
     from carp_spec import TimeExpanded as TimeExpanded
     from carp_spec import Verdict as Verdict
     from carp_spec import Violation as Violation
     from carp_spec import Visit as Visit
     from carp_spec import check_update as check_update
     from carp_spec import plan_cost as plan_cost
+    from carp_spec import stops_served as stops_served
     from carp_spec import total_cost as total_cost
     from carp_spec.documents.bounds import BoundDocument as BoundDocument
     from carp_spec.documents.bounds import read_bound as read_bound
@@ -83,6 +85,7 @@ if TYPE_CHECKING:
     from carproof.api.judging import audit as audit
     from carproof.api.judging import check as check
     from carproof.api.judging import check_trace as check_trace
+    from carproof.api.planning import assign as assign
     from carproof.api.planning import certified_query as certified_query
     from carproof.api.planning import plan as plan
     from carproof.api.planning import polish as polish

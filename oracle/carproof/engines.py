@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any, Protocol, cast
 from carp_spec import Instance, Neighbourhood, Plan, Planner, Refusal, RobotId, Solution, total_cost
 from carp_spec.documents.query_certificates import QueryCertificateDocument
 from carp_spec.execution.traces import Trace
+from carp_spec.limits import goals_stand_alone
+from carp_spec.planners import BY_DEFAULT
 from carproof.progress import progress
 
 if TYPE_CHECKING:
@@ -57,23 +59,26 @@ class Engine(Protocol):
 
 
 class FastestEngine:
-    """The optimised engine, and the reference for planners that it does not have."""
+    """The optimised engine, and the reference for planners that it does not have, and for robots with stops."""
 
     def __getattr__(self, name: str) -> Any:  # noqa: ANN401 - a function of an engine
-        """Load the optimised engine when it is first used."""
-        return getattr(engine_named("optimized"), name)
+        """The function of the engine that knows the instance, which is its first argument."""
+        return lambda instance, *more, **named: getattr(engine_named(fastest_for(instance)), name)(
+            instance, *more, **named
+        )
 
     def plan(self, instance: Instance, planner: Planner) -> Solution:
         """Plans of all robots."""
-        return engine_named(fastest_with(planner)).plan(instance, planner)
+        return engine_named(fastest_for(instance, planner)).plan(instance, planner)
 
-    @property
-    def polish(self) -> "Polish":
+    def polish(self, instance: Instance, solution: Solution, **options: Any) -> Solution:  # noqa: ANN401 - those of `Polish`
         """Better plans; with `seconds`, by simulated annealing."""
+        if fastest_for(instance) == "reference":
+            return engine_named("reference").polish(instance, solution, **options)
         compile_what_is_kept()
         from carp_optimized.improve.annealing import polish_or_anneal  # noqa: PLC0415 - loaded when it is first used
 
-        return polish_or_anneal
+        return polish_or_anneal(instance, solution, **options)
 
 
 def engine_named(name: str | None) -> Engine:
@@ -115,11 +120,12 @@ def compile_what_is_kept() -> None:
         warm()
 
 
-def fastest_with(planner: Planner) -> str:
-    """The fastest engine that has the planner."""
+def fastest_for(instance: Instance, planner: Planner = BY_DEFAULT) -> str:
+    """The fastest engine that has the planner, and knows the instance; only the reference knows robots with stops."""
     from carp_optimized import PLANNERS as COMPILED  # noqa: PLC0415 - loaded when it is first used
 
-    return "optimized" if isinstance(planner, COMPILED) else "reference"
+    knows = isinstance(planner, COMPILED) and (type(instance) is not Instance or goals_stand_alone(instance))
+    return "optimized" if knows else "reference"
 
 
 def repairs_by_default(planner: Planner) -> bool:

@@ -12,7 +12,9 @@ from carp_spec.rule import DESIGN
 from carproof.input_rules import Code
 
 KNOWN_ROBOT = Code(
-    "request/robot", "The robot asked for is one of the instance, and one to be added has no plan yet.", DESIGN
+    "request/robot",
+    "The robot asked for is one of the instance; one to be added has no plan yet, and one to get stops has not left.",
+    DESIGN,
 )
 TICK = Code("request/now", "The tick now is a whole number of at least 0.", DESIGN)
 SOUND_PLANS = Code(

@@ -16,11 +16,15 @@ from carp_spec.permutations import Order, splitmix64
 
 
 def add_robot(problem: Problem, committed: Plans, new: RobotId, options: Neighbourhood) -> Plans | None:
-    """All plans with the new robot's, in their new planning order; `None` if it stays unplanned."""
-    problem = replace(problem, before={plan.robot: plan for plan in committed})
+    """All plans with the new robot's, in their new planning order; `None` if it stays unplanned.
+
+    A robot that gets further stops is new too: `before` of the problem has the plan that it has followed.
+    """
+    problem = replace(problem, before={**problem.before, **{plan.robot: plan for plan in committed}})
     plans = _best_candidate(problem, committed, new, options)
     if plans is None and options.fallback is not None:
-        plans = shuffled(problem, [*problem.before, new], options.fallback, options.seed)
+        order = [*(plan.robot for plan in committed), new]
+        plans = shuffled(problem, order, options.fallback, options.seed)
         return plans if len(plans) > len(committed) else None
     return plans
 
@@ -31,7 +35,7 @@ def _best_candidate(problem: Problem, committed: Plans, new: RobotId, options: N
         return None
     trajectories = {**problem.before, new: shortest}
     stream = splitmix64(options.seed + problem.instance.robots.index(problem.instance.robot[new]))
-    outside = list(problem.before)
+    outside = [plan.robot for plan in committed]
     kept = committed
     members = [new]
     best: Plans | None = None

@@ -22,11 +22,12 @@ from carp_spec import (
     RobotId,
     Shuffled,
     Solution,
+    Stop,
 )
 from carp_spec.inputs.options import require_planner
 from carp_spec.inputs.values import require_instance
 from carp_spec.planners import BY_DEFAULT
-from carp_spec.requests import known, require_addition, require_query
+from carp_spec.requests import known, require_addition, require_assignment, require_query
 
 
 def query(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0) -> Plan | None:
@@ -68,6 +69,23 @@ def add(instance: Instance, solution: Solution, robot: RobotId, now: int, option
     named = {*by_robot, *solution.unplanned, robot}
     after = Solution.of(instance, plans)
     return known(instance, replace(after, unplanned=tuple(each for each in after.unplanned if each in named)))
+
+
+def assign(
+    instance: Instance, solution: Solution, robot: RobotId, stops: Sequence[Stop], now: int, options: Neighbourhood
+) -> tuple[Instance, Solution]:
+    """Give a robot under way or parked further stops at the tick `now`: it is planned again as if it were added.
+
+    The instance with its stops, and the plans; if no plan is found, both are as they were.
+    """
+    further = require_assignment(instance, solution, robot, stops, now, options)
+    by_robot = {each.robot: each for each in solution.plans}
+    committed = tuple(by_robot[each] for each in solution.order if each != robot)
+    problem = replace(prepare(further, now), before={robot: by_robot[robot]})
+    plans = add_robot(problem, committed, robot, options)
+    if plans is None:
+        return instance, solution
+    return further, known(further, replace(solution, plans=plans, order=tuple(plan.robot for plan in plans)))
 
 
 def _plans(problem: Problem, planner: Planner) -> Plans:  # noqa: PLR0911 - one return a planner

@@ -10,8 +10,10 @@ from carp_spec.check import judge, violations_of
 from carp_spec.execution.traces import Trace
 from carp_spec.inputs.options import require_planner
 from carp_spec.inputs.values import require_plans, require_solution
+from carp_spec.instance_rules import stops_are_places_to_serve
 from carp_spec.limits import refuse
-from carp_spec.model import Instance, Plan, RobotId, Solution
+from carp_spec.model import Instance, Plan, RobotId, Solution, Stop
+from carp_spec.plan_rules import has_ended
 from carp_spec.planners import Neighbourhood
 from carp_spec.refusal import Refusal
 from carp_spec.rule import Violation, is_between
@@ -53,6 +55,32 @@ def require_addition(instance: Instance, solution: Solution, robot: RobotId, now
     require_tick(now)
     require_new_robot(instance, solution, robot)
     sound_solution(instance, solution)
+
+
+def require_assignment(
+    instance: Instance, solution: Solution, robot: RobotId, stops: Sequence[Stop], now: int, options: Neighbourhood
+) -> Instance:
+    """The instance in which the robot has these stops too; raises `Refusal` unless it can get them at the tick now."""
+    require_solution(instance, solution)
+    require_planner(options, Neighbourhood)
+    require_tick(now)
+    require_robot(instance, robot)
+    require_shape(tuple(stops), tuple[Stop, ...], "$.stops")
+    sound_solution(instance, solution)
+    plan = solution.plan_of(robot)
+    if plan is None or has_ended(plan, now):
+        message = f"the robot must be under way or parked at {now}, and {robot!r} "
+        raise Refusal("request", "$.robot", "request/robot", message + ("has no plan" if plan is None else "has left"))
+    if not stops:
+        raise Refusal("request", "$.stops", stops_are_places_to_serve.id, "there must be at least one stop")
+    before = instance.robot[robot]
+    further = replace(before, stops=(*before.stops, *stops))
+    assigned = replace(instance, robots=tuple(further if each is before else each for each in instance.robots))
+    for fault in stops_are_places_to_serve(assigned):
+        place, _, name = fault.path.partition(".stops[")[2].partition("]")
+        path = f"$.stops[{int(place) - len(before.stops)}]{name}"
+        raise Refusal("request", path, fault.rule, fault.message)
+    return assigned
 
 
 def require_trace(instance: Instance, solution: Solution, trace: Trace) -> None:

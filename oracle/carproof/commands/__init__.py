@@ -20,6 +20,7 @@ SECTIONS: Mapping[str, Mapping[str, str]] = {
     "Plan": {
         "plan": f"{HERE}.plan.plan",
         "add": f"{HERE}.plan.add",
+        "assign": f"{HERE}.plan.assign",
         "query": f"{HERE}.plan.query",
         "polish": f"{HERE}.plan.polish",
     },

@@ -28,7 +28,7 @@ from carproof.protocol.ops.keeping import (
     fleet_trace,
 )
 from carproof.protocol.ops.op import Op, Session, op_of
-from carproof.protocol.ops.planning import add, plan, plan_within, polish, query
+from carproof.protocol.ops.planning import add, assign, plan, plan_within, polish, query
 from carproof.protocol.ops.searching import bound, optimum
 
 
@@ -78,6 +78,7 @@ _HANDLERS: tuple[Callable[[Any, Any], object], ...] = (
     plan,
     plan_within,
     add,
+    assign,
     polish,
     optimum,
     bound,

@@ -4,10 +4,13 @@ from dataclasses import asdict, dataclass, field
 
 import msgspec
 
-from carp_spec import Instance, Neighbourhood, Plan, Planner, ResourceId, RobotId, Solution, Visit
-from carp_spec.documents.solutions import visits_document
+from carp_spec import Instance, Neighbourhood, Plan, Planner, ResourceId, RobotId, Solution, Stop, Visit
+from carp_spec.documents.fields import all_converted
+from carp_spec.documents.instances import InstanceDocument, StopDocument, instance_document
+from carp_spec.documents.solutions import SolutionDocument, solution_document, visits_document
 from carp_spec.planners import BY_DEFAULT
 from carp_spec.requests import require_new_robot, require_robot, require_tick
+from carproof.api.planning import assign as assigned
 from carproof.engines import Engine, repaired, warm
 from carproof.protocol.ops.op import PolishOptions
 from carproof.requests import inside, sound_within
@@ -107,6 +110,36 @@ def add(request: AddRequest, engine: Engine) -> Solution:
     before = sound_within(instance, request.solution)
     with inside("$.instance"):
         return engine.add(instance, before, request.robot, request.now, request.options)
+
+
+@dataclass(frozen=True, slots=True)
+class AssignRequest:
+    """A robot that gets further stops at the tick `now`."""
+
+    instance: Instance
+    solution: Solution
+    robot: RobotId
+    stops: tuple[StopDocument, ...]
+    now: int = 0
+    options: Neighbourhood = field(default_factory=Neighbourhood)
+
+
+class AssignDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The instance with the further stops, and the plans; null and the plans of before if no plan was found."""
+
+    instance: InstanceDocument | None
+    solution: SolutionDocument
+
+
+def assign(request: AssignRequest, engine: Engine) -> AssignDocument:
+    """Give a robot that is under way or parked further stops; it and robots near it are planned again from `now` on."""
+    del engine
+    instance = request.instance
+    before = sound_within(instance, request.solution)
+    stops = all_converted(request.stops, Stop)
+    further, after = assigned(instance, before, request.robot, stops, request.now, request.options)
+    found = None if further is instance else instance_document(further)
+    return AssignDocument(found, solution_document(after))
 
 
 @dataclass(frozen=True, slots=True)

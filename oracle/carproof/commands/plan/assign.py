@@ -1,0 +1,82 @@
+"""`carproof assign`: give a robot under way or parked further stops."""
+
+from pathlib import Path
+from typing import Any, cast
+
+import click
+
+from carp_spec import Instance, Neighbourhood, ResourceId, Stop
+from carp_spec.documents.instances import write_instance
+from carp_spec.documents.solutions import write_solution
+from carp_spec.requests import require_tick
+from carproof.api.planning import assign
+from carproof.command_line.answer import Answer
+from carproof.command_line.files import OutputFile, read_sound, write_whole
+from carproof.command_line.options import (
+    ADDING,
+    asks_for_a_robot,
+    chosen_planner,
+    examples,
+    json_option,
+    output_option,
+    planner_options,
+)
+from carproof.command_line.output import show_addition, write_result
+from carproof.command_line.tables import print_line
+from carproof.requests import robot_called
+
+
+@click.command(
+    short_help="Give a robot further stops.",
+    epilog=examples("carproof assign hall.json plans.json r1 7,3:10 0,2 --now 12 -o next.json --instance after.json"),
+)
+@asks_for_a_robot
+@click.argument("stops", nargs=-1, required=True, metavar="STOP...")
+@click.option("--instance", "further", type=OutputFile(), help="Write INSTANCE with the further stops to this file.")
+@planner_options(*ADDING)
+@output_option
+@json_option
+def command(  # noqa: PLR0913 - one parameter for each argument and option
+    *,
+    instance: str,
+    solution: str,
+    robot: str,
+    stops: tuple[str, ...],
+    now: int,
+    further: Path | None,
+    output: Path | None,
+    as_json: bool,
+    **options: Any,  # noqa: ANN401 - `planner_named` checks them
+) -> Answer:
+    """Give ROBOT further stops at the tick --now: a STOP is a resource, or RESOURCE:SERVICE with ticks of service.
+
+    The robot is under way, or parked. It serves its stops of before first, and is planned again together with robots
+    near it, as by carproof add: all keep the visits that they have made by --now. Plans with the stops belong to the
+    instance with the stops, which --instance writes.
+
+    Exit codes: 0 it got the stops, 1 no plan was found, and nothing changed, 2 bad input.
+    """
+    require_tick(now, "$.now")
+    chosen = cast("Neighbourhood", chosen_planner(Neighbourhood.name, options))
+    problem, before = read_sound(instance, solution)
+    id = robot_called(problem, robot)
+    assigned, after = assign(problem, before, id, [stop_called(problem, each) for each in stops], now, chosen)
+    if further is not None:
+        write_whole(further, write_instance(assigned))
+    write_result(write_solution(after), output, as_json)
+    if assigned is problem:
+        if not as_json:
+            print_line(f"robot {id} keeps its stops: no plan over further ones was found")
+        return Answer.NO
+    if not as_json:
+        show_addition(problem, before, after, id, now)
+    return Answer.YES
+
+
+def stop_called(instance: Instance, name: str) -> Stop:
+    """The stop that RESOURCE or RESOURCE:SERVICE names; if there is no such resource, a rule says so."""
+    places: dict[str, ResourceId] = {str(id): id for id in instance.graph.index}
+    resource, _, service = name.rpartition(":")
+    if name in places or not (service.isascii() and service.isdigit()):
+        return Stop(places.get(name, name))
+    return Stop(places.get(resource, resource), int(service))
