@@ -5,13 +5,15 @@ from collections.abc import Sequence
 from carp_optimized.fleet import PlannedFleet
 from carp_spec import Instance, Plan, RobotId
 from carp_spec.documents.query_certificates import QUERY_FORMAT, QueryCertificateDocument
+from carp_spec.limits import refuse
 
 
 class Certifier:
     """Plans robots one by one beside plans that are committed, each with its certificate."""
 
     def __init__(self, instance: Instance) -> None:
-        """Begin without plans. Raises `Refusal` if the instance has numbers that are too large."""
+        """Begin without plans. Raises `Refusal` if the instance has stops, or numbers that are too large."""
+        refuse(instance, "stops")
         self._fleet = PlannedFleet(instance, shortcuts=False)
         self._ids = [resource.id for resource in instance.graph.resources]
 

@@ -1,6 +1,7 @@
 """A fleet that stays up: plans are made and robots added one after the other, on arrays that persist."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import fields
 from functools import partial
 from typing import TypeAlias, TypeVar
 
@@ -36,6 +37,7 @@ from carp_optimized.state.arrays import (
 from carp_optimized.state.records import keep_records
 from carp_spec import Instance, Neighbourhood, Plan, Refusal, Robot, RobotId, Shuffled
 from carp_spec.inputs.values import require_instance
+from carp_spec.limits import goals_stand_alone
 from carp_spec.permutations import shuffle, splitmix64
 
 T = TypeVar("T")
@@ -61,7 +63,7 @@ class PlannedFleet:
         require_instance(instance)
         encoding.refuse_what_is_too_large(instance)
         self.instance = instance
-        self.reuse = reuse or Reuse()
+        self.reuse = (reuse or Reuse()) if goals_stand_alone(instance) else Reuse(*[False] * len(fields(Reuse)))
         self._adding: Native[Adding] | None = None
         self._take(encoding.encode(instance, shortcuts=shortcuts))
         self._ids = [robot.id for robot in instance.robots]
@@ -290,26 +292,32 @@ class PlannedFleet:
         for _ in range(planned):
             advance()
 
-    def add(self, robot: int, now: int, options: Neighbourhood, number: int | None = None) -> bool:
+    def add(
+        self, robot: int, now: int, options: Neighbourhood, number: int | None = None, before: Plan | None = None
+    ) -> bool:
         """Add a robot by the neighbourhood planner; if it stays unplanned, all plans stay as they are.
 
-        Orders are drawn for its `number` in the instance, which is its index unless given.
+        Orders are drawn for its `number` in the instance, which is its index unless given. A robot that is to be
+        planned again has followed the plan `before` until now.
         """
         encoding.refuse_tick("$.now", now)
         self.forget_old_records()
+        followed = NONE if before is None else self.record(before)
         order = np.empty(self._order.size + 1, np.int32)
 
         def attempt() -> bool:
             adding = self._adding_with(options)
             if options.sample is not None:  # orders are drawn
                 adding.fields.work.stream[0] = (options.seed + (robot if number is None else number)) % 2**64
-            return add_robot(adding, self._order, robot, now, order)
+            return add_robot(adding, self._order, robot, followed, now, order)
 
         if self._call(attempt):
             self._order = order
             self._records = self._state.reserved.copy()
             return True
-        return options.fallback is not None and self._fall_back(robot, now, Shuffled(options.fallback, options.seed))
+        if options.fallback is None:
+            return False
+        return self._fall_back(robot, followed, now, Shuffled(options.fallback, options.seed))
 
     def polishing(self, seed: int) -> Native[Polish]:
         """The arrays for polishing this fleet, from the plans that it has."""
@@ -387,8 +395,9 @@ class PlannedFleet:
     def _withdraw(self, records: Ints) -> None:
         self._call(lambda: passes.withdraw_all(self._native, records))
 
-    def _fall_back(self, robot: int, now: int, planner: Shuffled) -> bool:
+    def _fall_back(self, robot: int, followed: int, now: int, planner: Shuffled) -> bool:
         order, held = self._order, self._records[self._order]
+        self._records[robot] = followed
         self.shuffled(planner, [*self.order, robot], lambda: None, now)
         if self._order.size == order.size + 1:
             return True

@@ -3,7 +3,8 @@
 from carp_optimized.jit.compiling import RecordsExhausted, TicksExhausted, entry
 from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
-from carp_optimized.queries.guides import guide_slot, shortest_of
+from carp_optimized.queries.guides import guide_slot
+from carp_optimized.queries.over_stops import shortest_of
 from carp_optimized.queries.search import find_any_plan, find_plan, find_plan_only
 from carp_optimized.queries.windows import plan_fits, reserve, withdraw
 from carp_optimized.state.arrays import NEVER, NONE, TOO_FAR, UNCHANGED, UNKNOWN, State

@@ -20,12 +20,13 @@ from carp_spec import (
     RobotId,
     Shuffled,
     Solution,
+    Stop,
 )
 from carp_spec.inputs.options import require_planner, require_polish_options
 from carp_spec.inputs.values import require_instance
 from carp_spec.planners import BY_DEFAULT
 from carp_spec.polish_rules import last_round
-from carp_spec.requests import known, require_addition, require_query, sound_solution
+from carp_spec.requests import known, require_addition, require_assignment, require_query, sound_solution
 
 if TYPE_CHECKING:
     from carp_optimized.certifying import Certifier
@@ -143,6 +144,30 @@ def add(
     fleet.commit([by_robot[each] for each in solution.order])
     fleet.add(fleet.index(robot), now, options)
     return _solution(instance, fleet.plans, {*by_robot, *solution.unplanned, robot})
+
+
+def assign(
+    instance: Instance,
+    solution: Solution,
+    robot: RobotId,
+    stops: Sequence[Stop],
+    now: int = 0,
+    options: Neighbourhood = BY_DEFAULT,
+) -> tuple[Instance, Solution]:
+    """Give a robot that is under way or parked further stops at the tick `now`, behind those that it has.
+
+    It is planned again together with robots near it, as by `add`; all keep what they have done by now. Returns the
+    instance with its stops, and the plans; if no plan is found, both as they were. Raises `Refusal` for stops that
+    break `instance/stops`, for a robot that has left, and for a solution that breaks a rule.
+    """
+    further = require_assignment(instance, solution, robot, stops, now, options)
+    by_robot = {each.robot: each for each in solution.plans}
+    fleet = _fleet(further)
+    fleet.commit([by_robot[each] for each in solution.order if each != robot])
+    if not fleet.add(fleet.index(robot), now, options, before=by_robot[robot]):
+        return instance, solution
+    order = tuple(each.robot for each in fleet.plans)
+    return further, known(further, Solution(fleet.plans, order, solution.unplanned))
 
 
 def polish(

@@ -22,6 +22,7 @@ from importlib import import_module
 TYPE_CHECKING = False  # typing is slow to load, and type checkers know the name
 if TYPE_CHECKING:
     from carp_optimized import add as add
+    from carp_optimized import assign as assign
     from carp_optimized import query as query
     from carp_optimized.improve.anytime import plan_within as plan_within
     from carp_optimum.gap import Gap as Gap
@@ -85,7 +86,6 @@ if TYPE_CHECKING:
     from carproof.api.judging import audit as audit
     from carproof.api.judging import check as check
     from carproof.api.judging import check_trace as check_trace
-    from carproof.api.planning import assign as assign
     from carproof.api.planning import certified_query as certified_query
     from carproof.api.planning import plan as plan
     from carproof.api.planning import polish as polish

@@ -6,11 +6,9 @@ from importlib import import_module
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
-from carp_spec import Instance, Neighbourhood, Plan, Planner, Refusal, RobotId, Solution, total_cost
+from carp_spec import Instance, Neighbourhood, Plan, Planner, Refusal, RobotId, Solution, Stop, total_cost
 from carp_spec.documents.query_certificates import QueryCertificateDocument
 from carp_spec.execution.traces import Trace
-from carp_spec.limits import goals_stand_alone
-from carp_spec.planners import BY_DEFAULT
 from carproof.progress import progress
 
 if TYPE_CHECKING:
@@ -32,6 +30,21 @@ class Certifier(Protocol):
         """The plan of a robot that arrives earliest, `None` if it has none, and its certificate."""
 
 
+class Assign(Protocol):
+    """Gives a robot further stops."""
+
+    def __call__(
+        self,
+        instance: Instance,
+        solution: Solution,
+        robot: RobotId,
+        stops: Sequence[Stop],
+        now: int,
+        options: Neighbourhood,
+    ) -> tuple[Instance, Solution]:
+        """The instance with its stops, and the plans."""
+
+
 class Engine(Protocol):
     """The functions that `carp_reference` and `carp_optimized` both have."""
 
@@ -51,6 +64,10 @@ class Engine(Protocol):
         """Plans with one robot more."""
 
     @property
+    def assign(self) -> "Assign":
+        """The instance with further stops of a robot, and the plans; both as they were if no plan is found."""
+
+    @property
     def polish(self) -> "Polish":
         """Better plans; `advance` gets rounds, unplanned robots and total."""
 
@@ -59,26 +76,23 @@ class Engine(Protocol):
 
 
 class FastestEngine:
-    """The optimised engine, and the reference for planners that it does not have, and for robots with stops."""
+    """The optimised engine, and the reference for planners that it does not have."""
 
     def __getattr__(self, name: str) -> Any:  # noqa: ANN401 - a function of an engine
-        """The function of the engine that knows the instance, which is its first argument."""
-        return lambda instance, *more, **named: getattr(engine_named(fastest_for(instance)), name)(
-            instance, *more, **named
-        )
+        """Load the optimised engine when it is first used."""
+        return getattr(engine_named("optimized"), name)
 
     def plan(self, instance: Instance, planner: Planner) -> Solution:
         """Plans of all robots."""
-        return engine_named(fastest_for(instance, planner)).plan(instance, planner)
+        return engine_named(fastest_with(planner)).plan(instance, planner)
 
-    def polish(self, instance: Instance, solution: Solution, **options: Any) -> Solution:  # noqa: ANN401 - those of `Polish`
+    @property
+    def polish(self) -> "Polish":
         """Better plans; with `seconds`, by simulated annealing."""
-        if fastest_for(instance) == "reference":
-            return engine_named("reference").polish(instance, solution, **options)
         compile_what_is_kept()
         from carp_optimized.improve.annealing import polish_or_anneal  # noqa: PLC0415 - loaded when it is first used
 
-        return polish_or_anneal(instance, solution, **options)
+        return polish_or_anneal
 
 
 def engine_named(name: str | None) -> Engine:
@@ -120,12 +134,11 @@ def compile_what_is_kept() -> None:
         warm()
 
 
-def fastest_for(instance: Instance, planner: Planner = BY_DEFAULT) -> str:
-    """The fastest engine that has the planner, and knows the instance; only the reference knows robots with stops."""
+def fastest_with(planner: Planner) -> str:
+    """The fastest engine that has the planner."""
     from carp_optimized import PLANNERS as COMPILED  # noqa: PLC0415 - loaded when it is first used
 
-    knows = isinstance(planner, COMPILED) and (type(instance) is not Instance or goals_stand_alone(instance))
-    return "optimized" if knows else "reference"
+    return "optimized" if isinstance(planner, COMPILED) else "reference"
 
 
 def repairs_by_default(planner: Planner) -> bool:

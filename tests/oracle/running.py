@@ -101,6 +101,7 @@ REQUESTS: dict[str, Document] = {
     "plan": {"instance": TWO, "planner": "shuffled", "attempts": 2},
     "plan-within": {"instance": TWO, "iterations": 3},
     "add": {"instance": TWO, "solution": ONE_PLANNED, "robot": "r2", "now": 0, "m": 1},
+    "assign": {"instance": TWO, "solution": TWO_PLANNED, "robot": "r1", "stops": [{"resource": "b"}], "now": 1},
     "polish": {"instance": TWO, "solution": TWO_PLANNED, "iterations": 3},
     "optimum": {"instance": TWO, "limit": 10},
     "bound": {"instance": TWO, "steps": 3},

@@ -20,6 +20,8 @@ from carp_optimized.state.encoding import refuse_tick, refuse_what_is_too_large
 from carp_spec import Instance, Plan, RobotId, Solution, Visit
 from carp_spec.execution.execution_rules import require_followed, require_lawful_ends
 from carp_spec.execution.traces import Trace
+from carp_spec.limits import goals_stand_alone
+from carp_spec.plan_rules import least_stays
 from carp_spec.requests import require_trace
 
 Flags: TypeAlias = npt.NDArray[np.bool_]
@@ -167,6 +169,8 @@ def timetable(instance: Instance, solution: Solution) -> Timetable:
     lengths = np.array([each.duration for each in instance.graph.resources], np.int64)
     capacity = np.array([min(each.capacity, FOR_EVER) for each in instance.graph.resources], np.int64)
     duration = np.repeat(paces, np.diff(starts)) * lengths[resource]
+    if not goals_stand_alone(instance):
+        duration = np.array([ticks for plan in solution.plans for ticks in least_stays(instance, plan)], np.int64)
     is_last = np.zeros(enter.size, np.bool_)
     is_last[starts[1:] - 1] = True
     travels = np.flatnonzero(~is_last)

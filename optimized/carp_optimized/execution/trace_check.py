@@ -11,6 +11,8 @@ import numpy.typing as npt
 from carp_optimized.jit.kinds import Longs
 from carp_spec import Instance, Plan, Solution
 from carp_spec.execution.traces import Trace
+from carp_spec.limits import goals_stand_alone
+from carp_spec.plan_rules import least_stays
 
 NEVER = 2**40
 """Beyond all ticks that are looked at here."""
@@ -56,6 +58,9 @@ def _keeps_ticks(instance: Instance, plans: Sequence[Plan], done: Sequence[Plan]
     index = instance.graph.index
     resource = np.array([index[visit.resource] for visit in visits], np.int64)
     duration = np.array([each.duration for each in instance.graph.resources], np.int64)[resource]
+    least = np.repeat(pace, lengths) * duration
+    if not goals_stand_alone(instance):
+        least = np.array([ticks for plan in plans for ticks in least_stays(instance, plan)], np.int64)
     is_left, is_first = is_made & (left < NEVER), is_made & (place == 0)
     follows_on = np.flatnonzero(is_made & (place > 0))
     is_last = is_made & (place == np.repeat(counts, lengths) - 1)
@@ -66,7 +71,7 @@ def _keeps_ticks(instance: Instance, plans: Sequence[Plan], done: Sequence[Plan]
         is_made & (entered > now),
         is_left & ((left < entered) | (left > now)),
         is_last & stays & is_left,
-        is_left & (left - entered < np.repeat(pace, lengths) * duration),
+        is_left & (left - entered < least),
     )
     if any(each.any() for each in wrong):
         return False

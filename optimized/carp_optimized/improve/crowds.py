@@ -48,7 +48,7 @@ def is_stepwise(instance: Instance) -> bool:
         instance.following == "allowed"
         and not instance.graph.groups
         and all(each.capacity == 1 and each.duration == 1 for each in instance.graph.resources)
-        and all(each.release == 0 and each.pace == 1 for each in instance.robots)
+        and all(each.release == 0 and each.pace == 1 and each.has_goal_alone for each in instance.robots)
     )
 
 

@@ -14,7 +14,7 @@ from carp_optimized.neighbourhood.replanning import (
     note_freed,
     replan,
 )
-from carp_optimized.queries.guides import shortest_of
+from carp_optimized.queries.over_stops import shortest_of
 from carp_optimized.queries.search import find_plan, find_plan_alone, find_plan_by
 from carp_optimized.queries.windows import give_rank, plan_fits, reserve_but, withdraw, withdraw_but
 from carp_optimized.state.arrays import (
@@ -36,9 +36,11 @@ from carp_optimized.state.records import cost_of, same_plan
 
 @entry
 def add_robot(  # noqa: C901 - Algorithm 1 from its first line to its last
-    native: Native[Adding], before: Ints, robot: int, now: int, after: Ints
+    native: Native[Adding], before: Ints, robot: int, followed: int, now: int, after: Ints
 ) -> bool:
     """Add a robot to those `before` it in planning order; returns whether it got a plan.
+
+    One that is to be planned again has `followed` a plan until now, whose record that is; others have `NONE`.
 
     If so, `after` becomes the planning order with the robot. The windows hold the plans before and afterwards.
     """
@@ -50,10 +52,11 @@ def add_robot(  # noqa: C901 - Algorithm 1 from its first line to its last
     options = adding.options
     size = before.size
     robots = size + 1
-    shortest = find_plan_alone(empty, robot, now)
+    shortest = find_plan_alone(empty, robot, now) if followed == NONE else find_plan(empty, robot, followed, now, NEVER)
     if shortest == NONE:
         return False
     rounds = min(begin(state, work, before, robot, shortest, now), options.m - 1)
+    work.before[robot] = followed
     best = NO_LIMIT
     if options.baseline or rounds == 0:
         best = try_baseline(state, work, size, shortest, now, options.unchanged)
@@ -80,6 +83,7 @@ def add_robot(  # noqa: C901 - Algorithm 1 from its first line to its last
             best = cost_outside + cost
             keep_candidate(work, size, turn + 1)
     if best == NO_LIMIT:
+        work.before[robot] = NONE
         for k in range(robots):
             work.best_plans[k] = work.before[work.queue[k]]
         settle(state, work, work.queue, work.best_plans, robots)
@@ -140,7 +144,7 @@ def try_baseline(state: State, work: Work, size: int, shortest: int, now: int, s
         state.counters[UNCHANGED] += 1
         plan = shortest
     else:
-        plan = find_plan(state, new, NONE, now, NEVER)
+        plan = find_plan(state, new, int(work.before[new]), now, NEVER)
     work.alone[0] = plan
     if plan == NONE:
         return NO_LIMIT

@@ -28,6 +28,19 @@ def guide_slot(state: State, robot: int, resource: int) -> int:
 
 
 @compiled
+def guide_of(state: State, destination: int) -> int:
+    """The slot that holds the guide of a destination of stops, made as far as moves lead."""
+    guides = state.guides
+    if guides.slot[destination] == NONE:
+        slot = int(guides.next[0])
+        guides.next[0] = (slot + 1) % guides.holds.size
+        if guides.holds[slot] != NONE:
+            guides.slot[guides.holds[slot]] = NONE
+        reach(state, slot, destination, int(guides.goal[destination]), LARGEST)
+    return int(guides.slot[destination])
+
+
+@compiled
 def reach_all(state: State, slot: int) -> None:
     """Make a guide again, as far as moves lead."""
     destination = int(state.guides.holds[slot])
@@ -59,13 +72,6 @@ def toll_of(state: State, slot: int, resource: int) -> int:
     if state.scale > 0:
         return ticks * state.scale + resource
     return (ticks << 32) + int(state.guides.rank[slot][resource])
-
-
-@compiled
-def shortest_of(state: State, robot: int) -> int:
-    """The ticks from the robot's start to its goal on the empty graph; below 0: no way."""
-    start = int(state.robots.start[robot])
-    return int(state.guides.ticks[guide_slot(state, robot, start)][start])
 
 
 @compiled

@@ -5,6 +5,7 @@ from carp_optimized.queries.blocks import below, lowest, width
 from carp_optimized.queries.ends import ENDED, end_from
 from carp_optimized.queries.guides import guide_slot, reach_all, toll_of
 from carp_optimized.queries.heap import push, replace_root
+from carp_optimized.queries.over_stops import find_over_stops, has_stops
 from carp_optimized.queries.windows import end_of_run, fits, is_exchange, last_by, plan_fits, skip_below, start_of_run
 from carp_optimized.state.arrays import (
     ASKED,
@@ -46,7 +47,9 @@ def find_plan_only(state: State, robot: int, before: int, now: int, latest: int)
 
 
 @compiled
-def find_any_plan(state: State, robot: int, before: int, now: int, behind: int, latest: int, is_noted: bool) -> int:
+def find_any_plan(  # noqa: C901 - one case after the other
+    state: State, robot: int, before: int, now: int, behind: int, latest: int, is_noted: bool
+) -> int:
     """The record of the robot's plan against the reservations, or `NONE`; `before` is the plan followed until now.
 
     A plan that is to be found must arrive by the tick `latest`.
@@ -78,6 +81,9 @@ def find_any_plan(state: State, robot: int, before: int, now: int, behind: int, 
     ready = max(enter + int(request.pace[robot]) * int(state.graph.duration[resource]), now)
     if not fits(state, resource, enter, ready, NONE, behind):
         return NONE
+    past = max(history - 1, 0)
+    if has_stops(state, robot):
+        return find_over_stops(state, robot, first, past, resource, enter, ready, now, behind, latest)
     slot = guide_slot(state, robot, resource)
     expansions = search(state, robot, slot, resource, enter, ready, behind, latest, is_noted)
     if expansions == FURTHER:
@@ -85,7 +91,7 @@ def find_any_plan(state: State, robot: int, before: int, now: int, behind: int, 
         expansions = search(state, robot, slot, resource, enter, ready, behind, latest, is_noted)
     if expansions == 0:
         return NONE
-    record = start_record(state, robot, first, max(history - 1, 0))
+    record = start_record(state, robot, first, past)
     write_record(state, record, int(state.search.goal[0]), expansions if is_noted else UNKNOWN)
     return record
 
@@ -99,6 +105,8 @@ def find_plan_alone(empty: State, robot: int, now: int) -> int:
     where it is the same, no smaller h than the resource of the path that was expanded in their place, so a larger one
     than what follows. A robot that starts at its goal, or is too far from it, is left to the search.
     """
+    if has_stops(empty, robot):
+        return find_plan(empty, robot, NONE, now, NEVER)
     graph = empty.graph
     windows = empty.windows
     search = empty.search

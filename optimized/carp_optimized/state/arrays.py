@@ -87,6 +87,30 @@ class Robots(NamedTuple):
     destination: Ints
 
 
+class Stops(NamedTuple):
+    """The stops of robots with more than a goal alone: those of robot r from `first[r]` up to `first[r + 1]`.
+
+    A stop has a place, ticks of service, and a destination, whose guide no robot with a goal alone uses; `stay[robot]`
+    is what the last visit takes. The rest is scratch (`carp_optimized.queries.over_stops`): by number of stops served,
+    the `slot` of the guide to the next, and the ticks from there to the goal, the `rest`; by label, of which a window
+    has `stride`, `reached` and `parent` as in `Search`; and the heap.
+    """
+
+    first: Ints
+    place: Ints
+    service: Ints
+    destination: Ints
+    stay: Ints
+    stride: int
+    slot: Ints
+    rest: Longs
+    reached: Longs
+    parent: Ints
+    keys: Longs
+    ties: Longs
+    labels: Ints
+
+
 class Guides(NamedTuple):
     """The h of A*, made when first asked for: `ticks[slot]` is the guide of the destination `holds[slot]`.
 
@@ -211,6 +235,7 @@ class State(NamedTuple):
 
     graph: Graph
     robots: Robots
+    stops: Stops
     windows: Rows
     stays: Rows
     guides: Guides

@@ -30,29 +30,29 @@ from carp_optimized.state.arrays import (
     Rows,
     Search,
     State,
+    Stops,
     Work,
 )
-from carp_spec import Fault, Instance, Refusal, Robot
-from carp_spec.limits import Feature, refuse
+from carp_spec import Fault, Instance, Refusal, Robot, Stop
+from carp_spec.limits import refuse
 
 DETOUR = 8  # of the durations by which a guide goes further than to the start: seldom more are needed on large maps
 GUIDE_PLACES = 1 << 26  # how many entries all guides together have at most, if that is room for 64 of them
 ROOTS = 1024
 STRIPS = 7  # its square is the number of regions; a number of 64 bits has room for 63
 LARGEST_COORDINATE = 2**29
-UNKNOWN_HERE: tuple[Feature, ...] = ("groups", "stops")
 NO_LIMIT_THERE = "the reference engine has no such limit, but finds no bounds"
 
 
 def refuse_what_is_too_large(instance: Instance) -> None:
     """Raise `Refusal` where a number of the instance does not fit, and for what is not known here."""
-    refuse(instance, *UNKNOWN_HERE)
+    refuse(instance, "groups")
     _refuse(_too_large(instance))
 
 
 def refuse_robots(instance: Instance, longest: int) -> None:
-    """The same for the robots alone, where that is the longest duration."""
-    refuse(instance, *UNKNOWN_HERE)
+    """The same for the robots alone, which come to a fleet, where that is the longest duration."""
+    refuse(instance, "groups", "stops")
     _refuse(_large_robots(instance, longest))
 
 
@@ -91,6 +91,9 @@ def _large_robots(instance: Instance, longest: int) -> Iterator[Fault]:
             yield Fault(
                 "limit/ticks", f"{path}.release", f"the release must be at most {LARGEST}, and is {robot.release}"
             )
+        if sum(stop.service for stop in robot.stops) > LARGEST:
+            message = f"the services must be at most {LARGEST} together, and are more"
+            yield Fault("limit/ticks", f"{path}.stops", message)
         if robot.pace * longest > LARGEST:
             message = f"the pace times {longest}, the longest duration, must be at most {LARGEST}, and is {robot.pace}"
             yield Fault("limit/ticks", f"{path}.pace", message)
@@ -135,12 +138,59 @@ def strips(places: Longs) -> Longs:
     return (places - first) // width
 
 
-def encode_robots(instance: Instance) -> tuple[Robots, Ints, Ints]:
-    """The robots, and the goals and paces of their destinations."""
+def stops_of(robot: Robot) -> tuple[Stop, ...]:
+    """The stops of a robot that has more than a goal alone."""
+    return () if robot.has_goal_alone else robot.stops
+
+
+def encode_stops(instance: Instance, destination: Ints) -> Stops:
+    """The stops, without room for labels."""
+    stops = [stop for each in instance.robots for stop in stops_of(each)]
+    counts = [len(stops_of(each)) for each in instance.robots]
+    most = max(counts, default=0)
+    return Stops(
+        first=np.array([0, *np.cumsum(counts)], np.int32),
+        place=np.array([instance.graph.index[stop.resource] for stop in stops], np.int32),
+        service=np.array([stop.service for stop in stops], np.int32),
+        destination=destination,
+        stay=np.array([instance.stay(each.id, each.stops[-1]) for each in instance.robots], np.int32),
+        stride=max(most, 1),
+        slot=np.zeros(most, np.int32),
+        rest=np.zeros(most, np.int64),
+        reached=np.zeros(0, np.int64),
+        parent=np.zeros(0, np.int32),
+        keys=np.zeros(0, np.int64),
+        ties=np.zeros(0, np.int64),
+        labels=np.zeros(0, np.int32),
+    )
+
+
+def with_labels(stops: Stops, windows: int, edges: int) -> Stops:
+    """The stops with room for the labels of that many windows."""
+    if stops.place.size == 0:
+        return stops
+    labels, entries = stops.stride * windows, stops.stride * (windows // 4 + edges + 1)
+    return stops._replace(
+        reached=np.zeros(labels, np.int64),
+        parent=np.zeros(labels, np.int32),
+        keys=np.zeros(entries, np.int64),
+        ties=np.zeros(entries, np.int64),
+        labels=np.zeros(entries, np.int32),
+    )
+
+
+def encode_robots(instance: Instance) -> tuple[Robots, Ints, Ints, Ints]:
+    """The robots, the goals and paces of their destinations, and the destinations of stops."""
     index = instance.graph.index
-    destinations: dict[tuple[int, int], int] = {}
+    destinations: dict[tuple[int, int, bool], int] = {}
     destination = [
-        destinations.setdefault((index[each.goal], each.pace), len(destinations)) for each in instance.robots
+        destinations.setdefault((index[each.goal], each.pace, each.has_goal_alone), len(destinations))
+        for each in instance.robots
+    ]
+    of_stops = [
+        destinations.setdefault((index[stop.resource], each.pace, False), len(destinations))
+        for each in instance.robots
+        for stop in stops_of(each)
     ]
     robots = Robots(
         start=np.array([index[each.start] for each in instance.robots], np.int32),
@@ -149,8 +199,9 @@ def encode_robots(instance: Instance) -> tuple[Robots, Ints, Ints]:
         pace=np.array([each.pace for each in instance.robots], np.int32),
         destination=np.array(destination, np.int32),
     )
-    goals = np.array([goal for goal, _ in destinations], np.int32)
-    return robots, goals, np.array([pace for _, pace in destinations], np.int32)
+    goals = np.array([goal for goal, _, _ in destinations], np.int32)
+    paces = np.array([pace for _, pace, _ in destinations], np.int32)
+    return robots, goals, paces, np.array(of_stops, np.int32)
 
 
 def write_robot(state: State, instance: Instance, robot: Robot, place: int, destination: int) -> None:
@@ -165,8 +216,8 @@ def write_robot(state: State, instance: Instance, robot: Robot, place: int, dest
 def with_robots(state: State, size: int, pace: int) -> tuple[State, dict[tuple[int, int], int]]:
     """The state with room for that many robots, up to that pace, and as many more destinations than are in use.
 
-    Also returns the numbers of those in use. Guides are made again. What queries have read is forgotten if their keys
-    change.
+    None has stops. Also returns the numbers of those in use. Guides are made again. What queries have read is forgotten
+    if their keys change.
     """
 
     def enlarged(array: Ints, value: int) -> Ints:
@@ -186,6 +237,7 @@ def with_robots(state: State, size: int, pace: int) -> tuple[State, dict[tuple[i
         state.records.expansions[:] = UNKNOWN
     return state._replace(
         robots=Robots._make(places),
+        stops=state.stops._replace(first=np.zeros(size + 1, np.int32), stay=np.zeros(size, np.int32)),
         guides=no_guides(resources, goals.copy(), paces.copy(), has_ranks=scale == 0),
         reserved=enlarged(state.reserved, NONE),
         rank=enlarged(state.rank, 0),
@@ -205,10 +257,10 @@ def has_scale(state: State, pace: int) -> bool:
     return state.scale in (0, scale_of_tolls(state.graph.duration.size, state.longest, np.array([pace], np.int32)))
 
 
-def no_guides(resources: int, goals: Ints, paces: Ints, has_ranks: bool) -> Guides:
-    """Guides yet to be made: for all destinations, or as many as fit."""
+def no_guides(resources: int, goals: Ints, paces: Ints, has_ranks: bool, stops: int = 0) -> Guides:
+    """Guides yet to be made: for all destinations, or as many as fit, but for twice the stops of a robot at least."""
     tables = 2 if has_ranks else 1
-    slots = max(1, min(goals.size, max(64, GUIDE_PLACES // max(1, resources * tables))))
+    slots = max(1, min(goals.size, max(64, 2 * stops, GUIDE_PLACES // max(1, resources * tables))))
     return Guides(
         ticks=np.empty((slots, resources), np.int32),
         rank=np.empty((slots, resources if has_ranks else 0), np.int32),
@@ -331,7 +383,8 @@ def split_of_terms(graph: Graph) -> int:
 def encode(instance: Instance, *, shortcuts: bool) -> State:
     """A state in which no plan is reserved, whose queries take shortcuts or expand all that they may."""
     graph = encode_graph(instance)
-    robots, goals, paces = encode_robots(instance)
+    robots, goals, paces, of_stops = encode_robots(instance)
+    stops = encode_stops(instance, of_stops)
     resources = graph.duration.size
     places = BLOCK * (1 + 2 * resources)
     visits = 64 * max(64, robots.start.size)
@@ -340,9 +393,10 @@ def encode(instance: Instance, *, shortcuts: bool) -> State:
     return State(
         graph=graph,
         robots=robots,
+        stops=with_labels(stops, places, graph.target.size),
         windows=_all_free(graph, places),
         stays=_no_stays(graph, places),
-        guides=no_guides(resources, goals, paces, has_ranks=scale == 0),
+        guides=no_guides(resources, goals, paces, has_ranks=scale == 0, stops=stops.stride),
         search=no_search(places, graph.target.size),
         records=no_records(max(256, 8 * robots.start.size), visits, visits),
         freed=nothing_freed(resources),
@@ -365,6 +419,7 @@ def with_room(state: State, places: int, records: Records) -> State:
     return state._replace(
         windows=_all_free(state.graph, places),
         stays=_no_stays(state.graph, places),
+        stops=with_labels(state.stops, places, state.graph.target.size),
         search=no_search(places, state.graph.target.size),
         records=records,
         reserved=np.full(state.reserved.size, NONE, np.int32),

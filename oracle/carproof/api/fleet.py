@@ -299,6 +299,7 @@ def _compiled(instance: Instance, plans: Sequence[Plan]) -> "PlannedFleet":
     compile_what_is_kept()
     from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415 - numba is slow to load
 
+    refuse(instance, "stops")
     core = PlannedFleet(instance)
     core.commit(plans)
     return core

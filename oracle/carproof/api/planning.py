@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 
-from carp_spec import Instance, Neighbourhood, Plan, Planner, RobotId, Solution, Stop
+from carp_spec import Instance, Plan, Planner, RobotId, Solution
 from carp_spec.documents.query_certificates import QueryCertificateDocument
 from carp_spec.limits import refuse
 from carp_spec.planners import BY_DEFAULT
@@ -35,25 +35,6 @@ def certified_query(
     certifier = engine_named(None).certifier(instance)
     certifier.commit([each for each in committed if each.robot != robot])
     return certifier.certify(robot, own[-1] if own else None, now)
-
-
-def assign(
-    instance: Instance,
-    solution: Solution,
-    robot: RobotId,
-    stops: Sequence[Stop],
-    now: int = 0,
-    options: Neighbourhood = BY_DEFAULT,
-) -> tuple[Instance, Solution]:
-    """Give a robot that is under way or parked further stops at the tick `now`, behind those that it has.
-
-    It is planned again together with robots near it, as by `add`; all keep what they have done by now. Returns the
-    instance with its stops, and the plans; if no plan is found, both as they were. Raises `Refusal` for stops that
-    break `instance/stops`, for a robot that has left, and for a solution that breaks a rule.
-    """
-    from carp_reference import assign as reference  # noqa: PLC0415 - loaded where it is used
-
-    return reference(instance, solution, robot, stops, now, options)
 
 
 def polish(

@@ -9,7 +9,6 @@ from carp_spec import Instance, Neighbourhood, ResourceId, Stop
 from carp_spec.documents.instances import write_instance
 from carp_spec.documents.solutions import write_solution
 from carp_spec.requests import require_tick
-from carproof.api.planning import assign
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import OutputFile, read_sound, write_whole
 from carproof.command_line.options import (
@@ -17,12 +16,12 @@ from carproof.command_line.options import (
     asks_for_a_robot,
     chosen_planner,
     examples,
-    json_option,
-    output_option,
+    gives_plans,
     planner_options,
 )
 from carproof.command_line.output import show_addition, write_result
 from carproof.command_line.tables import print_line
+from carproof.engines import engine_named
 from carproof.requests import robot_called
 
 
@@ -34,8 +33,7 @@ from carproof.requests import robot_called
 @click.argument("stops", nargs=-1, required=True, metavar="STOP...")
 @click.option("--instance", "further", type=OutputFile(), help="Write INSTANCE with the further stops to this file.")
 @planner_options(*ADDING)
-@output_option
-@json_option
+@gives_plans
 def command(  # noqa: PLR0913 - one parameter for each argument and option
     *,
     instance: str,
@@ -43,6 +41,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     robot: str,
     stops: tuple[str, ...],
     now: int,
+    engine: str | None,
     further: Path | None,
     output: Path | None,
     as_json: bool,
@@ -60,7 +59,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     chosen = cast("Neighbourhood", chosen_planner(Neighbourhood.name, options))
     problem, before = read_sound(instance, solution)
     id = robot_called(problem, robot)
-    assigned, after = assign(problem, before, id, [stop_called(problem, each) for each in stops], now, chosen)
+    wanted = [stop_called(problem, each) for each in stops]
+    assigned, after = engine_named(engine).assign(problem, before, id, wanted, now, chosen)
     if further is not None:
         write_whole(further, write_instance(assigned))
     write_result(write_solution(after), output, as_json)

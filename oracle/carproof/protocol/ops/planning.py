@@ -10,7 +10,6 @@ from carp_spec.documents.instances import InstanceDocument, StopDocument, instan
 from carp_spec.documents.solutions import SolutionDocument, solution_document, visits_document
 from carp_spec.planners import BY_DEFAULT
 from carp_spec.requests import require_new_robot, require_robot, require_tick
-from carproof.api.planning import assign as assigned
 from carproof.engines import Engine, repaired, warm
 from carproof.protocol.ops.op import PolishOptions
 from carproof.requests import inside, sound_within
@@ -133,11 +132,10 @@ class AssignDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 def assign(request: AssignRequest, engine: Engine) -> AssignDocument:
     """Give a robot that is under way or parked further stops; it and robots near it are planned again from `now` on."""
-    del engine
     instance = request.instance
     before = sound_within(instance, request.solution)
     stops = all_converted(request.stops, Stop)
-    further, after = assigned(instance, before, request.robot, stops, request.now, request.options)
+    further, after = engine.assign(instance, before, request.robot, stops, request.now, request.options)
     found = None if further is instance else instance_document(further)
     return AssignDocument(found, solution_document(after))
 

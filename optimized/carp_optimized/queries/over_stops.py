@@ -1,0 +1,284 @@
+"""The CARP query of a robot with several stops, or with service: A* over windows and numbers of stops served.
+
+It goes as `carp_reference.query` does, label by label, with none of the shortcuts of `search`. A label is a window and
+a number of stops served, `window * stride + served`. What it has read is not noted, so its plans are not reused.
+"""
+
+from carp_optimized.jit.compiling import RecordsExhausted, RoomExhausted, TicksExhausted, compiled
+from carp_optimized.jit.kinds import Ints, Longs
+from carp_optimized.queries.guides import guide_of, guide_slot
+from carp_optimized.queries.windows import end_of_run, is_exchange, last_by, skip_below, start_of_run
+from carp_optimized.state.arrays import LARGEST, NEVER, NONE, TOO_FAR, UNKNOWN, UNREACHABLE, State
+from carp_optimized.state.records import close_record, start_record
+
+STANDING = 0  # as in `search`
+
+
+@compiled
+def has_stops(state: State, robot: int) -> bool:
+    """Whether the robot has more than a goal alone."""
+    return bool(state.stops.first[robot] < state.stops.first[robot + 1])
+
+
+@compiled
+def served_by(state: State, robot: int, first: int, count: int) -> int:
+    """How many stops but the last the visits of a record have served, each left as the next one begins."""
+    records = state.records
+    stops = state.stops
+    stop = int(stops.first[robot])
+    last = int(stops.first[robot + 1]) - 1
+    for k in range(first, first + count):
+        stay = int(records.enter[k + 1]) - int(records.enter[k])
+        if stop < last and records.resource[k] == stops.place[stop] and stay >= stops.service[stop]:
+            stop += 1
+    return stop - int(stops.first[robot])
+
+
+@compiled
+def ticks_to_goal(state: State, robot: int, resource: int, served: int) -> int:
+    """The h of `query/ties`, over the stops left; below 0: a mark of a guide. Fills the scratch `slot` and `rest`."""
+    stops = state.stops
+    first = int(stops.first[robot])
+    count = int(stops.first[robot + 1]) - first
+    is_made = True
+    while is_made:  # making one guide may give away another
+        is_made = False
+        for k in range(served, count):
+            is_made |= state.guides.slot[stops.destination[first + k]] == NONE
+            stops.slot[k] = guide_of(state, int(stops.destination[first + k]))
+    stops.rest[count - 1] = 0
+    for k in range(count - 2, served - 1, -1):
+        place = int(stops.place[first + k])
+        ticks = int(state.guides.ticks[stops.slot[k + 1]][place])
+        if ticks < 0:
+            return ticks
+        need = int(state.robots.pace[robot]) * int(state.graph.duration[place])
+        stops.rest[k] = max(int(stops.service[first + k]) - need, 0) + ticks + int(stops.rest[k + 1])
+    ticks = int(state.guides.ticks[stops.slot[served]][resource])
+    return ticks if ticks < 0 else min(ticks + int(stops.rest[served]), LARGEST + 1)
+
+
+@compiled
+def shortest_of(state: State, robot: int) -> int:
+    """The ticks from the robot's start over its stops to its goal on the empty graph; below 0: no way."""
+    start = int(state.robots.start[robot])
+    if has_stops(state, robot):
+        ticks = ticks_to_goal(state, robot, start, 0)
+        return ticks if ticks <= LARGEST else TOO_FAR
+    return int(state.guides.ticks[guide_slot(state, robot, start)][start])
+
+
+@compiled
+def push(state: State, size: int, key: int, tie: int, label: int) -> None:
+    """Add an entry to the heap of `size` entries, in the order of (key, tie)."""
+    over = state.stops
+    if size == over.keys.size:
+        raise RoomExhausted
+    here = size
+    while here > 0:
+        above = (here - 1) >> 1
+        if over.keys[above] < key or (over.keys[above] == key and over.ties[above] <= tie):
+            break
+        move(over.keys, over.ties, over.labels, above, here)
+        here = above
+    over.keys[here] = key
+    over.ties[here] = tie
+    over.labels[here] = label
+
+
+@compiled
+def drop_root(state: State, size: int) -> None:
+    """Take the first entry out of the heap, which has `size` entries afterwards."""
+    over = state.stops
+    key = int(over.keys[size])
+    tie = int(over.ties[size])
+    label = int(over.labels[size])
+    here = 0
+    below = 1
+    while below < size:
+        other = below + 1
+        if other < size and (
+            over.keys[other] < over.keys[below]
+            or (over.keys[other] == over.keys[below] and over.ties[other] < over.ties[below])
+        ):
+            below = other
+        if key < over.keys[below] or (key == over.keys[below] and tie <= over.ties[below]):
+            break
+        move(over.keys, over.ties, over.labels, below, here)
+        here = below
+        below = 2 * here + 1
+    over.keys[here] = key
+    over.ties[here] = tie
+    over.labels[here] = label
+
+
+@compiled
+def move(keys: Longs, ties: Longs, labels: Ints, source: int, target: int) -> None:
+    """Copy an entry of the heap."""
+    keys[target] = keys[source]
+    ties[target] = ties[source]
+    labels[target] = labels[source]
+
+
+@compiled
+def search_over_stops(  # noqa: C901, PLR0912, PLR0915 - one hot loop
+    state: State, robot: int, resource: int, enter: int, ready: int, served: int, now: int, behind: int, latest: int
+) -> int:
+    """A* from the resource, entered at `enter` and left from `ready` on; the label in which it ends, or `NONE`."""
+    graph = state.graph
+    windows = state.windows
+    stops = state.stops
+    reached = stops.reached
+    parent = stops.parent
+    first = int(stops.first[robot])
+    last_stop = int(stops.first[robot + 1]) - 1 - first
+    goal = int(state.robots.goal[robot])
+    pace = int(state.robots.pace[robot])
+    stride = int(stops.stride)
+    counts_all = behind == NEVER
+    to_goal = ticks_to_goal(state, robot, resource, served)
+    if to_goal < 0 or to_goal > LARGEST:
+        if to_goal == UNREACHABLE:
+            return NONE
+        raise TicksExhausted
+    state.search.generation[0] += 1
+    base = int(state.search.generation[0]) << 32
+    own_slot = last_by(windows, resource, enter)
+    end_slot = end_of_run(state, own_slot, behind)
+    windows.resource[STANDING] = resource
+    windows.end[STANDING] = windows.end[end_slot]
+    windows.source[STANDING] = windows.source[end_slot]
+    own_slot = start_of_run(state, own_slot, behind)
+    start = STANDING * stride + served
+    tick = ready - pace * int(graph.duration[resource])
+    reached[start] = base - tick
+    parent[start] = NONE
+    stops.keys[0] = ((tick + to_goal) << 31) + to_goal
+    stops.ties[0] = resource * stride + served
+    stops.labels[0] = start
+    size = 1
+    beyond = False
+    while size > 0:
+        label = int(stops.labels[0])
+        key = int(stops.keys[0])
+        size -= 1
+        drop_root(state, size)
+        window = label // stride
+        done = label % stride
+        resource = int(windows.resource[window])
+        tick = base - int(reached[label])
+        if tick + (key & ((1 << 31) - 1)) != key >> 31:
+            continue  # reached earlier since this entry was made
+        is_start = parent[label] == NONE
+        ready = tick + pace * int(graph.duration[resource])
+        entry = enter if is_start else tick
+        last = window if counts_all else end_of_run(state, window, behind)
+        end = int(windows.end[last])
+        if done == last_stop and resource == goal:
+            leave = entry + int(stops.stay[robot])
+            if end == NEVER if state.parks else now <= leave <= end:
+                return label
+        if done < last_stop and resource == stops.place[first + done]:
+            until = max(ready, entry + int(stops.service[first + done]))
+            other = (own_slot if is_start else window) * stride + done + 1
+            tick = until - pace * int(graph.duration[resource])
+            if until <= end and base - tick > reached[other]:
+                to_goal = int(state.guides.ticks[stops.slot[done + 1]][resource]) + int(stops.rest[done + 1])
+                if tick + to_goal > LARGEST:
+                    beyond = True
+                elif tick + to_goal <= latest:
+                    reached[other] = base - tick
+                    parent[other] = label
+                    push(state, size, ((tick + to_goal) << 31) + to_goal, resource * stride + done + 1, other)
+                    size += 1
+        slot = int(stops.slot[done])
+        for edge in range(int(graph.first[resource]), int(graph.first[resource + 1])):
+            target = int(graph.target[edge])
+            to_goal = int(state.guides.ticks[slot][target])
+            if to_goal < 0:
+                beyond |= to_goal == TOO_FAR
+                continue
+            to_goal += int(stops.rest[done])
+            need = pace * int(graph.duration[target])
+            row = int(windows.offset[target])
+            row_end = row + int(windows.size[target])
+            tail = skip_below(windows.end, row, row_end, ready + need)
+            while tail < row_end:
+                tail = tail if counts_all else end_of_run(state, tail, behind)
+                window = tail if counts_all else start_of_run(state, tail, behind)
+                entry = max(ready, int(windows.start[window]))
+                until = int(windows.end[tail])
+                tail += 1
+                if entry > end:
+                    break
+                while entry <= end and is_exchange(state, last, entry, target):
+                    entry += 1
+                other = window * stride + done
+                if entry > end or entry + need > until or base - entry <= reached[other]:
+                    continue
+                if entry + to_goal > LARGEST:
+                    beyond = True
+                elif entry + to_goal <= latest:
+                    reached[other] = base - entry
+                    parent[other] = label
+                    push(state, size, ((entry + to_goal) << 31) + to_goal, target * stride + done, other)
+                    size += 1
+    if beyond and latest > LARGEST:
+        raise TicksExhausted
+    return NONE
+
+
+@compiled
+def find_over_stops(
+    state: State,
+    robot: int,
+    first: int,
+    past: int,
+    resource: int,
+    enter: int,
+    ready: int,
+    now: int,
+    behind: int,
+    latest: int,
+) -> int:
+    """The record of the plan of a robot that is in the resource, after `past` visits from `first` on, or `NONE`."""
+    served = served_by(state, robot, first, past)
+    label = search_over_stops(state, robot, resource, enter, ready, served, now, behind, latest)
+    if label == NONE:
+        return NONE
+    record = start_record(state, robot, first, past)
+    write_over_stops(state, record, label, enter)
+    return record
+
+
+@compiled
+def write_over_stops(state: State, record: int, last: int, enter: int) -> None:
+    """Finish a record with the path to the label `last`, the first of whose visits was entered at `enter`."""
+    records = state.records
+    windows = state.windows
+    stops = state.stops
+    stride = int(stops.stride)
+    base = int(state.search.generation[0]) << 32
+    length = 0
+    label = last
+    while label != NONE:
+        before = int(stops.parent[label])
+        length += before == NONE or windows.resource[label // stride] != windows.resource[before // stride]
+        label = before
+    end = int(records.visits_at[record]) + int(records.visits[record]) + length
+    if end > records.resource.size:
+        raise RecordsExhausted
+    k = end
+    label = last
+    while label != NONE:
+        before = int(stops.parent[label])
+        if before == NONE or windows.resource[label // stride] != windows.resource[before // stride]:
+            k -= 1
+            records.resource[k] = windows.resource[label // stride]
+            records.enter[k] = enter if before == NONE else base - int(stops.reached[label])
+        label = before
+    stay = int(stops.stay[records.robot[record]])
+    records.leave[record] = NEVER if state.parks else int(records.enter[end - 1]) + stay
+    records.visits[record] += length
+    records.expansions[record] = UNKNOWN
+    close_record(state, record)

@@ -1,0 +1,101 @@
+"""Robots under way or parked get further stops: by the command, by the op, and from Python."""
+
+import json
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from tests.oracle.running import Run, asked, save, solution, town
+
+import carproof
+from carp_spec import Refusal, Stop, check_update, judge
+from carp_spec.documents.instances import read_instance
+from carp_spec.documents.solutions import read_solution
+from carp_spec.plan_rules import has_ended
+from carproof.testing.strategies import FleetUnderWay, Sizes, fleets_under_way
+
+PICK = {"id": "r1", "start": "a", "stops": [{"resource": "c", "service": 3}, {"resource": "a"}]}
+SIDE = {"id": "r2", "start": "d", "goal": "p"}
+HALL = town("ab bc cd bp", [PICK, SIDE], "park")
+PLANS = solution(
+    {
+        "r2": [["d", 0, 1], ["c", 1, 2], ["b", 2, 3], ["p", 3, None]],
+        "r1": [["a", 0, 3], ["b", 3, 4], ["c", 4, 7], ["b", 7, 8], ["a", 8, None]],
+    }
+)
+
+
+@given(fleets_under_way(Sizes(stops=2, service=3)), st.data())
+def test_a_robot_serves_further_stops_and_all_keep_their_histories(fleet: FleetUnderWay, data: st.DataObject) -> None:
+    instance, before, now = fleet.instance, fleet.solution, fleet.now
+    going = [plan.robot for plan in before.plans if not has_ended(plan, now)]
+    if not going:
+        return
+    robot = data.draw(st.sampled_from(going))
+    last = instance.robot[robot].goal
+    places = [place for place in instance.graph.index if place != last]
+    if not places:
+        return
+    stop = Stop(data.draw(st.sampled_from(places)), data.draw(st.integers(0, 3)))
+    further, after = carproof.assign(instance, before, robot, [stop], now, carproof.Neighbourhood(m=2))
+    if further is instance:
+        assert after is before
+    else:
+        assert further.robot[robot].stops == (*instance.robot[robot].stops, stop)
+        assert judge(further, after).violations == ()
+        assert {plan.robot for plan in after.plans} == {plan.robot for plan in before.plans}
+        assert check_update(before.plans, after.plans, now) == ()
+
+
+def test_a_parked_robot_moves_again(carproof: Run, elsewhere: Path) -> None:
+    del elsewhere
+    save(hall=HALL, plans=PLANS)
+    outcome = carproof("assign hall.json plans.json r2 d:2 p --now 4 -o next.json --instance after.json")
+    assert (outcome.code, outcome.stdout.splitlines()[0]) == (0, "robot r2 arrives at tick 14")
+    assert carproof("check after.json next.json").code == 0
+    plan = read_solution(Path("next.json").read_bytes()).plan_of("r2")
+    assert plan is not None
+    assert [visit.resource for visit in plan.visits] == ["d", "c", "b", "p", "b", "c", "d", "c", "b", "p"]
+
+
+def test_the_op_answers_with_the_instance_and_the_plans() -> None:
+    fields = {"instance": HALL, "solution": PLANS, "robot": "r2", "now": 4}
+    result = asked("assign", **fields, stops=[{"resource": "d", "service": 2}, {"resource": "p"}])["result"]
+    instance, plans = (json.dumps(result[name]).encode() for name in ("instance", "solution"))
+    assert judge(read_instance(instance), read_solution(plans)).valid
+
+
+def test_a_stop_to_which_no_way_leads_changes_nothing() -> None:
+    blocked = {**HALL, "graph": {**HALL["graph"], "nodes": [*HALL["graph"]["nodes"], {"id": "far"}]}}
+    result = asked("assign", instance=blocked, solution=PLANS, robot="r2", now=4, stops=[{"resource": "far"}])["result"]
+    assert (result["instance"], result["solution"]) == (None, PLANS)
+
+
+@pytest.mark.parametrize(
+    ("robot", "stops", "now", "rule"),
+    [
+        ("r2", [Stop("p")], 4, "instance/stops"),
+        ("r2", [Stop("d"), Stop("d")], 4, "instance/stops"),
+        ("r2", [Stop("nowhere")], 4, "instance/stops"),
+        ("r2", [Stop("d", -1)], 4, "instance/stops"),
+        ("r2", [], 4, "instance/stops"),
+        ("r2", [Stop("d")], -1, "request/now"),
+        ("r9", [Stop("d")], 4, "request/robot"),
+    ],
+)
+def test_wrong_stops_and_ticks_are_refused(robot: str, stops: list[Stop], now: int, rule: str) -> None:
+    instance, plans = read_instance(json.dumps(HALL).encode()), read_solution(json.dumps(PLANS).encode())
+    with pytest.raises(Refusal) as refused:
+        carproof.assign(instance, plans, robot, stops, now)
+    assert refused.value.rule == rule
+
+
+def test_a_robot_that_has_left_is_refused() -> None:
+    left = solution({"r2": [["d", 0, 1], ["c", 1, 2], ["b", 2, 3], ["p", 3, 4]]}, ["r1"])
+    hall = {**HALL, "after_goal": "vanish"}
+    error = asked("assign", instance=hall, solution=left, robot="r2", now=4, stops=[{"resource": "d"}])["error"]
+    assert (error["rule"], error["message"]) == (
+        "request/robot",
+        "the robot must be under way or parked at 4, and 'r2' has left",
+    )
