@@ -134,15 +134,22 @@ def command_of(experiment: Experiment) -> click.Command:
 @click.option("--quick", is_flag=True, help=f"{QUICK_QUESTIONS} questions.")
 @click.option("--questions", type=click.IntRange(min=1), default=FULL_QUESTIONS, help="The number of random questions.")
 @click.option("--seed", type=click.IntRange(0, 2**64 - 1), default=0, help="The seed of the questions.")
+@click.option("--stops", is_flag=True, help="Robots have stops, and a search tick by tick is asked too.")
 @campaign_options
-def crosscheck(quick: bool, questions: int, seed: int, **campaign: Any) -> Answer:  # noqa: ANN401 - click's
+def crosscheck(
+    quick: bool,
+    questions: int,
+    seed: int,
+    stops: bool,
+    **campaign: Any,  # noqa: ANN401 - click's
+) -> Answer:
     """Ask both engines the same random questions on small instances.
 
     Exit codes: 0 no difference, 1 a difference, 2 bad usage.
     """
     size = QUICK_QUESTIONS if quick else questions
-    cases = crosscheck_cases(size, seed)
-    command = f"carproof experiment crosscheck --questions {size} --seed {seed}"
+    cases = crosscheck_cases(size, seed, stops=stops)
+    command = f"carproof experiment crosscheck --questions {size} --seed {seed}{' --stops' * stops}"
     return go("crosscheck", "crosscheck", command, f"{size} questions", cases, crosscheck_report, **campaign)
 
 

@@ -31,8 +31,9 @@ def test_questions_mix_everything() -> None:
     assert len({subject.now for subject, _ in added}) > 5
 
 
-def test_the_engines_agree() -> None:
-    report = crosscheck_report(case.run() for case in crosscheck_cases(150, seed=3))
+@pytest.mark.parametrize("stops", [False, True])
+def test_the_engines_agree(stops: bool) -> None:
+    report = crosscheck_report(case.run() for case in crosscheck_cases(150, seed=3, stops=stops))
     assert report.holds
     assert report.tables[0].rows[0][0] == "150"
 

@@ -13,11 +13,15 @@ from carp_spec import (
     LongestFirst,
     Neighbourhood,
     Planner,
+    Refusal,
     Shuffled,
+    Stop,
+    has_ended,
 )
 from carproof.testing.strategies import FleetUnderWay, Sizes, fleets_under_way, instances
 
 SIZES = Sizes(resources=6, robots=6)
+WITH_STOPS = Sizes(resources=5, robots=4, stops=3, service=4)
 SEEDS = st.integers(0, 2**64 - 1)
 
 
@@ -42,19 +46,33 @@ def kinds_of_reuse() -> st.SearchStrategy[Reuse]:
     return st.builds(Reuse, kept=on, unchanged=on, prefixes=on, shared=on, bounds=on)
 
 
-@given(fleets_under_way(SIZES), st.data())
+@given(fleets_under_way(SIZES) | fleets_under_way(WITH_STOPS), st.data())
 def test_a_query_finds_the_same_plan(fleet: FleetUnderWay, data: st.DataObject) -> None:
     robot = data.draw(st.sampled_from([fleet.robot, *fleet.solution.order]))
     question = (fleet.instance, fleet.solution.plans, robot, fleet.now)
     assert carp_optimized.query(*question) == carp_reference.query(*question)
 
 
-@given(instances(SIZES), planners(), kinds_of_reuse())
+@given(instances(SIZES) | instances(WITH_STOPS), planners(), kinds_of_reuse())
 def test_planning_all_robots_makes_the_same_solution(instance: Instance, planner: Planner, reuse: Reuse) -> None:
     assert carp_optimized.plan(instance, planner, reuse=reuse) == carp_reference.plan(instance, planner)
 
 
-@given(fleets_under_way(SIZES), neighbourhoods(), kinds_of_reuse())
+@given(fleets_under_way(SIZES) | fleets_under_way(WITH_STOPS), neighbourhoods(), kinds_of_reuse())
 def test_adding_a_robot_makes_the_same_solution(fleet: FleetUnderWay, options: Neighbourhood, reuse: Reuse) -> None:
     question = (fleet.instance, fleet.solution, fleet.robot, fleet.now, options)
     assert carp_optimized.add(*question, reuse) == carp_reference.add(*question)
+
+
+@given(fleets_under_way(WITH_STOPS), neighbourhoods(), st.data())
+def test_assigning_a_stop_makes_the_same_solution(
+    fleet: FleetUnderWay, options: Neighbourhood, data: st.DataObject
+) -> None:
+    going = [plan.robot for plan in fleet.solution.plans if not has_ended(plan, fleet.now)]
+    robot = data.draw(st.sampled_from(going or [fleet.robot]))
+    stop = Stop(data.draw(st.sampled_from([*fleet.instance.graph.index])), data.draw(st.integers(0, 4)))
+    question = (fleet.instance, fleet.solution, robot, [stop], fleet.now, options)
+    try:
+        assert carp_optimized.assign(*question) == carp_reference.assign(*question)
+    except Refusal:
+        assert not going or fleet.instance.robot[robot].goal == stop.resource

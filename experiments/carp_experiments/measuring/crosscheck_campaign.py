@@ -2,19 +2,24 @@
 
 A case is a block of questions, so that a row stands for a second of work. `carproof dev crosscheck` asks the same kind
 of questions up to the first difference, which it shrinks. This campaign can be stopped and continued, and runs on many
-machines.
+machines. Where robots have stops, a search tick by tick must find the same arrival too.
 """
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 
+import carp_optimized
 from carp_experiments.report import ExperimentReport, Table
 from carp_experiments.store import Row
-from carp_spec import total_cost
-from carproof.testing.random_instances import question
+from carp_reference.time_expanded import find_plan_by_ticks
+from carp_spec import plan_cost, total_cost
+from carproof.testing.random_instances import SMALL, WITH_STOPS, question
+
+if TYPE_CHECKING:
+    from carp_experiments.measuring.crosscheck import Difference
 
 BLOCK = 1000
 FULL_QUESTIONS = 1_000_000
@@ -29,17 +34,19 @@ class CrosscheckCase:
     first: int
     questions: int = BLOCK
     seed: int = 0
+    stops: bool = False
 
     @property
     def key(self) -> str:
         """Blocks in their order."""
-        return f"seed {self.seed} questions {self.first:09} to {self.first + self.questions - 1:09}"
+        numbers = f"{self.first:09} to {self.first + self.questions - 1:09}"
+        return f"seed {self.seed}{' stops' * self.stops} questions {numbers}"
 
     def run(self) -> Row:
         """The cost of all answers, the number of unplanned robots, and the questions on which the engines differ."""
         block = Block(self.questions)
         for number in range(self.first, self.first + self.questions):
-            ask_both(block, self.seed, number)
+            ask_both(block, self.seed, number, stops=self.stops)
         return msgspec.to_builtins(block)  # type: ignore[no-any-return] # a struct becomes a dict
 
 
@@ -53,12 +60,12 @@ class Block(msgspec.Struct):
     differences: list[dict[str, Any]] = msgspec.field(default_factory=list)
 
 
-def ask_both(block: Block, seed: int, number: int) -> None:
+def ask_both(block: Block, seed: int, number: int, *, stops: bool = False) -> None:
     """Ask both engines one question; an engine that fails by an exception differs too."""
     from carp_experiments.measuring.crosscheck import ask  # noqa: PLC0415
     from carp_experiments.measuring.crosscheck_command import document  # noqa: PLC0415 - each worker loads it
 
-    asked = question(seed, number)
+    asked = question(seed, number, WITH_STOPS if stops else SMALL)
     try:
         answers = ask(asked)
     except Exception as error:  # noqa: BLE001 - whatever it is, it is no answer
@@ -69,11 +76,26 @@ def ask_both(block: Block, seed: int, number: int) -> None:
     block.unplanned += len(answers.reference.unplanned)
     if answers.reference != answers.optimized:
         block.differences.append({"number": number, **document(answers)})
+    elif stops:
+        by_windows, by_ticks = arrivals(answers)
+        if by_windows != by_ticks:
+            block.differences.append({"number": number, "windows": by_windows, "ticks": by_ticks, **document(answers)})
 
 
-def crosscheck_cases(questions: int, seed: int) -> tuple[CrosscheckCase, ...]:
+def arrivals(answers: "Difference") -> tuple[int | None, int | None]:
+    """When a robot arrives beside the others of the answer, as the query and a search tick by tick find it."""
+    instance, solution = answers.instance, answers.reference
+    robot = next(iter((*solution.unplanned, *solution.order)))
+    others = [plan for plan in solution.plans if plan.robot != robot]
+    found = carp_optimized.query(instance, others, robot), find_plan_by_ticks(instance, others, robot)
+    by_windows, by_ticks = (None if plan is None else plan_cost(instance, plan) for plan in found)
+    return by_windows, by_ticks
+
+
+def crosscheck_cases(questions: int, seed: int, *, stops: bool = False) -> tuple[CrosscheckCase, ...]:
     """The questions, in blocks."""
-    return tuple(CrosscheckCase(first, min(BLOCK, questions - first), seed) for first in range(0, questions, BLOCK))
+    firsts = range(0, questions, BLOCK)
+    return tuple(CrosscheckCase(first, min(BLOCK, questions - first), seed, stops) for first in firsts)
 
 
 def crosscheck_report(rows: Iterable[Row]) -> ExperimentReport:

@@ -14,6 +14,7 @@ MOST_ROBOTS = 100_000
 
 Distinct: TypeAlias = Literal["both", "starts", "goals", "none"]
 Side: TypeAlias = Literal["racks", "stations"]
+Orders: TypeAlias = Literal["goals", "pick-and-drop"]
 
 BOUNDS: Mapping[str, tuple[int, int]] = {
     "map": (0, 20),
@@ -21,9 +22,11 @@ BOUNDS: Mapping[str, tuple[int, int]] = {
     "seed": (0, LARGEST_SEED),
     "robots": (0, MOST_ROBOTS),
     "release": (0, LARGEST),
+    "service": (0, LARGEST),
 }
 CHOICES: Mapping[str, tuple[str, ...]] = {
     "distinct": get_args(Distinct),
+    "orders": get_args(Orders),
     "start_at": get_args(Side),
     "after_goal": ("vanish", "park"),
 }
@@ -61,9 +64,9 @@ class Traits:
 
 @fault_rule(
     "generate/options",
-    f"A seed is between 0 and 2^64 - 1, a map between 0 and 20, robots between 0 and {MOST_ROBOTS}, a release between "
-    "0 and 2^30, any other number between 1 and 2^30; a range does not fall; a word is one of those that the option "
-    "names.",
+    f"A seed is between 0 and 2^64 - 1, a map between 0 and 20, robots between 0 and {MOST_ROBOTS}, a release or a "
+    "service between 0 and 2^30, any other number between 1 and 2^30; a range does not fall; a word is one of those "
+    "that the option names.",
     DESIGN,
 )
 def options_are_right(options: Any) -> Iterator[tuple[str, str]]:  # noqa: ANN401 - any of the dataclasses of options

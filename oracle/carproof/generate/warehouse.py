@@ -15,7 +15,8 @@ class Warehouse:
 
     `columns` times `rows` racks, each `rack_length` cells wide and `rack_depth` deep, stand with aisles `aisle` cells
     wide between and around them. The stations, spread evenly, are bays in front of the left aisle. Robots start at
-    cells beside the racks and end at stations, or the other way round, by `start_at`.
+    cells beside the racks and end at stations, or the other way round, by `start_at`. What they pick up is at cells
+    beside the racks, and they drop it at stations.
     """
 
     columns: int = 4
@@ -58,7 +59,8 @@ def warehouse_instance(warehouse: Warehouse, fleet: Fleet = NO_FLEET, traits: Tr
     stations = [cell_id(*bay) for bay in bays]
     shelves = [cell_id(x, y) for x, y in aisles if _is_beside_rack(warehouse, x, y)]
     starts, goals = (shelves, stations) if warehouse.start_at == "racks" else (stations, shelves)
-    return Instance(graph, random_robots(fleet, starts, goals), fleet.after_goal)
+    goals = stations if fleet.orders == "pick-and-drop" else goals
+    return Instance(graph, random_robots(fleet, starts, goals, shelves), fleet.after_goal)
 
 
 def _station_bays(warehouse: Warehouse) -> list[tuple[int, int]]:

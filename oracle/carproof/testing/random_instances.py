@@ -69,6 +69,7 @@ class Mix:
 
 
 SMALL = Mix()
+WITH_STOPS = Mix(robots=(1, 2, 3, 4), stops=4, services=(0, 0, 1, 2, 3, 5, 8))
 
 
 Question: TypeAlias = tuple[Instance, Planner] | tuple[FleetUnderWay, Neighbourhood]
@@ -93,18 +94,18 @@ class Draw:
         return next(self.stream) % one_in == 0
 
 
-def question(seed: int, number: int) -> Question:
+def question(seed: int, number: int, mix: Mix = SMALL) -> Question:
     """The question of that number."""
-    return draw_question(Draw(splitmix64(next(splitmix64(seed)) + number)))
+    return draw_question(Draw(splitmix64(next(splitmix64(seed)) + number)), mix)
 
 
-def draw_question(draw: Draw) -> Question:
+def draw_question(draw: Draw, mix: Mix = SMALL) -> Question:
     """An instance and a planner, or a fleet under way and a robot to add.
 
     Durations, capacities, releases, paces, both kinds of ids and graphs, both policies and all options are mixed.
     Starts and goals may be shared, the same, or out of reach of each other.
     """
-    instance = draw_instance(draw)
+    instance = draw_instance(draw, mix)
     if draw.happens(4):
         return draw_fleet(draw, instance), draw_neighbourhood(draw)
     return instance, draw_planner(draw)

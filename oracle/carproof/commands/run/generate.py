@@ -12,7 +12,7 @@ from carproof.command_line.answer import Answer
 from carproof.command_line.options import RangeType, examples, json_option, output_option
 from carproof.command_line.output import show_instance
 from carproof.generate import Fleet, Grid, Traits, Warehouse, grid_instance, warehouse_instance
-from carproof.generate.options import JUST_ONE, Distinct, Side
+from carproof.generate.options import JUST_ONE, Distinct, Orders, Side
 
 T = TypeVar("T", Fleet, Grid, Traits, Warehouse)
 F = TypeVar("F", bound=Callable[..., Any])
@@ -37,6 +37,13 @@ def fleet_options(default: Fleet) -> Callable[[F], F]:
             help="Which ends of the robots are distinct.",
         ),
         click.option("--release", type=RangeType(), default=default.release, help="Release ticks, like 0..50."),
+        click.option(
+            "--orders",
+            type=click.Choice(get_args(Orders)),
+            default=default.orders,
+            help="Robots go to their goals, or pick something up before.",
+        ),
+        click.option("--service", type=RangeType(), default=default.service, help="Ticks to pick it up, like 2..5."),
         click.option("--pace", type=RangeType(), default=default.pace, help="Paces, like 1..2."),
         click.option("--capacity", type=RangeType(), default=JUST_ONE, help="Capacities of resources, like 1..2."),
         click.option("--duration", type=RangeType(), default=JUST_ONE, help="Durations of resources, like 1..3."),
@@ -88,6 +95,7 @@ def grid(output: Path | None, as_json: bool, **options: Any) -> Answer:  # noqa:
         "carproof generate warehouse -o hall.json",
         "carproof generate warehouse --columns 8 --rows 10 --robots 60 --stations 12",
         "carproof generate warehouse --start-at stations --distinct goals --release 0..99",
+        "carproof generate warehouse --orders pick-and-drop --service 2..5 --after-goal park",
     )
 )
 @click.option("--columns", type=int, default=4, help="Racks from left to right.")
