@@ -27,7 +27,10 @@ from carproof.requests import robot_called
 
 @click.command(
     short_help="Give a robot further stops.",
-    epilog=examples("carproof assign hall.json plans.json r1 7,3:10 0,2 --now 12 -o next.json --instance after.json"),
+    epilog=examples(
+        "carproof assign hall.json plans.json r1 7,3:10 0,2 --now 12 -o next.json",
+        "carproof assign hall.json plans.json r1 7,3 --now 12 --instance after.json",
+    ),
 )
 @asks_for_a_robot
 @click.argument("stops", nargs=-1, required=True, metavar="STOP...")
