@@ -43,7 +43,7 @@ from tests.oracle.test_conform_one_answer import (
 from tests.oracle.test_kernel_option import stand_in
 from tests.verify.kernel_program import program
 
-from carp_spec import Carp, judge
+from carp_spec import Carp, Stop, judge
 from carp_spec.documents.instances import read_instance
 from carp_spec.documents.query_certificates import read_query_certificate
 from carp_spec.documents.solutions import read_solution
@@ -250,6 +250,7 @@ def test_a_kernel_is_asked_about_plans_alone_and_where_it_knows_the_law(monkeypa
     requests = let_kernel_decide(monkeypatch)
     require_agreement(OPTIMUM, BEST, Level.SOUND, LAWLESS)
     require_agreement(case("bound", ALONE), BOUND, Level.SOUND, LAWLESS)
-    forbidding = replace(QUERY, instance=replace(ALONE, following="forbidden"))
-    require_agreement(forbidding, right(forbidding), Level.SOUND, LAWLESS)
+    [robot] = ALONE.robots
+    serving = replace(QUERY, instance=replace(ALONE, robots=(replace(robot, stops=(Stop(robot.goal, 1),)),)))
+    require_agreement(serving, right(serving), Level.SOUND, LAWLESS)
     assert requests == []

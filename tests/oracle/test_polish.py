@@ -7,7 +7,7 @@ import msgspec
 import pytest
 from tests.oracle.running import HEAD_ON, TWO, TWO_PLANNED, Run, corridor, save, solution
 
-from carp_spec import Instance, Solution
+from carp_spec import total_cost
 from carp_spec.documents.instances import read_instance
 from carp_spec.documents.solutions import read_solution
 from carproof import polish
@@ -16,6 +16,7 @@ from carproof.protocol.ops.op import Session
 from carproof.protocol.server import respond
 
 LATE = solution({"r1": [["a", 0, 2], ["b", 2, 4], ["c", 4, 5]], "r2": TWO_PLANNED["plans"][1]["visits"]})
+BEST = 5
 INSTANCE, GIVEN = read_instance(msgspec.json.encode(TWO)), read_solution(msgspec.json.encode(LATE))
 
 
@@ -61,20 +62,17 @@ def test_the_gap_is_that_of_a_certificate_which_is_verified(carproof: Run) -> No
     assert "$.bound" in refused.stderr
 
 
-def test_for_a_time_the_command_python_and_the_op_anneal(carproof: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    times: list[float] = []
-
-    def anneal(_: Instance, solution: Solution, seconds: float, **__: object) -> Solution:
-        times.append(seconds)
-        return solution
-
-    monkeypatch.setattr("carp_optimized.improve.annealing.anneal", anneal)
-    assert carproof("polish town.json late.json --seconds 0.1").code == 0
-    assert polish(INSTANCE, GIVEN, seconds=0.2) == GIVEN
+def test_for_a_time_the_command_python_and_the_op_improve_plans(carproof: Run) -> None:
+    assert carproof("polish town.json late.json --seconds 0.1").stdout.splitlines()[-1].split()[:3] == [
+        "polished",
+        "0",
+        "5",
+    ]
+    assert total_cost(INSTANCE, polish(INSTANCE, GIVEN, seconds=0.2).plans) == BEST
     op = {"id": 1, "op": "polish", "instance": TWO, "solution": LATE, "seconds": 0.3}
     response, _ = respond(msgspec.json.encode(op), Session(engine_named(None)))
-    assert json.loads(msgspec.json.encode(response))["result"] == LATE
-    assert times == [0.1, 0.2, 0.3]
+    found = read_solution(json.dumps(json.loads(msgspec.json.encode(response))["result"]).encode())
+    assert total_cost(INSTANCE, found.plans) == BEST
 
 
 @pytest.mark.parametrize("option", ["--engine optimized", "--starts 2"])

@@ -115,7 +115,7 @@ def test_the_verifier_shares_nothing_with_the_finder_and_loads_nothing_compiled(
         "carp_spec",
         "carp_spec.documents.bounds",
         "carp_spec.documents.instances",
-        "carp_verify.limits",
+        "carp_spec.limits",
         "carp_spec.inputs.values",
         "carp_spec.rule",
         "carp_verify.bound.rules",
