@@ -111,7 +111,7 @@ def exchanges_are_avoided(instance: Instance, plans: Sequence[Plan]) -> Iterator
     def place(move: TimedMove) -> tuple[int, int, int]:
         return move[0], index[move[1][0]], index[move[1][1]]
 
-    opposite = _opposite(graph, movers)
+    opposite = opposite_moves(graph, movers)
     for one in sorted(filter(opposite, movers), key=place):
         for other in sorted((each for each in opposite(one) if place(one) <= place(each)), key=place):
             robots = tuple(dict.fromkeys(movers[one] + movers[other]))
@@ -121,7 +121,7 @@ def exchanges_are_avoided(instance: Instance, plans: Sequence[Plan]) -> Iterator
                 yield robots, source, tick, tick + 1, f"they exchange {to} at tick {tick}"
 
 
-def _opposite(graph: ResourceGraph, moves: Collection[TimedMove]) -> Callable[[TimedMove], Collection[TimedMove]]:
+def opposite_moves(graph: ResourceGraph, moves: Collection[TimedMove]) -> Callable[[TimedMove], Collection[TimedMove]]:
     """The moves at the same tick that lead from the areas that a move leads to into those that it leads from."""
     if not graph.groups:
         return lambda move: [back] if (back := (move[0], move[1][::-1])) in moves else []

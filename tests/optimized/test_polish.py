@@ -14,7 +14,7 @@ from carp_spec import Carp, Instance, Refusal, Solution, judge, total_cost
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances
 
-SIZES = Sizes(resources=8, robots=12)
+SIZES = Sizes(resources=8, robots=12, groups=2)
 SEEDS = st.integers(0, 2**64 - 1)
 
 

@@ -25,7 +25,7 @@ from carproof.testing.strategies import FleetUnderWay, Sizes, fleets_under_way
 
 pytestmark = pytest.mark.skipif(os.environ.get("NUMBA_DISABLE_JIT") != "1", reason="it runs uncompiled")
 
-SIZES = Sizes(resources=6, robots=5)
+SIZES = Sizes(resources=6, robots=5, groups=2)
 Hulls = dict[ResourceId, tuple[int, int]]
 
 

@@ -20,8 +20,8 @@ from carp_spec import (
 )
 from carproof.testing.strategies import FleetUnderWay, Sizes, fleets_under_way, instances
 
-SIZES = Sizes(resources=6, robots=6)
-WITH_STOPS = Sizes(resources=5, robots=4, stops=3, service=4)
+SIZES = Sizes(resources=6, robots=6, groups=2)
+WITH_STOPS = Sizes(resources=5, robots=4, stops=3, service=4, groups=2)
 SEEDS = st.integers(0, 2**64 - 1)
 
 

@@ -12,10 +12,10 @@ from carp_optimized import passes
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.state.arrays import NEVER, Rows
 from carp_spec import Instance, Plan
-from carp_spec.windows import Occupation, Window, free_windows
+from carp_spec.windows import Window, constraints_on, free_windows
 from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances
 
-SIZES = Sizes(resources=5, robots=6)
+SIZES = Sizes(resources=5, robots=6, groups=2)
 
 
 def rows(table: Rows, resource: int) -> list[tuple[int, int, int, int]]:
@@ -28,19 +28,11 @@ def rows(table: Rows, resource: int) -> list[tuple[int, int, int, int]]:
 def held(fleet: PlannedFleet) -> list[object]:
     """All that is reserved; stays that begin, or end, at a tick are in no order."""
     windows, stays = fleet._state.windows, fleet._state.stays
-    reported: list[object] = []
-    for resource, each in enumerate(fleet.instance.graph.resources):
-        reported.append(rows(windows, resource))
-        if each.capacity > 1:
-            entries = rows(stays, resource)
-            reported.append(
-                (sorted((start, source) for start, _, source, _ in entries), [end for _, end, *_ in entries])
-            )
+    reported: list[object] = [rows(windows, resource) for resource in range(windows.size.size)]
+    for constraint in np.flatnonzero(stays.room).tolist():
+        entries = rows(stays, constraint)
+        reported.append((sorted((start, source) for start, _, source, _ in entries), [end for _, end, *_ in entries]))
     return reported
-
-
-def occupations(plans: Sequence[Plan], resource: object) -> list[Occupation]:
-    return [(visit.enter, visit.leave) for plan in plans for visit in plan.visits if visit.resource == resource]
 
 
 def assert_windows_are(fleet: PlannedFleet, instance: Instance, plans: Sequence[Plan]) -> None:
@@ -50,7 +42,7 @@ def assert_windows_are(fleet: PlannedFleet, instance: Instance, plans: Sequence[
             for start, end, *_ in rows(fleet._state.windows, position)
             if start < end  # between two stays without a tick between, too, there is a window, of no length
         )
-        assert windows == free_windows([(occupations(plans, resource.id), resource.capacity)])
+        assert windows == free_windows(constraints_on(instance.graph, plans, resource.id))
 
 
 @settings(max_examples=draws(300))

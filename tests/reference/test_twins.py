@@ -13,7 +13,8 @@ from carproof.testing.strategies import FleetUnderWay, Sizes, fleets_under_way
 
 SMALL_CASES_OF_A_PATTERN = 52_198
 RICHEST = 3
-WITH_STOPS = Sizes(stops=3, service=5)
+SIZES = Sizes(groups=2)
+WITH_STOPS = Sizes(stops=3, service=5, groups=2)
 
 
 def arrivals_of_both(
@@ -34,14 +35,14 @@ def arrivals_of_both(
     )
 
 
-@given(fleets_under_way() | fleets_under_way(WITH_STOPS))
+@given(fleets_under_way(SIZES) | fleets_under_way(WITH_STOPS))
 def test_a_new_robot_arrives_as_early_by_windows_as_by_ticks(fleet: FleetUnderWay) -> None:
     for now in (0, fleet.now):
         by_windows, by_ticks = arrivals_of_both(fleet.instance, fleet.solution.plans, fleet.robot, now)
         assert by_windows == by_ticks
 
 
-@given(fleets_under_way() | fleets_under_way(WITH_STOPS), st.data())
+@given(fleets_under_way(SIZES) | fleets_under_way(WITH_STOPS), st.data())
 def test_a_robot_under_way_arrives_as_early_by_windows_as_by_ticks(fleet: FleetUnderWay, data: st.DataObject) -> None:
     if fleet.solution.order:
         robot = data.draw(st.sampled_from(fleet.solution.order))
@@ -50,7 +51,7 @@ def test_a_robot_under_way_arrives_as_early_by_windows_as_by_ticks(fleet: FleetU
         assert by_windows is not None, "the plan that it follows is one"
 
 
-@given(fleets_under_way() | fleets_under_way(WITH_STOPS), st.data())
+@given(fleets_under_way(SIZES) | fleets_under_way(WITH_STOPS), st.data())
 def test_a_robot_replanned_against_other_plans_arrives_as_early_by_windows_as_by_ticks(
     fleet: FleetUnderWay, data: st.DataObject
 ) -> None:

@@ -6,7 +6,7 @@ from tests.verify.tiny import TINY
 
 from carp_optimum.sat.solver import Deadline, Solver
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, ResourceId, Robot, total_cost, violations_of
-from carp_verify.optimum.encoding import Conflict, Encoding, violated
+from carp_verify.optimum.encoding import Encoding, Exchange, violated
 from carp_verify.optimum.joint_search import least_total_cost
 from carproof.testing.strategies import PlannedInstance, instances, planned_instances
 
@@ -128,7 +128,7 @@ def test_a_conflict_is_named_by_its_tick_and_its_resources() -> None:
     assert solver.satisfiable([])
     plans = [plan for plan in encoding.plans(solver.model()) if plan is not None]
     solver.close()
-    assert violated(head_on, plans) == [Conflict(1, 0, 1)]
+    assert violated(head_on, plans) == [Exchange(1, (0, 1), (1, 0))]
 
 
 def test_a_long_stay_needs_no_more_variables_than_a_short_one() -> None:

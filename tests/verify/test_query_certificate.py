@@ -73,7 +73,7 @@ def test_the_examples_are_of_every_kind() -> None:
     }
 
 
-@given(fleets_under_way(Sizes(resources=5, robots=4, release=3)))
+@given(fleets_under_way(Sizes(resources=5, robots=4, release=3, groups=2)))
 def test_certificates_of_both_planners_are_accepted_with_the_arrival_of_the_plan(fleet: FleetUnderWay) -> None:
     for question in fleets(Question(fleet.instance, fleet.solution, fleet.robot, fleet.now)):
         certifier = carp_optimized.certifying.Certifier(question.instance)
@@ -87,7 +87,7 @@ def test_certificates_of_both_planners_are_accepted_with_the_arrival_of_the_plan
             assert verify_query(question.instance, question.solution, certificate) == arrival(best)
 
 
-@given(fleets_under_way(), st.data())
+@given(fleets_under_way(Sizes(groups=2)), st.data())
 def test_whatever_is_accepted_is_true(fleet: FleetUnderWay, data: st.DataObject) -> None:
     """The certificate of another question, with labels lost or moved, another bound, and a changed potential."""
     question = Question(fleet.instance, fleet.solution, fleet.robot, fleet.now)

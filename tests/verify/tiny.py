@@ -1,5 +1,7 @@
 """Tiny instances, one for each number: for searches and encoders, beside the joint search that tries everything."""
 
+from dataclasses import replace
+
 from carp_spec import Instance
 from carp_spec.permutations import splitmix64
 from carp_verify.optimum.joint_search import joint_states
@@ -16,14 +18,15 @@ MIX = Mix(
     both_ways=True,
     goals_apart=True,
 )
+GROUPED = replace(MIX, groups=(1, 2, 2))
 TINY = Sizes(resources=4, robots=3, capacity=2, duration=2, release=2, pace=2)
 """The values that hypothesis draws where a test needs it to shrink."""
 
 
-def case(number: int) -> tuple[Instance, Draw]:
+def case(number: int, mix: Mix = MIX) -> tuple[Instance, Draw]:
     """The first instance of a number's stream with few enough joint states, and further numbers of the stream."""
     draw = Draw(splitmix64(number))
-    instance = draw_instance(draw, MIX)
+    instance = draw_instance(draw, mix)
     while joint_states(instance) > MOST_STATES:
-        instance = draw_instance(draw, MIX)
+        instance = draw_instance(draw, mix)
     return instance, draw

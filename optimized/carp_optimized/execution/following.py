@@ -20,7 +20,7 @@ from carp_optimized.state.encoding import refuse_tick, refuse_what_is_too_large
 from carp_spec import Instance, Plan, RobotId, Solution, Visit
 from carp_spec.execution.execution_rules import require_followed, require_lawful_ends
 from carp_spec.execution.traces import Trace
-from carp_spec.limits import goals_stand_alone
+from carp_spec.limits import goals_stand_alone, refuse
 from carp_spec.plan_rules import least_stays
 from carp_spec.requests import require_trace
 
@@ -158,6 +158,7 @@ def held_up(instance: Instance, solution: Solution, trace: Trace) -> Solution:
 def timetable(instance: Instance, solution: Solution) -> Timetable:
     """Make the dependency graph of a lawful solution; raises `Refusal` for numbers that are too large."""
     refuse_what_is_too_large(instance)
+    refuse(instance, "groups")
     refuse_tick("$.plans", max((plan.visits[-1].enter for plan in solution.plans), default=0))
     index = instance.graph.index
     visits = [visit for plan in solution.plans for visit in plan.visits]

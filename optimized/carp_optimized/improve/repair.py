@@ -38,9 +38,9 @@ Avoided: TypeAlias = tuple[RobotId, Plan]
 def repair(instance: Instance, solution: Solution) -> Solution:
     """Plan the robots of a solution that have a path but no plan, as far as possible; plans of others may change.
 
-    An attempt plays rounds of `polish/...`, and plans groups jointly if few robots are left out. If some still are, the
-    next attempt begins with plans in another order, and the last with plans made tick by tick. Raises `Refusal` for a
-    solution that breaks a rule, and for numbers that are too large.
+    An attempt plays rounds of `polish/...`, and plans robots jointly if few are left out and there are no groups of
+    resources. If some robots still are, the next attempt begins with plans in another order, and the last with plans
+    made tick by tick. Raises `Refusal` for a solution that breaks a rule, and for numbers that are too large.
     """
     fleet = PlannedFleet(instance)
     without_path = {robot for robot in solution.unplanned if fleet.find(fleet.index(robot), None, 0) is None}
@@ -50,7 +50,7 @@ def repair(instance: Instance, solution: Solution) -> Solution:
         if seed > 0:
             solution = plan_failed_first(instance, solution)
         solution = polish(instance, solution, iterations=ROUNDS, seed=seed)
-        if len(solution.unplanned) <= FEW + len(without_path):
+        if len(solution.unplanned) <= FEW + len(without_path) and not instance.graph.groups:
             solution = repair_jointly(instance, solution)
     if not without_path.issuperset(solution.unplanned):
         able = tuple(each for each in instance.robots if each.id not in without_path)

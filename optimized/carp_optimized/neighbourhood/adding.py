@@ -291,12 +291,12 @@ def settle(state: State, work: Work, robots: Ints, plans: Ints, count: int) -> N
             state.reserved[robot] = plans[k]
         else:
             work.held[robot] = held
-            head = alike_at_start(state.records, held, int(plans[k]))
-            withdraw_but(state, held, head, alike_at_end(state.records, held, int(plans[k])))
+            head = alike_at_start(state, held, int(plans[k]))
+            withdraw_but(state, held, head, alike_at_end(state, held, int(plans[k])))
     for k in range(count):
         robot = int(robots[k])
         plan = int(plans[k])
         if plan != NONE and state.reserved[robot] == NONE:
             held = int(work.held[robot])
-            head = alike_at_start(state.records, held, plan) if held != NONE else 0
-            reserve_but(state, plan, head, alike_at_end(state.records, held, plan) if held != NONE else 0)
+            head = alike_at_start(state, held, plan) if held != NONE else 0
+            reserve_but(state, plan, head, alike_at_end(state, held, plan) if held != NONE else 0)

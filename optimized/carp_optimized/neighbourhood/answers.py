@@ -55,9 +55,7 @@ def has_clash(state: State, answers: Answers, plan: int, given: int) -> bool:
     new = given & ~int(answers.compared[plan])
     other = 0
     while new >> other != 0:
-        if (new >> other) & 1 == 1 and clash(
-            state.records, int(answers.record[plan]), int(answers.record[other]), state.gap
-        ):
+        if (new >> other) & 1 == 1 and clash(state, int(answers.record[plan]), int(answers.record[other])):
             answers.clashes[plan] |= 1 << other
         other += 1
     answers.compared[plan] |= new

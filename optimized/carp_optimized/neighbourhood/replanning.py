@@ -34,6 +34,7 @@ from carp_optimized.queries.windows import (
 )
 from carp_optimized.state.arrays import (
     BLOCK,
+    GROUPED,
     KEPT,
     NEVER,
     NONE,
@@ -42,7 +43,6 @@ from carp_optimized.state.arrays import (
     UNKNOWN,
     Freed,
     Options,
-    Records,
     State,
     Work,
 )
@@ -61,37 +61,53 @@ def forget_freed(freed: Freed) -> None:
 
 @compiled
 def note_freed(state: State, record: int, head: int, tail: int) -> None:
-    """Note that the stays of a plan have been taken back, but for its first `head` and its last `tail`."""
-    freed = state.freed
+    """Note that the stays of a plan have been taken back, but for its first `head` and its last `tail`.
+
+    A stay in a resource of a group is one in each resource of the group.
+    """
     graph = state.graph
     records = state.records
-    mark = int(freed.now[0])
     first = int(records.visits_at[record])
     last = first + int(records.visits[record]) - 1
     source = int(records.resource[first + head - 1]) if head > 0 else NONE
-    regions = int(freed.regions[0])
+    regions = int(state.freed.regions[0])
     for k in range(first + head, last + 1 - tail):
         resource = int(records.resource[k])
         enter = int(records.enter[k]) - state.gap
         leave = int(records.enter[k + 1]) if k < last else int(records.leave[record])
         leave = min(leave + state.gap, NEVER)
-        if freed.mark[resource] == mark:
-            freed.earliest[resource] = min(int(freed.earliest[resource]), enter)
-            freed.latest[resource] = max(int(freed.latest[resource]), leave)
-            freed.source[resource] = SEVERAL
-        else:
-            freed.mark[resource] = mark
-            freed.earliest[resource] = enter
-            freed.latest[resource] = leave
-            freed.source[resource] = source
+        is_grouped = graph.group.size > 0 and (graph.capacity[resource] == GROUPED or graph.capacity[source] == GROUPED)
+        regions |= note_stay(state, resource, enter, leave, SEVERAL if is_grouped else source)
+        for j in range(int(graph.groups_first[resource]), int(graph.groups_first[resource + 1])):
+            group = int(graph.group[j])
+            for i in range(int(graph.members_first[group]), int(graph.members_first[group + 1])):
+                regions |= note_stay(state, int(graph.member[i]), enter, leave, SEVERAL)
         source = resource
-        note_near(freed, resource, enter, leave)
-        regions |= int(graph.region[resource])
-        for edge in range(int(graph.backward_first[resource]), int(graph.backward_first[resource + 1])):
-            near = int(graph.source[edge])
-            note_near(freed, near, enter, leave)
-            regions |= int(graph.region[near])
-    freed.regions[0] = regions
+    state.freed.regions[0] = regions
+
+
+@inlined
+def note_stay(state: State, resource: int, enter: int, leave: int, source: int) -> int:
+    """Note that a stay has been taken back of a robot that came from the source; the bits of the regions."""
+    freed = state.freed
+    graph = state.graph
+    mark = int(freed.now[0])
+    if freed.mark[resource] == mark:
+        freed.earliest[resource] = min(int(freed.earliest[resource]), enter)
+        freed.latest[resource] = max(int(freed.latest[resource]), leave)
+        freed.source[resource] = SEVERAL
+    else:
+        freed.mark[resource] = mark
+        freed.earliest[resource] = enter
+        freed.latest[resource] = leave
+        freed.source[resource] = source
+    note_near(freed, resource, enter, leave)
+    regions = int(graph.region[resource])
+    for edge in range(int(graph.backward_first[resource]), int(graph.backward_first[resource + 1])):
+        near = int(graph.source[edge])
+        note_near(freed, near, enter, leave)
+        regions |= int(graph.region[near])
+    return regions
 
 
 @compiled
@@ -186,7 +202,7 @@ def matters(state: State, record: int, k: int, target: int, entry: int, last_ent
     largest = int(state.records.largest[k])
     if toll < 0 or (entry << 32) + toll > largest:
         return False
-    if state.graph.capacity[target] > 1:
+    if state.graph.capacity[target] != 1:
         return True
     windows = state.windows
     need = int(state.robots.pace[robot]) * int(state.graph.duration[target])
@@ -266,8 +282,8 @@ def exchange_plan(state: State, robot: int, record: int, plan: int, lifted: bool
                 state.reserved[robot] = plan
                 return
         else:
-            head = alike_at_start(state.records, record, plan)
-            tail = alike_at_end(state.records, record, plan)
+            head = alike_at_start(state, record, plan)
+            tail = alike_at_end(state, record, plan)
             note_freed(state, record, head, tail)
     if is_reserved:
         withdraw_but(state, record, head, tail)
@@ -280,8 +296,14 @@ def exchange_plan(state: State, robot: int, record: int, plan: int, lifted: bool
 
 
 @compiled
-def alike_at_start(records: Records, one: int, other: int) -> int:
-    """How many first stays two plans that differ have in common, with the moves out of them."""
+def alike_at_start(state: State, one: int, other: int) -> int:
+    """How many first stays two plans that differ have in common, with the moves out of them; with groups, none.
+
+    A stay in a group may have begun with one of them and end later.
+    """
+    if state.graph.group.size > 0:
+        return 0
+    records = state.records
     here = int(records.visits_at[one])
     there = int(records.visits_at[other])
     size = min(int(records.visits[one]), int(records.visits[other]))
@@ -296,9 +318,10 @@ def alike_at_start(records: Records, one: int, other: int) -> int:
 
 
 @compiled
-def alike_at_end(records: Records, one: int, other: int) -> int:
-    """How many last stays two plans that differ have in common, with the moves into them."""
-    if records.leave[one] != records.leave[other]:
+def alike_at_end(state: State, one: int, other: int) -> int:
+    """How many last stays two plans that differ have in common, with the moves into them; with groups, none."""
+    records = state.records
+    if state.graph.group.size > 0 or records.leave[one] != records.leave[other]:
         return 0
     here = int(records.visits_at[one]) + int(records.visits[one]) - 1
     there = int(records.visits_at[other]) + int(records.visits[other]) - 1

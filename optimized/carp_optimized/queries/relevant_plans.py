@@ -73,23 +73,35 @@ def note(read: Longs, kind: int, query: int, ready: int, until: int, largest: in
 @compiled
 def could_be_used(state: State, answers: Answers, robot: int, plan: int) -> bool:
     """Whether the robot could have used what a plan keeps from it."""
+    graph = state.graph
     records = state.records
-    query = int(answers.used[2])
-    slot = int(state.guides.slot[state.robots.destination[robot]])
-    pace = int(state.robots.pace[robot])
     first = int(records.visits_at[plan])
     last = first + int(records.visits[plan]) - 1
     for k in range(first, last + 1):
         resource = int(records.resource[k])
-        read = answers.read[resource]
         enter = int(records.enter[k]) - state.gap
         leave = int(records.enter[k + 1] if k < last else records.leave[plan]) + state.gap
-        if read[LEFT + QUERY] == query and enter <= read[LEFT + UNTIL] and leave > read[LEFT + READY]:
+        if stay_could_be_used(state, answers, robot, resource, enter, leave):
             return True
-        if read[ENTERED + QUERY] == query:
-            entry = max(int(read[ENTERED + READY]), enter - pace * int(state.graph.duration[resource]) + 1)
-            if entry <= read[ENTERED + UNTIL] and entry < leave:
-                toll = toll_of(state, slot, resource)
-                if toll == FURTHER or (toll >= 0 and (entry << 32) + toll <= read[ENTERED + LARGEST_KEY]):
+        for j in range(int(graph.groups_first[resource]), int(graph.groups_first[resource + 1])):
+            group = int(graph.group[j])
+            for i in range(int(graph.members_first[group]), int(graph.members_first[group + 1])):
+                if stay_could_be_used(state, answers, robot, int(graph.member[i]), enter, leave):
                     return True
+    return False
+
+
+@inlined
+def stay_could_be_used(state: State, answers: Answers, robot: int, resource: int, enter: int, leave: int) -> bool:
+    """Whether the robot could have used the resource in the ticks of a stay."""
+    read = answers.read[resource]
+    query = int(answers.used[2])
+    if read[LEFT + QUERY] == query and enter <= read[LEFT + UNTIL] and leave > read[LEFT + READY]:
+        return True
+    if read[ENTERED + QUERY] == query:
+        pace = int(state.robots.pace[robot])
+        entry = max(int(read[ENTERED + READY]), enter - pace * int(state.graph.duration[resource]) + 1)
+        if entry <= read[ENTERED + UNTIL] and entry < leave:
+            toll = toll_of(state, int(state.guides.slot[state.robots.destination[robot]]), resource)
+            return toll == FURTHER or (toll >= 0 and (entry << 32) + toll <= int(read[ENTERED + LARGEST_KEY]))
     return False

@@ -11,6 +11,7 @@ from carp_optimized.state.arrays import (
     ASKED,
     BLOCK,
     FURTHER,
+    GROUPED,
     LARGEST,
     NEVER,
     NO_LIMIT,
@@ -312,8 +313,8 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
             state.search.goal[0] = node
             state.search.expansions[0] = expansions
             return expansions
-        exchanges = several and graph.capacity[resource] > 1
         source = int(windows.source[last])
+        exchanges = several and (graph.capacity[resource] != 1 or graph.capacity[source] == GROUPED)
         for edge in range(int(graph.first[resource]), int(graph.first[resource + 1])):
             target = int(graph.target[edge])
             toll = toll_of(state, slot, target)

@@ -2,13 +2,15 @@
 
 The windows of a resource of capacity 1 are the gaps between its stays, those of no length included, which are too
 short for any stay: a reservation splits the gap in which it falls, and its withdrawal joins the two. Where following is
-forbidden, a gap is a tick shorter at both ends. The windows of other resources are made again from their stays.
+forbidden, a gap is a tick shorter at both ends. The windows of other resources, and of those in groups, are made again
+from the stays of all constraints on them: a window is where each has room.
 """
 
 from carp_optimized.jit.compiling import RoomExhausted, compiled, inlined
 from carp_optimized.jit.kinds import Ints
 from carp_optimized.queries.blocks import below, width
-from carp_optimized.state.arrays import BLOCK, NEVER, NONE, Records, Rows, State
+from carp_optimized.state.arrays import BLOCK, GROUPED, NEVER, NONE, Graph, Records, Rows, State
+from carp_optimized.state.groups import are_close, is_within
 
 
 @compiled
@@ -166,6 +168,12 @@ def append_window(windows: Rows, resource: int, start: int, end: int) -> None:
         windows.size[resource] += 1
 
 
+@inlined
+def constraint_on(graph: Graph, resource: int, k: int) -> int:
+    """The constraint of that number on a resource: its own capacity is the first, then come its groups."""
+    return resource if k == 0 else graph.capacity.size + int(graph.group[int(graph.groups_first[resource]) + k - 1])
+
+
 @compiled
 def sweep_windows(windows: Rows, stays: Rows, resource: int, capacity: int, gap: int) -> None:
     """Make the windows of the resource again from its stays, which last `gap` ticks longer than the robots stay."""
@@ -200,6 +208,97 @@ def sweep_windows(windows: Rows, stays: Rows, resource: int, capacity: int, gap:
 
 
 @compiled
+def sweep_constraints(state: State, resource: int) -> None:  # noqa: C901 - one sweep over several rows at once
+    """The same for a resource of groups, from the stays in all its constraints.
+
+    Where some constraint has no room, there is no window.
+    """
+    graph = state.graph
+    stays = state.stays
+    into = state.sweep.into
+    out = state.sweep.out
+    clear_row(state.windows, resource)
+    count = 1 + int(graph.groups_first[resource + 1]) - int(graph.groups_first[resource])
+    for k in range(count):
+        into[k] = stays.offset[constraint_on(graph, resource, k)]
+        out[k] = into[k]
+    was_free = False
+    opened = 0
+    tick = 0
+    while True:
+        is_free = True
+        following = NEVER
+        for k in range(count):
+            constraint = constraint_on(graph, resource, k)
+            last = int(stays.offset[constraint]) + int(stays.size[constraint])
+            while into[k] < last and stays.start[into[k]] <= tick:
+                into[k] += 1
+            while out[k] < last and stays.end[out[k]] <= tick:
+                out[k] += 1
+            is_free &= into[k] - out[k] < graph.room[constraint]
+            if into[k] < last:
+                following = min(following, int(stays.start[into[k]]))
+            if out[k] < last:
+                following = min(following, int(stays.end[out[k]]))
+        if is_free and not was_free:
+            opened = tick
+        elif was_free and not is_free:
+            append_window(state.windows, resource, opened, tick - state.gap)
+        was_free = is_free
+        if following == NEVER:
+            break
+        tick = following
+    if was_free:
+        append_window(state.windows, resource, opened, NEVER)
+
+
+@compiled
+def sweep_group(state: State, group: int) -> None:
+    """Make the windows of the group's resources again, unless that has been done since `sweep.now` was counted up."""
+    sweep = state.sweep
+    for k in range(int(state.graph.members_first[group]), int(state.graph.members_first[group + 1])):
+        resource = int(state.graph.member[k])
+        if sweep.mark[resource] != sweep.now[0]:
+            sweep.mark[resource] = sweep.now[0]
+            sweep_constraints(state, resource)
+
+
+@compiled
+def book_groups(state: State, record: int, visit: int, source: int, is_added: bool) -> None:
+    """Add or drop the stays in the groups that the visit enters: each lasts until the plan leaves the group."""
+    graph = state.graph
+    records = state.records
+    last = int(records.visits_at[record]) + int(records.visits[record]) - 1
+    resource = int(records.resource[visit])
+    for k in range(int(graph.groups_first[resource]), int(graph.groups_first[resource + 1])):
+        group = int(graph.group[k])
+        if not is_within(graph, group, source):
+            end = visit
+            while end < last and is_within(graph, group, int(records.resource[end + 1])):
+                end += 1
+            leave = int(records.enter[end + 1]) if end < last else int(records.leave[record])
+            leave = min(leave + state.gap, NEVER)
+            constraint = graph.capacity.size + group
+            if is_added:
+                add_stay(state.stays, constraint, int(records.enter[visit]), leave, source)
+            else:
+                drop_stay(state.stays, constraint, int(records.enter[visit]), leave, source)
+
+
+@compiled
+def sweep_plan(state: State, record: int) -> None:
+    """Make the windows again of all resources in the groups of those that the plan visits."""
+    graph = state.graph
+    records = state.records
+    state.sweep.now[0] += 1
+    first = int(records.visits_at[record])
+    for visit in range(first, first + int(records.visits[record])):
+        resource = int(records.resource[visit])
+        for k in range(int(graph.groups_first[resource]), int(graph.groups_first[resource + 1])):
+            sweep_group(state, int(graph.group[k]))
+
+
+@compiled
 def reserve(state: State, record: int) -> None:
     """Take the stays of the plan out of the windows; the plan must fit."""
     reserve_but(state, record, 0, 0)
@@ -224,8 +323,13 @@ def reserve_but(state: State, record: int, head: int, tail: int) -> None:
             split_window(state.windows, resource, enter, leave, state.gap, met_from, robot, rank)
         else:
             add_stay(state.stays, resource, enter, min(leave + state.gap, NEVER), source)
-            sweep_windows(state.windows, state.stays, resource, int(state.graph.capacity[resource]), state.gap)
+            if state.graph.capacity[resource] == GROUPED:
+                book_groups(state, record, k, source, True)
+            else:
+                sweep_windows(state.windows, state.stays, resource, int(state.graph.capacity[resource]), state.gap)
         source = resource
+    if state.graph.group.size > 0:
+        sweep_plan(state, record)
 
 
 @compiled
@@ -250,25 +354,44 @@ def withdraw_but(state: State, record: int, head: int, tail: int) -> None:
         else:
             leave = int(records.enter[k + 1]) if k < last else int(records.leave[record])
             drop_stay(state.stays, resource, enter, min(leave + state.gap, NEVER), source)
-            sweep_windows(state.windows, state.stays, resource, int(state.graph.capacity[resource]), state.gap)
+            if state.graph.capacity[resource] == GROUPED:
+                book_groups(state, record, k, source, False)
+            else:
+                sweep_windows(state.windows, state.stays, resource, int(state.graph.capacity[resource]), state.gap)
         source = resource
+    if state.graph.group.size > 0:
+        sweep_plan(state, record)
 
 
 @compiled
 def is_exchange(state: State, slot: int, tick: int, target: int) -> bool:
-    """Whether leaving the window at the tick for `target` meets a committed robot that comes from there.
+    """Whether leaving the window at the tick for `target` meets a committed robot that comes from there, or close.
 
-    In a resource of capacity 1 that robot is the one that ends the window, so the tick is the window's end; where
-    following is forbidden, none exists.
+    In a resource of capacity 1 in no group that robot is the one that ends the window, so the tick is the window's end;
+    where following is forbidden, none exists. Into a group of capacity 1 that holds the resource of the window, no
+    robot moves from within, as it would be in the way.
     """
+    graph = state.graph
     resource = int(state.windows.resource[slot])
-    if state.graph.capacity[resource] == 1:
-        return bool(state.windows.end[slot] == tick and state.windows.source[slot] == target)
+    if graph.capacity[resource] == 1:
+        return bool(state.windows.end[slot] == tick and are_close(graph, int(state.windows.source[slot]), target))
+    if comes_from(state, resource, tick, target):
+        return True
+    for k in range(int(graph.groups_first[resource]), int(graph.groups_first[resource + 1])):
+        constraint = graph.capacity.size + int(graph.group[k])
+        if graph.room[constraint] == 1 and comes_from(state, constraint, tick, target):
+            return True
+    return False
+
+
+@compiled
+def comes_from(state: State, constraint: int, tick: int, target: int) -> bool:
+    """Whether a committed robot enters at the tick what the constraint is on, from the target or close to it."""
     stays = state.stays
-    first = int(stays.offset[resource])
-    stay = last_by(stays, resource, tick)
+    first = int(stays.offset[constraint])
+    stay = last_by(stays, constraint, tick)
     while stay >= first and stays.start[stay] == tick:
-        if stays.source[stay] == target:
+        if are_close(state.graph, int(stays.source[stay]), target):
             return True
         stay -= 1
     return False

@@ -11,6 +11,7 @@ from carp_optimized.jit.kinds import Ints, IntTable, Longs, LongTable, Numbers
 NEVER = 2**31 - 1  # the end of what lasts for ever
 LARGEST = 2**30 - 1  # of ticks and durations: the sum of two is still below NEVER
 NONE = -1  # no resource, no record, no slot
+GROUPED = 0  # the capacity of a resource of groups: those of its constraints are elsewhere
 UNKNOWN = -1  # the number of expansions of a plan that no query of the fleet has made
 
 SEVERAL = -2  # sources
@@ -39,6 +40,10 @@ class Graph(NamedTuple):
     """The resource graph: moves lead from r to `target[first[r]:first[r + 1]]`, and come to it from `source[...]`.
 
     `region[r]` is a number with one bit set, the same for resources that are near one another.
+
+    The resources of groups are `GROUPED` in `capacity`. Of these, r is in the groups `group[groups_first[r]:...]`, and
+    the resources of the group g are `member[members_first[g]:...]`. A constraint is the resource's own capacity, of
+    its number, or a group, of its number above all resources: `room` is how many robots it has room for.
     """
 
     first: Ints
@@ -50,6 +55,11 @@ class Graph(NamedTuple):
     x: Longs
     y: Longs
     region: Longs
+    groups_first: Ints
+    group: Ints
+    members_first: Ints
+    member: Ints
+    room: Ints
 
 
 class Rows(NamedTuple):
@@ -61,8 +71,8 @@ class Rows(NamedTuple):
 
     Of windows, where the capacity is 1, `robot` is the robot that ends the window, `rank` its rank, and `source` the
     resource from which it came (`NONE`: from none).
-    Of stays, which only resources of capacity above 1 have, `source` goes with `start`, and `end` is in order by
-    itself.
+    Of stays, `source` goes with `start`, and `end` is in order by itself. Those have rows by constraint, but for
+    resources of capacity 1 in no group. A robot that moves within a group stays in it.
     """
 
     offset: Ints
@@ -75,6 +85,18 @@ class Rows(NamedTuple):
     rank: Ints
     resource: Ints
     used: Longs
+
+
+class Sweep(NamedTuple):
+    """The scratch of making windows again: the places in the rows of each constraint, and which windows have been made.
+
+    Those of r have if `mark[r]` is `now[0]`.
+    """
+
+    into: Ints
+    out: Ints
+    mark: Longs
+    now: Longs
 
 
 class Robots(NamedTuple):
@@ -238,6 +260,7 @@ class State(NamedTuple):
     stops: Stops
     windows: Rows
     stays: Rows
+    sweep: Sweep
     guides: Guides
     search: Search
     records: Records

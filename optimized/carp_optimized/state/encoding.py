@@ -12,6 +12,7 @@ from carp_optimized.state.arrays import (
     ANSWERS,
     BLOCK,
     COUNTERS,
+    GROUPED,
     LARGEST,
     MOST_GATHERED,
     MOST_TURNS,
@@ -31,6 +32,7 @@ from carp_optimized.state.arrays import (
     Search,
     State,
     Stops,
+    Sweep,
     Work,
 )
 from carp_spec import Fault, Instance, Refusal, Robot, Stop
@@ -46,13 +48,12 @@ NO_LIMIT_THERE = "the reference engine has no such limit, but finds no bounds"
 
 def refuse_what_is_too_large(instance: Instance) -> None:
     """Raise `Refusal` where a number of the instance does not fit, and for what is not known here."""
-    refuse(instance, "groups")
     _refuse(_too_large(instance))
 
 
 def refuse_robots(instance: Instance, longest: int) -> None:
     """The same for the robots alone, which come to a fleet, where that is the longest duration."""
-    refuse(instance, "groups", "stops")
+    refuse(instance, "stops")
     _refuse(_large_robots(instance, longest))
 
 
@@ -118,14 +119,27 @@ def encode_graph(instance: Instance) -> Graph:
             backward[graph.index[target]].append(source)
     x = np.array([each.x or 0 for each in graph.resources], np.int64)
     y = np.array([each.y or 0 for each in graph.resources], np.int64)
+    groups_first, group = np.zeros(len(graph.resources) + 1, np.int32), np.zeros(0, np.int32)
+    if graph.groups:
+        groups_first, group = _edges([[*graph.groups_of.get(each.id, ())] for each in graph.resources])
+    members_first, member = _edges([[graph.index[each] for each in group.resources] for group in graph.groups])
+    capacities = [each.capacity for each in graph.resources] + [each.capacity for each in graph.groups]
+    room = np.array([min(each, NEVER) for each in capacities], np.int32)
+    capacity = room[: len(graph.resources)].copy()
+    capacity[np.diff(groups_first) > 0] = GROUPED
     return Graph(
         *_edges(forward),
         *_edges(backward),
         duration=np.array([each.duration for each in graph.resources], np.int32),
-        capacity=np.array([min(each.capacity, NEVER) for each in graph.resources], np.int32),
+        capacity=capacity,
         x=x,
         y=y,
         region=np.left_shift(np.int64(1), strips(x) * STRIPS + strips(y)),
+        groups_first=groups_first,
+        group=group,
+        members_first=members_first,
+        member=member,
+        room=room,
     )
 
 
@@ -386,7 +400,7 @@ def encode(instance: Instance, *, shortcuts: bool) -> State:
     robots, goals, paces, of_stops = encode_robots(instance)
     stops = encode_stops(instance, of_stops)
     resources = graph.duration.size
-    places = BLOCK * (1 + 2 * resources)
+    places = BLOCK * (1 + 2 * graph.room.size)
     visits = 64 * max(64, robots.start.size)
     longest = int(graph.duration.max(initial=1))
     scale = scale_of_tolls(resources, longest, paces)
@@ -396,6 +410,7 @@ def encode(instance: Instance, *, shortcuts: bool) -> State:
         stops=with_labels(stops, places, graph.target.size),
         windows=_all_free(graph, places),
         stays=_no_stays(graph, places),
+        sweep=_no_sweep(graph),
         guides=no_guides(resources, goals, paces, has_ranks=scale == 0, stops=stops.stride),
         search=no_search(places, graph.target.size),
         records=no_records(max(256, 8 * robots.start.size), visits, visits),
@@ -430,7 +445,7 @@ def without_reservations(state: State) -> State:
     """The state on the empty graph; all else is shared."""
     return state._replace(
         windows=_all_free(state.graph, BLOCK * (1 + state.graph.duration.size)),
-        stays=_no_stays(state.graph, BLOCK * (1 + state.graph.duration.size)),
+        stays=_no_stays(state.graph, BLOCK * (1 + state.graph.room.size)),
         reserved=np.full(state.reserved.size, NONE, np.int32),
     )
 
@@ -440,8 +455,19 @@ def _all_free(graph: Graph, places: int) -> Rows:
 
 
 def _no_stays(graph: Graph, places: int) -> Rows:
-    several = graph.capacity > 1
+    several = np.ones(graph.room.size, np.bool_)
+    several[: graph.capacity.size] = graph.capacity != 1
     return empty_rows(several, filled=False, places=places if several.any() else BLOCK)
+
+
+def _no_sweep(graph: Graph) -> Sweep:
+    most = 1 + int(np.diff(graph.groups_first).max(initial=0))
+    return Sweep(
+        into=np.zeros(most, np.int32),
+        out=np.zeros(most, np.int32),
+        mark=np.zeros(graph.capacity.size, np.int64),
+        now=np.zeros(1, np.int64),
+    )
 
 
 def no_work(robots: int, members: int, sample: int) -> Work:

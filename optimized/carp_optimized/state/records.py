@@ -4,6 +4,7 @@ from carp_optimized.jit.compiling import RecordsExhausted, compiled, entry
 from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
 from carp_optimized.state.arrays import NEVER, NONE, UNKNOWN, Records, State
+from carp_optimized.state.groups import meet, share_group
 from carp_optimized.state.natives import state_at
 
 
@@ -142,11 +143,15 @@ def same_plan(records: Records, one: int, other: int) -> bool:
 
 
 @compiled
-def clash(records: Records, one: int, other: int, gap: int) -> bool:
-    """Whether two plans are ever in one resource at a tick, or exchange two; capacities are ignored.
+def clash(state: State, one: int, other: int) -> bool:
+    """Whether two plans are ever in one resource or group at a tick, or exchange two; capacities are ignored.
 
     With a `gap` they must not follow each other either.
     """
+    graph = state.graph
+    records = state.records
+    gap = state.gap
+    has_groups = graph.group.size > 0
     i = int(records.visits_at[one])
     j = int(records.visits_at[other])
     i_last = i + int(records.visits[one]) - 1
@@ -155,7 +160,10 @@ def clash(records: Records, one: int, other: int, gap: int) -> bool:
         i_leave = int(records.enter[i + 1]) if i < i_last else int(records.leave[one])
         j_leave = int(records.enter[j + 1]) if j < j_last else int(records.leave[other])
         if (
-            records.resource[i] == records.resource[j]
+            (
+                records.resource[i] == records.resource[j]
+                or (has_groups and share_group(graph, int(records.resource[i]), int(records.resource[j]), NEVER))
+            )
             and records.enter[i] < j_leave + gap
             and records.enter[j] < i_leave + gap
         ):
@@ -163,6 +171,9 @@ def clash(records: Records, one: int, other: int, gap: int) -> bool:
         if i_leave == j_leave and i < i_last and j < j_last:
             meetings = int(records.resource[i] == records.resource[j + 1])
             meetings += int(records.resource[j] == records.resource[i + 1])
+            if has_groups:
+                meetings = int(meet(graph, int(records.resource[i]), int(records.resource[j + 1])))
+                meetings += int(meet(graph, int(records.resource[j]), int(records.resource[i + 1])))
             if meetings > 1 - gap:
                 return True
             i += 1

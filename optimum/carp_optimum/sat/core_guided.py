@@ -79,19 +79,19 @@ def core_guided(
 ) -> Optimum:
     """Search for the optimum for at most `limit` seconds. Raises `Refusal` if the formula outgrows the memory.
 
-    `start_beside` is called once, after many conflicts.
+    `start_beside` is called once, after many conflicts, unless the instance has groups, which prices do not know.
 
     The result does not depend on the clock, which gives nanoseconds: the same instance gives the same solution.
     """
     require_instance(instance)
     require_limits(limit=limit)
-    refuse(instance, "following", "groups", "stops")
+    refuse(instance, "following", "stops")
     deadline = Deadline(limit, clock)
     try:
         encoding = Encoding(instance, deadline.check)
     except TimeOver:
         return Optimum(None, None, 0, decided=False, solution=None, evidence=Evidence((), ()))
-    search = CoreGuided(encoding, deadline, start_beside)
+    search = CoreGuided(encoding, deadline, None if instance.graph.groups else start_beside)
     try:
         return search.run()
     finally:

@@ -14,7 +14,7 @@ from carp_optimum.lagrangian.reduced_costs import PricedBound, Reduced
 from carp_optimum.sat.totalizer_order import groups_of_near, sum_of_near
 from carp_spec import Instance, ResourceId
 from carp_verify.optimum.clauses import Formula, Literal, Unary
-from carp_verify.optimum.encoding import Conflict, Encoding
+from carp_verify.optimum.encoding import Encoding
 from carp_verify.optimum.robot_clauses import Node, RobotClauses
 
 LEVELS = 24
@@ -56,9 +56,9 @@ def priced_formula(instance: Instance, bound: PricedBound, cost: int, look: Call
         while robot.horizon < horizon:
             robot.grow()
     encoding.close()
-    for resource, tick in dict.fromkeys(entry for robot in encoding.robots for entry in robot.entries()):
+    for conflict in encoding.entries():
         look()
-        encoding.forbid(Conflict(tick, resource))
+        encoding.forbid(conflict)
     _forbid_exchanges(encoding)
     formula, unit = encoding.formula, max(1, bound.gap(cost))
     levels = [{node: _level(reduced.nodes.get(node, 0), unit) for node in robot.node} for robot, reduced in described]
@@ -135,7 +135,8 @@ def _prices_of_empty_places(encoding: Encoding, bound: PricedBound, unit: int) -
         if level > 0:
             number = _number(encoding.formula, level)
             robots = range(len(encoding.robots))
-            present = [encoding.presence(position, resource, tick) for position in robots]
+            place = encoding.instance.graph.index[resource]
+            present = [encoding.presence(position, place, tick) for position in robots]
             encoding.formula.add(*(literal for literal in present if literal is not None), number[-1])
             numbers.append(number)
     return numbers

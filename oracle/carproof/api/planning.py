@@ -30,7 +30,7 @@ def certified_query(
     Raises what `query` raises.
     """
     require_query(instance, committed, robot, now)
-    refuse(instance, "groups", "stops")
+    refuse(instance, "stops")
     own = [each for each in committed if each.robot == robot]
     certifier = engine_named(None).certifier(instance)
     certifier.commit([each for each in committed if each.robot != robot])

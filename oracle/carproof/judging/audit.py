@@ -54,7 +54,7 @@ class Auditor:
     """Compares plans with the best ones beside those committed so far."""
 
     def __init__(self, instance: Instance, engine: Engine) -> None:
-        refuse(instance, "groups", "stops")
+        refuse(instance, "stops")
         self._instance = instance
         self._certifier = engine.certifier(instance)
         self._traffic = Traffic(instance)

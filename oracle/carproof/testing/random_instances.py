@@ -24,6 +24,7 @@ from carp_spec import (
     Solution,
     Stop,
 )
+from carp_spec.model import Following
 from carp_spec.permutations import shuffle, splitmix64
 from carp_spec.planners import LARGEST_SEED
 from carp_spec.shapes import numbers_of
@@ -63,6 +64,7 @@ class Mix:
     more: int = 6
     both_ways: bool = False
     groups: Sequence[int] = (0,)
+    followings: Sequence[Following] = ("allowed",)
     goals_apart: bool = False
     stops: int = 1
     services: Sequence[int] = (0,)
@@ -92,6 +94,9 @@ class Draw:
     def happens(self, one_in: int) -> bool:
         """True once in this many times."""
         return next(self.stream) % one_in == 0
+
+
+GROUPED = Mix(groups=(1, 2, 3), followings=("allowed", "allowed", "forbidden"))
 
 
 def question(seed: int, number: int, mix: Mix = SMALL) -> Question:
@@ -140,7 +145,9 @@ def draw_instance(draw: Draw, mix: Mix = SMALL) -> Instance:
     policies: tuple[AfterGoal, ...] = ("vanish", "park")
     if mix.stops > 1:
         robots = tuple(replace(robot, stops=draw_stops(draw, ids, robot, mix)) for robot in robots)
-    return Instance(graph, robots, draw.one_of(policies))
+    after_goal = draw.one_of(policies)
+    following = draw.one_of(mix.followings) if len(mix.followings) > 1 else mix.followings[0]
+    return Instance(graph, robots, after_goal, following)
 
 
 def _numbers(draw: Draw, mix: Mix, kind: type[Resource | Robot], is_least: Callable[[], bool]) -> dict[str, Any]:

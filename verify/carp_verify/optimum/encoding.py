@@ -1,7 +1,8 @@
 """The one encoding of an instance into clauses, and of a bound on the total cost.
 
 Each robot has the clauses of `carp_verify.optimum.robot_clauses` up to its own horizon, which are a relaxation. The
-rules `joint/capacity` and `joint/exchange` are added for chosen places and ticks, or for all. So with any horizons:
+rules `joint/capacity`, `joint/group` and `joint/exchange` are added for chosen places and ticks, or for all. So with
+any horizons:
 
 - if the clauses with `delays < k` have no model, no plan set costs less than the sum of shortest paths + k;
 - a model of the clauses in which no robot is later than its horizon and in which all conflicts are forbidden
@@ -9,12 +10,14 @@ rules `joint/capacity` and `joint/exchange` are added for chosen places and tick
 """
 
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise, zip_longest
 
 from carp_spec import Instance, Move, Plan, ResourceId, Robot
+from carp_spec.joint_rules import opposite_moves
 from carp_spec.limits import refuse
+from carp_spec.windows import stays_within
 from carp_verify.optimum.clauses import Clause, Formula, Literal
 from carp_verify.optimum.robot_clauses import RobotClauses, predecessors
 from carp_verify.optimum.rules import LARGEST_FORMULA, LARGEST_PROOF
@@ -22,11 +25,19 @@ from carp_verify.optimum.rules import LARGEST_FORMULA, LARGEST_PROOF
 
 @dataclass(frozen=True, slots=True)
 class Conflict:
-    """A capacity at a tick, or with a `target` an exchange of the two resources at a tick."""
+    """A constraint of the graph at a tick, by its index."""
 
     tick: int
-    resource: ResourceId
-    target: ResourceId | None = None
+    constraint: int
+
+
+@dataclass(frozen=True, slots=True)
+class Exchange:
+    """Two moves at a tick that robots must not both make."""
+
+    tick: int
+    one: Move
+    other: Move
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,13 +63,14 @@ class Encoding:
         seen: Sequence[int] = (),
     ) -> None:
         self.instance = instance
+        self.constraints = instance.graph.constraints
         self.formula = Formula(most)
         before = predecessors(instance)
         self.robots: list[RobotClauses] = []
         for robot, tick in zip_longest(instance.robots, seen):
             check()
             self.robots.append(RobotClauses(instance, robot, before, self.formula, tick))
-        self._presence: dict[tuple[int, ResourceId, int], tuple[Literal, set[Clause]]] = {}
+        self._presence: dict[tuple[int, int, int], tuple[Literal, set[Clause]]] = {}
 
     @property
     def wayless(self) -> list[Robot]:
@@ -70,14 +82,15 @@ class Encoding:
         """The sum of the robots' costs on the empty graph."""
         return sum(robot.shortest or 0 for robot in self.robots)
 
-    def presence(self, position: int, resource: ResourceId, tick: int) -> Literal | None:
-        """A literal that holds if the robot is in the resource at the tick; `None` if it cannot be there."""
-        stays = list(self.robots[position].stays(resource, tick))
+    def presence(self, position: int, constraint: int, tick: int) -> Literal | None:
+        """A literal that holds if the constraint counts the robot at the tick; `None` if it cannot be there."""
+        resources = self.constraints[constraint].resources
+        stays = [each for resource in resources for each in self.robots[position].stays(resource, tick)]
         if not stays:
             return None
         if len(stays) == 1 and len(stays[0]) == 1:
             return stays[0][0]
-        key = (position, resource, tick)
+        key = (position, constraint, tick)
         if key not in self._presence:
             self._presence[key] = (self.formula.variable(), set())
         literal, known = self._presence[key]
@@ -90,20 +103,22 @@ class Encoding:
     def moves(self, position: int, source: ResourceId, target: ResourceId, tick: int) -> Clause | None:
         """Literals that hold together if the robot makes the move at the tick; `None` if it cannot."""
         leaves = self.robots[position].node.get((source, tick))
-        enters = None if leaves is None else self.presence(position, target, tick)
+        enters = None if leaves is None else self.presence(position, self.instance.graph.index[target], tick)
         return None if leaves is None or enters is None else (leaves, enters)
 
-    def forbid(self, conflict: Conflict) -> None:
+    def forbid(self, conflict: Conflict | Exchange) -> None:
         """Add the clauses that forbid a conflict to all robots, as far as their horizons reach."""
-        if conflict.target is None:
-            visitors = self._visitors(conflict.resource)
-            present = [self.presence(each, conflict.resource, conflict.tick) for each in visitors]
+        if isinstance(conflict, Conflict):
+            constraint = self.constraints[conflict.constraint]
+            visitors = dict.fromkeys(each for resource in constraint.resources for each in self._visitors(resource))
+            present = [self.presence(each, conflict.constraint, conflict.tick) for each in visitors]
             literals = [literal for literal in present if literal is not None]
-            self.formula.at_most(literals, self.instance.graph.resource[conflict.resource].capacity)
+            self.formula.at_most(literals, constraint.capacity)
             return
-        source, target, tick = conflict.resource, conflict.target, conflict.tick
-        there = [(each, self.moves(each, source, target, tick)) for each in self._visitors(source)]
-        back = [(each, self.moves(each, target, source, tick)) for each in self._visitors(target)]
+        there, back = (
+            [(each, self.moves(each, *move, conflict.tick)) for each in self._visitors(move[0])]
+            for move in (conflict.one, conflict.other)
+        )
         for one, first in there:
             for other, second in back:
                 if one != other and first is not None and second is not None:
@@ -112,22 +127,26 @@ class Encoding:
     def _visitors(self, resource: ResourceId) -> list[int]:
         return [position for position, robot in enumerate(self.robots) if robot.may_visit(resource)]
 
-    def conflicts(self) -> Iterator[Conflict]:
-        """All conflicts that can happen within the horizons: capacities wherever a robot may enter, exchanges."""
+    def entries(self) -> Iterator[Conflict]:
+        """All constraints wherever a robot may enter what they are on."""
         entries = dict.fromkeys(entry for robot in self.robots for entry in robot.entries())
-        for resource, tick in entries:
-            yield Conflict(tick, resource)
+        graph = self.instance.graph
+        found = (Conflict(tick, each) for resource, tick in entries for each in graph.constraints_of(resource))
+        yield from dict.fromkeys(found) if graph.groups else found
+
+    def conflicts(self) -> Iterator[Conflict | Exchange]:
+        """All conflicts that can happen within the horizons: of constraints, and exchanges."""
+        yield from self.entries()
         movers: dict[tuple[int, Move], set[int]] = defaultdict(set)
         for position, robot in enumerate(self.robots):
             for source, tick in robot.node:
                 for target in self.instance.graph.successors[source]:
                     if any(self.robots[position].stays(target, tick)):
                         movers[tick, (source, target)].add(position)
-        index = self.instance.graph.index
-        for (tick, (source, target)), there in movers.items():
-            back = movers.get((tick, (target, source)), set())
-            if index[source] < index[target] and back and len(there | back) > 1:
-                yield Conflict(tick, source, target)
+        for exchange in _exchanges(self.instance, movers):
+            there, back = (movers[exchange.tick, move] for move in (exchange.one, exchange.other))
+            if len(there | back) > 1:
+                yield exchange
 
     def forbid_all(self) -> None:
         """Forbid all conflicts."""
@@ -180,7 +199,7 @@ def beat_formula(instance: Instance, cost: int | None, evidence: Evidence, most:
 
 
 def _bounded(instance: Instance, bound: int | None, evidence: Evidence, most: int) -> Encoding:
-    refuse(instance, "following", "groups", "stops")
+    refuse(instance, "following", "stops")
     encoding = Encoding(instance, most=most)
     encoding.grow_to(evidence.horizons)
     encoding.forbid_all()
@@ -189,25 +208,34 @@ def _bounded(instance: Instance, bound: int | None, evidence: Evidence, most: in
     return encoding
 
 
-def violated(instance: Instance, plans: Sequence[Plan]) -> list[Conflict]:
+def _exchanges(instance: Instance, movers: Collection[tuple[int, Move]]) -> Iterator[Exchange]:
+    """The pairs of these moves at one tick that two robots must not both make."""
+    index = instance.graph.index
+    opposite = opposite_moves(instance.graph, movers)
+    for tick, move in movers:
+        for _, other in opposite((tick, move)):
+            if (index[move[0]], index[move[1]]) < (index[other[0]], index[other[1]]):
+                yield Exchange(tick, move, other)
+
+
+def violated(instance: Instance, plans: Sequence[Plan]) -> list[Conflict | Exchange]:
     """The conflicts among the plans, by tick: at each entry that exceeds a capacity, and at each exchange."""
-    stays: dict[ResourceId, list[tuple[int, int | None]]] = defaultdict(list)
-    movers: dict[tuple[int, Move], int] = defaultdict(int)
+    stays: dict[int, list[tuple[int, int | None]]] = defaultdict(list)
+    movers: dict[tuple[int, Move], None] = {}
     for plan in plans:
         for visit in plan.visits:
-            stays[visit.resource].append((visit.enter, visit.leave))
+            stays[instance.graph.index[visit.resource]].append((visit.enter, visit.leave))
         for visit, following in pairwise(plan.visits):
-            movers[following.enter, (visit.resource, following.resource)] += 1
-    found = []
-    for resource, intervals in stays.items():
-        capacity = instance.graph.resource[resource].capacity
+            movers[following.enter, (visit.resource, following.resource)] = None
+    for number, group in enumerate(instance.graph.groups, len(instance.graph.resources)):
+        stays[number] = stays_within(plans, group.resources)
+    found: list[Conflict | Exchange] = []
+    constraints = instance.graph.constraints
+    for constraint, intervals in stays.items():
+        capacity = constraints[constraint].capacity
         if len(intervals) > capacity:
             for tick in dict.fromkeys(enter for enter, _ in intervals):
                 present = sum(enter <= tick and (leave is None or tick < leave) for enter, leave in intervals)
                 if present > capacity:
-                    found.append(Conflict(tick, resource))
-    index = instance.graph.index
-    for tick, (source, target) in movers:
-        if index[source] < index[target] and (tick, (target, source)) in movers:
-            found.append(Conflict(tick, source, target))
-    return found
+                    found.append(Conflict(tick, constraint))
+    return [*found, *_exchanges(instance, movers)]

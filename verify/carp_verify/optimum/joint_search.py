@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from heapq import heappop, heappush
-from itertools import product
+from itertools import combinations, product
 from typing import Literal, TypeAlias
 
 from carp_spec import Instance, ResourceId, Robot
@@ -40,6 +40,7 @@ GONE = State("arrived", None, 0)
 class _Search:
     def __init__(self, instance: Instance) -> None:
         self.instance = instance
+        self.constraints = instance.graph.constraints
         self.last_release = max((robot.release for robot in instance.robots), default=0)
 
     def entering(self, robot: Robot, resource: ResourceId) -> Iterator[State]:
@@ -67,17 +68,27 @@ class _Search:
                 yield from self.entering(robot, target)
 
     def is_allowed(self, before: Sequence[State], after: Sequence[State]) -> bool:
-        """Whether `joint/capacity` holds now and `joint/exchange` on the way here."""
-        present = Counter(state.resource for state in after if state.resource is not None)
-        resource = self.instance.graph.resource
-        if any(count > resource[each].capacity for each, count in present.items()):
+        """Whether `joint/capacity` and `joint/group` hold now and `joint/exchange` on the way here."""
+        graph = self.instance.graph
+        present = Counter(
+            each for state in after if state.resource is not None for each in graph.constraints_of(state.resource)
+        )
+        if any(count > self.constraints[each].capacity for each, count in present.items()):
             return False
         moves = [
             (old.resource, new.resource)
             for old, new in zip(before, after, strict=True)
             if old.resource is not None and new.resource is not None and old.resource != new.resource
         ]
-        return not any((target, source) in moves for source, target in moves)
+        return not any(
+            self.are_close(source, to) and self.are_close(target, away)
+            for (source, target), (away, to) in combinations(moves, 2)
+        )
+
+    def are_close(self, one: ResourceId, other: ResourceId) -> bool:
+        """Whether two resources are the same or lie in one group of capacity 1."""
+        groups = self.constraints[len(self.instance.graph.resources) :]
+        return one == other or any(each.capacity == 1 and {one, other} <= {*each.resources} for each in groups)
 
     def following(self, tick: int, before: Joint) -> Iterator[Joint]:
         """The joint states at the tick after one at the tick before."""
@@ -108,7 +119,7 @@ def least_total_cost(
     Raises `Refusal` before more than `most` joint states are looked at; `on_step` is called at each, and may raise.
     """
     require_instance(instance)
-    refuse(instance, "following", "groups", "stops")
+    refuse(instance, "following", "stops")
     search = _Search(instance)
     queue: list[tuple[int, int, int, Joint]] = [(0, 0, -1, tuple(WAITS for _ in instance.robots))]
     settled: set[tuple[int, Joint]] = set()

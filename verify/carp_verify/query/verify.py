@@ -17,7 +17,8 @@ from bisect import bisect_left, bisect_right
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from functools import reduce
+from itertools import pairwise, product, zip_longest
 
 from carp_spec import Instance, Plan, Refusal, ResourceId, Robot, Rule, Solution, Visit, has_ended
 from carp_spec.documents.query_certificates import QueryCertificateDocument
@@ -36,29 +37,34 @@ from carp_verify.query.rules import (
 
 
 class Traffic:
-    """The committed plans by resource and tick: it takes plans one by one, and gives the free windows."""
+    """The committed plans by constraint and tick: it takes plans one by one, and gives the free windows."""
 
     def __init__(self, instance: Instance) -> None:
         self.instance = instance
-        self._changes: dict[ResourceId, list[int]] = defaultdict(lambda: [0])
-        self._inside: dict[ResourceId, list[int]] = defaultdict(lambda: [0])
-        self._moves: set[tuple[int, ResourceId, ResourceId]] = set()
+        self._capacities = [constraint.capacity for constraint in instance.graph.constraints]
+        self._changes: dict[int, list[int]] = defaultdict(lambda: [0])
+        self._inside: dict[int, list[int]] = defaultdict(lambda: [0])
+        self._moves: set[tuple[int, int, int]] = set()
 
     def commit(self, plan: Plan) -> None:
-        """Add the stays and the moves of a plan."""
-        for visit in plan.visits:
-            first = self._cut(visit.resource, visit.enter)
-            inside = self._inside[visit.resource]
-            gap = self.instance.gap
-            last = len(inside) if visit.leave is None else self._cut(visit.resource, visit.leave + gap)
-            for position in range(first, last):
-                inside[position] += 1
+        """Add the stays and the moves of a plan; in a group, visits one after the other take up its room once."""
+        graph = self.instance.graph
+        for visit, following in zip_longest(plan.visits, plan.visits[1:]):
+            kept = () if following is None else graph.constraints_of(following.resource)
+            for constraint in graph.constraints_of(visit.resource):
+                gap = 0 if constraint in kept else self.instance.gap
+                first = self._cut(constraint, visit.enter)
+                inside = self._inside[constraint]
+                last = len(inside) if visit.leave is None else self._cut(constraint, visit.leave + gap)
+                for position in range(first, last):
+                    inside[position] += 1
         for visit, following in pairwise(plan.visits):
-            self._moves.add((following.enter, visit.resource, following.resource))
+            for areas in product(graph.areas_of(visit.resource), graph.areas_of(following.resource)):
+                self._moves.add((following.enter, *areas))
 
-    def _cut(self, resource: ResourceId, tick: int) -> int:
+    def _cut(self, constraint: int, tick: int) -> int:
         """The position of the tick among those at which something changes; the tick is inserted if it is missing."""
-        changes, inside = self._changes[resource], self._inside[resource]
+        changes, inside = self._changes[constraint], self._inside[constraint]
         position = bisect_left(changes, tick)
         if position == len(changes) or changes[position] != tick:
             changes.insert(position, tick)
@@ -66,13 +72,18 @@ class Traffic:
         return position
 
     def size(self, resource: ResourceId) -> int:
-        """The number of ticks at which the number of robots in the resource may change."""
-        return len(self._changes[resource])
+        """The number of ticks at which the number of robots in the resource or its groups may change."""
+        return sum(len(self._changes[each]) for each in self.instance.graph.constraints_of(resource))
 
     def windows(self, resource: ResourceId, tick: int) -> Iterator[Window]:
         """The free windows of the resource that end after the tick, in order of time."""
-        changes, inside = self._changes[resource], self._inside[resource]
-        capacity = self.instance.graph.resource[resource].capacity
+        own, *groups = (self._room(each, tick) for each in self.instance.graph.constraints_of(resource))
+        return reduce(_both, groups, own)
+
+    def _room(self, constraint: int, tick: int) -> Iterator[Window]:
+        """The intervals in which the constraint has room that end after the tick, in order of time."""
+        changes, inside = self._changes[constraint], self._inside[constraint]
+        capacity = self._capacities[constraint]
         position = bisect_right(changes, tick) - 1
         while position > 0 and inside[position] < capacity and inside[position - 1] < capacity:
             position -= 1
@@ -94,14 +105,29 @@ class Traffic:
         return window if window is not None and window.start <= tick else None
 
     def is_exchange(self, tick: int, source: ResourceId, target: ResourceId) -> bool:
-        """Whether a committed robot makes the opposite move at the tick."""
-        return (tick, target, source) in self._moves
+        """Whether a committed robot moves at the tick from an area of the target to one of the source."""
+        graph = self.instance.graph
+        back = product(graph.areas_of(target), graph.areas_of(source))
+        return any((tick, *areas) in self._moves for areas in back)
 
     def allows(self, visits: Sequence[Visit]) -> bool:
         """Whether one more robot can make these visits."""
         around = [(visit, self.window_at(visit.resource, visit.enter)) for visit in visits]
         free = all(window is not None and window.lasts_until(visit.leave) for visit, window in around)
         return free and not any(self.is_exchange(to.enter, at.resource, to.resource) for at, to in pairwise(visits))
+
+
+def _both(one: Iterator[Window], other: Iterator[Window]) -> Iterator[Window]:
+    """What intervals of one kind have in common with those of another; both are in order of time, and apart."""
+    here, there = next(one, None), next(other, None)
+    while here is not None and there is not None:
+        start = max(here.start, there.start)
+        end = min((each.end for each in (here, there) if each.end is not None), default=None)
+        if end is None or start < end:
+            yield Window(start, end)
+        if end is None:
+            return
+        here, there = (next(one, None) if here.end == end else here), (next(other, None) if there.end == end else there)
 
 
 def verify_query(instance: Instance, solution: Solution, certificate: QueryCertificateDocument) -> int | None:
@@ -129,7 +155,7 @@ def require_certificate(traffic: Traffic, certificate: QueryCertificateDocument,
 
     The plan followed until now, and the plans committed, must be lawful.
     """
-    refuse(traffic.instance, "groups", "stops")
+    refuse(traffic.instance, "stops")
     if followed is not None and has_ended(followed, certificate.now):
         if traffic.allows(followed.visits):
             arrival = followed.visits[-1].enter

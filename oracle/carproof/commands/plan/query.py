@@ -60,7 +60,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     problem = read_instance_file(instance)
     given = read_solution_file(solution)
     if certificate is not None:
-        refuse_in(instance, problem, "groups", "stops")
+        refuse_in(instance, problem, "stops")
     id = robot_called(problem, robot)
     with naming(solution):
         committed = sound_solution(problem, given, id)
