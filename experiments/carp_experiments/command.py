@@ -11,6 +11,7 @@ from carp_experiments.experiments import EXPERIMENTS, Experiment, Profile
 from carp_experiments.measuring.crosscheck_campaign import (
     FULL_QUESTIONS,
     QUICK_QUESTIONS,
+    Kind,
     crosscheck_cases,
     crosscheck_report,
 )
@@ -134,13 +135,14 @@ def command_of(experiment: Experiment) -> click.Command:
 @click.option("--quick", is_flag=True, help=f"{QUICK_QUESTIONS} questions.")
 @click.option("--questions", type=click.IntRange(min=1), default=FULL_QUESTIONS, help="The number of random questions.")
 @click.option("--seed", type=click.IntRange(0, 2**64 - 1), default=0, help="The seed of the questions.")
-@click.option("--stops", is_flag=True, help="Robots have stops, and a search tick by tick is asked too.")
+@click.option("--stops", "kind", flag_value="stops", help="Robots have stops; a search tick by tick is asked too.")
+@click.option("--groups", "kind", flag_value="groups", help="There are groups; searches tick by tick are asked too.")
 @campaign_options
 def crosscheck(
     quick: bool,
     questions: int,
     seed: int,
-    stops: bool,
+    kind: Kind | None,
     **campaign: Any,  # noqa: ANN401 - click's
 ) -> Answer:
     """Ask both engines the same random questions on small instances.
@@ -148,8 +150,8 @@ def crosscheck(
     Exit codes: 0 no difference, 1 a difference, 2 bad usage.
     """
     size = QUICK_QUESTIONS if quick else questions
-    cases = crosscheck_cases(size, seed, stops=stops)
-    command = f"carproof experiment crosscheck --questions {size} --seed {seed}{' --stops' * stops}"
+    cases = crosscheck_cases(size, seed, kind)
+    command = f"carproof experiment crosscheck --questions {size} --seed {seed}{f' --{kind}' if kind else ''}"
     return go("crosscheck", "crosscheck", command, f"{size} questions", cases, crosscheck_report, **campaign)
 
 

@@ -131,7 +131,7 @@ def lower_bound(
 def _require(instance: Instance, **limits: float | None) -> None:
     require_instance(instance)
     require_limits(**limits)
-    refuse(instance, "groups", "stops")
+    refuse(instance, "stops")
 
 
 def _limit(seconds: float | None, steps: int | None, parts: int, clock: Callable[[], int]) -> Callable[[int], None]:

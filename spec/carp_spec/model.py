@@ -101,8 +101,16 @@ class ResourceGraph:
 
     def areas_of(self, resource: ResourceId) -> tuple[int, ...]:
         """Of these, the resource's own and the groups of capacity 1: resources that share one are close."""
-        own, *groups = self.constraints_of(resource)
-        return (own, *(each for each in groups if self.groups[each - len(self.resources)].capacity == 1))
+        return tuple(each for each in self.constraints_of(resource) if self.is_area(each))
+
+    def is_area(self, constraint: int) -> bool:
+        """Whether the constraint of that index is a resource's own, or a group of capacity 1."""
+        group = constraint - len(self.resources)
+        return group < 0 or self.groups[group].capacity == 1
+
+    def are_close(self, one: ResourceId, other: ResourceId) -> bool:
+        """Whether two resources are the same or lie in one group of capacity 1."""
+        return one == other or not {*self.areas_of(one)}.isdisjoint(self.areas_of(other))
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,6 @@ from carp_spec.execution.traces import Trace
 from carp_spec.inputs.options import require_planner
 from carp_spec.inputs.values import require_plans, require_solution
 from carp_spec.instance_rules import stops_are_places_to_serve
-from carp_spec.limits import refuse
 from carp_spec.model import Instance, Plan, RobotId, Solution, Stop
 from carp_spec.plan_rules import has_ended
 from carp_spec.planners import Neighbourhood
@@ -89,7 +88,6 @@ def require_trace(instance: Instance, solution: Solution, trace: Trace) -> None:
     require_shape(trace, Trace)
     if trace.now < 0:
         raise Refusal("document", "$.now", SHAPE, f"it must be at least 0, not {trace.now}")
-    refuse(instance, "groups")
     sound_solution(instance, solution)
 
 

@@ -2,22 +2,23 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import product
+from itertools import pairwise, product
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.profiles import draws
 from tests.spec.making import is_before
+from tests.spec.naive import close
 
 import carp_reference
 from carp_spec import Carp, Instance, Plan, Solution, Visit, violations_of
-from carp_spec.execution.dependencies import Stay, dependencies, shortest_cycle, stays_by_resource
+from carp_spec.execution.dependencies import Stay, dependencies, shortest_cycle, stays_by_constraint
 from carp_spec.execution.execution_rules import is_acyclic, trace_violations
 from carp_spec.execution.traces import Trace
 from carp_spec.joint_rules import following_is_avoided
 from carproof.testing.strategies import PlannedInstance, Sizes, instances, planned_instances
 
-SIZES = Sizes(resources=4, robots=4)
+SIZES = Sizes(resources=4, robots=4, groups=2)
 
 
 @st.composite
@@ -54,19 +55,22 @@ def broken(instance: Instance, solution: Solution, trace: Trace) -> set[str]:
         if visit.leave is not None and visit.leave < visit.enter + instance.duration(robot, visit.resource):
             rules.add("execution/duration")
     for one, other in pairs(instance, solution):
-        left = done[one.node].leave if one.node in done else None
+        left = done[one.last].leave if one.last in done else None
         if other.node in done:
             entered = done[other.node].enter
             if left is None or left + instance.gap > entered:
                 rules.add("execution/order")
-            opposite = one.target is not None and one.target == other.source and one.visit.leave != other.visit.enter
-            if opposite and (left is None or left >= entered):
-                rules.add("execution/exchange")
+    moves = [(plan.robot, k, *pair) for plan in solution.plans for k, pair in enumerate(pairwise(plan.visits), 1)]
+    for (first, k, at, to), (second, j, away, back) in product(moves, moves):
+        is_opposite = close(instance, at.resource, back.resource) and close(instance, to.resource, away.resource)
+        is_due = to.enter < back.enter and is_opposite and (second, j) in done
+        if is_due and ((first, k) not in done or done[first, k].enter >= done[second, j].enter):
+            rules.add("execution/exchange")
     return rules
 
 
 def pairs(instance: Instance, solution: Solution) -> Iterator[tuple[Stay, Stay]]:
-    for stays in stays_by_resource(solution.plans).values():
+    for stays in stays_by_constraint(instance.graph, solution.plans).values():
         yield from ((one, other) for one, other in product(stays, stays) if is_before(instance, one.visit, other.visit))
 
 
@@ -122,8 +126,8 @@ def test_a_solution_has_a_cycle_if_its_edges_spelt_out_have_one(case: PlannedIns
     edges = {(edge.before, edge.after) for edge in dependencies(instance, plans)}
     all_edges = set(edges)
     for one, other in pairs(instance, case.solution):
-        robot, place = one.node
-        all_edges.add(((robot, place + 1) if one.target is not None else one.node, other.node))
+        robot, place = one.last
+        all_edges.add(((robot, place + 1) if one.target is not None else one.last, other.node))
     nodes = {node for edge in all_edges for node in edge}
     while True:
         ends = {node for node in nodes if not any(before == node and after in nodes for before, after in all_edges)}

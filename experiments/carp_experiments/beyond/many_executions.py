@@ -11,7 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from carp_reference.execution import Order
-from carp_spec.execution.dependencies import Node, stays_by_resource
+from carp_spec.execution.dependencies import Node, stays_by_constraint
+from carp_spec.limits import refuse
 from carproof.execution.delays import Delay, is_last, waits_for_leaving
 
 Longs: TypeAlias = npt.NDArray[np.int64]
@@ -83,7 +84,8 @@ def breaches(order: Order, enters: Longs) -> tuple[Flags, Flags]:
     for node in order.nodes:
         strays |= leaves[node] - ticks[node] < order.duration(node)
     gap = order.instance.gap
-    for resource, stays in stays_by_resource(order.solution.plans).items():
+    refuse(order.instance, "groups")
+    for resource, stays in stays_by_constraint(order.instance.graph, order.solution.plans).items():
         crowd = {stay.node: np.ones(enters.shape[1], np.int64) for stay in stays}
         for one, other in permutations(stays, 2):
             leave, enter = leaves[one.node], ticks[other.node]
@@ -98,7 +100,7 @@ def breaches(order: Order, enters: Longs) -> tuple[Flags, Flags]:
                 if is_opposite:
                     crashes |= leave == enter
         for count in crowd.values():
-            crashes |= count > order.instance.graph.resource[resource].capacity
+            crashes |= count > order.instance.graph.resources[resource].capacity
     return strays, crashes
 
 

@@ -2,12 +2,12 @@
 
 A case is a block of questions, so that a row stands for a second of work. `carproof dev crosscheck` asks the same kind
 of questions up to the first difference, which it shrinks. This campaign can be stopped and continued, and runs on many
-machines. Where robots have stops, a search tick by tick must find the same arrival too.
+machines. With stops or groups, searches that count tick by tick are compared too.
 """
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import msgspec
 
@@ -16,10 +16,13 @@ from carp_experiments.report import ExperimentReport, Table
 from carp_experiments.store import Row
 from carp_reference.time_expanded import find_plan_by_ticks
 from carp_spec import plan_cost, total_cost
-from carproof.testing.random_instances import SMALL, WITH_STOPS, question
+from carproof.testing.random_instances import GROUPED, SMALL, WITH_STOPS, question
 
 if TYPE_CHECKING:
     from carp_experiments.measuring.crosscheck import Difference
+
+Kind: TypeAlias = Literal["stops", "groups"]
+MIXES = {None: SMALL, "stops": WITH_STOPS, "groups": GROUPED}
 
 BLOCK = 1000
 FULL_QUESTIONS = 1_000_000
@@ -34,19 +37,19 @@ class CrosscheckCase:
     first: int
     questions: int = BLOCK
     seed: int = 0
-    stops: bool = False
+    kind: Kind | None = None
 
     @property
     def key(self) -> str:
         """Blocks in their order."""
         numbers = f"{self.first:09} to {self.first + self.questions - 1:09}"
-        return f"seed {self.seed}{' stops' * self.stops} questions {numbers}"
+        return f"seed {self.seed}{f' {self.kind}' if self.kind else ''} questions {numbers}"
 
     def run(self) -> Row:
         """The cost of all answers, the number of unplanned robots, and the questions on which the engines differ."""
         block = Block(self.questions)
         for number in range(self.first, self.first + self.questions):
-            ask_both(block, self.seed, number, stops=self.stops)
+            ask_both(block, self.seed, number, self.kind)
         return msgspec.to_builtins(block)  # type: ignore[no-any-return] # a struct becomes a dict
 
 
@@ -60,23 +63,26 @@ class Block(msgspec.Struct):
     differences: list[dict[str, Any]] = msgspec.field(default_factory=list)
 
 
-def ask_both(block: Block, seed: int, number: int, *, stops: bool = False) -> None:
+def ask_both(block: Block, seed: int, number: int, kind: Kind | None = None) -> None:
     """Ask both engines one question; an engine that fails by an exception differs too."""
+    from carp_experiments.measuring.by_ticks import faults_by_ticks  # noqa: PLC0415
     from carp_experiments.measuring.crosscheck import ask  # noqa: PLC0415
     from carp_experiments.measuring.crosscheck_command import document  # noqa: PLC0415 - each worker loads it
 
-    asked = question(seed, number, WITH_STOPS if stops else SMALL)
+    asked = question(seed, number, MIXES[kind])
     try:
         answers = ask(asked)
+        faults = [*faults_by_ticks(answers.instance, answers.reference.plans)] if kind == "groups" else []
     except Exception as error:  # noqa: BLE001 - whatever it is, it is no answer
         block.differences.append({"number": number, "error": repr(error)})
         return
     block.cost += total_cost(answers.instance, answers.reference.plans)
     block.planned += len(answers.reference.plans)
     block.unplanned += len(answers.reference.unplanned)
+    block.differences += [{"number": number, "by ticks": fault} for fault in faults]
     if answers.reference != answers.optimized:
         block.differences.append({"number": number, **document(answers)})
-    elif stops:
+    elif kind == "stops":
         by_windows, by_ticks = arrivals(answers)
         if by_windows != by_ticks:
             block.differences.append({"number": number, "windows": by_windows, "ticks": by_ticks, **document(answers)})
@@ -92,10 +98,10 @@ def arrivals(answers: "Difference") -> tuple[int | None, int | None]:
     return by_windows, by_ticks
 
 
-def crosscheck_cases(questions: int, seed: int, *, stops: bool = False) -> tuple[CrosscheckCase, ...]:
+def crosscheck_cases(questions: int, seed: int, kind: Kind | None = None) -> tuple[CrosscheckCase, ...]:
     """The questions, in blocks."""
     firsts = range(0, questions, BLOCK)
-    return tuple(CrosscheckCase(first, min(BLOCK, questions - first), seed, stops) for first in firsts)
+    return tuple(CrosscheckCase(first, min(BLOCK, questions - first), seed, kind) for first in firsts)
 
 
 def crosscheck_report(rows: Iterable[Row]) -> ExperimentReport:

@@ -18,9 +18,10 @@ from carp_optimized.jit.compiling import entry
 from carp_optimized.jit.kinds import Longs
 from carp_optimized.state.encoding import refuse_tick, refuse_what_is_too_large
 from carp_spec import Instance, Plan, RobotId, Solution, Visit
+from carp_spec.execution.dependencies import stays_by_constraint
 from carp_spec.execution.execution_rules import require_followed, require_lawful_ends
 from carp_spec.execution.traces import Trace
-from carp_spec.limits import goals_stand_alone, refuse
+from carp_spec.limits import goals_stand_alone
 from carp_spec.plan_rules import least_stays
 from carp_spec.requests import require_trace
 
@@ -158,7 +159,6 @@ def held_up(instance: Instance, solution: Solution, trace: Trace) -> Solution:
 def timetable(instance: Instance, solution: Solution) -> Timetable:
     """Make the dependency graph of a lawful solution; raises `Refusal` for numbers that are too large."""
     refuse_what_is_too_large(instance)
-    refuse(instance, "groups")
     refuse_tick("$.plans", max((plan.visits[-1].enter for plan in solution.plans), default=0))
     index = instance.graph.index
     visits = [visit for plan in solution.plans for visit in plan.visits]
@@ -168,18 +168,24 @@ def timetable(instance: Instance, solution: Solution) -> Timetable:
     leave = np.array([FOR_EVER if visit.leave is None else visit.leave for visit in visits], np.int64)
     paces = np.array([instance.robot[plan.robot].pace for plan in solution.plans], np.int64)
     lengths = np.array([each.duration for each in instance.graph.resources], np.int64)
-    capacity = np.array([min(each.capacity, FOR_EVER) for each in instance.graph.resources], np.int64)
+    graph = instance.graph
+    capacities = [each.capacity for each in graph.resources] + [each.capacity for each in graph.groups]
+    capacity = np.array([min(each, FOR_EVER) for each in capacities], np.int64)
     duration = np.repeat(paces, np.diff(starts)) * lengths[resource]
     if not goals_stand_alone(instance):
         duration = np.array([ticks for plan in solution.plans for ticks in least_stays(instance, plan)], np.int64)
     is_last = np.zeros(enter.size, np.bool_)
     is_last[starts[1:] - 1] = True
     travels = np.flatnonzero(~is_last)
-    one, other = _pairs(instance.gap, resource, enter, leave, capacity)
+    constraint, begin, end = _stays(instance, solution, resource, starts)
+    first, second = _pairs(instance.gap, constraint, enter[begin], leave[end], capacity)
+    one, other = end[first], begin[second]
     coming = np.concatenate([[NOWHERE], resource[:-1]])
     coming[starts[:-1]] = NOWHERE
     going = np.concatenate([resource[1:], [NOWHERE]])
     is_opposite = ~is_last[one] & (going[one] == coming[other])
+    if graph.groups:
+        is_opposite = ~is_last[one] & _are_close(instance, constraint[first], going[one], coming[other])
     wait = np.maximum(instance.gap, is_opposite.astype(np.int64))
     before = np.concatenate([travels, np.where(is_last[one], one, one + 1)])
     after = np.concatenate([travels + 1, other])
@@ -199,6 +205,38 @@ def timetable(instance: Instance, solution: Solution) -> Timetable:
         ticks=ticks[by_after],
         waits=waits[by_after],
     )
+
+
+def _stays(instance: Instance, solution: Solution, resource: Longs, starts: Longs) -> tuple[Longs, Longs, Longs]:
+    """The stays in resources, one a visit, and in groups: constraints, first visits and last ones."""
+    visits = np.arange(resource.size)
+    if not instance.graph.groups:
+        return resource, visits, visits
+    begins = dict(zip((plan.robot for plan in solution.plans), starts.tolist(), strict=False))
+    by_constraint = stays_by_constraint(instance.graph, solution.plans)
+    rows = [
+        (constraint, begins[stay.node[0]] + stay.node[1], begins[stay.last[0]] + stay.last[1])
+        for constraint in range(len(instance.graph.resources), len(instance.graph.constraints))
+        for stay in by_constraint.get(constraint, ())
+    ]
+    more = np.array(rows, np.int64).reshape(-1, 3)
+    return (
+        np.concatenate([resource, more[:, 0]]),
+        np.concatenate([visits, more[:, 1]]),
+        np.concatenate([visits, more[:, 2]]),
+    )
+
+
+def _are_close(instance: Instance, constraint: Longs, going: Longs, coming: Longs) -> Flags:
+    """Of pairs of stays in an area: whether the first leads to a resource close to that from which the second comes."""
+    graph = instance.graph
+    names = [*graph.index]
+    triples = zip(constraint.tolist(), going.tolist(), coming.tolist(), strict=True)
+    close = (
+        NOWHERE not in (to, away) and graph.is_area(each) and graph.are_close(names[to], names[away])
+        for each, to, away in triples
+    )
+    return np.fromiter(close, np.bool_, constraint.size)
 
 
 def _pairs(gap: int, resource: Longs, enter: Longs, leave: Longs, capacity: Longs) -> tuple[Longs, Longs]:

@@ -20,7 +20,9 @@ WIDE = 2 * NEVER
 
 
 def follows(instance: Instance, solution: Solution, trace: Trace) -> bool:
-    """Whether a trace keeps `trace/...` and `execution/...`; false too where ticks are too large for the arrays."""
+    """Whether a trace keeps `trace/...` and `execution/...`; false too where ticks are too large, and with groups."""
+    if instance.graph.groups:
+        return False
     planned = {plan.robot: number for number, plan in enumerate(solution.plans)}
     if len(trace.plans) != len(planned) or {plan.robot for plan in trace.plans} != planned.keys():
         return False

@@ -62,7 +62,7 @@ class PriceSearch:
         self.instance = instance
         self.scale = scale
         graph = encode_graph(instance)
-        graph = graph._replace(capacity=np.minimum(graph.capacity, robots).astype(np.int32))
+        graph = graph._replace(capacity=np.minimum(graph.room[:resources], robots).astype(np.int32))
         requests = requests_of(instance, scale)
         longest = max((robot.pace for robot in instance.robots), default=1) * int(graph.duration.max(initial=1))
         if not stay_is_searched(longest):

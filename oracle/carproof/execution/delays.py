@@ -10,8 +10,9 @@ from itertools import groupby
 
 from carp_reference.execution import Order, earliest, order_with
 from carp_spec import Instance, Plan, RobotId, Solution, Visit
-from carp_spec.execution.dependencies import Dependency, Node, stays_by_resource
+from carp_spec.execution.dependencies import Dependency, Node, stays_by_constraint
 from carp_spec.execution.traces import Trace
+from carp_spec.limits import refuse
 from carp_spec.plan_rules import least_stays
 
 
@@ -112,9 +113,10 @@ def _worth(delays: Sequence[Delay]) -> tuple[int, int]:
 
 def _collisions(instance: Instance, solution: Solution) -> Iterator[tuple[Delay, ...]]:
     """The shortest delays that make a collision, for each visit and all robots that may be there when it begins."""
+    refuse(instance, "groups")
     least = {plan.robot: least_stays(instance, plan) for plan in solution.plans}
-    for resource, stays in stays_by_resource(solution.plans).items():
-        capacity = instance.graph.resource[resource].capacity
+    for constraint, stays in stays_by_constraint(instance.graph, solution.plans).items():
+        resource, capacity = instance.graph.resources[constraint].id, instance.graph.resources[constraint].capacity
         for stay in stays:
             tick = stay.visit.enter
             present = {

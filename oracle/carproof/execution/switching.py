@@ -13,6 +13,7 @@ from itertools import pairwise
 from carp_reference.execution import Order, order_of, order_with, solution_at
 from carp_spec import Instance, ResourceId, Solution
 from carp_spec.execution.dependencies import Dependency, Node
+from carp_spec.limits import refuse
 from carproof.execution.delays import Delay, delayed, is_last, reached, stuck
 
 MOST_TRIED = 20
@@ -102,6 +103,7 @@ def _neighbours(order: Order) -> Iterator[tuple[Node, Node]]:
 
 
 def _sequences(order: Order) -> dict[ResourceId, list[Node]]:
+    refuse(order.instance, "groups")
     sequences: dict[ResourceId, list[Node]] = defaultdict(list)
     for node in order.nodes:
         resource = order.visit(node).resource

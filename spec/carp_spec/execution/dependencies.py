@@ -7,11 +7,11 @@ entries. Source: Hönig et al. 2019.
 from bisect import bisect_right
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from dataclasses import dataclass, replace
+from typing import Literal, TypeAlias, cast
 
 from carp_spec.limits import refuse
-from carp_spec.model import Instance, Plan, ResourceId, RobotId, Visit
+from carp_spec.model import Instance, Plan, ResourceGraph, ResourceId, RobotId, Visit
 from carp_spec.plan_rules import least_stays
 
 Node: TypeAlias = tuple[RobotId, int]
@@ -20,9 +20,13 @@ Node: TypeAlias = tuple[RobotId, int]
 
 @dataclass(frozen=True, slots=True)
 class Stay:
-    """A visit of a lawful plan, and the resources before and after it."""
+    """The visits of a lawful plan, one after the other, to a resource or a group, and the resources before and after.
+
+    `node` is the first of them, `last` the last. `visit` is to the resource of the first, and is left with the last.
+    """
 
     node: Node
+    last: Node
     visit: Visit
     source: ResourceId | None
     target: ResourceId | None
@@ -43,33 +47,43 @@ class Dependency:
     resource: ResourceId
 
 
-def stays_by_resource(plans: Sequence[Plan]) -> dict[ResourceId, list[Stay]]:
-    """The stays of all plans in each resource."""
-    stays: dict[ResourceId, list[Stay]] = defaultdict(list)
+def stays_by_constraint(graph: ResourceGraph, plans: Sequence[Plan]) -> dict[int, list[Stay]]:
+    """The stays of all plans in each resource and each group."""
+    stays: dict[int, list[Stay]] = defaultdict(list)
     for plan in plans:
         ways = [None, *(visit.resource for visit in plan.visits), None]
+        before: Sequence[int] = ()
         for place, visit in enumerate(plan.visits):
-            stays[visit.resource].append(Stay((plan.robot, place), visit, ways[place], ways[place + 2]))
+            node = (plan.robot, place)
+            constraints = graph.constraints_of(visit.resource)
+            for each in constraints:
+                stay = Stay(node, node, visit, ways[place], None)
+                if each in before:
+                    one = stays[each].pop()
+                    stay = replace(one, last=node, visit=replace(one.visit, leave=visit.leave))
+                stays[each].append(replace(stay, target=ways[place + 2]))
+            before = constraints
     return stays
 
 
 def dependencies(instance: Instance, plans: Sequence[Plan]) -> Iterator[Dependency]:
     """The edges of the dependency graph of lawful plans, without those that follow from others."""
-    refuse(instance, "groups")
+    graph = instance.graph
     least = {plan.robot: least_stays(instance, plan) for plan in plans}
     for plan in plans:
         for place, visit in enumerate(plan.visits[:-1]):
             ticks = least[plan.robot][place]
             yield Dependency("travel", (plan.robot, place), (plan.robot, place + 1), ticks, visit.resource)
-    for resource, stays in stays_by_resource(plans).items():
+    for constraint, stays in stays_by_constraint(graph, plans).items():
         for one, other in _direct(instance, stays):
-            is_opposite = one.target is not None and one.target == other.source
+            opposite = one.target is not None and other.source is not None and graph.is_area(constraint)
+            is_opposite = opposite and graph.are_close(cast("ResourceId", one.target), cast("ResourceId", other.source))
             ticks = max(instance.gap, int(is_opposite))
-            robot, place = one.node
+            robot, place = one.last
             if one.target is None:
-                yield Dependency("order", one.node, other.node, least[robot][place] + ticks, resource)
+                yield Dependency("order", one.last, other.node, least[robot][place] + ticks, other.visit.resource)
             else:
-                yield Dependency("order", (robot, place + 1), other.node, ticks, resource)
+                yield Dependency("order", (robot, place + 1), other.node, ticks, other.visit.resource)
 
 
 def _direct(instance: Instance, stays: Sequence[Stay]) -> Iterator[tuple[Stay, Stay]]:

@@ -5,14 +5,14 @@ Those of `execution/...` require a trace that keeps `trace/...`.
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import islice
+from itertools import islice, product
 from operator import itemgetter
 
 from carp_spec.check import MOST_LISTED
-from carp_spec.execution.dependencies import Node, Stay, dependencies, shortest_cycle, stays_by_resource
+from carp_spec.execution.dependencies import Node, Stay, dependencies, shortest_cycle, stays_by_constraint
 from carp_spec.execution.traces import Trace
 from carp_spec.joint_rules import misnamed
-from carp_spec.model import Instance, Plan, ResourceId, RobotId, Solution, Visit
+from carp_spec.model import Instance, Plan, RobotId, Solution, Visit
 from carp_spec.plan_rules import least_stays, plan_ends_at_goal, plan_starts_at_release
 from carp_spec.refusal import Refusal
 from carp_spec.rule import DESIGN, Breach, Rule, Violation, at_visit, interval, violation_rule
@@ -80,33 +80,34 @@ def durations_are_kept(instance: Instance, solution: Solution, trace: Trace) -> 
 
 @violation_rule(
     "execution/order",
-    "A robot enters a resource only after every robot has left it that is planned to have left it by then; where "
-    "following is forbidden, at least a tick after.",
+    "A robot enters a resource, or a group from outside, only after every robot has left it that is planned to have "
+    "left it by then; where following is forbidden, at least a tick after.",
     ADG,
 )
 def order_is_kept(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Breach]:
     happened = trace.happened
-    for stays in stays_by_resource(solution.plans).values():
+    for stays in stays_by_constraint(instance.graph, solution.plans).values():
         yield from _too_early(stays, stays, happened, instance.gap, instance.gap)
 
 
 @violation_rule(
     "execution/exchange",
-    "Of two robots that are planned to make the moves (r, s) and (s, r) at different ticks, the first moves at an "
-    "earlier tick than the second.",
+    "Of two robots that are planned to make moves (r, s) and (s', r') at different ticks, r close to r' and s to s', "
+    "the first moves at an earlier tick than the second.",
     ADG,
 )
 def exchange_order_is_kept(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Breach]:
-    del instance
-    happened = trace.happened
-    for stays in stays_by_resource(solution.plans).values():
-        leaving: dict[ResourceId | None, list[Stay]] = defaultdict(list)
-        entering: dict[ResourceId | None, list[Stay]] = defaultdict(list)
-        for stay in stays:
-            leaving[stay.target].append(stay)
-            entering[stay.source].append(stay)
-        for neighbour in leaving.keys() - {None}:
-            yield from _too_early(leaving[neighbour], entering[neighbour], happened, 1, 1)
+    areas = instance.graph.areas_of
+    leaving: dict[tuple[int, int], list[Stay]] = defaultdict(list)
+    entering: dict[tuple[int, int], list[Stay]] = defaultdict(list)
+    for constraint, stays in stays_by_constraint(instance.graph, solution.plans).items():
+        for stay in stays if constraint < len(instance.graph.resources) else ():
+            here = areas(stay.visit.resource)
+            for ways, neighbour in ((leaving, stay.target), (entering, stay.source)):
+                for way in () if neighbour is None else product(here, areas(neighbour)):
+                    ways[way].append(stay)
+    found = (_too_early(stays, entering.get(way, ()), trace.happened, 1, 1) for way, stays in leaving.items())
+    yield from dict.fromkeys(breach for breaches in found for breach in breaches)
 
 
 def _too_early(
@@ -122,7 +123,7 @@ def _too_early(
     place = 0
     for stay in sorted(entering, key=lambda stay: stay.visit.enter):
         while place < len(left) and left[place][0] + planned <= stay.visit.enter:
-            done = happened.get(left[place][1].node)
+            done = happened.get(left[place][1].last)
             leave = None if done is None else done.leave
             if last_left is not None and (leave is None or leave > last_left):
                 last, last_left = left[place][1], leave

@@ -99,9 +99,11 @@ def verify_bound(instance: Instance, certificate: BoundDocument) -> int:
     """The bound that the certificate proves of the instance; raises `Refusal` with what is wrong with it.
 
     No plans of all robots that can reach their goals have a smaller total cost. Where one cannot, `robots` has null.
+    Prices are on resources and exchanges alone: without the groups there are only more plans. Cuts and deadlines know
+    groups.
     """
     require_instance(instance)
-    refuse(instance, "groups", "stops")
+    refuse(instance, "stops")
     _require(is_about, is_about(certificate.instance, digest(instance)), "$.instance", "it is about another instance")
     scale = certificate.scale
     _require(is_scale, is_scale(scale), "$.scale", f"the scale must be a power of two, and is {scale!r}")
