@@ -3,7 +3,7 @@
 import pytest
 
 import carp_optimized
-from carp_experiments.measuring.crosscheck_campaign import CrosscheckCase, crosscheck_cases, crosscheck_report
+from carp_experiments.measuring.crosscheck_campaign import CrosscheckCase, Kind, crosscheck_cases, crosscheck_report
 from carp_spec import Instance, Neighbourhood, Planner, Refusal, ResourceGraph, Solution, judge
 from carp_spec.instance_rules import instance_faults
 from carproof.testing.random_instances import question
@@ -31,21 +31,21 @@ def test_questions_mix_everything() -> None:
     assert len({subject.now for subject, _ in added}) > 5
 
 
-@pytest.mark.parametrize("stops", [False, True])
-def test_the_engines_agree(stops: bool) -> None:
-    report = crosscheck_report(case.run() for case in crosscheck_cases(150, seed=3, stops=stops))
+@pytest.mark.parametrize("kind", [None, "stops"])
+def test_the_engines_agree(kind: Kind | None) -> None:
+    report = crosscheck_report(case.run() for case in crosscheck_cases(150, seed=3, kind=kind))
     assert report.holds
     assert report.tables[0].rows[0][0] == "150"
 
 
 def test_the_engines_and_searches_tick_by_tick_agree_with_groups() -> None:
-    report = crosscheck_report(case.run() for case in crosscheck_cases(60, seed=3, groups=True))
+    report = crosscheck_report(case.run() for case in crosscheck_cases(60, seed=3, kind="groups"))
     assert report.holds
 
 
 def test_windows_that_forget_groups_differ_by_ticks(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ResourceGraph, "constraints_of", lambda graph, resource: (graph.index[resource],))
-    report = crosscheck_report([CrosscheckCase(0, 30, groups=True).run()])
+    report = crosscheck_report([CrosscheckCase(0, 30, kind="groups").run()])
     assert not report.holds
     assert '"by ticks"' in report.lines[0]
 

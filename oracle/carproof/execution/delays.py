@@ -116,7 +116,7 @@ def _collisions(instance: Instance, solution: Solution) -> Iterator[tuple[Delay,
     refuse(instance, "groups")
     least = {plan.robot: least_stays(instance, plan) for plan in solution.plans}
     for constraint, stays in stays_by_constraint(instance.graph, solution.plans).items():
-        resource, capacity = instance.graph.resources[constraint].id, instance.graph.resources[constraint].capacity
+        capacity = instance.graph.resources[constraint].capacity
         for stay in stays:
             tick = stay.visit.enter
             present = {

@@ -10,7 +10,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias, cast
 
-from carp_spec.limits import refuse
 from carp_spec.model import Instance, Plan, ResourceGraph, ResourceId, RobotId, Visit
 from carp_spec.plan_rules import least_stays
 
