@@ -20,8 +20,10 @@ Inductive meaning :=
 | Stands (id : Z)
 (** The robots with ranks in [first, end_) are at least [least] ticks late together. *)
 | Delayed (first end_ least : Z)
-(** At least [least] robots with seats in [first, end_) are in the resource at the tick. *)
-| Crowded (first end_ place tick least : Z).
+(** The robot counts at the tick in the limit of the key: in a resource, or in a group. *)
+| Counted (id key tick : Z)
+(** At least [least] robots with seats in [first, end_) count at the tick in the limit of the key. *)
+| Crowded (first end_ key tick least : Z).
 
 (** The plans of the group that a formula asks for: any lawful ones, those that cost less than a total together, or
     those that keep deadlines. *)
@@ -41,10 +43,11 @@ Inductive reason :=
 | Is_there (id place tick : Z)
 | Stands_there
 | Adds_delays
-| Adds_robots (place tick : Z)
+| Is_counted (id key tick : Z)
+| Adds_robots (key tick : Z)
 | Is_full
-| Are_two (one other place tick : Z)
-| Exchange (one other source target tick : Z)
+| Are_two (one other key tick : Z)
+| Exchange (one other source target from to tick : Z)
 | Is_cheaper
 | Is_in_time (id : Z)
 | Is_seen (id : Z)
@@ -77,7 +80,10 @@ Record tables := Tables {
   crew : list member;
   member_of : Map.t member;
   demanded : list deadline;
-  dues : Map.t deadline
+  dues : Map.t deadline;
+  limit_at : Map.t (Z * limit);
+  keys_of_close : Map.t (list Z);
+  longer : Z
 }.
 
 Definition predecessor_table (i : instance) : Map.t (list Z) :=
@@ -88,8 +94,9 @@ Definition tables_of (i : instance) (group : list robot) (asked : demand) (b : b
   let moves := successor_table i in
   let back := predecessor_table i in
   let demanded := match asked with In_time due => due | _ => [] end in
+  let known := lookup_of i in
   Tables (after_goal i) (resource_table i) (listed moves) (listed back) all (index (fun m => robot_id (fst m)) all)
-    demanded (index who demanded).
+    demanded (index who demanded) (limit_of known) (swap_keys known) (gap i).
 
 Section Checker.
 Variable w : tables.
@@ -186,6 +193,22 @@ Definition unless_present (c : list signed) (id r t : Z) : bool :=
     (r =? goal a) && if_costs c id (t + 1 - release a) &&
       match policy w with Park => true | Vanish => if_cheaper c id (t + 1 - release a - ticks) end).
 
+(** The clause holds if the robot does not count in the limit at the tick. *)
+Definition unless_counted (c : list signed) (id key t : Z) : bool :=
+  is_described id t &&
+  (existsb (fun l => match l with (false, Counted id' key' t') => (id' =? id) && (key' =? key) && (t' =? t) | _ => false end)
+     c ||
+   match Map.find key (limit_at w) with
+   | Some (_, l) =>
+       existsb (fun place =>
+         unless_present c id place t || (0 <? longer w) && unless_present c id place (t - longer w)) (limit_places l)
+   | None => false
+   end) && of_robot id (fun _ _ => true).
+
+(** The resources are the same, or share a group of capacity 1. *)
+Definition are_close (r s : Z) : bool :=
+  existsb (fun key => existsb (Z.eqb key) (listed (keys_of_close w) s)) (listed (keys_of_close w) r).
+
 (** The clause holds if the robot is free to leave the resource at the tick: it waited there, as far as it is described,
     or moved there, and did not start there. *)
 Definition if_came (c : list signed) (id r t : Z) : bool :=
@@ -212,22 +235,25 @@ Definition true_if_delays (l : signed) : option (Z * Z * Z) :=
   match l with (true, Delayed first end_ least) => Some (first, end_, least) | _ => None end.
 
 Definition robot_of_meaning (m : meaning) : Z :=
-  match m with Free id _ _ | Costs id _ | Present id _ _ | Stands id => id | Delayed _ _ _ | Crowded _ _ _ _ _ => 0 end.
+  match m with
+  | Free id _ _ | Costs id _ | Present id _ _ | Stands id | Counted id _ _ => id
+  | Delayed _ _ _ | Crowded _ _ _ _ _ => 0
+  end.
 
-Definition robots_if_false (r t : Z) (l : signed) : option (Z * Z * Z) :=
+Definition robots_if_false (key t : Z) (l : signed) : option (Z * Z * Z) :=
   let id := robot_of_meaning (snd l) in
   match l with
-  | (false, Crowded first end_ r' t' least) => if (r' =? r) && (t' =? t) then Some (first, end_, least) else None
+  | (false, Crowded first end_ key' t' least) => if (key' =? key) && (t' =? t) then Some (first, end_, least) else None
   | _ =>
       match Map.find id (member_of w) with
-      | Some (_, g) => if unless_present [l] id r t then Some (seat g, seat g + 1, 1) else None
+      | Some (_, g) => if unless_counted [l] id key t then Some (seat g, seat g + 1, 1) else None
       | None => None
       end
   end.
 
-Definition true_if_robots (r t : Z) (l : signed) : option (Z * Z * Z) :=
+Definition true_if_robots (key t : Z) (l : signed) : option (Z * Z * Z) :=
   match l with
-  | (true, Crowded first end_ r' t' least) => if (r' =? r) && (t' =? t) then Some (first, end_, least) else None
+  | (true, Crowded first end_ key' t' least) => if (key' =? key) && (t' =? t) then Some (first, end_, least) else None
   | _ => None
   end.
 
@@ -248,8 +274,8 @@ Definition adds (if_false true_if : signed -> option (Z * Z * Z)) (c : list sign
   | _ => false
   end.
 
-Definition room_below (r n : Z) : bool :=
-  match Map.find r (places w) with Some x => capacity x <? n | None => false end.
+Definition room_below (key n : Z) : bool :=
+  match Map.find key (limit_at w) with Some (_, l) => limit_capacity l <? n | None => false end.
 
 (** ** What is demanded *)
 
@@ -345,15 +371,19 @@ Definition justified (asked : demand) (c : list signed) (why : reason) : bool :=
       unless_present c id r t &&
       existsb (fun l =>
         match l with (true, Present id' r' t') => (id' =? id) && (r' =? r) && (t' =? t) | _ => false end) c
+  | Is_counted id key t =>
+      unless_counted c id key t &&
+      existsb (fun l =>
+        match l with (true, Counted id' key' t') => (id' =? id) && (key' =? key) && (t' =? t) | _ => false end) c
   | Stands_there => existsb (fun l => match l with (true, Stands _) => true | _ => false end) c
   | Adds_delays => adds delays_if_false true_if_delays c
-  | Adds_robots r t => adds (robots_if_false r t) (true_if_robots r t) c
-  | Is_full => existsb (fun l => match l with (false, Crowded _ _ r _ n) => room_below r n | _ => false end) c
-  | Are_two one other r t =>
-      negb (one =? other) && room_below r 2 && unless_present c one r t && unless_present c other r t
-  | Exchange one other r s t =>
-      negb (one =? other) && negb (r =? s) && unless_free c one r t && unless_free c other s t &&
-      unless_present c one s t && unless_present c other r t
+  | Adds_robots key t => adds (robots_if_false key t) (true_if_robots key t) c
+  | Is_full => existsb (fun l => match l with (false, Crowded _ _ key _ n) => room_below key n | _ => false end) c
+  | Are_two one other key t =>
+      negb (one =? other) && room_below key 2 && unless_counted c one key t && unless_counted c other key t
+  | Exchange one other r s from to t =>
+      negb (one =? other) && negb (r =? s) && negb (from =? to) && are_close r to && are_close s from &&
+      unless_free c one r t && unless_free c other from t && unless_present c one s t && unless_present c other to t
   | Is_cheaper => too_late asked c
   | Is_in_time id => if_in_time c id
   | Is_seen id => if_seen c id

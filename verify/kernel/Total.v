@@ -18,7 +18,10 @@ Record Right_tables (i : instance) (asked : demand) (w : tables) : Prop := {
   demanded_is_asked : forall d, In d (demanded w) -> exists all, asked = In_time all /\ In d all;
   dues_are_demanded : forall id d, Map.find id (dues w) = Some d ->
     who d = id /\ exists all, asked = In_time all /\ In d all;
-  guides_are_accepted : forall m, In m (crew w) -> guide_accepted w (resource_ids i) m = true
+  guides_are_accepted : forall m, In m (crew w) -> guide_accepted w (resource_ids i) m = true;
+  limits_are_right : forall key k l, Map.find key (limit_at w) = Some (k, l) -> In l (limits i);
+  close_is_right : forall r t, are_close w r t = true -> Close i r t;
+  longer_is_right : longer w = gap i
 }.
 
 Lemma predecessors_are_moves i r s : Well_formed i -> In s (listed (predecessor_table i) r) <-> Move i s r.
@@ -65,6 +68,10 @@ Proof.
   - intros d Hd. destruct asked; [destruct Hd.. |]. eauto.
   - intros id d F. apply (found_in_index_is_listed who) in F as [F E]. destruct asked; [destruct F.. |]. eauto.
   - apply forallb_forall, Guides.
+  - intros key k l F. apply (found_in_index_is_listed fst) in F as [F _]. apply (in_limits i). eauto.
+  - intros r t F. unfold are_close in F. apply existsb_exists in F as (key & R & F).
+    apply existsb_exists in F as (k & T & E). apply Z.eqb_eq in E. subst k.
+    exact (sharing_keys_are_close i right key r t R T).
 Qed.
 
 (** The robots of the group do what is demanded. *)
@@ -393,15 +400,22 @@ Hypothesis described : forall m, In m (crew w) -> Describes m (routes (robot_id 
 Definition route (a : robot) : list visit := routes (robot_id a).
 Definition route_cost (a : robot) : Z := ends (robot_id a) - release a.
 Definition delay (m : member) : Z := route_cost (fst m) - shortest (snd m).
-Definition is_present (r t : Z) (m : member) : bool :=
-  is_described w (robot_id (fst m)) t && is_in i (fst m) (route (fst m)) r t.
-Definition presence (r t : Z) (m : member) : Z := Z.b2z (is_present r t m).
+(** The robot counts on its route: it is in a place of the limit at the tick, or was so the gap before. *)
+Definition counts_on_route (key t : Z) (a : robot) : bool :=
+  match Map.find key (limit_at w) with
+  | Some (_, l) =>
+      existsb (fun place => is_in i a (route a) place t || is_in i a (route a) place (t - gap i)) (limit_places l)
+  | None => false
+  end.
+Definition is_present (key t : Z) (m : member) : bool :=
+  is_described w (robot_id (fst m)) t && counts_on_route key t (fst m).
+Definition presence (key t : Z) (m : member) : Z := Z.b2z (is_present key t m).
 
 (** The sum over the robots whose keys are in a range. *)
 Definition ranged (key f : member -> Z) (first end_ : Z) : Z :=
   sum (fun m => if (first <=? key m) && (key m <? end_) then f m else 0) (crew w).
 Definition delays := ranged (fun m => rank (snd m)) delay.
-Definition presences (r t : Z) := ranged (fun m => seat (snd m)) (presence r t).
+Definition presences (key t : Z) := ranged (fun m => seat (snd m)) (presence key t).
 
 Definition is_true (m : meaning) : bool :=
   match m with
@@ -410,7 +424,8 @@ Definition is_true (m : meaning) : bool :=
   | Present id r t => of_robot w id (fun a _ => is_in i a (route a) r t)
   | Stands _ => true
   | Delayed first end_ least => least <=? delays first end_
-  | Crowded first end_ r t least => least <=? presences r t first end_
+  | Counted id key t => of_robot w id (fun a _ => counts_on_route key t a)
+  | Crowded first end_ key t least => least <=? presences key t first end_
   end.
 
 (** One of the literals is true. *)
@@ -525,6 +540,18 @@ Proof.
       * rewrite (arrived_robot_is_inside i a _ _ _ _ _ t routed D) in F; [discriminate | |]; unfold route_cost in *;
              rewrite ?Policy; unfold end_; auto; lia.
     + eapply kept_if_costs; eauto.
+Qed.
+
+Lemma kept_unless_counted key t : unless_counted w c id key t = true -> counts_on_route key t a = false -> Kept c.
+Proof.
+  unfold unless_counted. intros H F. apply andb_true_iff in H as [H _]. apply andb_true_iff in H as [_ H].
+  apply orb_true_iff in H as [H | H]; [look H l; shown; exact F |].
+  unfold counts_on_route in F. destruct (Map.find key (limit_at w)) as [[k l] |]; [| discriminate].
+  apply existsb_exists in H as (place & P & H).
+  assert (N : is_in i a (route a) place t || is_in i a (route a) place (t - gap i) = false).
+  { apply not_true_iff_false. intros T. apply not_true_iff_false in F. apply F. apply existsb_exists. eauto. }
+  apply orb_false_iff in N as [N M]. apply orb_true_iff in H as [H | H]; [exact (kept_unless_present _ _ H N) |].
+  apply andb_true_iff in H as [_ H]. rewrite (longer_is_right i asked w tabled) in H. exact (kept_unless_present _ _ H M).
 Qed.
 
 Lemma kept_at_the_start : if_free w c id (start a) (release a + need i a (start a)) = true ->
@@ -726,108 +753,133 @@ Proof.
     apply Z.leb_le. exact L.
 Qed.
 
-Lemma kept_by_adding_robots c r t : adds (robots_if_false w r t) (true_if_robots r t) c = true -> Kept c.
+(** Who counts in a limit that a clause speaks of. *)
+Lemma count_is_of_a_robot c id key t : unless_counted w c id key t = true -> exists a g,
+  Map.find id (member_of w) = Some (a, g) /\ is_described w (robot_id a) t = true /\
+  (counts_on_route key t a = false -> Kept c).
 Proof.
-  apply (kept_by_adding _ _ (presences r t) c (fun m => seat (snd m)) (presence r t));
+  intros H. pose proof H as K. unfold unless_counted in K. apply andb_true_iff in K as [K F].
+  apply andb_true_iff in K as [D _]. apply some_robot in F as (a & g & F & _). exists a, g. split; auto. split.
+  - rewrite (proj2 (found_member a g id F)). exact D.
+  - apply (kept_unless_counted a g id F c key t H).
+Qed.
+
+Lemma kept_by_adding_robots c key t : adds (robots_if_false w key t) (true_if_robots key t) c = true -> Kept c.
+Proof.
+  apply (kept_by_adding _ _ (presences key t) c (fun m => seat (snd m)) (presence key t));
     auto using presences_are_not_negative.
   - intros l from upto n E.
     assert (One : match Map.find (robot_of_meaning (snd l)) (member_of w) with
       | Some (_, g) =>
-          if unless_present w [l] (robot_of_meaning (snd l)) r t then Some (seat g, seat g + 1, 1) else None
+          if unless_counted w [l] (robot_of_meaning (snd l)) key t then Some (seat g, seat g + 1, 1) else None
       | None => None
-      end = Some (from, upto, n) -> is_true (snd l) = fst l \/ n <= presences r t from upto).
-    { intros H. destruct (unless_present w [l] (robot_of_meaning (snd l)) r t) eqn:U;
+      end = Some (from, upto, n) -> is_true (snd l) = fst l \/ n <= presences key t from upto).
+    { intros H. destruct (unless_counted w [l] (robot_of_meaning (snd l)) key t) eqn:U;
         [| destruct (Map.find _ _) as [[? ?] |]; discriminate].
-      destruct (presence_is_of_a_robot _ _ _ _ U) as (a & g & Found & D & K). rewrite Found in H.
+      destruct (count_is_of_a_robot _ _ _ _ U) as (a & g & Found & D & K). rewrite Found in H.
       injection H as <- <- <-.
-      destruct (is_in i a (route a) r t) eqn:In_it.
+      destruct (counts_on_route key t a) eqn:In_it.
       - right. pose proof (found_member a g _ Found) as [M E'].
-        pose proof (one_is_in_its_range (fun m => seat (snd m)) (presence r t) (a, g)
-          (fun m _ => presences_are_not_negative r t m) M) as L.
+        pose proof (one_is_in_its_range (fun m => seat (snd m)) (presence key t) (a, g)
+          (fun m _ => presences_are_not_negative key t m) M) as L.
         unfold presence at 1, is_present in L. cbn [fst snd] in L. rewrite D, In_it in L. exact L.
       - left. destruct (K eq_refl) as (l' & [<- | []] & T). exact T. }
     unfold robots_if_false in E. destruct l as [[|] []];
       try (apply One, E).
-    destruct ((place =? r) && (tick =? t)) eqn:Same; [| discriminate]. decided. subst. injection E as <- <- <-.
-    cbn [is_true fst snd]. destruct (least <=? presences r t first end_) eqn:L; auto. decided. auto.
+    destruct ((key0 =? key) && (tick =? t)) eqn:Same; [| discriminate]. decided. subst. injection E as <- <- <-.
+    cbn [is_true fst snd]. destruct (least <=? presences key t first end_) eqn:L; auto. decided. auto.
   - intros [[|] []] from upto n E L; try discriminate; simpl in E.
-    destruct ((place =? r) && (tick =? t)) eqn:Same; [| discriminate]. decided. subst. injection E as <- <- <-.
+    destruct ((key0 =? key) && (tick =? t)) eqn:Same; [| discriminate]. decided. subst. injection E as <- <- <-.
     apply Z.leb_le. exact L.
 Qed.
 
 (** ** Capacity *)
 
-Lemma room_is_not_exceeded x r t ids : Map.find r (places w) = Some x -> NoDup ids ->
-  (forall id, In id ids -> Occupies (plans s) id r t) -> Z.of_nat (length ids) <= capacity x.
+Lemma room_is_not_exceeded key k l t ids : Map.find key (limit_at w) = Some (k, l) -> NoDup ids ->
+  (forall id, In id ids -> Counts i (plans s) id l t) -> Z.of_nat (length ids) <= limit_capacity l.
 Proof.
-  intros F N H. destruct (places_are_right i asked w tabled r x F) as [Hx <-].
-  apply (capacity_is_kept i s lawful x t); auto.
+  intros F N H. apply (limits_are_kept i s lawful l t ids); auto. exact (limits_are_right i asked w tabled key k l F).
 Qed.
 
-Lemma presences_keep_capacity x r t first end_ : Map.find r (places w) = Some x ->
-  presences r t first end_ <= capacity x.
+(** A robot that counts on its route counts. *)
+Lemma robot_on_route_counts m key k l t : In m (crew w) -> is_described w (robot_id (fst m)) t = true ->
+  Map.find key (limit_at w) = Some (k, l) -> counts_on_route key t (fst m) = true ->
+  Counts i (plans s) (robot_id (fst m)) l t.
 Proof.
-  intros F. set (here := filter (is_present r t) (crew w)).
-  assert (L : presences r t first end_ <= Z.of_nat (length here)).
-  { unfold presences, ranged, here. clear. induction (crew w) as [| m l IH]; simpl; [lia |].
-    unfold presence at 1. destruct (_ && (_ <? _)), (is_present r t m); simpl length; simpl Z.b2z; lia. }
+  intros M D F C. unfold counts_on_route in C. rewrite F in C. apply existsb_exists in C as (place & P & C).
+  assert (G : 0 <= gap i) by (unfold gap; destruct (following_is_forbidden i); lia).
+  apply orb_true_iff in C as [C | C].
+  - exists place, 0. rewrite Z.sub_0_r. repeat split; auto; [lia |]. apply robot_inside_occupies; auto.
+  - exists place, (gap i). repeat split; auto; [lia |]. apply robot_inside_occupies; auto.
+    unfold is_described in *. destruct (seen_tick w (robot_id (fst m))); auto. apply Z.leb_le in D. apply Z.leb_le. lia.
+Qed.
+
+Lemma presences_keep_capacity key k l t first end_ : Map.find key (limit_at w) = Some (k, l) ->
+  presences key t first end_ <= limit_capacity l.
+Proof.
+  intros F. set (here := filter (is_present key t) (crew w)).
+  assert (L : presences key t first end_ <= Z.of_nat (length here)).
+  { unfold presences, ranged, here. clear. induction (crew w) as [| m ms IH]; simpl; [lia |].
+    unfold presence at 1. destruct (_ && (_ <? _)), (is_present key t m); simpl length; simpl Z.b2z; lia. }
   rewrite <- (map_length (fun m : member => robot_id (fst m))) in L. etransitivity; [exact L |].
-  apply (room_is_not_exceeded x r t); auto.
+  apply (room_is_not_exceeded key k l t); auto.
   - pose proof (crew_is_distinct i asked w tabled) as N. unfold here. clear - N.
-    induction (crew w) as [| m l IH]; simpl in *; auto. inversion N as [| ? ? Hn Hd]; subst.
-    destruct (is_present r t m); simpl; auto. constructor; auto. intros H. apply Hn.
+    induction (crew w) as [| m ms IH]; simpl in *; auto. inversion N as [| ? ? Hn Hd]; subst.
+    destruct (is_present key t m); simpl; auto. constructor; auto. intros H. apply Hn.
     apply in_map_iff in H as (x & E & H). apply filter_In in H as [H _]. apply in_map_iff. eauto.
   - intros id H. apply in_map_iff in H as (m & <- & H). apply filter_In in H as [H K].
-    apply andb_true_iff in K as [D K]. apply robot_inside_occupies; auto.
+    apply andb_true_iff in K as [D K]. apply (robot_on_route_counts m key k l t); auto.
 Qed.
 
 Lemma kept_by_capacity c :
-  existsb (fun l => match l with (false, Crowded _ _ r _ n) => room_below w r n | _ => false end) c = true -> Kept c.
+  existsb (fun l => match l with (false, Crowded _ _ key _ n) => room_below w key n | _ => false end) c = true -> Kept c.
 Proof.
   intros H. apply existsb_exists in H as (l & Hl & H). destruct l as [[|] []]; try discriminate.
-  exists (false, Crowded first end_ place tick least). split; auto. simpl. apply Z.leb_gt.
-  unfold room_below in H. destruct (Map.find place (places w)) as [x |] eqn:F; [| discriminate]. decided.
-  pose proof (presences_keep_capacity x place tick first end_ F). lia.
+  exists (false, Crowded first end_ key tick least). split; auto. simpl. apply Z.leb_gt.
+  unfold room_below in H. destruct (Map.find key (limit_at w)) as [[k x] |] eqn:F; [| discriminate]. decided.
+  pose proof (presences_keep_capacity key k x tick first end_ F). lia.
 Qed.
 
-Lemma kept_by_room_for_one c one other r t : one <> other -> room_below w r 2 = true ->
-  unless_present w c one r t = true -> unless_present w c other r t = true -> Kept c.
+Lemma kept_by_room_for_one c one other key t : one <> other -> room_below w key 2 = true ->
+  unless_counted w c one key t = true -> unless_counted w c other key t = true -> Kept c.
 Proof.
-  intros D R U V. destruct (presence_is_of_a_robot _ _ _ _ U) as (a & g & F & Da & K).
-  destruct (presence_is_of_a_robot _ _ _ _ V) as (b & h & G & Db & L).
-  destruct (is_in i a (route a) r t) eqn:A; [| auto]. destruct (is_in i b (route b) r t) eqn:B; [| auto]. exfalso.
+  intros D R U V. destruct (count_is_of_a_robot _ _ _ _ U) as (a & g & F & Da & K).
+  destruct (count_is_of_a_robot _ _ _ _ V) as (b & h & G & Db & L).
+  destruct (counts_on_route key t a) eqn:A; [| auto]. destruct (counts_on_route key t b) eqn:B; [| auto]. exfalso.
   destruct (found_member a g one F) as [Ma Ea]. destruct (found_member b h other G) as [Mb Eb].
-  unfold room_below in R. destruct (Map.find r (places w)) as [x |] eqn:X; [| discriminate]. decided.
-  pose proof (room_is_not_exceeded x r t [one; other] X) as C. simpl length in C.
-  assert (Z.of_nat 2 <= capacity x); [apply C | lia].
+  unfold room_below in R. destruct (Map.find key (limit_at w)) as [[k x] |] eqn:X; [| discriminate]. decided.
+  pose proof (room_is_not_exceeded key k x t [one; other] X) as C. simpl length in C.
+  assert (Z.of_nat 2 <= limit_capacity x); [apply C | lia].
   - repeat constructor; simpl; intuition congruence.
   - intros id [<- | [<- | []]]; [rewrite <- Ea | rewrite <- Eb].
-    + apply (robot_inside_occupies (a, g)); auto.
-    + apply (robot_inside_occupies (b, h)); auto.
+    + apply (robot_on_route_counts (a, g) key k x); auto.
+    + apply (robot_on_route_counts (b, h) key k x); auto.
 Qed.
 
 (** ** Exchange *)
 
-Lemma kept_by_exchange c one other r x t : one <> other -> r <> x ->
-  unless_free c one r t = true -> unless_free c other x t = true ->
-  unless_present w c one x t = true -> unless_present w c other r t = true -> Kept c.
+Lemma kept_by_exchange c one other r x from to t : one <> other -> r <> x -> from <> to ->
+  are_close w r to = true -> are_close w x from = true ->
+  unless_free c one r t = true -> unless_free c other from t = true ->
+  unless_present w c one x t = true -> unless_present w c other to t = true -> Kept c.
 Proof.
-  intros D E Fr Fx U V. destruct (presence_is_of_a_robot _ _ _ _ U) as (a & g & F & Da & K).
+  intros D E E' Cr Cx Fr Fx U V. destruct (presence_is_of_a_robot _ _ _ _ U) as (a & g & F & Da & K).
   destruct (presence_is_of_a_robot _ _ _ _ V) as (b & h & G & Db & L).
-  destruct (is_in i a (route a) x t) eqn:A; [| auto]. destruct (is_in i b (route b) r t) eqn:B; [| auto].
+  destruct (is_in i a (route a) x t) eqn:A; [| auto]. destruct (is_in i b (route b) to t) eqn:B; [| auto].
   destruct (is_free i a (route a) r t) eqn:A'; [| exact (kept_unless_free a g one F c _ _ Fr A')].
-  destruct (is_free i b (route b) x t) eqn:B'; [| exact (kept_unless_free b h other G c _ _ Fx B')]. exfalso.
+  destruct (is_free i b (route b) from t) eqn:B'; [| exact (kept_unless_free b h other G c _ _ Fx B')]. exfalso.
   destruct (found_member a g one F) as [Ma <-]. destruct (found_member b h other G) as [Mb <-].
-  pose proof (robot_inside_occupies (a, g) x t Ma Da A) as (p & u & Hp & _ & Hu & Ru & _).
-  pose proof (robot_inside_occupies (b, h) r t Mb Db B) as (q & v & Hq & _ & Hv & Rv & _).
-  assert (Known : forall p u, In p (plans s) -> In u (visits p) -> In (visit_resource u) (resource_ids i)).
-  { intros p' u' Hp' Hu'. destruct (planned_robot_is_known i s lawful p' Hp') as (a' & Ha' & E').
-    apply (visits_resources i a' p' (plans_lawful i s lawful p' a' Hp' Ha' E') u' Hu'). }
-  apply (swaps_are_avoided i s lawful (robot_id a) (robot_id b) r x t); auto.
-  - rewrite <- Rv. exact (Known q v Hq Hv).
-  - rewrite <- Ru. exact (Known p u Hp Hu).
-  - apply (robot_free_elsewhere_makes_the_move (a, g)); auto.
-  - apply (robot_free_elsewhere_makes_the_move (b, h)); auto.
+  pose proof (robot_free_elsewhere_makes_the_move (a, g) r x t Ma Da A' A E) as M.
+  pose proof (robot_free_elsewhere_makes_the_move (b, h) from to t Mb Db B' B E') as N.
+  assert (Known : forall id y z, Makes_move (plans s) id y z t -> In y (resource_ids i) /\ In z (resource_ids i)).
+  { intros id y z (p & u & v & Hp & _ & C & <- & <- & _).
+    destruct (planned_robot_is_known i s lawful p Hp) as (a' & Ha' & I).
+    assert (J : In u (visits p) /\ In v (visits p)).
+    { destruct C as (before & later & ->). split; apply in_or_app; simpl; auto. }
+    pose proof (visits_resources i a' p (plans_lawful i s lawful p a' Hp Ha' I)) as Q. split; apply Q; tauto. }
+  destruct (Known _ _ _ M), (Known _ _ _ N).
+  apply (exchanges_are_avoided i s lawful (robot_id a) (robot_id b) r x from to t);
+    auto using (close_is_right i asked w tabled).
 Qed.
 
 (** ** What is demanded *)
@@ -909,10 +961,16 @@ Proof.
     cbn [is_true fst snd]. rewrite (of_found_robot a g id Found). exact Inside.
   - apply existsb_exists in H as (l & Hl & H). destruct l as [[|] []]; try discriminate. eexists. eauto.
   - apply kept_by_adding_delays, H.
-  - apply (kept_by_adding_robots c place tick), H.
+  - decided. match goal with K : unless_counted _ _ _ _ _ = true |- _ => rename K into Unless end.
+    destruct (count_is_of_a_robot _ _ _ _ Unless) as (a & g & Found & _ & K).
+    destruct (counts_on_route key tick a) eqn:Inside; auto.
+    match goal with E : existsb _ _ = true |- _ => apply existsb_exists in E as (l & Hl & E) end.
+    destruct l as [[|] []]; try discriminate. decided. subst. eexists. split; [eassumption |].
+    cbn [is_true fst snd]. rewrite (of_found_robot a g id Found). exact Inside.
+  - apply (kept_by_adding_robots c key tick), H.
   - apply kept_by_capacity, H.
-  - decided. apply (kept_by_room_for_one c one other place tick); auto.
-  - decided. apply (kept_by_exchange c one other source target tick); auto.
+  - decided. apply (kept_by_room_for_one c one other key tick); auto.
+  - decided. apply (kept_by_exchange c one other source target from to tick); auto.
   - apply kept_by_costing_less, H.
   - pose proof H as Due. apply some_robot in Due as (a & g & Found & _). apply (kept_if_in_time a g id Found c H).
   - pose proof H as Due. apply some_robot in Due as (a & g & Found & _). apply (kept_if_seen a g id Found c H).

@@ -245,43 +245,80 @@ let at_least draft reason meaning addends most =
 
 (* ---- All robots ---- *)
 
-(* Robots by their positions, which are their seats. *)
-type encoding = { draft : draft; clerks : clerk array; presences : (int * Z.t * Z.t, int) Hashtbl.t }
+let without_repetition items =
+  let met = Hashtbl.create 1024 in
+  let is_new item = if Hashtbl.mem met item then false else (Hashtbl.add met item (); true) in
+  List.filter is_new items
+
+(* What limits the robots: a resource by itself, or a group; at most this many may count in its places at a tick. *)
+type constraint_ = { key : Z.t; places : Z.t list; most_inside : Z.t; is_resource : bool }
+
+(* Robots by their positions, which are their seats; the constraints on a place, its own first; and for how many ticks
+   a robot still counts that has left. *)
+type encoding = {
+  draft : draft;
+  clerks : clerk array;
+  presences : (int * Z.t * Z.t * int, int) Hashtbl.t;
+  constraints_on : Z.t -> constraint_ list;
+  longer : int;
+}
+
+let constraints_of (instance : Law.instance) =
+  let table = Hashtbl.create 1024 in
+  let on place = Option.value ~default:[] (Hashtbl.find_opt table place) in
+  let enlist constraint_ =
+    List.iter (fun place -> Hashtbl.replace table place (constraint_ :: on place)) constraint_.places
+  in
+  let constraint_ is_resource (key, (limit : Law.limit)) =
+    { key; places = limit.limit_places; most_inside = limit.limit_capacity; is_resource }
+  in
+  List.iter (fun each -> enlist (constraint_ true each)) (Checker.resource_limits instance);
+  List.iter (fun each -> enlist (constraint_ false each)) (Checker.group_limits instance.groups);
+  fun place -> List.rev (on place)
 
 let id_of { clerks; _ } position = clerks.(position).robot.robot_id
 
-(* A literal that holds if the robot is in the resource at the tick, if it can be there. *)
-let presence ({ draft; clerks; presences } as encoding) position place tick =
-  match List.of_seq (stays clerks.(position) place tick) with
+(* A literal that holds if the constraint counts the robot at the tick, if it can do so; the robot counts for [longer]
+   ticks after it has left. *)
+let presence ({ draft; clerks; presences; _ } as encoding) position { key; places; is_resource; _ } longer tick =
+  let stays_in place back = List.of_seq (stays clerks.(position) place (Z.sub tick (Z.of_int back))) in
+  let stays_at place = List.concat_map (stays_in place) (List.init (longer + 1) Fun.id) in
+  match without_repetition (List.concat_map stays_at places) with
   | [] -> None
   | [ [ literal ] ] -> Some literal
   | alternatives -> (
-      let key = (position, place, tick) in
-      match Hashtbl.find_opt presences key with
+      let name = (position, key, tick, longer) in
+      match Hashtbl.find_opt presences name with
       | Some literal -> Some literal
       | None ->
           let id = id_of encoding position in
-          let literal = variable draft (Present (id, place, tick)) in
-          Hashtbl.add presences key literal;
-          let imply stay = add draft (Is_there (id, place, tick)) (List.map ( ~- ) stay @ [ literal ]) in
-          List.iter imply alternatives;
+          let meaning, reason =
+            match places with
+            | [ place ] when is_resource && longer = 0 -> (Present (id, place, tick), Is_there (id, place, tick))
+            | _ -> (Counted (id, key, tick), Is_counted (id, key, tick))
+          in
+          let literal = variable draft meaning in
+          Hashtbl.add presences name literal;
+          List.iter (fun stay -> add draft reason (List.map ( ~- ) stay @ [ literal ])) alternatives;
           Some literal)
 
-let visitors { clerks; _ } place =
-  let may_visit position =
+let visitors { clerks; _ } places =
+  let may_visit position place =
     Z.equal place clerks.(position).robot.goal || Hashtbl.mem clerks.(position).ticks place
   in
-  List.filter may_visit (List.init (Array.length clerks) Fun.id)
+  List.filter (fun position -> List.exists (may_visit position) places) (List.init (Array.length clerks) Fun.id)
 
-let forbid_crowd ({ draft; _ } as encoding) capacity (place, tick) =
-  let present position = Option.map (fun literal -> (position, literal)) (presence encoding position place tick) in
-  let literals = List.filter_map present (visitors encoding place) in
+let forbid_crowd ({ draft; longer; _ } as encoding) ({ key; places; most_inside = capacity; _ } as constraint_, tick) =
+  let present position =
+    Option.map (fun literal -> (position, literal)) (presence encoding position constraint_ longer tick)
+  in
+  let literals = List.filter_map present (visitors encoding places) in
   if Z.equal capacity Z.one then
     let rec pairs before = function
       | [] -> ()
       | (position, literal) :: rest ->
           let pair (other, known) =
-            add draft (Are_two (id_of encoding other, id_of encoding position, place, tick)) [ -known; -literal ]
+            add draft (Are_two (id_of encoding other, id_of encoding position, key, tick)) [ -known; -literal ]
           in
           List.iter pair (List.rev before);
           pairs ((position, literal) :: before) rest
@@ -291,22 +328,25 @@ let forbid_crowd ({ draft; _ } as encoding) capacity (place, tick) =
     let one (position, literal) =
       { first = Z.of_int position; end_ = Z.of_int (position + 1); least = [ literal ] }
     in
-    let meaning first end_ least = Crowded (first, end_, place, tick, least) in
-    let counted = at_least draft (Adds_robots (place, tick)) meaning (List.map one literals) (Z.to_int capacity + 1) in
+    let meaning first end_ least = Crowded (first, end_, key, tick, least) in
+    let counted = at_least draft (Adds_robots (key, tick)) meaning (List.map one literals) (Z.to_int capacity + 1) in
     add draft Is_full [ -List.nth counted (Z.to_int capacity) ]
 
-let forbid_exchange ({ draft; clerks; _ } as encoding) source target tick =
+(* Two moves that robots must not both make at the tick. *)
+let forbid_exchange ({ draft; clerks; constraints_on; _ } as encoding) (source, target) (from, to_) tick =
   let moves source target position =
     match Hashtbl.find_opt clerks.(position).node (source, tick) with
     | None -> None
-    | Some leaves -> Option.map (fun enters -> (position, [ leaves; enters ])) (presence encoding position target tick)
+    | Some leaves ->
+        let enters = presence encoding position (List.hd (constraints_on target)) 0 tick in
+        Option.map (fun enters -> (position, [ leaves; enters ])) enters
   in
-  let there = List.filter_map (moves source target) (visitors encoding source) in
-  let back = List.filter_map (moves target source) (visitors encoding target) in
+  let there = List.filter_map (moves source target) (visitors encoding [ source ]) in
+  let back = List.filter_map (moves from to_) (visitors encoding [ from ]) in
   let clash (one, first) (other, second) =
     if one <> other then
       add draft
-        (Exchange (id_of encoding one, id_of encoding other, source, target, tick))
+        (Exchange (id_of encoding one, id_of encoding other, source, target, from, to_, tick))
         (List.map ( ~- ) (first @ second))
   in
   List.iter (fun mover -> List.iter (clash mover) back) there
@@ -318,14 +358,10 @@ let entries clerk =
   let arrivals = if stands_still clerk then [] else List.init (clerk.horizon + 1) arrival in
   List.rev_append (List.rev_map entered (List.rev clerk.nodes)) arrivals
 
-let without_repetition items =
-  let met = Hashtbl.create 1024 in
-  let is_new item = if Hashtbl.mem met item then false else (Hashtbl.add met item (); true) in
-  List.filter is_new items
-
-let forbid_all ({ clerks; _ } as encoding) capacity =
+let forbid_all ({ clerks; constraints_on; _ } as encoding) =
   let all = Array.to_list clerks in
-  let crowds = without_repetition (List.concat_map entries all) in
+  let entered (place, tick) = List.map (fun constraint_ -> (constraint_, tick)) (constraints_on place) in
+  let crowds = without_repetition (List.concat_map entered (without_repetition (List.concat_map entries all))) in
   let movers = Hashtbl.create 1024 and moves = ref [] in
   let note position clerk (source, tick) =
     let try_move target =
@@ -337,13 +373,26 @@ let forbid_all ({ clerks; _ } as encoding) capacity =
     List.iter try_move (clerk.onwards source)
   in
   Array.iteri (fun position clerk -> List.iter (note position clerk) (List.rev clerk.nodes)) clerks;
-  List.iter (fun (place, tick) -> forbid_crowd encoding (capacity place) (place, tick)) crowds;
-  let exchange ((tick, source, target) as key) =
-    match Hashtbl.find_opt movers (tick, target, source) with
-    | Some back when Z.lt source target ->
-        if List.length (List.sort_uniq compare (Hashtbl.find movers key @ back)) > 1 then
-          forbid_exchange encoding source target tick
-    | _ -> ()
+  List.iter (forbid_crowd encoding) crowds;
+  let areas place =
+    let is_area { is_resource; most_inside; _ } = is_resource || Z.equal most_inside Z.one in
+    List.map (fun { key; _ } -> key) (List.filter is_area (constraints_on place))
+  in
+  let crossed (tick, source, target) =
+    List.concat_map (fun left -> List.map (fun entered -> (tick, left, entered)) (areas target)) (areas source)
+  in
+  let leading = Hashtbl.create 1024 in
+  let known crossing = Option.value ~default:[] (Hashtbl.find_opt leading crossing) in
+  let lead move = List.iter (fun crossing -> Hashtbl.replace leading crossing (move :: known crossing)) (crossed move) in
+  List.iter lead (List.rev !moves);
+  let exchange ((tick, source, target) as move) =
+    let back = List.concat_map (fun crossing -> List.rev (known crossing)) (crossed (tick, target, source)) in
+    let forbid ((_, from, to_) as other) =
+      let movers = List.sort_uniq compare (Hashtbl.find movers move @ Hashtbl.find movers other) in
+      let is_first = match Z.compare source from with 0 -> Z.lt target to_ | order -> order < 0 in
+      if is_first && List.length movers > 1 then forbid_exchange encoding (source, target) (from, to_) tick
+    in
+    List.iter forbid (without_repetition back)
   in
   List.iter exchange (List.rev !moves)
 
@@ -457,8 +506,9 @@ let blueprint (instance : Law.instance) group asked { horizons; order } most =
   let horizons = match asked with In_time due -> List.map (horizon_in due) all | _ -> horizons in
   require_nodes draft all horizons;
   List.iter2 grow_to all horizons;
-  let encoding = { draft; clerks; presences = Hashtbl.create 1024 } in
-  forbid_all encoding (Tables.room_in table);
+  let constraints_on = constraints_of instance and longer = if instance.following_is_forbidden then 1 else 0 in
+  let encoding = { draft; clerks; presences = Hashtbl.create 1024; constraints_on; longer } in
+  forbid_all encoding;
   (match asked with
   | Lawful_plans -> ()
   | Cheaper_than total -> bound_delays encoding total order
