@@ -85,19 +85,31 @@ let looks_and_work (read : Reading.instance) plans (queries : Reading.query list
   let count table key = Option.value ~default:0 (Hashtbl.find_opt table key) in
   let increase table key = Hashtbl.replace table key (count table key + 1) in
   let stays = Hashtbl.create 1024 and changes = Hashtbl.create 1024 in
-  let change place tick =
-    let known = Option.value ~default:(Ticks.singleton Z.zero) (Hashtbl.find_opt changes place) in
-    Hashtbl.replace changes place (Ticks.add tick known)
+  let known = Checker.lookup_of read.instance in
+  let keys = Checker.keys_at known in
+  let change key tick =
+    let before = Option.value ~default:(Ticks.singleton Z.zero) (Hashtbl.find_opt changes key) in
+    Hashtbl.replace changes key (Ticks.add tick before)
   in
-  let visit (v : Law.visit) =
-    increase stays v.visit_resource;
-    change v.visit_resource v.enter;
-    Option.iter (change v.visit_resource) v.leave
+  let rec visit = function
+    | [] -> ()
+    | (v : Law.visit) :: later ->
+        let next = match later with w :: _ -> keys w.Law.visit_resource | [] -> [] in
+        let stay key =
+          increase stays key;
+          change key v.enter;
+          let longer = if List.mem key next then Z.zero else known.counts_longer in
+          Option.iter (fun leave -> change key (Z.add leave longer)) v.leave
+        in
+        List.iter stay (keys v.visit_resource);
+        visit later
   in
-  List.iter (fun (p : Law.plan) -> List.iter visit p.visits) plans;
+  List.iter (fun (p : Law.plan) -> visit p.visits) plans;
   let sizes = Hashtbl.create 1024 in
-  Hashtbl.iter (fun place ticks -> Hashtbl.replace sizes place (Ticks.cardinal ticks)) changes;
-  let size place = max 1 (count sizes place) in
+  Hashtbl.iter (fun key ticks -> Hashtbl.replace sizes key (Ticks.cardinal ticks)) changes;
+  let sum f keys = List.fold_left (fun total key -> total + f key) 0 keys in
+  let size place = sum (fun key -> max 1 (count sizes key)) (keys place) in
+  let stays_around place = sum (count stays) (keys place) in
   let is_resource place = Z.lt place (Z.of_int (List.length read.instance.resources)) in
   let of_query (looks, work) (query : Reading.query) =
     let labels = Hashtbl.create 1024 in
@@ -106,14 +118,16 @@ let looks_and_work (read : Reading.instance) plans (queries : Reading.query list
       if not (is_resource place) then (looks + number, work)
       else
         let target (looks, work) s =
-          (looks + size place + size s, work + size place + (size s * (count labels s + count stays place + 1)))
+          (looks + size place + size s, work + size place + (size s * (count labels s + stays_around place + 1)))
         in
         let one_looks, one_work = List.fold_left target (1, 1) (Search.resources_to onwards place) in
         (looks + (number * one_looks), work + (number * one_work))
     in
     Hashtbl.fold of_place labels (looks, work)
   in
-  let squares = Hashtbl.fold (fun _ number sum -> sum + (number * number)) stays 0 in
+  (* Each stay in a limit has the windows of all its resources computed again. *)
+  let renewed key = sum size (Context.places_of known key) in
+  let squares = Hashtbl.fold (fun key number total -> total + (number * (number + renewed key))) stays 0 in
   List.fold_left of_query (0, squares) queries
 
 let too_much = Undecided (Printf.sprintf "the kernel would look at more than %d stays and labels" most_work)
