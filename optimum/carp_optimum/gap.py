@@ -80,7 +80,7 @@ def best_order(instance: Instance, limit: float, floor: int = 0) -> int | None:
     than `floor`; if an order reaches it, the others are not tried. Raises `TimeOver` after `limit` seconds, and
     `Refusal` for more than `MOST_ORDERED` robots.
     """
-    refuse(instance, "following", "stops")
+    refuse(instance, "stops")
     refuse_size("the robots whose orders are all tried", len(instance.robots), MOST_ORDERED)
     encoding = Encoding(instance)
     if encoding.wayless:

@@ -133,7 +133,7 @@ def opposite_moves(graph: ResourceGraph, moves: Collection[TimedMove]) -> Callab
     def opposite(move: TimedMove) -> Collection[TimedMove]:
         tick, (source, target) = move
         back = product(graph.areas_of(target), graph.areas_of(source))
-        return {each for areas in back for each in leading.get((tick, *areas), ())}
+        return dict.fromkeys(each for areas in back for each in leading.get((tick, *areas), ()))
 
     return opposite
 

@@ -7,12 +7,7 @@ from carp_spec.model import Instance
 from carp_spec.refusal import Refusal
 from carp_spec.rule import DESIGN, Rule, rule
 
-Feature: TypeAlias = Literal["following", "groups", "stops"]
-
-
-@rule("limit/following", "What does not know forbidden following refuses an instance that forbids it.", DESIGN)
-def following_is_allowed(instance: Instance) -> bool:  # noqa: D103 - its statement stands in its decorator
-    return instance.following == "allowed"
+Feature: TypeAlias = Literal["groups", "stops"]
 
 
 @rule("limit/groups", "What does not know groups refuses an instance that has any.", DESIGN)
@@ -26,11 +21,6 @@ def goals_stand_alone(instance: Instance) -> bool:  # noqa: D103 - its statement
 
 
 LIMITS: Mapping[Feature, tuple[Rule[[Instance], bool], str, str]] = {
-    "following": (
-        following_is_allowed,
-        "$.following",
-        "following must be allowed here: searches for optima do not know instances that forbid it",
-    ),
     "groups": (
         groups_are_absent,
         "$.graph.groups",

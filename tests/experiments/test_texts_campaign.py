@@ -39,7 +39,7 @@ def test_texts_are_the_same_every_time_and_of_all_kinds() -> None:
     for verdict in ("accepted", "refused", "bad input"):
         assert sum(each.verdict == verdict for each in found) > 50
     for op in (b"check", b"verify-query", b"verify-bound", b"audit"):
-        assert sum(op in text for text in texts) > 50
+        assert sum(op in text for text in texts) > 30
 
 
 def test_the_kernel_reads_and_decides_as_python_does(monkeypatch: pytest.MonkeyPatch) -> None:

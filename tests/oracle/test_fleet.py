@@ -187,10 +187,6 @@ def test_a_change_whose_proof_fails_is_no_change(monkeypatch: pytest.MonkeyPatch
     with pytest.raises(Refusal):
         fleet.add(Robot("v", "a", "b", release=9), audit=True)
     assert_alike(fleet, twin)
-    forbidden = Fleet(replace(row(), following="forbidden"))
-    with pytest.raises(Refusal, match="limit/following"):
-        forbidden.advance(3, audit=True)
-    assert forbidden.now == 0
 
 
 def raising(*_: object, **__: object) -> None:

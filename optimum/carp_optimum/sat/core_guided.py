@@ -85,7 +85,7 @@ def core_guided(
     """
     require_instance(instance)
     require_limits(limit=limit)
-    refuse(instance, "following", "stops")
+    refuse(instance, "stops")
     deadline = Deadline(limit, clock)
     try:
         encoding = Encoding(instance, deadline.check)

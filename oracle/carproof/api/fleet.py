@@ -171,7 +171,7 @@ class Fleet:
             message = f"the fleet must have at most {MOST_ROBOTS} robots, and would have more"
             raise Refusal("limit", "$.robots", FEW_ROBOTS.id, message)
         unplanned = []
-        with self._changing(audit=audit) as core:
+        with self._changing() as core:
             core.forget_old_records()
             before = core.records
             for number, robot in enumerate(robots, self._known.count):
@@ -225,7 +225,7 @@ class Fleet:
 
     def _replan(self, now: int, solution: Solution, *, audit: bool) -> Change:
         changed = [plan for plan in solution.plans if plan != self._known.plans[plan.robot]]
-        with self._changing(audit=audit) as core:
+        with self._changing() as core:
             core.replan(changed, solution.order)
             return self._take_over(core, replace(self._known, now=now), changed, (), audit=audit)
 
@@ -251,10 +251,8 @@ class Fleet:
             _require_time(robot, now, path)
 
     @contextmanager
-    def _changing(self, *, audit: bool) -> Iterator["PlannedFleet"]:
+    def _changing(self) -> Iterator["PlannedFleet"]:
         """The compiled fleet; after an error it is made again from what was known."""
-        if audit:
-            refuse(self._known.empty, "following")
         core, self._core = self._made(), None
         yield core
         self._core = core

@@ -70,7 +70,7 @@ class Encoding:
         for robot, tick in zip_longest(instance.robots, seen):
             check()
             self.robots.append(RobotClauses(instance, robot, before, self.formula, tick))
-        self._presence: dict[tuple[int, int, int], tuple[Literal, set[Clause]]] = {}
+        self._presence: dict[tuple[int, int, int, int], tuple[Literal, set[Clause]]] = {}
 
     @property
     def wayless(self) -> list[Robot]:
@@ -82,15 +82,19 @@ class Encoding:
         """The sum of the robots' costs on the empty graph."""
         return sum(robot.shortest or 0 for robot in self.robots)
 
-    def presence(self, position: int, constraint: int, tick: int) -> Literal | None:
-        """A literal that holds if the constraint counts the robot at the tick; `None` if it cannot be there."""
-        resources = self.constraints[constraint].resources
-        stays = [each for resource in resources for each in self.robots[position].stays(resource, tick)]
+    def presence(self, position: int, constraint: int, tick: int, gap: int = 0) -> Literal | None:
+        """A literal that holds if the constraint counts the robot at the tick; `None` if it cannot be there.
+
+        A robot counts for `gap` ticks more after it has left.
+        """
+        robot, resources = self.robots[position], self.constraints[constraint].resources
+        at = [(resource, tick - back) for resource in resources for back in range(gap + 1)]
+        stays = list(dict.fromkeys(stay for each in at for stay in robot.stays(*each)))
         if not stays:
             return None
         if len(stays) == 1 and len(stays[0]) == 1:
             return stays[0][0]
-        key = (position, constraint, tick)
+        key = (position, constraint, tick, gap)
         if key not in self._presence:
             self._presence[key] = (self.formula.variable(), set())
         literal, known = self._presence[key]
@@ -110,8 +114,9 @@ class Encoding:
         """Add the clauses that forbid a conflict to all robots, as far as their horizons reach."""
         if isinstance(conflict, Conflict):
             constraint = self.constraints[conflict.constraint]
-            visitors = dict.fromkeys(each for resource in constraint.resources for each in self._visitors(resource))
-            present = [self.presence(each, conflict.constraint, conflict.tick) for each in visitors]
+            visitors = sorted({each for resource in constraint.resources for each in self._visitors(resource)})
+            gap = self.instance.gap
+            present = [self.presence(each, conflict.constraint, conflict.tick, gap) for each in visitors]
             literals = [literal for literal in present if literal is not None]
             self.formula.at_most(literals, constraint.capacity)
             return
@@ -199,7 +204,7 @@ def beat_formula(instance: Instance, cost: int | None, evidence: Evidence, most:
 
 
 def _bounded(instance: Instance, bound: int | None, evidence: Evidence, most: int) -> Encoding:
-    refuse(instance, "following", "stops")
+    refuse(instance, "stops")
     encoding = Encoding(instance, most=most)
     encoding.grow_to(evidence.horizons)
     encoding.forbid_all()
@@ -230,12 +235,12 @@ def violated(instance: Instance, plans: Sequence[Plan]) -> list[Conflict | Excha
     for number, group in enumerate(instance.graph.groups, len(instance.graph.resources)):
         stays[number] = stays_within(plans, group.resources)
     found: list[Conflict | Exchange] = []
-    constraints = instance.graph.constraints
+    constraints, gap = instance.graph.constraints, instance.gap
     for constraint, intervals in stays.items():
         capacity = constraints[constraint].capacity
         if len(intervals) > capacity:
             for tick in dict.fromkeys(enter for enter, _ in intervals):
-                present = sum(enter <= tick and (leave is None or tick < leave) for enter, leave in intervals)
+                present = sum(enter <= tick and (leave is None or tick < leave + gap) for enter, leave in intervals)
                 if present > capacity:
                     found.append(Conflict(tick, constraint))
     return [*found, *_exchanges(instance, movers)]

@@ -68,11 +68,11 @@ class _Search:
                 yield from self.entering(robot, target)
 
     def is_allowed(self, before: Sequence[State], after: Sequence[State]) -> bool:
-        """Whether `joint/capacity` and `joint/group` hold now and `joint/exchange` on the way here."""
-        graph = self.instance.graph
-        present = Counter(
-            each for state in after if state.resource is not None for each in graph.constraints_of(state.resource)
-        )
+        """Whether `joint/capacity` and `joint/group` hold now and `joint/exchange` on the way here.
+
+        Where following is forbidden, a robot also counts for the tick after it has left.
+        """
+        present = Counter(each for states in zip(after, before, strict=True) for each in self.limits_of(*states))
         if any(count > self.constraints[each].capacity for each, count in present.items()):
             return False
         moves = [
@@ -84,6 +84,12 @@ class _Search:
             self.are_close(source, to) and self.are_close(target, away)
             for (source, target), (away, to) in combinations(moves, 2)
         )
+
+    def limits_of(self, after: State, before: State) -> set[int]:
+        """The constraints that count a robot in this state."""
+        states = (after, before) if self.instance.following == "forbidden" else (after,)
+        graph = self.instance.graph
+        return {each for state in states if state.resource is not None for each in graph.constraints_of(state.resource)}
 
     def are_close(self, one: ResourceId, other: ResourceId) -> bool:
         """Whether two resources are the same or lie in one group of capacity 1."""
@@ -119,7 +125,7 @@ def least_total_cost(
     Raises `Refusal` before more than `most` joint states are looked at; `on_step` is called at each, and may raise.
     """
     require_instance(instance)
-    refuse(instance, "following", "stops")
+    refuse(instance, "stops")
     search = _Search(instance)
     queue: list[tuple[int, int, int, Joint]] = [(0, 0, -1, tuple(WAITS for _ in instance.robots))]
     settled: set[tuple[int, Joint]] = set()

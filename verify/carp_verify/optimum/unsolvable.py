@@ -66,7 +66,7 @@ def describe(instance: Instance, obstacle: Obstacle) -> str:
 
 def why_no_obstacle(instance: Instance, obstacle: Obstacle) -> str | None:
     """The reason why the instance does not have the obstacle, `None` if it has it; clauses are still to be refuted."""
-    refuse(instance, "following", "stops")
+    refuse(instance, "stops")
     match obstacle:
         case NoWay(id):
             return _why_way(instance, id)

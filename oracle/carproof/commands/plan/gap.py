@@ -102,7 +102,7 @@ def _gap_of(path: str, limit: int, as_json: bool) -> Answer:
     from carproof.gap.report import gap_document, gap_rows  # noqa: PLC0415 - loads the planners
 
     problem = read_instance_file(path)
-    refuse_in(path, problem, "following", "stops")
+    refuse_in(path, problem, "stops")
     warm()
     measured = gap(problem, PLANNERS, limit)
     best = measured.optimum

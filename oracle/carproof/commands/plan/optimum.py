@@ -58,7 +58,7 @@ def command(
     from carp_verify.optimum.unsolvable import describe  # noqa: PLC0415
 
     problem = read_instance_file(instance)
-    refuse_in(instance, problem, "following", "stops")
+    refuse_in(instance, problem, "stops")
     warm()
     started = perf_counter()
     best = optimum(problem, limit, processes=processes)

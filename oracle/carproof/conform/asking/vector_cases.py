@@ -6,7 +6,7 @@ from dataclasses import replace
 from carp_spec import Carp, Instance
 from carp_spec.documents.decoding import write
 from carp_spec.documents.vectors import Vector
-from carp_spec.limits import following_is_allowed, goals_stand_alone, groups_are_absent
+from carp_spec.limits import goals_stand_alone, groups_are_absent
 from carproof.conform.cases import ASKED_OPS, Case
 from carproof.conform.levels import Level
 from carproof.protocol.lines import Request
@@ -28,7 +28,7 @@ def vector_cases(ops: Sequence[str], level: Level, whole: bool) -> Iterator[Case
 
 
 def _is_known(instance: Instance) -> bool:
-    return following_is_allowed(instance) and groups_are_absent(instance) and goals_stand_alone(instance)
+    return instance.following == "allowed" and groups_are_absent(instance) and goals_stand_alone(instance)
 
 
 def _is_asked(case: Case, level: Level, whole: bool) -> bool:
