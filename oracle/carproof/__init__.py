@@ -69,6 +69,9 @@ if TYPE_CHECKING:
     from carp_spec.documents.solutions import write_solution as write_solution
     from carp_spec.documents.solutions import write_trace as write_trace
     from carp_spec.documents.verdicts import write_verdict as write_verdict
+    from carp_spec.execution.logs import LogVerdict as LogVerdict
+    from carp_spec.execution.logs import Served as Served
+    from carp_spec.execution.logs import judge_log as judge_log
     from carp_spec.execution.traces import Trace as Trace
     from carp_spec.inputs.costs import makespan as makespan
     from carp_spec.model import Following as Following

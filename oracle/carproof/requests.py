@@ -24,7 +24,8 @@ SOUND_PLANS = Code(
     DESIGN,
 )
 POSITIVE_LIMIT = Code("request/limit", "The limit of a search, in seconds or steps, is a number above 0.", DESIGN)
-REQUEST_RULES: tuple[Code, ...] = (KNOWN_ROBOT, TICK, SOUND_PLANS, POSITIVE_LIMIT)
+PAST_LOG = Code("log/now", "Nothing in a log happens after its tick now.", DESIGN)
+REQUEST_RULES: tuple[Code, ...] = (KNOWN_ROBOT, TICK, SOUND_PLANS, POSITIVE_LIMIT, PAST_LOG)
 
 
 def robot_called(instance: Instance, name: str) -> RobotId:

@@ -10,6 +10,7 @@ HERE = __name__
 SECTIONS: Mapping[str, Mapping[str, str]] = {
     "Judge plans": {
         "check": f"{HERE}.judge.check",
+        "check-log": f"{HERE}.judge.check_log",
         "audit": f"{HERE}.judge.audit",
         "verify": f"{HERE}.judge.verify",
         "view": f"{HERE}.judge.view",

@@ -16,6 +16,7 @@ from carp_spec.rule import DESIGN
 from carproof.formats import agent_paths, carproof_documents, lacam, libmultirobotplanning, mapf_tracker
 from carproof.formats.adapter import Adapter
 from carproof.formats.arrays import RIGHT_ARRAY, instance_from_array
+from carproof.formats.logs.cells import RIGHT_LOG
 from carproof.formats.movingai import read_movingai
 from carproof.formats.movingai_writer import MovingAIFiles, write_movingai
 from carproof.formats.networkx_graphs import graph_of, instance_from_networkx, node_is_right
@@ -65,6 +66,7 @@ ADAPTER_RULES: tuple[Rule[..., Any] | Code, ...] = (
     libmultirobotplanning.RIGHT_SCHEDULE,
     mapf_tracker.RIGHT_MOVES,
     agent_paths.RIGHT_PATHS,
+    RIGHT_LOG,
     node_is_right,
     RIGHT_ARRAY,
 )

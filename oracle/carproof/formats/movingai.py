@@ -1,8 +1,8 @@
 """Instances from the MovingAI benchmarks: `.map` and `.scen` files.
 
-A cell `.`, `G` or `S` is passable, a cell `@`, `O`, `T` or `W` is blocked. Cells are resources of capacity and duration
-one, joined to those beside them; robots are the first agents of the scenario. With `park` this is the benchmarks'
-classical problem. The lengths in a scenario are for octile moves, so they are not read.
+A cell `.`, `G`, `S` or `E` (of the League of Robot Runners) is passable; `@`, `O`, `T` or `W` is blocked. Cells are
+resources of capacity and duration one, joined to those beside them; robots are the first agents of the scenario. With
+`park` this is the benchmarks' classical problem. The lengths in a scenario are for octile moves, so they are not read.
 """
 
 from collections.abc import Iterator, Sequence
@@ -14,7 +14,7 @@ from carproof.generate.options import MOST_RESOURCES, Traits, size_is_bounded
 from carproof.input_rules import Code
 
 SOURCE = "Sturtevant 2012, Benchmarks for grid-based pathfinding; decision of carproof"
-PASSABLE = ".GS"
+PASSABLE = ".GSE"
 BLOCKED = "@OTW"
 _HEADER = {
     "type": "type octile",

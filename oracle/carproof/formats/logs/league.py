@@ -1,0 +1,78 @@
+"""The output of the League of Robot Runners, 2023 and 2024: an action a tick, F, R, C, W or T.
+
+A robot starts at [row, column, heading]. One that turns stays in its cell, so positions alone are judged. 2023 has for
+each robot the tasks finished, [task, tick, "finished"], and tasks [task, row, column]. 2024 has events [tick, robot,
+task, errands done], and tasks [task, release, [row, column, row, column, ...]]. Both may be left out.
+Source: Input_Output_Format.md of the Start-Kit of MAPF-Competition, and the archive of its best solutions.
+"""
+
+from collections.abc import Iterator, Sequence
+from itertools import accumulate
+from typing import Any
+
+import msgspec
+
+from carproof.formats.logs.cells import CellLog, wrong
+from carproof.formats.walks import Cell, require_bounded
+
+MOVES = ((1, 0), (0, 1), (-1, 0), (0, -1))
+"""Of the headings E, S, W, N, which turn clockwise in this order; y grows downwards."""
+TURNS = {"R": 1, "C": -1, "W": 0, "T": 0, "F": 0}
+
+
+class Output(msgspec.Struct, frozen=True):
+    """The fields that are read."""
+
+    start: list[tuple[int, int, str]]
+    actualPaths: list[str]  # noqa: N815 - as in the file
+    events: list[Any] = []
+    tasks: list[tuple[Any, ...]] = []
+
+
+def read(text: str, width: int, file: str) -> CellLog:
+    """Read an output."""
+    del width
+    try:
+        output = msgspec.json.decode(text, type=Output)
+    except (msgspec.DecodeError, RecursionError) as error:
+        raise wrong(file, f"it must be an output of the League of Robot Runners: {error}") from error
+    if len(output.actualPaths) != len(output.start):
+        message = (
+            f"there must be a path for each of {len(output.start)} starts, and there are {len(output.actualPaths)}"
+        )
+        raise wrong(f"{file}: $.actualPaths", message)
+    require_bounded(sum(len(path) // 2 + 2 for path in output.actualPaths), file)
+    walks = []
+    for number, ((row, column, heading), path) in enumerate(zip(output.start, output.actualPaths, strict=True)):
+        actions = path.split(",") if path else []
+        if heading not in "ESWN" or len(heading) != 1 or not set(actions) <= TURNS.keys():
+            message = "a robot must start with heading E, S, W or N, and do F, R, C, W or T at each tick"
+            raise wrong(f"{file}: $.actualPaths[{number}]", message)
+        headings = [*accumulate((TURNS[action] for action in actions), initial="ESWN".index(heading))]
+        steps = (MOVES[at % 4] if action == "F" else (0, 0) for action, at in zip(actions, headings, strict=False))
+        walks.append(
+            [*accumulate(steps, lambda cell, step: (cell[0] + step[0], cell[1] + step[1]), initial=(column, row))]
+        )
+    stops: list[list[Cell]] = [[] for _ in walks]
+    try:
+        for robot, cell in _served(output.events, {task[0]: task for task in output.tasks}):
+            stops[robot].append(cell)
+    except (LookupError, TypeError, ValueError) as error:
+        raise wrong(f"{file}: $.events", "each event must name a robot, a task, and how much of it is done") from error
+    return CellLog(walks, stops)
+
+
+def _served(events: Sequence[Any], tasks: dict[Any, tuple[Any, ...]]) -> Iterator[tuple[int, Cell]]:
+    """The cells served by each robot, in the order of time."""
+    for number, event in enumerate(events):
+        if event and isinstance(event[0], int):
+            _, robot, task, done = event
+            places = tasks[task][2]
+            if done:
+                row, column = places[2 * done - 2], places[2 * done - 1]
+                yield robot, (int(column), int(row))
+        else:
+            for task, _, what in event:
+                if what == "finished":
+                    _, row, column = tasks[task]
+                    yield number, (int(column), int(row))
