@@ -66,5 +66,5 @@ def test_a_plan_that_keeps_no_free_tick_is_no_rival(carproof: Run) -> None:
 def test_optima_and_gaps_keep_a_free_tick(carproof: Run) -> None:
     assert carproof("optimum forbidding.json -o best.json --proof proof").code == 0
     assert carproof("check forbidding.json best.json").code == 0
-    assert carproof("verify proof forbidding.json").code == 0
+    assert carproof("verify forbidding.json proof").code == 0
     assert carproof("gap forbidding.json").code == 0
