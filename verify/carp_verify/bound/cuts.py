@@ -10,6 +10,7 @@ described up to it: then each is in one of its places, or has arrived by its dea
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from carp_spec import Instance, RobotId
 from carp_spec.documents.bounds import CutDocument, DeadlinesDocument
@@ -22,7 +23,7 @@ from carp_verify.optimum.refutation import NotRefutedError, require_refutation
 
 def group_of(instance: Instance, robots: Sequence[RobotId]) -> Instance:
     """The instance of some of the robots."""
-    return Instance(instance.graph, tuple(instance.robot[robot] for robot in robots), instance.after_goal)
+    return replace(instance, robots=tuple(instance.robot[robot] for robot in robots))
 
 
 def formula_of(instance: Instance, cut: CutDocument, most: int) -> Formula:
