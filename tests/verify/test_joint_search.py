@@ -2,6 +2,7 @@ import pytest
 from tests.spec.making import row
 
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
+from carp_spec.model import Following
 from carp_verify.optimum.joint_search import least_total_cost
 
 APART = (Robot("a", 0, 1), Robot("b", 1, 0))
@@ -37,6 +38,7 @@ def test_a_search_too_large_is_refused_with_the_limit_named() -> None:
         least_total_cost(Instance(row(1, 1, 1), (Robot("a", 0, 2), Robot("b", 2, 0))), most=2)
 
 
-def test_an_instance_that_forbids_following_is_refused() -> None:
-    with pytest.raises(Refusal, match="following"):
-        least_total_cost(Instance(row(1), (), "vanish", "forbidden"))
+@pytest.mark.parametrize(("following", "least"), [("allowed", 3), ("forbidden", 4)])
+def test_robots_that_may_not_follow_leave_a_free_tick(following: Following, least: int) -> None:
+    robots = (Robot("ahead", 1, 2), Robot("behind", 0, 2))
+    assert least_total_cost(Instance(row(1, 1, 1), robots, following=following)) == least
