@@ -1,14 +1,18 @@
 """Break the kernel's driver in OCaml in one place after the other, and list what no test notices.
 
-`make kernel-driver-mutants` runs it; `python -m tests.verify.kernel_driver_mutants verdicts --every 5` runs each fifth
-mutant of some files. `kernel_driver_survivors.md` explains what is left.
+`make kernel-driver-mutants` runs it, and continues where it stopped. `python -m tests.verify.kernel_driver_mutants
+verdicts --every 5` runs each fifth mutant of some files, and `--again` those that survived before.
+`kernel_driver_survivors.md` explains what is left.
 
-The driver's files alone are compiled for each mutant. The tests run in a process forked from one that has loaded them,
-the last that noticed a mutant first. A mutant that does not compile is not counted.
+The tests run once, and what they ask the kernel is kept with its answers. A mutant is compiled to bytecode, in the
+file that it changes alone, and asked the same. A test runs against it only if one of its answers differs: the test,
+and no wording, decides whether the mutant is noticed. A mutant that does not compile is not counted.
 """
 
+import json
 import os
 import re
+import resource
 import shutil
 import signal
 import subprocess
@@ -16,28 +20,38 @@ import sys
 from argparse import ArgumentParser
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, field
+from functools import cache
+from hashlib import sha256
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from threading import Thread
 from time import monotonic
+from typing import Any, TextIO
 
 os.environ["HYPOTHESIS_PROFILE"] = "mutation"
 
 import pytest
 from _pytest.runner import runtestprotocol
-from tests.verify.kernel_program import built, server
+from tests.verify import kernel_program
+from tests.verify.kernel_program import built
 
 from carp_verify.kernel import VARIABLE
 
 ROOT = Path(__file__).parents[2]
 SOURCES = ROOT / "verify/kernel"
 BUILT = ROOT / "build/kernel"
+STORE = ROOT / "build/kernel_driver_mutants.jsonl"
 FILES = ("verdicts", "reading", "main", "search", "encoder")
 TESTS = ("test_kernel_certificates", "test_kernel", "test_kernel_optimum", "test_kernel_hostile")
-LONGEST = 1.5
-"""Seconds: tests that take longer are left out."""
-STUCK = 20
-"""Seconds after which a test has noticed that the program hangs."""
+LONGEST = 2.0
+"""Seconds: tests whose questions take the kernel longer are left out."""
+STUCK = 15
+"""Seconds of processor time after which the kernel hangs, and a test has noticed it."""
+MOST_BYTES = 3 << 30
+PACKAGES = ("-package", "unix,yojson,zarith")
+LIMITED = f'ulimit -t {STUCK}; ulimit -v {MOST_BYTES >> 10}; exec "$0" "$@"'
 
 SWAPS = (
     (r" <> ", " = "),
@@ -87,6 +101,11 @@ class Mutant:
     change: str
     text: str
 
+    @property
+    def key(self) -> str:
+        """The same for the same text of the file."""
+        return sha256(f"{self.file}\n{self.text}".encode()).hexdigest()[:20]
+
 
 def code_of(text: str) -> str:
     """The text with strings, comments and first sizes of tables blanked out."""
@@ -120,75 +139,165 @@ def mutants(file: str) -> Iterator[Mutant]:
 
 
 class Builder:
-    """A folder with the kernel's compiled files, in which mutants of the driver are compiled."""
+    """A folder with the kernel in bytecode, in which mutants of the driver are compiled."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        for path in BUILT.iterdir():
-            if path.suffix in {".ml", ".mli", ".cmi", ".cmx", ".o"}:
-                shutil.copy(path, folder)
-        names = sorted(path.name for path in folder.iterdir() if path.suffix in {".ml", ".mli"})
-        sort = ["ocamlfind", "ocamldep", "-sort", *names]
-        order = subprocess.run(sort, cwd=folder, capture_output=True, text=True, check=True).stdout.split()
-        self.driver = [name for name in order if name.removesuffix(".ml") in FILES]
-        self.objects = [name.replace(".ml", ".cmx") for name in order if name.endswith(".ml")]
+        for path in [*BUILT.glob("*.ml"), *BUILT.glob("*.mli"), *SOURCES.glob("*.ml")]:
+            shutil.copy(path, folder)
+        names = sorted(path.name for path in folder.iterdir())
+        order = self.run("ocamldep", "-sort", *names).split()
+        self.objects = [name.replace(".ml", ".cmo") for name in order if name.endswith(".ml")]
+        for name in order:
+            if name.removesuffix(".ml") in FILES:
+                # With an interface of its own a file can be compiled alone.
+                (folder / f"{name}i").write_text(self.run("ocamlc", "-i", name))
+                self.run("ocamlc", "-c", f"{name}i")
+            self.run("ocamlc", "-c", name)
+        self.link()
+
+    def run(self, tool: str, *arguments: str) -> str:
+        """What a tool of OCaml prints."""
+        command = ["ocamlfind", tool, *(() if tool == "ocamldep" else ("-w", "-a", *PACKAGES)), *arguments]
+        return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, check=True).stdout
+
+    def link(self) -> None:
+        """Make the program."""
+        self.run("ocamlc", "-linkpkg", *self.objects, "-o", "mutant")
 
     def built(self, mutant: Mutant) -> Path | None:
         """The program with the mutant in it, if it compiles."""
-        for name in self.driver:
+        name = f"{mutant.file}.ml"
+        (self.folder / name).write_text(mutant.text)
+        try:
+            self.run("ocamlc", "-c", name)
+            self.link()
+        except subprocess.CalledProcessError:
+            return None
+        finally:
             shutil.copy(SOURCES / name, self.folder)
-        (self.folder / f"{mutant.file}.ml").write_text(mutant.text)
-        first = self.driver.index(f"{mutant.file}.ml")
-        compiler = ["ocamlfind", "ocamlopt", "-w", "-a", "-package", "unix,yojson,zarith"]
-        for step in (["-c", *self.driver[first:]], ["-linkpkg", *self.objects, "-o", "mutant"]):
-            if subprocess.run([*compiler, *step], cwd=self.folder, capture_output=True, check=False).returncode:
-                self.restore(first)
-                return None
+            self.run("ocamlc", "-c", name)
         return self.folder / "mutant"
 
-    def restore(self, first: int) -> None:
-        """Compile the driver as it is, so that the next mutant finds it whole."""
-        for name in self.driver:
-            shutil.copy(SOURCES / name, self.folder)
-        command = ["ocamlfind", "ocamlopt", "-w", "-a", "-package", "unix,yojson,zarith", "-c", *self.driver[first:]]
-        subprocess.run(command, cwd=self.folder, capture_output=True, check=True)
+
+@dataclass(slots=True)
+class Asked:
+    """What a test asks the kernel: lines that are served, and commands, each with its answer."""
+
+    item: pytest.Item
+    lines: list[tuple[str, str]] = field(default_factory=list)
+    commands: list[tuple[tuple[str, ...], str | None, str]] = field(default_factory=list)
+    is_whole: bool = True
+    """Whether nothing else was asked."""
+
+
+class Recording:
+    """Stands in for the kernel that stays up, and keeps what it is asked."""
+
+    def __init__(self, asked: Asked) -> None:
+        self.asked = asked
+        self.kernel = started(Path(kernel_program.program()))
+        self.stdin = self.stdout = self
+        self.line = ""
+
+    def write(self, line: str) -> None:
+        self.line = line
+        assert self.kernel.stdin
+        self.kernel.stdin.write(line)
+
+    def flush(self) -> None:
+        assert self.kernel.stdin
+        self.kernel.stdin.flush()
+
+    def readline(self) -> str:
+        assert self.kernel.stdout
+        self.asked.lines.append((self.line, self.kernel.stdout.readline()))
+        return self.asked.lines[-1][1]
+
+    def communicate(self) -> None:
+        self.kernel.communicate()
+
+
+def started(program: Path) -> "subprocess.Popen[str]":
+    command = ["/bin/sh", "-c", LIMITED, str(program), "serve"]
+    return subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, errors="replace"
+    )
+
+
+def commanded(program: Path, arguments: Sequence[str], text: str | None) -> str:
+    """All that one run of the program answers."""
+    command = ["/bin/sh", "-c", LIMITED, str(program), *arguments]
+    done = subprocess.run(command, input=text or "", capture_output=True, text=True, errors="replace", check=False)
+    return f"{done.returncode} {done.stdout} {done.stderr}"
+
+
+def recorded(item: pytest.Item, folder: Path) -> Asked:
+    """Run a test, which must pass, and keep what it asks; the files that it names are copied."""
+    asked = Asked(item)
+    program, server, run = kernel_program.program(), kernel_program.server, subprocess.run
+
+    def keep(command: Sequence[str | Path], **options: Any) -> Any:  # noqa: ANN401 - as subprocess.run
+        words = [str(each) for each in command]
+        if words[0] != program:
+            asked.is_whole = asked.is_whole and not any(program in word for word in words)
+            return run(command, **options)
+        for number, word in enumerate(words[1:], 1):
+            if Path(word).exists():
+                place = folder / f"{len([*folder.iterdir()])}"
+                place.mkdir()
+                run(["cp", "-a", word, place], check=True)
+                words[number] = str(place / Path(word).name)
+        text = options.get("input")
+        asked.commands.append((tuple(words[1:]), text, ""))
+        return run(command, **options)
+
+    kernel_program.server = cache(lambda: Recording(asked))  # type: ignore[assignment, arg-type]
+    subprocess.run = keep  # type: ignore[assignment]
+    try:
+        assert passes(item), item.nodeid
+    finally:
+        kernel_program.server, subprocess.run = server, run
+    return asked
 
 
 class Tests:
     """A plugin of pytest that runs the collected tests against each mutant, in place of running them once."""
 
-    def __init__(self, chosen: Sequence[Mutant]) -> None:
+    def __init__(self, chosen: Sequence[Mutant], store: TextIO) -> None:
         self.chosen = chosen
+        self.store = store
 
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         """Pass all tests once, then run the mutants."""
-        timed: list[tuple[float, pytest.Item]] = []
-        for item in session.items:
-            started = monotonic()
-            assert passes(item), item.nodeid
-            timed.append((monotonic() - started, item))
-        items = [item for seconds, item in sorted(timed, key=lambda each: each[0]) if seconds <= LONGEST]
-        server.cache_clear()
-        print(f"{len(items)} tests of {len(timed)}", flush=True)  # noqa: T201 - a report
-        counts: dict[str, Counter[str]] = {}
-        with TemporaryDirectory() as name:
+        with TemporaryDirectory() as files, TemporaryDirectory() as name:
             builder = Builder(Path(name))
-            assert outcome_of(Path(built()), items) == "survive", f"{items[0].nodeid} fails in a forked process"
-            last = ""
-            for mutant in self.chosen:
-                if last not in ("", mutant.file):
-                    builder.restore(0)
-                last = mutant.file
+            original = Path(shutil.copy(builder.folder / "mutant", builder.folder / "original"))
+            tests = [recorded(item, Path(files)) for item in session.items]
+            order = [asked for asked in tests if is_soon_answered(original, asked)]
+            say(f"{len(order)} tests of {len(tests)}")
+            assert outcome_of(original, order) == ("survives", ""), "the driver as it is"
+            for number, mutant in enumerate(self.chosen, 1):
                 program = builder.built(mutant)
-                outcome = "do not compile" if program is None else outcome_of(program, items)
-                counts.setdefault(mutant.file, Counter())[outcome] += 1
-                if outcome == "survive":
-                    print(f"{mutant.file}:{mutant.line}  {mutant.change}", flush=True)  # noqa: T201
-                if counts[mutant.file].total() % 20 == 0:
-                    print(f"{mutant.file}: {dict(counts[mutant.file])} so far", flush=True)  # noqa: T201
-        for file, of_file in counts.items():
-            print(f"{file}: {dict(of_file)}", flush=True)  # noqa: T201
+                outcome, test = ("does not compile", "") if program is None else outcome_of(program, order)
+                result = {"key": mutant.key, "file": mutant.file, "outcome": outcome, "test": test}
+                self.store.write(json.dumps({**result, "line": mutant.line, "change": mutant.change}) + "\n")
+                self.store.flush()
+                if number % 50 == 0:
+                    say(f"{number} of {len(self.chosen)}")
         return True
+
+
+def say(line: str) -> None:
+    print(line, flush=True)  # noqa: T201 - a report
+
+
+def is_soon_answered(program: Path, asked: Asked) -> bool:
+    """Whether the program answers all that the test asks within its time; its answers to commands are kept."""
+    before = monotonic()
+    asked.commands = [(words, text, commanded(program, words, text)) for words, text, _ in asked.commands]
+    differs = any(True for _ in served_differently(program, [asked]))
+    return not differs and monotonic() - before <= LONGEST
 
 
 def passes(item: pytest.Item) -> bool:
@@ -196,33 +305,87 @@ def passes(item: pytest.Item) -> bool:
     return all(report.passed or report.skipped for report in runtestprotocol(item, log=False, nextitem=None))
 
 
-def outcome_of(program: Path, items: list[pytest.Item]) -> str:
-    """Whether a test notices the program, in a process of its own; that test comes first from now on."""
-    reading, writing = os.pipe()
+def served_differently(program: Path, tests: Sequence[Asked]) -> Iterator[Asked]:
+    """The tests of which the program answers a line in another way."""
+    left = [(asked, line, answer) for asked in tests for line, answer in asked.lines]
+    while left:
+        kernel = started(program)
+        writer = Thread(target=_write, args=(kernel, [line for _, line, _ in left]))
+        writer.start()
+        failed = None
+        try:
+            assert kernel.stdout
+            for asked, _, answer in left:
+                if kernel.stdout.readline() != answer:
+                    failed = asked
+                    break
+        finally:
+            kernel.kill()
+            writer.join()
+            assert kernel.stdout
+            kernel.stdout.close()
+            kernel.wait()
+        if failed is None:
+            return
+        yield failed
+        last = max(number for number, (asked, _, _) in enumerate(left) if asked is failed)
+        left = left[last + 1 :]
+
+
+def _write(kernel: "subprocess.Popen[str]", lines: Sequence[str]) -> None:
+    assert kernel.stdin
+    with suppress(OSError), kernel.stdin as lines_to:  # it may have been ended
+        for line in lines:
+            lines_to.write(line)
+
+
+def differing(program: Path, tests: Sequence[Asked]) -> Iterator[Asked]:
+    """The tests that are answered in another way, and those that ask more than is kept."""
+    yield from served_differently(program, tests)
+    for asked in tests:
+        if any(commanded(program, words, text) != answer for words, text, answer in asked.commands):
+            yield asked
+    yield from (asked for asked in tests if not asked.is_whole)
+
+
+def outcome_of(program: Path, tests: list[Asked]) -> tuple[str, str]:
+    """Whether a test notices the program, and which; that test comes first from now on."""
+    for asked in differing(program, tuple(tests)):
+        if notices(asked.item, program):
+            tests.remove(asked)
+            tests.insert(0, asked)
+            return "noticed", asked.item.nodeid
+    return "survives", ""
+
+
+def notices(item: pytest.Item, program: Path) -> bool:
+    """Whether the test fails with the program, in a process of its own."""
     child = os.fork()
     if child == 0:
         os.setsid()
         os.environ[VARIABLE] = str(program)
+        resource.setrlimit(resource.RLIMIT_CPU, (STUCK, STUCK))
+        signal.alarm(4 * STUCK)
         for stream in (1, 2):
             os.dup2(os.open(os.devnull, os.O_WRONLY), stream)
-        for number, item in enumerate(items):
-            os.write(writing, number.to_bytes(4, "little"))
-            signal.alarm(STUCK)
-            try:
-                passed = passes(item)
-            except BaseException:  # noqa: BLE001 - whatever it is, the test has noticed
-                passed = False
-            if not passed:
-                os._exit(1)
-        os._exit(0)
-    os.close(writing)
-    with os.fdopen(reading, "rb") as pipe:
-        status = os.waitpid(child, 0)[1]
-        reached = int.from_bytes(pipe.read()[-4:], "little")
-    if status == 0:
-        return "survive"
-    items.insert(0, items.pop(reached))
-    return "noticed"
+        passed = False
+        try:
+            passed = passes(item)
+        finally:
+            os._exit(0 if passed else 1)
+    status = os.waitpid(child, 0)[1]
+    with suppress(ProcessLookupError):
+        os.killpg(child, signal.SIGKILL)
+    return status != 0
+
+
+def report(results: Sequence[dict[str, Any]]) -> None:
+    """Say how many mutants of each file have which outcome, and which survive."""
+    for each in results:
+        if each["outcome"] == "survives":
+            say(f"{each['file']}:{each['line']}  {each['change']}")
+    for file in FILES:
+        say(f"{file}: {dict(Counter(each['outcome'] for each in results if each['file'] == file))}")
 
 
 def main() -> int:
@@ -230,18 +393,30 @@ def main() -> int:
     parser.add_argument("files", nargs="*", default=FILES)
     parser.add_argument("--every", type=int, default=1)
     parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--again", action="store_true", help="run those again that survived")
     arguments = parser.parse_args()
     os.environ.pop(VARIABLE, None)
     built()
     chosen = [mutant for file in arguments.files for mutant in [*mutants(file)][arguments.first :: arguments.every]]
-    print(f"{len(chosen)} mutants", flush=True)  # noqa: T201 - a report
+    known = stored()
+    done = {key for key, each in known.items() if not (arguments.again and each["outcome"] == "survives")}
+    say(f"{len(chosen)} mutants, {sum(mutant.key in done for mutant in chosen)} of them done")
     paths = [str(ROOT / f"tests/verify/{name}.py") for name in TESTS]
-    # Tests that take long, or whose time is what they are about.
+    # Tests whose time is what they are about.
     slow = "not late_deadline and not long_stays and not which_hints and not idle"
-    return pytest.main(
-        ["-q", "-s", "-p", "no:cacheprovider", "-p", "no:unraisableexception", "-k", slow, *paths],
-        plugins=[Tests(chosen)],
-    )
+    options = ["-q", "-s", "-p", "no:cacheprovider", "-p", "no:unraisableexception", "-k", slow, *paths]
+    STORE.parent.mkdir(exist_ok=True)
+    with STORE.open("a") as store:
+        code = pytest.main(options, plugins=[Tests([each for each in chosen if each.key not in done], store)])
+    known = stored()
+    report([known[mutant.key] for mutant in chosen if mutant.key in known])
+    return code
+
+
+def stored() -> dict[str, dict[str, Any]]:
+    """The outcomes so far, the latest of each mutant."""
+    lines = STORE.read_text().splitlines() if STORE.exists() else []
+    return {each["key"]: each for each in map(json.loads, lines)}
 
 
 if __name__ == "__main__":
