@@ -252,7 +252,7 @@ def recorded(item: pytest.Item, folder: Path) -> Asked:
         asked.commands.append((tuple(words[1:]), text, ""))
         return run(command, **options)
 
-    kernel_program.server = cache(lambda: Recording(asked))  # type: ignore[assignment, arg-type]
+    kernel_program.server = cache(lambda: Recording(asked))  # type: ignore[return-value]
     subprocess.run = keep  # type: ignore[assignment]
     try:
         assert passes(item), item.nodeid
@@ -322,7 +322,6 @@ def served_differently(program: Path, tests: Sequence[Asked]) -> Iterator[Asked]
         finally:
             kernel.kill()
             writer.join()
-            assert kernel.stdout
             kernel.stdout.close()
             kernel.wait()
         if failed is None:
