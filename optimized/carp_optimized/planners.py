@@ -23,10 +23,10 @@ from carp_spec import (
     Stop,
 )
 from carp_spec.inputs.options import require_planner, require_polish_options
-from carp_spec.inputs.values import require_instance
+from carp_spec.inputs.values import known, require_instance
 from carp_spec.planners import BY_DEFAULT
 from carp_spec.polish_rules import last_round
-from carp_spec.requests import known, require_addition, require_assignment, require_query, sound_solution
+from carp_spec.requests import require_addition, require_assignment, require_query, sound_solution
 
 if TYPE_CHECKING:
     from carp_optimized.certifying import Certifier

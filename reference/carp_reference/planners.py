@@ -25,9 +25,9 @@ from carp_spec import (
     Stop,
 )
 from carp_spec.inputs.options import require_planner
-from carp_spec.inputs.values import require_instance
+from carp_spec.inputs.values import known, require_instance
 from carp_spec.planners import BY_DEFAULT
-from carp_spec.requests import known, require_addition, require_assignment, require_query
+from carp_spec.requests import require_addition, require_assignment, require_query
 
 
 def query(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0) -> Plan | None:

@@ -12,9 +12,10 @@ from carp_reference.query import find_plan
 from carp_spec import Instance, Plan, RobotId, Solution, plan_cost, total_cost
 from carp_spec import polish_rules as rules
 from carp_spec.inputs.options import require_polish_options
+from carp_spec.inputs.values import known
 from carp_spec.neighbourhood_rules import distance
 from carp_spec.permutations import splitmix64
-from carp_spec.requests import known, sound_solution
+from carp_spec.requests import sound_solution
 
 Plans = Mapping[RobotId, Plan]
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import islice
 
-from carp_spec.inputs.values import require_known, require_plans, require_solution, require_update
+from carp_spec.inputs.values import known, require_known, require_plans, require_solution, require_update
 from carp_spec.joint_rules import JOINT_RULES, SOLUTION_RULES
 from carp_spec.model import Instance, Plan, Solution
 from carp_spec.plan_rules import PLAN_RULES, plan_keeps_history, total_cost
@@ -48,17 +48,26 @@ def _violations(instance: Instance, plans: Sequence[Plan], most: int | None) -> 
     return tuple(violations)
 
 
+def solution_violations(
+    instance: Instance, solution: Solution, most: int | None = MOST_LISTED
+) -> tuple[Violation, ...]:
+    """The violations of the rules that do not look at visits, at most `most` of each rule (`None`: all)."""
+    return tuple(violation for each in SOLUTION_RULES for violation in islice(each(instance, solution), most))
+
+
 def judge(instance: Instance, solution: Solution, most: int | None = MOST_LISTED) -> Verdict:
     """Check a whole solution; plans of unknown robots break `solution/covers` alone."""
     require_solution(instance, solution)
     plans = [plan for plan in solution.plans if plan.robot in instance.robot]
-    of_solution = [violation for each in SOLUTION_RULES for violation in islice(each(instance, solution), most)]
     planned = {plan.robot for plan in plans}
-    return Verdict(
+    verdict = Verdict(
         cost=total_cost(instance, [plan for plan in plans if plan.visits]),
         unplanned=sum(robot.id not in planned for robot in instance.robots),
-        violations=(*of_solution, *_violations(instance, plans, most)),
+        violations=(*solution_violations(instance, solution, most), *_violations(instance, plans, most)),
     )
+    if verdict.valid and most != 0:
+        known(instance, solution)
+    return verdict
 
 
 def check_update(before: Sequence[Plan], after: Sequence[Plan], now: int) -> tuple[Violation, ...]:

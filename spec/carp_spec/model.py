@@ -20,6 +20,8 @@ RobotId: TypeAlias = str | int
 Move: TypeAlias = tuple[ResourceId, ResourceId]
 AfterGoal: TypeAlias = Literal["vanish", "park"]
 Following: TypeAlias = Literal["allowed", "forbidden"]
+SEEN = 16
+"""How many solutions an instance remembers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,12 +180,12 @@ class Instance:
     after_goal: AfterGoal = "vanish"
     following: Following = "allowed"
     robot: Mapping[RobotId, Robot] = field(init=False, repr=False, compare=False)
-    seen: deque[tuple["Solution", "Solution | None"]] = field(init=False, repr=False, compare=False)
+    seen: deque[tuple[Callable[[], "Solution | None"], bool]] = field(init=False, repr=False, compare=False)
 
     @of_shape("$")
     def __post_init__(self) -> None:
         """Make the look-up."""
-        object.__setattr__(self, "seen", deque(maxlen=8))
+        object.__setattr__(self, "seen", deque(maxlen=SEEN))
         object.__setattr__(self, "robot", MappingProxyType({each.id: each for each in self.robots}))
 
     def __reduce__(self) -> tuple[type["Instance"], tuple[object, ...]]:
@@ -221,7 +223,7 @@ class Plan:
     visits: tuple[Visit, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, weakref_slot=True)
 class Solution:
     """Plans, the order in which they were made, and the robots that have none."""
 

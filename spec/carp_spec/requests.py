@@ -6,10 +6,10 @@ The rules are those of `carproof.requests`.
 from collections.abc import Sequence
 from dataclasses import replace
 
-from carp_spec.check import judge, violations_of
+from carp_spec.check import judge, solution_violations, violations_of
 from carp_spec.execution.traces import Trace
 from carp_spec.inputs.options import require_planner
-from carp_spec.inputs.values import require_plans, require_solution
+from carp_spec.inputs.values import has_sound_plans, remember, require_plans, require_solution
 from carp_spec.instance_rules import stops_are_places_to_serve
 from carp_spec.model import Instance, Plan, RobotId, Solution, Stop
 from carp_spec.plan_rules import has_ended
@@ -95,32 +95,27 @@ def sound_solution(instance: Instance, solution: Solution, asked: RobotId | None
     """The solution, robots not named unplanned; raises `Refusal` with the first rule that it breaks.
 
     The plan of the robot that is asked for is its history until now. The rest of that plan may be in the way of others,
-    so it is not checked against them. A solution that the instance remembers as sound is not checked again.
+    so it is not checked against them. What the instance remembers as sound is not checked again, nor are plans of it.
     """
     require_solution(instance, solution)
-    for each, sound in (*instance.seen,):
-        if each is solution and sound is not None:
-            instance.seen.append((solution, sound))
-            return sound
+    seen = [(each, is_sound) for each, is_sound in (*instance.seen,) if each() is solution]
     named = {*solution.unplanned, *(plan.robot for plan in solution.plans)}
-    missing = (robot for robot in instance.robot if robot not in named)
-    whole = replace(solution, unplanned=(*solution.unplanned, *missing))
-    found = judge(instance, whole).violations
-    of_all = [each for each in found if asked not in each.robots or not each.rule.startswith("joint/")]
-    of_others = (
-        violations_of(instance, [plan for plan in whole.plans if plan.robot != asked]) if found and not of_all else ()
-    )
-    for violation in (*of_all, *of_others):
-        raise Refusal("request", path_to(violation, solution), violation.rule, violation.message)
-    if not found:
-        instance.seen.append((solution, whole))
+    missing = tuple(robot for robot in instance.robot if robot not in named)
+    whole = replace(solution, unplanned=(*solution.unplanned, *missing)) if missing else solution
+    if not any(is_sound for _, is_sound in seen):
+        is_known = has_sound_plans(instance, solution.plans)
+        found = solution_violations(instance, whole) if is_known else judge(instance, whole).violations
+        of_all = [each for each in found if asked not in each.robots or not each.rule.startswith("joint/")]
+        of_others = (
+            violations_of(instance, [plan for plan in whole.plans if plan.robot != asked])
+            if found and not of_all
+            else ()
+        )
+        for violation in (*of_all, *of_others):
+            raise Refusal("request", path_to(violation, solution), violation.rule, violation.message)
+        if not found:
+            remember(instance, seen[-1][0], is_sound=True)
     return whole
-
-
-def known(instance: Instance, solution: Solution) -> Solution:
-    """The solution, which the instance remembers: its planner made the plans, beside plans that broke no rule."""
-    instance.seen.append((solution, solution))
-    return solution
 
 
 def path_to(violation: Violation, solution: Solution) -> str:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, is_dataclass
 from functools import cache, wraps
+from operator import attrgetter
 from reprlib import repr as shown
 from types import NoneType
 from typing import Annotated, Any, TypeVar, cast, get_args, get_origin
@@ -98,5 +99,5 @@ def _are(values: Sequence[Any], kind: Any) -> bool:  # noqa: ANN401 - any type
         return same and _are([each for value in values for each in value], kinds[0])
     if given is not None:
         same = {*map(type, values)} <= {kind}
-        return same and all(_are([getattr(each, name) for each in values], of) for name, of in given.items())
+        return same and all(_are([*map(attrgetter(name), values)], of) for name, of in given.items())
     return {*map(type, values)} <= {*kinds}

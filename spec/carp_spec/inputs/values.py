@@ -1,19 +1,24 @@
 """Instances, solutions and plans.
 
-An instance remembers in `seen` what was looked at beside it: solutions, each with what is known to break no rule of it,
-all its robots named. It is empty until the instance itself is known to be right.
+An instance remembers in `seen` what was looked at beside it: solutions, each with whether it is known to break no rule
+of it. It is empty until the instance itself is known to be right. The solutions are not kept alive by it, but for those
+that are made here of plans.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from operator import itemgetter
 from typing import Any, cast
+from weakref import ref
 
 from carp_spec.instance_rules import instance_faults
-from carp_spec.model import Instance, Plan, Solution
+from carp_spec.model import SEEN, Instance, Plan, Solution
 from carp_spec.refusal import Refusal
 from carp_spec.shapes import require_shape
 
 NOTHING = Solution((), ())
+RECENT = SEEN // 2
+"""What was looked at so lately is not forgotten next."""
 
 
 def require_instance(instance: Instance) -> None:
@@ -22,31 +27,61 @@ def require_instance(instance: Instance) -> None:
         require_shape(instance, Instance)
         for fault in instance_faults(instance):
             raise Refusal("document", fault.path, fault.rule, fault.message)
-        instance.seen.append((NOTHING, None))
+        remember(instance, ref(NOTHING))
 
 
 def require_solution(instance: Instance, solution: Solution) -> None:
     """Raise `Refusal` with the first fault of the instance, or if the solution is malformed."""
     require_instance(instance)
-    if not any(each is solution for each, _ in (*instance.seen,)):
-        require_shape(solution, Solution)
-        instance.seen.append((solution, None))
+    if not any(each() is solution for each, _ in (*instance.seen,)):
+        is_known = isinstance(cast("object", solution), Solution) and has_sound_plans(instance, solution.plans)
+        require_shape(replace(solution, plans=()) if is_known else solution, Solution)
+        remember(instance, ref(solution))
+
+
+def has_sound_plans(instance: Instance, plans: Sequence[Plan]) -> bool:
+    """Whether they are all of one solution that is known to break no rule, so that they break none together."""
+    if type(plans) is tuple:
+        asked = {*map(id, plans)}
+        for age, (seen, is_sound) in enumerate(reversed((*instance.seen,))):
+            solution = seen() if is_sound else None
+            if solution is not None and asked <= {*map(id, solution.plans)}:
+                if age >= RECENT:
+                    remember(instance, seen, is_sound=True)
+                return True
+    return False
 
 
 def require_plans(instance: Instance, plans: Sequence[Plan]) -> Solution:
     """The solution that has these plans; raises `Refusal` with the first fault of the instance, or of a plan."""
     require_instance(instance)
-    same = [(sound is None, each) for each, sound in (*instance.seen,) if each.plans is plans]
+    seen = [(is_sound, each()) for each, is_sound in (*instance.seen,)]
+    same = [(is_sound, each) for is_sound, each in seen if each is not None and each.plans is plans]
     if same:
-        return min(same, key=itemgetter(0))[1]
+        return max(same, key=itemgetter(0))[1]
     found: Any = plans
     if isinstance(found, Sequence):
         found = tuple(found)
-    require_shape(found, tuple[Plan, ...], "$.plans")
+    is_known = has_sound_plans(instance, found)
+    if not is_known:
+        require_shape(found, tuple[Plan, ...], "$.plans")
     solution = Solution(found, tuple(plan.robot for plan in found))
-    if found is plans:
-        instance.seen.append((solution, None))
+    remember(instance, lambda: solution, is_sound=is_known and len({*solution.order}) == len(found))
     return solution
+
+
+def known(instance: Instance, solution: Solution) -> Solution:
+    """The solution, which the instance remembers: its planner made the plans, beside plans that broke no rule."""
+    remember(instance, ref(solution), is_sound=True)
+    return solution
+
+
+def remember(instance: Instance, seen: Callable[[], Solution | None], *, is_sound: bool = False) -> None:
+    """Remember a solution, once and as the last one, and forget those that are gone."""
+    solution = seen()
+    others = [each for each in (*instance.seen,) if each[0]() is not None and each[0]() is not solution]
+    instance.seen.clear()
+    instance.seen.extend([*others, (seen, is_sound)])
 
 
 def require_update(before: Sequence[Plan], after: Sequence[Plan], now: int) -> None:
