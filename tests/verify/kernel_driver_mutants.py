@@ -252,7 +252,7 @@ def recorded(item: pytest.Item, folder: Path) -> Asked:
         asked.commands.append((tuple(words[1:]), text, ""))
         return run(command, **options)
 
-    kernel_program.server = cache(lambda: Recording(asked))  # type: ignore[return-value]
+    kernel_program.server = cache(lambda: Recording(asked))  # type: ignore[arg-type, return-value]
     subprocess.run = keep  # type: ignore[assignment]
     try:
         assert passes(item), item.nodeid
@@ -322,7 +322,8 @@ def served_differently(program: Path, tests: Sequence[Asked]) -> Iterator[Asked]
         finally:
             kernel.kill()
             writer.join()
-            kernel.stdout.close()
+            if kernel.stdout is not None:
+                kernel.stdout.close()
             kernel.wait()
         if failed is None:
             return
