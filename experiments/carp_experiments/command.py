@@ -8,6 +8,7 @@ import click
 
 from carp_experiments.beyond.executions import FULL_EXECUTIONS, QUICK_EXECUTIONS, executions_cases, executions_report
 from carp_experiments.experiments import EXPERIMENTS, Experiment, Profile
+from carp_experiments.measuring.benchmark import benchmark_cases, benchmark_report
 from carp_experiments.measuring.crosscheck_campaign import (
     FULL_QUESTIONS,
     QUICK_QUESTIONS,
@@ -33,6 +34,9 @@ if TYPE_CHECKING:
     from carp_experiments.report import ExperimentReport
     from carp_experiments.store import Row
 
+FOLDER = click.Path(path_type=Path, file_okay=False, exists=True)
+TABLE = click.Path(path_type=Path, dir_okay=False, exists=True)
+PROGRAM = click.Path(dir_okay=False, exists=True, resolve_path=True)
 F = TypeVar("F", bound=Callable[..., Any])
 
 
@@ -46,6 +50,7 @@ F = TypeVar("F", bound=Callable[..., Any])
         "carproof experiment kernel --verdicts 100000",
         "carproof experiment texts --store texts.sqlite",
         "carproof experiment executions --executions 100000",
+        "carproof experiment benchmark --maps maps --bounds bounds.csv --seconds 10 --seconds 60",
         "carproof experiment report -o report",
     )
 )
@@ -205,11 +210,44 @@ def texts(quick: bool, texts: int, seed: int, **campaign: Any) -> Answer:  # noq
     return go("texts", "texts", command, f"{size} texts", cases, text_report, **campaign)
 
 
+@command.command("benchmark")
+@click.option("--maps", type=FOLDER, required=True, help="The folder with the files of MovingAI, at any depth.")
+@click.option("--bounds", type=TABLE, required=True, help="The table: map,scen,agents,lower,upper.")
+@click.option(
+    "--seconds", type=click.IntRange(min=1), multiple=True, default=(10,), show_default=True, help="May be repeated."
+)
+@click.option("--bound-seconds", type=click.IntRange(min=0), default=0, show_default=True, help="For a bound; 0: none.")
+@click.option("--lacam3", type=PROGRAM, help="The program of LaCAM3, to be compared with.")
+@click.option("--lns2", type=PROGRAM, help="The program of MAPF-LNS2, to be compared with.")
+@click.option("--plans", type=click.Path(path_type=Path, file_okay=False), help="Write plans and certificates there.")
+@campaign_options
+def benchmark(  # noqa: PLR0913, PLR0917 - one parameter for each option
+    maps: Path,
+    bounds: Path,
+    seconds: tuple[int, ...],
+    bound_seconds: int,
+    lacam3: str | None,
+    lns2: str | None,
+    plans: Path | None,
+    **campaign: Any,  # noqa: ANN401 - click's
+) -> Answer:
+    """Plan cases of the MovingAI benchmark, beside the figures of its tracker and other planners.
+
+    Robots park. --seconds are of processor time; all plans are judged, and bounds verified.
+
+    Exit codes: 0 done, 1 a total below a verified bound, 2 bad input.
+    """
+    cases = benchmark_cases(bounds, maps, seconds, bound_seconds, {"LaCAM3": lacam3, "LNS2": lns2}, plans)
+    identity = f"benchmark of {', '.join(map(str, seconds))} s, bounds {bound_seconds} s"
+    command = f"carproof experiment benchmark {' '.join(f'--seconds {each}' for each in seconds)}"
+    return go("benchmark", identity, command, f"{len(cases)} cases", cases, benchmark_report, **campaign)
+
+
 @command.command("report")
 @click.option(
     "--results",
     "stored",
-    type=click.Path(path_type=Path, file_okay=False, exists=True),
+    type=FOLDER,
     help="The folder that --report has written; by default the results of this copy of carproof.",
 )
 @click.option(

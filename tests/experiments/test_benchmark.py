@@ -1,0 +1,43 @@
+"""The benchmark of the field: cases of a table, planned, judged and compared."""
+
+from pathlib import Path
+
+import pytest
+from tests.oracle.running import Run
+
+MAP = "type octile\nheight 2\nwidth 3\nmap\n...\n...\n"
+SCEN = "version 1\n0\tyard.map\t3\t2\t0\t0\t2\t0\t2\n0\tyard.map\t3\t2\t2\t1\t0\t1\t2\n"
+
+
+@pytest.fixture(autouse=True)
+def _files(elsewhere: Path) -> None:
+    (elsewhere / "maps/deep").mkdir(parents=True)
+    (elsewhere / "maps/yard.map").write_text(MAP)
+    (elsewhere / "maps/deep/yard-even-1.scen").write_text(SCEN)
+    (elsewhere / "bounds.csv").write_text("map,scen,agents,lower,upper\nyard,even-1,2,4,4\n")
+    program = elsewhere / "silent"
+    program.write_text("#!/bin/sh\n")
+    program.chmod(0o755)
+
+
+def test_cases_are_planned_and_stand_beside_the_tracker_and_other_planners(carproof: Run) -> None:
+    options = "--maps maps --bounds bounds.csv --seconds 1 --bound-seconds 1 --lacam3 silent --plans plans"
+    outcome = carproof(f"experiment benchmark {options}")
+    assert outcome.code == 0, outcome
+    assert "yard even-1 00002 4.0 4 - 4 4" in " ".join(outcome.stdout.split())
+    assert "best planner on 1 of 1, tracker's best or less on 1 of 1" in outcome.stdout
+    assert {path.name for path in Path("plans").iterdir()} == {"yard-even-1-2-1s.txt", "yard-even-1-2-bound.json"}
+    judged = carproof(
+        "check --map maps/yard.map --scen maps/deep/yard-even-1.scen --agents 2 plans/yard-even-1-2-1s.txt"
+    )
+    assert judged.code == 0, judged
+
+
+@pytest.mark.parametrize(
+    ("line", "rule"),
+    [("yard,even-2,2,4,4", "benchmark/files"), ("yard,even-1,two,4,4", "benchmark/bounds")],
+)
+def test_a_line_that_cannot_be_asked_is_refused(line: str, rule: str, carproof: Run) -> None:
+    Path("bounds.csv").write_text(f"map,scen,agents,lower,upper\n{line}\n")
+    outcome = carproof("experiment benchmark --maps maps --bounds bounds.csv --seconds 1")
+    assert (outcome.code, rule in outcome.stderr) == (2, True), outcome
