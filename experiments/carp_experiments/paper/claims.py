@@ -60,7 +60,7 @@ def comparisons(saved: Savings) -> Iterator[Claim]:
     yield judged(
         "Proposed_10 has the best results of the variants",
         "fewer actions than Proposed_10, all maps",
-        lambda name: saved[None, name, "Proposed_10"].saving,
+        lambda name: saving_of(saved, name, "Proposed_10"),
         below_zero,
         PROPOSED[:-1],
         has_baseline=False,
@@ -68,20 +68,20 @@ def comparisons(saved: Savings) -> Iterator[Claim]:
     yield judged(
         "all variants outperform CARP10",
         "fewer actions than CARP10, all maps",
-        lambda name: saved[None, name, "CARP10"].saving,
+        lambda name: saving_of(saved, name, "CARP10"),
         above_zero,
     )
     yield judged(
         "all variants are at least comparable to CARP100",
         "fewer actions than CARP100, in per cent of its total, all maps "
         f"(comparable: at most {COMPARABLE_PER_CENT:g} % more)",
-        lambda name: share_of_total(saved[None, name, "CARP100"]),
+        lambda name: share_of_total(saved.get((None, name, "CARP100"))),
         lambda each: above_zero(shifted(each, COMPARABLE_PER_CENT)),
     )
     yield judged(
         "LF generates the worst results",
         "fewer actions of LF than of the others, all maps",
-        lambda name: saved[None, "LF", name].saving,
+        lambda name: saving_of(saved, "LF", name),
         below_zero,
         RIVALS,
         has_baseline=False,
@@ -91,20 +91,30 @@ def comparisons(saved: Savings) -> Iterator[Claim]:
 def judged(
     claim: str,
     what: str,
-    measured: Callable[[str], Interval],
+    measured: Callable[[str], Interval | None],
     holds: Callable[[Interval], bool | None],
     names: Sequence[str] = PROPOSED,
     has_baseline: bool = True,
 ) -> Claim:
-    """A claim that holds of all the algorithms, or of their variants with the baseline."""
-    of_paper = {name: measured(name) for name in names}
-    verdict = verdict_of([holds(each) for each in of_paper.values()])
-    found = f"{what}: {listed(of_paper)}"
+    """A claim that holds of all the algorithms, or of their variants with the baseline; open where nothing is known."""
+
+    def verdict_on(variants: Sequence[str]) -> tuple[Verdict, str]:
+        known = {name: measured(name) for name in variants}
+        found = listed({name: each for name, each in known.items() if each is not None})
+        return verdict_of([None if each is None else holds(each) for each in known.values()]), found
+
+    verdict, found = verdict_on(names)
+    found = f"{what}: {found}"
     if not has_baseline:
         return Claim(claim, found, verdict)
-    based = {name: measured(name + BASELINE) for name in names}
-    found += f"; with the baseline: {listed(based)}"
-    return Claim(claim, found, verdict, verdict_of([holds(each) for each in based.values()]))
+    with_baseline, based = verdict_on([name + BASELINE for name in names])
+    return Claim(claim, f"{found}; with the baseline: {based}", verdict, with_baseline)
+
+
+def saving_of(saved: Savings, name: str, rival: str) -> Interval | None:
+    """What an algorithm saves over a rival on all maps; `None` if one of the two fails wherever the other does not."""
+    saving = saved.get((None, name, rival))
+    return None if saving is None else saving.saving
 
 
 def up_to(saved: Savings, own: Means, map: int, names: Sequence[str], paper: int, claim: str) -> Claim:
@@ -258,9 +268,9 @@ def shifted(interval: Interval, by: float) -> Interval:
     return Interval(interval.estimate + by, interval.low + by, interval.high + by)
 
 
-def share_of_total(saving: Saving) -> Interval:
-    """The saving in per cent of the rival's total."""
-    return scaled(saving.saving, 100 / saving.total)
+def share_of_total(saving: Saving | None) -> Interval | None:
+    """The saving in per cent of the rival's total, if it is known."""
+    return None if saving is None else scaled(saving.saving, 100 / saving.total)
 
 
 def scaled(interval: Interval, by: float) -> Interval:

@@ -16,6 +16,8 @@ from carp_experiments.store import Row
 PAPERS = {TENTH_MAP: (65, ("Proposed_6",)), FULL_MAP: (35, ("Proposed_6", "Proposed_10"))}
 """By map: fewer actions than CARP's, as the paper states them, and its algorithms of which it says so."""
 VARIANTS = {"as published": "", "with the baseline": " + baseline"}
+SHOWN = 24
+"""The nearest conventions, which the table has."""
 MEANS = ("neither fails", "own successes", "nobody fails")
 
 
@@ -137,10 +139,10 @@ def distance_table(ordered: Sequence[Nearness]) -> Table:
             str(each.broken),
             number(each.distance, 2),
         )
-        for each in ordered
+        for each in ordered[:SHOWN]
     )
     title = (
-        f"Conventions by their distance from the paper, over {max((each.assignments for each in ordered), default=0)} "
+        f"The conventions nearest to the paper, over {max((each.assignments for each in ordered), default=0)} "
         f"assignments: actions saved against CARP, where {', '.join(MEANS)} (the paper: 65 and 35); failures of CARP, "
         "CARP10, Proposed_6; comparisons that are contradicted"
     )
