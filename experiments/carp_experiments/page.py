@@ -34,8 +34,8 @@ TITLES = {
 }
 MEANINGS = {
     "conventions": "The paper does not say how long a robot stays at its goal, whether it may appear late, or how ties "
-    "are broken. Each line changes such answers, and has the paper's algorithms as published or with all plans as they are "
-    "as a candidate. The distance was fixed before the run: the relative errors of the two savings, and 1 for each "
+    "are broken. Each line changes such answers, and has the paper's algorithms as published or with all plans as they "
+    "are as a candidate. The distance was fixed before the run: the relative errors of the two savings, and 1 for each "
     "comparison that is contradicted.",
     "execution": "On the clock late robots collide; in order, and switching, none collides or stands for ever, but "
     "robots are later.",
