@@ -50,7 +50,7 @@ F = TypeVar("F", bound=Callable[..., Any])
         "carproof experiment kernel --verdicts 100000",
         "carproof experiment texts --store texts.sqlite",
         "carproof experiment executions --executions 100000",
-        "carproof experiment benchmark --maps maps --bounds bounds.csv --seconds 10 --seconds 60",
+        "carproof experiment benchmark --maps maps --bounds bounds.csv",
         "carproof experiment report -o report",
     )
 )
