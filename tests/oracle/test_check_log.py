@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 from tests.oracle.running import Run, corridor, save
 
+pytestmark = pytest.mark.usefixtures("elsewhere")
+
 MAP = "type octile\nheight 3\nwidth 4\nmap\n.S..\n.@E.\n....\n"
 LEAGUE = {
     "start": [[0, 0, "E"], [2, 3, "E"]],
