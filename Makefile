@@ -6,7 +6,7 @@ export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 .DELETE_ON_ERROR:
-.PHONY: bench install compiled demo quick quick-tests test checked ci thorough paper-sized nightly coverage mutation conform planted lint format docs gap optimum-figures gap-figures executions texts generated kernel kernel-mutants kernel-driver-mutants clean
+.PHONY: bench install compiled demo quick quick-tests test checked ci thorough paper-sized nightly coverage mutation conform planted lint format docs gap optimum-figures gap-figures texts generated kernel kernel-mutants kernel-driver-mutants clean
 
 install: .venv/installed
 
@@ -89,10 +89,6 @@ optimum-figures: install
 # hours. `python -m carp_experiments.measuring.gap_table --seeds 2` measures two assignments a map, `--quick` prints the tables of a few seconds.
 gap-figures: install
 	$(BIN)/python -m carp_experiments.measuring.gap_table
-
-# A million delayed executions in order without a rotation, about a minute; continues where the store ends.
-executions: install
-	nice $(BIN)/carproof experiment executions --store executions.sqlite
 
 # Let the kernel and Python read the same million texts, nearly right ones; continues where the store ends.
 texts: install kernel

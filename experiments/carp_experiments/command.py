@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from carp_experiments.beyond.executions import FULL_EXECUTIONS, QUICK_EXECUTIONS, executions_cases, executions_report
 from carp_experiments.experiments import EXPERIMENTS, Experiment, Profile
 from carp_experiments.measuring.benchmark import benchmark_cases, benchmark_report
 from carp_experiments.measuring.crosscheck_campaign import (
@@ -49,7 +48,6 @@ F = TypeVar("F", bound=Callable[..., Any])
         "carproof experiment crosscheck --questions 50000 --seed 7",
         "carproof experiment kernel --verdicts 100000",
         "carproof experiment texts --store texts.sqlite",
-        "carproof experiment executions --executions 100000",
         "carproof experiment benchmark --maps maps --bounds bounds.csv",
         "carproof experiment report -o report",
     )
@@ -158,22 +156,6 @@ def crosscheck(
     cases = crosscheck_cases(size, seed, kind)
     command = f"carproof experiment crosscheck --questions {size} --seed {seed}{f' --{kind}' if kind else ''}"
     return go("crosscheck", "crosscheck", command, f"{size} questions", cases, crosscheck_report, **campaign)
-
-
-@command.command("executions")
-@click.option("--quick", is_flag=True, help=f"{QUICK_EXECUTIONS} executions.")
-@click.option("--executions", type=click.IntRange(min=1), default=FULL_EXECUTIONS, help="How many executions.")
-@click.option("--seed", type=click.IntRange(0, 2**64 - 1), default=0, help="The seed of solutions and delays.")
-@campaign_options
-def delayed(quick: bool, executions: int, seed: int, **campaign: Any) -> Answer:  # noqa: ANN401 - click's
-    """Execute small random solutions in order with delays: nothing may break, and only a rotation may stop robots.
-
-    Exit codes: 0 all executions end as they must, 1 one does not, 2 bad usage.
-    """
-    size = QUICK_EXECUTIONS if quick else executions
-    cases = executions_cases(size, seed)
-    command = f"carproof experiment executions --executions {size} --seed {seed}"
-    return go("executions", "executions", command, f"{size} executions", cases, executions_report, **campaign)
 
 
 @command.command("kernel")

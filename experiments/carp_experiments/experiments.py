@@ -9,7 +9,6 @@ from carp_experiments.beyond.following import following_report, following_row
 from carp_experiments.beyond.left_out import left_out_report, left_out_row
 from carp_experiments.beyond.people import people_report, people_row
 from carp_experiments.beyond.streams import stream_report, stream_row
-from carp_experiments.beyond.unplanned import unplanned_report, unplanned_row
 from carp_experiments.paper.adding_time import PAPERS_MAP, time_report, time_row
 from carp_experiments.paper.conventions import conventions_row
 from carp_experiments.paper.conventions_report import conventions_report
@@ -26,7 +25,6 @@ from carp_spec import Refusal
 
 ALL_MAPS = tuple(range(FULL_MAP + 1))
 SOME_MAPS = (0, 5, 10, 15, 20)
-SPARSE_MAPS = tuple(range(8))
 MOST_STREAMED = 100_000
 
 
@@ -134,14 +132,6 @@ EXPERIMENTS = (
         Profile(2, 30, (10, FULL_MAP)),
         conventions_row,
         conventions_report,
-    ),
-    Experiment(
-        "unplanned",
-        "Robots that polish leaves unplanned on the sparse maps, and whether they could be planned.",
-        Profile(20, 100, SPARSE_MAPS),
-        Profile(5, 60, (0, 5)),
-        unplanned_row,
-        lambda rows, _: unplanned_report(rows),
     ),
     Experiment(
         "left-out",

@@ -25,12 +25,10 @@ TITLES = {
     "gap": "Small maps against the optimum",
     "related": "Fixed paths and greedy best-first",
     "polish": "The distance to the optimum at the paper's size, and the polish",
-    "unplanned": "Robots left unplanned on sparse maps, and why",
     "execution": "Late robots: drivers compared",
     "following": "The price of plans without rotations",
     "people": "People first: the cost for the robots",
     "stream": "Streams of robots: throughput up to saturation",
-    "executions": "A million delayed executions in order",
 }
 MEANINGS = {
     "conventions": "The paper does not say how long a robot stays at its goal, whether it may appear late, or how ties "
@@ -46,10 +44,6 @@ MEANINGS = {
     "stream": "Both planners serve every arrival up to the rate at which the map is full; beyond it the throughput "
     "stays and robots wait. Robots wait less where neighbours make room. The throughput is that between the first "
     "quarter of the arrivals at goals and the third.",
-    "executions": "Each execution has a delay, and in each solution a robot waits for another. Without a rotation "
-    "every robot arrives, no rule is broken, and no robot is later than all delays together. The robots of a rotation "
-    "stand for ever, and none of them can go on alone by the rules. A judge on arrays judges all executions without a "
-    "rotation; the law judges two of each solution, and two on the clock, and must say the same.",
 }
 EXPLANATIONS = """\
 Numbers of actions are means over the assignments on which neither of the two fails, so both are compared on the same
