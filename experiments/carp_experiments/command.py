@@ -292,7 +292,7 @@ def go(  # noqa: PLR0913 - the campaign's options
         }
     if report is not None:
         write_report(report, name, reported, facts)
-        draw_figures(report, name)
+        draw_figures(report, name, report)
     if as_json:
         print_document(msgspec.json.encode({"experiment": name, **facts, "summary": reported.summary}) + b"\n")
         return Answer.of(reported.holds)

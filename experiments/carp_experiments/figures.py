@@ -5,6 +5,7 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
+from carp_experiments.report import Figure
 from carproof.gap.statistics import Interval
 
 if TYPE_CHECKING:
@@ -23,48 +24,48 @@ COLOURS = (
     "#a5aa22",
 )
 FAMILIES = ("CARP", "CARP10", "CARP100", "LF", "Proposed_4", "Proposed_5", "Proposed_6", "Proposed_10", "greedy")
+MARKERS = ("o", "s", "D", "^", "v", "<", ">", "X", "P", "*")
+"""As many as colours, so that lines of one panel differ in grey too."""
 STYLES = ("-", "--", ":")
 MOST_LINES = 7
 """The most lines of a panel; what has more is drawn in panels, each with CARP to compare with."""
 REFERENCE = "CARP"
-INCHES = 4.4
+WIDTH, HEIGHT = 5.0, 2.9
+"""Inches: those of a column, names beside the lines included, and of a panel."""
 MOST_TICKS = 6
-OUTLYING = 1.5
-"""A highest point is left out if it is more than this many times the next."""
-LABEL_DISTANCE = 0.055
+LABEL_DISTANCE = 0.085
 """The least distance of labels, as a part of a panel's height."""
 
-Lines: TypeAlias = Mapping[str, Sequence[tuple[int, Interval | None]]]
 Known: TypeAlias = dict[str, list[tuple[int, Interval]]]
 
 
-def line_figure(path: Path, title: str, axes: tuple[str, str], lines: Lines, logarithmic: bool = False) -> None:
+def line_figure(path: Path, drawn: Figure) -> None:
     """Draw a line with its intervals of 95 % for each name; a point without a value is left out.
 
     Names that differ only behind a plus, such as `CARP` and `CARP + more`, have one colour and different strokes.
-    The axes end where the values do, and a lone point far above all others is named below the title instead.
+    The axes end where the values do. Panels stand above each other, so that a figure is as wide as a column.
     """
     import matplotlib as mpl  # noqa: PLC0415 - loaded only where a figure is drawn
 
     mpl.use("svg")
     import matplotlib.pyplot as plt  # noqa: PLC0415
 
-    panels = panels_of([*lines])
-    strokes = strokes_of([*lines])
-    shown, outside = without_outliers(known_points(lines, logarithmic), logarithmic)
+    panels = panels_of([*drawn.lines])
+    strokes = strokes_of([*drawn.lines])
+    shown = known_points(drawn)
     with plt.rc_context({"svg.hashsalt": "carproof", "svg.fonttype": "none", "font.size": 9}):
-        size = (INCHES * max(len(panels), 1.5), INCHES)
-        figure, plots = plt.subplots(1, len(panels), figsize=size, sharey=True, squeeze=False, layout="constrained")
-        for plot, (heading, names) in zip(plots[0], panels.items(), strict=True):
-            plot.set(title=heading, xlabel=axes[0], yscale="log" if logarithmic else "linear")
+        size = (WIDTH, HEIGHT * len(panels) + 0.3)
+        figure, plots = plt.subplots(len(panels), figsize=size, squeeze=False, layout="constrained")
+        for (plot,), (heading, names) in zip(plots, panels.items(), strict=True):
+            plot.set_title(heading, fontsize="medium", loc="left")
+            plot.set(ylabel=drawn.axes[1], yscale="log" if drawn.logarithmic else "linear")
             end_where_values_do(plot, shown)
             of_panel = {name: shown[name] for name in names if shown[name]}
             for name, points in of_panel.items():
                 draw_line(plot, points, *strokes[name])
             write_names(plot, of_panel, {name: strokes[name][0] for name in of_panel})
-        plots[0][0].set_ylabel(axes[1])
-        notes = [f"outside: {estimate:,.0f} of {name} at {axes[0].split()[0]} {x}" for name, x, estimate in outside]
-        figure.suptitle("\n".join([title, *notes]))
+        plots[-1][0].set_xlabel(drawn.axes[0])
+        figure.suptitle(drawn.title)
         figure.savefig(path, metadata={"Date": None, "Creator": None})
         plt.close(figure)
 
@@ -90,22 +91,12 @@ def panels_of(names: Sequence[str]) -> dict[str, tuple[str, ...]]:
     return panels
 
 
-def known_points(lines: Lines, logarithmic: bool) -> Known:
+def known_points(drawn: Figure) -> Known:
     """The points that have a value, and on a logarithmic axis a positive one."""
     return {
-        name: [(x, each) for x, each in points if each is not None and (each.low > 0 or not logarithmic)]
-        for name, points in lines.items()
+        name: [(x, each) for x, each in points if each is not None and (each.low > 0 or not drawn.logarithmic)]
+        for name, points in drawn.lines.items()
     }
-
-
-def without_outliers(lines: Known, logarithmic: bool) -> tuple[Known, list[tuple[str, int, float]]]:
-    """The lines without a lone point that would flatten all others, and that point."""
-    highest = sorted(((each.estimate, x, name) for name, points in lines.items() for x, each in points), reverse=True)
-    if logarithmic or len(highest) <= 1 or not 0 < OUTLYING * highest[1][0] < highest[0][0]:
-        return lines, []
-    estimate, at, name = highest[0]
-    kept = {each: [point for point in points if (each, point[0]) != (name, at)] for each, points in lines.items()}
-    return kept, [(name, at, estimate)]
 
 
 def end_where_values_do(plot: "Axes", lines: Known) -> None:
@@ -129,12 +120,12 @@ def round_ticks(first: int, last: int) -> list[int]:
     return sorted({first, *between, last})
 
 
-def draw_line(plot: "Axes", points: Sequence[tuple[int, Interval]], colour: str, style: str) -> None:
+def draw_line(plot: "Axes", points: Sequence[tuple[int, Interval]], colour: str, marker: str, style: str) -> None:
     """Draw a line and the intervals of its points."""
     xs = [x for x, _ in points]
     plot.vlines(xs, [each.low for _, each in points], [each.high for _, each in points], colour, alpha=0.3, lw=0.8)
     ys = [each.estimate for _, each in points]
-    plot.plot(xs, ys, style, color=colour, marker=".", markersize=4, linewidth=1.2, clip_on=False)
+    plot.plot(xs, ys, style, color=colour, marker=marker, markersize=3, linewidth=1.2, clip_on=False)
 
 
 def write_names(plot: "Axes", lines: Known, colours: Mapping[str, str]) -> None:
@@ -147,7 +138,7 @@ def write_names(plot: "Axes", lines: Known, colours: Mapping[str, str]) -> None:
     for name, height in zip(ordered, spread([heights[name] for name in ordered]), strict=True):
         colour, places = colours[name], plot.transAxes
         plot.plot([1, 1.03], [heights[name], height], color=colour, linewidth=0.5, transform=places, clip_on=False)
-        plot.text(1.04, height, name, color=colour, verticalalignment="center", transform=places, clip_on=False)
+        plot.text(1.04, height, name, verticalalignment="center", transform=places, clip_on=False)
 
 
 def spread(heights: Sequence[float]) -> list[float]:
@@ -162,16 +153,17 @@ def spread(heights: Sequence[float]) -> list[float]:
     return placed
 
 
-def strokes_of(names: Sequence[str]) -> dict[str, tuple[str, str]]:
-    """The colour and the style of each line; the families that are known have theirs in every figure."""
-    strokes = {}
+def strokes_of(names: Sequence[str]) -> dict[str, tuple[str, str, str]]:
+    """The colour, marker and style of each line; the families that are known have theirs in every figure."""
     family_of = {name: name.partition(" + ")[0] for name in names}
     used = set(family_of.values())
     others = [family for family in dict.fromkeys(family_of.values()) if family not in FAMILIES]
-    free = [colour for family, colour in zip_longest(FAMILIES, COLOURS) if family not in used]
-    colours = {**dict(zip(FAMILIES, COLOURS, strict=False)), **dict(zip(others, free, strict=False))}
+    looks = list(zip(COLOURS, MARKERS, strict=True))
+    free = [look for family, look in zip_longest(FAMILIES, looks) if family not in used]
+    look_of = {**dict(zip(FAMILIES, looks, strict=False)), **dict(zip(others, free, strict=False))}
+    strokes = {}
     members: dict[str, int] = {}
     for name, family in family_of.items():
         members[family] = members.get(family, -1) + 1
-        strokes[name] = colours[family], STYLES[members[family] % len(STYLES)]
+        strokes[name] = *look_of[family], STYLES[members[family] % len(STYLES)]
     return strokes

@@ -9,9 +9,8 @@ from os import cpu_count
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from carp_experiments.figures import line_figure
-from carp_experiments.page import read_run, results
-from carp_experiments.redrawing import FIGURES
+from carp_experiments.page import results
+from carp_experiments.redrawing import FIGURES, draw_figures
 from carproof.command_line.files import write_whole
 
 TITLE = "Context-aware route planning for automated warehouses: the experiments again"
@@ -82,22 +81,14 @@ def pdf_of(body: str, stored: Path) -> bytes:
     pdf.set_creation_date(datetime(2000, 1, 1, tzinfo=UTC))  # the same bytes for the same runs
     pdf.add_page()
     with TemporaryDirectory() as place:
-        drawn = draw_pixels(stored, Path(place))
-        printed = IMAGE.sub(lambda image: f'src="{drawn[image[1]]}" width="750"', body)
+        drawn: dict[str, Path] = {}
+        for name in FIGURES:
+            if (stored / f"{name}.json").exists():
+                drawn |= draw_figures(stored, name, Path(place), "png")
+        printed = IMAGE.sub(lambda image: f'src="{drawn[image[1]]}" width="480"', body)
         printed = printed.replace("<td>", '<td align="left">')
         for heading, width in WIDTHS.items():
             printed = printed.replace(f"<th>{heading}</th>", f'<th width="{width}%">{heading}</th>')
         faces = {"code": FontFace(family="DejaVu Mono", size_pt=7)}
         pdf.write_html(printed, font_family="DejaVu", tag_styles=faces, table_line_separators=True)
         return bytes(pdf.output())
-
-
-def draw_pixels(stored: Path, folder: Path) -> dict[str, Path]:
-    """Draw the figures of all runs as PNG; their files by name."""
-    drawn = {}
-    for name, figures_of in FIGURES.items():
-        if (run := stored / f"{name}.json").exists():
-            for each in figures_of(read_run(run)):
-                drawn[each.name] = folder / f"{each.name}.png"
-                line_figure(drawn[each.name], each.title, each.axes, each.lines, each.logarithmic)
-    return drawn

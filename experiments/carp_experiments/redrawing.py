@@ -31,12 +31,15 @@ FIGURES: Mapping[str, Callable[[Run], Sequence[Figure]]] = {
 """The figures of a run, by the name of its experiment."""
 
 
-def draw_figures(folder: Path, name: str) -> None:
-    """Draw the figures of the run stored as `NAME.json` beside it, from the rounded numbers in it."""
-    for each in FIGURES[name](read_run(folder / f"{name}.json")) if name in FIGURES else ():
-        line_figure(folder / f"{each.name}.svg", each.title, each.axes, each.lines, each.logarithmic)
+def draw_figures(stored: Path, name: str, folder: Path, ending: str = "svg") -> dict[str, Path]:
+    """Draw the figures of the run stored as `NAME.json`, from the rounded numbers in it; their files by name."""
+    figures = FIGURES[name](read_run(stored / f"{name}.json")) if name in FIGURES else ()
+    files = {each.name: folder / f"{each.name}.{ending}" for each in figures}
+    for each in figures:
+        line_figure(files[each.name], each)
+    return files
 
 
 if __name__ == "__main__":
     for name in FIGURES:
-        draw_figures(RESULTS, name)
+        draw_figures(RESULTS, name, RESULTS)

@@ -8,6 +8,7 @@ from typing import Any
 import msgspec
 
 from carproof.gap.statistics import Interval
+from carproof.markdown import markdown_table
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,8 +24,7 @@ class Table:
     @property
     def markdown(self) -> str:
         """The table in Markdown."""
-        rule = ["---:" if column in self.numbers else "---" for column in self.columns]
-        return "".join(f"| {' | '.join(line)} |\n" for line in (self.columns, rule, *self.rows))
+        return markdown_table(self.columns, self.rows, self.numbers)
 
 
 @dataclass(frozen=True, slots=True)

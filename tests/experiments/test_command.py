@@ -39,9 +39,8 @@ def test_a_report_holds_tables_numbers_and_the_figures_of_the_stored_numbers(car
     assert sorted(written) == [
         "quality-failures.svg",
         "quality-savings.svg",
-        "quality-totals.svg",
         "quality.json",
         "quality.md",
     ]
-    draw_figures(Path("report"), "quality")
+    draw_figures(Path("report"), "quality", Path("report"))
     assert {path.name: path.read_bytes() for path in Path("report").iterdir()} == written

@@ -33,7 +33,7 @@ def quality_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
 
 
 def quality_figures(summary: QualitySummary) -> tuple[Figure, ...]:
-    """Failures, totals, and the actions saved against CARP, over all maps."""
+    """Failures, and the actions saved against CARP, over all maps."""
     savings = {
         name: [
             (each.map, each.saving)
@@ -45,17 +45,8 @@ def quality_figures(summary: QualitySummary) -> tuple[Figure, ...]:
     }
     on_maps = {name: [(map, saved) for map, saved in line if map is not None] for name, line in savings.items()}
     failures = {name: [(each.map, each.failure_rate) for each in of(summary, name)] for name in ALGORITHMS}
-    total = {
-        name: [
-            (each.map, each.total)
-            for each in of(summary, name)
-            if (each.assignments - each.failures) * FEWEST_SHOWN >= each.assignments
-        ]
-        for name in ALGORITHMS
-    }
     return (
         Figure("quality-failures", "Assignments that fail", (MAP_AXIS, "failure rate"), failures),
-        Figure("quality-totals", "Actions of all robots", (MAP_AXIS, "mean total cost"), total),
         Figure("quality-savings", "Fewer actions than CARP, where neither fails", (MAP_AXIS, "actions"), on_maps),
     )
 
