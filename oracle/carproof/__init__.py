@@ -113,6 +113,8 @@ if TYPE_CHECKING:
     from carproof.formats import read_movingai as read_movingai
     from carproof.formats import write_foreign_solution as write_foreign_solution
     from carproof.formats import write_movingai as write_movingai
+    from carproof.formats.plans.vda5050 import OrderSettings as OrderSettings
+    from carproof.formats.plans.vda5050 import write_orders as write_orders
     from carproof.judging.audit import Audit as Audit
     from carproof.judging.audit import Late as Late
     from carproof.layouts import Footprint as Footprint

@@ -176,6 +176,7 @@ OF_SOLUTIONS: Mapping[str, Callable[[Solution], object]] = {
     "certify": lambda solution: certify(RIGHT, solution),
     "write_solution": write_solution,
     "write_foreign_solution": lambda solution: write_foreign_solution(RIGHT, solution, "carproof"),
+    "write_orders": lambda solution: write_orders(RIGHT, solution),
     "page": lambda solution: page(RIGHT, solution, "title"),
     "map_still": lambda solution: map_still(RIGHT, solution, 0, "title"),
     "chart_still": lambda solution: chart_still(RIGHT, solution, "title"),
@@ -312,7 +313,7 @@ def test_malformed_options_of_a_generator_are_refused(make: Callable[[], object]
 
 
 def test_the_format_of_a_foreign_solution_must_exist() -> None:
-    assert refused(lambda: write_foreign_solution(RIGHT, SOLVED, "csv"))[1:] == ("adapter/format", "$.format")
+    assert refused(lambda: write_foreign_solution(RIGHT, SOLVED, "xlsx"))[1:] == ("adapter/format", "$.format")
 
 
 def test_costs_need_a_known_robot_and_a_visit() -> None:

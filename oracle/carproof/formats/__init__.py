@@ -1,9 +1,10 @@
 """Solutions in other planners' formats, one per module, and instances of other tools.
 
 `read_foreign_solution` reads any format, and recognises it if it is not named; `write_foreign_solution` writes them.
+`walks` defines the semantics of the formats that planners have. `plans.vda5050` writes orders for robots.
 `read_movingai` and `write_movingai` are for files of the MovingAI benchmarks, `instance_from_array` for grids of NumPy,
-`instance_from_networkx` and `graph_of` for graphs of networkx. `walks` defines the semantics of the formats. To add
-one, write its module and put its adapter into `ADAPTERS`.
+`instance_from_networkx` and `graph_of` for graphs of networkx. To add a format, write its module and put its adapter
+into `ADAPTERS`.
 """
 
 from collections.abc import Mapping
@@ -20,6 +21,8 @@ from carproof.formats.logs.cells import RIGHT_LOG
 from carproof.formats.movingai import read_movingai
 from carproof.formats.movingai_writer import MovingAIFiles, write_movingai
 from carproof.formats.networkx_graphs import graph_of, instance_from_networkx, node_is_right
+from carproof.formats.plans import table
+from carproof.formats.plans.vda5050 import RIGHT_NAMES, settings_are_right
 from carproof.formats.walks import WALK_RULES
 from carproof.input_rules import Code
 
@@ -48,6 +51,7 @@ ADAPTERS: Mapping[str, Adapter] = {
         mapf_tracker.ADAPTER,
         agent_paths.ROW_COLUMN,
         agent_paths.X_Y,
+        table.ADAPTER,
     )
 }
 """The formats by name."""
@@ -66,6 +70,9 @@ ADAPTER_RULES: tuple[Rule[..., Any] | Code, ...] = (
     libmultirobotplanning.RIGHT_SCHEDULE,
     mapf_tracker.RIGHT_MOVES,
     agent_paths.RIGHT_PATHS,
+    table.RIGHT_TABLE,
+    settings_are_right,
+    RIGHT_NAMES,
     RIGHT_LOG,
     node_is_right,
     RIGHT_ARRAY,

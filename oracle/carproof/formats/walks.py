@@ -43,8 +43,8 @@ def walks_are_bounded(cells: int) -> bool:
 
 @rule(
     "adapter/solution",
-    "A solution is written as walks only if it breaks no rule, and without unplanned robots where the format has no "
-    "place for them.",
+    "A solution is written in a format of other tools only if it breaks no rule, and without unplanned robots where "
+    "the format has no place for them.",
     DESIGN,
 )
 def solution_has_walks(instance: Instance, solution: Solution, partial: bool) -> bool:

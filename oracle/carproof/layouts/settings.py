@@ -15,9 +15,9 @@ _QUANTITY = re.compile(r"(\d{1,9}(?:\.\d{1,9})?)([a-z/]+)")
 _SIZE = re.compile(r"(\d{1,6})(?:x(\d{1,6}))?mm")
 RIGHT_SETTINGS = Code(
     "layout/settings",
-    "A time is like 0.5s or 100ms, a speed like 1.2m/s, a footprint 900x600mm or the radius of a disc, like 450mm; "
-    "all are above 0. Requests are CSV with the columns robot, start, goal and perhaps release; starts and goals are "
-    "points of the layout.",
+    "A time is like 0.5s or 100ms, a length like 1m, a speed like 1.2m/s, a footprint 900x600mm or the radius of a "
+    "disc, like 450mm; all are above 0. Requests are CSV with the columns robot, start, goal and perhaps release; "
+    "starts and goals are points of the layout.",
     DESIGN,
 )
 
@@ -53,6 +53,11 @@ class Settings:
 def seconds(text: str, name: str = "tick") -> Fraction:
     """A time such as `0.5s`, in seconds."""
     return _quantity(name, text, SECONDS)
+
+
+def millimetres(text: str, name: str) -> Fraction:
+    """A length such as `1m`, in mm."""
+    return _quantity(name, text, MILLIMETRES)
 
 
 def speed(text: str) -> Fraction:

@@ -1,5 +1,6 @@
 """`carproof convert`: instances of benchmarks and layouts, and solutions in the formats of other tools."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import get_args
 
@@ -19,9 +20,16 @@ from carproof.command_line.files import (
 from carproof.command_line.foreign import AGENTS_HELP, MovingAI, formats, read_movingai, read_solution_of
 from carproof.command_line.layouts import LayoutOptions, layout_formats, layout_options, show_layout
 from carproof.command_line.options import examples, json_option, output_option
+from carproof.command_line.orders import OrderOptions, order_options
 from carproof.command_line.output import show_instance
 from carproof.formats import ADAPTERS, write_foreign_solution
+from carproof.formats.plans.vda5050 import VERSIONS, write_orders
 from carproof.layouts import READERS
+
+TO_HELP = (
+    "Convert a solution to this format, one of those of --from; or vda5050-2 or vda5050-3: an order of VDA 5050 for "
+    "each robot, on a line of its own."
+)
 
 
 @click.command(
@@ -32,6 +40,7 @@ from carproof.layouts import READERS
         "carproof convert town.map town.scen --agents 40 | carproof plan -",
         "carproof convert town.json plans.json --to lacam -o result.txt",
         "carproof convert town.json result.txt --to carproof -o plans.json",
+        "carproof convert plant.json plans.json --to vda5050-3 --at 12 --since 9",
     ),
 )
 @click.argument("first", metavar="LAYOUT|MAP|INSTANCE", type=InputFile())
@@ -42,7 +51,7 @@ from carproof.layouts import READERS
     type=click.Choice(get_args(AfterGoal)),
     help="Robots vanish or park after their goals.  [default: park]",
 )
-@click.option("--to", type=click.Choice([*ADAPTERS]), metavar="FORMAT", help="Convert a solution to this format.")
+@click.option("--to", type=click.Choice([*ADAPTERS, *VERSIONS]), metavar="FORMAT", help=TO_HELP)
 @click.option(
     "--from",
     "format",
@@ -50,6 +59,7 @@ from carproof.layouts import READERS
     metavar="FORMAT",
     help=f"The format of LAYOUT or SOLUTION. {layout_formats()}; {formats()}.  [default: the one that it looks like]",
 )
+@order_options
 @layout_options
 @output_option
 @json_option
@@ -64,6 +74,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     output: Path | None,
     as_json: bool,
     layout: LayoutOptions,
+    orders: OrderOptions,
 ) -> Answer:
     """Make an instance of a layout or of a MovingAI .map and .scen file, or convert a solution of an instance by --to.
 
@@ -74,30 +85,48 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     durations of one, and the cost is the sum of costs. The scenario's lengths are for octile moves and are not used.
 
     With --to, the files are INSTANCE and SOLUTION. Other planners' formats hold plans of robots that are present from
-    tick 0 and park, on resources with positions. A solution that breaks a rule, or that the format cannot express, is
-    refused.
+    tick 0 and park, on resources with positions; carproof's own documents and tables (csv) hold all plans. A solution
+    that breaks a rule, or that the format cannot express, is refused.
+
+    Orders of VDA 5050 release what a robot may enter by the planned order at the tick --at, if all robots have kept to
+    their plans so far. With --since they are updates of the orders of that tick.
 
     The result goes to standard output, or with -o to a file.
     """
+    given = replace(layout, tick=None).given if to in VERSIONS else layout.given
+    if orders.given and to not in VERSIONS:
+        raise click.UsageError(f"{orders.given} concerns orders: --to {' or '.join(VERSIONS)}.")
     if second is None:
         if agents is not None or to is not None:
             raise click.UsageError("--agents concerns a scenario and --to a solution: give a second file.")
         return show_layout(first, format, layout, after_goal or "park", output, as_json=as_json)
-    if layout.given:
-        raise click.UsageError(f"{layout.given} concerns a layout, which is one file.")
+    if given:
+        raise click.UsageError(f"{given} concerns a layout, which is one file.")
     refuse_two_standard_inputs(first, second)
     if to is None:
         if format is not None:
             raise click.UsageError("--from and --to concern a solution.")
-        if first != STANDARD_INPUT and read_bytes(first).lstrip().startswith(b"{"):
-            raise click.UsageError(f"{first} is no map; to convert a solution of an instance, name a format by --to.")
-        return show_instance(read_movingai(MovingAI(first, second, agents, after_goal or "park")), output, as_json)
+        return _show_benchmark(MovingAI(first, second, agents, after_goal or "park"), output, as_json=as_json)
     if agents is not None or after_goal is not None or as_json:
         raise click.UsageError("--agents, --after-goal and --json concern instances, and --to concerns a solution.")
-    instance = read_instance_file(first)
-    data = write_foreign_solution(instance, read_solution_of(instance, second, format), to)
+    data = _converted(first, second, format, to, orders, layout.tick)
     if output is None:
         print_document(data)
     else:
         write_whole(output, data)
     return Answer.YES
+
+
+def _show_benchmark(benchmark: MovingAI, output: Path | None, *, as_json: bool) -> Answer:
+    first = benchmark.map
+    if first != STANDARD_INPUT and read_bytes(first).lstrip().startswith(b"{"):
+        raise click.UsageError(f"{first} is no map; to convert a solution of an instance, name a format by --to.")
+    return show_instance(read_movingai(benchmark), output, as_json)
+
+
+def _converted(first: str, second: str, format: str | None, to: str, orders: OrderOptions, tick: str | None) -> bytes:
+    instance = read_instance_file(first)
+    solution = read_solution_of(instance, second, format)
+    if to in VERSIONS:
+        return write_orders(instance, solution, orders.settings(to, tick))
+    return write_foreign_solution(instance, solution, to)

@@ -1,0 +1,21 @@
+"""In which visits a plan serves stops."""
+
+from collections.abc import Mapping
+
+from carp_spec import Instance, Plan, stops_served
+
+
+def stops_in(instance: Instance, plan: Plan) -> Mapping[int, int]:
+    """The places of the visits in which a plan serves its stops, each with the place of the stop.
+
+    Every stop but the last is served as soon as a visit allows it, the last one in the last visit.
+    """
+    stops = instance.robot[plan.robot].stops
+    serves: dict[int, int] = {}
+    for place, visit in enumerate(plan.visits[:-1]):
+        served = len(serves)
+        if stops_served(stops[:-1][served : served + 1], (visit,)):
+            serves[place] = served
+    if plan.visits and len(serves) == len(stops) - 1:
+        serves[len(plan.visits) - 1] = len(stops) - 1
+    return serves

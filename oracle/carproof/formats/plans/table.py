@@ -1,0 +1,77 @@
+"""A table of plans: comma-separated values with the columns robot, resource, enter, leave and serves.
+
+A row is a visit; rows of a robot are in order. An empty `leave` is for ever. Robots are in the order of planning, and
+those without rows are unplanned. `serves` is the number of the stop that is served, from 1; it is not read, and columns
+may be added.
+"""
+
+import csv
+import re
+from io import StringIO
+
+from carp_spec import Instance, Plan, Refusal, ResourceId, RobotId, Solution, Visit
+from carp_spec.rule import DESIGN
+from carproof.formats.adapter import Adapter
+from carproof.formats.plans.checks import names_of, require_lawful
+from carproof.formats.plans.services import stops_in
+from carproof.formats.walks import require_bounded
+from carproof.input_rules import Code
+
+COLUMNS = ("robot", "resource", "enter", "leave")
+_TICK = re.compile(r"\d{1,18}")
+RIGHT_TABLE = Code(
+    "adapter/csv",
+    "A table of plans has the columns robot, resource, enter and leave. A row has a robot, a resource, the tick at "
+    "which it enters, and that at which it leaves, or nothing if it stays for ever. Ids of the instance print "
+    "differently.",
+    DESIGN,
+)
+
+
+def read(text: str, instance: Instance, file: str) -> Solution:
+    """Read a table; ids that the instance does not have are left to the rules of plans."""
+    robots: dict[str, RobotId] = {name: id for id, name in names_of(instance.robot, "robots", RIGHT_TABLE).items()}
+    resources: dict[str, ResourceId] = {
+        name: id for id, name in names_of(instance.graph.index, "resources", RIGHT_TABLE).items()
+    }
+    rows = csv.DictReader(StringIO(text.removeprefix("\ufeff")))
+    if not {*COLUMNS} <= {*(rows.fieldnames or ())}:
+        raise Refusal("document", f"{file}:1", RIGHT_TABLE.id, f"the line must name the columns {', '.join(COLUMNS)}")
+    visits: dict[RobotId, list[Visit]] = {}
+    for number, row in enumerate(rows, start=2):
+        require_bounded(number, file)
+        robot, resource, enter, leave = ((row[name] or "").strip() for name in COLUMNS)
+        if not robot or not resource or not _TICK.fullmatch(enter) or not (leave == "" or _TICK.fullmatch(leave)):
+            message = (
+                "the row must have a robot, a resource, and whole numbers of ticks, the last of which may be left out"
+            )
+            raise Refusal("document", f"{file}:{number}", RIGHT_TABLE.id, message)
+        visit = Visit(resources.get(resource, resource), int(enter), int(leave) if leave else None)
+        visits.setdefault(robots.get(robot, robot), []).append(visit)
+    return Solution.of(instance, (Plan(robot, tuple(each)) for robot, each in visits.items()))
+
+
+def write(instance: Instance, solution: Solution) -> str:
+    """Write a table; raises `Refusal` if the solution breaks a rule or ids print alike."""
+    require_lawful(instance, solution)
+    robots = names_of(instance.robot, "robots", RIGHT_TABLE)
+    resources = names_of(instance.graph.index, "resources", RIGHT_TABLE)
+    plans = {plan.robot: plan for plan in solution.plans}
+    text = StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow((*COLUMNS, "serves"))
+    for id in solution.order:
+        serves = stops_in(instance, plans[id])
+        for place, visit in enumerate(plans[id].visits):
+            leave = "" if visit.leave is None else visit.leave
+            stop = serves[place] + 1 if place in serves else ""
+            name = resources.get(visit.resource, visit.resource)
+            rows.writerow((robots[id], name, visit.enter, leave, stop))
+    return text.getvalue()
+
+
+def _looks_like(text: str) -> bool:
+    return {*COLUMNS} <= {each.strip('" ') for each in text.removeprefix("\ufeff").partition("\n")[0].split(",")}
+
+
+ADAPTER = Adapter("csv", f"a table with the columns {', '.join(COLUMNS)}, for every instance", _looks_like, read, write)

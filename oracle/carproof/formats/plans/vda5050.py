@@ -1,0 +1,173 @@
+"""Orders of VDA 5050, versions 2 and 3: one message for each robot, on a line of its own.
+
+Points are nodes and lanes are edges; where a robot moves from one point to the next without a lane, the move is the
+edge. The base, what is released, is what the robot may enter by the planned order; the horizon is the rest. A stop with
+a service is an action of its node. The format has no times, so that waiting is expressed by later releases alone.
+"""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+from fractions import Fraction
+from hashlib import sha256
+from typing import Any
+
+from carp_spec import Instance, Plan, Refusal, ResourceId, Solution
+from carp_spec.inputs.values import require_solution
+from carp_spec.rule import DESIGN, rule
+from carproof.formats.plans.checks import names_of, require_lawful
+from carproof.formats.plans.release import released
+from carproof.formats.plans.services import stops_in
+from carproof.input_rules import Code
+from carproof.layouts.lanes import lanes_of
+
+VERSIONS: Mapping[str, str] = {"vda5050-2": "2.1.0", "vda5050-3": "3.0.0"}
+"""The versions that are written, by the names of the formats."""
+SECONDS_OF_DATES = 253_402_300_800
+Element = dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class OrderSettings:
+    """What orders have that plans do not.
+
+    `at` is the tick at which they are sent. With `since`, that of the orders before, they are updates of these. `tick`
+    is in seconds, and `unit`, that of positions, in millimetres.
+    """
+
+    at: int = 0
+    since: int | None = None
+    version: str = "3.0.0"
+    tick: Fraction = Fraction(1)
+    unit: Fraction = Fraction(1)
+    map_id: str = "map"
+    manufacturer: str = "carproof"
+
+
+@rule(
+    "order/settings",
+    "An order is sent at a tick of at least 0, before the year 10,000. An update is sent after the order before it. "
+    f"The version is one of {', '.join(VERSIONS.values())}; a tick and the unit of positions are above 0.",
+    DESIGN,
+)
+def settings_are_right(settings: OrderSettings) -> bool:
+    """Whether orders can be written with the settings."""
+    quantities: tuple[object, ...] = (settings.tick, settings.unit)
+    texts: tuple[object, ...] = (settings.map_id, settings.manufacturer)
+    return (
+        all(type(each) is int and each >= 0 for each in (settings.at, settings.since) if each is not None)
+        and (settings.since is None or settings.since < settings.at)
+        and settings.version in VERSIONS.values()
+        and all(isinstance(each, Fraction) and each > 0 for each in quantities)
+        and settings.at * settings.tick < SECONDS_OF_DATES
+        and all(isinstance(each, str) for each in texts)
+    )
+
+
+RIGHT_NAMES = Code("order/names", "Ids of an instance of which orders are written print differently.", "VDA 5050")
+DEFAULTS = OrderSettings()
+
+
+def write_orders(instance: Instance, solution: Solution, settings: OrderSettings = DEFAULTS) -> bytes:
+    """Write orders of VDA 5050, a message on each line.
+
+    A robot whose first node may not be released has none, nor, with `since`, has one of which no more is released than
+    then. Raises `Refusal` if the solution is malformed or breaks a rule.
+    """
+    require_solution(instance, solution)
+    if not settings_are_right(settings):
+        message = (
+            "at must be at least 0, since less than at, the tick and the unit above 0, and the version a known one"
+        )
+        raise Refusal("option", "$.orders", settings_are_right.id, message)
+    require_lawful(instance, solution)
+    now = released(instance, solution, settings.at)
+    then = {} if settings.since is None else released(instance, solution, settings.since)
+    writer = _Writer(instance, settings)
+    orders = (writer.order(plan, now[plan.robot], then.get(plan.robot, 0)) for plan in solution.plans)
+    return b"".join(json.dumps(each, ensure_ascii=False).encode() + b"\n" for each in orders if each is not None)
+
+
+class _Writer:
+    """Writes the order of each plan."""
+
+    def __init__(self, instance: Instance, settings: OrderSettings) -> None:
+        self.instance = instance
+        self.settings = settings
+        self.robots = names_of(instance.robot, "robots", RIGHT_NAMES)
+        self.names = names_of(instance.graph.index, "resources", RIGHT_NAMES)
+        self.lanes = lanes_of(instance)
+
+    def order(self, plan: Plan, now: int, then: int) -> Element | None:
+        """The order of a plan of which `now` visits are released, and `then` were before; `None` if it has none."""
+        places = [place for place, visit in enumerate(plan.visits) if visit.resource not in self.lanes]
+        base = sum(place < now for place in places)
+        before = sum(place < then for place in places)
+        if base == before:
+            return None
+        nodes = [*self._nodes(plan, places, base)]
+        first = max(before - 1, 0)
+        settings = self.settings
+        sent = datetime(1970, 1, 1, tzinfo=UTC) + timedelta(milliseconds=int(settings.at * settings.tick * 1000))
+        return {
+            "headerId": settings.at,
+            "timestamp": sent.strftime("%Y-%m-%dT%H:%M:%S.") + f"{sent.microsecond // 1000:03}Z",
+            "version": settings.version,
+            "manufacturer": settings.manufacturer,
+            "serialNumber": self.robots[plan.robot],
+            "orderId": self._order_id(plan),
+            "orderUpdateId": settings.at if before else 0,
+            "nodes": nodes[first:],
+            "edges": [*self._edges(plan, places, nodes)][first:],
+        }
+
+    def _order_id(self, plan: Plan) -> str:
+        """The same for plans along the same resources."""
+        stops = [[stop.resource, stop.service] for stop in self.instance.robot[plan.robot].stops]
+        way = json.dumps([plan.robot, [visit.resource for visit in plan.visits], stops])
+        return f"{self.robots[plan.robot]}-{sha256(way.encode()).hexdigest()[:16]}"
+
+    def _nodes(self, plan: Plan, places: Sequence[int], base: int) -> Iterator[Element]:
+        serves = stops_in(self.instance, plan)
+        for count, place in enumerate(places):
+            id = plan.visits[place].resource
+            node: Element = {"nodeId": self.names[id], "sequenceId": 2 * count, "released": count < base}
+            position = self._position(id)
+            if position is not None:
+                node["nodePosition"] = position
+            node["actions"] = [*self._actions(plan, place, serves)]
+            yield node
+
+    def _position(self, id: ResourceId) -> Element | None:
+        resource, metres = self.instance.graph.resource[id], self.settings.unit / 1000
+        if resource.x is None or resource.y is None:
+            return None
+        return {"x": float(resource.x * metres), "y": float(resource.y * metres), "mapId": self.settings.map_id}
+
+    def _actions(self, plan: Plan, place: int, serves: Mapping[int, int]) -> Iterator[Element]:
+        """The service of the stop that the visit serves, if it takes time."""
+        stops = self.instance.robot[plan.robot].stops
+        if place in serves and stops[serves[place]].service:
+            yield {
+                "actionType": "service",
+                "actionId": f"{self._order_id(plan)}-{serves[place] + 1}",
+                "blockingType": "HARD",
+                "actionParameters": [
+                    {"key": "stop", "value": serves[place] + 1},
+                    {"key": "duration", "value": float(stops[serves[place]].service * self.settings.tick)},
+                ],
+            }
+
+    def _edges(self, plan: Plan, places: Sequence[int], nodes: Sequence[Element]) -> Iterator[Element]:
+        for count in range(len(places) - 1):
+            lane = plan.visits[places[count] + 1].resource
+            ends = (nodes[count]["nodeId"], nodes[count + 1]["nodeId"])
+            edge: Element = {
+                "edgeId": self.names[lane] if lane in self.lanes else f"{ends[0]} -> {ends[1]}",
+                "sequenceId": 2 * count + 1,
+                "released": nodes[count + 1]["released"],
+            }
+            if self.settings.version == VERSIONS["vda5050-2"]:
+                edge |= {"startNodeId": ends[0], "endNodeId": ends[1]}
+            yield {**edge, "actions": []}
