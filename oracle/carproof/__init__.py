@@ -76,6 +76,7 @@ if TYPE_CHECKING:
     from carp_spec.inputs.costs import makespan as makespan
     from carp_spec.model import Following as Following
     from carp_verify.bound.verify import verify_bound as verify_bound
+    from carp_verify.footprint.rules import Footprint as Footprint
     from carp_verify.optimum.proof import ProofError as ProofError
     from carp_verify.optimum.proof import Verified as Verified
     from carp_verify.optimum.proof import verify_proof as verify_proof
@@ -117,7 +118,6 @@ if TYPE_CHECKING:
     from carproof.formats.plans.vda5050 import write_orders as write_orders
     from carproof.judging.audit import Audit as Audit
     from carproof.judging.audit import Late as Late
-    from carproof.layouts import Footprint as Footprint
     from carproof.layouts import Imported as Imported
     from carproof.layouts import Settings as Settings
     from carproof.layouts import import_layout as import_layout

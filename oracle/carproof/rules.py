@@ -6,6 +6,7 @@ from carp_spec import Rule
 from carp_spec.limits import goals_stand_alone, groups_are_absent
 from carp_spec.planners import ticks_are_held
 from carp_verify.bound.rules import BOUND_RULES
+from carp_verify.footprint.rules import FOOTPRINT_RULES
 from carp_verify.kernel import KERNEL_RULES
 from carp_verify.optimum.rules import OPTIMUM_RULES
 from carp_verify.query.rules import QUERY_CERTIFICATE_RULES
@@ -42,5 +43,6 @@ ALL_RULES: tuple[Rule[..., Any] | Code, ...] = (
     *OPTIMUM_RULES,
     *BOUND_RULES,
     *QUERY_CERTIFICATE_RULES,
+    *FOOTPRINT_RULES,
     *KERNEL_RULES,
 )

@@ -6,25 +6,17 @@ from math import hypot
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.oracle.roadmaps import Place, graphml
 
 from carp_spec import Instance
+from carp_verify.footprint.rules import Footprint
 from carproof.engines import engine_named
 from carproof.layouts import Settings, import_layout
-from carproof.layouts.settings import Footprint
-
-Place = tuple[int, int]
 
 
 def roadmap(lanes: list[tuple[Place, Place]], **settings: object) -> Instance:
     """One-way lanes with ends in mm; a point is named by its place."""
-    places = dict.fromkeys(place for lane in lanes for place in lane)
-    nodes = "".join(
-        f'<node id="{x},{y}"><data key="x">{x}e-3</data><data key="y">{y}e-3</data></node>' for x, y in places
-    )
-    edges = "".join(f'<edge source="{a},{b}" target="{c},{d}"/>' for (a, b), (c, d) in lanes)
-    keys = "".join(f'<key id="{name}" attr.name="{name}"/>' for name in "xy")
-    text = f'<graphml>{keys}<graph edgedefault="directed">{nodes}{edges}</graph></graphml>'
-    made = import_layout(text.encode(), settings=Settings(**({"robots": 0} | settings)))  # type: ignore[arg-type]
+    made = import_layout(graphml(lanes), settings=Settings(**({"robots": 0} | settings)))  # type: ignore[arg-type]
     return made.instance
 
 

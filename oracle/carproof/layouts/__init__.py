@@ -12,9 +12,9 @@ from carproof.layouts import lif, nav2, open_rmf, opentcs, roadmaps
 from carproof.layouts.layout import Note, Reader
 from carproof.layouts.located import RIGHT_LAYOUT, read_tree
 from carproof.layouts.making import instance_of
-from carproof.layouts.settings import RIGHT_SETTINGS, Footprint, Settings
+from carproof.layouts.settings import RIGHT_SETTINGS, Settings
 
-__all__ = ["LAYOUT_RULES", "READERS", "Footprint", "Imported", "Note", "Reader", "Settings", "import_layout"]
+__all__ = ["LAYOUT_RULES", "READERS", "Imported", "Note", "Reader", "Settings", "import_layout"]
 
 READERS: Mapping[str, Reader] = {
     each.name: each

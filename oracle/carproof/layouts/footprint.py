@@ -14,8 +14,8 @@ from fractions import Fraction
 from math import isqrt
 
 from carp_spec.model import Group
+from carp_verify.footprint.rules import Footprint
 from carproof.layouts.layout import Layout
-from carproof.layouts.settings import Footprint
 
 Vector = tuple[int, int]
 

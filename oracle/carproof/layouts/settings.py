@@ -7,6 +7,7 @@ from fractions import Fraction
 
 from carp_spec import AfterGoal, Refusal
 from carp_spec.rule import DESIGN
+from carp_verify.footprint.rules import Footprint
 from carproof.input_rules import Code
 
 MILLIMETRES = {"mm": Fraction(1), "cm": Fraction(10), "m": Fraction(1000)}
@@ -20,15 +21,6 @@ RIGHT_SETTINGS = Code(
     "starts and goals are points of the layout.",
     DESIGN,
 )
-
-
-@dataclass(frozen=True, slots=True)
-class Footprint:
-    """A vehicle of a length and a width in mm; where it is `round`, a disc of this diameter."""
-
-    length: int
-    width: int
-    round: bool = False
 
 
 @dataclass(frozen=True, slots=True)

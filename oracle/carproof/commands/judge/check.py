@@ -5,19 +5,22 @@ from pathlib import Path
 
 import click
 
-from carp_spec import Instance, Solution, Verdict, judge
+from carp_spec import Instance, Solution, Verdict
 from carp_spec.check import MOST_LISTED
 from carp_spec.documents.decoding import write
 from carp_spec.documents.solutions import solution_document
 from carp_spec.documents.verdicts import write_verdict
 from carp_verify.bound.rules import ContradictionError
+from carp_verify.footprint.rules import FOOTPRINT_RULES
 from carp_verify.kernel import KernelVerdict, ask, request
+from carproof.api.judging import check
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import print_document, refuse_in, write_whole
 from carproof.command_line.foreign import Problem, solution_files
 from carproof.command_line.options import examples, json_option, kernel_option, output_option
 from carproof.command_line.tables import print_line, print_table, say
 from carproof.commands.judge.second_opinion import certified
+from carproof.layouts.settings import footprint as footprint_of
 from carproof.registry import RULES
 
 
@@ -29,6 +32,7 @@ from carproof.registry import RULES
         "carproof check town.json plans.json --json > verdict.json",
         "carproof check town.json plans.json --require-all",
         "carproof check town.json result.txt --from lacam",
+        "carproof check plant.json plans.json --footprint 900x600mm",
         "carproof check town.json plans.json --kernel",
         "carproof check town.json plans.json --z3",
         "carproof check --map town.map --scen town.scen --agents 40 result.txt",
@@ -37,6 +41,9 @@ from carproof.registry import RULES
 @solution_files
 @kernel_option
 @click.option("--z3", is_flag=True, help="Let z3 confirm that plans keep capacities and avoid exchanges.")
+@click.option(
+    "--footprint", help="The size of vehicles, 900x600mm or a radius like 450mm, to check that they keep apart."
+)
 @click.option("--require-all", is_flag=True, help="Answer no also if a robot has no plan.")
 @click.option("--all", "everything", is_flag=True, help="List every violation, however many there are.")
 @output_option
@@ -46,6 +53,7 @@ def command(  # noqa: PLR0913 - an argument an option
     problem: Problem,
     kernel: bool,
     z3: bool,
+    footprint: str | None,
     require_all: bool,
     everything: bool,
     output: Path | None,
@@ -67,16 +75,22 @@ def command(  # noqa: PLR0913 - an argument an option
     full at no tick at all, and for each pair of resources that no two robots exchange it. Where it cannot tell, the
     answer is undecided.
 
+    With --footprint, vehicles of that size must keep apart: what they sweep is computed from positions in mm and from
+    plans alone, in whole numbers, whatever the groups of INSTANCE.
+
     Exit codes: 0 no rule is broken, 1 a rule is broken (--require-all: or a robot has no plan), 2 bad input,
     3 undecided.
     """
+    if footprint is not None and (kernel or z3):
+        raise click.UsageError("--kernel and --z3 do not know --footprint.")
+    size = None if footprint is None else footprint_of(footprint)
     instance, given = problem.read(as_named=True)
     if kernel or z3:
         refuse_in(problem.names[0], instance, "stops", *(("groups",) if z3 else ()))
     if z3:
         return certified(instance, given, as_json)
     most = None if everything else MOST_LISTED
-    verdict = judge(instance, given, most)
+    verdict = check(instance, given, most, size)
     decided = kernel_verdict(instance, given, verdict) if kernel else None
     document = write_verdict(verdict) if decided is None else write(decided)
     if output is not None:
@@ -107,7 +121,7 @@ def print_verdict(verdict: Verdict, most: int | None, require_all: bool = False)
     if count:
         say()
         numbers = {rule: f"{number} or more" if number == most else number for rule, number in count.items()}
-        broken = [(rule.id, numbers[rule.id]) for rule in RULES if rule.id in numbers]
+        broken = [(rule.id, numbers[rule.id]) for rule in (*RULES, *FOOTPRINT_RULES) if rule.id in numbers]
         print_table(["rule", "violations"], broken, numbers=["violations"])
         say()
     broken_or_not = "no rule is broken" if verdict.valid else "INVALID"

@@ -1,0 +1,1 @@
+"""Vehicles of a size keep apart: recomputed from the positions and the plans alone, in whole numbers."""
