@@ -37,6 +37,7 @@ from carp_verify.certificate import certify
 from carp_verify.optimum.joint_search import least_total_cost
 from carp_verify.query.verify import verify_query
 from carproof.formats import named_as, read_foreign_solution, write_foreign_solution
+from carproof.formats.plans.vda5050 import write_orders
 from carproof.generate import Fleet, Grid, Range, Traits, Warehouse, grid_instance, warehouse_instance
 from carproof.viewer.page import page
 from carproof.viewer.stills import chart_still, map_still
