@@ -1,6 +1,6 @@
 """The planners to choose from, each loaded when it is first used."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from importlib import import_module
 from importlib.util import find_spec
@@ -13,7 +13,6 @@ from carproof.progress import progress
 
 if TYPE_CHECKING:
     from carp_optimized.fleet import PlannedFleet
-    from carp_optimized.improve.many_starts import Polish
 
 ENGINES = ("optimized", "reference")
 
@@ -28,21 +27,6 @@ class Certifier(Protocol):
         self, robot: RobotId, followed: Plan | None = None, now: int = 0
     ) -> tuple[Plan | None, QueryCertificateDocument]:
         """The plan of a robot that arrives earliest, `None` if it has none, and its certificate."""
-
-
-class Assign(Protocol):
-    """Gives a robot further stops."""
-
-    def __call__(
-        self,
-        instance: Instance,
-        solution: Solution,
-        robot: RobotId,
-        stops: Sequence[Stop],
-        now: int,
-        options: Neighbourhood,
-    ) -> tuple[Instance, Solution]:
-        """The instance with its stops, and the plans."""
 
 
 class Engine(Protocol):
@@ -63,13 +47,20 @@ class Engine(Protocol):
     def add(self, instance: Instance, solution: Solution, robot: RobotId, now: int, options: Neighbourhood) -> Solution:
         """Plans with one robot more."""
 
-    @property
-    def assign(self) -> "Assign":
+    def assign(
+        self,
+        instance: Instance,
+        solution: Solution,
+        robot: RobotId,
+        stops: Sequence[Stop],
+        now: int,
+        options: Neighbourhood,
+    ) -> tuple[Instance, Solution]:
         """The instance with further stops of a robot, and the plans; both as they were if no plan is found."""
 
     @property
-    def polish(self) -> "Polish":
-        """Better plans; `advance` gets rounds, unplanned robots and total."""
+    def polish(self) -> Callable[..., Solution]:
+        """Better plans: see `carproof.polish`."""
 
     def retime(self, instance: Instance, solution: Solution, trace: Trace) -> Solution:
         """The plans for the rest of the way after a trace, in the same order."""
@@ -87,7 +78,7 @@ class FastestEngine:
         return engine_named(fastest_with(planner)).plan(instance, planner)
 
     @property
-    def polish(self) -> "Polish":
+    def polish(self) -> Callable[..., Solution]:
         """Better plans; with `seconds`, by simulated annealing."""
         compile_what_is_kept()
         from carp_optimized.improve.annealing import polish_or_anneal  # noqa: PLC0415 - loaded when it is first used

@@ -1,12 +1,10 @@
 """`carproof polish`: improve a solution by replanning neighbourhoods."""
 
-from functools import partial
 from pathlib import Path
 from time import perf_counter
 
 import click
 
-from carp_optimized.improve.many_starts import polish_many
 from carp_spec import Instance, Solution, total_cost, violations_of
 from carp_spec.documents.solutions import write_solution
 from carp_spec.inputs.options import require_polish_options
@@ -30,7 +28,6 @@ COLUMNS = ("plans", "unplanned", "total cost", "bound", "gap", "rounds", "time")
         "carproof polish town.json plans.json -o better.json",
         "carproof polish town.json plans.json --seconds 5 -o better.json",
         "carproof polish town.json plans.json --iterations 2000 --seed 7",
-        "carproof polish town.json plans.json --seconds 60 --starts 32",
         "carproof polish town.json plans.json --bound certificate.json",
         "carproof polish --map town.map --scen town.scen result.txt -o better.json",
     ),
@@ -43,12 +40,6 @@ COLUMNS = ("plans", "unplanned", "total cost", "bound", "gap", "rounds", "time")
     help="For how long, in place of a number of rounds; to plan robots that are left out may take longer.",
 )
 @click.option("--seed", type=int, default=0, help="The seed of all choices.")
-@click.option(
-    "--starts",
-    type=click.IntRange(1, 1000),
-    default=1,
-    help="How many copies to polish; the worse half is dropped again and again.",
-)
 @click.option("--bound", type=InputFile(), help="The certificate of a lower bound, of `carproof bound`.")
 @gives_plans
 def command(  # noqa: PLR0913 - one parameter for each argument and option
@@ -57,7 +48,6 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     iterations: int | None,
     seconds: float | None,
     seed: int,
-    starts: int,
     bound: str | None,
     engine: str | None,
     output: Path | None,
@@ -67,13 +57,12 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
     SOLUTION is in any format that check reads (--from); the result is carproof's document. This is large neighbourhood
     search: a round removes a few robots, replans them, and keeps the new plans if they are not worse. All robots are
-    planned from their release on: none is under way. Equal --iterations, --starts and --seed give equal plans. The
-    lower bound is the sum of the shortest paths, or that of --bound, which is verified first.
+    planned from their release on: none is under way. Equal --iterations and --seed give equal plans. The lower bound is
+    the sum of the shortest paths, or that of --bound, which is verified first.
 
     With --seconds, rounds may raise the total for a while (simulated annealing), and the best plans seen are the
-    result; --starts and --engine keep to rounds that never raise it. With --starts, copies of SOLUTION share the
-    rounds, and the worse half of the copies is dropped again and again. Robots that are left out are planned together
-    with others, in small groups or in another order: before the annealing, or after the --iterations.
+    result; --engine keeps to rounds that never raise it. Robots that are left out are planned together with others, in
+    small groups or in another order: before the annealing, or after the --iterations.
 
     Exit codes: 0 every robot has a plan, 1 some robot has none, 2 bad input.
     """
@@ -94,10 +83,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
             played = rounds
             show(rounds, found_so_far(total, least, unplanned))
 
-        improve = engine_named(engine).polish
-        if starts > 1:
-            improve = partial(polish_many, engine_named(engine or "optimized").polish, starts)
-        after = improve(instance, before, iterations=iterations, seconds=seconds, seed=seed, advance=advance)
+        polish = engine_named(engine).polish
+        after = polish(instance, before, iterations=iterations, seconds=seconds, seed=seed, advance=advance)
         if seconds is None:
             after = repaired(instance, after)
     time = perf_counter() - started
