@@ -1,7 +1,6 @@
 """A fleet that stays up: plans are made and robots added one after the other, on arrays that persist."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import fields
 from functools import partial
 from typing import TypeAlias, TypeVar
 
@@ -27,6 +26,7 @@ from carp_optimized.state.arrays import (
     SHARED,
     TOO_FAR,
     UNCHANGED,
+    UNKNOWN,
     UNREACHABLE,
     Adding,
     Options,
@@ -37,12 +37,12 @@ from carp_optimized.state.arrays import (
 from carp_optimized.state.records import keep_records
 from carp_spec import Instance, Neighbourhood, Plan, Refusal, Robot, RobotId, Shuffled
 from carp_spec.inputs.values import require_instance
-from carp_spec.limits import goals_stand_alone
 from carp_spec.permutations import shuffle, splitmix64
 
 T = TypeVar("T")
 Labels: TypeAlias = list[tuple[int, int]]
 
+WITH_STOPS = Reuse(unchanged=False, prefixes=False, shared=False, bounds=False)
 PART = 512  # robots of a pass
 MORE = 64  # robots for which there is room
 MANY = 1 << 16  # visits and expansions of records that are no longer held
@@ -63,14 +63,14 @@ class PlannedFleet:
         require_instance(instance)
         encoding.refuse_what_is_too_large(instance)
         self.instance = instance
-        self.reuse = (reuse or Reuse()) if goals_stand_alone(instance) else Reuse(*[False] * len(fields(Reuse)))
+        self.reuse = reuse or Reuse()
         self._adding: Native[Adding] | None = None
         self._take(encoding.encode(instance, shortcuts=shortcuts))
         self._ids = [robot.id for robot in instance.robots]
         self._index = {id: position for position, id in enumerate(self._ids)}
         self._vacant: list[int] = []
-        ends = zip(self._state.guides.goal.tolist(), self._state.guides.pace.tolist(), strict=True)
-        self._destinations = {end: number for number, end in enumerate(ends)}
+        self._destinations = encoding.destinations_in_use(self._state)
+        self._numbered = self._state.guides.goal.size
         self._order = np.zeros(0, np.int32)
         self._records = np.full(len(instance.robots), NONE, np.int32)
         self._plans: dict[int, Plan] = {}
@@ -118,17 +118,27 @@ class PlannedFleet:
         if not self._vacant:
             size = 2 * len(self._ids) + MORE
             self._vacant = [*range(size - 1, len(self._ids) - 1, -1)]
-            self._make_room(size, robot.pace)
-        goal = self.instance.graph.index[robot.goal], robot.pace
-        is_full = len(self._destinations) == self._state.guides.goal.size
-        if goal not in self._destinations and (is_full or not encoding.has_scale(self._state, robot.pace)):
-            self._make_room(len(self._ids), robot.pace)
-        destination = self._destinations.setdefault(goal, len(self._destinations))
+            self._make_room(size, robot)
         index = self._vacant.pop()
-        encoding.write_robot(self._state, self.instance, robot, index, destination)
+        self._write(robot, index)
         self._ids[index] = robot.id
         self._index[robot.id] = index
         return index
+
+    def _write(self, robot: Robot, index: int) -> None:
+        """Write a robot over the one at an index."""
+        ends = encoding.destinations_of(self.instance, robot)
+        new = {end for end in ends if end not in self._destinations}
+        is_full = self._numbered + len(new) > self._state.guides.goal.size
+        if new and (is_full or not encoding.has_scale(self._state, robot.pace)):
+            self._make_room(len(self._ids), robot)
+        for end in ends:
+            if end not in self._destinations:
+                self._destinations[end] = self._numbered
+                self._numbered += 1
+        if not encoding.has_room_for_stops(self._state, index, robot):
+            self._take(encoding.with_stops(self._state, robot))
+        encoding.write_robot(self._state, self.instance, robot, index, self._destinations)
 
     def dismiss(self, robots: Sequence[int]) -> None:
         """Forget robots, with the plans of those that have one; others may get their indices."""
@@ -140,6 +150,7 @@ class PlannedFleet:
         for index in robots:
             del self._index[self._ids[index]]
             self._vacant.append(index)
+            encoding.forget_stops(self._state, index)
 
     @property
     def places(self) -> tuple[Ints, list[RobotId]]:
@@ -165,6 +176,7 @@ class PlannedFleet:
 
     def replan(self, plans: Sequence[Plan], order: Sequence[RobotId]) -> None:
         """Take over other plans of robots that have one, and the planning order of all."""
+        self._forget_readings()
         changed = np.array([self._index[plan.robot] for plan in plans], np.int32)
         records = np.array([self.record(plan) for plan in plans], np.int32)
         self._withdraw(self._records[changed])
@@ -175,6 +187,40 @@ class PlannedFleet:
         after[changed] = records
         robots = np.array([self._index[id] for id in order], np.int32)
         self._hold(robots, after[robots])
+
+    def assign(
+        self, robot: Robot, before: Robot, plan: Plan, now: int, options: Neighbourhood, number: int | None = None
+    ) -> bool:
+        """Plan again, as `add` does, a robot that has other stops than `before`, and has followed the plan until now.
+
+        If it finds no plan, all is as before.
+        """
+        self._forget_readings()
+        index, order = self._index[robot.id], self._order
+        rest = order[order != index]
+        self._withdraw(self._records[index : index + 1])
+        self._hold(rest, self._records[rest])
+        self._write(robot, index)
+        if self.add(index, now, options, number, plan):
+            return True
+        self._write(before, index)
+        self.commit([plan])
+        self._hold(order, self._records[order])
+        return False
+
+    def _forget_readings(self) -> None:
+        """Ask all queries again: plans are withdrawn that have been in the way of others."""
+        self._state.records.expansions[self._records[self._order]] = UNKNOWN
+
+    @property
+    def _kinds(self) -> Reuse:
+        """The kinds of reuse; robots with stops do not note what their queries read, and have but one."""
+        return self.reuse if self._state.stops.first[-1] == 0 else WITH_STOPS
+
+    @property
+    def visits(self) -> int:
+        """How many visits all plans have."""
+        return int(self._state.records.visits[self._records[self._order]].sum(dtype=np.int64))
 
     def commit(self, plans: Sequence[Plan]) -> None:
         """Take over plans made elsewhere, which must fit the plans of the fleet."""
@@ -358,7 +404,7 @@ class PlannedFleet:
 
     def _adding_with(self, options: Neighbourhood) -> Native[Adding]:
         """All that adding a robot with these options takes, kept as long as they and the arrays stay the same."""
-        reuse = self.reuse
+        reuse = self._kinds
         if self._adding is not None and self._options is options and self._reuse is reuse:
             return self._adding
         self._options, self._reuse = options, reuse
@@ -384,9 +430,11 @@ class PlannedFleet:
         self._empty = Native(encoding.without_reservations(state))
         self._adding = None
 
-    def _make_room(self, size: int, pace: int) -> None:
-        """Make room for that many robots, up to that pace, and as many more destinations; guides are made again."""
-        state, self._destinations = encoding.with_robots(self._state, size, pace)
+    def _make_room(self, size: int, robot: Robot) -> None:
+        """Make room for that many robots, up to that robot's pace, and more destinations; guides are made again."""
+        further = max(size, 2 * len(robot.stops))
+        state, self._numbered = encoding.with_robots(self._state, size, robot.pace, further)
+        self._destinations = encoding.destinations_in_use(state)
         self._take(state)
         more = size - len(self._ids)
         self._ids += more * [""]

@@ -11,7 +11,7 @@ from carp_spec.execution.traces import Trace
 from carp_spec.inputs.options import require_planner
 from carp_spec.inputs.values import has_sound_plans, remember, require_plans, require_solution
 from carp_spec.instance_rules import stops_are_places_to_serve
-from carp_spec.model import Instance, Plan, RobotId, Solution, Stop
+from carp_spec.model import Instance, Plan, Robot, RobotId, Solution, Stop
 from carp_spec.plan_rules import has_ended
 from carp_spec.planners import Neighbourhood
 from carp_spec.refusal import Refusal
@@ -64,22 +64,27 @@ def require_assignment(
     require_planner(options, Neighbourhood)
     require_tick(now)
     require_robot(instance, robot)
-    require_shape(tuple(stops), tuple[Stop, ...], "$.stops")
     sound_solution(instance, solution)
     plan = solution.plan_of(robot)
     if plan is None or has_ended(plan, now):
         message = f"the robot must be under way or parked at {now}, and {robot!r} "
         raise Refusal("request", "$.robot", "request/robot", message + ("has no plan" if plan is None else "has left"))
+    before = instance.robot[robot]
+    further = further_stops(instance, before, stops)
+    return replace(instance, robots=tuple(further if each is before else each for each in instance.robots))
+
+
+def further_stops(instance: Instance, robot: Robot, stops: Sequence[Stop]) -> Robot:
+    """The robot with these stops behind its own; raises `Refusal` where they break `instance/stops`."""
+    require_shape(tuple(stops), tuple[Stop, ...], "$.stops")
     if not stops:
         raise Refusal("request", "$.stops", stops_are_places_to_serve.id, "there must be at least one stop")
-    before = instance.robot[robot]
-    further = replace(before, stops=(*before.stops, *stops))
-    assigned = replace(instance, robots=tuple(further if each is before else each for each in instance.robots))
-    for fault in stops_are_places_to_serve(assigned):
+    further = replace(robot, stops=(*robot.stops, *stops))
+    for fault in stops_are_places_to_serve(replace(instance, robots=(further,))):
         place, _, name = fault.path.partition(".stops[")[2].partition("]")
-        path = f"$.stops[{int(place) - len(before.stops)}]{name}"
+        path = f"$.stops[{int(place) - len(robot.stops)}]{name}"
         raise Refusal("request", path, fault.rule, fault.message)
-    return assigned
+    return further
 
 
 def require_trace(instance: Instance, solution: Solution, trace: Trace) -> None:

@@ -123,6 +123,7 @@ REQUESTS: dict[str, Document] = {
     },
     "fleet/open": {"fleet": "f", "instance": TWO, "solution": ONE_PLANNED, "now": 0, "m": 2},
     "fleet/add": {"fleet": "f", "robot": {"id": "r4", "start": "a", "goal": "b", "release": 3}, "now": 1},
+    "fleet/assign": {"fleet": "f", "robot": "r1", "stops": [{"resource": "a", "service": 2}], "now": 1},
     "fleet/advance": {"fleet": "f", "now": 3},
     "fleet/trace": {
         "fleet": "f",
@@ -130,6 +131,7 @@ REQUESTS: dict[str, Document] = {
     },
     "fleet/polish": {"fleet": "f", "iterations": 3},
     "fleet/rest": {"fleet": "f"},
+    "fleet/forget": {"fleet": "f"},
     "fleet/close": {"fleet": "f"},
     "stop": {},
 }

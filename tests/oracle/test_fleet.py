@@ -4,10 +4,12 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
-from tests.optimized.arrivals import CROWDED, ROOMS, Arrivals, arrivals
+from tests.optimized.arrivals import CROWDED, ROOMS, Arrivals, arrivals, draw_options
 from tests.profiles import rest_in
 
 import carp_optimized
+from carp_spec.permutations import splitmix64
+from carp_spec.plan_rules import has_ended
 from carproof import (
     Change,
     Fleet,
@@ -18,13 +20,16 @@ from carproof import (
     Resource,
     ResourceGraph,
     Robot,
+    RobotId,
     Solution,
+    Stop,
     Trace,
     Visit,
     audit,
     check,
     check_update,
 )
+from carproof.testing.random_instances import Draw, draw_instance
 
 QUESTIONS = 240
 
@@ -57,6 +62,77 @@ def test_plans_are_those_that_add_makes_with_all_robots_that_ever_came(part: int
             assert {*change.plans} == {*whole.plans} - {*before.plans}
             assert change.audit is None or not change.audit.late
         assert check(fleet.instance, fleet.solution).valid
+
+
+@pytest.mark.parametrize("part", rest_in("ci", range(4), 0))
+def test_news_of_every_kind_has_the_plans_of_whole_solutions(part: int) -> None:
+    for number in range(part, QUESTIONS, 4):
+        draw = Draw(splitmix64(next(splitmix64(40)) + number))
+        mix = replace(CROWDED if number % 3 else ROOMS, stops=draw.one_of((1, 3)), services=(0, 0, 1, 4))
+        drawn = draw_instance(draw, mix)
+        options = draw_options(draw)
+        instance, whole, now = replace(drawn, robots=()), Solution((), ()), 0
+        fleet = Fleet(instance, planner=options)
+        for each in drawn.robots:
+            now += draw.one_of((0, 1, 2))
+            robot = replace(each, release=max(each.release, now))
+            instance = replace(instance, robots=(*instance.robots, robot))
+            change = fleet.add(robot, now=now)
+            before, whole = whole, carp_optimized.add(instance, whole, robot.id, now, options)
+            assert_news(fleet, change, before, whole)
+            going = [each for each in fleet.instance.robots if not has_ended(plan_of(fleet, each.id), now)]
+            if going and draw.happens(2):
+                chosen = draw.one_of(going)
+                places = [place for place in instance.graph.index if place != chosen.goal]
+                stops = [Stop(draw.one_of(places), draw.one_of((0, 3)))]
+                change = fleet.assign(chosen.id, stops, now)
+                before = whole
+                further, whole = carp_optimized.assign(instance, whole, chosen.id, stops, now, options)
+                assert (chosen.id in change.unplanned) == (further is instance)
+                instance = further
+                assert_news(fleet, change, before, whole)
+            late = late_plan(fleet, now)
+            if late and draw.happens(2):
+                after = {plan.robot: plan for plan in told(fleet, Trace(now, (late,)))}
+                whole = replace(whole, plans=tuple(after.get(plan.robot, plan) for plan in whole.plans))
+            assert check(*fleet.rest()).valid
+        known = fleet.rest()
+        fleet.forget()
+        assert (fleet.instance, fleet.solution) == known
+
+
+def assert_news(fleet: Fleet, change: Change, before: Solution, whole: Solution) -> None:
+    """The fleet holds the plans of a solution of all robots that ever came, and has named those that changed."""
+    held = fleet.instance.robot
+    assert {*fleet.solution.plans} == {plan for plan in whole.plans if plan.robot in held}
+    assert fleet.solution.order == tuple(id for id in whole.order if id in held)
+    assert {*change.plans} == {*whole.plans} - {*before.plans}
+    assert check(fleet.instance, fleet.solution).valid
+
+
+def plan_of(fleet: Fleet, robot: RobotId) -> Plan:
+    plan = fleet.solution.plan_of(robot)
+    assert plan is not None
+    return plan
+
+
+def told(fleet: Fleet, trace: Trace) -> tuple[Plan, ...]:
+    """The plans that a trace changes; none if a robot could not appear at its release."""
+    try:
+        return fleet.trace(trace).plans
+    except Refusal as refusal:
+        if refusal.rule != "plan/start":
+            raise
+        return ()
+
+
+def late_plan(fleet: Fleet, now: int) -> Plan | None:
+    """What a robot has done if it has not yet moved as it was to at the tick now."""
+    for plan in fleet.solution.plans:
+        done = [visit for visit in plan.visits if visit.enter <= now]
+        if len(done) > 1 and done[-1].enter == now and not has_ended(plan, now):
+            return replace(plan, visits=(*done[:-2], replace(done[-2], leave=None)))
+    return None
 
 
 def lane(capacity: int = 1, after: str = "vanish") -> Instance:
@@ -122,6 +198,14 @@ def news() -> dict[str, Callable[[Fleet], Change]]:
         "fleet/now release": lambda fleet: fleet.add(replace(robot, release=1)),
         "fleet/now trace": lambda fleet: fleet.trace(Trace(1, (stays,))),
         "fleet/robot add": lambda fleet: fleet.add(replace(robot, id="x")),
+        "fleet/now assign": lambda fleet: fleet.assign("x", [Stop("a")], 1),
+        "fleet/robot assign": lambda fleet: fleet.assign("gone", [Stop("a")]),
+        "fleet/robot ended": lambda fleet: fleet.assign("x", [Stop("a")], 30),
+        "fleet/size stops": lambda fleet: fleet.assign("x", [Stop("a"), Stop("b")] * 32),
+        "instance/stops same": lambda fleet: fleet.assign("x", [Stop("f")]),
+        "instance/stops none": lambda fleet: fleet.assign("x", []),
+        "limit/ticks service": lambda fleet: fleet.assign("x", [Stop("a", 2**30)]),
+        "limit/stops audit": lambda fleet: fleet.assign("x", [Stop("a")], 3, audit=True),
         "fleet/robot trace": lambda fleet: fleet.trace(Trace(3, (replace(stays, robot="gone"),))),
         "fleet/size many": lambda fleet: fleet.add(*(replace(robot, id=n) for n in range(20))),
         "instance/robot-id twice": lambda fleet: fleet.add(robot, robot),

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 from functools import cache
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -36,11 +37,12 @@ from carp_optimized.state.arrays import (
     Work,
 )
 from carp_spec import Fault, Instance, Refusal, Robot, Stop
-from carp_spec.limits import refuse
 
 DETOUR = 8  # of the durations by which a guide goes further than to the start: seldom more are needed on large maps
 GUIDE_PLACES = 1 << 26  # how many entries all guides together have at most, if that is room for 64 of them
 ROOTS = 1024
+Destination: TypeAlias = tuple[int, int, bool]
+Destinations: TypeAlias = dict[Destination, int]
 STRIPS = 7  # its square is the number of regions; a number of 64 bits has room for 63
 LARGEST_COORDINATE = 2**29
 NO_LIMIT_THERE = "the reference engine has no such limit, but finds no bounds"
@@ -53,7 +55,6 @@ def refuse_what_is_too_large(instance: Instance) -> None:
 
 def refuse_robots(instance: Instance, longest: int) -> None:
     """The same for the robots alone, which come to a fleet, where that is the longest duration."""
-    refuse(instance, "stops")
     _refuse(_large_robots(instance, longest))
 
 
@@ -196,16 +197,10 @@ def with_labels(stops: Stops, windows: int, edges: int) -> Stops:
 def encode_robots(instance: Instance) -> tuple[Robots, Ints, Ints, Ints]:
     """The robots, the goals and paces of their destinations, and the destinations of stops."""
     index = instance.graph.index
-    destinations: dict[tuple[int, int, bool], int] = {}
-    destination = [
-        destinations.setdefault((index[each.goal], each.pace, each.has_goal_alone), len(destinations))
-        for each in instance.robots
-    ]
-    of_stops = [
-        destinations.setdefault((index[stop.resource], each.pace, False), len(destinations))
-        for each in instance.robots
-        for stop in stops_of(each)
-    ]
+    destinations: Destinations = {}
+    ends = [destinations_of(instance, each) for each in instance.robots]
+    destination = [destinations.setdefault(each[-1], len(destinations)) for each in ends]
+    of_stops = [destinations.setdefault(end, len(destinations)) for each in ends for end in each if not end[-1]]
     robots = Robots(
         start=np.array([index[each.start] for each in instance.robots], np.int32),
         goal=np.array([index[each.goal] for each in instance.robots], np.int32),
@@ -218,45 +213,117 @@ def encode_robots(instance: Instance) -> tuple[Robots, Ints, Ints, Ints]:
     return robots, goals, paces, np.array(of_stops, np.int32)
 
 
-def write_robot(state: State, instance: Instance, robot: Robot, place: int, destination: int) -> None:
-    """Write a robot over the one at that place, and its destination over the one of that number."""
-    index, guides = instance.graph.index, state.guides
-    guides.goal[destination], guides.pace[destination] = index[robot.goal], robot.pace
-    values = index[robot.start], index[robot.goal], robot.release, robot.pace, destination
+def write_robot(state: State, instance: Instance, robot: Robot, place: int, destinations: Destinations) -> None:
+    """Write a robot over the one at that place, with its stops and its destinations, which have numbers."""
+    index, guides, stops = instance.graph.index, state.guides, state.stops
+    ends = destinations_of(instance, robot)
+    for goal, pace, alone in ends:
+        number = destinations[goal, pace, alone]
+        guides.goal[number], guides.pace[number] = goal, pace
+    values = index[robot.start], index[robot.goal], robot.release, robot.pace, destinations[ends[-1]]
     for array, value in zip(state.robots, values, strict=True):
         array[place] = value
+    own = stops_of(robot)
+    at, end = _room_for_stops(stops, place, len(own))
+    stops.place[at:end] = [index[stop.resource] for stop in own]
+    stops.service[at:end] = [stop.service for stop in own]
+    stops.destination[at:end] = [destinations[each] for each in ends[: len(own)]]
+    last = robot.stops[-1]
+    stops.stay[place] = max(robot.pace * instance.graph.resource[last.resource].duration, last.service)
 
 
-def with_robots(state: State, size: int, pace: int) -> tuple[State, dict[tuple[int, int], int]]:
-    """The state with room for that many robots, up to that pace, and as many more destinations than are in use.
+def forget_stops(state: State, place: int) -> None:
+    """Leave the robot at that place without stops."""
+    _room_for_stops(state.stops, place, 0)
 
-    None has stops. Also returns the numbers of those in use. Guides are made again. What queries have read is forgotten
-    if their keys change.
+
+def _room_for_stops(stops: Stops, place: int, count: int) -> tuple[int, int]:
+    """Move the stops of later robots so that this one has that many: where they begin and end."""
+    used, at, end = int(stops.first[-1]), int(stops.first[place]), int(stops.first[place + 1])
+    more = count - (end - at)
+    for array in (stops.place, stops.service, stops.destination):
+        array[end + more : used + more] = array[end:used].copy()
+    stops.first[place + 1 :] += more
+    return at, at + count
+
+
+def destinations_of(instance: Instance, robot: Robot) -> tuple[Destination, ...]:
+    """The destinations of a robot, in the order of its stops: resource and pace, and whether of a goal alone.
+
+    The guide of a stop is made to its end, that of a goal alone may not be.
     """
+    index = instance.graph.index
+    return tuple((index[stop.resource], robot.pace, robot.has_goal_alone) for stop in robot.stops)
 
-    def enlarged(array: Ints, value: int) -> Ints:
-        return np.concatenate([array, np.full(size - array.size, value, np.int32)])
 
-    robots = state.robots
-    destinations: dict[tuple[int, int], int] = {}
-    ends = zip(robots.goal.tolist(), robots.pace.tolist(), strict=True)
-    destination = np.array([destinations.setdefault(end, len(destinations)) for end in ends], np.int32)
-    used = np.array([*destinations], np.int32).reshape(-1, 2)
-    more = np.zeros((size, 2), np.int32)
-    goals, paces = np.ascontiguousarray(np.concatenate([used, more]).T)
-    places = [enlarged(each, 0) for each in (*robots[:-1], destination)]
+def destinations_in_use(state: State) -> Destinations:
+    """The numbers of the destinations of all robots."""
+    of_stops = state.stops.destination[: state.stops.first[-1]].tolist()
+    numbers = {*state.robots.destination.tolist(), *of_stops}
+    ends = zip(state.guides.goal[[*numbers]].tolist(), state.guides.pace[[*numbers]].tolist(), numbers, strict=True)
+    stopping = {*of_stops}
+    return {(goal, pace, number not in stopping): number for goal, pace, number in ends}
+
+
+def has_room_for_stops(state: State, place: int, robot: Robot) -> bool:
+    """Whether the stops of a robot fit in, over those of the robot at that place."""
+    stops, own = state.stops, stops_of(robot)
+    more = len(own) - int(stops.first[place + 1] - stops.first[place])
+    return len(own) <= stops.slot.size and int(stops.first[-1]) + more <= stops.place.size
+
+
+def with_stops(state: State, robot: Robot) -> State:
+    """The state with room for the stops of one more robot, and as many again."""
+    stops, own = state.stops, stops_of(robot)
+    size, stride = 2 * (stops.place.size + len(own)), max(stops.slot.size, 2 * len(own))
+    larger = stops._replace(
+        place=_enlarged(stops.place, size),
+        service=_enlarged(stops.service, size),
+        destination=_enlarged(stops.destination, size),
+        stride=stride,
+        slot=np.zeros(stride, np.int32),
+        rest=np.zeros(stride, np.int64),
+    )
+    windows, edges, resources = state.windows.start.size, state.graph.target.size, state.graph.duration.size
+    guides = state.guides
+    if guides.holds.size < guides.goal.size and guides.holds.size < 2 * stride:
+        guides = no_guides(resources, guides.goal, guides.pace, has_ranks=state.scale == 0, stops=stride)
+    return state._replace(stops=with_labels(larger, windows, edges), guides=guides)
+
+
+def _enlarged(array: Ints, size: int, value: int = 0) -> Ints:
+    return np.concatenate([array, np.full(size - array.size, value, np.int32)])
+
+
+def with_robots(state: State, size: int, pace: int, more: int) -> tuple[State, int]:
+    """The state with room for that many robots, up to that pace, and for `more` destinations than are in use.
+
+    Also returns how many are in use, which have the first numbers. Guides are made again. What queries have read is
+    forgotten if their keys change.
+    """
+    robots, stops, used = state.robots, state.stops, int(state.stops.first[-1])
+    numbers = np.concatenate([robots.destination, stops.destination[:used]])
+    kept, renumbered = np.unique(numbers, return_inverse=True)
+    goals = _enlarged(state.guides.goal[kept], kept.size + more)
+    paces = _enlarged(state.guides.pace[kept], kept.size + more)
+    places = [_enlarged(each, size) for each in (*robots[:-1], renumbered[: robots.start.size].astype(np.int32))]
+    of_stops = stops.destination.copy()
+    of_stops[:used] = renumbered[robots.start.size :]
     resources = state.graph.duration.size
     scale = scale_of_tolls(resources, state.longest, np.append(paces, np.int32(pace))) if state.scale else 0
     if scale != state.scale:
         state.records.expansions[:] = UNKNOWN
-    return state._replace(
+    larger = state._replace(
         robots=Robots._make(places),
-        stops=state.stops._replace(first=np.zeros(size + 1, np.int32), stay=np.zeros(size, np.int32)),
-        guides=no_guides(resources, goals.copy(), paces.copy(), has_ranks=scale == 0),
-        reserved=enlarged(state.reserved, NONE),
-        rank=enlarged(state.rank, 0),
+        stops=stops._replace(
+            first=_enlarged(stops.first, size + 1, used), stay=_enlarged(stops.stay, size), destination=of_stops
+        ),
+        guides=no_guides(resources, goals, paces, has_ranks=scale == 0, stops=stops.stride),
+        reserved=_enlarged(state.reserved, size, NONE),
+        rank=_enlarged(state.rank, size),
         scale=scale,
-    ), destinations
+    )
+    return larger, kept.size
 
 
 def scale_of_tolls(resources: int, longest: int, paces: Ints) -> int:

@@ -5,43 +5,54 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from carp_spec import Instance, Neighbourhood, Plan, Refusal, Robot, RobotId, Solution, Visit
+from carp_spec import Instance, Neighbourhood, Plan, Refusal, Robot, RobotId, Solution, Stop, Visit
 from carp_spec.execution.traces import Trace
 from carp_spec.inputs.options import require_planner
 from carp_spec.inputs.values import require_instance
 from carp_spec.instance_rules import ROBOT_RULES
-from carp_spec.limits import refuse
+from carp_spec.plan_rules import has_ended, plan_serves_stops, stops_served
 from carp_spec.planners import BY_DEFAULT
-from carp_spec.requests import require_tick, sound_solution
+from carp_spec.requests import further_stops, require_tick, sound_solution
 from carp_spec.rule import DESIGN
 from carp_spec.shapes import require_shape
 from carproof.engines import compile_what_is_kept, engine_named
 from carproof.execution.delays import until
 from carproof.input_rules import Code
-from carproof.judging.audit import Audit, audit_in_order
+from carproof.judging.audit import Audit, audit_in_order, in_order
 
 if TYPE_CHECKING:
     from carp_optimized.fleet import PlannedFleet
     from carp_optimized.jit.kinds import Ints
 
 MOST_ROBOTS = 10_000
+MOST_STOPS = 64
+MOST_VISITS = 4_000_000
 NOT_BACK = Code(
     "fleet/now",
     "News for a fleet have no earlier tick than those before, and a robot to add is released no earlier than its news.",
     DESIGN,
 )
 OWN_ROBOTS = Code(
-    "fleet/robot", "A robot to add has an id that no robot of the fleet has; a trace names robots of the fleet.", DESIGN
+    "fleet/robot",
+    "A robot to add has an id that no robot of the fleet has; one that gets stops is in the fleet, and so are those of "
+    "a trace.",
+    DESIGN,
 )
-FEW_ROBOTS = Code("fleet/size", f"A fleet has at most {MOST_ROBOTS} robots.", DESIGN)
+FEW_ROBOTS = Code(
+    "fleet/size",
+    f"A fleet has at most {MOST_ROBOTS} robots, each with at most {MOST_STOPS} stops. It gets no more robots and stops "
+    f"while its plans have more than {MOST_VISITS} visits. What is done counts until it is forgotten.",
+    DESIGN,
+)
 
 
 @dataclass(frozen=True, slots=True)
 class Change:
     """What news changed: the plans that are new or other than before, and who is no longer in the fleet.
 
-    `unplanned` were to be added and found no plan, and `left` have vanished by the tick `now`: they are not in the
-    fleet. `audit` is the proof, if it was asked for.
+    `unplanned` found no plan: those that were to be added are not in the fleet, and one that was to get stops keeps
+    those that it had. `left` have vanished by the tick `now` and are not in the fleet. `audit` is the proof, if it was
+    asked for.
     """
 
     now: int
@@ -56,7 +67,7 @@ class _Known:
     """What a fleet knows: robots in the order of their arrival, their plans, and how many came so far.
 
     `empty` is the instance without robots; `places` are the numbers of the robots in planning order, and `ids` the ids
-    by number.
+    by number. `numbers` say how many came before each robot.
     """
 
     empty: Instance
@@ -65,6 +76,7 @@ class _Known:
     plans: Mapping[RobotId, Plan]
     places: "Ints"
     ids: Sequence[RobotId]
+    numbers: Mapping[RobotId, int]
     count: int
 
     @property
@@ -94,7 +106,12 @@ class _Known:
         ticks = robot.pace * self.empty.graph.resource[here.resource].duration
         release = here.enter if ends else max(here.enter, self.now + 1 - ticks)
         visits = (Visit(here.resource, release, here.leave), *later)
-        return replace(robot, start=here.resource, release=release), Plan(plan.robot, visits)
+        stops = robot.stops[stops_served(robot.stops[:-1], plan.visits[:place]) :]
+        if stops[0].resource == here.resource:
+            left = max(stops[0].service - (release - here.enter), 0)
+            stops = (replace(stops[0], service=left), *stops[1:])
+        rest = replace(robot, start=here.resource, stops=stops, release=release)
+        return rest, Plan(plan.robot, visits)
 
 
 class Fleet:
@@ -133,7 +150,8 @@ class Fleet:
         empty = replace(instance, robots=())
         core = _compiled(replace(instance, robots=tuple(robots.values())), [by_robot[id] for id in sound.order])
         self._core: PlannedFleet | None = core
-        self._known = _Known(empty, now, robots, by_robot, *core.places, len(robots))
+        numbers = {id: number for number, id in enumerate(robots)}
+        self._known = _Known(empty, now, robots, by_robot, *core.places, numbers, len(robots))
         self.opening = self.add(*(each for each in instance.robots if each.id not in by_robot), now=now, audit=audit)
 
     @property
@@ -154,7 +172,8 @@ class Fleet:
     def rest(self) -> tuple[Instance, Solution]:
         """What is to come after the moves of the tick `now`, as an instance and a solution of their own.
 
-        A robot under way starts where it is.
+        A robot under way starts where it is, with the stops that it has not left yet; of one that it may be serving,
+        what is left of the service.
         """
         return self._known.rest()
 
@@ -170,6 +189,8 @@ class Fleet:
         if size > MOST_ROBOTS and size - len(self._made().ended(now)) > MOST_ROBOTS:
             message = f"the fleet must have at most {MOST_ROBOTS} robots, and would have more"
             raise Refusal("limit", "$.robots", FEW_ROBOTS.id, message)
+        if robots:
+            self._require_little("$.robots", max(len(robot.stops) for robot in robots))
         unplanned = []
         with self._changing() as core:
             core.forget_old_records()
@@ -183,9 +204,44 @@ class Fleet:
             known = replace(
                 self._known,
                 robots={**self._known.robots, **{robot.id: robot for robot in robots}},
+                numbers={**self._known.numbers, **{each.id: k for k, each in enumerate(robots, self._known.count)}},
                 count=self._known.count + len(robots),
             )
             return self._take_over(core, replace(known, now=now), changed, unplanned, audit=audit)
+
+    def assign(self, robot: RobotId, stops: Sequence[Stop], now: int | None = None, *, audit: bool = False) -> Change:
+        """Give a robot that is under way or parked further stops, behind those that it has, as `carproof.assign` does.
+
+        It is planned again together with robots near it. If it finds no plan, it is `unplanned`, and all stays as it
+        was. Raises `Refusal` for a tick that has passed, a robot that is not there or has left by then, for stops that
+        break `instance/stops`, and for numbers or fleets that are too large.
+        """
+        now = self._tick(now)
+        require_shape(robot, RobotId, "$.robot")
+        before = self._known.robots.get(robot)
+        if before is None or has_ended(self._known.plans[robot], now):
+            message = f"it must be a robot of the fleet that has not left by {now}, and {robot!r} is not"
+            raise Refusal("request", "$.robot", OWN_ROBOTS.id, message)
+        further = further_stops(self._known.empty, before, stops)
+        self._made().require_robots(replace(self._known.empty, robots=(further,)))
+        self._require_little("$.stops", len(further.stops))
+        with self._changing() as core:
+            core.forget_old_records()
+            held, plan = core.records, self._known.plans[robot]
+            is_found = core.assign(further, before, plan, now, self._planner, self._known.numbers[robot])
+            changed = [each for each in core.changed_since(held) if each != self._known.plans[each.robot]]
+            robots = {**self._known.robots, robot: further if is_found else before}
+            known = replace(self._known, robots=robots, now=now)
+            return self._take_over(core, known, changed, () if is_found else [robot], audit=audit)
+
+    def forget(self) -> None:
+        """Forget what is done by the tick `now`: the fleet goes on with what `rest` shows."""
+        instance, solution = self.rest()
+        core = _compiled(instance, [*in_order(solution)])
+        plans = {plan.robot: plan for plan in solution.plans}
+        places, ids = core.places
+        self._known = replace(self._known, robots={**instance.robot}, plans=plans, places=places, ids=ids)
+        self._core = core
 
     def advance(self, now: int, *, audit: bool = False) -> Change:
         """Let time go on as planned. Raises `Refusal` for a tick that has passed."""
@@ -221,6 +277,9 @@ class Fleet:
         polish = engine_named("optimized").polish
         better = polish(*self.rest(), iterations=iterations, seconds=seconds, seed=seed)
         plans = tuple(_joined(self._known.plans[plan.robot], plan, self.now) for plan in better.plans)
+        if any(True for plan in plans for _ in plan_serves_stops(self.instance, plan)):
+            plans = tuple(self._known.plans[plan.robot] for plan in plans)  # a service is broken off
+            better = self.solution
         return self._replan(self.now, replace(better, plans=plans), audit=audit)
 
     def _replan(self, now: int, solution: Solution, *, audit: bool) -> Change:
@@ -250,6 +309,16 @@ class Fleet:
                 raise Refusal("request", f"{path}.id", OWN_ROBOTS.id, message)
             _require_time(robot, now, path)
 
+    def _require_little(self, path: str, stops: int) -> None:
+        if stops > MOST_STOPS:
+            message = (
+                f"a robot must have at most {MOST_STOPS} stops, and would have {stops}; forgetting drops those done"
+            )
+            raise Refusal("limit", path, FEW_ROBOTS.id, message)
+        if self._made().visits > MOST_VISITS:
+            message = f"the plans must have at most {MOST_VISITS} visits, and have more; forgetting drops those done"
+            raise Refusal("limit", path, FEW_ROBOTS.id, message)
+
     @contextmanager
     def _changing(self) -> Iterator["PlannedFleet"]:
         """The compiled fleet; after an error it is made again from what was known."""
@@ -270,11 +339,12 @@ class Fleet:
         robots, plans = {**known.robots}, {**known.plans, **{plan.robot: plan for plan in changed}}
         left = tuple(core.places[1][place] for place in ended)
         core.dismiss(ended)
-        for id in (*left, *unplanned):
-            del robots[id]
+        numbers = {**known.numbers}
+        for id in (*left, *(each for each in unplanned if each not in plans)):
+            del robots[id], numbers[id]
             plans.pop(id, None)
         places, ids = core.places
-        after = replace(known, robots=robots, plans=plans, places=places, ids=ids)
+        after = replace(known, robots=robots, plans=plans, places=places, ids=ids, numbers=numbers)
         found = self._audited(after, changed) if audit else None
         self._known = after
         return Change(known.now, tuple(changed), tuple(unplanned), left, found)
@@ -297,7 +367,6 @@ def _compiled(instance: Instance, plans: Sequence[Plan]) -> "PlannedFleet":
     compile_what_is_kept()
     from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415 - numba is slow to load
 
-    refuse(instance, "stops")
     core = PlannedFleet(instance)
     core.commit(plans)
     return core

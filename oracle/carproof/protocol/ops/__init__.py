@@ -21,7 +21,9 @@ from carproof.protocol.ops.judging import audit, check, verify_bound, verify_que
 from carproof.protocol.ops.keeping import (
     fleet_add,
     fleet_advance,
+    fleet_assign,
     fleet_close,
+    fleet_forget,
     fleet_open,
     fleet_polish,
     fleet_rest,
@@ -94,10 +96,12 @@ _HANDLERS: tuple[Callable[[Any, Any], object], ...] = (
     give_way,
     fleet_open,
     fleet_add,
+    fleet_assign,
     fleet_advance,
     fleet_trace,
     fleet_polish,
     fleet_rest,
+    fleet_forget,
     fleet_close,
     stop,
 )

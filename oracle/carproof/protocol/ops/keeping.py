@@ -6,8 +6,9 @@ from dataclasses import dataclass, field
 
 import msgspec
 
-from carp_spec import Instance, Neighbourhood, Refusal, Robot, RobotId, Solution
-from carp_spec.documents.instances import InstanceDocument, instance_document
+from carp_spec import Instance, Neighbourhood, Refusal, Robot, RobotId, Solution, Stop
+from carp_spec.documents.fields import all_converted
+from carp_spec.documents.instances import InstanceDocument, StopDocument, instance_document
 from carp_spec.documents.solutions import PlanDocument, SolutionDocument, plan_documents, solution_document
 from carp_spec.execution.traces import Trace
 from carp_spec.requests import require_tick
@@ -33,8 +34,9 @@ FEW_RESOURCES = Code("fleet/resources", f"The fleets of a server have at most {M
 class FleetDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The tick, and the plans that are new or other than before.
 
-    `unplanned` is the robot added if it found no plan, and `left` are robots that have vanished: they are not in the
-    fleet. `audit`, where it was asked for, has the robots with such plans.
+    `unplanned` is the robot that found no plan: one to be added is not in the fleet, one to get stops has those of
+    before. `left` are robots that have vanished and are not in the fleet. `audit`, where it was asked for, has the
+    robots with such plans.
     """
 
     now: int
@@ -87,6 +89,38 @@ def fleet_add(request: FleetAddRequest, session: Session) -> FleetDocument:
         path = re.sub(r"^\$\.robots(\[0\])?", "$.robot", refusal.path)
         raise Refusal(refusal.kind, path, refusal.rule, refusal.message) from refusal
     return _document(fleet, change)
+
+
+@dataclass(frozen=True, slots=True)
+class FleetAssignRequest:
+    """A robot of a fleet that gets further stops at the tick now, which is that of the news before unless given."""
+
+    fleet: str
+    robot: RobotId
+    stops: tuple[StopDocument, ...]
+    now: int | None = None
+    audit: bool = False
+
+
+def fleet_assign(request: FleetAssignRequest, session: Session) -> FleetDocument:
+    """Give a robot under way or parked further stops; it and robots near it get new plans from `now` on."""
+    fleet = _named(request.fleet, session)
+    stops = all_converted(request.stops, Stop)
+    return _document(fleet, fleet.assign(request.robot, stops, request.now, audit=request.audit))
+
+
+@dataclass(frozen=True, slots=True)
+class FleetForgetRequest:
+    """A fleet."""
+
+    fleet: str
+
+
+def fleet_forget(request: FleetForgetRequest, session: Session) -> FleetDocument:
+    """Forget what is done by now: the fleet goes on with what `fleet/rest` shows, and its plans are these."""
+    fleet = _named(request.fleet, session)
+    fleet.forget()
+    return _document(fleet, Change(fleet.now, fleet.solution.plans, (), ()))
 
 
 @dataclass(frozen=True, slots=True)
