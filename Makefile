@@ -6,7 +6,7 @@ export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 .DELETE_ON_ERROR:
-.PHONY: bench install compiled demo quick quick-tests test checked ci thorough paper-sized nightly coverage mutation conform planted lint format docs gap optimum-figures gap-figures texts generated kernel kernel-mutants kernel-driver-mutants clean
+.PHONY: bench install compiled demo quick quick-tests test checked ci thorough paper-sized nightly coverage mutation conform planted lint format docs optimum-figures gap-figures texts generated kernel kernel-mutants kernel-driver-mutants clean
 
 install: .venv/installed
 
@@ -76,10 +76,6 @@ thorough: compiled
 # How fast the optimised planner is, beside C++ written by hand and the reference; needs g++.
 bench: install
 	$(BIN)/pytest -q -s tests/bench/bench_speed.py
-
-# Measure how far planners are from the optimum, the figures of docs/results/small-maps.md; takes a few minutes.
-gap: install
-	$(BIN)/carproof gap --size 3..8 --map 0 --map 5 --map 10 --map 20 --limit 1
 
 # Measure how long the search for an optimum takes, and put the table into docs/results/optima.md; takes up to half an hour.
 optimum-figures: install

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 from carp_experiments.report import Figure
-from carproof.gap.statistics import Interval
+from carp_experiments.statistics import Interval
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,7 +7,7 @@ from typing import Any
 
 import msgspec
 
-from carproof.gap.statistics import Interval
+from carp_experiments.statistics import Interval
 from carproof.markdown import markdown_table
 
 

@@ -9,7 +9,7 @@ from carp_experiments.figures import line_figure
 from carp_experiments.page import RESULTS
 from carp_experiments.redrawing import FIGURES, draw_figures
 from carp_experiments.report import Figure
-from carproof.gap.statistics import Interval
+from carp_experiments.statistics import Interval
 
 
 def at(value: float) -> Interval:

@@ -15,9 +15,9 @@ from carp_experiments.paper.map_cases import MapCase, instance_of
 from carp_experiments.paper.related_work import FIXED, METHODS, Related, related_report, related_row
 from carp_experiments.paper.reuse_counts import ReuseOf, reuse_report
 from carp_experiments.paper.small_gaps import COMPARED, POLISHED, GapRow, gap_report, gap_row
+from carp_experiments.statistics import Interval
 from carp_experiments.store import digest_of
 from carp_spec import Carp, FixedPaths, Greedy, LongestFirst, Planner, plan_cost
-from carproof.gap.statistics import Interval
 
 
 def test_times_are_measured_and_do_not_count_in_the_digest() -> None:

@@ -7,7 +7,7 @@ import pytest
 from carp_experiments.page import RESULTS, results
 from carp_experiments.paper.claims import above_zero, below_zero, up_to, verdict_of
 from carp_experiments.paper.quality import Saving
-from carproof.gap.statistics import Interval
+from carp_experiments.statistics import Interval
 
 
 def test_the_page_shows_every_figure_and_the_tables_of_every_stored_run() -> None:

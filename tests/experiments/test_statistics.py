@@ -2,7 +2,7 @@
 
 import pytest
 
-from carproof.gap.statistics import mean_interval, proportion_interval
+from carp_experiments.statistics import mean_interval, proportion_interval
 
 
 def test_the_mean_and_its_interval() -> None:

@@ -6,12 +6,6 @@ from pathlib import Path
 import pytest
 from tests.oracle.running import HEAD_ON, TWO_PLANNED, Document, Outcome, Run, corridor, save
 
-from carp_optimum.gap import Gap, PlannerGap
-from carp_optimum.sat.core_guided import Optimum
-from carp_spec import Carp
-from carp_verify.optimum.encoding import Evidence
-from carproof.gap.family import Cell
-
 UNSOLVABLE = corridor([{"id": "r1", "start": "a", "goal": "e"}, HEAD_ON])
 
 
@@ -115,48 +109,3 @@ def test_a_gap_without_optimum_says_why(carproof: Run) -> None:
     outcome = carproof("gap lane.json")
     assert outcome.code == 1
     assert outcome.stdout.splitlines()[-1].startswith("the robots cannot all be planned: ")
-
-
-def test_the_gaps_of_a_family_are_shown_with_intervals(carproof: Run) -> None:
-    outcome = carproof("gap --size 3..4 --map 0 --map 20 --count 4")
-    assert outcome.stderr == ""
-    lines = outcome.stdout.splitlines()
-    assert max(map(len, lines)) <= 80
-    rows = [row.split() for row in lines[2:-1]]
-    assert [row[:5] for row in rows if row[1] == "x"] == [
-        [size, "x", size, map, size] for size in ("3", "4") for map in ("0", "20")
-    ]
-    assert [row[0] for row in rows[1:8]] == ["best", *PLANNERS]
-    assert "±" in lines[4]
-
-
-def test_the_gaps_of_a_family_as_a_document_are_those_of_its_instances(carproof: Run) -> None:
-    options = "--map 10 --robots 4 --after-goal park"
-    family = carproof(f"gap --size 3 {options} --count 2 --seed 5 --json")
-    (cell,) = json.loads(family.stdout)["cells"]
-    assert (cell["size"], cell["map"], cell["robots"]) == (3, 10, 4)
-    of_instances: list[Document] = []
-    for seed in (5, 6):
-        carproof(f"generate grid --width 3 --height 3 {options} --map-seed {seed} --seed {seed} -o one.json")
-        of_instances.append({"seed": seed, "gap": document_of(carproof, "gap one.json")})
-    assert cell["instances"] == of_instances
-    optima = [each["gap"]["optimum"] for each in of_instances]
-    assert cell["decided"] == len(optima) - optima.count(None)
-    assert family.code == (1 if None in optima else 0)
-
-
-def small_gap(optimum: int | None, best_order: int | None, *totals: int | None) -> Gap:
-    """A gap with as many planners as totals; `None` is a planner that left a robot unplanned."""
-    best = Optimum(8, optimum, optimum or 9, optimum is not None, None, Evidence((), ()))
-    planners = (PlannerGap(Carp(), total or 0, int(total is None)) for total in totals)
-    return Gap(best, best_order, tuple(planners))
-
-
-def test_means_of_a_family_leave_out_what_is_not_known() -> None:
-    gaps = (small_gap(10, 11, 12), small_gap(10, None, 11), small_gap(10, 10, None), small_gap(None, 9, 9))
-    cell = Cell(3, 0, 2, range(4), gaps)
-    assert (cell.delay.instances, str(cell.delay)) == (3, "25.0 ± 0.0")
-    assert (cell.price_of_an_order.instances, str(cell.price_of_an_order)) == (2, "5.0 ± 9.8")
-    assert (cell.above_optimum(0).instances, str(cell.above_optimum(0))) == (2, "15.0 ± 9.8")
-    assert (cell.price_of_the_search(0).instances, str(cell.price_of_the_search(0))) == (1, "10.0 ± 0.0")
-    assert str(Cell(3, 0, 2, range(0), ()).delay) == "-"

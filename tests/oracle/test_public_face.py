@@ -237,7 +237,6 @@ def test_defaults_are_the_same_in_python_on_the_command_line_and_in_ops() -> Non
         ),
         (
             lane().after_goal,
-            of_command("gap", "after_goal"),
             of_command("generate grid", "after_goal"),
             of_command("generate warehouse", "after_goal"),
         ),

@@ -152,14 +152,6 @@ PROOFS = (
     ("optimum town.json --proof town.json", "town.json"),
     ("optimum town.json --proof town.json/proof", "town.json"),
     ("verify nowhere", "nowhere"),
-    ("gap", "Give an INSTANCE or a --size, one of them."),
-    ("gap town.json --size 3", "Give an INSTANCE or a --size, one of them."),
-    ("gap --size 4..3", "4..3 must be a range within 1..100."),
-    ("gap --size 0..3", "0..3 must be a range within 1..100."),
-    ("gap --size 1000", "1000 must be a range within 1..100."),
-    ("gap --size 2 --robots 5", "5 robots need as many distinct starts, and the map has 4"),
-    ("gap --size 2 --map 21", "--map"),
-    ("gap --size 2 --count 0", "--count"),
 )
 MAKING = (
     ("generate grid --width 0", "--width: it must be between 1 and 1073741824, not 0 [generate/options]"),

@@ -26,7 +26,6 @@ def uncompiled(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         ("bound town.json --seconds 1", "carp_optimum.bound.lower_bound"),
         ("optimum town.json", "carp_optimum.optimum.optimum"),
         ("gap town.json", "carp_optimum.gap.gap"),
-        ("gap --size 2 --count 1", "carproof.gap.family.measured"),
         (f"conform --examples 0 --one-shot -- {sys.executable} -c 0 {{instance}}", "carproof.conform.run.conform"),
     ],
 )

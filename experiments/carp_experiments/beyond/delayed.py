@@ -11,11 +11,11 @@ import msgspec
 from carp_experiments.paper.map_cases import FULL_MAP, MapCase, instance_of, place_name, rows_by_map
 from carp_experiments.paper.quality import ALGORITHMS, seeded
 from carp_experiments.report import ExperimentReport, Figure, Table
+from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import Row
 from carp_spec import Instance, Solution, violations_of
 from carproof.execution.simulation import DRIVERS, TOGETHER, Driver, execute, random_delays
 from carproof.execution.untangling import untangle
-from carproof.gap.statistics import Interval, mean_interval
 
 PLANNERS = ("CARP", "Proposed_4")
 PER_CENT = (0, 1, 2, 5, 10, 20)

@@ -9,10 +9,10 @@ from carp_experiments.beyond.delayed import PLANNERS
 from carp_experiments.paper.map_cases import MAP_AXIS, WAREHOUSE, MapCase, instance_of, place_name, rows_by_map
 from carp_experiments.paper.quality import ALGORITHMS, seeded
 from carp_experiments.report import ExperimentReport, Figure, Table
+from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import Row
 from carp_spec import total_cost
 from carproof.execution.untangling import untangle
-from carproof.gap.statistics import Interval, mean_interval
 
 
 class Priced(msgspec.Struct, frozen=True):

@@ -10,11 +10,11 @@ import msgspec
 from carp_experiments.paper.map_cases import MapCase, instance_of, place_name, rows_by_map
 from carp_experiments.paper.quality import ALGORITHMS, seeded
 from carp_experiments.report import ExperimentReport, Figure, Table
+from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import MEASURED, Row
 from carp_spec import Instance, Plan, RobotId, Solution, plan_cost
 from carp_spec.permutations import shuffle, splitmix64
 from carproof.execution.giving_way import GivenWay, give_way
-from carproof.gap.statistics import Interval, mean_interval
 
 GIVEN = "Proposed_4"
 PEOPLE = (1, 2, 5, 10)

@@ -13,9 +13,9 @@ import msgspec
 from carp_experiments.paper.map_cases import MapCase, map_instance, place_name, rows_by_map
 from carp_experiments.paper.quality import ALGORITHMS, seeded
 from carp_experiments.report import ExperimentReport, Figure, Table
+from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import Row
 from carp_spec import Instance, Neighbourhood, Plan, Resource, ResourceGraph, total_cost, violations_of
-from carproof.gap.statistics import Interval, mean_interval
 
 PLANNERS = ("CARP", "Proposed_4 + baseline")
 TICKS = 100

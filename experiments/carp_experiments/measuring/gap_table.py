@@ -13,6 +13,7 @@ from itertools import chain
 from pathlib import Path
 from time import process_time, process_time_ns
 
+from carp_experiments.statistics import mean_interval
 from carp_optimized import plan
 from carp_optimized.improve.annealing import anneal
 from carp_optimum.bound import lower_bound
@@ -20,7 +21,6 @@ from carp_optimum.optimum import optimum
 from carp_spec import Instance, total_cost
 from carp_verify.bound.rules import require_kept
 from carp_verify.bound.verify import verify_bound
-from carproof.gap.statistics import mean_interval
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.markdown import markdown_table, write_section
 from carproof.progress import progress

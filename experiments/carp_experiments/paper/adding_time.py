@@ -16,9 +16,9 @@ import msgspec
 from carp_experiments.paper.map_cases import MapCase, fleet_of
 from carp_experiments.paper.quality import ALGORITHMS, outcome, seeded
 from carp_experiments.report import ExperimentReport, Figure, Table
+from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import MEASURED, Row
 from carp_spec import Neighbourhood, Planner, Shuffled
-from carproof.gap.statistics import Interval, mean_interval
 
 if TYPE_CHECKING:
     from carp_optimized.fleet import PlannedFleet

@@ -10,7 +10,7 @@ from carp_experiments.paper.quality import RIVALS, QualitySummary, Saving
 from carp_experiments.paper.quality_report import FEWEST_SHOWN
 from carp_experiments.paper.related_work import FIXED, Related
 from carp_experiments.paper.reuse_counts import PAPERS_SHARES, ReuseOf
-from carproof.gap.statistics import Interval
+from carp_experiments.statistics import Interval
 
 Verdict: TypeAlias = Literal["reproduced", "in part", "not reproduced", "undecided"]
 Savings: TypeAlias = Mapping[tuple[int | None, str, str], Saving]

@@ -15,10 +15,10 @@ import msgspec
 from carp_experiments.paper.map_cases import MAP_AXIS, MapCase, instance_of, rows_by_map
 from carp_experiments.paper.quality import ALGORITHMS, seeded
 from carp_experiments.report import ExperimentReport, Figure, Table
+from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import MEASURED, Row
 from carp_spec import Instance, RobotId, Solution, total_cost
 from carp_verify.bound.rules import require_kept
-from carproof.gap.statistics import Interval, mean_interval
 
 STEPS = 2000
 POLISHED = {"Proposed_4": {"polish": 20_000, "long polish": 60_000}, "Proposed_10": {"polish": 20_000}}

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from carp_experiments.paper.map_cases import ROBOTS, MapCase, fleet_of, rows_by_map
+from carp_experiments.statistics import Interval, mean_interval, proportion_interval
 from carp_experiments.store import Row
 from carp_spec import Carp, LongestFirst, Neighbourhood, Planner, Shuffled, total_cost
-from carproof.gap.statistics import Interval, mean_interval, proportion_interval
 
 if TYPE_CHECKING:
     from carp_optimized.fleet import PlannedFleet

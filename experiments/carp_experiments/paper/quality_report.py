@@ -5,8 +5,8 @@ from collections.abc import Iterable
 from carp_experiments.paper.map_cases import MAP_AXIS, shown_maps
 from carp_experiments.paper.quality import ALGORITHMS, QualitySummary, Summary, summarise
 from carp_experiments.report import ExperimentReport, Figure, Table
+from carp_experiments.statistics import Interval
 from carp_experiments.store import Row
-from carproof.gap.statistics import Interval
 
 FEWEST_SHOWN = 4  # a mean over less than a quarter of the assignments is no point in a figure
 

@@ -14,9 +14,9 @@ import msgspec
 from carp_experiments.paper.map_cases import MAP_AXIS, MapCase, fleet_of, rows_by_map, shown_maps
 from carp_experiments.paper.quality import plan_all
 from carp_experiments.report import ExperimentReport, Figure, Table
+from carp_experiments.statistics import Interval, mean_interval, proportion_interval
 from carp_experiments.store import Row
 from carp_spec import Instance, LongestFirst, Plan, ResourceId, Robot, plan_cost
-from carproof.gap.statistics import Interval, mean_interval, proportion_interval
 
 Path = tuple[ResourceId, ...]
 MOST_SHORTEST = 10

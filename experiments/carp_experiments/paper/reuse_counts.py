@@ -9,10 +9,10 @@ import msgspec
 
 from carp_experiments.paper.map_cases import MapCase, fleet_of
 from carp_experiments.report import ExperimentReport, Table
+from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import Row
 from carp_optimized.neighbourhood.reuse import Reuse
 from carp_spec import Neighbourhood
-from carproof.gap.statistics import Interval, mean_interval
 
 NOTHING = Reuse(kept=False, unchanged=False, prefixes=False, shared=False, bounds=False)
 SETTINGS: Mapping[str, Reuse] = {

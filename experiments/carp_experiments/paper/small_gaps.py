@@ -11,10 +11,10 @@ import msgspec
 from carp_experiments.paper.map_cases import MAP_AXIS, MapCase, rows_by_map, shown_maps
 from carp_experiments.paper.quality import ALGORITHMS, outcome, plan_all, seeded
 from carp_experiments.report import ExperimentReport, Figure, Table
+from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import Row
 from carp_spec import Greedy, Planner, total_cost
 from carp_verify.bound.rules import require_kept
-from carproof.gap.statistics import Interval, excess
 
 SIDE = 8
 LIMIT_IN_SECONDS = 60
@@ -113,9 +113,12 @@ def gap_of(map: int, name: str, rows: Sequence[GapRow], robots: int) -> GapOf:
     """An algorithm, or the bound, on the maps of one density."""
     known = [row for row in rows if row.optimum is not None]
     reached = [(robots, row.bound) if name == BOUND else row.results[name] for row in known]
-    totals = (total if planned == robots else None for planned, total in reached)
-    above = excess((total, row.optimum, row.optimum) for total, row in zip(totals, known, strict=True))
-    return GapOf(map, name, len(known), len(known) - above.instances, above.per_cent)
+    above = [
+        100 * (total - row.optimum) / (row.optimum or 1)
+        for (planned, total), row in zip(reached, known, strict=True)
+        if planned == robots and row.optimum is not None
+    ]
+    return GapOf(map, name, len(known), len(known) - len(above), mean_interval(above) if above else None)
 
 
 def gap_table(summary: Sequence[GapOf], by_map: Mapping[int, Sequence[GapRow]], title: str) -> Table:

@@ -274,9 +274,9 @@ class PriceSearch:
         """Take steps as `climb` does, but never back to the best prices, while `on_step` may add deadlines.
 
         New deadlines would lose the prices that they have gained since. In each span of `SPAN` steps an aim above a
-        tick falls to a tick, as the square of the steps left: large aims bring the prices far, and small ones find the
-        best bound near there. The next span begins with twice the aim if enough of it was gained, and with half if
-        not; the steps end when that is below the last aim.
+        tick falls to a tick, as the square of the steps left: large aims explore; small ones refine. The next span
+        begins with twice the aim if enough of it was gained, and with half if not; the steps end when that is below the
+        last aim.
         """
         bound = self._restore()
         aim = max(first_aim, last_aim)

@@ -1,74 +1,32 @@
 """`carproof gap`: the distance of each planner from the optimum."""
 
-from typing import TYPE_CHECKING, get_args
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from carp_spec import AfterGoal
 from carp_spec.documents.decoding import write
-from carp_spec.planners import LARGEST_SEED
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import InputFile, print_document, read_instance_file, refuse_in
-from carproof.command_line.options import RangeType, examples, json_option, limit_option
+from carproof.command_line.options import examples, json_option, limit_option
 from carproof.command_line.tables import print_line, print_table
 from carproof.engines import warm
 from carproof.extras import require
-from carproof.generate import Range
-from carproof.progress import progress
 
 if TYPE_CHECKING:
-    from carproof.gap.family import Family
+    from carp_optimum.gap import Gap, PlannerGap
 
 COLUMNS = ("planner", "unplanned", "total", "above optimum", "price of an order", "price of the search")
-FAMILY_COLUMNS = ("grid", "map", "robots", "planner", "found", "above optimum", "price of the search")
-FULL_MAP = 20
-WIDEST = 100
-MOST_INSTANCES = 10_000
 
 
 @click.command(
     short_help="Compare every planner with the optimum.",
-    epilog=examples(
-        "carproof gap town.json",
-        "carproof gap town.json --limit 300 --json",
-        "carproof gap --size 3..6 --map 0 --map 20 --limit 1",
-        "carproof gap --size 5 --robots 7 --after-goal park --count 100 --seed 1",
-    ),
+    epilog=examples("carproof gap town.json", "carproof gap town.json --limit 300 --json"),
 )
-@click.argument("instance", type=InputFile(), required=False)
+@click.argument("instance", type=InputFile())
 @limit_option
 @json_option
-@click.option("--size", type=RangeType(), help="Generate square grids of this width, like 3..8.")
-@click.option(
-    "--map",
-    "maps",
-    type=click.IntRange(0, FULL_MAP),
-    multiple=True,
-    help="The paper's map, of a spanning tree (0) to the full grid (20); may be repeated.  [default: 20]",
-)
-@click.option("--robots", type=click.IntRange(min=0), help="Robots on each grid.  [default: as many as it is wide]")
-@click.option("--count", type=click.IntRange(1, MOST_INSTANCES), default=20, help="Instances of each size and map.")
-@click.option(
-    "--seed", type=click.IntRange(0, LARGEST_SEED - MOST_INSTANCES), default=0, help="The seed of the first instance."
-)
-@click.option(
-    "--after-goal",
-    type=click.Choice(get_args(AfterGoal)),
-    default="vanish",
-    help="Robots vanish or park after their goals.",
-)
-def command(  # noqa: PLR0913 - one parameter for each argument and option
-    *,
-    instance: str | None,
-    limit: int,
-    as_json: bool,
-    size: Range | None,
-    maps: tuple[int, ...],
-    robots: int | None,
-    count: int,
-    seed: int,
-    after_goal: AfterGoal,
-) -> Answer:
+def command(instance: str, limit: int, as_json: bool) -> Answer:
     """Plan INSTANCE with every planner, and show how far each is from the optimum, and why.
 
     The optimum is found by a search and not proved (see optimum).
@@ -76,33 +34,14 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     The price of an order is the distance of the best order from the optimum, if robots are planned one after the other;
     it is known for small fleets. The price of the search is the distance of the planner from the best order.
 
-    With --size instead of INSTANCE, grids are generated, and the table shows means in per cent of the optimum with 95 %
-    intervals. The price of an order is the excess of the best order over the optimum. `found` is the number of
-    instances in which that order is known, or in which the planner plans all robots. Other instances are in no mean.
-
-    Exit codes: 0 the optimum is found, 1 the robots cannot all be planned, 2 bad input, 3 undecided within the limit. A
-    family has the worst code of its instances.
+    Exit codes: 0 the optimum is found, 1 the robots cannot all be planned, 2 bad input, 3 undecided within the limit.
     """
     require("pysat")
-    if (instance is None) == (size is None):
-        raise click.UsageError("Give an INSTANCE or a --size, one of them.")
-    if instance is not None:
-        return _gap_of(instance, limit, as_json)
-    from carproof.gap.family import Family  # noqa: PLC0415 - loads the planners
-
-    assert size is not None  # noqa: S101 - asked above
-    if not 1 <= size.low <= size.high <= WIDEST:
-        raise click.BadParameter(f"{size} must be a range within 1..{WIDEST}.", param_hint="'--size'")
-    return _gaps_of(Family(size, maps or (FULL_MAP,), robots, count, seed, after_goal), limit, as_json)
-
-
-def _gap_of(path: str, limit: int, as_json: bool) -> Answer:
-    from carp_optimum.gap import PLANNERS, gap  # noqa: PLC0415
+    from carp_optimum.gap import PLANNERS, gap  # noqa: PLC0415 - loads the planners
     from carp_verify.optimum.unsolvable import describe  # noqa: PLC0415
-    from carproof.gap.report import gap_document, gap_rows  # noqa: PLC0415 - loads the planners
 
-    problem = read_instance_file(path)
-    refuse_in(path, problem, "stops")
+    problem = read_instance_file(instance)
+    refuse_in(instance, problem, "stops")
     warm()
     measured = gap(problem, PLANNERS, limit)
     best = measured.optimum
@@ -119,21 +58,50 @@ def _gap_of(path: str, limit: int, as_json: bool) -> Answer:
     return Answer.of(best.cost is not None)
 
 
-def _gaps_of(family: "Family", limit: int, as_json: bool) -> Answer:
-    from carp_optimum.gap import PLANNERS  # noqa: PLC0415
-    from carproof.gap.family import measured  # noqa: PLC0415 - loads the planners
-    from carproof.gap.report import cell_rows, family_document  # noqa: PLC0415
+def gap_document(gap: "Gap") -> dict[str, Any]:
+    """The optimum, or null and the lower bound; the least total over all orders, if known; and the planners.
 
-    warm()
-    with progress("measuring gaps", len(family.cells) * family.count) as advance:
-        cells = list(measured(family, PLANNERS, limit, advance))
-    if as_json:
-        print_document(write(family_document(cells)))
-    else:
-        rows = (row for cell in cells for row in cell_rows(cell))
-        print_table(FAMILY_COLUMNS, rows, numbers=("map", "robots", *FAMILY_COLUMNS[4:]))
-        print_line("means in per cent of the optimum, with 95 % intervals")
-    optima = [gap.optimum for cell in cells for gap in cell.gaps]
-    if not all(each.decided for each in optima):
-        return Answer.UNDECIDED
-    return Answer.of(all(each.cost is not None for each in optima))
+    `decided` means that the search for the optimum ended with an answer, which rests on its solver. The total of a
+    planner covers the robots that it planned.
+    """
+    best = gap.optimum
+    planners = [
+        {"planner": each.planner.name, "unplanned": each.unplanned, "total": each.total} for each in gap.planners
+    ]
+    return {
+        "optimum": best.cost if best.decided else None,
+        "lower": best.lower,
+        "decided": best.decided,
+        "best_order": gap.best_order,
+        "planners": planners,
+    }
+
+
+def gap_rows(gap: "Gap") -> Iterator[Sequence[object]]:
+    """A row for each planner, after those of the optimum and of the best order."""
+    cost = gap.optimum.cost if gap.optimum.decided else None
+    yield ("optimum", *(("-",) * 5 if cost is None else (0, cost, *("-",) * 3)))
+    order_price = _difference(gap.best_order, cost)
+    if gap.best_order is not None:
+        yield ("best order", 0, gap.best_order, order_price, order_price, _difference(gap.best_order, gap.best_order))
+    for each in gap.planners:
+        yield _planner_row(each, cost, gap.best_order)
+
+
+def _planner_row(reached: "PlannerGap", cost: int | None, best_order: int | None) -> Sequence[object]:
+    if reached.unplanned:
+        return (reached.planner.name, reached.unplanned, reached.total, "-", "-", "-")
+    prices = (
+        _difference(reached.total, cost),
+        _difference(best_order, cost),
+        _difference(reached.total, best_order),
+    )
+    return (reached.planner.name, 0, reached.total, *prices)
+
+
+def _difference(total: int | None, least: int | None) -> str:
+    """The excess of a total over another, in ticks and in per cent of it, with one digit."""
+    if total is None or least is None:
+        return "-"
+    tenths = 1000 * (total - least) // least if least else 0
+    return f"{total - least:+d} ({tenths // 10}.{tenths % 10} %)" if tenths >= 0 else f"{total - least:+d}"

@@ -1,6 +1,6 @@
 """Means and proportions with 95 % intervals. They report; they decide nothing, so they may be floats."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from statistics import NormalDist, fmean, stdev
 
@@ -25,28 +25,6 @@ def mean_interval(values: Sequence[float]) -> Interval:
     mean = fmean(values)
     margin = Z95 * stdev(values) / len(values) ** 0.5 if len(values) > 1 else 0.0
     return Interval(mean, mean - margin, mean + margin)
-
-
-@dataclass(frozen=True, slots=True)
-class Excess:
-    """The number of instances that have a value, and the mean in per cent of the optimum; `None` without any."""
-
-    instances: int
-    per_cent: Interval | None
-
-    def __str__(self) -> str:
-        """Print like `1.9 ± 1.6`."""
-        return "-" if self.per_cent is None else f"{self.per_cent:.1f}"
-
-
-def excess(totals: Iterable[tuple[int | None, int | None, int | None]]) -> Excess:
-    """The mean over those that are known of how much a total exceeds another, in per cent of a third."""
-    values = [
-        100 * (total - other) / (whole or 1)
-        for total, other, whole in totals
-        if total is not None and other is not None and whole is not None
-    ]
-    return Excess(len(values), mean_interval(values) if values else None)
 
 
 def proportion_interval(hits: int, trials: int) -> Interval:

@@ -1,1 +1,0 @@
-"""The distance of planners from the optimum, over families of instances."""
