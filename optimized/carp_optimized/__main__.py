@@ -17,7 +17,7 @@ def compile_all() -> None:
     fleet.shuffled(Shuffled(2), range(2), lambda: None)
     fleet.carp(range(2))
     fleet.ticks_to_goal(0)
-    fleet.potential(0)
+    fleet.potentials(0)
     fleet.add(2, 0, Neighbourhood(m=2))
     plans = fleet.plans
     fleet.clear()

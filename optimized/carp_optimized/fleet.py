@@ -13,6 +13,7 @@ from carp_optimized.jit.references import Native
 from carp_optimized.neighbourhood.adding import add_robot
 from carp_optimized.neighbourhood.polishing import QUEUED, TURN, play_rounds
 from carp_optimized.neighbourhood.reuse import Queries, Reuse
+from carp_optimized.queries.over_stops import STANDING
 from carp_optimized.recording import copied, enlarged, read_plan, write_plan
 from carp_optimized.state import encoding
 from carp_optimized.state.arrays import (
@@ -249,19 +250,29 @@ class PlannedFleet:
         found = self._call(attempt)
         return None if found == NONE else self._plan(found)
 
-    def find_with_labels(self, robot: int, before: Plan | None, now: int) -> tuple[Plan | None, Labels]:
+    def find_with_labels(self, robot: int, before: Plan | None, now: int) -> tuple[Plan | None, list[Labels]]:
         """The same plan, and the windows that its query expanded: their resources, each with the tick of its entry.
 
-        With shortcuts not all windows are expanded that could be entered before the arrival.
+        A robot with stops has such a list for each number of stops served; the tick is then that from which it may
+        leave, less the duration. With shortcuts not all windows are expanded that could be entered before the arrival.
+        """
+        search = self._state.search
+        search.expansions[0] = 0
+        search.generation[0] += 1
+        plan = self.find(robot, before, now)
+        own = self.instance.robots[robot]
+        return plan, [self._labels(robot)] if own.has_goal_alone else self._labels_over_stops(len(own.stops))
+
+    def _labels(self, robot: int) -> Labels:
+        """The labels of the last query, of a robot with a goal alone.
+
         The start is entered as late as the robot may be there to leave it as early: the query does not come back to it,
         but other plans may. Who has stayed at its goal too long to end there does come back, and has no such label.
         """
-        self._state.search.expansions[0] = 0
-        plan = self.find(robot, before, now)
         search = self._state.search
         count = int(search.expansions[0])
         if count == 0:
-            return plan, []
+            return []
         resources = search.expanded[:count]
         enters = (search.popped[:count] >> 32) - self._guide(robot)[resources]
         start, ready = int(resources[0]), int(search.ready[0])
@@ -269,23 +280,49 @@ class PlannedFleet:
         overstayed = start == self._state.robots.goal[robot] and not self._state.parks and ready > enters[0] + ticks
         first = 1 if overstayed else 0
         enters[0] = ready - ticks
-        return plan, [*zip(resources[first:].tolist(), enters[first:].tolist(), strict=True)]
+        return [*zip(resources[first:].tolist(), enters[first:].tolist(), strict=True)]
 
-    def potential(self, robot: int) -> dict[int, int]:
-        """The resources from which the robot can reach its goal, each with the ticks that it needs at least.
+    def _labels_over_stops(self, count: int) -> list[Labels]:
+        """The labels of the last query, of a robot with so many stops, but for the start."""
+        stops, base = self._state.stops, int(self._state.search.generation[0]) << 32
+        ticks = (base - stops.reached).reshape(-1, stops.stride).T
+        layers: list[Labels] = []
+        for own in ticks[:count]:
+            found = np.flatnonzero((own < 1 << 32) & (base > 0))
+            found = found[found != STANDING]
+            layers.append([*zip(self._state.windows.resource[found].tolist(), own[found].tolist(), strict=True)])
+        return layers
+
+    def potentials(self, robot: int) -> list[dict[int, int]]:
+        """By number of stops served: the resources from which the robot can reach its goal, with the ticks to it.
 
         Ticks beyond the largest are counted as one more than that.
         """
-        guide = self._guide(robot)
-        ticks = np.where(guide == TOO_FAR, LARGEST + 1, guide)
-        reaching = np.flatnonzero(guide != UNREACHABLE)
-        return dict(zip(reaching.tolist(), ticks[reaching].tolist(), strict=True))
+        own = self.instance.robots[robot]
+        if own.has_goal_alone:
+            return [_reaching(self._guide(robot), 0)]
+        layers: list[dict[int, int]] = []
+        rest: int | None = 0
+        first = int(self._state.stops.first[robot])
+        for number, stop in reversed([*enumerate(own.stops, first)]):
+            place = self.instance.graph.index[stop.resource]
+            if layers:
+                longer = self.instance.stay(own.id, stop) - self.instance.duration(own.id, stop.resource)
+                rest = layers[0][place] + longer if place in layers[0] else None
+            layers.insert(0, {} if rest is None else _reaching(self._guide_to_stop(number), rest))
+        return layers
 
     def _guide(self, robot: int) -> Ints:
         """The guide of the robot's destination: ticks to the goal."""
         self._call(lambda: passes.reach_from_everywhere(self._native, robot))
         guides = self._state.guides
         guide: Ints = guides.ticks[int(guides.slot[self._state.robots.destination[robot]])]
+        return guide
+
+    def _guide_to_stop(self, number: int) -> Ints:
+        """The guide to a stop, one of those of all robots."""
+        slot = self._call(lambda: passes.reach_stop(self._native, number))
+        guide: Ints = self._state.guides.ticks[slot]
         return guide
 
     def repeat_query(self, robot: int, times: int) -> None:
@@ -534,3 +571,10 @@ class PlannedFleet:
         if record not in self._plans:
             self._plans[record] = read_plan(self._state, self.instance.graph, record, self._ids)
         return self._plans[record]
+
+
+def _reaching(guide: Ints, rest: int) -> dict[int, int]:
+    """The resources that a guide reaches, with their ticks and the rest, at most one more than the largest."""
+    ticks = np.where(guide == TOO_FAR, LARGEST + 1, np.minimum(guide.astype(np.int64) + rest, LARGEST + 1))
+    reaching = np.flatnonzero(guide != UNREACHABLE)
+    return dict(zip(reaching.tolist(), ticks[reaching].tolist(), strict=True))

@@ -3,7 +3,7 @@
 from carp_optimized.jit.compiling import RecordsExhausted, TicksExhausted, entry
 from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
-from carp_optimized.queries.guides import guide_slot
+from carp_optimized.queries.guides import guide_of, guide_slot
 from carp_optimized.queries.over_stops import shortest_of
 from carp_optimized.queries.search import find_any_plan, find_plan, find_plan_only
 from carp_optimized.queries.windows import plan_fits, reserve, withdraw
@@ -37,6 +37,13 @@ def reach_from_everywhere(native: Native[State], robot: int) -> None:
     state = state_at(native)
     for resource in range(state.graph.duration.size):
         guide_slot(state, robot, resource)
+
+
+@entry
+def reach_stop(native: Native[State], number: int) -> int:
+    """Make the guide to a stop, one of those of all robots, as far as moves lead; its slot."""
+    state = state_at(native)
+    return guide_of(state, int(state.stops.destination[number]))
 
 
 @entry

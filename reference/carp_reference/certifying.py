@@ -6,8 +6,8 @@ from dataclasses import replace
 from carp_reference.problem import prepare
 from carp_reference.query import Node, find_plan
 from carp_spec import Instance, Plan, RobotId
-from carp_spec.documents.query_certificates import QUERY_FORMAT, QueryCertificateDocument
-from carp_spec.limits import refuse
+from carp_spec.documents.query_certificates import QueryCertificateDocument, ServedLayer, certificate_of
+from carp_spec.plan_rules import stops_left
 
 
 class Certifier:
@@ -29,16 +29,16 @@ class Certifier:
         `followed` is its plan until the tick `now`. The labels are the nodes expanded after the start from which the
         goal is reached before the bound.
         """
-        refuse(self._problem.instance, "stops")
+        instance = self._problem.instance
         problem = replace(self._problem, now=now, before={} if followed is None else {robot: followed})
-        ticks_to_goal = problem.ticks_to_goal[robot][-1]
         expanded: list[Node] = []
         plan = find_plan(problem, self._committed, robot, expanded=expanded)
         bound = None if plan is None else plan.visits[-1].enter
-        labels = dict.fromkeys(
-            (node.resource, node.enter)
-            for node in expanded[1:]
-            if bound is None or node.enter + ticks_to_goal[node.resource] < bound
-        )
-        certificate = QueryCertificateDocument(QUERY_FORMAT, robot, now, bound, (*labels,), (*ticks_to_goal.items(),))
-        return plan, certificate
+        left = len(stops_left(instance.robot[robot], followed, now))
+        layers = []
+        for served, potential in [*enumerate(problem.ticks_to_goal[robot])][-left:]:
+            nodes = [node for node in expanded[1:] if node.served == served]
+            ticks = [(node.resource, node.ready - instance.duration(robot, node.resource)) for node in nodes]
+            labels = [label for label in ticks if bound is None or label[1] + potential[label[0]] < bound]
+            layers.append(ServedLayer((*dict.fromkeys(labels),), (*potential.items(),)))
+        return plan, certificate_of(robot, now, bound, layers)

@@ -29,7 +29,7 @@ LIMITS: Mapping[Feature, tuple[Rule[[Instance], bool], str, str]] = {
     "stops": (
         goals_stand_alone,
         "$.robots",
-        "each robot must have a goal alone here: checks and planners alone know robots with stops",
+        "each robot must have a goal alone here: not all searches and checkers know robots with stops",
     ),
 }
 

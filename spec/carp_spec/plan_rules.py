@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise, zip_longest
 
-from carp_spec.model import Instance, Plan, Stop, Visit
+from carp_spec.model import Instance, Plan, Robot, Stop, Visit
 from carp_spec.rule import DESIGN, MORS, Breach, Rule, Violation, at_visit, of_robots, rule, violation_rule
 
 
@@ -50,6 +50,12 @@ def stops_served(stops: Sequence[Stop], visits: Iterable[Visit]) -> int:
         long_enough = visit.leave is not None and visit.leave - visit.enter >= stops[served].service
         served += long_enough and visit.resource == stops[served].resource
     return served
+
+
+def stops_left(robot: Robot, followed: Plan | None, now: int) -> tuple[Stop, ...]:
+    """The stops of a robot but for those that it has served by now; the visit in which it is then has served none."""
+    entered = () if followed is None else [visit for visit in followed.visits if visit.enter <= now]
+    return robot.stops[stops_served(robot.stops[:-1], entered[:-1]) :]
 
 
 def least_stays(instance: Instance, plan: Plan) -> list[int]:

@@ -140,7 +140,7 @@ def test_a_guide_ends_a_detour_behind_the_start_until_more_of_it_is_asked_for(
     assert fleet.ticks_to_goal(0) == 2 * pace
     assert fleet._state.guides.ticks[0].tolist() == [*to_goal[: reached + 1], *(FURTHER,) * (19 - reached)]
     assert fleet.ticks_to_goal(1) == 15 * pace
-    assert fleet.potential(0) == dict(enumerate(to_goal))
+    assert fleet.potentials(0) == [dict(enumerate(to_goal))]
 
 
 @pytest.mark.parametrize("planner", PLANNERS, ids=str)

@@ -16,9 +16,9 @@ from carp_spec.documents.query_certificates import QueryCertificateDocument
 from carp_spec.documents.solutions import read_solution
 from carp_verify.bound.rules import ContradictionError
 from carproof.engines import engine_named
-from carproof.generate import Fleet, Grid, grid_instance
+from carproof.generate import Fleet, Grid, Range, grid_instance
 from carproof.judging.audit import audit_in_order, audit_in_some_order, in_order
-from carproof.testing.strategies import PlannedInstance, planned_instances
+from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances
 
 LATE = solution({"r1": [["a", 0, 1], ["b", 1, 3], ["c", 3, 4]]})
 ALONE = corridor([EAST])
@@ -84,7 +84,7 @@ def test_another_order_is_looked_for_where_it_is_asked_for(carproof: Run) -> Non
     assert (outcome.code, json.loads(outcome.stdout)["certified"]) == (0, ["r2", "r1"])
 
 
-@given(planned_instances())
+@given(planned_instances(Sizes(groups=1, stops=3, service=3)))
 def test_a_plan_is_late_just_where_the_reference_finds_an_earlier_one(planned: PlannedInstance) -> None:
     audit = audit_in_order(planned.instance, planned.solution, REFERENCE)
     plans = [*in_order(planned.solution)]
@@ -118,7 +118,9 @@ def _ordered(planned: PlannedInstance, order: tuple[RobotId, ...]) -> Solution:
 
 @pytest.mark.parametrize("seed", range(3))
 def test_plans_of_both_engines_are_certified(seed: int) -> None:
-    instance = grid_instance(Grid(8, 8, map=8), Fleet(24, seed=seed))
+    fleet = Fleet(24, seed=seed)
+    picking = replace(fleet, orders="pick-and-drop", service=Range(2, 4))
+    instance = grid_instance(Grid(8, 8, map=8), picking if seed == 2 else fleet)
     planned = REFERENCE.plan(instance, Carp())
     for engine in ("reference", "optimized"):
         assert audit_in_order(instance, planned, engine_named(engine)).holds

@@ -92,6 +92,55 @@ QUESTIONS = {
 }
 
 
+SHUTTLE = Robot("r", "a", stops=(Stop("c", 5), Stop("a"), Stop("d", 4)))
+QUESTIONS |= {
+    "over stops": beside(town("vanish", SHUTTLE, WEST), "r", WESTWARDS),
+    "over stops, to park": beside(
+        town("park", SHUTTLE, replace(WEST, stops=(Stop("e"),))),
+        "r",
+        plan_of("s", ("d", 0, 1), ("c", 1, 3), ("b", 3, 4), ("e", 4, None)),
+    ),
+    "a stop served at the start": beside(
+        town("vanish", replace(SHUTTLE, stops=(Stop("a", 3), Stop("d"))), WEST), "r", WESTWARDS
+    ),
+    "one stop served, under way": beside(
+        town("vanish", SHUTTLE, replace(WEST, release=20)),
+        "r",
+        plan_of("s", ("d", 20, 21), ("c", 21, 23), ("b", 23, 24), ("a", 24, 25)),
+        plan_of(
+            "r",
+            ("a", 0, 1),
+            ("b", 1, 2),
+            ("c", 2, 7),
+            ("b", 7, 8),
+            ("a", 8, 9),
+            ("b", 9, 10),
+            ("c", 10, 12),
+            ("d", 12, 16),
+        ),
+        now=8,
+    ),
+    "a stop served by now, under way": beside(
+        town("vanish", replace(SHUTTLE, stops=(Stop("a", 2), Stop("d"))), replace(WEST, release=5)),
+        "r",
+        plan_of("s", ("d", 5, 6), ("c", 6, 8), ("b", 8, 9), ("a", 9, 10)),
+        plan_of("r", ("a", 0, 4), ("b", 4, 5), ("c", 5, 7), ("d", 7, 8)),
+        now=3,
+    ),
+    "two stops served, and in the way": beside(
+        town("vanish", SHUTTLE, replace(WEST, release=11)),
+        "r",
+        plan_of("s", ("d", 11, 12), ("c", 12, 14), ("b", 14, 15), ("a", 15, 16)),
+    ),
+    "a stop out of reach": beside(town("vanish", replace(SHUTTLE, start="b"), WEST, directed=True), "r"),
+    "a long service at the goal": beside(
+        town("vanish", replace(EAST, stops=(Stop("d", 6),)), replace(WEST, release=8)),
+        "r",
+        plan_of("s", ("d", 8, 9), ("c", 9, 11), ("b", 11, 12), ("a", 12, 13)),
+    ),
+}
+
+
 def fleets(question: Question) -> Iterator[Question]:
     """The same plans, asked for each robot of the instance, at the start and at the tick."""
     for robot in question.instance.robot:

@@ -27,7 +27,12 @@ from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
 from carp_spec.documents.bounds import BoundDocument, CutDocument, read_bound
 from carp_spec.documents.decoding import write
 from carp_spec.documents.instances import digest
-from carp_spec.documents.query_certificates import QueryCertificateDocument, read_query_certificate
+from carp_spec.documents.query_certificates import (
+    QueryCertificateDocument,
+    ServedLayer,
+    certificate_of,
+    read_query_certificate,
+)
 from carp_verify.bound.cuts import formula_of
 from carp_verify.bound.verify import verify_bound
 from carp_verify.optimum.clauses import dimacs
@@ -221,9 +226,9 @@ def test_no_later_bound_is_accepted_with_the_labels_of_the_search_for_it() -> No
             continue
         labels = {(each, tick) for each in question.instance.graph.index for tick in range(20)}
         for bound in (plan.visits[-1].enter + 1, FAR, None):
-            for those in (honest.labels, (*honest.labels, *labels), ()):
-                forged = msgspec.structs.replace(honest, bound=bound, labels=tuple(those))
-                assert not is_accepted(question, forged)
+            for those in (None, (*labels,), ()):
+                layers = [each if those is None else ServedLayer(those, each.potential) for each in honest.layers]
+                assert not is_accepted(question, certificate_of(honest.robot, honest.now, bound, layers))
 
 
 @cache

@@ -15,7 +15,7 @@ import carp_optimized.certifying
 import carp_reference
 import carp_verify.query.rules
 from carp_spec import Plan, Refusal, Robot, Visit
-from carp_spec.documents.query_certificates import QueryCertificateDocument
+from carp_spec.documents.query_certificates import QueryCertificateDocument, ServedLayer, certificate_of
 from carp_spec.model import Following
 from carp_spec.windows import Window
 from carp_verify.query.rules import QUERY_CERTIFICATE_RULES
@@ -70,10 +70,18 @@ def test_the_examples_are_of_every_kind() -> None:
         "at its goal": 0,
         "may leave its goal now": 0,
         "stayed too long at its goal": 4,
+        "over stops": 15,
+        "over stops, to park": 15,
+        "a stop served at the start": 11,
+        "one stop served, under way": 12,
+        "a stop served by now, under way": 12,
+        "two stops served, and in the way": 18,
+        "a stop out of reach": None,
+        "a long service at the goal": 15,
     }
 
 
-@given(fleets_under_way(Sizes(resources=5, robots=4, release=3, groups=2)))
+@given(fleets_under_way(Sizes(resources=5, robots=4, release=3, groups=2, stops=3, service=4)))
 def test_certificates_of_both_planners_are_accepted_with_the_arrival_of_the_plan(fleet: FleetUnderWay) -> None:
     for question in fleets(Question(fleet.instance, fleet.solution, fleet.robot, fleet.now)):
         certifier = carp_optimized.certifying.Certifier(question.instance)
@@ -87,34 +95,46 @@ def test_certificates_of_both_planners_are_accepted_with_the_arrival_of_the_plan
             assert verify_query(question.instance, question.solution, certificate) == arrival(best)
 
 
-@given(fleets_under_way(Sizes(groups=2)), st.data())
+@given(fleets_under_way(Sizes(groups=2, stops=3, service=3)), st.data())
 def test_whatever_is_accepted_is_true(fleet: FleetUnderWay, data: st.DataObject) -> None:
     """The certificate of another question, with labels lost or moved, another bound, and a changed potential."""
     question = Question(fleet.instance, fleet.solution, fleet.robot, fleet.now)
     other = replace(question, now=data.draw(st.sampled_from([0, fleet.now])))
     other = replace(other, robot=data.draw(st.sampled_from([*fleet.instance.robot])))
     certificate = other.certified()[1]
-    labels = [(resource, tick + data.draw(st.sampled_from([0, 0, 0, 1, -1]))) for resource, tick in certificate.labels]
-    if labels:
-        labels = labels[: data.draw(st.integers(0, len(labels)))]
-    potential = [
-        (resource, ticks + data.draw(st.sampled_from([0, 0, 0, 1, -1]))) for resource, ticks in certificate.potential
-    ]
-    changed = msgspec.structs.replace(
-        certificate,
-        robot=data.draw(st.sampled_from([certificate.robot, question.robot])),
-        now=data.draw(st.sampled_from([0, fleet.now])),
-        bound=data.draw(st.sampled_from([certificate.bound, None]) | SMALL_TICKS),
-        labels=data.draw(st.sampled_from([certificate.labels, tuple(labels)])),
-        potential=data.draw(st.sampled_from([certificate.potential, tuple(potential), ()])),
+    layers = [_changed(layer, data) for layer in certificate.layers]
+    layers = layers[: data.draw(st.sampled_from([len(layers), len(layers), 1]))]
+    changed = certificate_of(
+        data.draw(st.sampled_from([certificate.robot, question.robot])),
+        data.draw(st.sampled_from([0, fleet.now])),
+        data.draw(st.sampled_from([certificate.bound, None]) | SMALL_TICKS),
+        layers,
     )
     if rule_broken(question, changed) is None:
         asked = replace(question, robot=changed.robot, now=changed.now)
         assert is_true(asked, changed.bound)
 
 
+def _changed(layer: ServedLayer, data: st.DataObject) -> ServedLayer:
+    """The layer, or one with labels lost or moved, or with a changed potential."""
+
+    def moved() -> int:
+        return data.draw(st.sampled_from([0, 0, 0, 1, -1]))
+
+    labels = tuple((resource, tick + moved()) for resource, tick in layer.labels)
+    labels = labels[: data.draw(st.integers(0, len(labels)))]
+    potential = tuple((resource, ticks + moved()) for resource, ticks in layer.potential)
+    return ServedLayer(
+        data.draw(st.sampled_from([layer.labels, labels])),
+        data.draw(st.sampled_from([layer.potential, potential, ()])),
+    )
+
+
 BROKEN: Sequence[tuple[str, str, dict[str, Any]]] = (
     ("query-certificate/robot", "alone", {"robot": "moon"}),
+    ("query-certificate/stops", "over stops", {"served": ()}),
+    ("query-certificate/stops", "alone", {"served": (ServedLayer((), ()),)}),
+    ("query-certificate/potential", "over stops", {"potential": ()}),
     ("query-certificate/bound", "ended", {"bound": 1}),
     ("query-certificate/potential", "alone", {"potential": ()}),
     ("query-certificate/potential", "alone", {"potential": (("d", 1), ("c", 3), ("b", 4), ("a", 5), ("e", 5))}),
@@ -128,6 +148,33 @@ BROKEN: Sequence[tuple[str, str, dict[str, Any]]] = (
     ("query-certificate/closed", "alone", {"bound": 5, "labels": tuple((cell, 0) for cell in "abcde")}),
     ("query-certificate/closed", "alone", {"bound": 5, "labels": tuple((cell, -1) for cell in "abcde")}),
 )
+
+
+@pytest.mark.parametrize("name", [*QUESTIONS][-8:])
+def test_of_a_certificate_over_stops_nothing_can_be_left_out_or_changed(name: str) -> None:
+    """A label is needed, a lower potential proves less and a higher one would prove too much."""
+    question = QUESTIONS[name]
+    honest = question.certified()[1]
+    layers = honest.layers
+
+    def broken_with(served: int, labels: object, potential: object) -> str | None:
+        layer = ServedLayer(labels, potential)  # type: ignore[arg-type]
+        forged = certificate_of(
+            honest.robot, honest.now, honest.bound, [*layers[:served], layer, *layers[served + 1 :]]
+        )
+        return rule_broken(question, forged)
+
+    for served, (labels, potential) in enumerate((each.labels, each.potential) for each in layers):
+        for k, (resource, tick) in enumerate(labels):
+            assert broken_with(served, (*labels[:k], *labels[k + 1 :]), potential) == "query-certificate/closed"
+            later = (*labels[:k], (resource, tick + 1), *labels[k + 1 :])
+            assert broken_with(served, later, potential) == "query-certificate/closed"
+        for k, (resource, ticks) in enumerate(potential):
+            higher = (*potential[:k], (resource, ticks + 1), *potential[k + 1 :])
+            assert broken_with(served, labels, higher) == "query-certificate/potential"
+            assert broken_with(served, labels, (*potential[:k], *potential[k + 1 :])) is not None
+    if honest.bound is not None:
+        assert rule_broken(question, msgspec.structs.replace(honest, bound=honest.bound + 1)) is not None
 
 
 @pytest.mark.parametrize(("rule", "name", "changes"), BROKEN)

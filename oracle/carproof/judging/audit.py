@@ -13,7 +13,6 @@ import msgspec
 
 from carp_spec import Instance, Plan, Refusal, RobotId, Solution
 from carp_spec.documents.solutions import solution_document
-from carp_spec.limits import refuse
 from carp_verify.bound.rules import ContradictionError
 from carp_verify.kernel import ask, request
 from carp_verify.query.rules import plans_are_lawful, size_fits
@@ -54,7 +53,6 @@ class Auditor:
     """Compares plans with the best ones beside those committed so far."""
 
     def __init__(self, instance: Instance, engine: Engine) -> None:
-        refuse(instance, "stops")
         self._instance = instance
         self._certifier = engine.certifier(instance)
         self._traffic = Traffic(instance)

@@ -41,23 +41,44 @@ def is_no_later(bound: int | None, arrival: int) -> bool:
 
 
 @rule(
+    "query-certificate/stops",
+    "There are labels and a potential for each number of stops that the robot can have served, of those left at now, "
+    "before it serves the last one.",
+    DESIGN,
+)
+def fits_stops(layers: int, stops: int) -> bool:
+    """Whether so many pairs of labels and a potential fit so many stops that are left."""
+    return layers == stops
+
+
+@rule(
     "query-certificate/potential",
-    "The potential of the goal is 0. Where a move leads from r to s, and s has a potential, r has one too: no more "
-    "than that of s and the ticks that the robot needs in r.",
+    "The potential of the goal is 0, once only the last stop is left. Where a move leads from r to s, and s has a "
+    "potential, r has one too: no more than that of s and the ticks that the robot needs in r. Where a stop served has "
+    "a potential, it has one before: no more than that and the ticks by which its service is longer than the duration.",
     DESIGN,
 )
 def is_potential(
     potential: Mapping[ResourceId, int],
-    goal: ResourceId,
     moves: Iterable[tuple[ResourceId, Sequence[ResourceId], int]],
+    stop: ResourceId,
+    extra: int,
+    behind: Mapping[ResourceId, int] | None,
 ) -> Iterator[str]:
-    """The faults of a potential; each resource comes with those that it leads to, and the ticks needed in it."""
-    if potential.get(goal) != 0:
-        yield f"{goal}, the goal, must have the potential 0"
+    """The faults of a potential; each resource comes with those that it leads to, and the ticks needed in it.
+
+    The next stop takes `extra` ticks longer than its duration, and `behind` is the potential once it is served; `None`:
+    it is the goal.
+    """
+    there = potential.get(stop)
+    if behind is None and there != 0:
+        yield f"{stop}, the goal, must have the potential 0"
+    elif behind is not None and stop in behind and (there is None or there > extra + behind[stop]):
+        yield f"{stop}, the next stop, must have a potential of at most {extra + behind[stop]}"
     for source, targets, ticks in moves:
-        most = potential.get(source)
+        there = potential.get(source)
         for target in targets:
-            if target in potential and (most is None or most > ticks + potential[target]):
+            if target in potential and (there is None or there > ticks + potential[target]):
                 yield f"{source}, which leads to {target}, must have a potential of at most {ticks + potential[target]}"
 
 
@@ -87,6 +108,7 @@ QUERY_CERTIFICATE_RULES: tuple[Rule[..., Any], ...] = (
     plans_are_lawful,
     robot_is_known,
     is_no_later,
+    fits_stops,
     is_potential,
     is_closed,
     size_fits,

@@ -7,6 +7,9 @@ entered has one, and who is ready earlier can enter every window as early. The p
 comes to a window at which t + potential has reached the bound. From there on that sum never falls, as the potential
 grows along no move by more than the robot needs, and at the goal it is the arrival.
 
+A robot with several stops has labels and a potential for each number of stops served. Serving a stop leads from one to
+the next within a window; t is then the tick from which the robot may leave, less the duration.
+
 A plan that has ended stays as it is. Where the plans of the others leave no room for what the robot has done, it has no
 plan at all, and every claim about its plans is true.
 
@@ -20,13 +23,14 @@ from dataclasses import dataclass
 from functools import reduce
 from itertools import pairwise, product, zip_longest
 
-from carp_spec import Instance, Plan, Refusal, ResourceId, Robot, Rule, Solution, Visit, has_ended
-from carp_spec.documents.query_certificates import QueryCertificateDocument
+from carp_spec import Instance, Plan, Refusal, ResourceId, Robot, Rule, Solution, Stop, Visit, has_ended
+from carp_spec.documents.query_certificates import QueryCertificateDocument, ServedLayer
 from carp_spec.inputs.values import require_solution
-from carp_spec.limits import refuse
+from carp_spec.plan_rules import stops_left
 from carp_spec.windows import Window
 from carp_verify.query.rules import (
     LARGEST_CHECK,
+    fits_stops,
     is_closed,
     is_no_later,
     is_potential,
@@ -155,7 +159,6 @@ def require_certificate(traffic: Traffic, certificate: QueryCertificateDocument,
 
     The plan followed until now, and the plans committed, must be lawful.
     """
-    refuse(traffic.instance, "stops")
     if followed is not None and has_ended(followed, certificate.now):
         if traffic.allows(followed.visits):
             arrival = followed.visits[-1].enter
@@ -164,7 +167,8 @@ def require_certificate(traffic: Traffic, certificate: QueryCertificateDocument,
         return
     *past, current = history(traffic.instance, certificate, followed)
     if traffic.allows((*past, current)):
-        Check(traffic, certificate).require(current)
+        left = stops_left(traffic.instance.robot[certificate.robot], followed, certificate.now)
+        Check(traffic, certificate, left).require(current)
 
 
 def history(instance: Instance, certificate: QueryCertificateDocument, followed: Plan | None) -> tuple[Visit, ...]:
@@ -179,78 +183,124 @@ def history(instance: Instance, certificate: QueryCertificateDocument, followed:
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """A window that the robot is in, and the tick from which it may leave."""
+    """A window that the robot entered at a tick, that from which it may leave, and the number of stops served."""
 
     resource: ResourceId
     window: Window
+    enter: int
     ready: int
+    served: int
     path: str
+
+
+class Layer:
+    """What a certificate says of the robot once it has served so many stops."""
+
+    def __init__(self, layer: ServedLayer, path: str) -> None:
+        self.path = path
+        self.labels = layer.labels
+        self.potential: Mapping[ResourceId, int] = dict(layer.potential)
+        self._entries: dict[ResourceId, list[int]] = defaultdict(list)
+        for resource, tick in sorted(layer.labels, key=lambda label: label[1]):
+            self._entries[resource].append(tick)
+
+    def first_label(self, resource: ResourceId, window: Window) -> int | None:
+        """The tick of the first label of the resource from the start of the window on."""
+        entries = self._entries[resource]
+        position = bisect_left(entries, window.start)
+        return entries[position] if position < len(entries) else None
 
 
 class Check:
     """The conditions on one certificate beside committed plans."""
 
-    def __init__(self, traffic: Traffic, certificate: QueryCertificateDocument) -> None:
+    def __init__(self, traffic: Traffic, certificate: QueryCertificateDocument, stops: Sequence[Stop]) -> None:
+        """`stops` are those left."""
         self.traffic = traffic
         self.instance = traffic.instance
         self.robot: Robot = self.instance.robot[certificate.robot]
         self.certificate = certificate
-        self.potential: Mapping[ResourceId, int] = dict(certificate.potential)
-        self.entries: dict[ResourceId, list[int]] = defaultdict(list)
-        for resource, tick in sorted(certificate.labels, key=lambda label: label[1]):
-            self.entries[resource].append(tick)
+        self.stops = stops
+        paths = ("$", *(f"$.served[{number}]" for number in range(len(certificate.served))))
+        self.layers = [Layer(layer, path) for layer, path in zip(certificate.layers, paths, strict=True)]
 
     def require(self, current: Visit) -> None:
         """Raise `Refusal` unless the certificate shows its bound for a robot in its current visit."""
         self._require_size()
-        self._require_potential()
+        self._require_potentials()
         ready = current.leave
         window = self.traffic.window_at(current.resource, current.enter)
         assert window is not None  # noqa: S101 - the traffic allows the visit
         assert ready is not None  # noqa: S101 - the history has it
-        if not self._is_late(current.resource, current.enter):
-            overstayed = current.enter + self._ticks(current.resource) < self.certificate.now
-            self._require_closed(Place(current.resource, window, ready, "$.labels"), overstayed)
-        for number, (resource, tick) in enumerate(self.certificate.labels):
-            if resource in self.instance.graph.resource and tick >= 0 and not self._is_late(resource, tick):
-                around = self.traffic.window_at(resource, tick)
-                if around is not None:
-                    place = Place(resource, around, tick + self._ticks(resource), f"$.labels[{number}]")
-                    self._require_closed(place, overstayed=False)
+        if not self._is_late(current.resource, 0, current.enter):
+            self._require_closed(
+                Place(current.resource, window, current.enter, ready, 0, "$.labels"), self._overstayed(current)
+            )
+        for served, layer in enumerate(self.layers):
+            for number, (resource, tick) in enumerate(layer.labels):
+                if resource in self.instance.graph.resource and tick >= 0 and not self._is_late(resource, served, tick):
+                    around = self.traffic.window_at(resource, tick)
+                    if around is not None:
+                        ready = tick + self._ticks(resource)
+                        path = f"{layer.path}.labels[{number}]"
+                        self._require_closed(Place(resource, around, tick, ready, served, path), overstayed=False)
 
     def _ticks(self, resource: ResourceId) -> int:
         return self.instance.duration(self.robot.id, resource)
 
-    def _is_late(self, resource: ResourceId, tick: int) -> bool:
+    def _overstayed(self, current: Visit) -> bool:
+        """Whether the robot, which must leave the goal as soon as it has served it, is there for longer by now."""
+        return current.enter + self.instance.stay(self.robot.id, self.robot.stops[-1]) < self.certificate.now
+
+    def _is_late(self, resource: ResourceId, served: int, tick: int) -> bool:
         """Whether the robot, if it enters the resource at the tick, enters its goal no earlier than the bound."""
-        if resource not in self.potential:
+        potential, bound = self.layers[served].potential, self.certificate.bound
+        if resource not in potential:
             return True
-        bound = self.certificate.bound
-        return bound is not None and bound <= tick + self.potential[resource]
+        return bound is not None and bound <= tick + potential[resource]
 
     def _require_size(self) -> None:
+        message = f"there must be labels and potentials before each of {len(self.stops)} stops left"
+        _require(fits_stops, fits_stops(len(self.layers), len(self.stops)), "$.served", message)
         graph, size = self.instance.graph, self.traffic.size
-        resources: Iterable[ResourceId] = {each for each, _ in self.certificate.labels if each in graph.resource}
+        labels = [resource for layer in self.layers for resource, _ in layer.labels]
+        resources: Iterable[ResourceId] = {each for each in labels if each in graph.resource}
         steps = {each: sum(size(each) + size(target) for target in graph.successors[each]) for each in resources}
-        total = len(self.certificate.labels) + sum(steps.get(resource, 0) for resource, _ in self.certificate.labels)
+        total = len(labels) + sum(steps.get(resource, 0) for resource in labels)
         message = f"there would be {total} windows and moves to look at, and at most {LARGEST_CHECK} are allowed"
         _require(size_fits, size_fits(total), "$.labels", message)
 
-    def _require_potential(self) -> None:
-        graph, pace = self.instance.graph, self.robot.pace
-        moves = ((each.id, graph.successors[each.id], pace * each.duration) for each in graph.resources)
-        for fault in is_potential(self.potential, self.robot.goal, moves):
-            raise Refusal("document", "$.potential", is_potential.id, fault)
+    def _require_potentials(self) -> None:
+        graph = self.instance.graph
+        moves = [(each.id, graph.successors[each.id], self._ticks(each.id)) for each in graph.resources]
+        for stop, layer, behind in zip_longest(self.stops, self.layers, self.layers[1:]):
+            extra = self.instance.stay(self.robot.id, stop) - self._ticks(stop.resource)
+            following = None if behind is None else behind.potential
+            for fault in is_potential(layer.potential, moves, stop.resource, extra, following):
+                raise Refusal("document", f"{layer.path}.potential", is_potential.id, fault)
 
     def _require_closed(self, place: Place, overstayed: bool) -> None:
-        """Require that the plan cannot end in the place, and that all that can be entered from it is labelled."""
-        parks = self.instance.after_goal == "park"
-        can_end = place.window.end is None if parks else not overstayed
-        message = f"the robot can end its plan in {place.resource}, before the bound"
-        _require(is_closed, is_closed(place.resource == self.robot.goal and can_end, []), place.path, message)
+        """Require that the plan cannot end in the place, and that all that can follow it is labelled."""
+        stop = self.stops[place.served]
+        if stop.resource == place.resource:
+            leave = place.enter + self.instance.stay(self.robot.id, stop)
+            if place.served + 1 < len(self.stops):
+                self._require_served(place, max(leave, place.ready))
+            else:
+                parks = self.instance.after_goal == "park"
+                can_end = place.window.end is None if parks else place.window.lasts_until(leave) and not overstayed
+                message = f"the robot can end its plan in {place.resource}, before the bound"
+                _require(is_closed, is_closed(can_end, []), place.path, message)
         for target in self.instance.graph.successors[place.resource]:
-            if target in self.potential:
+            if target in self.layers[place.served].potential:
                 self._require_labels(place, target)
+
+    def _require_served(self, place: Place, ready: int) -> None:
+        """Require a label for the robot once it has served the next stop in the window, if it can."""
+        if place.window.lasts_until(ready):
+            tick = ready - self._ticks(place.resource)
+            message = f"a stop can be served in {place.resource} by {ready}, and must have a label for it"
+            self._require_label(place, place.resource, place.window, place.served + 1, tick, message)
 
     def _require_labels(self, place: Place, target: ResourceId) -> None:
         """Require a label for every window of the target that can be entered early enough."""
@@ -263,12 +313,16 @@ class Check:
                 tick, place.resource, target
             ):
                 tick += 1
-            if self._is_possible(place, window, tick, ticks) and not self._is_late(target, tick):
-                entries = self.entries[target]
-                position = bisect_left(entries, window.start)
-                first = entries[position] if position < len(entries) else None
+            if self._is_possible(place, window, tick, ticks):
                 message = f"{target} can be entered at {tick} from {place.resource}, and must have a label by then"
-                _require(is_closed, is_closed(False, [(tick, first)]), place.path, message)
+                self._require_label(place, target, window, place.served, tick, message)
+
+    def _require_label(
+        self, place: Place, resource: ResourceId, window: Window, served: int, tick: int, message: str
+    ) -> None:
+        if not self._is_late(resource, served, tick):
+            first = self.layers[served].first_label(resource, window)
+            _require(is_closed, is_closed(False, [(tick, first)]), place.path, message)
 
     def _is_possible(self, place: Place, window: Window, tick: int, ticks: int) -> bool:
         """Whether the robot can move into the window at the tick and stay there, exchanges aside."""

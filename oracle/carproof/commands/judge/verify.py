@@ -74,7 +74,8 @@ def command(*, files: tuple[str, ...], instance: str | None, kernel: bool, as_js
     if not others:
         _refuse("a certificate needs its instance")
     problem = read_instance_file(others[0])
-    refuse_in(others[0], problem, "stops")
+    if kernel or len(others) == 1:
+        refuse_in(others[0], problem, "stops")
     if len(others) > 1:
         return _query(problem, others[1], file, kernel, as_json)
     return _bound(problem, file, kernel, as_json)
@@ -110,7 +111,7 @@ def _query(problem: Instance, solution: str, file: str, kernel: bool, as_json: b
         print_document(write(verdict))
     elif verdict.proved:
         arrival = "never" if document.bound is None else document.bound
-        row = [document.robot, document.now, arrival, len(document.labels), verdict.by]
+        row = [document.robot, document.now, arrival, sum(len(layer.labels) for layer in document.layers), verdict.by]
         print_table(OF_QUERY, [row], numbers=OF_QUERY[1:4])
     else:
         print_line(f"not proved: {verdict.path}: {verdict.reason} [{verdict.rule}]")

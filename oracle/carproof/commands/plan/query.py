@@ -13,7 +13,6 @@ from carproof.command_line.files import (
     naming,
     read_instance_file,
     read_solution_file,
-    refuse_in,
     refuse_two_standard_inputs,
     write_whole,
 )
@@ -59,8 +58,6 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     require_tick(now, "$.now")
     problem = read_instance_file(instance)
     given = read_solution_file(solution)
-    if certificate is not None:
-        refuse_in(instance, problem, "stops")
     id = robot_called(problem, robot)
     with naming(solution):
         committed = sound_solution(problem, given, id)
