@@ -14,7 +14,7 @@ from tests.profiles import draws, rest_in
 
 import carp_reference
 from carp_optimum.optimum import optimum
-from carp_spec import Carp, Instance, Resource, ResourceGraph, Robot, Solution
+from carp_spec import Carp, Instance, Refusal, Resource, ResourceGraph, Robot, Solution
 from carproof.conform.asking.random_cases import classical_instances
 from carproof.conform.levels import Level
 from carproof.conform.programs.function import Function
@@ -69,9 +69,11 @@ def with_robots(*robots: Robot) -> Instance:
         with_graph(edges=(*EDGES, ("0,0", "2,0"))),
     ],
 )
-def test_an_instance_that_the_files_cannot_say_is_not_classical(instance: Instance) -> None:
+def test_an_instance_that_the_files_cannot_say_is_not_classical_and_not_written(instance: Instance) -> None:
     assert is_classical(INSTANCE)
     assert not is_classical(instance)
+    with pytest.raises(Refusal):
+        write_movingai(instance)
 
 
 def report_of(process: Run, *arguments: str) -> dict[str, Any]:

@@ -4,6 +4,7 @@ import json
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import reduce
+from inspect import isfunction, signature
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +28,7 @@ from carp_spec import (
     Robot,
     Shuffled,
     Solution,
+    Stop,
     Visit,
 )
 from carp_spec.documents.instances import digest, read_instance, write_instance
@@ -162,6 +164,24 @@ OF_INSTANCES: Mapping[str, Callable[[Instance], object]] = {
     "page": lambda instance: page(instance, SOLVED, "title"),
     "map_still": lambda instance: map_still(instance, SOLVED, 0, "title"),
     "chart_still": lambda instance: chart_still(instance, SOLVED, "title"),
+    "Fleet": carproof.Fleet,
+    "assign": lambda instance: carproof.assign(instance, ALONE, "s", [Stop("c")]),
+    "audit": lambda instance: carproof.audit(instance, SOLVED),
+    "audit in any order": lambda instance: carproof.audit(instance, SOLVED, find_order=True),
+    "certified_query": lambda instance: carproof.certified_query(instance, (), "r"),
+    "check_trace": lambda instance: carproof.check_trace(instance, SOLVED, NOTHING),
+    "execute": lambda instance: carproof.execute(instance, SOLVED, "order"),
+    "execute by the clock": lambda instance: carproof.execute(instance, SOLVED, "clock"),
+    "graph_of": carproof.graph_of,
+    "judge_log": lambda instance: carproof.judge_log(instance, NOTHING),
+    "makespan": lambda instance: carproof.makespan(instance, SOLVED.plans),
+    "optimality_gap": lambda instance: carproof.optimality_gap(instance, [Carp()], 1),
+    "plan_within": lambda instance: carproof.plan_within(instance, iterations=1),
+    "verify_proof": lambda instance: carproof.verify_proof(Path("nowhere"), instance),
+    "view": carproof.view,
+    "view_chart": lambda instance: carproof.view_chart(instance, SOLVED),
+    "view_map": carproof.view_map,
+    "write_movingai": carproof.write_movingai,
 }
 OF_SOLUTIONS: Mapping[str, Callable[[Solution], object]] = {
     "check": lambda solution: carproof.check(RIGHT, solution),
@@ -181,6 +201,14 @@ OF_SOLUTIONS: Mapping[str, Callable[[Solution], object]] = {
     "page": lambda solution: page(RIGHT, solution, "title"),
     "map_still": lambda solution: map_still(RIGHT, solution, 0, "title"),
     "chart_still": lambda solution: chart_still(RIGHT, solution, "title"),
+    "Fleet": lambda solution: carproof.Fleet(RIGHT, solution),
+    "assign": lambda solution: carproof.assign(RIGHT, solution, "s", [Stop("c")]),
+    "audit": lambda solution: carproof.audit(RIGHT, solution),
+    "check_trace": lambda solution: carproof.check_trace(RIGHT, solution, NOTHING),
+    "execute": lambda solution: carproof.execute(RIGHT, solution, "order"),
+    "view": lambda solution: carproof.view(RIGHT, solution),
+    "view_chart": lambda solution: carproof.view_chart(RIGHT, solution),
+    "view_map": lambda solution: carproof.view_map(RIGHT, solution),
 }
 
 
@@ -206,6 +234,16 @@ def test_a_malformed_instance_is_refused_like_its_document(function: str, fault:
     make, place, value = INSTANCES[fault]
     by_document = refused_document(write_instance(RIGHT), place, value, read_instance)
     assert refused(lambda: OF_INSTANCES[function](make())) == by_document
+
+
+def test_every_public_function_of_an_instance_or_a_solution_is_among_these() -> None:
+    for name, asked in (("instance", OF_INSTANCES), ("solution", OF_SOLUTIONS)):
+        functions = [each for each in carproof.__all__ if name in parameters(getattr(carproof, each))]
+        assert {*functions} - {*asked} == set()
+
+
+def parameters(value: object) -> set[str]:
+    return {*signature(value).parameters} if isfunction(value) else set()
 
 
 @pytest.mark.parametrize("function", OF_SOLUTIONS)

@@ -50,7 +50,14 @@ RIGHT_SCENARIO = Code(
     "start x and y, goal x and y, length. Width and height are the map's, start and goal are passable cells of it.",
     SOURCE,
 )
-MOVINGAI_RULES: tuple[Code, ...] = (RIGHT_MAP, RIGHT_SCENARIO)
+CLASSICAL = Code(
+    "movingai/instance",
+    "An instance that is written as a map and a scenario is classical: it has cells of a grid, each joined to those "
+    "beside it, and robots that park, are released at 0, start in distinct cells and end in distinct ones; capacities, "
+    "durations and paces are 1.",
+    SOURCE,
+)
+MOVINGAI_RULES: tuple[Code, ...] = (RIGHT_MAP, RIGHT_SCENARIO, CLASSICAL)
 
 
 def read_map(data: bytes, file: str = "map") -> GridMap:

@@ -6,8 +6,9 @@ lengths, which are for octile moves, are written as 0.
 
 from dataclasses import dataclass
 
-from carp_spec import Instance, ResourceId
-from carproof.formats.movingai import GridMap
+from carp_spec import Instance, Refusal, ResourceId
+from carp_spec.inputs.values import require_instance
+from carproof.formats.movingai import CLASSICAL, GridMap
 from carproof.generate.options import size_is_bounded
 
 MAP_NAME = "instance.map"
@@ -64,7 +65,10 @@ def _cell(instance: Instance, resource: ResourceId) -> tuple[int, int]:
 
 
 def write_movingai(instance: Instance) -> MovingAIFiles:
-    """Write a classical instance."""
+    """Write a classical instance; raises `Refusal` for another, which the files cannot express."""
+    require_instance(instance)
+    if not is_classical(instance):
+        raise Refusal("option", "$", CLASSICAL.id, "a map and a scenario cannot express it: it must be classical")
     cells = {_cell(instance, id) for id in instance.graph.index}
     width, height = _size(cells)
     rows = tuple("".join("." if (x, y) in cells else "@" for x in range(width)) for y in range(height))

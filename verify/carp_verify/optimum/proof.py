@@ -146,11 +146,12 @@ def read_proof(directory: Path) -> ProofFiles:
 def verify_proof(proof: Path | ProofFiles, instance: Instance | None = None) -> Verified:
     """Check a proof directory, and that it is about the instance, if one is given.
 
-    Raises `ProofError` where it does not prove its claim, and `Refusal` if its instance is malformed.
+    Raises `ProofError` where it does not prove its claim, and `Refusal` if an instance is malformed.
     """
+    asked = None if instance is None else write_instance(instance)
     read = proof if isinstance(proof, ProofFiles) else read_proof(proof)
     proved = read_instance(read.contents["instance.json"])
-    if instance is not None and write_instance(instance) != write_instance(proved):
+    if asked not in (None, write_instance(proved)):
         raise ProofError("instance.json", "it is another instance than the one given")
     if not isinstance(read.manifest, UnsolvableManifest) or isinstance(read.manifest.obstacle, Clauses):
         _require_table(proved)
