@@ -16,23 +16,26 @@ from carp_spec.documents.solutions import read_solution
 from carp_spec.documents.vectors import Vector
 from carp_spec.model import Following
 from carproof.testing.mutations import BrokenSolution
-from carproof.testing.strategies import PlannedInstance, broken_solutions, instances, planned_instances
+from carproof.testing.strategies import PlannedInstance, Sizes, broken_solutions, instances, planned_instances
 from carproof.testing.vectors import vectors
 
 _kernel = pytest.fixture(scope="module", autouse=True)(served)
 
+WITH_STOPS = Sizes(stops=3, service=5, groups=2)
+
 
 def vectors_of(op: str) -> list[Vector]:
-    return [case for case in vectors() if case.op == op and not has_stops(case)]
+    known = [case for case in vectors() if case.op == op]
+    return known if op == "check" else [case for case in known if '"stops"' not in json.dumps(case.instance)]
 
 
-def has_stops(case: Vector) -> bool:
-    return '"stops"' in json.dumps(case.instance)
-
-
-@pytest.mark.parametrize("case", [*filter(has_stops, vectors("plan/stops"))], ids=lambda case: case.id)
-def test_the_kernel_refuses_robots_with_stops_by_name(case: Vector) -> None:
-    verdict = ask(encoded(**case.request))
+@pytest.mark.parametrize("op", ["verify-query", "verify-bound"])
+def test_the_kernel_refuses_robots_with_stops_by_name(op: str) -> None:
+    case = vectors_of(op)[0]
+    robot, *others = case.instance["robots"]
+    goal = robot.pop("goal")
+    serving = {**robot, "stops": [{"resource": goal, "service": 1}]}
+    verdict = ask(encoded(**{**case.request, "instance": {**case.instance, "robots": [serving, *others]}}))
     assert (verdict["verdict"], verdict["rule"]) == ("bad input", "limit/stops")
 
 
@@ -94,14 +97,14 @@ def test_the_kernel_reads_no_tick_now_before_0() -> None:
     )
 
 
-@given(planned_instances())
+@given(planned_instances() | planned_instances(WITH_STOPS))
 def test_the_kernel_accepts_what_breaks_no_rule(case: PlannedInstance) -> None:
     verdict = check(case.instance, case.solution)
     assert verdict["verdict"] == "accepted"
     assert verdict["cost"] == judge(case.instance, case.solution).cost
 
 
-@given(broken_solutions())
+@given(broken_solutions() | broken_solutions(WITH_STOPS))
 def test_the_kernel_refuses_what_breaks_a_rule(case: BrokenSolution) -> None:
     verdict = check(case.instance, case.solution)
     rules = {violation.rule for violation in judge(case.instance, case.solution).violations}
@@ -109,7 +112,7 @@ def test_the_kernel_refuses_what_breaks_a_rule(case: BrokenSolution) -> None:
     assert verdict["rule"] in rules
 
 
-@given(planned_instances(), st.data())
+@given(planned_instances() | planned_instances(WITH_STOPS), st.data())
 def test_the_kernel_counts_robots_in_groups_and_a_tick_longer_as_the_checker_does(
     case: PlannedInstance, data: st.DataObject
 ) -> None:
@@ -124,7 +127,7 @@ def test_the_kernel_counts_robots_in_groups_and_a_tick_longer_as_the_checker_doe
     assert judged.valid or verdict["rule"] in {violation.rule for violation in judged.violations}
 
 
-@given(instances())
+@given(instances() | instances(WITH_STOPS))
 def test_the_kernel_reads_every_instance(instance: Instance) -> None:
     solution = Solution((), (), tuple(instance.robot))
     assert check(instance, solution)["verdict"] == "accepted"

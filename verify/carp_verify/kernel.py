@@ -94,8 +94,9 @@ def program() -> str:
 
 
 def request(op: str, instance: Instance, **documents: object) -> bytes:
-    """One line that asks the kernel; raises `Refusal` if it does not know the instance's rules."""
-    refuse(instance, "stops")
+    """One line that asks the kernel; raises `Refusal` if it does not decide the question about such an instance."""
+    if op != "check":
+        refuse(instance, "stops")
     return msgspec.json.encode({"op": op, "instance": instance_document(instance), **documents}) + b"\n"
 
 

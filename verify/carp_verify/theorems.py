@@ -21,8 +21,19 @@ class Theorem:
         return f"verify/kernel/{self.module}.v"
 
 
-_OF_INSTANCES = ("resource-id", "capacity", "duration", "edge", "group", "robot-id", "endpoint", "release", "pace")
-_OF_PLANS = ("start", "goal", "resource", "move", "contiguous", "duration")
+_OF_INSTANCES = (
+    "resource-id",
+    "capacity",
+    "duration",
+    "edge",
+    "group",
+    "robot-id",
+    "endpoint",
+    "stops",
+    "release",
+    "pace",
+)
+_OF_PLANS = ("start", "goal", "stops", "resource", "move", "contiguous", "duration")
 
 THEOREMS = (
     Theorem(
@@ -56,6 +67,18 @@ THEOREMS = (
         "solution_cost_is_the_total_cost",
         "the cost in a verdict is the sum of the plans' costs",
         ("cost/total",),
+    ),
+    Theorem(
+        "Stops",
+        "plans_that_serve_all_are_counted",
+        "counting a stop as served as soon as a visit allows it accepts exactly the plans that serve all stops",
+        ("plan/stops",),
+    ),
+    Theorem(
+        "Stops",
+        "stops_served_so_far_count",
+        "what has been served so far need not be served again, whatever comes later",
+        ("plan/stops", "fleet/history"),
     ),
     Theorem(
         "Windows",
@@ -108,13 +131,13 @@ THEOREMS = (
     Theorem(
         "QueryOptimal",
         "query_returns_a_sound_plan_of_least_arrival",
-        "the CARP query returns a plan that keeps the law, and no such plan arrives earlier",
+        "the CARP query of a robot with a goal returns a plan that keeps the law, and no such plan arrives earlier",
         ("query/sound", "query/optimal"),
     ),
     Theorem(
         "QueryOptimal",
         "query_returns_none_only_if_there_is_none",
-        "the CARP query returns no plan only where every plan breaks the law",
+        "the CARP query of a robot with a goal returns no plan only where every plan breaks the law",
         ("query/complete",),
     ),
     Theorem(
@@ -262,7 +285,7 @@ THEOREMS = (
     Theorem(
         "Retiming",
         "retimed_solution_is_lawful",
-        "if each robot appears at its release, the retimed plans are a lawful solution; without groups",
+        "if each robot appears at its release, the retimed plans are a lawful solution; without groups and stops",
         ("execution/duration", "execution/order"),
     ),
     Theorem(

@@ -1,6 +1,6 @@
 (** The checker: executable, and accepts exactly what the law allows. *)
 Require Import ZArith List Bool Lia FinFun.
-From Carproof Require Import Law Collections Timeline Journey.
+From Carproof Require Import Law Stops Collections Timeline Journey.
 Import ListNotations.
 Open Scope Z_scope.
 
@@ -23,7 +23,8 @@ Definition instance_accepted (i : instance) : bool :=
        negb (length (group_resources g) =? 0)%nat && Ids.distinct (group_resources g)
        && forallb known (group_resources g) && (1 <=? group_capacity g)) (groups i)
   && Ids.distinct (robot_ids i)
-  && forallb (fun a => known (start a) && known (goal a) && (0 <=? release a) && (1 <=? pace a)) (robots i).
+  && forallb (fun a =>
+       known (start a) && stops_accepted known (stops a) && (0 <=? release a) && (1 <=? pace a)) (robots i).
 
 Theorem instance_is_well_formed_exactly_when_accepted i : instance_accepted i = true <-> Well_formed i.
 Proof.
@@ -35,7 +36,18 @@ Proof.
     { intros g X. specialize (G g X). rewrite !andb_true_iff, negb_true_iff, Nat.eqb_neq, Ids.distinct_iff,
         forallb_forall, Z.leb_le in G. destruct G as (((K & D') & C) & P). repeat split; auto.
       intros r Y. apply Ids.contains_of_list. auto. }
-    clear G. constructor; auto.
+    assert (AH : forall a, In a (robots i) -> In (start a) (resource_ids i) /\ stops a <> [] /\
+      (forall s, In s (stops a) -> In (stop_resource s) (resource_ids i)) /\
+      (forall s, In s (stops a) -> 0 <= service s) /\
+      (forall before s t later, stops a = before ++ s :: t :: later -> stop_resource s <> stop_resource t) /\
+      0 <= release a /\ 1 <= pace a).
+    { intros a X. specialize (A a X). unfold stops_accepted in A. rewrite !andb_true_iff, Ids.contains_of_list,
+        neighbours_differ_iff, forallb_forall, negb_true_iff, Nat.eqb_neq, !Z.leb_le in A.
+      destruct A as (((K & (L & S) & O) & T) & P). repeat split; auto.
+      - intros F. apply L. rewrite F. reflexivity.
+      - intros s Y. specialize (S s Y). rewrite andb_true_iff, Ids.contains_of_list in S. apply S.
+      - intros s Y. specialize (S s Y). lia. }
+    clear G A. constructor; auto.
     + intros r H. specialize (R r H). lia.
     + intros r H. specialize (R r H). lia.
     + intros r s H. specialize (E _ H). simpl in E. rewrite !andb_true_iff, !Ids.contains_of_list in E.
@@ -47,10 +59,14 @@ Proof.
     + intros g r X. apply (GH g X).
     + intros g X. apply (GH g X).
     + intros g X. apply (GH g X).
-    + intros a H. specialize (A a H). rewrite !andb_true_iff, !Ids.contains_of_list in A. tauto.
-    + intros a H. specialize (A a H). rewrite !andb_true_iff in A. lia.
-    + intros a H. specialize (A a H). rewrite !andb_true_iff in A. lia.
-  - intros [U C D E V W GI GN GG GO GC A P R S]. repeat split; auto.
+    + intros a H. apply (AH a H).
+    + intros a H. apply (AH a H).
+    + intros a s H. apply (AH a H).
+    + intros a s H. apply (AH a H).
+    + intros a before s t later H. apply (AH a H).
+    + intros a H. apply (AH a H).
+    + intros a H. apply (AH a H).
+  - intros [U C D E V W GI GN GG GO GC A P SN SR SS SD R S]. repeat split; auto.
     + intros r H. specialize (C r H). specialize (D r H). lia.
     + intros [r s] H. destruct (E r s H) as (N & K & L). simpl.
       rewrite !andb_true_iff, !Ids.contains_of_list. repeat split; auto.
@@ -62,8 +78,13 @@ Proof.
       repeat split; auto.
       * intros K. apply length_zero_iff_nil in K. exact (GN g G K).
       * intros r H. apply Ids.contains_of_list. exact (GG g r G H).
-    + intros a H. destruct (P a H). specialize (R a H). specialize (S a H).
-      rewrite !andb_true_iff, !Ids.contains_of_list. repeat split; auto; lia.
+    + intros a H. specialize (P a H). specialize (R a H). specialize (S a H). unfold stops_accepted.
+      rewrite !andb_true_iff, Ids.contains_of_list, neighbours_differ_iff, forallb_forall, negb_true_iff, Nat.eqb_neq.
+      repeat split; auto; try lia.
+      * intros L. apply length_zero_iff_nil in L. exact (SN a H L).
+      * intros s Y. specialize (SR a s H Y). specialize (SS a s H Y).
+        rewrite andb_true_iff, Ids.contains_of_list, Z.leb_le. auto.
+      * intros before s t later. exact (SD a before s t later H).
 Qed.
 
 (** * Plans *)
@@ -119,7 +140,7 @@ Definition end_accepted (a : robot) (v : visit) : bool :=
   (visit_resource v =? goal a) &&
   match after_goal i, Map.find (goal a) (resource_of known) with
   | Park, _ => same_end (leave v) None
-  | Vanish, Some r => same_end (leave v) (Some (enter v + least_stay a r))
+  | Vanish, Some r => same_end (leave v) (Some (enter v + last_stay a r))
   | Vanish, None => false
   end.
 
@@ -139,6 +160,7 @@ Definition plan_accepted (a : robot) (p : plan) : bool :=
   match visits p with
   | [] => false
   | v :: later => (visit_resource v =? start a) && (enter v =? release a) && chain_accepted a v later
+    && serves_all (stops a) v later
   end.
 
 (** The same of a plan of any robot; plans of robots that the instance does not have are left to solution/covers. *)
@@ -267,7 +289,7 @@ Proof.
     + intros s S H. rewrite (resource_is_unique s r) by congruence. exact L.
     + exact (L r R E).
   - exfalso. apply find_in_index_none in F; [|apply resource_ids_are_unique; exact well_formed].
-    apply F. apply (endpoints_are_resources i well_formed a A).
+    apply F. exact (goal_is_a_resource i a well_formed A).
 Qed.
 
 Lemma chain_accepted_iff a later : In a (robots i) ->
@@ -288,9 +310,9 @@ Theorem plan_accepted_iff a p : In a (robots i) -> plan_accepted i known a p = t
 Proof.
   intros A. rewrite plan_lawful_iff. unfold plan_accepted. destruct (visits p) as [|v later].
   - split; [discriminate|]. intros (v & later & E & _). discriminate.
-  - rewrite !andb_true_iff, !Z.eqb_eq, chain_accepted_iff by exact A. split.
-    + intros ((R & T) & C). exists v, later. auto.
-    + intros (w & rest & E & R & T & C). injection E as <- <-. auto.
+  - rewrite !andb_true_iff, !Z.eqb_eq, plans_that_serve_all_are_counted, chain_accepted_iff by exact A. split.
+    + intros (((R & T) & C) & S). exists v, later. auto.
+    + intros (w & rest & E & R & T & C & S). injection E as <- <-. auto.
 Qed.
 
 Lemma plans_accepted_iff ps : forallb (plan_of_robot_accepted i known) ps = true <-> Plans_lawful i ps.
@@ -478,7 +500,7 @@ Hypothesis robots_are_distinct : NoDup (map plan_robot ps).
 Lemma plan_has_chain p : In p ps -> exists a v later, In a (robots i) /\ visits p = v :: later /\ Chain i a v later.
 Proof.
   intros P. destruct (robots_are_known p P) as (a & A & E). pose proof (plans_are_lawful p a P A E) as L.
-  apply plan_lawful_iff in L as (v & later & V & _ & _ & C). eauto 6.
+  apply lawful_plan_is_a_chain in L as (v & later & V & _ & _ & C). eauto 6.
 Qed.
 
 Lemma plan_counts_once p : In p ps -> Counts_once (keys_at known) (gap i) p.
@@ -490,7 +512,7 @@ Qed.
 Lemma plan_enters_no_earlier_than_0 p v : In p ps -> In v (visits p) -> 0 <= enter v.
 Proof.
   intros P V. destruct (robots_are_known p P) as (a & A & E). pose proof (plans_are_lawful p a P A E) as L.
-  apply plan_lawful_iff in L as (w & later & F & _ & T & C). rewrite F in V.
+  apply lawful_plan_is_a_chain in L as (w & later & F & _ & T & C). rewrite F in V.
   pose proof (releases_are_ticks i well_formed a A). destruct V as [<-|V]; [lia|].
   destruct (chain_later i a well_formed A w later C v V) as (l & _ & _ & K). lia.
 Qed.

@@ -264,7 +264,7 @@ Qed.
 Lemma sound_visit v : In v (visits p) -> exists b l, visits p = b ++ v :: l /\ Chain i a v l /\
   Stay_lawful i a v /\ 0 <= enter v /\ Before (enter v) (leave v).
 Proof.
-  intros V. pose proof (is_lawful _ _ _ sound) as L. apply plan_lawful_iff in L as (u & later & E & _ & T & C).
+  intros V. pose proof (is_lawful _ _ _ sound) as L. apply lawful_plan_is_a_chain in L as (u & later & E & _ & T & C).
   pose proof (releases_are_ticks i well_formed a of_instance) as R. rewrite E in V |- *.
   assert (F : forall x, In x (u :: later) -> enter u <= enter x).
   { intros x [<-|X]; [lia|]. destruct (chain_later i a well_formed of_instance u later C x X) as (_ & _ & _ & H). lia. }

@@ -6,7 +6,7 @@ Open Scope Z_scope.
 
 Definition triangle : instance :=
   Instance [Resource 0 1 1; Resource 1 1 1; Resource 2 1 1] [(0, 1); (1, 2); (2, 0)] false [] Vanish false
-    [Robot 1 0 1 0 1; Robot 2 1 0 0 1].
+    [Robot 1 0 (only 1) 0 1; Robot 2 1 (only 0) 0 1].
 Definition round : list plan :=
   [Plan 1 [Visit 0 0 (Some 1); Visit 1 1 (Some 2)];
    Plan 2 [Visit 1 0 (Some 1); Visit 2 1 (Some 2); Visit 0 2 (Some 3)]].

@@ -1,6 +1,6 @@
 (** What the rules of one plan mean step by step, and where robots are in lawful plans. *)
 Require Import ZArith List Bool Lia.
-From Carproof Require Import Law Collections Timeline.
+From Carproof Require Import Law Stops Collections Timeline.
 Import ListNotations.
 Open Scope Z_scope.
 
@@ -17,7 +17,7 @@ Definition Ends (i : instance) (a : robot) (v : visit) : Prop :=
   visit_resource v = goal a /\
   match after_goal i with
   | Park => leave v = None
-  | Vanish => forall r, In r (resources i) -> resource_id r = goal a -> leave v = Some (enter v + least_stay a r)
+  | Vanish => forall r, In r (resources i) -> resource_id r = goal a -> leave v = Some (enter v + last_stay a r)
   end.
 
 (** The visit and those after it keep the rules, up to the goal. *)
@@ -75,28 +75,35 @@ Proof.
       * intros x y H. apply C. right. exact H.
 Qed.
 
-(** The rules [plan/...] hold if and only if the plan starts as it should and leads step by step to the goal. *)
+(** The rules [plan/...] hold if and only if the plan starts as it should, leads step by step to the goal, and serves
+    the stops. *)
 Theorem plan_lawful_iff i a p : Plan_lawful i a p <->
-  exists v later, visits p = v :: later /\ visit_resource v = start a /\ enter v = release a /\ Chain i a v later.
+  exists v later, visits p = v :: later /\ visit_resource v = start a /\ enter v = release a /\ Chain i a v later /\
+  Serves_stops (stops a) (v :: later).
 Proof.
   split.
-  - intros [(v & later & E & R & T) G K M C D]. exists v, later. repeat split; auto.
+  - intros [(v & later & E & R & T) G O K M C D]. exists v, later. rewrite E in O. repeat (split; auto).
     unfold Ends_at_goal, Visits_resources, Follows_moves, Is_contiguous, Respects_durations, Consecutive in *.
     rewrite E in *. apply chain_iff. split; [|split].
     + destruct G as (before & last & F & H & P). exists before, last. repeat split; auto.
     + intros x H. split; [exact (K x H) | intros r l; exact (D x r l H)].
     + intros x y H. split; [exact (C x y H)|]. apply M; [exact H | |]; apply K; destruct H as (b & l & F);
         rewrite F; apply in_or_app; simpl; auto.
-  - intros (v & later & E & R & T & H). apply chain_iff in H as ((before & last & F & G & P) & S & C).
+  - intros (v & later & E & R & T & H & O). apply chain_iff in H as ((before & last & F & G & P) & S & C).
     split; unfold Starts_at_release, Ends_at_goal, Visits_resources, Follows_moves, Is_contiguous, Respects_durations,
       Consecutive; rewrite E.
     + exists v, later. auto.
     + exists before, last. auto.
+    + exact O.
     + intros x X. apply S. exact X.
     + intros x y X _ _. apply C. exact X.
     + intros x y X. apply C. exact X.
     + intros x r l X. apply S. exact X.
 Qed.
+
+Lemma lawful_plan_is_a_chain i a p : Plan_lawful i a p ->
+  exists v later, visits p = v :: later /\ visit_resource v = start a /\ enter v = release a /\ Chain i a v later.
+Proof. intros L. apply plan_lawful_iff in L as (v & later & E & R & T & C & _). eauto 6. Qed.
 
 (** * Ticks of lawful plans *)
 

@@ -229,7 +229,8 @@ Definition covered (amount r t : Z) : bool :=
 
 (** Who enters the goal for the last time at the tick, and has paid the amount, comes to the claim. *)
 Definition arrives_covered (amount t : Z) : bool :=
-  let end_ := match after_goal i with Vanish => t + takes (goal a) | Park => horizon tf end in
+  let end_ :=
+    match after_goal i with Vanish => t + Z.max (takes (goal a)) (service (last_stop a)) | Park => horizon tf end in
   claimed c <=? amount + stay_price tf (goal a) t end_ + weight c * (t - release a) + early c t.
 
 (** Who enters the resource at the tick, and has paid the amount: it may be there for the last time, or go on. *)
@@ -326,7 +327,7 @@ Lemma covered_entry_is_claimed v before : Way i a [v] ->
 Proof.
   intros H C. inversion H as [v' Hg Hl |]; subst. apply Z.leb_le in C. unfold priced_cost, arrives. simpl.
   destruct v as [r first end_]. simpl in *. subst r end_.
-  rewrite durations in C. destruct (after_goal i).
+  unfold last_need. rewrite durations in C. destruct (after_goal i).
   - rewrite stay_price_is_paid with (tf := tf) by auto. lia.
   - rewrite endless_stay_pays with (tf := tf) by auto. lia.
 Qed.

@@ -14,10 +14,13 @@ Record resource := Resource { resource_id : Z; capacity : Z; duration : Z }.
 (** Resources in which, all together, at most [group_capacity] robots fit at a time. *)
 Record group := Group { group_id : Z; group_resources : list Z; group_capacity : Z }.
 
-(** A request: go from [start] to [goal], not before the tick [release]. *)
-Record robot := Robot { robot_id : Z; start : Z; goal : Z; release : Z; pace : Z }.
+(** A place where a robot is served, for so many ticks at least, whatever its pace. *)
+Record stop := Stop { stop_resource : Z; service : Z }.
 
-(** What robots do after their goal: leave the system one duration after they entered it, or stay for ever. *)
+(** A request: serve the stops in order, from [start], not before the tick [release]. *)
+Record robot := Robot { robot_id : Z; start : Z; stops : list stop; release : Z; pace : Z }.
+
+(** What robots do after their last stop: leave the system once it is served, or stay for ever. *)
 Inductive after := Vanish | Park.
 
 (** An edge is the move from its first resource to its second; in an undirected graph also the move back. *)
@@ -50,6 +53,16 @@ Definition Move (i : instance) (source target : Z) : Prop :=
 
 (** The least ticks that the robot needs in the resource. *)
 Definition least_stay (a : robot) (r : resource) : Z := pace a * duration r.
+
+(** A goal is short for one stop without service. *)
+Definition only (place : Z) : list stop := [Stop place 0].
+
+(** The last stop, and its resource: the robot's goal. *)
+Definition last_stop (a : robot) : stop := last (stops a) (Stop (start a) 0).
+Definition goal (a : robot) : Z := stop_resource (last_stop a).
+
+(** The ticks for which a robot that vanishes stays in the resource of its last stop. *)
+Definition last_stay (a : robot) (r : resource) : Z := Z.max (least_stay a r) (service (last_stop a)).
 
 (** A tick lies before an end. *)
 Definition Before (tick : Z) (end_ : option Z) : Prop :=
@@ -88,8 +101,15 @@ Record Well_formed (i : instance) : Prop := {
   group_capacities_are_positive : forall g, In g (groups i) -> 1 <= group_capacity g;
   (** instance/robot-id: no two robots have the same id. *)
   robot_ids_are_unique : NoDup (robot_ids i);
-  (** instance/endpoint: start and goal are resources of the graph. *)
-  endpoints_are_resources : forall a, In a (robots i) -> In (start a) (resource_ids i) /\ In (goal a) (resource_ids i);
+  (** instance/endpoint: the start is a resource of the graph. *)
+  starts_are_resources : forall a, In a (robots i) -> In (start a) (resource_ids i);
+  (** instance/stops: there is at least one stop; each is at a resource of the graph, for at least 0 ticks ... *)
+  robots_have_stops : forall a, In a (robots i) -> stops a <> [];
+  stops_are_resources : forall a s, In a (robots i) -> In s (stops a) -> In (stop_resource s) (resource_ids i);
+  services_are_ticks : forall a s, In a (robots i) -> In s (stops a) -> 0 <= service s;
+  (** ... and at another resource than the stop before. *)
+  neighbouring_stops_differ : forall a before s t later, In a (robots i) -> stops a = before ++ s :: t :: later ->
+    stop_resource s <> stop_resource t;
   (** instance/release: a tick, at least 0. *)
   releases_are_ticks : forall a, In a (robots i) -> 0 <= release a;
   (** instance/pace: at least 1. *)
@@ -102,13 +122,26 @@ Record Well_formed (i : instance) : Prop := {
 Definition Starts_at_release (a : robot) (p : plan) : Prop :=
   exists first later, visits p = first :: later /\ visit_resource first = start a /\ enter first = release a.
 
-(** plan/goal: the last visit is to the robot's goal. With [Vanish] it is left exactly one duration (times the pace)
-    after it was entered; with [Park] it is never left. *)
+(** A visit lasts at least so many ticks. *)
+Definition Lasts (v : visit) (ticks : Z) : Prop := No_earlier (leave v) (enter v + ticks).
+
+(** The visit serves the stop. *)
+Definition Serves (v : visit) (s : stop) : Prop := visit_resource v = stop_resource s /\ Lasts v (service s).
+
+(** plan/stops: one visit serves each stop, [visit_of], each later in the plan than the one before; the last visit
+    serves the last stop. *)
+Definition Serves_stops (ss : list stop) (vs : list visit) : Prop := exists visit_of : nat -> nat,
+  (forall j k, (j < k < length ss)%nat -> (visit_of j < visit_of k)%nat) /\
+  (forall j s, nth_error ss j = Some s -> exists v, nth_error vs (visit_of j) = Some v /\ Serves v s) /\
+  (1 <= length ss)%nat /\ S (visit_of (length ss - 1)%nat) = length vs.
+
+(** plan/goal: the last visit is to the resource of the last stop. With [Vanish] it is left exactly one duration (times
+    the pace) after it was entered, or the last stop's service if that is longer; with [Park] it is never left. *)
 Definition Ends_at_goal (i : instance) (a : robot) (p : plan) : Prop :=
   exists before last, visits p = before ++ [last] /\ visit_resource last = goal a /\
   match after_goal i with
   | Park => leave last = None
-  | Vanish => forall r, In r (resources i) -> resource_id r = goal a -> leave last = Some (enter last + least_stay a r)
+  | Vanish => forall r, In r (resources i) -> resource_id r = goal a -> leave last = Some (enter last + last_stay a r)
   end.
 
 (** plan/resource: every visit is to a resource of the graph. *)
@@ -133,6 +166,7 @@ Definition Respects_durations (i : instance) (a : robot) (p : plan) : Prop :=
 Record Plan_lawful (i : instance) (a : robot) (p : plan) : Prop := {
   starts_at_release : Starts_at_release a p;
   ends_at_goal : Ends_at_goal i a p;
+  serves_stops : Serves_stops (stops a) (visits p);
   visits_resources : Visits_resources i p;
   follows_moves : Follows_moves i p;
   is_contiguous : Is_contiguous p;

@@ -76,7 +76,7 @@ Qed.
 Lemma history_has_ended before now earlier v w later : Plan_lawful i a before ->
   history before now = earlier ++ v :: w :: later -> Ended v now.
 Proof.
-  intros L H. apply plan_lawful_iff in L as (u & rest & E & _ & _ & C).
+  intros L H. apply lawful_plan_is_a_chain in L as (u & rest & E & _ & _ & C).
   unfold history in H. apply filter_split in H as (b & r & F & G). rewrite E in F.
   pose proof (chain_behind b u rest v r C F) as K.
   assert (W : In w (filter (fun v => enter v <=? now) r)) by (rewrite <- G; left; auto).
@@ -88,7 +88,7 @@ Qed.
 Lemma current_has_not_ended before now earlier v : Plan_lawful i a before -> ~ Has_ended before now ->
   history before now = earlier ++ [v] -> ~ Ended v now.
 Proof.
-  intros L N H (l & M & T). apply plan_lawful_iff in L as (u & rest & E & _ & _ & C).
+  intros L N H (l & M & T). apply lawful_plan_is_a_chain in L as (u & rest & E & _ & _ & C).
   unfold history in H. apply filter_split in H as (b & r & F & G).
   pose proof (chain_behind b u rest v r C (eq_trans (eq_sym E) F)) as K. destruct r as [|w r].
   - apply N. exists b, v. split; auto. exists l. auto.
@@ -112,14 +112,14 @@ Proof.
   intros B L F. unfold standing_of. cbv zeta.
   assert (S : exists first later, visits made = first :: later /\
     visit_resource first = start a /\ enter first = release a
-    /\ Chain i a first later) by (apply plan_lawful_iff; exact L).
+    /\ Chain i a first later) by (apply lawful_plan_is_a_chain; exact L).
   destruct S as (first & later & E & R & T & C).
   destruct followed as [before|]; [|exists first, later; simpl; repeat split; auto; exact (F first later E)].
   destruct (B before eq_refl) as [K N]. destruct F as [F _].
   destruct (rev (history before now)) as [|current earlier] eqn:H.
   - exists first, later. simpl. repeat split; auto.
     assert (G : history before now = []) by (rewrite <- (rev_involutive (history before now)), H; reflexivity).
-    apply plan_lawful_iff in K as (u & rest & V & _ & U & _). unfold history in G. rewrite V in G. simpl in G.
+    apply lawful_plan_is_a_chain in K as (u & rest & V & _ & U & _). unfold history in G. rewrite V in G. simpl in G.
     destruct (Z.leb_spec (enter u) now); [discriminate|].
     assert (P : Stay_lawful i a first) by (destruct later; apply C).
     destruct (leave first) as [l|] eqn:M; simpl; auto.
@@ -148,7 +148,7 @@ Theorem ended_plan_is_unchanged before made now : Plan_lawful i a before -> Has_
 Proof.
   intros L N [F D]. specialize (D N).
   assert (H : history before now = visits before /\ forall v, In v (visits before) -> Ended v now).
-  { pose proof L as P. apply plan_lawful_iff in P as (u & rest & E & _ & _ & C).
+  { pose proof L as P. apply lawful_plan_is_a_chain in P as (u & rest & E & _ & _ & C).
     destruct N as (b & last & G & l & M & T).
     assert (A : forall v, In v (visits before) -> Ended v now).
     { intros v V. rewrite G in V. apply in_app_or in V as [V|[<-|[]]]; [|exists l; auto].

@@ -102,7 +102,7 @@ Definition start_accepted (s : standing) : bool :=
   | Some r =>
     forallb (fun w =>
       if holds_stay w (since s) (Some (ready s))
-      then negb (ends_in (place s) w (now <=? since s + least_stay a r)) && is_closed (place s) w (ready s)
+      then negb (ends_in (place s) w (now <=? since s + last_stay a r)) && is_closed (place s) w (ready s)
       else true) (windows_in c r)
   end.
 End Checker.
@@ -364,7 +364,7 @@ Proof.
   assert (I : In current (visits p)) by (rewrite E; apply in_or_app; right; left; auto).
   destruct (sound_visit_is_free i well_formed a committed c of_instance others represents p sound current I)
     as (r & w & V).
-  pose proof (is_lawful _ _ _ _ sound) as L. apply plan_lawful_iff in L as (u & rest & F & _ & _ & C).
+  pose proof (is_lawful _ _ _ _ sound) as L. apply lawful_plan_is_a_chain in L as (u & rest & F & _ & _ & C).
   assert (K : Chain i a current later) by (apply (chain_behind i a (past s) u rest); [exact C | congruence]).
   clear u rest F C. unfold start_accepted in H. rewrite <- P, <- T in H.
   destruct (late (visit_resource current) (enter current)) eqn:A.
@@ -380,7 +380,7 @@ Proof.
       * destruct K as [_ Q]. exfalso. apply (end_is_late current w Q O). unfold ends_in in *.
         destruct (visit_resource current =? goal a); auto. simpl in *. destruct (after_goal i) eqn:Z; auto.
         destruct Q as [Q Q']. rewrite Z in Q'. rewrite (Q' r R (eq_trans G Q)) in N. simpl in N.
-        destruct (Z.leb_spec now (enter current + least_stay a r)); [discriminate | lia].
+        destruct (Z.leb_spec now (enter current + last_stay a r)); [discriminate | lia].
       * destruct K as (_ & X & M & K).
         assert (E' : visits p = (past s ++ [current]) ++ x :: rest) by (rewrite <- app_assoc; exact E).
         assert (I' : In x (visits p)) by (rewrite E'; apply in_or_app; right; left; auto).

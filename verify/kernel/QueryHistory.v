@@ -44,7 +44,7 @@ Qed.
 Lemma history_comes_first p now : Plan_lawful i a p ->
   exists rest, visits p = history p now ++ rest /\ forall v, In v rest -> now < enter v.
 Proof.
-  intros L. apply plan_lawful_iff in L as (v & later & E & _ & _ & C). unfold history. rewrite E.
+  intros L. apply lawful_plan_is_a_chain in L as (v & later & E & _ & _ & C). unfold history. rewrite E.
   apply chain_history. exact C.
 Qed.
 
@@ -109,7 +109,7 @@ Proof.
   assert (A : Course i a ([] ++ [Visit (start a) (release a) None])).
   { split.
     - exists (Visit (start a) (release a) None), []. auto.
-    - intros v [<-|[]]. split; [apply (endpoints_are_resources i well_formed a of_instance) | discriminate].
+    - intros v [<-|[]]. split; [exact (starts_are_resources i well_formed a of_instance) | discriminate].
     - intros v w V. destruct (not_adjacent_in_one _ _ _ V). }
   unfold s, standing_of. destruct followed as [before|]; [|exists (Visit (start a) (release a) None); auto].
   destruct (is_under_way before eq_refl) as [L _].

@@ -1,6 +1,6 @@
 (** The query is right: its plan is sound, none arrives earlier, and it finds a plan wherever one exists. *)
 Require Import ZArith List Bool Lia.
-From Carproof Require Import Law Collections Timeline Journey Checker Windows Context Past QueryCertificate.
+From Carproof Require Import Law Stops Collections Timeline Journey Checker Windows Context Past QueryCertificate.
 From Carproof Require Import Query QuerySearch QuerySound QueryHistory.
 Import ListNotations.
 Open Scope Z_scope.
@@ -28,6 +28,7 @@ Section Robot.
 Variables (i : instance) (a : robot) (committed : list plan) (c : context) (now : Z).
 Hypothesis well_formed : Well_formed i.
 Hypothesis of_instance : In a (robots i).
+Hypothesis goes_to_a_goal : Has_goal_alone a.
 Hypothesis others : Committed i a committed.
 Hypothesis represents : Represents i c committed.
 Local Notation known := (lookup_of i).
@@ -48,8 +49,8 @@ Lemma dominating_label_can_end l v : Dominates l v -> Ends i a v -> can_end i a 
 Proof.
   intros [[R E] H T L N] [G F]. unfold can_end. rewrite E, G, Z.eqb_refl. simpl.
   destruct (after_goal i); [|rewrite F in H; apply andb_true_iff in H; apply H].
-  rewrite (F (target l) R) in L by congruence. simpl in L.
-  pose proof (least_stay_is_positive i a well_formed of_instance _ R). lia.
+  pose proof (least_stay_is_positive i a well_formed of_instance _ R).
+  rewrite (F (target l) R ltac:(congruence)), goal_alone_needs_its_duration in L by (auto; lia). simpl in L. lia.
 Qed.
 
 Section From_start.
@@ -162,7 +163,7 @@ Lemma plan_from_is_least p : Sound i a committed p -> Fits_the_past followed p n
 Proof.
   intros S F. destruct (start_dominates p S F) as (from & current & later & b & E & D & N & V).
   assert (C : Chain i a current later).
-  { pose proof (is_lawful _ _ _ _ S) as L. apply plan_lawful_iff in L as (u & rest & G & _ & _ & C).
+  { pose proof (is_lawful _ _ _ _ S) as L. apply lawful_plan_is_a_chain in L as (u & rest & G & _ & _ & C).
     rewrite G in V. exact (chain_behind i a b u rest current later C V). }
   assert (Fr : Free i c (current :: later)).
   { destruct (sound_plan_is_free p S) as [H X]. rewrite V in *. split.
@@ -198,7 +199,7 @@ Proof.
       [constructor | exact (entered_is_reached i known c a from l L)]. }
   split.
   - exact (right_way_is_sound i a well_formed of_instance c committed others represents limits_are_kept exchanges_are_avoided
-      now l Rl Q).
+      now l goes_to_a_goal Rl Q).
   - exact (history_is_kept i a well_formed of_instance now followed is_under_way l Kl Q).
 Qed.
 End Robot.
@@ -209,6 +210,8 @@ Section Query.
 Variables (i : instance) (a : robot) (committed : list plan) (now : Z) (followed : option plan).
 Hypothesis well_formed : Well_formed i.
 Hypothesis of_instance : In a (robots i).
+(** The search knows no stops. *)
+Hypothesis goes_to_a_goal : Has_goal_alone a.
 (** The committed plans are lawful plans of other robots, alone and together. *)
 Hypothesis others : Committed i a committed.
 Hypothesis limits_are_kept : Limits_are_kept i committed.
@@ -268,10 +271,10 @@ Proof.
       * rewrite E. apply (ended_plan_keeps_itself i a well_formed of_instance p now L). apply has_ended_iff. exact H.
     + intros rival X. destruct (ended_plan_is_returned p rival E H X) as [V _]. unfold arrival. rewrite V. lia.
   - destruct (under_way H) as [-> U] in Q. split.
-    + exact (plan_from_is_sound i a committed c now well_formed of_instance others R followed U
+    + exact (plan_from_is_sound i a committed c now well_formed of_instance goes_to_a_goal others R followed U
         limits_are_kept exchanges_are_avoided made Q).
     + intros rival [S F].
-      destruct (plan_from_is_least i a committed c now well_formed of_instance others R followed U rival S F)
+      destruct (plan_from_is_least i a committed c now well_formed of_instance goes_to_a_goal others R followed U rival S F)
         as (best & B & T).
       rewrite B in Q. injection Q as <-. exact T.
 Qed.
@@ -283,7 +286,7 @@ Proof.
   destruct ended_or_under_way as [(before & E & H)|H].
   - destruct (ended_plan_is_returned before p E H X) as [_ K]. congruence.
   - destruct (under_way H) as [K U]. destruct X as [S F].
-    destruct (plan_from_is_least i a committed c now well_formed of_instance others R followed U p S F)
+    destruct (plan_from_is_least i a committed c now well_formed of_instance goes_to_a_goal others R followed U p S F)
       as (best & B & _).
     congruence.
 Qed.

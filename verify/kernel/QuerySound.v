@@ -1,6 +1,6 @@
 (** The plans that the query makes are sound: they keep all rules, alone and with the committed plans. *)
 Require Import ZArith List Bool Lia.
-From Carproof Require Import Law Collections Timeline Journey Checker Windows Context Past Query QuerySearch.
+From Carproof Require Import Law Stops Collections Timeline Journey Checker Windows Context Past Query QuerySearch.
 Import ListNotations.
 Open Scope Z_scope.
 
@@ -50,12 +50,13 @@ Record Course (vs : list visit) : Prop := {
 }.
 
 Lemma lawful_plan_is_a_course p :
-  Plan_lawful i a p <-> Course (visits p) /\ exists before last, visits p = before ++ [last] /\ Ends i a last.
+  Plan_lawful i a p <-> Course (visits p) /\ (exists before last, visits p = before ++ [last] /\ Ends i a last) /\
+  Serves_stops (stops a) (visits p).
 Proof.
   rewrite plan_lawful_iff. split.
-  - intros (v & later & E & R & T & C). apply chain_iff in C as (G & S & A). rewrite E. split; [|exact G].
+  - intros (v & later & E & R & T & C & O). apply chain_iff in C as (G & S & A). rewrite E. split; [|auto].
     split; auto. exists v, later. auto.
-  - intros [[(v & later & E & R & T) S A] G]. exists v, later. rewrite E in *. repeat split; auto.
+  - intros [[(v & later & E & R & T) S A] [G O]]. exists v, later. rewrite E in *. repeat (split; auto).
     apply chain_iff. auto.
 Qed.
 
@@ -276,10 +277,12 @@ Proof.
     eapply free_with_another_end; [exact F | split; reflexivity | exact P].
 Qed.
 
-(** A right way on which the plan can end is a sound plan. *)
-Theorem right_way_is_sound now l : Right_way l -> can_end i a now l = true -> Sound i a committed (plan_of i a l).
+(** A right way on which the plan of a robot with a goal alone can end is a sound plan. *)
+Theorem right_way_is_sound now l : Has_goal_alone a -> Right_way l -> can_end i a now l = true ->
+  Sound i a committed (plan_of i a l).
 Proof.
-  intros [C F R W H S] E. unfold can_end in E. apply andb_true_iff in E as [G E]. apply Z.eqb_eq in G.
+  intros O [C F R W H S] E. unfold can_end in E. apply andb_true_iff in E as [G E]. apply Z.eqb_eq in G.
+  pose proof (least_stay_is_positive i a well_formed of_instance (target l) R) as D.
   set (leave := match after_goal i with Park => None | Vanish => Some (entry l + least_stay a (target l)) end).
   assert (L : Stay_lawful i a (visit_until l leave)).
   { apply stay_lawful_iff; auto. unfold leave. destruct (after_goal i); simpl; auto. lia. }
@@ -289,9 +292,12 @@ Proof.
   apply free_plan_is_sound; unfold plan_of; fold leave; simpl; auto.
   - apply lawful_plan_is_a_course. simpl. split.
     + eapply course_with_another_end; [exact C | split; reflexivity | exact L].
-    + exists (behind l), (visit_until l leave). split; auto. split; [exact G|]. unfold leave.
-      destruct (after_goal i); auto. intros r Q X. simpl.
-      rewrite (resource_is_unique i well_formed r (target l)) by congruence. reflexivity.
+    + split.
+      * exists (behind l), (visit_until l leave). split; auto. split; [exact G|]. unfold leave.
+        destruct (after_goal i); auto. intros r Q X. simpl.
+        rewrite (resource_is_unique i well_formed r (target l)), goal_alone_needs_its_duration by (congruence || lia || auto).
+        reflexivity.
+      * apply goal_alone_is_served; auto. unfold leave. destruct (after_goal i); simpl; auto. lia.
   - eapply free_with_another_end; [exact F | split; reflexivity | exact P].
 Qed.
 End Robot.

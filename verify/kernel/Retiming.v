@@ -2,7 +2,7 @@
 
     The functions are there for their proofs: none is faster than it must be to be right. *)
 Require Import ZArith List Bool Lia.
-From Carproof Require Import Law Execution Dependencies Order.
+From Carproof Require Import Law Stops Execution Dependencies Order.
 Import ListNotations.
 Open Scope Z_scope.
 
@@ -342,20 +342,29 @@ Proof.
 Qed.
 
 Lemma timed_plan_is_lawful t a p : Executes ps (timed t ps) -> In p (timed t ps) -> In a (robots i) ->
-  robot_id a = plan_robot p -> t (robot_id a, 0%nat) = release a -> Plan_lawful i a p.
+  robot_id a = plan_robot p -> Has_goal_alone a -> t (robot_id a, 0%nat) = release a -> Plan_lawful i a p.
 Proof.
-  intros X P A E T. pose proof P as Q. apply in_map_iff in Q as (q & <- & Q). simpl in E.
+  intros X P A E O T. pose proof P as Q. apply in_map_iff in Q as (q & <- & Q). simpl in E.
   pose proof (plans_lawful i s lawful q a Q A E) as L. set (p := Plan _ _) in *.
   assert (V : forall n x, nth_error (visits p) n = Some x -> Visit_of (timed t ps) (robot_id a) n x /\
     exists v, nth_error (visits q) n = Some v /\ visit_resource x = visit_resource v).
   { intros n x N. split; [exists p; auto|]. destruct (nth_timed t _ _ _ _ _ N) as (v & V & F & _). eauto. }
+  assert (stay_is_not_empty : forall r, In r (resources i) -> 0 <= least_stay a r).
+  { intros r R. unfold least_stay. pose proof (paces_are_positive i well_formed a A).
+    pose proof (durations_are_positive i well_formed r R). nia. }
   split.
   - destruct (starts_at_release i a q L) as (v & rest & D & S0 & _). unfold p. rewrite D.
     eexists. eexists. split; [reflexivity|]. simpl. rewrite <- E. auto.
   - destruct (ends_at_goal i a q L) as (front & last & D & G & B). unfold p, Ends_at_goal. rewrite D.
     destruct (last_of_timed t (plan_robot q) front last 0) as (others & ->). eexists. eexists.
     split; [reflexivity|]. simpl. split; [exact G|]. destruct (after_goal i); [|rewrite B; reflexivity].
-    intros r R F. rewrite (B r R F). simpl. rewrite G, <- F, <- E, needed by auto. reflexivity.
+    intros r R F. rewrite (B r R F), goal_alone_needs_its_duration by auto.
+    simpl. rewrite G, <- F, <- E, needed by auto. reflexivity.
+  - destruct (ends_at_goal i a q L) as (front & last & D & G & B). unfold p. simpl. rewrite D.
+    destruct (last_of_timed t (plan_robot q) front last 0) as (others & ->). apply goal_alone_is_served; simpl; auto.
+    destruct (leave last); simpl; auto. rewrite G, <- E.
+    pose proof (goal_is_a_resource i a well_formed A) as K. apply in_map_iff in K as (r & K & R).
+    rewrite <- K, needed by auto. pose proof (stay_is_not_empty r R). lia.
   - intros x N. apply In_nth_error in N as (n & N). destruct (V n x N) as (_ & v & W & ->).
     apply (visits_resources i a q L), (nth_error_In _ _ W).
   - intros x y C R S0. apply consecutive_by_number in C as (n & N & M).
@@ -367,13 +376,15 @@ Proof.
     apply (durations_are_kept _ _ _ X a r n x l A R (proj1 (V n x N)) (eq_sym F) D).
 Qed.
 
-(** If each robot appears at its release, the retimed plans are a lawful solution, with the same room; without groups. *)
-Theorem retimed_solution_is_lawful ts now : groups i = [] -> Room_is_kept ps -> Executes ps ts -> Happened_by ts now ->
+(** If each robot appears at its release, the retimed plans are a lawful solution, with the same room; without groups,
+    and for robots with a goal alone. *)
+Theorem retimed_solution_is_lawful ts now : groups i = [] -> (forall a, In a (robots i) -> Has_goal_alone a) ->
+  Room_is_kept ps -> Executes ps ts -> Happened_by ts now ->
   let after := Solution (retimed ps ts now) (order s) (unplanned s) in
   (forall p a, In p (plans after) -> In a (robots i) -> robot_id a = plan_robot p -> Starts_at_release a p) ->
   Lawful i after /\ Room_is_kept (plans after).
 Proof.
-  intros N0 K E H after R. pose proof (retimed_plans_execute ts now E H) as X.
+  intros N0 O K E H after R. pose proof (retimed_plans_execute ts now E H) as X.
   destruct (order_preserving_execution_is_safe i s (plans after) N0 lawful K X) as (F & C & D).
   assert (M : planned after = planned s) by apply robots_of_timed.
   split; [split; unfold Covers_robots, Orders_plans; rewrite ?M; simpl | exact F]; auto.

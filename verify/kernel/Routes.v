@@ -123,7 +123,8 @@ Proof.
   intros H Parks. unfold counted, inside, Holds.
   induction H as [v Hg Hl | v w rest Hl Hn Hm Hw IH]; intros K.
   - exists v. rewrite Hl. destruct through; cbn [until is_in] in K; rewrite ?Hg, ?Z.eqb_refl in K; cbn [is_in] in K;
-      rewrite orb_false_r, ?Hg in K; destruct (after_goal i); decided; simpl; intuition; subst; auto.
+      rewrite orb_false_r, ?Hg in K; destruct (after_goal i); decided; simpl; unfold last_need; intuition;
+      subst; auto; lia.
   - destruct through.
     + cbn [is_in] in K. apply orb_true_iff in K as [K | K].
       * exists v. decided. rewrite Hl. simpl. auto.

@@ -1,6 +1,6 @@
 (** A lawful plan as a way: visit by visit from any of its visits to its end. *)
 Require Import ZArith List Bool Lia.
-From Carproof Require Import Law.
+From Carproof Require Import Law Stops.
 Import ListNotations.
 Open Scope Z_scope.
 
@@ -8,10 +8,13 @@ Open Scope Z_scope.
 Definition need (i : instance) (a : robot) (id : Z) : Z :=
   match find (fun r => resource_id r =? id) (resources i) with Some r => least_stay a r | None => 1 end.
 
+(** The ticks that a robot that vanishes needs for its last visit. *)
+Definition last_need (i : instance) (a : robot) : Z := Z.max (need i a (goal a)) (service (last_stop a)).
+
 (** Visits that keep the rules plan/goal, plan/move, plan/contiguous and plan/duration from the first on. *)
 Inductive Way (i : instance) (a : robot) : list visit -> Prop :=
 | Way_ends v : visit_resource v = goal a ->
-    leave v = match after_goal i with Park => None | Vanish => Some (enter v + need i a (goal a)) end -> Way i a [v]
+    leave v = match after_goal i with Park => None | Vanish => Some (enter v + last_need i a) end -> Way i a [v]
 | Way_goes_on v w rest : leave v = Some (enter w) -> enter v + need i a (visit_resource v) <= enter w ->
     Move i (visit_resource v) (visit_resource w) -> Way i a (w :: rest) -> Way i a (v :: w :: rest).
 
@@ -91,8 +94,8 @@ Proof.
   assert (Suffix : forall later first, visits p = first ++ later ++ [last] -> Way i a (later ++ [last])).
   { induction later as [| v later IH]; intros first F; simpl.
     - apply Way_ends; auto. destruct (after_goal i); auto.
-      destruct (proj1 (in_map_iff _ _ _) (proj2 (endpoints_are_resources i right a known))) as (r & R & Hr).
-      rewrite (L r Hr R), <- R, need_is_least_stay; auto.
+      destruct (proj1 (in_map_iff _ _ _) (goal_is_a_resource i a right known)) as (r & R & Hr).
+      rewrite (L r Hr R). unfold last_need. rewrite <- R, need_is_least_stay; auto.
     - specialize (IH (first ++ [v])). rewrite <- app_assoc in IH. specialize (IH F).
       assert (C : exists w rest, later ++ [last] = w :: rest) by (destruct later; simpl; eauto).
       destruct C as (w & rest & W). simpl in F. rewrite W in *.
@@ -110,7 +113,7 @@ Qed.
 Lemma first_visit_holds_its_entry v rest : Way i a (v :: rest) -> Holds v (enter v).
 Proof.
   intros H. unfold Holds. split; [lia |]. inversion H as [v' Hg Hl | v' w later Hl Hn Hm Hw]; subst; rewrite Hl; simpl.
-  - destruct (after_goal i); simpl; auto. pose proof (need_is_positive (goal a)). lia.
+  - destruct (after_goal i); simpl; auto. pose proof (need_is_positive (goal a)). unfold last_need. lia.
   - pose proof (need_is_positive (visit_resource v)). lia.
 Qed.
 

@@ -63,14 +63,14 @@ let earliest clerk = Z.add clerk.robot.release clerk.guide.shortest
 let least_delay clerk (place, tick) = Z.sub (Z.add tick (Option.get (rest clerk place))) (earliest clerk)
 let later_than clerk delay = Hashtbl.find clerk.late (Z.to_int (Z.min delay (Z.of_int clerk.horizon)))
 let drives_on clerk = clerk.parks || clerk.seen <> None
-let stands_still clerk = Z.equal clerk.robot.start clerk.robot.goal && not (drives_on clerk)
+let stands_still clerk = Z.equal clerk.robot.start (Law.goal clerk.robot) && not (drives_on clerk)
 
 (* The robot was seen before, and is not described. *)
 let is_after clerk tick = match clerk.seen with Some sight -> Z.gt tick sight.seen_at | None -> false
 let first_node clerk = (clerk.robot.start, Z.add clerk.robot.release (clerk.takes clerk.robot.start))
 
 let leads_to clerk (place, tick) =
-  let is_open target = rest clerk target <> None && (drives_on clerk || not (Z.equal target clerk.robot.goal)) in
+  let is_open target = rest clerk target <> None && (drives_on clerk || not (Z.equal target (Law.goal clerk.robot))) in
   let entered target = (target, Z.add tick (clerk.takes target)) in
   if is_after clerk tick then []
   else (place, Z.succ tick) :: List.map entered (List.filter is_open (clerk.onwards place))
@@ -97,7 +97,7 @@ let add_nodes draft clerk =
   let first = first_node clerk in
   if rest clerk clerk.robot.start <> None && Z.equal (least_delay clerk first) (Z.of_int clerk.horizon) then (
     add_node first;
-    let at_goal = if Z.equal clerk.robot.start clerk.robot.goal then [ -Hashtbl.find clerk.late 0 ] else [] in
+    let at_goal = if Z.equal clerk.robot.start (Law.goal clerk.robot) then [ -Hashtbl.find clerk.late 0 ] else [] in
     add draft (Starts id) (at_goal @ [ Hashtbl.find clerk.node first ]));
   List.iter add_following clerk.unfinished;
   let rec follow done_ =
@@ -128,7 +128,7 @@ let go_on draft clerk ((place, tick) as node) =
   let following = leads_to clerk node in
   let ways = known_nodes clerk following in
   let complete = List.length ways = List.length following in
-  let arrives = List.exists (Z.equal clerk.robot.goal) (clerk.onwards place) in
+  let arrives = List.exists (Z.equal (Law.goal clerk.robot)) (clerk.onwards place) in
   let arrival = if arrives then [ -later_than clerk (Z.sub tick (earliest clerk)) ] else [] in
   let beyond = if complete then [] else [ Hashtbl.find clerk.late clerk.horizon ] in
   add draft
@@ -139,9 +139,10 @@ let go_on draft clerk ((place, tick) as node) =
 let arrive_at_horizon draft clerk =
   let cost = Z.add clerk.guide.shortest (Z.of_int clerk.horizon) in
   let tick = Z.add clerk.robot.release cost in
-  if not (is_after clerk tick || (Z.equal clerk.robot.start clerk.robot.goal && clerk.horizon = 0)) then
+  if not (is_after clerk tick || (Z.equal clerk.robot.start (Law.goal clerk.robot) && clerk.horizon = 0)) then
     let earlier = if clerk.horizon > 0 then [ -Hashtbl.find clerk.late (clerk.horizon - 1) ] else [] in
-    let sources = known_nodes clerk (List.map (fun source -> (source, tick)) (clerk.backwards clerk.robot.goal)) in
+    let sources = List.map (fun source -> (source, tick)) (clerk.backwards (Law.goal clerk.robot)) in
+    let sources = known_nodes clerk sources in
     add draft (Arrives (clerk.robot.robot_id, cost)) (earlier @ (Hashtbl.find clerk.late clerk.horizon :: sources))
 
 (* Raise the horizon by a tick of delay. *)
@@ -204,7 +205,7 @@ let stays clerk place tick =
   let nodes = Seq.map (fun node -> [ node ]) (nodes_of clerk place tick) in
   let delay = Z.sub tick (earliest clerk) in
   if is_after clerk tick then Seq.empty
-  else if Z.equal place clerk.robot.goal && Z.sign delay >= 0 && not (stands_still clerk) then
+  else if Z.equal place (Law.goal clerk.robot) && Z.sign delay >= 0 && not (stands_still clerk) then
     let left = Z.sub delay duration in
     if clerk.parks || Z.sign left < 0 then Seq.append nodes (Seq.return [ -later_than clerk delay ])
     else if Z.lt left (Z.of_int clerk.horizon) then
@@ -304,7 +305,7 @@ let presence ({ draft; clerks; presences; _ } as encoding) position { key; place
 
 let visitors { clerks; _ } places =
   let may_visit position place =
-    Z.equal place clerks.(position).robot.goal || Hashtbl.mem clerks.(position).ticks place
+    Z.equal place (Law.goal clerks.(position).robot) || Hashtbl.mem clerks.(position).ticks place
   in
   List.filter (fun position -> List.exists (may_visit position) places) (List.init (Array.length clerks) Fun.id)
 
@@ -354,7 +355,7 @@ let forbid_exchange ({ draft; clerks; constraints_on; _ } as encoding) (source, 
 (* The resources and ticks at which the robot may enter, in the order of its nodes. *)
 let entries clerk =
   let entered (place, tick) = (place, Z.sub tick (clerk.takes place)) in
-  let arrival delay = (clerk.robot.goal, Z.add (earliest clerk) (Z.of_int delay)) in
+  let arrival delay = (Law.goal clerk.robot, Z.add (earliest clerk) (Z.of_int delay)) in
   let arrivals = if stands_still clerk then [] else List.init (clerk.horizon + 1) arrival in
   List.rev_append (List.rev_map entered (List.rev clerk.nodes)) arrivals
 
@@ -467,17 +468,17 @@ let clerk_of (instance : Law.instance) table (onward, backward) ranks position (
   let takes = Tables.takes_in table a and parks = instance.after_goal = Law.Park in
   let onwards place = List.sort Z.compare (Search.resources_to onward place) in
   let backwards place = List.sort Z.compare (Search.resources_to backward place) in
-  let rests = Search.ticks_after takes backward a.goal in
-  let is_open s = Hashtbl.mem rests s && (parks || seen <> None || not (Z.equal s a.goal)) in
+  let rests = Search.ticks_after takes backward (Law.goal a) in
+  let is_open s = Hashtbl.mem rests s && (parks || seen <> None || not (Z.equal s (Law.goal a))) in
   let shortest =
-    if Z.equal a.start a.goal then Z.zero
+    if Z.equal a.start (Law.goal a) then Z.zero
     else match Hashtbl.find_opt rests a.start with Some rest -> Z.add (takes a.start) rest | None -> raise (No_way a)
   in
   let guide =
     { rank = Z.of_int (Option.value ~default:0 (Hashtbl.find_opt ranks position)); seat = Z.of_int position; shortest;
       rests = Hashtbl.fold Collections.Map.add rests Collections.Map.empty;
       firsts = first_ticks a takes onwards is_open;
-      leads = Search.way_on takes onward rests a.goal a.start }
+      leads = Search.way_on takes onward rests (Law.goal a) a.start }
   in
   { robot = a; guide; takes; parks; seen; onwards; backwards; node = Hashtbl.create 1024; nodes = [];
     ticks = Hashtbl.create 64; late = Hashtbl.create 64; horizon = -1; unfinished = [] }

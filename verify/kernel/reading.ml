@@ -192,6 +192,10 @@ let require_format path format json =
 
 type instance = { instance : Law.instance; resource_numbers : numbers; robot_numbers : numbers }
 
+(* A robot of one stop, without service. *)
+let has_goal_alone (a : Law.robot) =
+  match a.stops with [ { service; _ } ] -> Z.equal service Z.zero | _ -> false
+
 (* Refuse an instance that the kernel does not accept, by the first rule that is seen to be broken. *)
 let name_fault path { Law.resources; edges; directed; groups; robots; _ } =
   let known id = Z.lt id (Z.of_int (List.length resources)) in
@@ -231,8 +235,23 @@ let name_fault path { Law.resources; edges; directed; groups; robots; _ } =
   each ".graph.groups" group groups;
   each ".robots" (fun path a -> if not (known a.Law.start) then
     refuse (path ^ ".start") "instance/endpoint" "the start must be the id of a resource") robots;
-  each ".robots" (fun path a -> if not (known a.Law.goal) then
+  each ".robots" (fun path a -> if has_goal_alone a && not (known (Law.goal a)) then
     refuse (path ^ ".goal") "instance/endpoint" "the goal must be the id of a resource") robots;
+  let stops path (a : Law.robot) =
+    let path = path ^ ".stops" in
+    let fault where message = refuse (path ^ where) "instance/stops" message in
+    if a.stops = [] then fault "" "there must be at least one stop";
+    let stop before position { Law.stop_resource; service } =
+      let fault name = fault (Printf.sprintf "[%d].%s" position name) in
+      if not (known stop_resource) then fault "resource" "it must be the id of a resource, and is not";
+      if Z.sign service < 0 then fault "service" "the service must be a whole number of at least 0";
+      if Option.equal Z.equal (Some stop_resource) !before then
+        fault "resource" "it must be at another resource than the stop before it";
+      before := Some stop_resource
+    in
+    List.iteri (stop (ref None)) a.stops
+  in
+  each ".robots" stops robots;
   each ".robots" (fun path a -> if Z.sign a.Law.release < 0 then
     refuse (path ^ ".release") "instance/release" "the release must be a whole number of at least 0") robots;
   each ".robots" (fun path a -> at_least_one "instance/pace" path "pace" a.Law.pace) robots;
@@ -278,22 +297,22 @@ let instance_of_json path json =
   in
   let stop path json =
     let field = fields path ~required:[ "resource" ] ~optional:[ "service" ] json in
-    (required field "resource" resource_id, not (Z.equal Z.zero (optional Z.zero field "service" whole)))
+    { Law.stop_resource = required field "resource" resource_id; service = optional Z.zero field "service" whole }
   in
   let robot path json =
     let field = fields path ~required:[ "id"; "start" ] ~optional:[ "goal"; "stops"; "release"; "pace" ] json in
     let known = required field "id" id in
-    let goal =
+    let stops =
       match (present field "goal" resource_id, present field "stops" (elements stop)) with
-      | Some goal, None | None, Some [ (goal, false) ] -> goal
-      | None, Some _ -> refuse (path ^ ".stops") "limit/stops" "it must be one stop without service, a goal"
-      | _ -> shape path "a goal or stops"
+      | Some goal, None -> Law.only goal
+      | None, Some stops -> stops
+      | _ -> shape path "either a goal or stops"
     in
     if Hashtbl.mem robot_numbers.known known then
       refuse (path ^ ".id") "instance/robot-id" ("ids must be unique, and a robot before it has the id " ^ shown known);
     { Law.robot_id = number robot_numbers known;
       start = required field "start" resource_id;
-      goal;
+      stops;
       release = optional Z.zero field "release" whole;
       pace = optional one field "pace" whole }
   in
@@ -319,6 +338,15 @@ let instance_of_json path json =
   let instance = { Law.resources; edges; directed; groups; after_goal; following_is_forbidden; robots } in
   if not (Checker.instance_accepted instance) then name_fault path instance;
   { instance; resource_numbers; robot_numbers }
+
+(* Refuse robots with stops where the kernel decides nothing about them. *)
+let require_goals { instance; _ } =
+  let goal position a =
+    if not (has_goal_alone a) then
+      refuse (Printf.sprintf "$.robots[%d].stops" position) "limit/stops"
+        "each robot must have one stop without service, a goal, here"
+  in
+  List.iteri goal instance.Law.robots
 
 (* ---- Solutions ---- *)
 

@@ -104,7 +104,7 @@ let labels_below budget claimed weight (tariff : Labels.tariff) dues horizon tak
     let ready = Z.add t (takes r) in
     spend budget t (Z.min ready tariff.horizon) count_of_dues;
     let stayed = Z.add amount (Labels.stay_price tariff r t ready) in
-    if Z.equal r a.goal then (
+    if Z.equal r (Law.goal a) then (
       let paid = match parked with None -> stayed | Some paid_from -> Z.add amount (paid_from t) in
       let total = Z.add paid (Z.add (Bound.fees_at_arrival dues t) (Z.mul weight (Z.sub t a.release))) in
       if Z.lt total claimed then too_high := true);
@@ -148,20 +148,21 @@ let evidence (instance : Law.instance) (certificate : Bound.certificate) =
   let of_robot (a : Law.robot) () =
     let takes = Tables.takes_in table a in
     let ticks =
-      match Hashtbl.find_opt known (a.goal, a.pace) with
+      let key = (Law.goal a, a.pace) in
+      match Hashtbl.find_opt known key with
       | Some ticks -> ticks
-      | None -> let ticks = ticks_after takes backwards a.goal in Hashtbl.add known (a.goal, a.pace) ticks; ticks
+      | None -> let ticks = ticks_after takes backwards (Law.goal a) in Hashtbl.add known key ticks; ticks
     in
     let labels =
       match Hashtbl.find_opt claims a.robot_id with
       | Some (Some claimed) ->
           let weight = Bound.weight_of certificate a.robot_id and dues = Bound.dues_of certificate a.robot_id in
           let parks = instance.after_goal = Law.Park in
-          let parked = if parks then Some (paid_by_parking (Hashtbl.find_all priced a.goal)) else None in
+          let parked = if parks then Some (paid_by_parking (Hashtbl.find_all priced (Law.goal a))) else None in
           labels_below budget claimed weight tariff dues horizon takes onwards ticks parked a
       | _ -> []
     in
     { Bound.ticks_after = Hashtbl.fold (fun r rest all -> (r, rest) :: all) ticks []; labels;
-      way = way_on takes onwards ticks a.goal a.start }
+      way = way_on takes onwards ticks (Law.goal a) a.start }
   in
   List.map of_robot instance.robots

@@ -27,7 +27,8 @@ let broken_plan_rule instance known (a : Law.robot) (p : Law.plan) =
           | _ -> chain later)
   in
   match p.visits with
-  | v :: _ when Z.equal v.visit_resource a.start && Z.equal v.enter a.release -> chain p.visits
+  | v :: later when Z.equal v.visit_resource a.start && Z.equal v.enter a.release ->
+      if Checker.chain_accepted instance known a v later then "plan/stops" else chain p.visits
   | _ -> "plan/start"
 
 let cost_of (read : Reading.instance) (solution : Law.solution) =
@@ -157,6 +158,7 @@ let query_fault (read : Reading.instance) (solution : Law.solution) (query : Rea
           ("query-certificate/closed", "the start leads to a window without a label or to the end"))
 
 let verify_query (read : Reading.instance) (solution : Law.solution) (query : Reading.query) =
+  Reading.require_goals read;
   let { Reading.query_robot; now; query_certificate } = query in
   let looks, work = looks_and_work read (Audit.others solution query_robot) [ query ] in
   if looks > most_looks then
@@ -173,6 +175,7 @@ let verify_query (read : Reading.instance) (solution : Law.solution) (query : Re
 let audit (read : Reading.instance) (solution : Law.solution) (queries : Reading.query list) =
   let certificate (query : Reading.query) = (query.query_robot, query.query_certificate) in
   let certificates = List.map certificate queries in
+  Reading.require_goals read;
   let _, work = looks_and_work read solution.plans queries in
   if work > most_work then too_much
   else if Audit.audit_accepted read.instance solution certificates then Accepted (cost_of read solution)
@@ -229,6 +232,7 @@ let blueprint (read : Reading.instance) group asked evidence most =
 
 let blueprint_of_claim (read : Reading.instance) ({ cost; evidence } : Reading.claim) =
   let asked = Formula.demand_of cost in
+  Reading.require_goals read;
   try blueprint read read.instance.robots asked evidence Encoder.most_clauses
   with Encoder.Too_large ->
     Error (Undecided (Printf.sprintf "the formula would have more than %d clauses, the limit" Encoder.most_clauses))
@@ -390,6 +394,7 @@ let bound_fault (read : Reading.instance) (bound : Reading.bound) =
 (* First what needs no evidence, then the groups, and then the search for the least costs, as in carp_verify. *)
 let verify_bound (read : Reading.instance) (bound : Reading.bound) =
   let instance = read.instance and certificate = bound.certificate in
+  Reading.require_goals read;
   let of_cuts, of_deadlines = proofs_of read bound in
   if pairs_of read certificate > most_pairs then Undecided "the bound has too many robots and groups for the kernel"
   else

@@ -18,7 +18,7 @@ from carp_spec.documents.query_certificates import QueryCertificateDocument
 from carp_spec.documents.solutions import solution_document
 from carp_spec.permutations import shuffle, splitmix64
 from carp_verify.kernel import KernelVerdict, ask, request
-from carproof.testing.random_instances import Draw, draw_fleet, draw_instance
+from carproof.testing.random_instances import WITH_STOPS, Draw, draw_fleet, draw_instance
 
 BLOCK = 1000
 FULL_VERDICTS = 1_000_000
@@ -83,6 +83,8 @@ class Question:
 def fleet_questions(seed: int, number: int) -> list[Question]:
     """The questions about the fleet of that number."""
     draw = Draw(splitmix64(next(splitmix64(seed)) + number))
+    if number % 2:
+        return stop_questions(draw)
     instance = draw_instance(draw)
     fleet = draw_fleet(draw, instance)
     solution, robot = fleet.solution, draw.one_of([*instance.robot])
@@ -95,6 +97,14 @@ def fleet_questions(seed: int, number: int) -> list[Question]:
         *(verified(instance, solution, certificate) for certificate in certificates),
         verified(*mutants[0], honest),
     ]
+
+
+def stop_questions(draw: Draw) -> list[Question]:
+    """The questions about a fleet with stops: the kernel checks its plans alone."""
+    instance = draw_instance(draw, WITH_STOPS)
+    solution = draw_fleet(draw, instance).solution
+    mutants = [broken(draw, instance, solution) for _ in range(OF_A_FLEET - 1)]
+    return [checked(instance, solution), *(checked(*mutant) for mutant in mutants)]
 
 
 def checked(instance: Instance, solution: Solution) -> Question:

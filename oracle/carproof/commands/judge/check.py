@@ -85,9 +85,8 @@ def command(  # noqa: PLR0913 - an argument an option
         raise click.UsageError("--kernel and --z3 do not know --footprint.")
     size = None if footprint is None else footprint_of(footprint)
     instance, given = problem.read(as_named=True)
-    if kernel or z3:
-        refuse_in(problem.names[0], instance, "stops", *(("groups",) if z3 else ()))
     if z3:
+        refuse_in(problem.names[0], instance, "stops", "groups")
         return certified(instance, given, as_json)
     most = None if everything else MOST_LISTED
     verdict = check(instance, given, most, size)
