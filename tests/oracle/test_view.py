@@ -9,7 +9,17 @@ from subprocess import run
 import pytest
 from PIL import Image
 from tests.oracle.running import EAST, EAST_PLAN, TWO_PLANNED, Document, Run, corridor, solution
-from tests.oracle.viewing import COLLIDING, CORRIDOR, HOSTILE, SVG, drawn, picture_of, scene_of, without_positions
+from tests.oracle.viewing import (
+    COLLIDING,
+    CORRIDOR,
+    HOSTILE,
+    SVG,
+    drawn,
+    picture_of,
+    plant,
+    scene_of,
+    without_positions,
+)
 from tests.programs import require_programs
 
 from carp_spec import Resource, ResourceGraph
@@ -17,8 +27,10 @@ from carproof.viewer import limits
 from carproof.viewer.chart_picture import TimeScale
 from carproof.viewer.colours import LIGHT, LOOKS
 from carproof.viewer.lanes import area, lanes, spots
+from carproof.viewer.page import page as whole_page
 from carproof.viewer.placement import UNIT, placement
 from carproof.viewer.samples import FOLDER, sample_pictures
+from carproof.viewer.stills import map_still
 
 FEWEST_PIXELS = 30
 OUTSIDE = re.compile(r"""(?:src|href|url|action)\s*[=(]\s*["']?(?!#|data:)[a-z]*:?//""", re.IGNORECASE)
@@ -125,6 +137,45 @@ def test_one_way_moves_are_arrows(carproof: Run, tmp_path: Path) -> None:
     assert "edge" not in paths
     assert paths["joint"].count("M") == 4
     assert paths["one-way"].count("M") == paths["one-way head"].count("z") == 3
+
+
+def test_a_plant_has_its_lanes_groups_stops_and_headings() -> None:
+    instance, plans = plant()
+    scene = scene_of(whole_page(instance, plans, "plant").decode())
+    places = {place["label"]: place for place in scene["places"]}
+    (ax, ay), (bx, by), (cx, cy) = (places[each]["at"] for each in "abc")
+    assert ax < bx == cx
+    assert cy < by == ay, "north is above"
+    assert [name for name, place in places.items() if place["way"]] == ["ab", "bc", "bc (reverse)"]
+    east, north = places["ab"]["way"], places["bc"]["way"]
+    assert ax < east[0][0] < east[1][0] < bx
+    assert (east[0][1], east[1][1]) == (ay, ay)
+    assert north[0][0] == north[1][0] > bx > places["bc (reverse)"]["way"][0][0], "traffic keeps to the right"
+    assert by > north[0][1] > north[1][1] > cy
+    assert [outline["label"] for outline in scene["outlines"]] == ["corner"], "a point with its lanes is seen anyway"
+    corners = scene["outlines"][0]["corners"]
+    assert all(min(x for x, _ in corners) < x < max(x for x, _ in corners) for (x, _) in (*east, *north))
+    (track,) = scene["tracks"]
+    assert (len(track["stop_marks"]), track["stops"]) == (1, [[1, 4], [2, 6]])
+    assert track["services"] == [[4, 8], [12, 18]]
+    assert places["b"]["windows"] == [[0, 1], [12, None]], "who is on a lane holds its ends"
+
+
+def test_the_still_of_a_plant_shows_robots_along_lanes_with_headings_and_services() -> None:
+    instance, plans = plant()
+    seen = []
+    for tick in (1, 2, 3, 5, 9):
+        robot = picture_of(map_still(instance, plans, tick, "plant").decode())[-1][0]
+        x, y, _ = (int(each.rstrip("e-2")) for each in re.findall(r"[\d]+(?:e-2)?", robot.get("transform", "")))
+        nose = robot.find(f"{SVG}path[@class='nose']")
+        assert nose is not None
+        tip = nose.get("d", "").partition("L")[0]
+        seen.append((x, y, tip, robot.find(f"{SVG}circle[@class='serving']") is not None))
+    (first, second, third, served, after) = seen
+    assert first[0] < second[0] < third[0] < served[0] < after[0]
+    assert first[1] == third[1] > after[1]
+    assert [each[2] for each in seen] == ["M15 0"] * 4 + ["M0 -15"]
+    assert [each[3] for each in seen] == [False, False, False, True, False]
 
 
 def square(*lacking: str) -> Document:

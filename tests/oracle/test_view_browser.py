@@ -9,7 +9,7 @@ from selenium.webdriver import Chrome
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.wait import WebDriverWait
 from tests.oracle.browser import Page, chromium, logged, processor_seconds
-from tests.oracle.viewing import COLLIDING, CORRIDOR, HOSTILE, SVG, picture_of
+from tests.oracle.viewing import COLLIDING, CORRIDOR, HOSTILE, SVG, picture_of, plant
 
 from carp_reference import plan
 from carp_spec import Carp, Instance, Plan, Resource, ResourceGraph, Robot, Solution, Visit
@@ -107,6 +107,16 @@ def test_the_page_and_the_still_agree_at_every_tick(
         shown.script("document.getElementById('forward').click()")
         for _ in range({0: 0, 1: 5, 7: 7, 15: 0}[tick]):
             shown.script("document.getElementById('forward').click()")
+
+
+def test_the_page_and_the_still_agree_on_a_plant(driver: Chrome, tmp_path: Path) -> None:
+    shown = opened(driver, tmp_path, *plant())
+    for tick in range(14):
+        still = picture_of(map_still(*plant(), tick, "plant").decode())
+        (drawn,) = shown.robots().values()
+        assert drawn == pytest.approx(placed(still[-1][0].get("transform", "")), abs=1)
+        shown.script("document.getElementById('forward').click()")
+    assert logged(driver, "browser") == []
 
 
 def placed(transform: str) -> tuple[float, ...]:

@@ -2,15 +2,28 @@
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as ET
 
+from tests.oracle.layout_files import OPENTCS
 from tests.oracle.running import BROKEN, TWO, Document, Run
+
+from carp_spec import Instance, Plan, Robot, Solution, Stop, Visit
+from carproof.layouts import import_layout
 
 SVG = "{http://www.w3.org/2000/svg}"
 COLLIDING, CORRIDOR = BROKEN, TWO
 HOSTILE = "</script><script>alert('1')</script>&\"\u2028é漢字🤖\u202e"
+
+
+def plant() -> tuple[Instance, Solution]:
+    """A robot that drives east from a to b, serves there, and drives north to c, where it serves again."""
+    stops = (Stop("b", 4), Stop("c", 6))
+    instance = replace(import_layout(OPENTCS.encode()).instance, robots=(Robot("tow", "a", stops=stops),))
+    visits = (Visit("a", 0, 1), Visit("ab", 1, 4), Visit("b", 4, 8), Visit("bc", 8, 12), Visit("c", 12, None))
+    return instance, Solution.of(instance, [Plan("tow", visits)])
 
 
 def without_positions(document: Document) -> Document:

@@ -81,6 +81,8 @@ def entries(scene: Scene) -> Iterator[Entry]:
     """The legend of a chart."""
     yield "visit", "visit of a robot"
     yield "window", "free window"
+    if any(track.services for track in scene.tracks):
+        yield "service", "serves a stop"
     if any(each.start is not None for each in scene.violations):
         yield "violation", "broken rule"
     if scene.start:
@@ -128,6 +130,10 @@ def draw_stays(picture: Element, scene: Scene, scale: TimeScale, tops: Mapping[i
             x, width = scale.span(enter, leave)
             top = tops[spot.place] + spot.lane * LANE
             path(of_robot, "bar", [box(x, top + 1, max(1, width - 1), LANE - 2)])
+            for start, end in track.services:
+                if start == enter:
+                    left, wide = scale.span(start, end)
+                    path(of_robot, "service", [box(left, top + LANE - 3, wide, 2)])
             if width >= LETTER * len(track.short):
                 text(of_robot, "short", (x + width // 2, top + LANE // 2), track.short, 9, fill=look.text)
 

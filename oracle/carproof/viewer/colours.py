@@ -85,6 +85,7 @@ HATCH = "url(#hatch)"
 FAINT = {"fill": of("faint")}
 AT_END = {"text-anchor": "end"}
 IN_MIDDLE = {"text-anchor": "middle"}
+HALO = {"stroke": of("paper"), "stroke-width": "3", "paint-order": "stroke"}
 FRAME = {"fill": HATCH, "stroke": of("wrong"), "stroke-width": "2"}
 PAINT: Mapping[str, Mapping[str, str]] = {
     "paper": {"fill": of("paper")},
@@ -97,6 +98,16 @@ PAINT: Mapping[str, Mapping[str, str]] = {
     "edge thin": {"fill": "none", "stroke": of("line"), "stroke-width": "3"},
     "one-way": {"fill": "none", "stroke": of("way"), "stroke-width": "2"},
     "one-way head": {"fill": of("way")},
+    "lane": {"fill": "none", "stroke": of("cell"), "stroke-width": "14", "stroke-linecap": "round"},
+    "lane roomy": {"fill": "none", "stroke": of("roomy"), "stroke-width": "14", "stroke-linecap": "round"},
+    "lane head": {"fill": of("way"), "opacity": "0.6"},
+    "lane-traits": {**FAINT, **IN_MIDDLE},
+    "group": {"fill": of("accent"), "fill-opacity": "0.06", "stroke": of("accent"), "stroke-dasharray": "5 3"},
+    "group-name": {"fill": of("accent"), **IN_MIDDLE},
+    "point-name": {"fill": of("ink"), **IN_MIDDLE, **HALO},
+    "stop": {"fill": "none", "stroke-width": "1.5"},
+    "service": {"fill": of("accent"), "stroke": "none"},
+    "serving": {"fill": "none", "stroke": of("accent"), "stroke-width": "2"},
     "name": FAINT,
     "traits": {**FAINT, **AT_END},
     "goal": {"fill": "none", "stroke-width": "1.5"},

@@ -12,7 +12,7 @@ from carproof.viewer.colours import LOOKS
 from carproof.viewer.legend import write_legend
 from carproof.viewer.limits import refuse_large_pictures, refuse_more
 from carproof.viewer.names import common_start, fitted, label
-from carproof.viewer.placement import Point
+from carproof.viewer.plants import Point
 from carproof.viewer.scene_builder import LONGEST_NAME
 from carproof.viewer.shapes import box, drawing, group, head, path, text
 from carproof.viewer.stills import still

@@ -46,6 +46,10 @@ def draw_sample(legend: Element, kind: str, x: int, y: int) -> None:
     look, sample = LOOKS[0], group(legend, "sample")
     if kind == "robot":
         circle(sample, kind, (x + 4, y), 5, fill=look.fill)
+    elif kind == "serving":
+        circle(sample, kind, (x + 4, y), 5)
+    elif kind == "stop":
+        path(sample, kind, [line([(x + 4, y - 5), (x + 9, y), (x + 4, y + 5), (x - 1, y)]) + "z"], stroke=look.hue)
     elif kind == "start":
         circle(sample, kind, (x + 4, y), 4, stroke=look.hue)
     elif kind in ("waits", "cycle"):

@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator, Sequence
 from collections.abc import Set as AbstractSet
+from dataclasses import dataclass
+from math import isqrt
 from xml.etree.ElementTree import Element, SubElement
 
 from carp_spec import ResourceGraph
@@ -9,8 +11,9 @@ from carproof.viewer.colours import of
 from carproof.viewer.lanes import SIDE, STRIP
 from carproof.viewer.legend import Entry, write_legend
 from carproof.viewer.names import fitted
-from carproof.viewer.placement import MARGIN, UNIT, Point
-from carproof.viewer.scene import Broken, Place, Scene, Stand, Track
+from carproof.viewer.placement import MARGIN, UNIT
+from carproof.viewer.plants import Point
+from carproof.viewer.scene import Broken, Mark, Place, Scene, Track
 from carproof.viewer.shapes import box, circle, drawing, group, hatch_definition, head, line, path, text
 
 MOST_TRAITS = 2_000
@@ -25,9 +28,24 @@ SIZE_OF_LENGTH = (0, 13, 11, 8, 6)
 SIZE_OF_MARK = (0, 12, 10, 7, 5)
 ROBOT_RADIUS = 10
 HEAD = 9
+NOSE, NOSE_LENGTH = 15, 7
+SERVING = 14
+PLANT_NAME_SIZE = 9
+MOST_NAMED_GROUPS = 60
 HALF = SIDE // 2
 SPARSEST = 4
 """A grid has at most this many squares for each resource."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """Where a robot is drawn: its place by number, its centre, radius and heading, and whether it serves a stop."""
+
+    place: int
+    at: Point
+    radius: int
+    heading: Point | None
+    serves: bool
 
 
 def map_picture(graph: ResourceGraph, scene: Scene) -> Element:
@@ -45,12 +63,35 @@ def map_picture(graph: ResourceGraph, scene: Scene) -> Element:
         path(ground, "joint", joints(ways))
     else:
         path(ground, "edge thin" if scene.computed else "edge", (line([one, two]) for one, two, back in ways if back))
+    draw_outlines(ground, scene)
     path(ground, "one-way", (line(ends) for ends in one_way))
-    path(ground, square, (cell(at) for place, at in located if place.capacity == "1"))
-    path(ground, "cell roomy", (cell(at) for place, at in located if place.capacity != "1"))
+    path(ground, "lane", (line(place.way) for place, _ in located if place.way and place.capacity == "1"))
+    path(ground, "lane roomy", (line(place.way) for place, _ in located if place.way and place.capacity != "1"))
+    path(ground, square, (cell(at) for place, at in located if not place.way and place.capacity == "1"))
+    path(ground, "cell roomy", (cell(at) for place, at in located if not place.way and place.capacity != "1"))
     path(ground, "one-way head", (arrow_head(*ends) for ends in one_way))
+    path(ground, "lane head", (head(end, way(begin, end), HEAD) for begin, end in ways_of(scene)))
     write_names(ground, located, is_named=scene.named)
     return picture
+
+
+def ways_of(scene: Scene) -> Iterator[tuple[Point, Point]]:
+    """Where lanes begin and end."""
+    yield from (place.way for place in scene.places if place.way)
+
+
+def way(one: Point, other: Point) -> Point:
+    """The way from one point to another."""
+    return other[0] - one[0], other[1] - one[1]
+
+
+def draw_outlines(ground: Element, scene: Scene) -> None:
+    """Outline the groups, with their names if there are few."""
+    for each in scene.outlines:
+        path(ground, "group", [line(each.corners) + "z"])
+    for each in scene.outlines if len(scene.outlines) <= MOST_NAMED_GROUPS else ():
+        left, top = min(each.corners, key=lambda corner: (corner[1], corner[0]))
+        text(ground, "group-name", (left, top - 4), each.label, TRAITS_SIZE)
 
 
 def edge_ends(graph: ResourceGraph, scene: Scene) -> list[tuple[Point, Point, bool]]:
@@ -62,7 +103,8 @@ def edge_ends(graph: ResourceGraph, scene: Scene) -> list[tuple[Point, Point, bo
         back = not graph.directed or (target, source) in moves
         again = graph.directed and back and graph.index[source] > graph.index[target]
         one, two = points[graph.index[source]], points[graph.index[target]]
-        if not again and one is not None and two is not None:
+        is_of_lane = any(scene.places[graph.index[end]].way for end in (source, target))
+        if not again and one is not None and two is not None and not is_of_lane:
             found.append((one, two, back))
     return found
 
@@ -105,16 +147,21 @@ def arrow_head(source: Point, target: Point) -> str:
 
 def write_names(ground: Element, located: Sequence[tuple[Place, Point]], *, is_named: bool) -> None:
     """Write the resources' names, if there are few, and capacities and durations that are not one."""
-    if is_named:
-        names = fitted([place.name for place, _ in located], NAME_LENGTH)
-        for (_, (x, y)), name in zip(located, names, strict=True):
+    is_plant = any(place.way for place, _ in located)
+    points = [each for each in located if not each[0].way] if is_named else []
+    names = fitted([place.name for place, _ in points], NAME_LENGTH * (1 + is_plant))
+    for (_, (x, y)), name in zip(points, names, strict=True):
+        if is_plant:
+            text(ground, "point-name", (x, y - HALF - PLANT_NAME_SIZE // 2), name, PLANT_NAME_SIZE)
+        else:
             size = max(NAME_SIZES[0], min(NAME_SIZES[1], NAME_WIDTH // max(1, len(name))))
             text(ground, "name", (x - HALF + 2, y - HALF + STRIP // 2 + 1), name, size)
-    traits = [(place_traits(place), at) for place, at in located]
-    if sum(bool(each) for each, _ in traits) <= MOST_TRAITS:
-        for each, (x, y) in traits:
-            if each:
-                text(ground, "traits", (x + HALF - 2, y + HALF - STRIP // 2), each, TRAITS_SIZE)
+    traits = [(place_traits(place), at, place.way is not None) for place, at in located if place_traits(place)]
+    for each, (x, y), is_lane in traits if len(traits) <= MOST_TRAITS else ():
+        if is_lane:
+            text(ground, "lane-traits", (x, y), each, TRAITS_SIZE + 1)
+        else:
+            text(ground, "traits", (x + HALF - 2, y + HALF - STRIP // 2), each, TRAITS_SIZE)
 
 
 def place_traits(place: Place) -> str:
@@ -132,6 +179,7 @@ def write_marks(picture: Element, scene: Scene, stood: AbstractSet[int]) -> None
     drawn = group(picture, "goals")
     for track in scene.tracks:
         hue = scene.looks[track.look].hue
+        path(drawn, "stop", (diamond(mark) for mark in track.stop_marks), stroke=hue)
         for mark, kind, place in ((track.start_mark, "start", track.start), (track.goal_mark, "goal", track.goal)):
             if mark is None:
                 continue
@@ -145,28 +193,52 @@ def write_marks(picture: Element, scene: Scene, stood: AbstractSet[int]) -> None
                 text(drawn, "goal-of", (mark.x, mark.y), track.short, mark.half * SIZE_OF_MARK[length(track)] // 10)
 
 
+def diamond(mark: Mark) -> str:
+    """Path data of the mark of a stop before the goal."""
+    x, y, half = mark.x, mark.y, mark.half
+    return line([(x, y - half), (x + half, y), (x, y + half), (x - half, y)]) + "z"
+
+
 def length(track: Track) -> int:
     """The length of a robot's name on the map, as far as it matters."""
     return min(len(track.short), len(SIZE_OF_LENGTH) - 1)
 
 
-def robot_picture(robots: Element, track: Track, scene: Scene, *, is_blamed: bool) -> Element:
-    """A robot at the origin, of a radius of ten; the caller moves and scales it."""
+def robot_picture(robots: Element, track: Track, scene: Scene, pose: Pose, *, is_blamed: bool) -> None:
+    """A robot, with its heading if it is on a lane or came by one, and a ring while it serves a stop."""
     look = scene.looks[track.look]
     edge = {"stroke": of("wrong"), "stroke-width": "3"} if is_blamed else {}
     kind = "robot blamed" if is_blamed else "robot"
     robot = group(robots, kind, **{"fill": look.fill, "stroke": look.edge, "stroke-width": f"{look.width}", **edge})
     SubElement(robot, "title").text = track.label
+    if pose.heading is not None:
+        dx, dy = pose.heading
+        far = max(1, isqrt(dx * dx + dy * dy))
+        path(robot, "nose", [head((dx * NOSE // far, dy * NOSE // far), pose.heading, NOSE_LENGTH)])
+    if pose.serves:
+        circle(robot, "serving", (0, 0), SERVING)
     circle(robot, "body", (0, 0), ROBOT_RADIUS)
     text(robot, "short", (0, 0), track.short, SIZE_OF_LENGTH[length(track)], fill=look.text)
-    return robot
+    x, y = pose.at
+    robot.set("transform", f"translate({x} {y}) scale({pose.radius * 100 // ROBOT_RADIUS}e-2)")
 
 
-def standing(track: Track, scene: Scene, tick: int) -> Stand | None:
-    """The robot's stand at the tick; if a broken plan has several, that of the last visit."""
-    for stand, enter, leave in reversed(track.stays):
-        if enter <= tick and (leave is None or tick < leave):
-            return scene.stands[stand]
+def pose_of(track: Track, scene: Scene, tick: int) -> Pose | None:
+    """The robot's pose at the tick; if a broken plan has it in several places, that of the last visit."""
+    for number in reversed(range(len(track.stays))):
+        at_stand, enter, leave = track.stays[number]
+        stand = scene.stands[at_stand]
+        if enter <= tick and (leave is None or tick < leave) and stand.at is not None:
+            serves = any(start <= tick < end for start, end in track.services)
+            here = scene.places[stand.place].way
+            if here is not None:
+                (x, y), (end_x, end_y) = here
+                done, all_ticks = (1, 2) if leave is None else (tick - enter, leave - enter)
+                at = (x + (end_x - x) * done // all_ticks, y + (end_y - y) * done // all_ticks)
+                return Pose(stand.place, at, stand.radius, way(*here), serves)
+            before = scene.places[scene.stands[track.stays[number - 1][0]].place].way if number else None
+            heading = None if before is None else way(*before)
+            return Pose(stand.place, stand.at, stand.radius, heading, serves)
     return None
 
 
@@ -180,8 +252,8 @@ def violations_at(scene: Scene, tick: int) -> Iterator[Broken]:
 def still_map(graph: ResourceGraph, scene: Scene, tick: int) -> Element:
     """The map at a tick, with its violations."""
     picture = map_picture(graph, scene)
-    stood = {number: standing(track, scene, tick) for number, track in enumerate(scene.tracks)}
-    write_marks(picture, scene, {stand.place for stand in stood.values() if stand is not None})
+    poses = {number: pose_of(track, scene, tick) for number, track in enumerate(scene.tracks)}
+    write_marks(picture, scene, {pose.place for pose in poses.values() if pose is not None})
     wrong = list(violations_at(scene, tick))
     write_legend(picture, entries(scene, is_broken=bool(wrong)))
     marks, robots = group(picture, "marks"), group(picture, "robots")
@@ -191,12 +263,9 @@ def still_map(graph: ResourceGraph, scene: Scene, tick: int) -> Element:
             path(marks, "violation", [cell(centre)])
     blamed = {track for each in wrong for track in each.tracks}
     for number, track in enumerate(scene.tracks):
-        stand = stood[number]
-        if stand is not None and stand.at is not None:
-            robot = robot_picture(robots, track, scene, is_blamed=number in blamed)
-            robot.set(
-                "transform", f"translate({stand.at[0]} {stand.at[1]}) scale({stand.radius * 100 // ROBOT_RADIUS}e-2)"
-            )
+        pose = poses[number]
+        if pose is not None:
+            robot_picture(robots, track, scene, pose, is_blamed=number in blamed)
     return picture
 
 
@@ -207,6 +276,12 @@ def entries(scene: Scene, *, is_broken: bool) -> Iterator[Entry]:
     if scene.tracks:
         yield "start", "start"
         yield "goal", "goal"
+    if any(track.stop_marks for track in scene.tracks):
+        yield "stop", "stop"
+    if scene.outlines:
+        yield "group", "group"
+    if any(track.services for track in scene.tracks):
+        yield "serving", "serves a stop"
     if is_broken:
         yield "violation", "broken rule"
     traits = [place_traits(place) for place in scene.places if place.at is not None]

@@ -1,29 +1,35 @@
 """Placement of the resources of a graph: at their own positions, or laid out by networkx.
 
 Own positions are used if every resource has one, no two share one, and they are not scattered so widely that the
-resources would be dots. All results are whole numbers of drawing units.
+resources would be dots. All results are whole numbers of drawing units. Plants, which have lanes, are placed by their
+points; their y leads upwards, as in the files of fleet systems.
 """
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from itertools import combinations, pairwise
 from math import isqrt
 from statistics import median_low
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
 from carp_spec import ResourceGraph, ResourceId
+from carproof.viewer.plants import Lanes, Point, Points, Way, parts_of, ways_of, without_lanes
 
 if TYPE_CHECKING:
     from networkx import Graph
 
-Point: TypeAlias = tuple[int, int]
-Points: TypeAlias = Mapping[ResourceId, Point]
-
 UNIT = 40
 """Drawing units from a resource to the nearest that it is joined to, unless others are much farther away."""
+IN_PLANTS = 2
+"""How many times as far apart points are that lanes join."""
 MARGIN = 26
 WIDEST = 4_000
 LONGEST_EDGE = 4
+LONGEST_LANE = 2
+AROUND = ((0, 0), (18, 0), (0, 18), (-18, 0), (0, -18), (18, 18), (-18, 18), (-18, -18), (18, -18))
+FLOORS = 2
+"""How many times wider than high floors are put beside each other."""
 FEWEST_SPRUNG, MOST_SPRUNG = 3, 400
 ITERATIONS = 80
 SPRING = UNIT * 3 // 2
@@ -32,36 +38,68 @@ PUSHES = 40
 
 @dataclass(frozen=True, slots=True)
 class Placement:
-    """The centres of the resources, the size of the drawing, and whether the positions are not their own."""
+    """The centres of the resources, the size of the drawing, and whether the positions are not their own.
+
+    `ways` has where lanes begin and end.
+    """
 
     points: Points
     width: int
     height: int
     computed: bool
+    ways: Mapping[ResourceId, Way] = field(default_factory=dict)
 
 
-def placement(graph: ResourceGraph) -> Placement:
-    """Place the resources of a graph."""
-    own = own_points(graph)
-    points = computed_points(graph) if own is None else own
+def placement(graph: ResourceGraph, lanes: Lanes | None = None) -> Placement:
+    """Place the resources of a graph, and the lanes of a plant between their points."""
+    if not lanes:
+        own = own_points(graph)
+        return in_drawing(computed_points(graph) if own is None else own, computed=own is None)
+    among = without_lanes(graph, lanes)
+    turned = tuple(each if each.y is None else replace(each, y=-each.y) for each in among.resources)
+    own = own_points(ResourceGraph(turned, among.edges, directed=True), is_plant=True)
+    points = computed_points(among) if own is None else own
+    placed = in_drawing({id: (IN_PLANTS * x, IN_PLANTS * y) for id, (x, y) in points.items()}, computed=own is None)
+    ways = ways_of(placed.points, lanes)
+    middles = {id: ((one[0] + two[0]) // 2, (one[1] + two[1]) // 2) for id, (one, two) in ways.items()}
+    return replace(placed, points={**placed.points, **middles}, ways=ways)
+
+
+def in_drawing(points: Points, *, computed: bool) -> Placement:
+    """The points in a drawing that begins at 0."""
     left = min((x for x, _ in points.values()), default=0) - MARGIN
     top = min((y for _, y in points.values()), default=0) - MARGIN
     shifted = {id: (x - left, y - top) for id, (x, y) in points.items()}
     width = max((x for x, _ in shifted.values()), default=MARGIN) + MARGIN
     height = max((y for _, y in shifted.values()), default=MARGIN) + MARGIN
-    return Placement(shifted, width, height, own is None)
+    return Placement(shifted, width, height, computed)
 
 
-def own_points(graph: ResourceGraph) -> Points | None:
-    """The resources' own positions in drawing units, if they are fit to be drawn."""
+def own_points(graph: ResourceGraph, *, is_plant: bool = False) -> Points | None:
+    """The resources' own positions in drawing units, if they are fit to be drawn.
+
+    Connected parts of a plant are put beside each other where two have points at one position: they are floors. Points
+    at one position of a part, a point's headings, are drawn around it.
+    """
     positions = {each.id: (each.x, each.y) for each in graph.resources if each.x is not None and each.y is not None}
-    if len(positions) < len(graph.resources) or len(set(positions.values())) < len(positions):
+    if len(positions) < len(graph.resources):
         return None
-    lengths = edge_lengths(positions, graph.edges)
-    spacing = max(lengths[0], median_low(lengths) // LONGEST_EDGE)
-    if extent(positions.values()) > WIDEST * spacing:
+    lengths = [each for each in edge_lengths(positions, graph.edges) if each] or [1]
+    spacing = max(lengths[0], median_low(lengths) // (LONGEST_LANE if is_plant else LONGEST_EDGE))
+    part = parts_of(graph) if is_plant else dict.fromkeys(positions, 0)
+    is_taken = len(set(positions.values())) < len(positions)
+    if extent(positions.values()) > WIDEST * spacing or (is_taken and not is_plant):
         return None
-    return {id: (x * UNIT // spacing, y * UNIT // spacing) for id, (x, y) in positions.items()}
+    points: dict[ResourceId, Point] = {}
+    count: Counter[tuple[int, Point]] = Counter()
+    for id, (x, y) in positions.items():
+        right, down = AROUND[count[part[id], (x, y)] % len(AROUND)]
+        count[part[id], (x, y)] += 1
+        points[id] = (x * UNIT // spacing + right, y * UNIT // spacing + down)
+    if len(count) == len({at for _, at in count}):
+        return points
+    floors = [{id: points[id] for id in points if part[id] == each} for each in dict.fromkeys(part.values())]
+    return packed(floors, FLOORS)
 
 
 def edge_lengths(positions: Points, edges: Iterable[tuple[ResourceId, ResourceId]]) -> Sequence[int]:
@@ -129,10 +167,10 @@ def in_rows(part: Sequence[ResourceId]) -> Points:
     return {id: (number % columns * UNIT, number // columns * UNIT) for number, id in enumerate(part)}
 
 
-def packed(parts: Sequence[Points]) -> Points:
-    """Put the parts beside each other, in rows about as wide as the drawing is high."""
+def packed(parts: Sequence[Points], times: int = 1) -> Points:
+    """Put the parts beside each other, in rows about as wide as the drawing is high, or so many times wider."""
     sides = [extent(part.values()) + 2 * UNIT for part in parts]
-    widest = max([*sides, isqrt(sum(side * side for side in sides))], default=0)
+    widest = max([*sides, times * isqrt(sum(side * side for side in sides))], default=0)
     points: dict[ResourceId, Point] = {}
     left = top = height = 0
     for part, side in zip(parts, sides, strict=True):

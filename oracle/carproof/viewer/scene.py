@@ -14,7 +14,8 @@ from carproof.viewer.colours import Look
 class Place:
     """A resource: where its centre is drawn, if it has a place at all, and its lanes and free windows over time.
 
-    `name` is its label without the `start` of the scene; `lanes_done` are those of the visits that have happened.
+    `name` is its label without the `start` of the scene; `lanes_done` are those of the visits that have happened. A
+    lane of a plant has a `way`: where it begins and ends, on which robots move along it.
     """
 
     label: str
@@ -25,6 +26,7 @@ class Place:
     lanes: int
     lanes_done: int
     windows: tuple[Occupation, ...]
+    way: tuple[tuple[int, int], tuple[int, int]] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +52,9 @@ class Mark:
 class Track:
     """A robot with one of its plans, or with none; a stay is (stand, enter, leave), and `note` what is odd.
 
-    `look` is the number of its look; `stays` are planned, and `done` have happened.
+    `look` is the number of its look; `stays` are planned, and `done` have happened. `stops` are places with the ticks
+    of their service, the last of them the goal; `stop_marks` are of those before it. In `services` ticks the plan
+    serves.
     """
 
     label: str
@@ -60,6 +64,9 @@ class Track:
     goal: int | None
     start_mark: Mark | None
     goal_mark: Mark | None
+    stops: tuple[tuple[int, int], ...]
+    stop_marks: tuple[Mark, ...]
+    services: tuple[tuple[int, int], ...]
     release: int
     pace: str
     cost: int | None
@@ -81,6 +88,14 @@ class Broken:
     start: int | None
     end: int | None
     message: str
+
+
+@dataclass(frozen=True, slots=True)
+class Outline:
+    """A group of resources: its label, and the corners of a line around them."""
+
+    label: str
+    corners: tuple[tuple[int, int], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,6 +133,7 @@ class Scene:
     looks: tuple[Look, ...]
     places: tuple[Place, ...]
     stands: tuple[Stand, ...]
+    outlines: tuple[Outline, ...]
     tracks: tuple[Track, ...]
     rules: tuple[BrokenRule, ...]
     violations: tuple[Broken, ...]

@@ -5,20 +5,23 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from carp_spec import Instance, Plan, ResourceId, RobotId, Solution, Violation, judge, plan_cost
+from carp_spec import Instance, Plan, ResourceId, Robot, RobotId, Solution, Violation, judge, plan_cost
 from carp_spec.execution.execution_rules import trace_violations
 from carp_spec.execution.traces import Trace
 from carp_spec.inputs.values import require_instance, require_solution
 from carp_spec.shapes import require_shape
-from carp_spec.windows import free_windows
+from carp_spec.windows import Occupation, free_windows
 from carproof.command_line.tables import printable
+from carproof.formats.plans.services import stops_in
+from carproof.layouts.lanes import lanes_of
 from carproof.registry import RULES
 from carproof.viewer.colours import LOOKS
-from carproof.viewer.lanes import Area, Stays, area, lanes, occupations, slots, spots
+from carproof.viewer.lanes import Area, Stays, area, lanes, lasts, occupations, slots, spots
 from carproof.viewer.limits import MOST_LISTED, refuse_large_pictures
 from carproof.viewer.names import common_start, cut, fitted, label, short_labels
 from carproof.viewer.placement import Placement, placement
-from carproof.viewer.scene import Broken, BrokenRule, Mark, Place, Scene, Stand, Track
+from carproof.viewer.plants import Lanes, outlines
+from carproof.viewer.scene import Broken, BrokenRule, Mark, Outline, Place, Scene, Stand, Track
 
 LONGEST_MESSAGE = 400
 LONGEST_NAME = 24
@@ -49,6 +52,7 @@ class Stage:
     instance: Instance
     solution: Solution
     trace: Trace | None
+    lanes: Lanes
     placed: Placement
     number: Mapping[ResourceId, int]
     planned: Laid
@@ -59,12 +63,13 @@ class Stage:
         """The part of a resource's square that robots are drawn in."""
         resource = self.instance.graph.resource.get(id)
         has_traits = resource is not None and (resource.capacity, resource.duration) != (1, 1)
-        return area(is_named=is_named(self.instance), has_traits=has_traits)
+        is_within = self.is_named and not self.lanes
+        return area(is_named=is_within, has_traits=has_traits and id not in self.lanes)
 
-
-def is_named(instance: Instance) -> bool:
-    """Whether the map has few enough resources for their names."""
-    return len(instance.graph.resources) <= MOST_NAMED
+    @property
+    def is_named(self) -> bool:
+        """Whether the map has few enough resources for their names; lanes have none there."""
+        return len(self.instance.graph.resources) - len(self.lanes) <= MOST_NAMED
 
 
 def make_scene(instance: Instance, plans: Solution | None, title: str, trace: Trace | None = None) -> Scene:
@@ -88,7 +93,7 @@ def make_scene(instance: Instance, plans: Solution | None, title: str, trace: Tr
         broken = trace_violations(instance, solution, trace, most=None)
     robots = tuple(robots_with_plans(stage))
     first, last = span(instance, solution, trace)
-    start = common_start([label(id) for id in instance.graph.index])
+    start = common_start([label(id) for id in instance.graph.index if id not in stage.lanes])
     return Scene(
         title=label(title),
         first=first,
@@ -99,13 +104,17 @@ def make_scene(instance: Instance, plans: Solution | None, title: str, trace: Tr
         unplanned=verdict.unplanned,
         alone=plans is None,
         computed=stage.placed.computed,
-        named=is_named(instance),
+        named=stage.is_named,
         start=start,
         width=stage.placed.width,
         height=stage.placed.height,
         looks=LOOKS,
         places=tuple(places(stage, start)),
         stands=tuple(stands(stage)),
+        outlines=tuple(
+            Outline(label(id), tuple(corners))
+            for id, corners in outlines(instance, stage.lanes, stage.placed.points, stage.placed.ways)
+        ),
         tracks=tuple(tracks(stage, robots, is_alone=plans is None)),
         rules=broken_rules(broken),
         violations=tuple(violations(stage, broken, [robot for robot, _ in robots])),
@@ -119,7 +128,8 @@ def make_stage(instance: Instance, solution: Solution, trace: Trace | None) -> S
     number = {id: at for at, id in enumerate(dict.fromkeys([*instance.graph.index, *visited]))}
     in_use = [(id, lane) for id in visited for lane in range(max(1, planned.lane_count(id), done.lane_count(id)))]
     stand = {each: at for at, each in enumerate(in_use)}
-    return Stage(instance, solution, trace, placement(instance.graph), number, planned, done, stand)
+    lanes = lanes_of(instance)
+    return Stage(instance, solution, trace, lanes, placement(instance.graph, lanes), number, planned, done, stand)
 
 
 def laid(plans: tuple[Plan, ...]) -> Laid:
@@ -143,10 +153,10 @@ def span(instance: Instance, solution: Solution, trace: Trace | None = None) -> 
 
 def places(stage: Stage, start: str) -> Iterator[Place]:
     """The resources as they are drawn, with their free windows."""
-    names = fitted([label(id).removeprefix(start) for id in stage.number], LONGEST_NAME)
+    names = fitted([without_start(stage, id, start) for id in stage.number], LONGEST_NAME)
+    groups = stays_in_groups(stage)
     for id, name in zip(stage.number, names, strict=True):
         resource = stage.instance.graph.resource.get(id)
-        stays = stage.planned.stays.get(id, [])
         yield Place(
             label=label(id),
             name=name,
@@ -155,14 +165,43 @@ def places(stage: Stage, start: str) -> Iterator[Place]:
             at=stage.placed.points.get(id),
             lanes=max(1, stage.planned.lane_count(id)),
             lanes_done=stage.done.lane_count(id),
-            windows=() if resource is None else free_of(resource.capacity, stays),
+            windows=() if resource is None else free_of(stage, id, groups),
+            way=stage.placed.ways.get(id),
         )
 
 
-def free_of(capacity: int, stays: Stays) -> tuple[tuple[int, int | None], ...]:
-    """The free windows of a resource."""
-    windows = free_windows([([occupation for _, _, occupation in stays], capacity)])
+def without_start(stage: Stage, id: ResourceId, start: str) -> str:
+    """The label without the start of all labels; that of a lane without the starts of the labels of its ends too."""
+    name = label(id)
+    for end in stage.lanes.get(id, ()) if start else ():
+        whole = label(end)
+        if whole.startswith(start):
+            name = name.replace(whole, whole.removeprefix(start))
+    return name.removeprefix(start)
+
+
+def free_of(stage: Stage, id: ResourceId, groups: Mapping[int, Sequence[Occupation]]) -> tuple[Occupation, ...]:
+    """The free windows of a resource: there is room in it, and in its groups."""
+    graph = stage.instance.graph
+    own = [occupation for _, _, occupation in stage.planned.stays.get(id, [])]
+    limits = [(groups.get(each, ()), graph.groups[each].capacity) for each in graph.groups_of.get(id, ())]
+    windows = free_windows([(own, graph.resource[id].capacity), *limits])
     return tuple((window.start, window.end) for window in windows)
+
+
+def stays_in_groups(stage: Stage) -> Mapping[int, Sequence[Occupation]]:
+    """The stays in each group; a robot that moves within it stays there."""
+    found: dict[int, list[Occupation]] = {}
+    for plan in stage.planned.plans:
+        before: set[int] = set()
+        for visit in plan.visits:
+            groups = stage.instance.graph.groups_of.get(visit.resource, ())
+            for each in groups if lasts(visit.enter, visit.leave) else ():
+                stays = found.setdefault(each, [])
+                enter = stays.pop()[0] if each in before and stays[-1][1] == visit.enter else visit.enter
+                stays.append((enter, visit.leave))
+            before = set(groups)
+    return found
 
 
 def stands(stage: Stage) -> Iterator[Stand]:
@@ -186,21 +225,27 @@ def robots_with_plans(stage: Stage) -> Iterator[tuple[RobotId, int | None]]:
         yield from ((robot, at) for at in plans.get(robot, [None]))
 
 
-def marks(stage: Stage, robots: Sequence[RobotId], *, is_alone: bool) -> Mapping[tuple[RobotId, bool], Mark]:
-    """Where the starts of the robots are drawn and, as `True`, their goals; those of one resource are side by side."""
-    of_place: dict[ResourceId, list[tuple[RobotId, bool]]] = {}
+def marks(stage: Stage, robots: Sequence[RobotId], *, is_alone: bool) -> Mapping[tuple[RobotId, int], Mark]:
+    """Where the stops of the robots are drawn, by their number, and as -1 their starts.
+
+    Those of one resource are side by side, and a robot has each place once.
+    """
+    of_place: dict[ResourceId, list[tuple[RobotId, int]]] = {}
     for id in dict.fromkeys(robots):
         if id in stage.instance.robot:
-            of_place.setdefault(stage.instance.robot[id].goal, []).append((id, True))
-            of_place.setdefault(stage.instance.robot[id].start, []).append((id, False))
-    found: dict[tuple[RobotId, bool], Mark] = {}
+            robot = stage.instance.robot[id]
+            last = {stop.resource: number for number, stop in enumerate(robot.stops)}
+            for place, number in reversed(last.items()):
+                of_place.setdefault(place, []).append((id, number))
+            of_place.setdefault(robot.start, []).append((id, -1))
+    found: dict[tuple[RobotId, int], Mark] = {}
     for place, here in of_place.items():
         if place in stage.placed.points:
             x, y = stage.placed.points[place]
             around = slots(len(here), stage.area(place), LARGEST_MARK)
-            for (id, is_goal), spot in zip(here, around, strict=True):
-                half = spot.radius if is_goal or is_alone else max(1, spot.radius * 3 // 5)
-                found[id, is_goal] = Mark(x + spot.dx, y + spot.dy, half)
+            for (id, number), spot in zip(here, around, strict=True):
+                half = spot.radius if number >= 0 or is_alone else max(1, spot.radius * 3 // 5)
+                found[id, number] = Mark(x + spot.dx, y + spot.dy, half)
     return found
 
 
@@ -222,8 +267,11 @@ def tracks(stage: Stage, robots: tuple[tuple[RobotId, int | None], ...], *, is_a
             look=at % len(LOOKS),
             start=None if robot is None else stage.number[robot.start],
             goal=None if robot is None else stage.number[robot.goal],
-            start_mark=found.get((id, False)),
-            goal_mark=found.get((id, True)),
+            start_mark=found.get((id, -1)),
+            goal_mark=None if robot is None else found.get((id, len(robot.stops) - 1)),
+            stops=() if robot is None else tuple((stage.number[each.resource], each.service) for each in robot.stops),
+            stop_marks=() if robot is None else tuple(stop_marks(robot, found)),
+            services=tuple(services(stage.instance, plan)) if known and plan is not None else (),
             release=0 if robot is None else robot.release,
             pace="" if robot is None else label(robot.pace),
             cost=plan_cost(stage.instance, plan) if known and plan is not None else None,
@@ -231,6 +279,19 @@ def tracks(stage: Stage, robots: tuple[tuple[RobotId, int | None], ...], *, is_a
             stays=tuple(stays_of(stage, stage.planned, at_plan)),
             done=tuple(stays_of(stage, stage.done, at_done)),
         )
+
+
+def stop_marks(robot: Robot, found: Mapping[tuple[RobotId, int], Mark]) -> Iterator[Mark]:
+    """The marks of the stops before the goal."""
+    yield from (found[robot.id, number] for number in range(len(robot.stops) - 1) if (robot.id, number) in found)
+
+
+def services(instance: Instance, plan: Plan) -> Iterator[tuple[int, int]]:
+    """The ticks of services, each as soon as the robot is there."""
+    for place, number in stops_in(instance, plan).items():
+        service, enter = instance.robot[plan.robot].stops[number].service, plan.visits[place].enter
+        if service:
+            yield enter, enter + service
 
 
 def note(known: bool, plan: Plan | None, plans: int, done: Plan | None) -> str:

@@ -176,6 +176,7 @@ class Chart {
     this.pen.globalAlpha = this.chosen.length && !isChosen ? 0.35 : 1;
     this.fill(look.edge, left, y + 1, Math.max(1, wide - 1), high - 2);
     if (wide > 4) this.fill(look.fill, left + 1, y + 2, wide - 3, high - 4);
+    if (high === LANE) this.drawServices(number, enter, y, high, width);
     if (high === LANE && wide > short.length * TEXT_WIDTH + 2) {
       this.pen.fillStyle = look.text;
       this.pen.textAlign = "center";
@@ -186,6 +187,14 @@ class Chart {
       this.pen.strokeStyle = this.colours.ink;
       this.pen.lineWidth = 2;
       this.pen.strokeRect(left, y + 1, Math.max(1, wide - 1), high - 2);
+    }
+  }
+
+  /** A line below a bar while the robot serves a stop. */
+  drawServices(number, enter, y, high, width) {
+    for (const [start, end] of scene.tracks[number].services) {
+      const part = start === enter ? this.span(start, end, width) : null;
+      if (part) this.fill(this.colours.accent, part[0], y + high - 3, part[1], 2);
     }
   }
 

@@ -38,7 +38,9 @@ class RobotList {
       const { fill, edge, width } = scene.looks[track.look];
       Object.assign(swatch.style, { background: fill, border: `${width}px solid ${edge}` });
       button.append(swatch, make("strong", "", track.label));
-      button.append(make("small", "", ` ${name(track.start)} → ${name(track.goal)}`));
+      const served = (ticks) => (ticks ? ` (${ticks}t)` : "");
+      const stops = track.stops.map(([place, ticks]) => `${name(place)}${served(ticks)}`);
+      button.append(make("small", "", ` ${[name(track.start), ...(stops.length ? stops : ["?"])].join(" → ")}`));
       const notes = [track.note, track.cost === null ? "" : `cost ${track.cost}`].filter((each) => each);
       button.append(make("small", "", notes.length ? ` · ${notes.join(" · ")}` : ""));
       button.addEventListener("click", () => jump(number));
@@ -77,7 +79,8 @@ function aboutRobot(track, time) {
   const [stand, enter, leave] = at < 0 ? [] : track.stays[at];
   const now =
     at < 0 ? "on no resource now" : `now in ${scene.places[scene.stands[stand].place].label} ${interval(enter, leave)}`;
+  const serves = track.services.some(([start, end]) => holds(start, end, time)) ? ", serves a stop" : "";
   const arrival = track.cost === null ? track.note : `arrives at ${track.release + track.cost}, cost ${track.cost}`;
   const pace = track.pace === "1" || !track.pace ? "" : `, pace ${track.pace}`;
-  return `robot ${track.label}: released at ${track.release}${pace}, ${arrival}, ${now}`;
+  return `robot ${track.label}: released at ${track.release}${pace}, ${arrival}, ${now}${serves}`;
 }

@@ -13,23 +13,39 @@ const LARGEST_WHOLE = 2.5;
 const CLICK_DISTANCE = 4;
 const glides = !matchMedia("(prefers-reduced-motion: reduce)").matches;
 
-/** Where a robot is drawn: it stays in the middle and moves on during the last tick of a stay. */
+/** Where a robot is drawn: it stays in the middle and moves on during the last tick of a stay; on a lane it moves along
+ * it all the time, and looks ahead. */
 function poseAt(stays, time) {
   const at = stayAt(stays, time);
   if (at < 0) return null;
   const [stand, enter, leave] = stays[at];
   const here = scene.stands[stand];
+  const way = wayOf(stand);
+  if (way) {
+    const part = leave === null || !glides ? 0.5 : (time - enter) / (leave - enter);
+    return { ...pointOn(way[0], way[1], part), radius: here.radius, heading: heading(way) };
+  }
+  const look = at ? heading(wayOf(stays[at - 1][0])) : null;
   const next = stays[at + 1];
-  const there = next && next[1] === leave ? scene.stands[next[0]] : null;
-  if (!here.at || !there?.at || !glides) return here.at && { x: here.at[0], y: here.at[1], radius: here.radius };
+  const there = next && next[1] === leave && !wayOf(next[0]) ? scene.stands[next[0]] : null;
+  if (!here.at || !there?.at || !glides)
+    return here.at && { x: here.at[0], y: here.at[1], radius: here.radius, heading: look };
   const begin = Math.max(enter, leave - 1);
   const part = Math.max(0, (time - begin) / (leave - begin));
-  const between = (from, to) => from + (to - from) * part;
-  return {
-    x: between(here.at[0], there.at[0]),
-    y: between(here.at[1], there.at[1]),
-    radius: between(here.radius, there.radius),
-  };
+  return { ...pointOn(here.at, there.at, part), radius: here.radius + (there.radius - here.radius) * part, heading: look };
+}
+
+/** The way of the lane in which a stand is, or null. */
+function wayOf(stand) {
+  return scene.places[scene.stands[stand].place].way;
+}
+
+function heading(way) {
+  return way && Math.atan2(way[1][1] - way[0][1], way[1][0] - way[0][0]);
+}
+
+function pointOn(from, to, part) {
+  return { x: from[0] + (to[0] - from[0]) * part, y: from[1] + (to[1] - from[1]) * part };
 }
 
 class MapView {
@@ -223,6 +239,7 @@ class MapView {
       if (track.start_mark) this.drawMark(track.start_mark, track.short, (x, y, half) => this.ring(x, y, half));
       if (track.goal_mark)
         this.drawMark(track.goal_mark, track.short, (x, y, half) => pen.strokeRect(x - half, y - half, 2 * half, 2 * half));
+      for (const mark of track.stop_marks) this.drawMark(mark, track.short, (x, y, half) => this.diamond(x, y, half));
     });
     pen.globalAlpha = 1;
   }
@@ -234,6 +251,13 @@ class MapView {
     if (half <= SMALLEST_WITH_NAME) return;
     this.pen.font = `${Math.round(0.8 * half * SIZE_OF_LENGTH[Math.min(short.length, 4)])}px system-ui, sans-serif`;
     this.pen.fillText(short, x, y + 0.5);
+  }
+
+  diamond(x, y, half) {
+    this.pen.beginPath();
+    for (const [right, down] of [[0, -half], [half, 0], [0, half], [-half, 0]]) this.pen.lineTo(x + right, y + down);
+    this.pen.closePath();
+    this.pen.stroke();
   }
 
   ring(x, y, radius) {
@@ -318,6 +342,18 @@ class MapView {
     return this.dots.get(key);
   }
 
+  /** The tip that shows where a robot is heading. */
+  drawNose(x, y, radius, angle, colour) {
+    const { pen } = this;
+    const at = (distance, turn) => [x + distance * Math.cos(angle + turn), y + distance * Math.sin(angle + turn)];
+    pen.fillStyle = colour;
+    pen.beginPath();
+    pen.moveTo(...at(1.5 * radius, 0));
+    pen.lineTo(...at(radius, 0.5));
+    pen.lineTo(...at(radius, -0.5));
+    pen.fill();
+  }
+
   drawRobots() {
     const { pen } = this;
     const { width, height } = this.size;
@@ -336,6 +372,11 @@ class MapView {
         const half = radius + 1;
         pen.drawImage(this.dot(kind, half), x - half, y - half, 2 * half, 2 * half);
         return;
+      }
+      if (typeof pose.heading === "number") this.drawNose(x, y, radius, pose.heading, look.edge);
+      if (scene.tracks[number].services.some(([start, end]) => holds(start, end, this.time))) {
+        Object.assign(pen, { strokeStyle: this.colours.accent, lineWidth: 2 });
+        this.ring(x, y, 1.4 * radius);
       }
       pen.fillStyle = look.fill;
       pen.beginPath();
