@@ -2,10 +2,9 @@
 
 This is Lagrangian relaxation. Step by step, prices rise where the robots' cheapest ways exceed a capacity, and fall
 where they use less than it (`carp_optimum.lagrangian.price_steps`). When that gains nothing more, deadlines are added
-(`carp_optimum.claims.pair_search`, `carp_optimum.claims.deadline_search`), and where these gain nothing either, cuts
-(`carp_optimum.claims.cut_search`). The search aims a little above the best bound known, and closer to it after each
-failure. Source: the target level method of Goffin and Kiwiel 1999, over the Lagrangian relaxation of all rules of
-plans together.
+(`carp_optimum.claims.pair_search`, `carp_optimum.claims.deadline_search`). The search aims a little above the best
+bound known, and closer to it after each failure. Source: the target level method of Goffin and Kiwiel 1999, over the
+Lagrangian relaxation of all rules of plans together.
 """
 
 from collections.abc import Callable
@@ -13,8 +12,6 @@ from contextlib import suppress
 from dataclasses import dataclass
 from time import monotonic_ns
 from typing import TYPE_CHECKING
-
-from msgspec.structs import replace
 
 from carp_optimum.sat.solver import Deadline, TimeOver
 from carp_spec import Instance
@@ -25,7 +22,6 @@ from carp_spec.inputs.values import require_instance
 from carp_spec.limits import refuse
 
 if TYPE_CHECKING:
-    from carp_optimum.claims.cut_search import CutSearch
     from carp_optimum.lagrangian.price_search import PriceSearch
 
 SCALE = 1 << 16
@@ -65,13 +61,12 @@ def lower_bound(
 
     Without a limit the search takes 10 seconds.
     With steps alone, the same instance gives the same certificate. `on_step` is called after each step, and now and
-    then while cuts are searched for; `clock` gives nanoseconds. `seen` is whether robots with deadlines may be seen at
-    ticks, for which the search for an optimum has no literals. Raises `Refusal` for numbers that are too large.
+    then while claims are searched for; `clock` gives nanoseconds. `seen` is whether robots with deadlines may be seen
+    at ticks, for which the search for an optimum has no literals. Raises `Refusal` for numbers that are too large.
     """
     _require(instance, seconds=seconds, steps=steps)
     seconds = BOUND_SECONDS if seconds is None and steps is None else seconds
-    from carp_optimum.claims.cut_search import CutSearch  # noqa: PLC0415 - numba is slow to load
-    from carp_optimum.claims.deadline_search import DeadlineSearch  # noqa: PLC0415
+    from carp_optimum.claims.deadline_search import DeadlineSearch  # noqa: PLC0415 - numba is slow to load
     from carp_optimum.claims.pair_search import SightSearch  # noqa: PLC0415
     from carp_optimum.lagrangian.price_search import PriceSearch  # noqa: PLC0415
 
@@ -80,7 +75,6 @@ def lower_bound(
     proved = _limit(seconds, None, PROVED_PARTS, clock)
     end = _limit(seconds, steps, PARTS, clock)
     search = PriceSearch(instance, SCALE)
-    cuts = CutSearch(search)
     deadlines = DeadlineSearch(search)
     sights = SightSearch(search)
 
@@ -112,7 +106,7 @@ def lower_bound(
             with suppress(TimeOver):
                 climb(gain, first)
         by_sights = gain_of_sights()
-        while gain > 0 or not cuts.is_exhausted:
+        while gain > 0:
             before = search.best
             if by_sights > 0:
                 search.roam(by_sights // 4, max(ROUGH_AIM, search.best // LARGE), lambda: rough(search.count), watch)
@@ -120,12 +114,12 @@ def lower_bound(
             prove()
             fruitless = by_sights > 0 and (search.best - before) * LEAST_RISE < search.best
             by_sights = 0 if fruitless else gain_of_sights()
-            gain = by_sights or min(deadlines.round(look) or cuts.round(look), search.best // NEXT_AIM)
+            gain = by_sights or min(deadlines.round(look), search.best // NEXT_AIM)
     prove()
     with suppress(TimeOver):
         search.climb(max(ROUGH_AIM, search.best // FINAL_AIM), FINE_AIM, lambda: end(search.count), report)
     search.finish()
-    return _certificate(search, cuts)
+    return _certificate(search)
 
 
 def _require(instance: Instance, **limits: float | None) -> None:
@@ -147,16 +141,11 @@ def _limit(seconds: float | None, steps: int | None, parts: int, clock: Callable
     return check
 
 
-def _certificate(search: "PriceSearch", cuts: "CutSearch") -> BoundDocument:
+def _certificate(search: "PriceSearch") -> BoundDocument:
     prices = search.prices()
     robots = search.least_costs()
-    used = tuple(
-        replace(cut.document, multiplier=int(multiplier))
-        for cut, multiplier in zip(cuts.cuts, search.multipliers, strict=True)
-        if multiplier > 0
-    )
     priced = search.priced_deadlines()
-    parts = sum(least or 0 for _, least in robots) + sum(cut.multiplier * cut.least for cut in used) - search.worth
+    parts = sum(least or 0 for _, least in robots) - search.worth
     parts -= sum(each.price * (len(each.robots) - 1) for each in priced)
     return BoundDocument(
         format=BOUND_FORMAT,
@@ -166,7 +155,7 @@ def _certificate(search: "PriceSearch", cuts: "CutSearch") -> BoundDocument:
         horizon=search.horizon,
         resources=prices.resources,
         exchanges=prices.exchanges,
-        cuts=used,
+        cuts=(),
         robots=robots,
         deadlines=priced,
     )

@@ -1,7 +1,5 @@
 """Formulas made small by a lower bound hold an optimum, and nothing cheaper."""
 
-from itertools import combinations
-
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -11,13 +9,12 @@ from tests.profiles import draws
 from tests.verify.tiny import TINY
 
 from carp_optimum.bound import lower_bound
-from carp_optimum.claims.cut_search import prove
 from carp_optimum.lagrangian.reduced_costs import PricedBound
 from carp_optimum.sat.core_guided import core_guided
 from carp_optimum.sat.priced_formula import priced_formula
 from carp_optimum.sat.solver import Deadline, Solver
 from carp_spec import AfterGoal, Instance, judge
-from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, CutDocument
+from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument
 from carp_spec.documents.instances import digest
 from carp_verify.bound.verify import Budget, RobotSearch, Tariff, fees_of, predecessors, verify_bound
 from carp_verify.optimum.encoding import Encoding
@@ -63,25 +60,12 @@ def town(seed: int, after_goal: AfterGoal) -> Instance:
     return grid_instance(Grid(5, 5, 10, map_seed=seed), Fleet(9, seed, after_goal))
 
 
-def first_cut(instance: Instance, multiplier: int) -> tuple[CutDocument, ...]:
-    """A cut of the first two robots that cost more together, if there are such."""
-    for pair in combinations(range(len(instance.robots)), 2):
-        cut = prove(instance, pair, lambda: None)
-        if cut is not None:
-            return (replace(cut.document, multiplier=multiplier),)
-    return ()
-
-
 def completed(instance: Instance, certificate: BoundDocument) -> BoundDocument:
     """The certificate with the least costs and the bound that its prices prove."""
     tariff, before, budget = Tariff(instance, certificate), predecessors(instance), Budget()
-    weight = dict.fromkeys(instance.robot, certificate.scale)
     fees = fees_of(instance, certificate.deadlines)
-    for cut in certificate.cuts:
-        for robot in cut.robots:
-            weight[robot] -= cut.multiplier
     robots = tuple(
-        (each.id, RobotSearch(tariff, each, weight[each.id], before, budget, fees[each.id]).least_cost())
+        (each.id, RobotSearch(tariff, each, certificate.scale, before, budget, fees[each.id]).least_cost())
         for each in instance.robots
     )
     certificate = replace(certificate, robots=robots)
@@ -107,7 +91,7 @@ def test_any_prices_leave_the_optimum_and_nothing_cheaper(instance: Instance, da
             horizon=6,
             resources=tuple((resource, tick, price) for (resource, tick), price in prices.items()),
             exchanges=(),
-            cuts=first_cut(instance, data.draw(st.integers(0, SCALE))),
+            cuts=(),
             robots=(),
         ),
     )
@@ -117,27 +101,20 @@ def test_any_prices_leave_the_optimum_and_nothing_cheaper(instance: Instance, da
     assert cheapest(instance, bound, least - 1) is None
 
 
-@pytest.mark.parametrize("cuts", [False, True], ids=["deadlines", "deadlines and a cut"])
 @pytest.mark.parametrize(("seed", "after_goal"), [(7, "park"), (10, "vanish")])
-def test_the_certificate_s_cuts_and_deadlines_count(seed: int, after_goal: AfterGoal, cuts: bool) -> None:
+def test_the_certificate_s_deadlines_count(seed: int, after_goal: AfterGoal) -> None:
     instance = town(seed, after_goal)
     least = core_guided(instance, SECONDS).cost
     assert least is not None
     certificate = lower_bound(instance, steps=1500, seen=False)
     assert len(certificate.deadlines) > 2
-    if cuts:
-        cut = first_cut(instance, certificate.scale // 2)
-        certificate = completed(instance, replace(certificate, cuts=cut))
-        assert certificate.cuts
     assert verify_bound(instance, certificate) <= least
     bound = PricedBound(instance, certificate)
     assert -(-bound.parts // bound.scale) == certificate.bound
     encoding = Encoding(instance)
     shortest = {robot.robot.id: robot.shortest or 0 for robot in encoding.robots}
-    members = {robot for cut in certificate.cuts for robot in cut.robots}
     for robot in encoding.robots:
-        above = min(bound.reduced(robot, shortest, least + 6).delays.values())
-        assert above >= 0 if robot.robot.id in members else above == 0
+        assert min(bound.reduced(robot, shortest, least + 6).delays.values()) == 0
     assert cheapest(instance, bound, least) == least
     assert cheapest(instance, bound, least - 1) is None
 

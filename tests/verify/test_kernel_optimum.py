@@ -9,7 +9,7 @@ from typing import Any
 
 import msgspec
 import pytest
-from tests.verify.bound_examples import completed, deadline_certificate
+from tests.verify.bound_examples import completed, cut_of, deadline_certificate
 from tests.verify.bound_examples import crossing as head_on
 from tests.verify.kernel_program import program
 from tests.verify.test_proof import crossing, drop_last_line, prove
@@ -19,8 +19,8 @@ from tests.verify.tiny import case
 from carp_optimum.optimum import optimum
 from carp_optimum.sat.proving import refutation, write_proof
 from carp_optimum.sat.solver import Deadline, Solver
-from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot, RobotId
-from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, CutDocument, DeadlinesDocument
+from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot
+from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, DeadlinesDocument
 from carp_spec.documents.decoding import write
 from carp_spec.documents.instances import digest, read_instance, write_instance
 from carp_spec.permutations import shuffle
@@ -252,14 +252,6 @@ def test_a_large_duration_or_capacity_is_no_obstacle(after_goal: AfterGoal, tmp_
     lrat = refutation(beat_formula(instance, least, evidence).formula, Deadline(SECONDS))
     claim(tmp_path, instance, least, evidence, lrat)
     assert verdict(tmp_path) == {"kernel": "1", "verdict": "accepted", "bound": least}
-
-
-def cut_of(instance: Instance, robots: Sequence[RobotId], least: int) -> CutDocument:
-    """The claim that robots cost at least so much together, with its refutation."""
-    group = group_of(instance, robots)
-    evidence = Evidence(tuple(least for _ in robots), tuple(range(len(robots))))
-    lrat = refutation(beat_formula(group, least, evidence).formula, Deadline(SECONDS))
-    return CutDocument(tuple(robots), least, 1, evidence.horizons, evidence.order, lrat)
 
 
 def bound_verdict(instance: Instance, document: BoundDocument, folder: Path) -> Any:  # noqa: ANN401 - as above

@@ -39,7 +39,7 @@ LARGEST_ENCODING = 2_000_000
 LARGEST_DELAYS = 300
 """The sum of the robots' largest delays near the best prices, beyond which no deadlines are searched for.
 
-On a spanning tree they are larger, and the formulas so much so that cuts gain more in the same time.
+On a spanning tree they are larger, and the formulas so much so that prices gain more in the same time.
 """
 CONFLICTS_TO_FIND = 3000
 CONFLICTS_TO_SHRINK = 900

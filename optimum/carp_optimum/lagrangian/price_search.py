@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from msgspec.structs import replace
 
-from carp_optimized.jit.kinds import Ints, IntTable, Longs, LongTable
+from carp_optimized.jit.kinds import IntTable, Longs, LongTable
 from carp_optimized.jit.references import Native
 from carp_optimized.state.arrays import LARGEST, NONE
 from carp_optimized.state.encoding import encode_graph, refuse_tick, refuse_what_is_too_large
@@ -40,19 +40,17 @@ class PriceLists(NamedTuple):
 
 
 class Point(NamedTuple):
-    """Prices of places, multipliers of cuts, and prices of deadlines."""
+    """Prices of places, and of deadlines."""
 
     resource: LongTable
     exchange: LongTable
-    multipliers: Longs
     fees: Longs
 
 
 class PriceSearch:
-    """Prices of an instance and multipliers of cuts; `best` is the best bound found with them, in parts of a tick.
+    """Prices of an instance; `best` is the best bound found with them, in parts of a tick.
 
-    A cut says that the costs of its members, robots by position, add up to no less than `least`. Deadlines say that one
-    of their members does not keep its own; `fees` are their prices.
+    Deadlines say that one of their members does not keep its own; `fees` are their prices.
     """
 
     def __init__(self, instance: Instance, scale: int) -> None:
@@ -78,10 +76,6 @@ class PriceSearch:
         wanted = min(max(DELAYS * longest, self.horizon + longest), LARGEST_TABLE // max(robots, 1))
         self.market = sized(market, self.horizon, max(1, min(wanted, MOST_NODES // max(resources, 1), LARGEST - last)))
         self.native = Native(self.market)
-        self.cuts: list[Ints] = []
-        self.least = np.zeros(0, np.int64)
-        self.multipliers = np.zeros(0, np.int64)
-        self._course = np.zeros(0, np.int64)
         self.deadlines: list[Deadlines] = []
         self.fees = np.zeros(0, np.int64)
         self._course_of_fees = np.zeros(0, np.int64)
@@ -92,18 +86,13 @@ class PriceSearch:
 
     def _point(self) -> Point:
         prices = self.market.prices
-        return Point(prices.resource.copy(), prices.exchange.copy(), self.multipliers.copy(), self.fees.copy())
+        return Point(prices.resource.copy(), prices.exchange.copy(), self.fees.copy())
 
     def _bound(self) -> int:
-        """The bound that the prices and multipliers prove; gives each robot a cheapest way."""
-        weight = self.market.requests.weight
-        weight[:] = self.scale
-        for members, multiplier in zip(self.cuts, self.multipliers, strict=True):
-            weight[members] -= multiplier
-        proved = int((self.multipliers * self.least).sum())
+        """The bound that the prices prove; gives each robot a cheapest way."""
         worth = int((self.fees * (self._flat.sizes - 1)).sum())
         self._charge()
-        return proved - worth + find_ways(self.native)
+        return find_ways(self.native) - worth
 
     def _charge(self) -> None:
         """Fill the tables of what an arrival costs each robot, by its delay, and of what it pays on its way."""
@@ -122,22 +111,12 @@ class PriceSearch:
 
     def _restore(self) -> int:
         """Go back to the best prices, without a course: their bound."""
-        self.market.prices.resource[:], self.market.prices.exchange[:], multipliers, fees = self._kept
-        self.multipliers, self.fees = multipliers.copy(), fees.copy()
+        self.market.prices.resource[:], self.market.prices.exchange[:], fees = self._kept
+        self.fees = fees.copy()
         self.market.usage.course[:] = 0
         self.market.usage.course_of_exchange[:] = 0
-        self._course[:] = 0
         self._course_of_fees[:] = 0
         return self._bound()
-
-    def add_cuts(self, cuts: Sequence[tuple[Sequence[int], int]]) -> None:
-        """Add cuts, each its members and their least total, with multipliers of 0."""
-        self.cuts.extend(np.array(members, np.int32) for members, _ in cuts)
-        none = np.zeros(len(cuts), np.int64)
-        self.least = np.concatenate([self.least, np.array([least for _, least in cuts], np.int64)])
-        self.multipliers = np.concatenate([self.multipliers, none])
-        self._course = np.concatenate([self._course, none])
-        self._kept = self._kept._replace(multipliers=np.concatenate([self._kept.multipliers, none]))
 
     def add_deadlines(self, deadlines: Sequence[Deadlines]) -> None:
         """Add deadlines with prices of 0."""
@@ -210,32 +189,17 @@ class PriceSearch:
         return np.where(ways.length > 0, ways.enter[np.arange(len(last)), last] - self.market.requests.release, 0)
 
     def _step(self, gain: int) -> bool:
-        """Change prices and multipliers to gain so much; false if there is nothing to be gained."""
-        costs = self.costs()
-        lacking = self.least - np.array([costs[members].sum() for members in self.cuts], np.int64)
-        self._course = self._course * KEPT // PARTS + UNIT * lacking
-        self._course[(self._course < 0) & (self.multipliers == 0)] = 0
+        """Change prices to gain so much; false if there is nothing to be gained."""
         surplus = self._kept_by() - self._flat.sizes + 1
         self._course_of_fees = self._course_of_fees * KEPT // PARTS + UNIT * surplus
         self._course_of_fees[(self._course_of_fees < 0) & (self.fees == 0)] = 0
-        square = turn_all(self.native) + int((self._course * self._course).sum() + (self._course_of_fees**2).sum())
+        square = turn_all(self.native) + int((self._course_of_fees**2).sum())
         if square == 0:
             return False
         walk_all(self.native, gain, square)
-        self.multipliers = np.maximum(self.multipliers + gain * UNIT * self._course // square, 0)
-        self._limit_multipliers()
         self.fees = np.maximum(self.fees + gain * UNIT * self._course_of_fees // square, 0)
         self.count += 1
         return True
-
-    def _limit_multipliers(self) -> None:
-        """Lower the multipliers of robots whose cuts would outweigh their costs."""
-        total = np.zeros(len(self.instance.robots), np.int64)
-        for members, multiplier in zip(self.cuts, self.multipliers, strict=True):
-            total[members] += multiplier
-        if (total > self.scale).any():
-            for number, members in enumerate(self.cuts):
-                self.multipliers[number] = self.multipliers[number] * self.scale // max(self.scale, *total[members])
 
     def climb(
         self, first_aim: int, last_aim: int, check: Callable[[], None], on_step: Callable[[int, int], None]

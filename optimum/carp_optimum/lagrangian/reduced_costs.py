@@ -25,7 +25,7 @@ class Reduced:
 
 
 class PricedBound:
-    """A certificate, ready to give reduced costs; `parts` is its bound in parts of a tick."""
+    """A certificate without cuts, ready to give reduced costs; `parts` is its bound in parts of a tick."""
 
     def __init__(self, instance: Instance, certificate: BoundDocument) -> None:
         self.instance = instance
@@ -33,13 +33,8 @@ class PricedBound:
         self.scale = certificate.scale
         self.tariff = Tariff(instance, certificate)
         self.least = {robot: least or 0 for robot, least in certificate.robots}
-        self.weight = dict.fromkeys(instance.robot, certificate.scale)
         self.fees = fees_of(instance, certificate.deadlines)
         self.parts = sum(self.least.values()) - self.tariff.worth
-        for cut in certificate.cuts:
-            self.parts += cut.multiplier * cut.least
-            for robot in cut.robots:
-                self.weight[robot] -= cut.multiplier
         for deadlines in certificate.deadlines:
             self.parts -= deadlines.price * (len(deadlines.robots) - 1)
 
@@ -65,11 +60,6 @@ class _Pricing:
         self.fees = bound.fees[name]
         self.longest = cost - sum(shortest.values())
         self.shortest = shortest[name]
-        self.cuts = [
-            (cut.multiplier, min(0, sum(map(shortest.__getitem__, cut.robots)) - cut.least))
-            for cut in bound.certificate.cuts
-            if name in cut.robots
-        ]
         self.paid: dict[Node, int] = {}
         self.ways: dict[Node, list[tuple[Node | None, int]]] = {}
         self.delays: dict[int, int] = {}
@@ -122,10 +112,8 @@ class _Pricing:
             yield None, last
 
     def excess(self, delay: int, paid: int) -> int:
-        """The cost of a plan of this delay and payment above the robot's least, its cost in cuts included."""
-        beyond = sum(multiplier * max(0, surplus + delay) for multiplier, surplus in self.cuts)
-        name = self.robot.robot.id
-        return paid + self.bound.weight[name] * (self.shortest + delay) + beyond - self.bound.least[name]
+        """The cost of a plan of this delay and payment above the robot's least."""
+        return paid + self.bound.scale * (self.shortest + delay) - self.bound.least[self.robot.robot.id]
 
     def stay(self, resource: ResourceId, enter: int, leave: int) -> int:
         """The payment of a stay in [enter, leave) on the way."""
