@@ -77,6 +77,11 @@ thorough: compiled
 bench: install
 	$(BIN)/pytest -q -s tests/bench/bench_speed.py
 
+# What a fleet in memory costs beside the compiled core, and how fast documents of large fleets are read.
+bench-fleet: install
+	$(BIN)/python -m tests.bench.bench_fleet 100 1000 3000
+	$(BIN)/python -m tests.bench.bench_documents 3000 5000
+
 # Measure how long the search for an optimum takes, and put the table into docs/results/optima.md; takes up to half an hour.
 optimum-figures: install
 	$(BIN)/python -m carp_experiments.measuring.optimum_table

@@ -68,6 +68,7 @@ class PlannedFleet:
         self._adding: Native[Adding] | None = None
         self._take(encoding.encode(instance, shortcuts=shortcuts))
         self._ids = [robot.id for robot in instance.robots]
+        self._names = [*instance.graph.index]
         self._index = {id: position for position, id in enumerate(self._ids)}
         self._vacant: list[int] = []
         self._destinations = encoding.destinations_in_use(self._state)
@@ -143,6 +144,8 @@ class PlannedFleet:
 
     def dismiss(self, robots: Sequence[int]) -> None:
         """Forget robots, with the plans of those that have one; others may get their indices."""
+        if not robots:
+            return
         gone = np.array(robots, np.int32)
         held = self._records[gone]
         self._withdraw(held[held != NONE])
@@ -218,10 +221,11 @@ class PlannedFleet:
         """The kinds of reuse; robots with stops do not note what their queries read, and have but one."""
         return self.reuse if self._state.stops.first[-1] == 0 else WITH_STOPS
 
-    @property
-    def visits(self) -> int:
-        """How many visits all plans have."""
-        return int(self._state.records.visits[self._records[self._order]].sum(dtype=np.int64))
+    def has_more_visits(self, than: int) -> bool:
+        """Whether all plans together have more visits than that."""
+        if self._state.records.used[1] <= than:
+            return False
+        return int(self._state.records.visits[self._records[self._order]].sum(dtype=np.int64)) > than
 
     def commit(self, plans: Sequence[Plan]) -> None:
         """Take over plans made elsewhere, which must fit the plans of the fleet."""
@@ -569,7 +573,7 @@ class PlannedFleet:
 
     def _plan(self, record: int) -> Plan:
         if record not in self._plans:
-            self._plans[record] = read_plan(self._state, self.instance.graph, record, self._ids)
+            self._plans[record] = read_plan(self._state, self._names, record, self._ids)
         return self._plans[record]
 
 

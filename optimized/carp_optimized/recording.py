@@ -9,7 +9,8 @@ import numpy.typing as npt
 from carp_optimized.jit.references import Native
 from carp_optimized.passes import record_plan
 from carp_optimized.state.arrays import NEVER, Records, State
-from carp_spec import Instance, Plan, ResourceGraph, RobotId, Visit
+from carp_spec import Instance, Plan, ResourceId, RobotId
+from carp_spec.documents.solutions import visits_of
 
 T = TypeVar("T", bound=np.generic)
 
@@ -22,17 +23,16 @@ def write_plan(native: Native[State], instance: Instance, robot: int, plan: Plan
     return record_plan(native, robot, resources, enters, NEVER if leave is None else leave)
 
 
-def read_plan(state: State, graph: ResourceGraph, record: int, robots: Sequence[RobotId]) -> Plan:
-    """The plan of a record; robots are given by their indices."""
+def read_plan(state: State, names: Sequence[ResourceId], record: int, robots: Sequence[RobotId]) -> Plan:
+    """The plan of a record; resources and robots are given by their indices."""
     records = state.records
     first = int(records.visits_at[record])
     end = first + int(records.visits[record])
     entered = records.enter[first:end].tolist()
     last = int(records.leave[record])
     leaves = [*entered[1:], None if last == NEVER else last]
-    resources = [graph.resources[resource].id for resource in records.resource[first:end].tolist()]
-    visits = tuple(Visit(*visit) for visit in zip(resources, entered, leaves, strict=True))
-    return Plan(robots[int(records.robot[record])], visits)
+    resources = map(names.__getitem__, records.resource[first:end].tolist())
+    return Plan(robots[int(records.robot[record])], visits_of(resources, entered, leaves))
 
 
 def enlarged(records: Records) -> Records:

@@ -315,7 +315,7 @@ class Fleet:
                 f"a robot must have at most {MOST_STOPS} stops, and would have {stops}; forgetting drops those done"
             )
             raise Refusal("limit", path, FEW_ROBOTS.id, message)
-        if self._made().visits > MOST_VISITS:
+        if self._made().has_more_visits(MOST_VISITS):
             message = f"the plans must have at most {MOST_VISITS} visits, and have more; forgetting drops those done"
             raise Refusal("limit", path, FEW_ROBOTS.id, message)
 

@@ -1,6 +1,6 @@
 """The documents of plans: solutions, `carproof-solution/1`, and traces, `carproof-trace/1`."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import fields
 from types import GenericAlias
 from typing import Annotated, Final, Literal, TypeAlias
@@ -82,6 +82,13 @@ def read_trace(data: bytes) -> Trace:
         return msgspec.convert(quick, Trace, from_attributes=True)
     document = decode(data, TraceDocument, TRACE_FORMAT)
     return Trace(document.now, _plans(document.plans))
+
+
+def visits_of(
+    resources: Iterable[ResourceId], enters: Iterable[int], leaves: Iterable[int | None]
+) -> tuple[Visit, ...]:
+    """The visits of columns of right values, in less than half the time that making one after the other takes."""
+    return msgspec.convert(tuple(map(_VISIT, resources, enters, leaves)), tuple[Visit, ...], from_attributes=True)
 
 
 def visits_document(plan: Plan) -> tuple[VisitDocument, ...]:
