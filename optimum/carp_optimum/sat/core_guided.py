@@ -49,7 +49,7 @@ CONFLICTS_BETWEEN_RESULTS = 2000
 """After this many conflicts the search asks for what was found beside it."""
 DELAY_OF_DOUBT = 20
 PARTS = 5
-PARTS_BEFORE_HEURISTICS = (1, 3)
+"""A search of which one of this many parts of the time is over plans with heuristics, for as long again."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +116,7 @@ class CoreGuided:
         self.here: Between | None = None
         self.beside: BackgroundSearch[Between] | None = None
         self.work_before = 0
-        self.tries_of_heuristics = 0
+        self.has_tried_heuristics = False
         self.order: dict[int, None] = {}
         self.robot_of: dict[Literal, int] = {}
         self.sum_of: dict[Literal, tuple[Unary, int]] = {}
@@ -237,18 +237,16 @@ class CoreGuided:
             self.sum_of[number[reached]] = (number, reached + 1)
 
     def look(self) -> None:
-        """Look at the clock. A long search stops to plan with heuristics, and stops again if they find nothing."""
+        """Look at the clock. A long search stops once to plan with heuristics."""
         if self.beside is not None:
             self.beside.read()
             self.deadline.check()
             return
-        tries = self.tries_of_heuristics
-        parts = PARTS_BEFORE_HEURISTICS[tries:]
-        if self.best is None and parts and self.deadline.is_past(parts[0], PARTS):
-            self.tries_of_heuristics += 1
-            ticks_to_goal = {robot.robot.id: robot.ticks_to_goal for robot in self.encoding.robots}
-            check = self.deadline.part(PARTS).check
-            self.best = plans_of_all(self.instance, ticks_to_goal, check, self.lower, seed=tries)
+        if not self.has_tried_heuristics and self.deadline.is_past(PARTS):
+            self.has_tried_heuristics = True
+            longest_first = sorted(self.encoding.robots, key=lambda robot: -(robot.shortest or 0))
+            order = [robot.robot.id for robot in longest_first]
+            self.best = plans_of_all(self.instance, order, self.deadline.part(PARTS).check)
         self.deadline.check()
 
     @property

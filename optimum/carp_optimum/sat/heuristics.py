@@ -1,70 +1,68 @@
-"""Plans of all robots that need not be the best, for a search that may not end in time.
+"""Plans of all robots that need not be the best, for a search that may not end in time."""
 
-The robots are planned one after the other, the longest way first; then again and again, with those that found no
-plan moved to the front, or in a random order if all did. Each is added by the neighbourhood planner of
-`carp_optimized`, which plans near robots again; where its code is not compiled yet, or its arrays do not hold the
-instance's numbers, by CARP of `carp_reference`, as compiling would take longer than many a limit.
-"""
-
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import TypeAlias
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 
 from carp_optimum.sat.solver import TimeOver
-from carp_spec import Instance, Neighbourhood, Plan, Refusal, ResourceId, RobotId, Solution, total_cost
-from carp_spec.permutations import shuffle, splitmix64
+from carp_spec import Instance, Plan, Refusal, RobotId, Solution, total_cost
 
-ATTEMPTS = 1000
-TOGETHER = 3
-STUBBORN = 20
+POLISHES, ROUNDS_OF_POLISH = 50, 200
+PASSES = 20
 STARTS = 6
 ROUNDS = 100_000
 WORK_OF_ROUND = 2
 """The propagations of a round of annealing, for each robot."""
 
-Attempt: TypeAlias = Callable[[Sequence[RobotId]], tuple[Plan, ...]]
 
+def plans_of_all(instance: Instance, order: Sequence[RobotId], check: Callable[[], None]) -> Sequence[Plan] | None:
+    """Plans of all robots by the neighbourhood planner, polished; `None` if none are found.
 
-def plans_of_all(
-    instance: Instance,
-    ticks_to_goal: Mapping[RobotId, Mapping[ResourceId, int]],
-    check: Callable[[], None],
-    enough: int = 0,
-    attempts: int = ATTEMPTS,
-    seed: int = 0,
-) -> tuple[Plan, ...] | None:
-    """The cheapest plans of all robots found, or `None`; `check` is called before each robot and may raise `TimeOver`.
-
-    `ticks_to_goal` are those of `carp_reference.problem.Problem`. A total of `enough` ends the search. After
-    `STUBBORN` failures in a row the order is shuffled too; another seed begins with another order.
+    Where its code is not compiled yet, they are those of CARP, at first in this order, as compiling would take longer
+    than many a limit. `check` may end the search by `TimeOver`; what was found by then is kept.
     """
-    stream = splitmix64(seed)
-    order = sorted(ticks_to_goal, key=lambda robot: -ticks_to_goal[robot].get(instance.robot[robot].start, 0))
-    if seed:
-        order = list(shuffle(order, stream))
-    attempt = _run(instance, check) or _read(instance, ticks_to_goal, check)
-    best: tuple[Plan, ...] | None = None
-    failures = 0
-    try:
-        for _ in range(attempts):
-            try:
-                plans = attempt(order)
-            except Refusal:
-                attempt = _read(instance, ticks_to_goal, check)
-                continue
-            planned = {plan.robot for plan in plans}
-            failures = 0 if len(planned) == len(order) else failures + 1
-            if 0 < failures < STUBBORN:
-                order.sort(key=planned.__contains__)
-                continue
-            if failures == 0 and (best is None or total_cost(instance, plans) < total_cost(instance, best)):
-                best = plans
-                if total_cost(instance, best) <= enough:
-                    break
-            failures = 0
-            order = list(shuffle(order, stream))
-    except TimeOver:
-        pass
-    return best
+    from carp_optimized.jit.compiling import is_cached  # noqa: PLC0415 - slow to load
+    from carp_optimized.neighbourhood.adding import add_robot  # noqa: PLC0415
+
+    found: list[Sequence[Plan]] = []
+    with suppress(TimeOver):
+        if is_cached(add_robot):
+            with suppress(Refusal):  # numbers that only the reference holds
+                found.extend(_polished(instance, check))
+        if not found:
+            found.extend(_in_some_order(instance, order, check))
+    return found[-1] if found else None
+
+
+def _polished(instance: Instance, check: Callable[[], None]) -> Iterator[Sequence[Plan]]:
+    """Ever better plans of all robots."""
+    import carp_optimized  # noqa: PLC0415 - slow to load
+
+    solution = carp_optimized.plan(instance, advance=check)
+    for seed in range(POLISHES):
+        if not solution.unplanned:
+            yield solution.plans
+        solution = carp_optimized.polish(
+            instance, solution, iterations=ROUNDS_OF_POLISH, seed=seed, advance=lambda *_: check()
+        )
+    if not solution.unplanned:
+        yield solution.plans
+
+
+def _in_some_order(instance: Instance, order: Sequence[RobotId], check: Callable[[], None]) -> Iterator[Sequence[Plan]]:
+    """The plans of CARP, if there are any: pass after pass, with the robots first that the one before left out."""
+    import carp_reference  # noqa: PLC0415 - slow to load
+
+    for _ in range(PASSES):
+        plans: list[Plan] = []
+        for robot in order:
+            check()
+            plan = carp_reference.find(instance, plans, robot)
+            if plan is not None:
+                plans.append(plan)
+        if len(plans) == len(order):
+            yield plans
+            return
+        order = sorted(order, key={plan.robot for plan in plans}.__contains__)
 
 
 def ever_better(instance: Instance, look: Callable[[], None]) -> Iterator[tuple[int, Sequence[Plan]]]:
@@ -107,47 +105,3 @@ def _annealed(instance: Instance, solution: Solution, seed: int, look: Callable[
         played = rounds
 
     return anneal(instance, solution, ROUNDS, seed=seed, advance=count, clock=lambda: played).plans
-
-
-def _run(instance: Instance, check: Callable[[], None]) -> Attempt | None:
-    """The plans of the neighbourhood planner in an order, without the robots that find none; `None`: not at hand."""
-    from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415
-    from carp_optimized.jit.compiling import is_cached  # noqa: PLC0415 - slow to load
-    from carp_optimized.neighbourhood.adding import add_robot  # noqa: PLC0415
-
-    if not is_cached(add_robot):
-        return None
-    try:
-        fleet = PlannedFleet(instance)
-    except Refusal:
-        return None
-
-    def attempt(order: Sequence[RobotId]) -> tuple[Plan, ...]:
-        fleet.clear()
-        for robot in order:
-            check()
-            fleet.add(fleet.index(robot), 0, Neighbourhood(m=TOGETHER))
-        return fleet.plans
-
-    return attempt
-
-
-def _read(
-    instance: Instance, ticks_to_goal: Mapping[RobotId, Mapping[ResourceId, int]], check: Callable[[], None]
-) -> Attempt:
-    """The plans of CARP in an order, without the robots that find none."""
-    from carp_reference.problem import Problem  # noqa: PLC0415 - slow to load
-    from carp_reference.query import find_plan  # noqa: PLC0415
-
-    problem = Problem(instance, {robot: [ticks] for robot, ticks in ticks_to_goal.items()}, 0)
-
-    def attempt(order: Sequence[RobotId]) -> tuple[Plan, ...]:
-        plans: list[Plan] = []
-        for robot in order:
-            check()
-            plan = find_plan(problem, plans, robot)
-            if plan is not None:
-                plans.append(plan)
-        return tuple(plans)
-
-    return attempt

@@ -34,9 +34,9 @@ class Deadline:
         if self._clock() >= self._end:
             raise TimeOver
 
-    def is_past(self, parts: int, of: int) -> bool:
-        """Whether this many parts, of the time until it in equal parts, have gone by."""
-        return (self._clock() - self._start) * of >= (self._end - self._start) * parts
+    def is_past(self, of: int) -> bool:
+        """Whether one of a number of equal parts of the time until it has gone by."""
+        return (self._clock() - self._start) * of >= self._end - self._start
 
     def part(self, of: int) -> "Deadline":
         """A deadline after one of a number of equal parts of the same time, from now."""

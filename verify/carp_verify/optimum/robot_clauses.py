@@ -95,12 +95,6 @@ class RobotClauses:
         """The tick at which the robot enters its goal if nothing delays it."""
 
     @property
-    def ticks_to_goal(self) -> Mapping[ResourceId, int]:
-        """The least ticks from entering a resource to entering the goal, for the resources that lead there."""
-        ticks = {resource: self._duration[resource] + rest for resource, rest in self._rest.items()}
-        return {**ticks, self.robot.goal: 0}
-
-    @property
     def _stands_still(self) -> bool:
         return self.robot.start == self.robot.goal and not self._drives_on
 
