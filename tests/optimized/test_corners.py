@@ -1,6 +1,6 @@
 """Cases that random instances seldom reach: full arrays, far goals, ended plans, too many plans to remember."""
 
-from dataclasses import fields, replace
+from dataclasses import replace
 from itertools import count, pairwise
 from math import isqrt, sqrt
 
@@ -10,7 +10,6 @@ from tests.optimized.towns import TOWNS
 
 import carp_optimized
 import carp_reference
-from carp_optimized import Queries, Reuse
 from carp_optimized.__main__ import compile_all
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.neighbourhood.distances import term
@@ -62,11 +61,6 @@ def test_progress_is_never_more_than_all_steps(planner: Planner) -> None:
 
 def test_what_an_installation_calls_runs() -> None:
     compile_all()
-
-
-def test_every_kind_of_reuse_has_a_count() -> None:
-    queries = Queries(asked=1, kept=2, unchanged=3, prefixes=4, shared=5, bounds=6)
-    assert list(queries.avoided) == [each.name for each in fields(Reuse)]
 
 
 def test_rows_of_windows_grow() -> None:

@@ -3,9 +3,9 @@
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from msgspec.structs import replace
 from pysat.solvers import Cadical195
 from tests.profiles import draws
+from tests.verify.bound_examples import completed
 from tests.verify.tiny import TINY
 
 from carp_optimum.bound import lower_bound
@@ -16,7 +16,7 @@ from carp_optimum.sat.solver import Deadline, Solver
 from carp_spec import AfterGoal, Instance, judge
 from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument
 from carp_spec.documents.instances import digest
-from carp_verify.bound.verify import Budget, RobotSearch, Tariff, fees_of, predecessors, verify_bound
+from carp_verify.bound.verify import verify_bound
 from carp_verify.optimum.encoding import Encoding
 from carp_verify.optimum.joint_search import least_total_cost
 from carp_verify.optimum.proof import solution_of
@@ -58,18 +58,6 @@ def test_the_formula_holds_plans_from_the_optimum_on(instance: Instance, steps: 
 def town(seed: int, after_goal: AfterGoal) -> Instance:
     """Nine robots that are in each other's way."""
     return grid_instance(Grid(5, 5, 10, map_seed=seed), Fleet(9, seed, after_goal))
-
-
-def completed(instance: Instance, certificate: BoundDocument) -> BoundDocument:
-    """The certificate with the least costs and the bound that its prices prove."""
-    tariff, before, budget = Tariff(instance, certificate), predecessors(instance), Budget()
-    fees = fees_of(instance, certificate.deadlines)
-    robots = tuple(
-        (each.id, RobotSearch(tariff, each, certificate.scale, before, budget, fees[each.id]).least_cost())
-        for each in instance.robots
-    )
-    certificate = replace(certificate, robots=robots)
-    return replace(certificate, bound=-(-PricedBound(instance, certificate).parts // certificate.scale))
 
 
 @settings(max_examples=draws(1000))

@@ -48,12 +48,6 @@ def test_the_page_has_the_verdict_what_was_asked_and_all_findings(tmp_path: Path
     assert "<script>document" not in text
 
 
-def test_a_planner_that_conforms_has_a_page_too() -> None:
-    text = html_document(Report(Options(), "planner"), [], ORIGIN).decode()
-    assert '<p class="verdict no">' in text  # it answered nothing
-    assert "<iframe" not in text
-
-
 def test_json_and_junit_name_the_folder_of_each_failure(tmp_path: Path) -> None:
     report = failing()
     saved = save_all(report.failures, tmp_path, ORIGIN)
