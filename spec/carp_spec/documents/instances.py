@@ -81,14 +81,14 @@ class InstanceDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 def robot_of(robot: Any) -> Robot:  # noqa: ANN401 - its document, with fields that the model describes
     """The robot of a document."""
     stops = (Stop(robot.goal),) if robot.stops is msgspec.UNSET else all_converted(robot.stops, Stop)
-    return Robot(robot.id, robot.start, None, robot.release, robot.pace, stops=stops)
+    return converted(robot, Robot, stops=stops)
 
 
 def robot_document(robot: Robot) -> RobotDocument:
     """The document of a robot."""
-    ends = {"goal": robot.goal} if robot.has_goal_alone else {"stops": all_converted(robot.stops, StopDocument)}
-    numbers: dict[str, Any] = {"release": robot.release, "pace": robot.pace, **ends}
-    return RobotDocument(robot.id, robot.start, **numbers)
+    if robot.has_goal_alone:
+        return converted(robot, RobotDocument, goal=robot.goal, stops=msgspec.UNSET)
+    return converted(robot, RobotDocument, goal=msgspec.UNSET, stops=all_converted(robot.stops, StopDocument))
 
 
 def read_instance(data: bytes) -> Instance:
