@@ -246,11 +246,12 @@ def test_a_kernel_is_asked_about_each_robot_for_the_best_plan_and_why_none_is_be
             require_contradiction(asked, answer, level, None, "carproof-kernel 7 refuses carproof's own on one")
 
 
-def test_a_kernel_is_asked_about_plans_alone_and_where_it_knows_the_law(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_kernel_is_asked_about_plans_alone_with_stops_too(monkeypatch: pytest.MonkeyPatch) -> None:
     requests = let_kernel_decide(monkeypatch)
     require_agreement(OPTIMUM, BEST, Level.SOUND, LAWLESS)
     require_agreement(case("bound", ALONE), BOUND, Level.SOUND, LAWLESS)
+    assert requests == []
     [robot] = ALONE.robots
     serving = replace(QUERY, instance=replace(ALONE, robots=(replace(robot, stops=(Stop(robot.goal, 1),)),)))
-    require_agreement(serving, right(serving), Level.SOUND, LAWLESS)
-    assert requests == []
+    require_agreement(serving, right(serving), Level.SOUND, None)
+    assert [each["op"] for each in requests] == ["check"]

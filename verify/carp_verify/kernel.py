@@ -95,7 +95,7 @@ def program() -> str:
 
 def request(op: str, instance: Instance, **documents: object) -> bytes:
     """One line that asks the kernel; raises `Refusal` if it does not decide the question about such an instance."""
-    if op != "check":
+    if op == "verify-bound":
         refuse(instance, "stops")
     return msgspec.json.encode({"op": op, "instance": instance_document(instance), **documents}) + b"\n"
 

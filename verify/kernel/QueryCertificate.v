@@ -1,24 +1,28 @@
 (** Certificates that no plan of a robot arrives earlier than a tick, or that it has none: carproof-query/1.
 
-    A certificate has the tick [bound] before which no plan arrives ([None]: there is no plan at all), labels and a
-    potential.
+    A certificate has the tick [bound] before which no plan arrives ([None]: there is no plan at all), and labels and a
+    potential for each number of stops that the robot can have served before the last one, of those left to it.
 
-    - A label (resource, tick) stands for the free window of the resource that holds the tick: the robot enters it no
-      earlier than at the tick. Windows are half-open, and no window is named: the tick does that.
+    - A label (resource, tick) stands for the free window of the resource that holds the tick: the robot may leave it no
+      earlier than one duration after the tick. That is the entry; behind a stop that was served in the window, it is
+      later by what the service takes longer than the duration. Windows are half-open, and no window is named: the tick
+      does that.
     - The potential (resource, ticks) is a lower bound of the ticks from entering the resource to entering the goal.
       From a resource that is not listed the goal cannot be reached.
 
-    It is accepted if the potential is 0 at the goal and grows along no move backwards by more than the ticks that the
-    robot needs in the resource that it leaves; if from the start, and from each label, every window that can be entered
-    at a tick t with t + potential < bound has a label no later than t; and if neither the start nor a label before
-    the bound lets the robot end its plan. The start is not in the certificate: it is computed. The labels are the
-    windows that A* has expanded before it found the plan, with their earliest entries. *)
+    It is accepted if the last potential is 0 at the goal, and each grows along no move backwards by more than the ticks
+    that the robot needs in the resource that it leaves, and before a stop by no more than its service takes longer; if
+    from the start, and from each label, every window that can be entered at a tick t with t + potential < bound has a
+    label no later than t, and so has the window itself once the next stop is served in it; and if neither the start nor
+    a label before the bound lets the robot end its plan. The start is not in the certificate: it is computed. The
+    labels are the windows that A* has expanded before it found the plan, with their earliest entries. *)
 Require Import ZArith List Bool Lia.
-From Carproof Require Import Law Collections Timeline Journey Checker Windows Context Past.
+From Carproof Require Import Law Stops Collections Timeline Journey Checker Windows Context Past.
 Import ListNotations.
 Open Scope Z_scope.
 
-Record certificate := Certificate { bound : option Z; labels : list (Z * Z); potential : list (Z * Z) }.
+Record layer := Layer { labels : list (Z * Z); potential : list (Z * Z) }.
+Record certificate := Certificate { bound : option Z; layers : list layer }.
 
 (** The resources that one move leads to, by resource. *)
 Definition successors_of (i : instance) : Map.t (list Z) :=
@@ -37,30 +41,63 @@ Fixpoint wait_for_room (known : lookup) (c : context) (source target : Z) (entri
     if is_exchange known c source target tick then wait_for_room known c source target later (tick + 1) else tick
   end.
 
+Definition labels_by_resource (l : list (Z * Z)) : Map.t (list Z) :=
+  fold_left (fun m label => enlist (fst label) (snd label) m) l (Map.empty (list Z)).
+
+(** A layer with its look-ups, and the stop that the robot serves next. *)
+Record stage := Stage {
+  next_stop : stop; label_list : list (Z * Z); label_map : Map.t (list Z); potential_of : Map.t (Z * Z)
+}.
+Definition stage_of (s : stop) (l : layer) : stage :=
+  Stage s (labels l) (labels_by_resource (labels l)) (index fst (potential l)).
+
+(** The stages before each of the stops that are left. *)
+Definition stages_of (left : list stop) (ls : list layer) : list stage :=
+  map (fun both => stage_of (fst both) (snd both)) (combine left ls).
+
 Section Checker.
-Variables (i : instance) (known : lookup) (successors : Map.t (list Z)).
-Variables (c : context) (a : robot) (now : Z).
-Variables (bound : option Z) (label_map : Map.t (list Z)) (potential : Map.t (Z * Z)).
+Variables (i : instance) (known : lookup) (all_moves : list (Z * Z)) (successors : Map.t (list Z)).
+Variables (c : context) (a : robot) (now : Z) (bound : option Z).
 
 (** The tick is not before the bound. *)
 Definition reaches (tick : Z) : bool := match bound with Some t => t <=? tick | None => false end.
 
+(** The ticks for which the robot stays in a resource in which it needs so many, to serve the stop. *)
+Definition stay_for (s : stop) (ticks : Z) : Z := Z.max ticks (service s).
+
+Section Stage.
+(** A stage, and those behind it. *)
+Variables (g : stage) (behind : list stage).
+
 (** A robot that enters the resource at the tick enters the goal no earlier than the bound. *)
 Definition is_late (id tick : Z) : bool :=
-  match Map.find id potential with Some (_, ticks) => reaches (tick + ticks) | None => true end.
+  match Map.find id (potential_of g) with Some (_, ticks) => reaches (tick + ticks) | None => true end.
 
-Definition goal_is_0 : bool := match Map.find (goal a) potential with Some (_, ticks) => ticks =? 0 | None => false end.
+Definition goal_is_0 : bool :=
+  match Map.find (stop_resource (next_stop g)) (potential_of g) with Some (_, ticks) => ticks =? 0 | None => false end.
 
 Definition move_is_consistent (move : Z * Z) : bool :=
-  match Map.find (snd move) potential, Map.find (fst move) potential with
+  match Map.find (snd move) (potential_of g), Map.find (fst move) (potential_of g) with
   | None, _ => true
   | Some _, None => false
   | Some (_, behind), Some (_, ticks) => ticks <=? least_ticks known a (fst move) + behind
   end.
 
+Definition stop_is_consistent (h : stage) : bool :=
+  let id := stop_resource (next_stop g) in
+  let least := least_ticks known a id in
+  match Map.find id (potential_of h), Map.find id (potential_of g) with
+  | None, _ => true
+  | Some _, None => false
+  | Some (_, behind), Some (_, ticks) => ticks <=? stay_for (next_stop g) least - least + behind
+  end.
+
+Definition potential_accepted : bool :=
+  match behind with [] => goal_is_0 | h :: _ => stop_is_consistent h end && forallb move_is_consistent all_moves.
+
 (** A label of the window no later than the tick. *)
 Definition has_label (id : Z) (w : window) (tick : Z) : bool :=
-  existsb (fun entry => (opens w <=? entry) && (entry <=? tick)) (listed label_map id).
+  existsb (fun entry => (opens w <=? entry) && (entry <=? tick)) (listed (label_map g) id).
 
 (** Every window of the target that the robot can enter early enough, if it is in the window [w] of the source and may
     leave at [ready], has a label. *)
@@ -81,54 +118,88 @@ Definition is_closed (source : Z) (w : window) (ready : Z) : bool :=
   forallb (move_is_closed source entries w ready) (listed successors source).
 
 (** The robot can end its plan in the window of the resource, if it may. *)
-Definition ends_in (id : Z) (w : window) (may_vanish : bool) : bool :=
-  (id =? goal a) && match after_goal i with Park => lasts w None | Vanish => may_vanish end.
+Definition ends_in (r : resource) (w : window) (entry : Z) (may_vanish : bool) : bool :=
+  (resource_id r =? stop_resource (next_stop g)) &&
+  match after_goal i with
+  | Park => lasts w None
+  | Vanish => may_vanish && lasts w (Some (entry + stay_for (next_stop g) (least_stay a r)))
+  end.
+End Stage.
 
-Definition label_accepted (label : Z * Z) : bool :=
+(** Once the next stop is served in the window of the resource, if it can be, there is a label behind it. *)
+Definition serving_is_closed (g h : stage) (r : resource) (w : window) (entry ready : Z) : bool :=
+  let served := Z.max ready (entry + stay_for (next_stop g) (least_stay a r)) in
+  if (resource_id r =? stop_resource (next_stop g)) && lasts w (Some served) then
+    is_late h (resource_id r) (served - least_stay a r) || has_label h (resource_id r) w (served - least_stay a r)
+  else true.
+
+(** All that can follow is labelled if the robot enters the window at [entry] and may leave it at [ready]. *)
+Definition place_accepted (g : stage) (behind : list stage) (r : resource) (w : window) (entry ready : Z)
+  (may_vanish : bool) : bool :=
+  match behind with
+  | [] => negb (ends_in g r w entry may_vanish)
+  | h :: _ => serving_is_closed g h r w entry ready
+  end
+  && is_closed g (resource_id r) w ready.
+
+Definition label_accepted (g : stage) (behind : list stage) (label : Z * Z) : bool :=
   let (id, entry) := label in
-  if is_late id entry then true
+  if is_late g id entry then true
   else match Map.find id (resource_of known) with
   | None => true
   | Some r =>
     forallb (fun w =>
       if (opens w <=? entry) && lasts w (Some (entry + 1))
-      then negb (ends_in id w true) && is_closed id w (entry + least_stay a r) else true) (windows_in c r)
+      then place_accepted g behind r w entry (entry + least_stay a r) true else true) (windows_in c r)
   end.
 
-Definition start_accepted (s : standing) : bool :=
-  if is_late (place s) (since s) then true
+Definition start_accepted (g : stage) (behind : list stage) (s : standing) : bool :=
+  if is_late g (place s) (since s) then true
   else match Map.find (place s) (resource_of known) with
   | None => true
   | Some r =>
     forallb (fun w =>
       if holds_stay w (since s) (Some (ready s))
-      then negb (ends_in (place s) w (now <=? since s + last_stay a r)) && is_closed (place s) w (ready s)
+      then place_accepted g behind r w (since s) (ready s) (now <=? since s + last_stay a r)
       else true) (windows_in c r)
   end.
-End Checker.
 
-Definition labels_by_resource (l : list (Z * Z)) : Map.t (list Z) :=
-  fold_left (fun m label => enlist (fst label) (snd label) m) l (Map.empty (list Z)).
+Fixpoint stages_accepted (gs : list stage) : bool :=
+  match gs with
+  | [] => true
+  | g :: behind =>
+    potential_accepted g behind && forallb (label_accepted g behind) (label_list g) && stages_accepted behind
+  end.
+End Checker.
 
 (** What does not depend on the robot: the moves of the graph, and look-ups. *)
 Record world := World { looked_up : lookup; all_moves : list (Z * Z); successors : Map.t (list Z) }.
 Definition world_of (i : instance) : world := World (lookup_of i) (moves_of_graph i) (successors_of i).
+
+(** The stops that what the robot has done has left to it; the visit that it is in does not count yet. *)
+Definition stops_left (a : robot) (s : standing) : list stop := fold_left next_stops (past s) (stops a).
+
+(** The certificate of a robot with what it has done, if that leaves it a plan. *)
+Definition search_accepted (i : instance) (g : world) (c : context) (a : robot) (now : Z) (s : standing)
+  (cert : certificate) : bool :=
+  let known := looked_up g in
+  if allows known c (past s ++ [Visit (place s) (since s) (Some (ready s))]) then
+    let left := stops_left a s in
+    let stages := stages_of left (layers cert) in
+    (length (layers cert) =? length left)%nat
+    && match stages with
+       | [] => false
+       | first :: behind => start_accepted i known (successors g) c a now (bound cert) first behind s
+       end
+    && stages_accepted i known (all_moves g) (successors g) c a (bound cert) stages
+  else true.
 
 (** The certificate of a robot that is planned at the tick [now] against the plans of the context, and has followed
     a plan until then, or none. A robot whose plan has ended keeps it. *)
 Definition certificate_accepted (i : instance) (g : world) (c : context) (a : robot) (now : Z) (followed : option plan)
   (cert : certificate) : bool :=
   let known := looked_up g in
-  let search :=
-    let s := standing_of known a now followed in
-    if allows known c (past s ++ [Visit (place s) (since s) (Some (ready s))]) then
-      let label_map := labels_by_resource (labels cert) in
-      let pot := index fst (potential cert) in
-      goal_is_0 a pot
-      && forallb (move_is_consistent known a pot) (all_moves g)
-      && start_accepted i known (successors g) c a now (bound cert) label_map pot s
-      && forallb (label_accepted i known (successors g) c a (bound cert) label_map pot) (labels cert)
-    else true in
+  let search := search_accepted i g c a now (standing_of known a now followed) cert in
   match followed with
   | Some before =>
     if has_ended before now then
@@ -142,23 +213,49 @@ Definition certificate_accepted (i : instance) (g : world) (c : context) (a : ro
 (** Details for a message, with the ids of the resources; only [certificate_accepted] decides. *)
 Inductive fault :=
 | Earlier_arrival (tick : Z)              (** the robot's plan has ended, and arrived at the tick *)
-| Goal_potential                          (** the potential of the goal must be 0 *)
+| Number_of_layers (stops_left : nat)     (** there must be labels and a potential before each stop that is left *)
+| Goal_potential                          (** the last potential of the goal must be 0 *)
+| Stop_potential (id : Z)                 (** before the stop in this resource the potential is too high *)
 | Move_potential (source target : Z)      (** along this move the potential falls by more than the robot needs *)
 | Open_start                              (** from the start a window without a label, or the end, is in reach *)
 | Open_label (id entry : Z).              (** the same from this label *)
 
+Section Fault.
+Variables (i : instance) (g : world) (c : context) (a : robot) (bound : option Z).
+Local Notation known := (looked_up g).
+
+Fixpoint potential_fault (gs : list stage) : option fault :=
+  match gs with
+  | [] => None
+  | first :: behind =>
+    if potential_accepted known (all_moves g) a first behind then potential_fault behind
+    else match find (fun move => negb (move_is_consistent known a first move)) (all_moves g), behind with
+    | Some (source, target), _ => Some (Move_potential source target)
+    | None, [] => Some Goal_potential
+    | None, _ => Some (Stop_potential (stop_resource (next_stop first)))
+    end
+  end.
+
+Fixpoint label_fault (gs : list stage) : option fault :=
+  match gs with
+  | [] => None
+  | first :: behind =>
+    match find (fun l => negb (label_accepted i known (successors g) c a bound first behind l)) (label_list first) with
+    | Some (id, entry) => Some (Open_label id entry)
+    | None => label_fault behind
+    end
+  end.
+End Fault.
+
 Definition certificate_fault (i : instance) (g : world) (c : context) (a : robot) (now : Z) (followed : option plan)
   (cert : certificate) : option fault :=
-  let known := looked_up g in
-  let label_map := labels_by_resource (labels cert) in
-  let pot := index fst (potential cert) in
-  let refused := fun label => negb (label_accepted i known (successors g) c a (bound cert) label_map pot label) in
-  let inconsistent := fun move => negb (move_is_consistent known a pot move) in
+  let left := stops_left a (standing_of (looked_up g) a now followed) in
+  let stages := stages_of left (layers cert) in
   let search :=
-    if negb (goal_is_0 a pot) then Goal_potential
-    else match find inconsistent (all_moves g), find refused (labels cert) with
-    | Some (source, target), _ => Move_potential source target
-    | None, Some (id, entry) => Open_label id entry
+    if negb (length (layers cert) =? length left)%nat then Number_of_layers (length left)
+    else match potential_fault g a stages, label_fault i g c a (bound cert) stages with
+    | Some potential, _ => potential
+    | None, Some label => label
     | None, None => Open_start
     end in
   if certificate_accepted i g c a now followed cert then None
@@ -175,10 +272,10 @@ Definition Reaches (bound : option Z) (tick : Z) : Prop := match bound with Some
 Lemma reaches_iff bound tick : reaches bound tick = true <-> Reaches bound tick.
 Proof. unfold reaches, Reaches. destruct bound; [apply Z.leb_le | split; [discriminate | tauto]]. Qed.
 
-Lemma is_late_later bound pot id tick later : tick <= later ->
-  is_late bound pot id tick = true -> is_late bound pot id later = true.
+Lemma is_late_later bound g id tick later : tick <= later ->
+  is_late bound g id tick = true -> is_late bound g id later = true.
 Proof.
-  unfold is_late. destruct (Map.find id pot) as [[x ticks]|]; auto. rewrite !reaches_iff.
+  unfold is_late. destruct (Map.find id (potential_of g)) as [[x ticks]|]; auto. rewrite !reaches_iff.
   unfold Reaches. destruct bound; auto. lia.
 Qed.
 
@@ -234,40 +331,69 @@ Proof. intros R E. apply find_resource; auto. Qed.
 
 Section Certificate.
 Variables (a : robot) (committed : list plan) (c : context) (now : Z) (bound : option Z).
-Variables (label_list : list (Z * Z)) (pot : Map.t (Z * Z)).
 Hypothesis of_instance : In a (robots i).
 Hypothesis others : Committed i a committed.
 Hypothesis represents : Represents i c committed.
 
-Local Notation label_map := (labels_by_resource label_list).
-Local Notation late := (is_late bound pot).
-Local Notation closed := (is_closed known (successors_of i) c a bound label_map pot).
+Local Notation late := (is_late bound).
+Local Notation closed := (is_closed known (successors_of i) c a bound).
 
-Hypothesis goal_ok : goal_is_0 a pot = true.
-Hypothesis potential_ok : forall move, In move (moves_of_graph i) -> move_is_consistent known a pot move = true.
-Hypothesis labels_ok : forall label, In label label_list ->
-  label_accepted i known (successors_of i) c a bound label_map pot label = true.
+(** The stage and those behind it are accepted, and made of layers. *)
+Record Accepted (g : stage) (behind : list stage) : Prop := {
+  has_potential : potential_accepted known (moves_of_graph i) a g behind = true;
+  has_labels : forall label, In label (label_list g) ->
+    label_accepted i known (successors_of i) c a bound g behind label = true;
+  is_looked_up : label_map g = labels_by_resource (label_list g)
+}.
 
-Lemma late_at_goal tick : late (goal a) tick = true <-> Reaches bound tick.
+Lemma late_at_goal g tick : Accepted g [] -> late g (stop_resource (next_stop g)) tick = true <-> Reaches bound tick.
 Proof.
-  pose proof goal_ok as G. unfold goal_is_0 in G. unfold is_late.
-  destruct (Map.find (goal a) pot) as [[x t]|]; [|discriminate].
+  intros [P _ _]. unfold potential_accepted, goal_is_0 in P. apply andb_true_iff in P as [G _]. unfold is_late.
+  destruct (Map.find (stop_resource (next_stop g)) (potential_of g)) as [[x t]|]; [|discriminate].
   apply Z.eqb_eq in G. subst t. rewrite reaches_iff, Z.add_0_r. tauto.
 Qed.
 
-Lemma late_after_move r s tick later : Move i r s -> tick + least_ticks known a r <= later ->
-  late r tick = true -> late s later = true.
+Lemma late_after_move g behind r s tick later : Accepted g behind -> Move i r s ->
+  tick + least_ticks known a r <= later -> late g r tick = true -> late g s later = true.
 Proof.
-  intros M T L. apply in_moves_of_graph in M. pose proof (potential_ok _ M) as P.
+  intros [P _ _] M T L. unfold potential_accepted in P. apply andb_true_iff in P as [_ P]. rewrite forallb_forall in P.
+  apply in_moves_of_graph in M. specialize (P _ M).
   unfold move_is_consistent in P. simpl in P. unfold is_late in *.
-  destruct (Map.find s pot) as [[y behind]|]; auto. destruct (Map.find r pot) as [[x ticks]|]; [|discriminate].
+  destruct (Map.find s (potential_of g)) as [[y behind_]|]; auto.
+  destruct (Map.find r (potential_of g)) as [[x ticks]|]; [|discriminate].
   rewrite reaches_iff in *. unfold Reaches in *. destruct bound; auto. lia.
 Qed.
 
-(** A plan has been followed as far as the visit: it is late, or a label of its window is no later. *)
-Definition Followed (v : visit) (w : window) : Prop :=
-  late (visit_resource v) (enter v) = true \/
-  exists entry, In (visit_resource v, entry) label_list /\ opens w <= entry <= enter v.
+Lemma late_after_stop g h behind tick : Accepted g (h :: behind) ->
+  let id := stop_resource (next_stop g) in let least := least_ticks known a id in
+  late g id tick = true -> late h id (tick + stay_for (next_stop g) least - least) = true.
+Proof.
+  cbv zeta. intros [P _ _] L. unfold potential_accepted in P. apply andb_true_iff in P as [P _].
+  unfold stop_is_consistent in P. cbv zeta in P. unfold is_late in *.
+  destruct (Map.find (stop_resource (next_stop g)) (potential_of h)) as [[y behind_]|]; auto.
+  destruct (Map.find (stop_resource (next_stop g)) (potential_of g)) as [[x ticks]|]; [|discriminate].
+  rewrite reaches_iff in *. unfold Reaches in *. destruct bound; auto. lia.
+Qed.
+
+(** A plan has been followed as far as the window of the visit, which it may leave one duration after the tick at the
+    earliest: it is late, or a label of the window is no later. *)
+Definition Followed (g : stage) (v : visit) (w : window) (tick : Z) : Prop :=
+  late g (visit_resource v) tick = true \/
+  exists entry, In (visit_resource v, entry) (label_list g) /\ opens w <= entry <= tick.
+
+Lemma label_is_listed g behind id w tick : Accepted g behind -> has_label g id w tick = true ->
+  exists entry, In (id, entry) (label_list g) /\ opens w <= entry <= tick.
+Proof.
+  intros A H. unfold has_label in H. rewrite (is_looked_up _ _ A) in H. apply existsb_exists in H as (entry & J & H).
+  apply in_labels_by_resource in J. exists entry. split; auto. lia.
+Qed.
+
+(** The property of every stage together with those behind it. *)
+Fixpoint Forall_stages (P : stage -> list stage -> Prop) (gs : list stage) : Prop :=
+  match gs with [] => True | g :: behind => P g behind /\ Forall_stages P behind end.
+
+(** The tick at which the last visit is entered. *)
+Definition last_entry (v : visit) (later : list visit) : Z := fold_left (fun _ x => enter x) later (enter v).
 
 Section Plan.
 Variable p : plan.
@@ -277,18 +403,19 @@ Hypothesis sound : Sound i a committed p.
 Definition Visited (v : visit) (r : resource) (w : window) : Prop :=
   In r (resources i) /\ resource_id r = visit_resource v /\ In w (windows_in c r) /\ Lies_in v w.
 
-Lemma closed_step source w ready v x : Consecutive p v x -> visit_resource v = source -> Lies_in v w ->
-  leave v = Some (enter x) -> ready <= enter x -> Move i source (visit_resource x) -> Stay_lawful i a x ->
-  closed source w ready = true -> forall r wx, Visited x r wx -> Followed x wx.
+Lemma closed_step g behind w ready v x : Accepted g behind -> Consecutive p v x -> Lies_in v w ->
+  leave v = Some (enter x) -> ready <= enter x -> Move i (visit_resource v) (visit_resource x) -> Stay_lawful i a x ->
+  closed g (visit_resource v) w ready = true -> forall r wx, Visited x r wx -> Followed g x wx (enter x).
 Proof.
-  intros C E L X T M [_ D] H r wx (R & F & W & O & U). unfold is_closed in H. cbv zeta in H. rewrite forallb_forall in H.
+  intros Ac C L X T M [_ D] H r wx (R & F & W & O & U). unfold is_closed in H. cbv zeta in H.
+  rewrite forallb_forall in H.
   apply in_successors in M. specialize (H _ M). unfold move_is_closed in H.
   rewrite (find_own r (visit_resource x) R F) in H. rewrite forallb_forall in H. specialize (H wx W). cbv zeta in H.
-  set (tick := wait_for_room known c source (visit_resource x) (stays_before_exchanges known c source)
-    (Z.max ready (opens wx))) in H.
+  set (tick := wait_for_room known c (visit_resource v) (visit_resource x)
+    (stays_before_exchanges known c (visit_resource v)) (Z.max ready (opens wx))) in H.
   assert (T' : Z.max ready (opens wx) <= tick) by apply wait_for_room_waits.
   assert (K : tick <= enter x).
-  { apply wait_for_room_is_least; [lia|]. rewrite <- E.
+  { apply wait_for_room_is_least; [lia|].
     apply (sound_move_is_free i well_formed a committed c others represents p sound). exact C. }
   assert (A : forall t, t <= enter x -> lasts w (Some t) = true).
   { intros t Q. destruct L as [_ L]. unfold lasts. destruct (closes w) as [last|]; auto.
@@ -297,47 +424,120 @@ Proof.
   { intros t Q. unfold lasts. destruct (closes wx) as [last|]; auto.
     destruct (U last eq_refl) as (l & G & N). specialize (D r l R F G). apply Z.leb_le. lia. }
   rewrite (A (opens wx)), (B (Z.max ready (opens wx))), (A tick), (B tick) in H by lia. simpl in H.
-  destruct (late (visit_resource x) tick) eqn:I; simpl in H.
-  - left. exact (is_late_later bound pot _ tick (enter x) K I).
-  - right. unfold has_label in H. apply existsb_exists in H as (entry & J & H).
-    apply in_labels_by_resource in J. exists entry. split; auto. lia.
+  destruct (late g (visit_resource x) tick) eqn:I; simpl in H.
+  - left. exact (is_late_later bound g _ tick (enter x) K I).
+  - right. destruct (label_is_listed g behind _ _ _ Ac H) as (entry & J & E). exists entry. split; auto. lia.
 Qed.
 
-Lemma label_step v r w : Visited v r w -> Stay_lawful i a v -> Followed v w ->
-  late (visit_resource v) (enter v) = true \/
-  (ends_in i a (visit_resource v) w true = false /\
-   exists ready, ready <= enter v + least_stay a r /\ closed (visit_resource v) w ready = true).
+(** From where the plan has been followed to, all that follows is labelled. *)
+Lemma label_step g behind v r w tick : Accepted g behind -> Visited v r w -> Stay_lawful i a v -> Followed g v w tick ->
+  No_earlier (leave v) (tick + least_stay a r) ->
+  late g (visit_resource v) tick = true \/
+  exists entry, entry <= tick /\
+    place_accepted i known (successors_of i) c a bound g behind r w entry (entry + least_stay a r) true = true.
 Proof.
-  intros (R & F & W & O & U) [_ D] [H|(entry & I & J)]; auto.
-  pose proof (labels_ok _ I) as H. unfold label_accepted in H.
-  destruct (late (visit_resource v) entry) eqn:L; [left; apply (is_late_later bound pot _ entry); auto; lia|].
+  intros Ac (R & F & W & O & U) [_ D] [H|(entry & I & J)] N; auto.
+  pose proof (has_labels _ _ Ac _ I) as H. unfold label_accepted in H.
+  destruct (late g (visit_resource v) entry) eqn:L; [left; apply (is_late_later bound g _ entry); auto; lia|].
   rewrite (find_own r (visit_resource v) R F) in H. rewrite forallb_forall in H. specialize (H w W).
   assert (K : lasts w (Some (entry + 1)) = true).
-  { unfold lasts. destruct (closes w) as [last|]; auto. destruct (U last eq_refl) as (l & G & N).
-    specialize (D r l R F G). pose proof (least_stay_is_positive i a well_formed of_instance r R). apply Z.leb_le.
+  { unfold lasts. destruct (closes w) as [last|]; auto. destruct (U last eq_refl) as (l & G & M).
+    rewrite G in N. simpl in N. pose proof (least_stay_is_positive i a well_formed of_instance r R). apply Z.leb_le.
     lia. }
-  rewrite K in H. destruct (Z.leb_spec (opens w) entry); [|lia]. simpl in H.
-  apply andb_true_iff in H as [H H']. apply negb_true_iff in H. right. split; auto.
-  exists (entry + least_stay a r). split; auto. lia.
+  rewrite K in H. destruct (Z.leb_spec (opens w) entry); [|lia]. simpl in H. right. exists entry. split; [lia | exact H].
 Qed.
 
-(** The tick at which the last visit is entered. *)
-Definition last_entry (v : visit) (later : list visit) : Z := fold_left (fun _ x => enter x) later (enter v).
-
-Lemma end_is_late v w : Ends i a v -> Lies_in v w -> ends_in i a (visit_resource v) w true = false -> False.
+(** The plan goes on to the next visit. *)
+Lemma leaving_step g behind v x r w tick : Accepted g behind -> Consecutive p v x -> Visited v r w ->
+  leave v = Some (enter x) -> Move i (visit_resource v) (visit_resource x) -> Stay_lawful i a v -> Stay_lawful i a x ->
+  tick + least_stay a r <= enter x -> Followed g v w tick ->
+  forall rx wx, Visited x rx wx -> Followed g x wx (enter x).
 Proof.
-  intros [G H] [_ U] E. unfold ends_in in E. rewrite G, Z.eqb_refl in E. simpl in E.
-  destruct (after_goal i); [discriminate|]. unfold lasts in E. destruct (closes w) as [last|]; [|discriminate].
-  destruct (U last eq_refl) as (l & L & _). congruence.
+  intros Ac C V X M Sv Sx T F rx wx Q. pose proof V as (R & G & W & O).
+  assert (N : No_earlier (leave v) (tick + least_stay a r)) by (rewrite X; exact T).
+  destruct (label_step g behind v r w tick Ac V Sv F N) as [L|(entry & E & H)].
+  - left. apply (late_after_move g behind (visit_resource v) (visit_resource x) tick); auto.
+    rewrite <- G, least_ticks_of by exact R. exact T.
+  - unfold place_accepted in H. apply andb_true_iff in H as [_ H]. rewrite G in H.
+    apply (closed_step g behind w (entry + least_stay a r) v x Ac C O X) with (r := rx); auto. lia.
 Qed.
 
-Lemma followed_to_the_end later : forall v r w b, visits p = b ++ v :: later -> Chain i a v later ->
-  Visited v r w -> Followed v w -> Reaches bound (last_entry v later).
+(** The stay of a visit that serves a stop. *)
+Lemma serving_takes v r l s : In r (resources i) -> resource_id r = visit_resource v -> Stay_lawful i a v ->
+  Serves v s -> leave v = Some l -> enter v + stay_for s (least_stay a r) <= l.
 Proof.
-  induction later as [|x rest IH]; intros v r w b E C V F.
-  - destruct C as [S G]. destruct (label_step v r w V S F) as [L|[N _]].
-    + apply late_at_goal. destruct G as [G _]. rewrite <- G. exact L.
-    + destruct (end_is_late v w G (proj2 (proj2 (proj2 V))) N).
+  intros R G [_ D] [_ S] L. specialize (D r l R G L). unfold Lasts, stay_for in *. rewrite L in S. simpl in S. lia.
+Qed.
+
+Lemma lies_long_enough v w l tick : Lies_in v w -> leave v = Some l -> tick <= l -> lasts w (Some tick) = true.
+Proof.
+  intros [_ U] L T. unfold lasts. destruct (closes w) as [last|]; auto. destruct (U last eq_refl) as (x & X & Y).
+  apply Z.leb_le. assert (x = l) by congruence. lia.
+Qed.
+
+(** In the window, the plan serves a stop that is not the last. *)
+Lemma served_place g h behind v r w entry ready l : Accepted h behind -> Visited v r w -> Stay_lawful i a v ->
+  Serves v (next_stop g) -> leave v = Some l -> entry <= enter v -> ready <= l ->
+  serving_is_closed a bound g h r w entry ready = true ->
+  Followed h v w (Z.max ready (entry + stay_for (next_stop g) (least_stay a r)) - least_stay a r).
+Proof.
+  intros Ac (R & G & W & O) S Y L E N H. unfold serving_is_closed in H. cbv zeta in H.
+  pose proof (serving_takes v r l (next_stop g) R G S Y L) as K.
+  rewrite (proj2 (Z.eqb_eq _ _)) in H by (rewrite G; apply Y).
+  rewrite (lies_long_enough v w l) in H by (auto; lia). simpl in H. rewrite G in H.
+  apply orb_true_iff in H as [H|H]; [left; exact H|]. right. exact (label_is_listed h behind _ _ _ Ac H).
+Qed.
+
+Lemma serving_step g h behind v r w l : Accepted g (h :: behind) -> Accepted h behind -> Visited v r w ->
+  Stay_lawful i a v -> Serves v (next_stop g) -> leave v = Some l -> Followed g v w (enter v) ->
+  Followed h v w (enter v + stay_for (next_stop g) (least_stay a r) - least_stay a r).
+Proof.
+  intros Ag Ah V S Y L F. pose proof V as (R & G & W & O).
+  assert (N : No_earlier (leave v) (enter v + least_stay a r)).
+  { rewrite L. destruct S as [_ D]. specialize (D r l R G L). simpl. lia. }
+  destruct (label_step g (h :: behind) v r w (enter v) Ag V S F N) as [K|(entry & E & H)].
+  - left. destruct Y as [P _]. rewrite P in *.
+    pose proof (late_after_stop g h behind (enter v) Ag K) as H. rewrite <- G, least_ticks_of in H by exact R.
+    rewrite <- G. exact H.
+  - unfold place_accepted in H. apply andb_true_iff in H as [H _]. rewrite L in N. simpl in N.
+    destruct (served_place g h behind v r w entry (entry + least_stay a r) l Ah V S Y L E ltac:(lia) H)
+      as [K|(e & I & J)].
+    + left. apply (is_late_later bound h _ _ _) with (2 := K). unfold stay_for in *. lia.
+    + right. exists e. split; auto. unfold stay_for in *. lia.
+Qed.
+
+(** The plan cannot end where no label lets it. *)
+Lemma end_is_late g v r w entry may_vanish : Visited v r w -> Stay_lawful i a v -> Ends i a v ->
+  Serves v (next_stop g) -> entry <= enter v -> (after_goal i = Vanish -> may_vanish = true) ->
+  ends_in i a g r w entry may_vanish = false -> False.
+Proof.
+  intros (R & G & _ & O) S [_ H] Y E M N. unfold ends_in in N.
+  rewrite (proj2 (Z.eqb_eq _ _)) in N by (rewrite G; apply Y). simpl in N.
+  destruct (after_goal i).
+  - rewrite M in N by reflexivity. simpl in N. destruct (leave v) as [l|] eqn:L.
+    + pose proof (serving_takes v r l (next_stop g) R G S Y L) as K.
+      rewrite (lies_long_enough v w l) in N by (auto; lia). discriminate.
+    + pose proof (goal_is_a_resource i a well_formed of_instance) as K. apply in_map_iff in K as (q & Q & K).
+      specialize (H q K Q). discriminate.
+  - destruct O as [_ U]. unfold lasts in N. destruct (closes w) as [last|]; [|discriminate].
+    destruct (U last eq_refl) as (l & L & _). congruence.
+Qed.
+
+Lemma followed_to_the_end later : forall v r w b g behind, visits p = b ++ v :: later -> Chain i a v later ->
+  Visited v r w -> Forall_stages Accepted (g :: behind) -> Served (map next_stop (g :: behind)) v later ->
+  Followed g v w (enter v) -> Reaches bound (last_entry v later).
+Proof.
+  induction later as [|x rest IH]; intros v r w b g behind E C V Ac Y F.
+  - destruct C as [S G]. destruct Y as (s & Y & Z0). simpl in Y. injection Y as <- B.
+    apply map_eq_nil in B. subst behind. destruct Ac as [Ac _].
+    pose proof V as (R & Q & W & O).
+    destruct (late g (visit_resource v) (enter v)) eqn:L.
+    { apply (late_at_goal g _ Ac). destruct Z0 as [<- _]. exact L. }
+    exfalso. assert (N : No_earlier (leave v) (enter v + least_stay a r)).
+    { destruct S as [_ D]. destruct (leave v) as [l|]; simpl; auto. specialize (D r l R Q eq_refl). lia. }
+    destruct (label_step g [] v r w (enter v) Ac V S F N) as [K|(entry & K & H)]; [congruence|].
+    unfold place_accepted in H. apply andb_true_iff in H as [H _]. apply negb_true_iff in H.
+    exact (end_is_late g v r w entry true V S G Z0 K (fun _ => eq_refl) H).
   - destruct C as (S & X & M & C).
     assert (K : Consecutive p v x) by (exists b, rest; exact E).
     assert (E' : visits p = (b ++ [v]) ++ x :: rest) by (rewrite <- app_assoc; exact E).
@@ -345,54 +545,67 @@ Proof.
     destruct (sound_visit_is_free i well_formed a committed c of_instance others represents p sound x I)
       as (rx & wx & Q).
     assert (Sx : Stay_lawful i a x) by (destruct rest; apply C).
-    pose proof V as (R & G & W & O).
+    pose proof V as (R & G & W & O). destruct Ac as [Ag Ac].
     assert (D : enter v + least_stay a r <= enter x) by (destruct S as [_ D]; specialize (D r _ R G X); lia).
-    apply (IH x rx wx (b ++ [v]) E' C Q).
-    destruct (label_step v r w V S F) as [L|[_ (ready & T & H)]].
-    + left. apply (late_after_move (visit_resource v) (visit_resource x) (enter v)); auto.
-      rewrite <- G, least_ticks_of by exact R. exact D.
-    + apply (closed_step (visit_resource v) w ready v x K eq_refl O X) with (r := rx); auto. lia.
+    destruct Y as [Y|(s & ss & Y & Z0 & T)].
+    + apply (IH x rx wx (b ++ [v]) g behind E' C Q (conj Ag Ac) Y).
+      exact (leaving_step g behind v x r w (enter v) Ag K V X M S Sx D F rx wx Q).
+    + simpl in Y. injection Y as <- <-. destruct behind as [|h behind]; [destruct (served_has_stops rest x T)|].
+      destruct Ac as [Ah Ac].
+      apply (IH x rx wx (b ++ [v]) h behind E' C Q (conj Ah Ac) T).
+      pose proof (serving_step g h behind v r w _ Ag Ah V S Z0 X F) as J.
+      refine (leaving_step h behind v x r w _ Ah K V X M S Sx _ J rx wx Q).
+      pose proof (serving_takes v r _ (next_stop g) R G S Z0 X). lia.
 Qed.
 
-Lemma start_is_followed s current later :
-  start_accepted i known (successors_of i) c a now bound label_map pot s = true ->
+Lemma start_is_followed s current later g behind :
+  start_accepted i known (successors_of i) c a now bound g behind s = true ->
   visits p = past s ++ current :: later -> visit_resource current = place s -> enter current = since s ->
   No_earlier (leave current) now -> ready s = Z.max (since s + least_ticks known a (place s)) now ->
+  Forall_stages Accepted (g :: behind) -> Served (map next_stop (g :: behind)) current later ->
   Reaches bound (last_entry current later).
 Proof.
-  intros H E P T N Y.
+  intros H E P T N Y Ac Sv.
   assert (I : In current (visits p)) by (rewrite E; apply in_or_app; right; left; auto).
   destruct (sound_visit_is_free i well_formed a committed c of_instance others represents p sound current I)
     as (r & w & V).
   pose proof (is_lawful _ _ _ _ sound) as L. apply lawful_plan_is_a_chain in L as (u & rest & F & _ & _ & C).
   assert (K : Chain i a current later) by (apply (chain_behind i a (past s) u rest); [exact C | congruence]).
   clear u rest F C. unfold start_accepted in H. rewrite <- P, <- T in H.
-  destruct (late (visit_resource current) (enter current)) eqn:A.
-  - apply (followed_to_the_end later current r w (past s) E K V). left. exact A.
-  - pose proof V as (R & G & W & O). pose proof O as [O1 O2].
-    rewrite (find_own r (visit_resource current) R G) in H.
-    rewrite forallb_forall in H. specialize (H w W). rewrite <- P, <- T, <- G, least_ticks_of in Y by exact R.
-    assert (S : Stay_lawful i a current) by (destruct later; apply K).
-    assert (B : forall l, leave current = Some l -> ready s <= l).
-    { intros l M. rewrite M in N. simpl in N. destruct S as [_ D]. specialize (D r l R G M). lia. }
-    replace (holds_stay w (enter current) (Some (ready s))) with true in H.
-    + apply andb_true_iff in H as [H J]. apply negb_true_iff in H. destruct later as [|x rest].
-      * destruct K as [_ Q]. exfalso. apply (end_is_late current w Q O). unfold ends_in in *.
-        destruct (visit_resource current =? goal a); auto. simpl in *. destruct (after_goal i) eqn:Z; auto.
-        destruct Q as [Q Q']. rewrite Z in Q'. rewrite (Q' r R (eq_trans G Q)) in N. simpl in N.
-        destruct (Z.leb_spec now (enter current + last_stay a r)); [discriminate | lia].
-      * destruct K as (_ & X & M & K).
-        assert (E' : visits p = (past s ++ [current]) ++ x :: rest) by (rewrite <- app_assoc; exact E).
-        assert (I' : In x (visits p)) by (rewrite E'; apply in_or_app; right; left; auto).
-        destruct (sound_visit_is_free i well_formed a committed c of_instance others represents p sound x I')
-          as (rx & wx & Q).
-        apply (followed_to_the_end rest x rx wx _ E' K Q).
-        apply (closed_step (visit_resource current) w (ready s) current x) with (r := rx); auto.
-        -- exists (past s), rest. exact E.
-        -- destruct rest; apply K.
-    + symmetry. unfold holds_stay, lasts. apply andb_true_iff. split; [apply Z.leb_le; lia|].
+  destruct (late g (visit_resource current) (enter current)) eqn:A.
+  { apply (followed_to_the_end later current r w (past s) g behind E K V Ac Sv). left. exact A. }
+  pose proof V as (R & G & W & O). pose proof O as [O1 O2].
+  rewrite (find_own r (visit_resource current) R G) in H.
+  rewrite forallb_forall in H. specialize (H w W). rewrite <- P, <- T, <- G, least_ticks_of in Y by exact R.
+  assert (S : Stay_lawful i a current) by (destruct later; apply K).
+  assert (B : forall l, leave current = Some l -> ready s <= l).
+  { intros l M. rewrite M in N. simpl in N. destruct S as [_ D]. specialize (D r l R G M). lia. }
+  replace (holds_stay w (enter current) (Some (ready s))) with true in H.
+  2:{ symmetry. unfold holds_stay, lasts. apply andb_true_iff. split; [apply Z.leb_le; lia|].
       destruct (closes w) as [last|]; auto. destruct (O2 last eq_refl) as (l & M & Q). specialize (B l M).
-      apply Z.leb_le. lia.
+      apply Z.leb_le. lia. }
+  unfold place_accepted in H. apply andb_true_iff in H as [H J]. destruct later as [|x rest].
+  - destruct K as [_ Q]. destruct Sv as (s0 & Sv & Z0). simpl in Sv. injection Sv as <- Bh.
+    apply map_eq_nil in Bh. subst behind. apply negb_true_iff in H. exfalso.
+    apply (end_is_late g current r w (enter current) _ V S Q Z0 (Z.le_refl _)) with (2 := H). intros X.
+    destruct Q as [Q Q']. rewrite X in Q'. rewrite (Q' r R (eq_trans G Q)) in N. simpl in N. apply Z.leb_le. exact N.
+  - destruct K as (_ & X & M & K).
+    assert (E' : visits p = (past s ++ [current]) ++ x :: rest) by (rewrite <- app_assoc; exact E).
+    assert (I' : In x (visits p)) by (rewrite E'; apply in_or_app; right; left; auto).
+    destruct (sound_visit_is_free i well_formed a committed c of_instance others represents p sound x I')
+      as (rx & wx & Q).
+    assert (Co : Consecutive p current x) by (exists (past s), rest; exact E).
+    assert (Sx : Stay_lawful i a x) by (destruct rest; apply K).
+    destruct Ac as [Ag Ac]. destruct Sv as [Sv|(s0 & ss & Sv & Z0 & Sv')].
+    + apply (followed_to_the_end rest x rx wx _ g behind E' K Q (conj Ag Ac) Sv). rewrite G in J.
+      apply (closed_step g behind w (ready s) current x) with (r := rx); auto.
+    + simpl in Sv. injection Sv as <- <-. destruct behind as [|h behind]; [destruct (served_has_stops rest x Sv')|].
+      destruct Ac as [Ah Ac].
+      apply (followed_to_the_end rest x rx wx _ h behind E' K Q (conj Ah Ac) Sv').
+      pose proof (served_place g h behind current r w (enter current) (ready s) _ Ah V S Z0 X (Z.le_refl _) (B _ X) H)
+        as F.
+      refine (leaving_step h behind current x r w _ Ah Co V X M S Sx _ F rx wx Q).
+      pose proof (serving_takes current r _ (next_stop g) R G S Z0 X). specialize (B _ X). lia.
 Qed.
 End Plan.
 End Certificate.
@@ -441,6 +654,25 @@ Qed.
 Lemma arrival_behind default b v later p : visits p = b ++ v :: later -> arrival default p = last_entry v later.
 Proof. intros E. unfold arrival, last_entry. rewrite E, fold_left_app. reflexivity. Qed.
 
+Lemma stages_of_stops left ls : length ls = length left -> map next_stop (stages_of left ls) = left.
+Proof.
+  revert ls. induction left as [|s left IH]; intros [|l ls] L; simpl in *; try discriminate; auto.
+  f_equal. apply IH. lia.
+Qed.
+
+Lemma stages_are_looked_up left ls g : In g (stages_of left ls) -> label_map g = labels_by_resource (label_list g).
+Proof. intros H. apply in_map_iff in H as ([s l] & <- & _). reflexivity. Qed.
+
+Lemma stages_are_accepted a c bound gs :
+  stages_accepted i known (moves_of_graph i) (successors_of i) c a bound gs = true ->
+  (forall g, In g gs -> label_map g = labels_by_resource (label_list g)) -> Forall_stages (Accepted a c bound) gs.
+Proof.
+  induction gs as [|g behind IH]; cbn [stages_accepted Forall_stages]; auto.
+  rewrite !andb_true_iff, forallb_forall. intros [[P L] S] M. split.
+  - split; auto. apply M. left. reflexivity.
+  - apply IH; auto. intros h H. apply M. right. exact H.
+Qed.
+
 (** query/optimal and query/complete: no plan of the robot that breaks no rule, alone or together with the committed
     plans, and fits what it has done by now, arrives before the bound; without one there is no such plan. *)
 Theorem accepted_query_is_optimal a committed c now followed cert p :
@@ -450,28 +682,25 @@ Theorem accepted_query_is_optimal a committed c now followed cert p :
   Sound i a committed p -> Fits_the_past followed p now ->
   Reaches (bound cert) (arrival (release a) p).
 Proof.
-  intros A O R B H S F. unfold certificate_accepted in H. cbv zeta in H.
-  cbn [looked_up all_moves successors world_of] in H.
+  intros A O R B H S F. unfold certificate_accepted in H. cbv zeta in H. cbn [looked_up world_of] in H.
   assert (N : forall s, s = standing_of known a now followed ->
     (forall before, followed = Some before -> ~ Has_ended before now) ->
-    (if allows known c (past s ++ [Visit (place s) (since s) (Some (ready s))])
-     then goal_is_0 a (index fst (potential cert))
-       && forallb (move_is_consistent known a (index fst (potential cert))) (moves_of_graph i)
-       && start_accepted i known (successors_of i) c a now (bound cert) (labels_by_resource (labels cert))
-            (index fst (potential cert)) s
-       && forallb (label_accepted i known (successors_of i) c a (bound cert) (labels_by_resource (labels cert))
-            (index fst (potential cert))) (labels cert)
-     else true) = true -> Reaches (bound cert) (arrival (release a) p)).
+    search_accepted i (world_of i) c a now s cert = true -> Reaches (bound cert) (arrival (release a) p)).
   - intros s E N K.
     destruct (plan_begins_with_the_past i a well_formed A followed p now) as (current & later & V & P & T & L).
     + intros before Q. split; [apply (B before Q) | apply N; exact Q].
     + exact (is_lawful _ _ _ _ S).
     + exact F.
-    + rewrite <- E in V, P, T. rewrite (arrival_behind _ _ _ _ _ V).
+    + rewrite <- E in V, P, T. rewrite (arrival_behind _ _ _ _ _ V). unfold search_accepted in K. cbv zeta in K.
+      cbn [looked_up all_moves successors world_of] in K.
       destruct (allows known c (past s ++ [Visit (place s) (since s) (Some (ready s))])) eqn:G.
-      * rewrite !andb_true_iff, !forallb_forall in K. destruct K as [[[K1 K2] K3] K4].
-        apply (start_is_followed a committed c now (bound cert) (labels cert) (index fst (potential cert))
-          A O R K1 K2 K4 p S s current later K3 V P T L).
+      * rewrite !andb_true_iff, Nat.eqb_eq in K. destruct K as [[K1 K2] K3].
+        pose proof (stages_are_accepted a c (bound cert) _ K3 (stages_are_looked_up _ _)) as Q.
+        pose proof (stages_of_stops _ _ K1) as M.
+        pose proof (serves_stops _ _ _ (is_lawful _ _ _ _ S)) as Y. rewrite V in Y.
+        apply stops_served_so_far_count, served_iff in Y. fold (stops_left a s) in Y. rewrite <- M in Y.
+        destruct (stages_of (stops_left a s) (layers cert)) as [|g behind]; [discriminate|].
+        apply (start_is_followed a committed c now (bound cert) A O R p S s current later g behind K2 V P T L); auto.
         rewrite E. apply standing_is_ready.
       * destruct (start_is_allowed a committed c p s current later now A O R S V P T L); [|exact G].
         rewrite E. apply standing_is_ready.

@@ -464,13 +464,18 @@ let query_of_json { resource_numbers; robot_numbers; _ } path json =
     | `List [ place; tick ] -> (number resource_numbers (id (path ^ "[0]") place), whole (path ^ "[1]") tick)
     | _ -> shape path "an array of a resource and a whole number"
   in
-  let field = fields path ~required:[ "format"; "robot"; "now"; "bound"; "labels"; "potential" ] ~optional:[] json in
+  let layer field =
+    { QueryCertificate.labels = required field "labels" (elements place_and_tick);
+      potential = required field "potential" (elements place_and_tick) }
+  in
+  let served path json = layer (fields path ~required:[ "labels"; "potential" ] ~optional:[] json) in
+  let names = [ "format"; "robot"; "now"; "bound"; "labels"; "potential" ] in
+  let field = fields path ~required:names ~optional:[ "served" ] json in
   { query_robot = number robot_numbers (required field "robot" id);
     now = required field "now" natural;
     query_certificate =
       { QueryCertificate.bound = required field "bound" whole_or_null;
-        labels = required field "labels" (elements place_and_tick);
-        potential = required field "potential" (elements place_and_tick) } }
+        layers = layer field :: optional [] field "served" (elements served) } }
 
 (* ---- Proofs of optima ---- *)
 

@@ -114,7 +114,10 @@ let looks_and_work (read : Reading.instance) plans (queries : Reading.query list
   let is_resource place = Z.lt place (Z.of_int (List.length read.instance.resources)) in
   let of_query (looks, work) (query : Reading.query) =
     let labels = Hashtbl.create 1024 in
-    List.iter (fun (place, _) -> increase labels place) query.query_certificate.labels;
+    let layers = query.query_certificate.layers in
+    let label (place, _) = increase labels place in
+    List.iter (fun (layer : QueryCertificate.layer) -> List.iter label layer.labels) layers;
+    let work = work + (List.length layers * List.length read.instance.edges * 2) in
     let of_place place number (looks, work) =
       if not (is_resource place) then (looks + number, work)
       else
@@ -133,6 +136,10 @@ let looks_and_work (read : Reading.instance) plans (queries : Reading.query list
 
 let too_much = Undecided (Printf.sprintf "the kernel would look at more than %d stays and labels" most_work)
 
+let int_of_nat number =
+  let rec count sum = function Datatypes.O -> sum | S less -> count (sum + 1) less in
+  count 0 number
+
 (* Why a certificate is refused; that it is, the kernel has decided. *)
 let query_fault (read : Reading.instance) (solution : Law.solution) (query : Reading.query) =
   let instance = read.instance and { Reading.query_robot = robot; now; query_certificate } = query in
@@ -146,7 +153,13 @@ let query_fault (read : Reading.instance) (solution : Law.solution) (query : Rea
       match QueryCertificate.certificate_fault instance world context a now followed query_certificate with
       | Some (QueryCertificate.Earlier_arrival tick) ->
           ("query-certificate/bound", "the robot's plan has ended, and arrived at " ^ Z.to_string tick)
+      | Some (Number_of_layers number) ->
+          ( "query-certificate/stops",
+            Printf.sprintf "there must be labels and potentials before each of %d stops left" (int_of_nat number) )
       | Some Goal_potential -> ("query-certificate/potential", "the potential of the goal must be 0")
+      | Some (Stop_potential id) ->
+          ( "query-certificate/potential",
+            Printf.sprintf "the potential falls by too much where the stop in %s is served" (place id) )
       | Some (Move_potential (source, target)) ->
           ( "query-certificate/potential",
             Printf.sprintf "the potential falls by too much on the move from %s to %s" (place source) (place target) )
@@ -158,7 +171,6 @@ let query_fault (read : Reading.instance) (solution : Law.solution) (query : Rea
           ("query-certificate/closed", "the start leads to a window without a label or to the end"))
 
 let verify_query (read : Reading.instance) (solution : Law.solution) (query : Reading.query) =
-  Reading.require_goals read;
   let { Reading.query_robot; now; query_certificate } = query in
   let looks, work = looks_and_work read (Audit.others solution query_robot) [ query ] in
   if looks > most_looks then
@@ -175,7 +187,6 @@ let verify_query (read : Reading.instance) (solution : Law.solution) (query : Re
 let audit (read : Reading.instance) (solution : Law.solution) (queries : Reading.query list) =
   let certificate (query : Reading.query) = (query.query_robot, query.query_certificate) in
   let certificates = List.map certificate queries in
-  Reading.require_goals read;
   let _, work = looks_and_work read solution.plans queries in
   if work > most_work then too_much
   else if Audit.audit_accepted read.instance solution certificates then Accepted (cost_of read solution)

@@ -27,7 +27,7 @@ from carp_spec.permutations import splitmix64
 from carp_verify.bound.verify import verify_bound
 from carp_verify.kernel import KernelVerdict, is_answer, replies, request, verdict_of
 from carp_verify.query.verify import Traffic, require_certificate, verify_query
-from carproof.testing.random_instances import Draw, draw_fleet, draw_instance
+from carproof.testing.random_instances import SMALL, WITH_STOPS, Draw, draw_fleet, draw_instance
 
 BLOCK = 1000
 FULL_TEXTS = 1_000_000
@@ -208,7 +208,7 @@ def drawn_texts(seed: int, first: int, number: int) -> list[bytes]:
 
 def audit_of(draw: Draw) -> bytes:
     """A request to audit a fleet, with a certificate for each plan."""
-    instance = draw_instance(draw)
+    instance = draw_instance(draw, draw.one_of([SMALL, WITH_STOPS]))
     solution = draw_fleet(draw, instance).solution
     plans = {plan.robot: plan for plan in solution.plans}
     before = [Solution.of(instance, [plans[each] for each in solution.order[:k]]) for k in range(len(solution.order))]

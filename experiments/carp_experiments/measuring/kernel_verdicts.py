@@ -14,11 +14,11 @@ import msgspec
 from carp_experiments.report import ExperimentReport, Table
 from carp_experiments.store import Row
 from carp_spec import Instance, RobotId, Solution, judge
-from carp_spec.documents.query_certificates import QueryCertificateDocument
+from carp_spec.documents.query_certificates import QueryCertificateDocument, ServedLayer, certificate_of
 from carp_spec.documents.solutions import solution_document
 from carp_spec.permutations import shuffle, splitmix64
 from carp_verify.kernel import KernelVerdict, ask, request
-from carproof.testing.random_instances import WITH_STOPS, Draw, draw_fleet, draw_instance
+from carproof.testing.random_instances import SMALL, WITH_STOPS, Draw, draw_fleet, draw_instance
 
 BLOCK = 1000
 FULL_VERDICTS = 1_000_000
@@ -83,9 +83,7 @@ class Question:
 def fleet_questions(seed: int, number: int) -> list[Question]:
     """The questions about the fleet of that number."""
     draw = Draw(splitmix64(next(splitmix64(seed)) + number))
-    if number % 2:
-        return stop_questions(draw)
-    instance = draw_instance(draw)
+    instance = draw_instance(draw, WITH_STOPS if number % 2 else SMALL)
     fleet = draw_fleet(draw, instance)
     solution, robot = fleet.solution, draw.one_of([*instance.robot])
     mutants = [broken(draw, instance, solution) for _ in range(BROKEN)]
@@ -97,14 +95,6 @@ def fleet_questions(seed: int, number: int) -> list[Question]:
         *(verified(instance, solution, certificate) for certificate in certificates),
         verified(*mutants[0], honest),
     ]
-
-
-def stop_questions(draw: Draw) -> list[Question]:
-    """The questions about a fleet with stops: the kernel checks its plans alone."""
-    instance = draw_instance(draw, WITH_STOPS)
-    solution = draw_fleet(draw, instance).solution
-    mutants = [broken(draw, instance, solution) for _ in range(OF_A_FLEET - 1)]
-    return [checked(instance, solution), *(checked(*mutant) for mutant in mutants)]
 
 
 def checked(instance: Instance, solution: Solution) -> Question:
@@ -145,9 +135,11 @@ def certified(instance: Instance, solution: Solution, robot: RobotId, now: int) 
 
 
 def changed(draw: Draw, certificate: QueryCertificateDocument) -> QueryCertificateDocument:
-    """The certificate with another bound or tick, with a label lost or moved, or with another potential."""
-    labels, potential, bound = [*certificate.labels], [*certificate.potential], certificate.bound
-    kind = draw.one_of(("bound", "now", "label lost", "label moved", "potential"))
+    """The certificate with another bound or tick, with a label or layer lost, or with another label or potential."""
+    layers, bound = [*certificate.layers], certificate.bound
+    chosen = draw.between(0, len(layers) - 1)
+    labels, potential = [*layers[chosen].labels], [*layers[chosen].potential]
+    kind = draw.one_of(("bound", "now", "label lost", "label moved", "potential", "layer lost"))
     if kind == "bound":
         bound = draw.one_of([None, 0, draw.between(-1, 20), (bound or 0) + draw.between(1, 2), (bound or 1) - 1])
     elif kind == "now":
@@ -160,7 +152,10 @@ def changed(draw: Draw, certificate: QueryCertificateDocument) -> QueryCertifica
     elif potential:
         place = draw.between(0, len(potential) - 1)
         potential[place] = (potential[place][0], potential[place][1] + draw.one_of([-1, 1]))
-    return msgspec.structs.replace(certificate, bound=bound, labels=tuple(labels), potential=tuple(potential))
+    layers[chosen] = ServedLayer(tuple(labels), tuple(potential))
+    if kind == "layer lost" and len(layers) > 1:
+        del layers[chosen]
+    return certificate_of(certificate.robot, certificate.now, bound, layers)
 
 
 def compared(first: int, questions: Sequence[Question], answers: Sequence[KernelVerdict]) -> Verdicts:

@@ -14,7 +14,6 @@ from carproof.command_line.files import (
     print_document,
     read_bytes,
     read_instance_file,
-    refuse_in,
     refuse_two_standard_inputs,
     shown,
 )
@@ -77,8 +76,6 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
         raise click.UsageError("Give INSTANCE and SOLUTION, or --map, --scen and SOLUTION.")
     refuse_two_standard_inputs(*files, *(benchmark.names if benchmark else ()))
     instance = read_movingai(benchmark) if benchmark else read_instance_file(instances[0])
-    if kernel:
-        refuse_in(files[0], instance, "stops")
     data, name = read_bytes(solution), shown(solution)
     format = format or format_of(data, instance, name)
     given = read_foreign_solution(data, instance, name, format)

@@ -8,7 +8,6 @@ rule. The kernel does not cover `fleet/history` and the rules about a planner's 
 from carp_spec import Carp, Instance, Plan, Solution
 from carp_spec.documents.solutions import solution_document
 from carp_spec.documents.verdicts import VerdictDocument
-from carp_spec.limits import goals_stand_alone, groups_are_absent
 from carp_verify.bound.rules import ContradictionError
 from carp_verify.kernel import ask, request
 from carproof.conform.answers import Answer
@@ -23,8 +22,6 @@ EARLY = ("query/complete", "query/optimal")
 
 def require_agreement(case: Case, answer: Answer, level: Level, finding: Finding | None) -> None:
     """Raise `ContradictionError` if the kernel refuses what was accepted, or accepts what breaks a rule of its own."""
-    if not all(keeps(case.instance) for keeps in (groups_are_absent, goals_stand_alone)):
-        return
     match answer:
         case VerdictDocument():
             agree = finding is not None or accepts(case.instance, case.solution) == answer.valid
