@@ -27,7 +27,7 @@ from carp_spec import (
     total_cost,
 )
 from carp_spec.inputs.options import SEARCH_SECONDS
-from carp_spec.limits import refuse
+from carp_spec.limits import goals_stand_alone
 from carp_verify.bound.rules import require_kept
 from carp_verify.optimum.encoding import Encoding
 from carp_verify.optimum.rules import MOST_ORDERED, refuse_size
@@ -55,10 +55,14 @@ class Gap:
 
 
 def gap(instance: Instance, planners: Sequence[Planner] = PLANNERS, limit: float = SEARCH_SECONDS) -> Gap:
-    """Plan with every planner, and search for the optimum and for the best order, each for `limit` seconds at most."""
+    """Plan with every planner, and search for the optimum and for the best order, each for `limit` seconds at most.
+
+    Where robots have stops, fixed paths are compared only if others than all planners are named.
+    """
     best = optimum(instance, limit)
     reached = []
-    for planner in planners:
+    knows_all = planners is not PLANNERS or goals_stand_alone(instance)
+    for planner in planners if knows_all else [each for each in planners if each != FixedPaths()]:
         solution = plan(instance, planner)
         total = total_cost(instance, solution.plans)
         if not solution.unplanned:
@@ -80,7 +84,6 @@ def best_order(instance: Instance, limit: float, floor: int = 0) -> int | None:
     than `floor`; if an order reaches it, the others are not tried. Raises `TimeOver` after `limit` seconds, and
     `Refusal` for more than `MOST_ORDERED` robots.
     """
-    refuse(instance, "stops")
     refuse_size("the robots whose orders are all tried", len(instance.robots), MOST_ORDERED)
     encoding = Encoding(instance)
     if encoding.wayless:

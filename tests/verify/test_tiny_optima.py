@@ -4,7 +4,7 @@ import os
 from collections.abc import Iterator, Sequence
 
 import pytest
-from tests.verify.tiny import GROUPED, MIX, case
+from tests.verify.tiny import GROUPED, MIX, STOPPING, case
 
 from carp_optimum.optimum import optimum
 from carp_optimum.sat.solver import Deadline, Solver
@@ -15,7 +15,7 @@ from carp_verify.optimum.joint_search import least_total_cost
 from carp_verify.optimum.proof import solution_of
 from carp_verify.optimum.robot_clauses import Node, RobotClauses
 from carp_verify.optimum.unsolvable import FullGoal, NoWay, Obstacle, why_no_obstacle
-from carproof.testing.random_instances import Draw
+from carproof.testing.random_instances import Draw, Mix
 
 NIGHTLY = os.environ.get("HYPOTHESIS_PROFILE") == "nightly"
 CASES = 50_000 if NIGHTLY else 3_000
@@ -23,12 +23,16 @@ BLOCK = 250
 SECONDS = 60
 
 
-def faults(number: int) -> Iterator[str]:
-    """The disagreements with the joint search in a case, in words; some questions are for one case in four.
+def mix_of(number: int) -> Mix:
+    """Of half of the cases robots have goals alone, with groups in every second block of them."""
+    if number // BLOCK % 2:
+        return STOPPING
+    return GROUPED if number % 8 < 4 else MIX
 
-    Half of the cases have groups.
-    """
-    instance, draw = case(number, GROUPED if number % 8 < 4 else MIX)
+
+def faults(number: int, mix: Mix | None = None) -> Iterator[str]:
+    """The disagreements with the joint search in a case, in words; some questions are for one case in four."""
+    instance, draw = case(number, mix_of(number) if mix is None else mix)
     is_asked_more = number % 4 == 0
     least = least_total_cost(instance)
     if least is not None or is_asked_more:

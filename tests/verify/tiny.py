@@ -19,6 +19,7 @@ MIX = Mix(
     goals_apart=True,
 )
 GROUPED = replace(MIX, groups=(1, 2, 2))
+STOPPING = replace(MIX, robots=(1, 2, 3), stops=3, services=(0, 1, 2, 4), groups=(0, 0, 1))
 TINY = Sizes(resources=4, robots=3, capacity=2, duration=2, release=2, pace=2)
 """The values that hypothesis draws where a test needs it to shrink."""
 

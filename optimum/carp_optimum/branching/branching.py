@@ -25,7 +25,8 @@ from carp_optimum.branching.bounds import bound_part
 from carp_optimum.branching.choices import put, robot_of_choice, tick_of_choice
 from carp_optimum.lagrangian.multipliers import moves_back, refuse_table
 from carp_spec import Instance, Plan, Visit
-from carp_verify.optimum.robot_clauses import least_rests, predecessors
+from carp_verify.optimum.robot_clauses import predecessors
+from carp_verify.routes import routes_of
 
 FIRST_STEPS, STEPS = 1000, 75
 """The steps of the prices for all parts together, and for each part."""
@@ -203,7 +204,7 @@ def _nodes_within(instance: Instance, most: int) -> npt.NDArray[np.bool_]:
     """The nodes of each robot if the others have no delay and all cost at most this, by robot, tick and resource."""
     before = predecessors(instance)
     index = instance.graph.index
-    rests = [{**least_rests(instance, robot, before), robot.goal: -1} for robot in instance.robots]
+    rests = [{**routes_of(instance, robot, before).rests(), robot.goal: -1} for robot in instance.robots]
     ticks = [rest[robot.start] + 1 for robot, rest in zip(instance.robots, rests, strict=True)]
     spare = most - sum(ticks)
     last = max(max(ticks) + spare, 0)

@@ -32,7 +32,7 @@ from carp_optimum.sat.solver import Deadline, Solver, TimeOver
 from carp_spec import Instance, Plan, Refusal, Solution, judge, total_cost
 from carp_spec.inputs.options import require_limits
 from carp_spec.inputs.values import require_instance
-from carp_spec.limits import refuse
+from carp_spec.limits import goals_stand_alone
 from carp_verify.bound.rules import ContradictionError, require_kept
 from carp_verify.optimum.clauses import Literal, Unary
 from carp_verify.optimum.encoding import Encoding, Evidence, violated
@@ -79,19 +79,20 @@ def core_guided(
 ) -> Optimum:
     """Search for the optimum for at most `limit` seconds. Raises `Refusal` if the formula outgrows the memory.
 
-    `start_beside` is called once, after many conflicts, unless the instance has groups, which prices do not know.
+    `start_beside` is called once, after many conflicts, unless the instance has groups or stops, which that search does
+    not know.
 
     The result does not depend on the clock, which gives nanoseconds: the same instance gives the same solution.
     """
     require_instance(instance)
     require_limits(limit=limit)
-    refuse(instance, "stops")
     deadline = Deadline(limit, clock)
     try:
         encoding = Encoding(instance, deadline.check)
     except TimeOver:
         return Optimum(None, None, 0, decided=False, solution=None, evidence=Evidence((), ()))
-    search = CoreGuided(encoding, deadline, None if instance.graph.groups else start_beside)
+    is_known = goals_stand_alone(instance) and not instance.graph.groups
+    search = CoreGuided(encoding, deadline, start_beside if is_known else None)
     try:
         return search.run()
     finally:

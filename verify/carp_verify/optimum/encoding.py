@@ -16,7 +16,6 @@ from itertools import pairwise, zip_longest
 
 from carp_spec import Instance, Move, Plan, ResourceId, Robot
 from carp_spec.joint_rules import opposite_moves
-from carp_spec.limits import refuse
 from carp_spec.windows import stays_within
 from carp_verify.optimum.clauses import Clause, Formula, Literal
 from carp_verify.optimum.robot_clauses import RobotClauses, predecessors
@@ -71,6 +70,7 @@ class Encoding:
             check()
             self.robots.append(RobotClauses(instance, robot, before, self.formula, tick))
         self._presence: dict[tuple[int, int, int, int], tuple[Literal, set[Clause]]] = {}
+        self._leaves: dict[tuple[int, ResourceId, int], tuple[Literal, set[Literal]]] = {}
 
     @property
     def wayless(self) -> list[Robot]:
@@ -106,9 +106,24 @@ class Encoding:
 
     def moves(self, position: int, source: ResourceId, target: ResourceId, tick: int) -> Clause | None:
         """Literals that hold together if the robot makes the move at the tick; `None` if it cannot."""
-        leaves = self.robots[position].node.get((source, tick))
+        leaves = self._leaving(position, source, tick)
         enters = None if leaves is None else self.presence(position, self.instance.graph.index[target], tick)
         return None if leaves is None or enters is None else (leaves, enters)
+
+    def _leaving(self, position: int, source: ResourceId, tick: int) -> Literal | None:
+        """A literal that holds if the robot may leave the resource at the tick; `None` if it cannot."""
+        nodes = self.robots[position].leaving(source, tick)
+        if len(nodes) <= 1:
+            return nodes[0] if nodes else None
+        key = (position, source, tick)
+        if key not in self._leaves:
+            self._leaves[key] = (self.formula.variable(), set())
+        literal, known = self._leaves[key]
+        for node in nodes:
+            if node not in known:
+                known.add(node)
+                self.formula.add(-node, literal)
+        return literal
 
     def forbid(self, conflict: Conflict | Exchange) -> None:
         """Add the clauses that forbid a conflict to all robots, as far as their horizons reach."""
@@ -144,7 +159,7 @@ class Encoding:
         yield from self.entries()
         movers: dict[tuple[int, Move], set[int]] = defaultdict(set)
         for position, robot in enumerate(self.robots):
-            for source, tick in robot.node:
+            for source, tick in robot.leaves():
                 for target in self.instance.graph.successors[source]:
                     if any(self.robots[position].stays(target, tick)):
                         movers[tick, (source, target)].add(position)
@@ -204,7 +219,6 @@ def beat_formula(instance: Instance, cost: int | None, evidence: Evidence, most:
 
 
 def _bounded(instance: Instance, bound: int | None, evidence: Evidence, most: int) -> Encoding:
-    refuse(instance, "stops")
     encoding = Encoding(instance, most=most)
     encoding.grow_to(evidence.horizons)
     encoding.forbid_all()

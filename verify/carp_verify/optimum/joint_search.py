@@ -13,7 +13,6 @@ from typing import Literal, TypeAlias
 
 from carp_spec import Instance, ResourceId, Robot
 from carp_spec.inputs.values import require_instance
-from carp_spec.limits import refuse
 from carp_verify.optimum.rules import LARGEST_SEARCH, refuse_size
 
 Phase: TypeAlias = Literal["waits", "moves", "arrived"]
@@ -24,12 +23,15 @@ class State:
     """The state of one robot at a tick.
 
     It waits for its release (in no resource), moves (in a resource that it must not leave for `ticks` ticks, this one
-    counted), or has arrived (it stays for `ticks` more ticks, or for ever with `None`; then it is in no resource).
+    counted), or has arrived (it stays for `ticks` more ticks, or for ever with `None`; then it is in no resource). It
+    has served so many stops; if the next one is here, its service takes `service` ticks more.
     """
 
     phase: Phase
     resource: ResourceId | None
     ticks: int | None
+    served: int = 0
+    service: int = 0
 
 
 Joint: TypeAlias = tuple[State, ...]
@@ -43,29 +45,38 @@ class _Search:
         self.constraints = instance.graph.constraints
         self.last_release = max((robot.release for robot in instance.robots), default=0)
 
-    def entering(self, robot: Robot, resource: ResourceId) -> Iterator[State]:
-        """The states of a robot that enters a resource now: on its way, and at its goal also arrived."""
-        duration = self.instance.duration(robot.id, resource)
-        yield State("moves", resource, duration)
-        if resource == robot.goal:
-            yield State("arrived", resource, None if self.instance.after_goal == "park" else duration)
+    def entering(self, robot: Robot, resource: ResourceId, served: int) -> Iterator[State]:
+        """The states of a robot that enters a resource now: on its way, and at its last stop also arrived."""
+        stop = robot.stops[served]
+        is_last, is_here = served == len(robot.stops) - 1, stop.resource == resource
+        service = stop.service if is_here and not is_last else 0
+        yield State("moves", resource, self.instance.duration(robot.id, resource), served, service)
+        if is_here and is_last:
+            stay = self.instance.stay(robot.id, stop)
+            yield State("arrived", resource, None if self.instance.after_goal == "park" else stay)
 
     def at(self, robot: Robot, tick: int, before: State) -> Iterator[State]:
         """The states in which a robot can be at the tick, after its state at the tick before."""
         if before.phase == "waits":
             if robot.release == tick:
-                yield from self.entering(robot, robot.start)
+                yield from self.entering(robot, robot.start, 0)
             else:
                 yield WAITS
         elif before.phase == "arrived":
             stays = before.ticks is None or before.ticks > 1
             yield State("arrived", before.resource, before.ticks and before.ticks - 1) if stays else GONE
-        elif before.ticks is not None and before.ticks > 1:
-            yield State("moves", before.resource, before.ticks - 1)
-        elif before.resource is not None:
-            yield State("moves", before.resource, 1)
-            for target in self.instance.graph.successors[before.resource]:
-                yield from self.entering(robot, target)
+        elif before.ticks is not None and before.resource is not None:
+            further = max(before.ticks - 1, 1), before.served, max(before.service - 1, 0)
+            yield State("moves", before.resource, *further)
+            if before.ticks <= 1:
+                served = before.served + self.serves(robot, before)
+                for target in self.instance.graph.successors[before.resource]:
+                    yield from self.entering(robot, target, served)
+
+    def serves(self, robot: Robot, state: State) -> bool:
+        """Whether a robot that leaves after this tick has served its next stop, which is not the last one."""
+        is_last = state.served == len(robot.stops) - 1
+        return not is_last and robot.stops[state.served].resource == state.resource and state.service <= 1
 
     def is_allowed(self, before: Sequence[State], after: Sequence[State]) -> bool:
         """Whether `joint/capacity` and `joint/group` hold now and `joint/exchange` on the way here.
@@ -109,11 +120,13 @@ class _Search:
 def joint_states(instance: Instance) -> int:
     """An upper bound on the number of joint states of all robots, apart from the tick.
 
-    A robot is in a resource, with a number of ticks to stay, or waits for its release, or is gone or parked.
+    A robot is in a resource, with a number of ticks to stay and of stops served, or waits for its release, or is gone
+    or parked.
     """
     states = 1
     for robot in instance.robots:
-        states *= 2 + sum(instance.duration(robot.id, resource.id) + 1 for resource in instance.graph.resources)
+        layer = sum(instance.duration(robot.id, resource.id) + 1 for resource in instance.graph.resources)
+        states *= 2 + len(robot.stops) * layer + sum(stop.service for stop in robot.stops)
     return states
 
 
@@ -125,7 +138,6 @@ def least_total_cost(
     Raises `Refusal` before more than `most` joint states are looked at; `on_step` is called at each, and may raise.
     """
     require_instance(instance)
-    refuse(instance, "stops")
     search = _Search(instance)
     queue: list[tuple[int, int, int, Joint]] = [(0, 0, -1, tuple(WAITS for _ in instance.robots))]
     settled: set[tuple[int, Joint]] = set()

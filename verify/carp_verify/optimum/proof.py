@@ -121,7 +121,7 @@ def variables(encoding: Encoding) -> bytes:
         RobotVariables(
             robot.robot.id,
             tuple(robot.late),
-            tuple((resource, tick, variable) for (resource, tick), variable in robot.node.items()),
+            tuple((robot.routes.resource(place), tick, variable) for (place, tick), variable in robot.node.items()),
         )
         for robot in encoding.robots
     ]

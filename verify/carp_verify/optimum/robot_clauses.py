@@ -19,12 +19,14 @@ from collections import defaultdict
 from collections.abc import Collection, Container, Iterator, Mapping, Sequence
 from heapq import heappop, heappush
 from itertools import count
+from operator import itemgetter
 from typing import TypeAlias
 
 from carp_spec import Instance, Plan, ResourceId, Robot, Visit
 from carp_verify.optimum.clauses import Clause, Formula, Literal
+from carp_verify.routes import Place, routes_of
 
-Node: TypeAlias = tuple[ResourceId, int]
+Node: TypeAlias = tuple[Place, int]
 
 
 def predecessors(instance: Instance) -> Mapping[ResourceId, Sequence[ResourceId]]:
@@ -36,29 +38,12 @@ def predecessors(instance: Instance) -> Mapping[ResourceId, Sequence[ResourceId]
     return before
 
 
-def least_rests(
-    instance: Instance, robot: Robot, before: Mapping[ResourceId, Sequence[ResourceId]]
-) -> Mapping[ResourceId, int]:
-    """The least ticks from leaving a resource to entering the goal, for the resources that lead there."""
-    index = instance.graph.index
-    rests: dict[ResourceId, int] = {}
-    queue = [(0, index[source], source) for source in sorted(before[robot.goal], key=index.__getitem__)]
-    while queue:
-        rest, _, resource = heappop(queue)
-        if resource in rests:
-            continue
-        rests[resource] = rest
-        for source in before[resource]:
-            heappush(queue, (rest + instance.duration(robot.id, resource), index[source], source))
-    return rests
-
-
 class RobotClauses:
     """The clauses of one robot, added to a formula and growing with the robot's horizon.
 
     `shortest` is the robot's cost on the empty graph, or `None` if no way leads from its start to its goal; then
     it has no clauses. With `vanish` a robot that enters its goal has arrived: going on could only cost more. One that
-    is seen, at tick `seen`, may go on.
+    is seen, at tick `seen`, may go on, and so may one whose last visit is longer than another one there.
     """
 
     def __init__(
@@ -77,31 +62,29 @@ class RobotClauses:
         """The k-th literal, from 1, says that the delay is at least k; there are horizon + 1."""
         self._formula = formula
         self._parks = instance.after_goal == "park"
-        self._drives_on = self._parks or seen is not None
-        self._successors = instance.graph.successors
-        self._predecessors = before
-        self._duration = {each.id: instance.duration(robot.id, each.id) for each in instance.graph.resources}
-        self._rest = least_rests(instance, robot, before)
-        self._ticks: dict[ResourceId, list[int]] = defaultdict(list)
+        self.routes = routes_of(instance, robot, before)
+        self._drives_on = self._parks or seen is not None or self.routes.must_pass
+        self._rest = self.routes.rests()
+        self._last = frozenset(self.routes.last)
+        self._ticks: dict[Place, list[int]] = defaultdict(list)
         self._open: list[Node] = []
         self._kept: Container[Node] | None = None
-        self._start: Node = (robot.start, robot.release + self._duration[robot.start])
-        self.shortest: int | None = None
-        if robot.start == robot.goal:
-            self.shortest = 0
-        elif robot.start in self._rest:
-            self.shortest = self._duration[robot.start] + self._rest[robot.start]
+        duration = self.routes.duration
+        starts = [place for place in self.routes.starts if place in self._rest]
+        self._starts: list[Node] = [(place, robot.release + duration[place]) for place in starts]
+        self._has_begun = False
+        self.shortest = self.routes.shortest(self._rest)
         self.earliest = robot.release + (self.shortest or 0)
         """The tick at which the robot enters its goal if nothing delays it."""
 
     @property
     def _stands_still(self) -> bool:
-        return self.robot.start == self.robot.goal and not self._drives_on
+        return self.routes.is_there and not self._drives_on
 
     def least_delay(self, node: Node) -> int:
         """The least delay of a plan through the node."""
-        resource, tick = node
-        return tick + self._rest[resource] - self.earliest
+        place, tick = node
+        return tick + self._rest[place] - self.earliest
 
     def later_than(self, delay: int) -> Literal:
         """The literal of a delay of more than `delay`, or of more than the horizon if that is less."""
@@ -109,15 +92,15 @@ class RobotClauses:
 
     def leads_to(self, node: Node) -> list[Node]:
         """Where the robot can be free to leave next."""
-        resource, tick = node
+        place, tick = node
         if self._is_after(tick):
             return []
         moves = [
-            (target, tick + self._duration[target])
-            for target in self._successors[resource]
-            if target in self._rest and (self._drives_on or target != self.robot.goal)
+            (target, tick + self.routes.duration[target])
+            for target in self.routes.successors[place]
+            if target in self._rest and (self._drives_on or target != self.routes.there)
         ]
-        following = [(resource, tick + 1), *moves]
+        following = [(place, tick + 1), *moves]
         return following if self._kept is None else [each for each in following if each in self._kept]
 
     def keep_only(self, nodes: Container[Node]) -> None:
@@ -128,16 +111,14 @@ class RobotClauses:
         """How many nodes the robot has at a horizon."""
         if self._stands_still:
             return 1
-        if self.robot.start not in self._rest:
-            return 0
-        first: dict[ResourceId, int] = {}
+        first: dict[Place, int] = {}
         number = count()
-        queue = [(self._start[1], next(number), self._start[0])]
+        queue = [(tick, next(number), place) for place, tick in sorted(self._starts, key=itemgetter(1))]
         while queue:
-            tick, _, resource = heappop(queue)
-            if resource not in first:
-                first[resource] = tick
-                for following, later in self.leads_to((resource, tick))[1:]:
+            tick, _, place = heappop(queue)
+            if place not in first:
+                first[place] = tick
+                for following, later in self.leads_to((place, tick))[1:]:
                     heappush(queue, (later, next(number), following))
         return sum(max(0, horizon + 1 - self.least_delay(node)) for node in first.items())
 
@@ -160,23 +141,33 @@ class RobotClauses:
 
     def _stand_still(self) -> None:
         if self.horizon == 0:
-            self.node[self._start] = self._formula.variable()
-            insort(self._ticks[self._start[0]], self._start[1])
-            self._formula.add(self.node[self._start])
+            place = self.routes.there
+            start = (place, self.robot.release + self.routes.duration[place])
+            self._add_node(start, [])
+            self._formula.add(self.node[start])
             self._formula.add(-self.late[0])
 
     def _add_nodes(self) -> list[Node]:
         """Add the nodes whose least delay is the horizon."""
         added: list[Node] = []
-        if self._start[0] in self._rest and self.least_delay(self._start) == self.horizon:
-            self._add_node(self._start, added)
-            at_goal = [-self.late[0]] if self._start[0] == self.robot.goal else []
-            self._formula.add(*at_goal, self.node[self._start])
+        for start in self._starts:
+            if self.least_delay(start) == self.horizon:
+                self._add_node(start, added)
+        self._begin()
         for node in self._open:
             self._add_following(node, added)
         for node in added:  # grows while it is read
             self._add_following(node, added)
         return added
+
+    def _begin(self) -> None:
+        """The robot begins at one of its starts, or has arrived at once, or is too late."""
+        begun = [self.node[start] for start in self._starts if start in self.node]
+        if begun and not self._has_begun:
+            self._has_begun = len(begun) == len(self._starts)
+            at_goal = [-self.late[0]] if self.routes.is_there else []
+            late = [] if self._has_begun else [self.late[self.horizon]]
+            self._formula.add(*at_goal, *begun, *late)
 
     def _add_following(self, node: Node, added: list[Node]) -> None:
         for following in self.leads_to(node):
@@ -201,13 +192,13 @@ class RobotClauses:
 
     def _go_on(self, node: Node) -> bool:
         """From the node the robot waits, moves, arrives, or is too late; returns whether all nodes exist."""
-        resource, tick = node
+        place, tick = node
         if self._is_after(tick):
             return True
         following = self.leads_to(node)
         ways = [self.node[each] for each in following if each in self.node]
         complete = len(ways) == len(following)
-        if self.robot.goal in self._successors[resource]:
+        if place in self._last:
             ways.append(-self.later_than(tick - self.earliest))
         if not complete:
             ways.append(self.late[self.horizon])
@@ -216,36 +207,35 @@ class RobotClauses:
 
     def _come_from(self, node: Node) -> None:
         """To the node the robot waited or moved, unless its plan begins there."""
-        resource, tick = node
-        if node != self._start:
-            entered = tick - self._duration[resource]
-            sources = [(resource, tick - 1), *((source, entered) for source in self._predecessors[resource])]
+        place, tick = node
+        if node not in self._starts:
+            entered = tick - self.routes.duration[place]
+            sources = [(place, tick - 1), *((source, entered) for source in self.routes.predecessors[place])]
             self._formula.add(-self.node[node], *(self.node[each] for each in sources if each in self.node))
 
     def _arrive_at_horizon(self) -> None:
         """A robot that arrives with a delay of exactly the horizon comes from a node before the goal."""
         tick = self.earliest + self.horizon
-        if self._is_after(tick) or (self.robot.start == self.robot.goal and self.horizon == 0):
+        if self._is_after(tick) or (self.routes.is_there and self.horizon == 0):
             return
         earlier = [-self.late[self.horizon - 1]] if self.horizon > 0 else []
-        sources = [(source, tick) for source in self._predecessors[self.robot.goal]]
+        sources = [(source, tick) for source in self.routes.last]
         self._formula.add(
             *earlier, self.late[self.horizon], *(self.node[each] for each in sources if each in self.node)
         )
 
     def may_visit(self, resource: ResourceId) -> bool:
         """Whether the robot may be in the resource at all, within its horizon."""
-        return resource == self.robot.goal or resource in self._ticks
+        return resource == self.robot.goal or any(place in self._ticks for place in self.routes.at(resource))
 
     def stays(self, resource: ResourceId, tick: int) -> Iterator[Clause]:
         """The alternatives that put the robot into the resource at the tick: each is literals that hold together."""
         if self._is_after(tick):
             return
         yield from ((node,) for node in self.nodes_of(resource, tick))
-        duration = self._duration[resource]
         delay = tick - self.earliest
         if resource == self.robot.goal and delay >= 0 and not self._stands_still:
-            left = delay - duration
+            left = delay - self.routes.stay
             if self._parks or left < 0:
                 yield (-self.later_than(delay),)
             elif left < self.horizon:
@@ -253,13 +243,24 @@ class RobotClauses:
 
     def nodes_of(self, resource: ResourceId, tick: int) -> Iterator[Literal]:
         """The nodes of a stay in the resource at the tick that is not the last one."""
-        ticks = self._ticks.get(resource, [])
-        until = range(bisect_right(ticks, tick), bisect_right(ticks, tick + self._duration[resource]))
-        return (self.node[resource, ticks[each]] for each in until)
+        for place in self.routes.at(resource):
+            ticks = self._ticks.get(place, [])
+            until = range(bisect_right(ticks, tick), bisect_right(ticks, tick + self.routes.duration[place]))
+            yield from (self.node[place, ticks[each]] for each in until)
+
+    def leaving(self, resource: ResourceId, tick: int) -> Clause:
+        """The literals of the nodes at which the robot may leave the resource at the tick."""
+        nodes = [(place, tick) for place in self.routes.at(resource)]
+        return tuple(self.node[node] for node in nodes if node in self.node)
+
+    def leaves(self) -> list[tuple[ResourceId, int]]:
+        """The resources and ticks at which the robot may leave, in the order of its nodes."""
+        return list(dict.fromkeys((self.routes.resource(place), tick) for place, tick in self.node))
 
     def largest_delay(self, seen: int, places: Collection[ResourceId], arrival: int) -> int:
         """The largest delay of a robot that arrives by a tick, or is in one of the places at another."""
-        last = [(place, seen + self._duration[place]) for place in places if place in self._rest]
+        at = [place for resource in places for place in self.routes.at(resource) if place in self._rest]
+        last = [(place, seen + self.routes.duration[place]) for place in at]
         return max([0, arrival - self.earliest, *map(self.least_delay, last)])
 
     def demand(self, seen: int, places: Collection[ResourceId], arrival: int) -> None:
@@ -272,12 +273,12 @@ class RobotClauses:
         self._formula.add(*nodes, *arrived)
         if seen < (self.seen or 0):
             for (place, leave), node in self.node.items():
-                if place not in places and seen < leave <= seen + self._duration[place]:
+                if self.routes.resource(place) not in places and seen < leave <= seen + self.routes.duration[place]:
                     self._formula.add(-node)
 
     def entries(self) -> list[tuple[ResourceId, int]]:
         """The resources and ticks at which the robot may enter, in the order of its nodes."""
-        entries = [(resource, tick - self._duration[resource]) for resource, tick in self.node]
+        entries = [(self.routes.resource(place), tick - self.routes.duration[place]) for place, tick in self.node]
         if not self._stands_still:
             entries += [(self.robot.goal, self.earliest + delay) for delay in range(self.horizon + 1)]
         return list(dict.fromkeys(entries))
@@ -288,17 +289,22 @@ class RobotClauses:
         if late > self.horizon:
             return None
         visits = []
-        node, enter = self._start, self.robot.release
+        enter = self.robot.release
         arrival = self.earliest + late
-        if self.robot.start == self.robot.goal and late == 0:
+        if self.routes.is_there and late == 0:
             arrival = self.robot.release
         else:
-            while not (node[1] == arrival and self.robot.goal in self._successors[node[0]]):
-                following = next(each for each in self.leads_to(node) if each in self.node and model[self.node[each]])
+            node = self._first(self._starts, model)
+            while not (node[1] == arrival and node[0] in self._last):
+                following = self._first(self.leads_to(node), model)
                 if following[0] != node[0]:
-                    visits.append(Visit(node[0], enter, node[1]))
+                    visits.append(Visit(self.routes.resource(node[0]), enter, node[1]))
                     enter = node[1]
                 node = following
-            visits.append(Visit(node[0], enter, arrival))
-        leave = None if self._parks else arrival + self._duration[self.robot.goal]
+            visits.append(Visit(self.routes.resource(node[0]), enter, arrival))
+        leave = None if self._parks else arrival + self.routes.stay
         return Plan(self.robot.id, (*visits, Visit(self.robot.goal, arrival, leave)))
+
+    def _first(self, nodes: Sequence[Node], model: Sequence[bool]) -> Node:
+        """The first of these nodes that is true."""
+        return next(node for node in nodes if node in self.node and model[self.node[node]])

@@ -1,6 +1,6 @@
 """The reasons why no plan set exists: the obstacles, and the check of each.
 
-- `no-way`: no moves lead from the robot's start to its goal.
+- `no-way`: no moves lead from the robot's start over its stops to its goal.
 - `full-goal`: robots park, and more of them have this goal than its capacity. When the last arrives, all are there.
 - `clauses`: the encoding of the instance with these horizons and without any bound on the delays has no model. All
   conflicts are forbidden, and robots later than their horizons are left free, so any plan set would be a model.
@@ -12,12 +12,12 @@ The checks share no code with the search for an optimum. The refutation of claus
 `carp_verify.optimum.proof`.
 """
 
+from itertools import pairwise
 from typing import TypeAlias
 
 import msgspec
 
 from carp_spec import Instance, Refusal, ResourceId, RobotId
-from carp_spec.limits import refuse
 from carp_verify.optimum.encoding import Encoding
 from carp_verify.optimum.joint_search import joint_states, least_total_cost
 
@@ -54,7 +54,8 @@ def describe(instance: Instance, obstacle: Obstacle) -> str:
     match obstacle:
         case NoWay(id):
             robot = instance.robot[id]
-            return f"no way leads from {robot.start} to {robot.goal}, the goal of robot {robot.id}"
+            over = "" if len(robot.stops) == 1 else " over its other stops"
+            return f"no way leads from {robot.start}{over} to {robot.goal}, the goal of robot {robot.id}"
         case FullGoal(goal):
             capacity = instance.graph.resource[goal].capacity
             return f"{_parkers(instance, goal)} robots are to park in {goal}, which has a capacity of {capacity}"
@@ -66,7 +67,6 @@ def describe(instance: Instance, obstacle: Obstacle) -> str:
 
 def why_no_obstacle(instance: Instance, obstacle: Obstacle) -> str | None:
     """The reason why the instance does not have the obstacle, `None` if it has it; clauses are still to be refuted."""
-    refuse(instance, "stops")
     match obstacle:
         case NoWay(id):
             return _why_way(instance, id)
@@ -88,14 +88,21 @@ def _why_way(instance: Instance, id: RobotId) -> str | None:
     if id not in instance.robot:
         return f"the instance has no robot {id}"
     robot = instance.robot[id]
-    reached = {robot.start}
-    ahead = [robot.start]
+    places = [robot.start, *(stop.resource for stop in robot.stops)]
+    if all(_leads_to(instance, *leg) for leg in pairwise(places)):
+        return f"there is a way from {' to '.join(map(str, places))}"
+    return None
+
+
+def _leads_to(instance: Instance, place: ResourceId, goal: ResourceId) -> bool:
+    reached = {place}
+    ahead = [place]
     while ahead:
         for target in instance.graph.successors[ahead.pop()]:
             if target not in reached:
                 reached.add(target)
                 ahead.append(target)
-    return f"there is a way from {robot.start} to {robot.goal}" if robot.goal in reached else None
+    return goal in reached
 
 
 def _why_room(instance: Instance, goal: ResourceId) -> str | None:

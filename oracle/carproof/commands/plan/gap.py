@@ -7,7 +7,7 @@ import click
 
 from carp_spec.documents.decoding import write
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import InputFile, print_document, read_instance_file, refuse_in
+from carproof.command_line.files import InputFile, print_document, read_instance_file
 from carproof.command_line.options import examples, json_option, limit_option
 from carproof.command_line.tables import print_line, print_table
 from carproof.engines import warm
@@ -41,7 +41,6 @@ def command(instance: str, limit: int, as_json: bool) -> Answer:
     from carp_verify.optimum.unsolvable import describe  # noqa: PLC0415
 
     problem = read_instance_file(instance)
-    refuse_in(instance, problem, "stops")
     warm()
     measured = gap(problem, PLANNERS, limit)
     best = measured.optimum

@@ -11,7 +11,7 @@ from carp_spec.documents.decoding import write
 from carp_spec.documents.solutions import write_solution
 from carp_spec.inputs.options import PROCESSES
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import print_document, read_instance_file, refuse_in, write_whole
+from carproof.command_line.files import print_document, read_instance_file, write_whole
 from carproof.command_line.options import examples, instance_argument, json_option, limit_option, output_option
 from carproof.command_line.tables import print_line, print_table, remark
 from carproof.engines import warm
@@ -58,7 +58,6 @@ def command(
     from carp_verify.optimum.unsolvable import describe  # noqa: PLC0415
 
     problem = read_instance_file(instance)
-    refuse_in(instance, problem, "stops")
     warm()
     started = perf_counter()
     best = optimum(problem, limit, processes=processes)
