@@ -172,7 +172,7 @@ def figures() -> str:
     return "\n".join(parts)
 
 
-DOCUMENTS = ("instance", "solution", "verdict", "trace", "bound", "query")
+DOCUMENTS = ("instance", "solution", "verdict", "trace", "grants", "bound", "query")
 TYPES = {"integer": "whole number", "boolean": "true or false"}
 PARTS: Mapping[str, Callable[[], str]] = {
     "commands": commands,
@@ -185,6 +185,6 @@ PARTS: Mapping[str, Callable[[], str]] = {
     "theorems": theorems,
     **{
         f"fields of {name}": partial(_fields, name)
-        for name in ("instance", "solution", "verdict", "trace", "bound", "query")
+        for name in ("instance", "solution", "verdict", "trace", "grants", "bound", "query")
     },
 }

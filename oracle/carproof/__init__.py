@@ -81,10 +81,13 @@ if TYPE_CHECKING:
     from carp_verify.optimum.proof import Verified as Verified
     from carp_verify.optimum.proof import verify_proof as verify_proof
     from carp_verify.query.verify import verify_query as verify_query
+    from carp_verify.release.rules import Grant as Grant
     from carproof.api.documents import read_verdict as read_verdict
     from carproof.api.documents import write_bound as write_bound
     from carproof.api.documents import write_query_certificate as write_query_certificate
+    from carproof.api.executing import check_grants as check_grants
     from carproof.api.executing import execute as execute
+    from carproof.api.executing import release as release
     from carproof.api.fleet import Change as Change
     from carproof.api.fleet import Fleet as Fleet
     from carproof.api.judging import audit as audit
@@ -104,6 +107,8 @@ if TYPE_CHECKING:
     from carproof.conform.python import conforms as conforms
     from carproof.conform.run import Report as Report
     from carproof.execution.delays import Delay as Delay
+    from carproof.execution.releasing import GrantsVerdict as GrantsVerdict
+    from carproof.execution.releasing import Released as Released
     from carproof.execution.simulation import Driver as Driver
     from carproof.execution.simulation import Execution as Execution
     from carproof.formats import MovingAIFiles as MovingAIFiles

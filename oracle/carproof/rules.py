@@ -10,6 +10,7 @@ from carp_verify.footprint.rules import FOOTPRINT_RULES
 from carp_verify.kernel import KERNEL_RULES
 from carp_verify.optimum.rules import OPTIMUM_RULES
 from carp_verify.query.rules import QUERY_CERTIFICATE_RULES
+from carp_verify.release.rules import RELEASE_RULES
 from carproof.conform.findings import PROGRAM_RULES
 from carproof.execution.simulation import delays_are_right
 from carproof.extras import INSTALLED
@@ -44,5 +45,6 @@ ALL_RULES: tuple[Rule[..., Any] | Code, ...] = (
     *BOUND_RULES,
     *QUERY_CERTIFICATE_RULES,
     *FOOTPRINT_RULES,
+    *RELEASE_RULES,
     *KERNEL_RULES,
 )

@@ -113,6 +113,8 @@ REQUESTS: dict[str, Document] = {
     "execute": {"instance": TWO, "solution": TWO_PLANNED, "driver": "order", "delays": [["r2", 0, 2]], "now": 2},
     "drive": {"instance": TWO, "solution": TWO_PLANNED, "trace": UNDER_WAY, "ready": ["r1"]},
     "retime": {"instance": TWO, "solution": TWO_PLANNED, "trace": UNDER_WAY},
+    "release": {"instance": TWO, "solution": TWO_PLANNED, "trace": UNDER_WAY, "beyond": ["r1"], "states": 9},
+    "check-grants": {"instance": TWO, "solution": TWO_PLANNED, "trace": UNDER_WAY, "grants": [], "states": 9},
     "untangle": {"instance": TWO, "solution": TWO_PLANNED},
     "give-way": {
         "instance": TWO,

@@ -2,9 +2,14 @@
 
 from collections.abc import Sequence
 
-from carp_spec import Instance, Refusal, Solution
-from carp_spec.requests import sound_solution
+from carp_spec import Instance, Refusal, RobotId, Solution
+from carp_spec.execution.traces import Trace
+from carp_spec.requests import require_robot, sound_solution
+from carp_spec.rule import is_between
+from carp_spec.shapes import require_shape
+from carp_verify.release.rules import Grant
 from carproof.execution.delays import Delay
+from carproof.execution.releasing import MOST_STATES, GrantsVerdict, Released, Releasing
 from carproof.execution.simulation import DRIVERS, Driver, Execution, delays_are_right
 from carproof.execution.simulation import execute as executed
 
@@ -23,3 +28,42 @@ def execute(instance: Instance, solution: Solution, driver: Driver, delays: Sequ
         message = "each delay must name a planned robot, the position of a visit, and ticks above 0"
         raise Refusal("option", "$.delays", delays_are_right.id, message)
     return executed(instance, sound, driver, tuple(delays))
+
+
+def release(
+    instance: Instance,
+    solution: Solution,
+    trace: Trace,
+    beyond: Sequence[RobotId] = (),
+    states: int = MOST_STATES,
+) -> Released:
+    """Which further resources robots may be granted at the tick of a trace, so that everybody can still finish.
+
+    By the planned order, all robots may have theirs together. For the robots of `beyond`, it is also decided what each
+    may have alone, whatever the order, by a search of at most so many states for each resource. Raises `Refusal` for a
+    solution that breaks a rule, and for a trace that does not keep to its paths and durations.
+    """
+    _require_states(states)
+    situation = Releasing(instance, solution, trace)
+    for robot in beyond:
+        require_robot(instance, robot, "$.beyond")
+    return situation.released([robot for robot in beyond if robot in situation.plans], states)
+
+
+def check_grants(
+    instance: Instance, solution: Solution, trace: Trace, grants: Sequence[Grant], states: int = MOST_STATES
+) -> GrantsVerdict:
+    """Whether robots can all finish if they are granted these resources at the tick of a trace, with a witness.
+
+    The answer is undecided if a search would look at more than so many states. Raises `Refusal` as `release` does, and
+    for grants of other than the next resources of plans.
+    """
+    _require_states(states)
+    require_shape(tuple(grants), tuple[Grant, ...], "$.grants")
+    return Releasing(instance, solution, trace).check(grants, states)
+
+
+def _require_states(states: object) -> None:
+    if not is_between(states, 1):
+        message = f"it must be a whole number of at least 1, not {states!r}"
+        raise Refusal("option", "$.states", "request/limit", message)

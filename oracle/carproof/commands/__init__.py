@@ -30,7 +30,7 @@ SECTIONS: Mapping[str, Mapping[str, str]] = {
         "optimum": f"{HERE}.plan.optimum",
         "gap": f"{HERE}.plan.gap",
     },
-    "Late robots": {"execution": f"{HERE}.execution.group"},
+    "Late robots": {"execution": f"{HERE}.execution.group", "release": f"{HERE}.execution.release"},
     "Make instances": {"generate": f"{HERE}.run.generate", "convert": f"{HERE}.run.convert"},
     "Start and measure": {"demo": f"{HERE}.run.demo", "warm": f"{HERE}.run.warm"},
 }

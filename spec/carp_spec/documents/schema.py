@@ -13,6 +13,7 @@ import msgspec
 
 import carp_spec
 from carp_spec.documents.bounds import BoundDocument
+from carp_spec.documents.grants import GrantsDocument
 from carp_spec.documents.instances import InstanceDocument, RobotDocument
 from carp_spec.documents.query_certificates import QueryCertificateDocument
 from carp_spec.documents.solutions import SolutionDocument, TraceDocument
@@ -28,6 +29,7 @@ DOCUMENTS: Mapping[str, type[msgspec.Struct]] = {
     "bound": BoundDocument,
     "query": QueryCertificateDocument,
     "trace": TraceDocument,
+    "grants": GrantsDocument,
     "vectors": VectorsDocument,
 }
 

@@ -16,7 +16,17 @@ from carp_spec import Refusal
 from carp_verify.kernel import UndecidedError, is_answer
 from carproof.engines import Engine
 from carproof.protocol.lines import RIGHT_FIELDS, SPOKEN_VERSION, VERSION, Request
-from carproof.protocol.ops.executing import check_trace, dependencies, drive, execute, give_way, retime, untangle
+from carproof.protocol.ops.executing import (
+    check_grants,
+    check_trace,
+    dependencies,
+    drive,
+    execute,
+    give_way,
+    release,
+    retime,
+    untangle,
+)
 from carproof.protocol.ops.judging import audit, check, verify_bound, verify_query
 from carproof.protocol.ops.keeping import (
     fleet_add,
@@ -94,6 +104,8 @@ _HANDLERS: tuple[Callable[[Any, Any], object], ...] = (
     retime,
     untangle,
     give_way,
+    release,
+    check_grants,
     fleet_open,
     fleet_add,
     fleet_assign,

@@ -6,14 +6,25 @@ import msgspec
 
 from carp_reference.execution import order_of
 from carp_spec import Instance, Refusal, ResourceId, RobotId, Solution, Verdict, Visit, total_cost
+from carp_spec.documents.grants import GrantDocument
 from carp_spec.documents.solutions import SolutionDocument, TraceDocument, solution_document, trace_document
 from carp_spec.documents.verdicts import VerdictDocument, verdict_document
 from carp_spec.execution.execution_rules import require_followed, trace_violations
 from carp_spec.execution.traces import Trace
 from carp_spec.requests import require_robot, require_tick
+from carp_verify.release.rules import Grant
+from carproof.api.executing import check_grants as grants_checked
+from carproof.api.executing import release as released
 from carproof.engines import Engine
 from carproof.execution.delays import Delay, late_robots, may_enter, until
 from carproof.execution.giving_way import give_way as given_way
+from carproof.execution.release_documents import (
+    GrantsVerdictDocument,
+    ReleaseDocument,
+    grants_verdict_document,
+    released_document,
+)
+from carproof.execution.releasing import MOST_STATES
 from carproof.execution.simulation import DependenciesDocument, Driver, delays_are_right, dependencies_document
 from carproof.execution.simulation import execute as executed
 from carproof.execution.untangling import untangle as untangled
@@ -203,6 +214,46 @@ def drive(request: DriveRequest, engine: Engine) -> DriveDocument:
     for robot in request.ready:
         require_robot(request.instance, robot, "$.ready")
     return DriveDocument(may_enter(order_of(request.instance, sound), request.trace, request.ready))
+
+
+@dataclass(frozen=True, slots=True)
+class ReleaseRequest:
+    """A solution, the trace of what has happened, and the robots for which grants beyond the order are searched."""
+
+    instance: Instance
+    solution: Solution
+    trace: Trace
+    beyond: tuple[RobotId, ...] = ()
+    states: int = MOST_STATES
+
+
+def release(request: ReleaseRequest, engine: Engine) -> ReleaseDocument:
+    """Tell which further resources of their plans robots may be granted, so that everybody can still finish."""
+    del engine
+    sound = sound_within(request.instance, request.solution)
+    with inside("$.trace"):
+        found = released(request.instance, sound, request.trace, request.beyond, request.states)
+    return released_document(found)
+
+
+@dataclass(frozen=True, slots=True)
+class CheckGrantsRequest:
+    """A solution, the trace of what has happened, and what robots are granted."""
+
+    instance: Instance
+    solution: Solution
+    trace: Trace
+    grants: tuple[GrantDocument, ...]
+    states: int = MOST_STATES
+
+
+def check_grants(request: CheckGrantsRequest, engine: Engine) -> GrantsVerdictDocument:
+    """Decide whether everybody can still finish if robots are granted these resources, and show why."""
+    del engine
+    sound = sound_within(request.instance, request.solution)
+    grants = [Grant(each.robot, each.resources) for each in request.grants]
+    verdict = grants_checked(request.instance, sound, request.trace, grants, request.states)
+    return grants_verdict_document(request.instance, verdict)
 
 
 def _delays(solution: Solution, delays: tuple[tuple[RobotId, int, int], ...]) -> tuple[Delay, ...]:
