@@ -77,6 +77,10 @@ thorough: compiled
 bench: install
 	$(BIN)/pytest -q -s tests/bench/bench_speed.py
 
+# A hundred thousand requests of four clients to servers that keep fleets, each answer judged: an hour on a quiet machine.
+soak: install
+	$(BIN)/python -m tests.bench.soak $(or $(REQUESTS),100000)
+
 # What a fleet in memory costs beside the compiled core, and how fast documents of large fleets are read.
 bench-fleet: install
 	$(BIN)/python -m tests.bench.bench_fleet 100 1000 3000

@@ -77,7 +77,7 @@ def test_news_of_every_kind_has_the_plans_of_whole_solutions(part: int) -> None:
             now += draw.one_of((0, 1, 2))
             robot = replace(each, release=max(each.release, now))
             instance = replace(instance, robots=(*instance.robots, robot))
-            change = fleet.add(robot, now=now)
+            change = fleet.add(robot, now=now, audit=instance.following == "allowed")
             before, whole = whole, carp_optimized.add(instance, whole, robot.id, now, options)
             assert_news(fleet, change, before, whole)
             going = [each for each in fleet.instance.robots if not has_ended(plan_of(fleet, each.id), now)]
@@ -85,7 +85,7 @@ def test_news_of_every_kind_has_the_plans_of_whole_solutions(part: int) -> None:
                 chosen = draw.one_of(going)
                 places = [place for place in instance.graph.index if place != chosen.goal]
                 stops = [Stop(draw.one_of(places), draw.one_of((0, 3)))]
-                change = fleet.assign(chosen.id, stops, now)
+                change = fleet.assign(chosen.id, stops, now, audit=instance.following == "allowed")
                 before = whole
                 further, whole = carp_optimized.assign(instance, whole, chosen.id, stops, now, options)
                 assert (chosen.id in change.unplanned) == (further is instance)
@@ -103,6 +103,7 @@ def test_news_of_every_kind_has_the_plans_of_whole_solutions(part: int) -> None:
 
 def assert_news(fleet: Fleet, change: Change, before: Solution, whole: Solution) -> None:
     """The fleet holds the plans of a solution of all robots that ever came, and has named those that changed."""
+    assert change.audit is None or not change.audit.late
     held = fleet.instance.robot
     assert {*fleet.solution.plans} == {plan for plan in whole.plans if plan.robot in held}
     assert fleet.solution.order == tuple(id for id in whole.order if id in held)
@@ -198,6 +199,7 @@ def news() -> dict[str, Callable[[Fleet], Change]]:
         "fleet/now release": lambda fleet: fleet.add(replace(robot, release=1)),
         "fleet/now trace": lambda fleet: fleet.trace(Trace(1, (stays,))),
         "fleet/robot add": lambda fleet: fleet.add(replace(robot, id="x")),
+        "limit/ticks advance": lambda fleet: fleet.advance(2**40),
         "fleet/now assign": lambda fleet: fleet.assign("x", [Stop("a")], 1),
         "fleet/robot assign": lambda fleet: fleet.assign("gone", [Stop("a")]),
         "fleet/robot ended": lambda fleet: fleet.assign("x", [Stop("a")], 30),
@@ -205,7 +207,6 @@ def news() -> dict[str, Callable[[Fleet], Change]]:
         "instance/stops same": lambda fleet: fleet.assign("x", [Stop("f")]),
         "instance/stops none": lambda fleet: fleet.assign("x", []),
         "limit/ticks service": lambda fleet: fleet.assign("x", [Stop("a", 2**30)]),
-        "limit/stops audit": lambda fleet: fleet.assign("x", [Stop("a")], 3, audit=True),
         "fleet/robot trace": lambda fleet: fleet.trace(Trace(3, (replace(stays, robot="gone"),))),
         "fleet/size many": lambda fleet: fleet.add(*(replace(robot, id=n) for n in range(20))),
         "instance/robot-id twice": lambda fleet: fleet.add(robot, robot),
