@@ -28,6 +28,24 @@ def vectors_of(op: str) -> list[Vector]:
     return [case for case in vectors() if case.op == op]
 
 
+@pytest.mark.parametrize("command", ["verify-proof", "formula"])
+def test_the_kernel_refuses_proofs_of_robots_with_stops_by_name(command: str, tmp_path: Path) -> None:
+    serving = INSTANCE.replace('"goal": "b"', '"stops": [{"resource": "b", "service": 1}]')
+    manifest = {
+        "format": "carproof-proof/2",
+        "claim": "optimum",
+        "sha256": {},
+        "cost": 1,
+        "horizons": [1],
+        "order": [0],
+    }
+    (tmp_path / "instance.json").write_text(serving)
+    (tmp_path / "manifest.json").write_text(json.dumps(manifest))
+    (tmp_path / "beat.lrat").touch()
+    code, verdict, _ = run(command, tmp_path)
+    assert (code, verdict["path"], verdict["rule"]) == (2, "$.robots[0].stops", "limit/stops")
+
+
 def test_the_kernel_refuses_bounds_of_robots_with_stops_by_name() -> None:
     case = vectors_of("verify-bound")[0]
     robot, *others = case.instance["robots"]

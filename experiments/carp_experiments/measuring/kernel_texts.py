@@ -102,7 +102,8 @@ def decided(text: bytes) -> Decided:
         asked = msgspec.json.decode(text, type=Request)
         decide = QUESTIONS[asked.op, tuple(name for name in DOCUMENTS if getattr(asked, name) is not ABSENT)]
         instance = read_instance(bytes(asked.instance))
-        refuse(instance, "stops")
+        if asked.op == "verify-bound":
+            refuse(instance, "stops")
         answer = decide(instance, asked)
     except (Refusal, msgspec.DecodeError, KeyError):
         return Decided("bad input")
