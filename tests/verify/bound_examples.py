@@ -135,16 +135,17 @@ def with_deadlines(unproved: DeadlinesDocument) -> BoundDocument:
 def cut_certificate() -> BoundDocument:
     """A certificate with a cut of r0 and r2, which meet head-on, that counts half of their costs."""
     certificate = lower_bound(crossing(), steps=2)
-    half = msgspec.structs.replace(cut_of(crossing(), ("r0", "r2"), 7), multiplier=certificate.scale // 2)
+    cut = cut_of(crossing(), ("r0", "r2"), 7, Evidence((2, 2), (1, 0)))
+    half = msgspec.structs.replace(cut, multiplier=certificate.scale // 2)
     with_it = completed(crossing(), msgspec.structs.replace(certificate, cuts=(half,)))
     assert verify_bound(crossing(), with_it) == with_it.bound
     assert with_it.bound > certificate.bound
     return with_it
 
 
-def cut_of(instance: Instance, robots: Sequence[RobotId], least: int) -> CutDocument:
+def cut_of(instance: Instance, robots: Sequence[RobotId], least: int, evidence: Evidence | None = None) -> CutDocument:
     """The claim that robots cost at least so much together, with its refutation."""
-    evidence = Evidence(tuple(least for _ in robots), tuple(range(len(robots))))
+    evidence = evidence or Evidence(tuple(least for _ in robots), tuple(range(len(robots))))
     lrat = refutation(beat_formula(group_of(instance, robots), least, evidence).formula, Deadline(60))
     return CutDocument(tuple(robots), least, 1, evidence.horizons, evidence.order, lrat)
 
