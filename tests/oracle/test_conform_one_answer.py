@@ -331,7 +331,7 @@ def test_where_carproof_is_undecided_nothing_is_called_wrong_nor_counted(monkeyp
         (case("bound", LAST_FIRST), BOUND),
     )
     assert [first_finding(*each, Level.OPTIMAL) for each in asked] == [None] * 4
-    undecided = "carproof does not find the optimum in 3 s, with which to compare"
+    undecided = "carproof does not find the optimum in 60 s, with which to compare"
     assert [why_undecided(*each, Level.OPTIMAL) for each in asked] == [undecided] * 3 + [None]
     assert why_undecided(FREE, ASIDE_SECOND, Level.CONTEXT_OPTIMAL) is None
     assert why_undecided(FREE, ASIDE_SECOND, Level.EXACT) == undecided

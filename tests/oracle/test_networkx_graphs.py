@@ -117,6 +117,16 @@ def test_a_broken_rule_of_instances_names_the_node_or_the_edge() -> None:
     assert refused.value.path == "edge (2, 2)"
 
 
+@pytest.mark.parametrize(
+    ("graph", "robots", "path"),
+    [(3, [], "graph"), ({"a": ["b"]}, [], "graph"), (nx.path_graph(2), [3], "$.robots[0]")],
+)
+def test_what_is_no_graph_or_no_robot_is_refused(graph: Any, robots: Any, path: str) -> None:  # noqa: ANN401 - nonsense
+    with pytest.raises(Refusal) as caught:
+        instance_from_networkx(graph, robots)
+    assert caught.value.path == path
+
+
 def test_parallel_edges_are_refused() -> None:
     with pytest.raises(Refusal, match="no parallel edges"):
         instance_from_networkx(nx.MultiGraph([(1, 2), (1, 2)]), [])

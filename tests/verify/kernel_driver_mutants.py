@@ -21,12 +21,14 @@ from argparse import ArgumentParser
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from copy import copy
 from dataclasses import dataclass, field
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from threading import Thread
+from traceback import print_exc
 from typing import Any, TextIO
 
 os.environ["HYPOTHESIS_PROFILE"] = "mutation"
@@ -44,9 +46,9 @@ BUILT = ROOT / "build/kernel"
 STORE = ROOT / "build/kernel_driver_mutants.jsonl"
 FILES = ("verdicts", "reading", "main", "search", "encoder")
 TESTS = ("test_kernel_certificates", "test_kernel", "test_kernel_optimum", "test_kernel_hostile")
-LONGEST = 2.0
+LONGEST = 0.5
 """Seconds of processor time: tests whose questions take the kernel longer are left out."""
-STUCK = 15
+STUCK = 5
 """Seconds of processor time after which the kernel hangs, and a test has noticed it."""
 MOST_BYTES = 3 << 30
 TOGETHER = 40
@@ -71,7 +73,7 @@ let rec run folder commands =
       let output = Filename.concat folder "output" and errors = Filename.concat folder "errors" in
       match Unix.fork () with
       | 0 ->
-          ignore (Unix.alarm {20 * STUCK});
+          ignore (Unix.alarm {60 * STUCK});
           redirect (List.hd words) [ O_RDONLY ] Unix.stdin;
           redirect output [ O_WRONLY; O_CREAT; O_TRUNC ] Unix.stdout;
           redirect errors [ O_WRONLY; O_CREAT; O_TRUNC ] Unix.stderr;
@@ -195,6 +197,12 @@ class Builder:
                 self.run("ocamlc", "-c", f"{name}i")
             self.run("ocamlc", "-c", name)
         self.link()
+
+    def moved(self, folder: Path) -> "Builder":
+        """The same in a copy of the folder."""
+        other = copy(self)
+        other.folder = folder
+        return other
 
     def write(self, name: str, text: str) -> None:
         """Write a file of the driver, which takes its arguments from the batch if there is one."""
@@ -331,9 +339,11 @@ def recorded(item: pytest.Item, folder: Path) -> Asked:
 class Tests:
     """A plugin of pytest that runs the collected tests against each mutant, in place of running them once."""
 
-    def __init__(self, chosen: Sequence[Mutant], store: TextIO) -> None:
+    def __init__(self, chosen: Sequence[Mutant], store: TextIO, processes: int, *, again: bool) -> None:
         self.chosen = chosen
         self.store = store
+        self.processes = processes
+        self.again = again
 
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         """Pass all tests once, then run the mutants."""
@@ -345,15 +355,37 @@ class Tests:
             order.sort(key=lambda asked: asked.time)
             say(f"{len(order)} tests of {len(tests)}")
             assert outcome_of(original, order) == ("survives", ""), "the driver as it is"
-            for number, mutant in enumerate(self.chosen, 1):
-                program = builder.built(mutant)
-                outcome, test = ("does not compile", "") if program is None else outcome_of(program, order)
-                result = {"key": mutant.key, "file": mutant.file, "outcome": outcome, "test": test}
-                self.store.write(json.dumps({**result, "line": mutant.line, "change": mutant.change}) + "\n")
-                self.store.flush()
-                if number % 50 == 0:
-                    say(f"{number} of {len(self.chosen)}")
+            places = [shutil.copytree(name, Path(files) / f"of{each}") for each in range(self.processes)]
+            workers = [self.forked(builder.moved(place), order, number) for number, place in enumerate(places)]
+            assert all(os.waitpid(worker, 0)[1] == 0 for worker in workers)
         return True
+
+    def forked(self, builder: Builder, order: list[Asked], first: int) -> int:
+        """The number of a process that runs its share of the mutants."""
+        child = os.fork()
+        if child == 0:
+            code = 1
+            try:
+                self.run(builder, order, self.chosen[first :: self.processes])
+                code = 0
+            except Exception:  # noqa: BLE001 - whatever it is, it is shown
+                print_exc()
+            finally:
+                os._exit(code)
+        return child
+
+    def run(self, builder: Builder, order: list[Asked], chosen: Sequence[Mutant]) -> None:
+        """Run mutants, and keep what comes of them."""
+        for number, mutant in enumerate(chosen, 1):
+            if mutant.key in stored() and not self.again:
+                continue
+            program = builder.built(mutant)
+            outcome, test = ("does not compile", "") if program is None else outcome_of(program, order)
+            result = {"key": mutant.key, "file": mutant.file, "outcome": outcome, "test": test}
+            self.store.write(json.dumps({**result, "line": mutant.line, "change": mutant.change}) + "\n")
+            self.store.flush()
+            if number % 50 == 0:
+                say(f"{number} of {len(chosen)}")
 
 
 def say(line: str) -> None:
@@ -445,7 +477,7 @@ def notices(item: pytest.Item, program: Path) -> bool:
         os.setsid()
         os.environ[VARIABLE] = str(program)
         resource.setrlimit(resource.RLIMIT_CPU, (STUCK, STUCK))
-        signal.alarm(20 * STUCK)
+        signal.alarm(60 * STUCK)
         for stream in (1, 2):
             os.dup2(os.open(os.devnull, os.O_WRONLY), stream)
         passed = False
@@ -473,6 +505,7 @@ def main() -> int:
     parser.add_argument("files", nargs="*", default=FILES)
     parser.add_argument("--every", type=int, default=1)
     parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--processes", type=int, default=1)
     parser.add_argument("--again", action="store_true", help="run those again that survived")
     arguments = parser.parse_args()
     os.environ.pop(VARIABLE, None)
@@ -486,8 +519,9 @@ def main() -> int:
     slow = "not late_deadline and not long_stays and not which_hints and not idle"
     options = ["-q", "-s", "-p", "no:cacheprovider", "-p", "no:unraisableexception", "-k", slow, *paths]
     STORE.parent.mkdir(exist_ok=True)
+    left = [each for each in chosen if each.key not in done]
     with STORE.open("a") as store:
-        code = pytest.main(options, plugins=[Tests([each for each in chosen if each.key not in done], store)])
+        code = pytest.main(options, plugins=[Tests(left, store, arguments.processes, again=arguments.again)])
     known = stored()
     report([known[mutant.key] for mutant in chosen if mutant.key in known])
     return code

@@ -1,6 +1,7 @@
 """The proved kernel: it agrees with `carp_spec` on every verdict, and refuses what it should not read."""
 
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import get_args
@@ -252,6 +253,86 @@ def test_bytes_that_are_no_utf_8_are_refused(data: bytes, tmp_path: Path) -> Non
     (tmp_path / "instance.json").write_bytes(data)
     code, verdict, _ = run("check", tmp_path / "instance.json", tmp_path / "instance.json")
     assert (code, verdict["rule"]) == (2, "document/json")
+
+
+CHARACTERS = [0x20, 0x7F, 0x80, 0x7FF, 0x800, 0xFFF, 0x1000, 0xCFFF, 0xD000, 0xD7FF, 0xE000, 0xFFFF]
+CHARACTERS += [0x10000, 0x3FFFF, 0x40000, 0xFFFFF, 0x100000, 0x10FFFF]
+BROKEN = """
+1f 80 bf c1bf c2 c261 c2c2 dfc0 e09fbf e1 e180 e18061 e16180 e180c0 eda080 edbfbf f08fbfbf f1 f180 f18080 f1808061
+f1806180 f1618080 f4908080 f5808080 f888808080 ff
+"""
+BYTES = [*(chr(each).encode() for each in CHARACTERS), *map(bytes.fromhex, BROKEN.split())]
+ESCAPES = rb"""
+\u0000 \u001f \ud7ff \ud800\udc00 \ud800\udfff \udbff\udc00 \udbff\udfff \ue000 \ud800 \udbff \udc00 \udfff
+\ud800\udbff \ud800\ue000 \ud800\ud800 \ud800\u0041 \ud800u \ud800\\ud \ud800\n \udc00\ud800 \u0041\udc00 \u00 \u00g0
+\u \\ \\u0041 \\ud800 \" \/ \b\f\n\r\t \x41 \U0041
+""".split()
+NUMBERS = b"""
+0 1 -0 -1 00 01 -01 - -- -a +1 1. 1.5 0.0 -0.5 1.e1 .5 1.x 1.5x 1.5.1 1e5 1E5 1e+5 1e-5 1e 1e+ 1e+x 1e5x 1e5.1 0e1 0x1
+1_0 1a 1.5e5 1.5e 1.5e+5x 1-1 truex nulll tru
+""".split()
+NUMBERS += [sign + b"1" + b"0" * zeros for sign in (b"", b"-") for zeros in (17, 18, 98, 99, 100)]
+
+
+@pytest.mark.parametrize(("texts", "old"), [(BYTES, '"b"'), (ESCAPES, '"b"'), (NUMBERS, "2")])
+def test_texts_at_the_edge_of_being_json_are_read_as_carp_spec_reads_them(
+    texts: Sequence[bytes], old: str, tmp_path: Path
+) -> None:
+    (tmp_path / "solution.json").write_text(json.dumps({**json.loads(SOLUTION), "plans": [], "order": []}))
+    for number, text in enumerate(texts):
+        new = b'"' + text + b'"' if old == '"b"' else text
+        whole = INSTANCE.encode().replace(old.encode(), new)
+        for content in (whole, *(whole[: whole.index(new) + end] for end in (len(new) - 1, len(new)))):
+            path = tmp_path / f"{number} {len(content)}.json"
+            path.write_bytes(content)
+            read = read_or_rule(content)
+            _, verdict, _ = run("check", path, tmp_path / "solution.json")
+            assert verdict.get("rule") == (read or "solution/covers"), content
+
+
+def read_or_rule(text: bytes) -> str | None:
+    try:
+        read_instance(text)
+    except Refusal as refusal:
+        return refusal.rule
+    return None
+
+
+OPTIONAL: dict[str, list[object]] = {
+    "$schema": ["text", 3, None],
+    "following": ["allowed", "forbidden", "maybe", True],
+    "graph.multigraph": [False, True, 0],
+    "graph.graph": [{}, {"name": "n"}, {"name": 3}, {"other": "n"}, []],
+    "robots.0.stops": [[{"resource": "b", "service": 0}], [{"resource": "b", "service": 1.0}]],
+}
+
+
+@pytest.mark.parametrize(("place", "value"), [(place, value) for place in OPTIONAL for value in OPTIONAL[place]])
+def test_optional_fields_are_read_as_carp_spec_reads_them(place: str, value: object, tmp_path: Path) -> None:
+    document = json.loads(INSTANCE)
+    *way, last = place.split(".")
+    inside = document
+    for step in way:
+        inside = inside[int(step)] if step.isdigit() else inside[step]
+    inside[last] = value
+    if last == "stops":
+        del inside["goal"]
+    (tmp_path / "instance.json").write_text(json.dumps(document))
+    (tmp_path / "solution.json").write_text(SOLUTION)
+    _, verdict, _ = run("check", tmp_path / "instance.json", tmp_path / "solution.json")
+    assert verdict.get("rule") == read_or_rule(json.dumps(document).encode())
+
+
+def test_a_robot_may_follow_another_where_following_is_allowed(tmp_path: Path) -> None:
+    document = json.loads(INSTANCE)
+    document["robots"].append({"id": "s", "start": "b", "goal": "b"})
+    solution = json.loads(SOLUTION)
+    solution["plans"].append({"robot": "s", "visits": [["b", 0, 1]]})
+    solution["order"].append("s")
+    (tmp_path / "solution.json").write_text(json.dumps(solution))
+    for following, code in (("allowed", 0), ("forbidden", 1)):
+        (tmp_path / "instance.json").write_text(json.dumps({**document, "following": following}))
+        assert run("check", tmp_path / "instance.json", tmp_path / "solution.json")[0] == code
 
 
 def test_a_missing_file_is_bad_input(tmp_path: Path) -> None:

@@ -190,6 +190,7 @@ def test_a_malformed_formula_is_bad_input(formula: str, tmp_path: Path) -> None:
         "5 2 0  1 2 0\n",
         "05 2 0 1 2 0\n",
         f"5 {10**18} 0 1 0\n",
+        f"5 {10**100} 0 1 0\n",
     ],
 )
 def test_lines_of_a_refutation_that_are_not_in_its_form_are_bad_input(proof: str, tmp_path: Path) -> None:

@@ -196,6 +196,9 @@ def query(labels: int, stays: int) -> str:
 @pytest.mark.parametrize(("labels", "stays"), [(300_000, 0), (4, 300_000), (20_000, 20_000)])
 def test_a_query_with_many_labels_or_stays_is_answered(labels: int, stays: int) -> None:
     assert limited("serve", text=query(labels, stays))["verdict"] in ("undecided", "refused")
+    asked = json.loads(query(labels, stays))
+    audit = {"op": "audit", "certificates": [asked.pop("certificate")]}
+    assert limited("serve", text=json.dumps(asked | audit) + "\n")["verdict"] in ("undecided", "refused")
 
 
 @pytest.mark.parametrize("beyond", [False, True])

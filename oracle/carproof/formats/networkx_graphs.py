@@ -74,6 +74,9 @@ def instance_from_networkx(
     """
     if scale is not None and not is_between(scale, 1):
         raise Refusal("option", "$.scale", node_is_right.id, f"it must be a whole number of at least 1, not {scale!r}")
+    if not all(hasattr(graph, each) for each in ("nodes", "edges", "is_directed", "is_multigraph")):
+        message = f"it must be a graph of networkx, not of the class {type(graph).__name__}"
+        raise Refusal("document", "graph", node_is_right.id, message)
     if graph.is_multigraph():
         raise Refusal(
             "document", "graph", node_is_right.id, "the graph must have no parallel edges; it is a multigraph"

@@ -14,6 +14,8 @@ from carproof.protocol.lines import VERSION
 
 STARTING = 5
 """A program that has just been started may take this many times as long for its first answer."""
+SEARCHING = 0.6
+"""The part of the time for an answer that a program has to search for an optimum."""
 _ID_BITS = 31
 
 
@@ -49,7 +51,10 @@ class Program:
 
     def ask(self, case: Case, seconds: float | None = None) -> Reply:
         """Ask the process, a new one if the last is gone."""
-        reply: Reply = self.answer(case.op, request_fields(case), seconds)
+        fields = request_fields(case)
+        if case.op == "optimum":
+            fields["limit"] = SEARCHING * (seconds or self._limits.seconds)
+        reply: Reply = self.answer(case.op, fields, seconds)
         return reply
 
     def answer(self, op: str, fields: dict[str, Any], seconds: float | None = None) -> Any:  # noqa: ANN401 - of the op
