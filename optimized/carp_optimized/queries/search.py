@@ -287,7 +287,7 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
         if key != (enter << 32) + toll_of(state, slot, resource):
             continue  # entered earlier since this entry was made
         if expansions >= next_try:
-            next_try = 2 * expansions
+            next_try = expansions + expansions // 2
             next_f = key >> 32
             if not (beyond and is_unseen(state, slot, expansions, next_f)):
                 end = end_from(state, robot, slot, goal_window, own_slot, next_f, min(latest, LARGEST), expansions)

@@ -16,7 +16,7 @@ UNKNOWN = -1  # the number of expansions of a plan that no query of the fleet ha
 
 SEVERAL = -2  # sources
 BLOCK = 8  # windows are looked at in blocks
-MOST_GATHERED = 128  # windows at the end of a query
+MOST_GATHERED = 1024  # windows at the end of a query
 
 UNREACHABLE = -1  # a guide: the goal cannot be reached from the resource
 TOO_FAR = -2  # a guide: it can, in more than LARGEST ticks
@@ -157,17 +157,17 @@ class Guides(NamedTuple):
 class Ending(NamedTuple):
     """The scratch of looking for the end of a query (`carp_optimized.queries.ends`).
 
-    `gathered` are windows with their keys; `place` is where a window is among them, if it is. `changed` are the windows
-    of which entry and parent have been changed, with what they had for `reached` and `parent` before.
+    `gathered` are windows, with what they had for `reached` and `parent` before; `place` is where a window is among
+    them, if it is, and `is_guessed` whether its entry has been guessed. `keys` and `nodes` are their heap.
     """
 
     gathered: Ints
-    key: Longs
     place: Ints
-    changed: Ints
     reached: Longs
     parent: Ints
-    counts: Longs
+    is_guessed: Ints
+    keys: Longs
+    nodes: Ints
 
 
 class Search(NamedTuple):

@@ -394,12 +394,12 @@ def no_search(windows: int, edges: int) -> Search:
         expansions=np.zeros(1, np.int64),
         ending=Ending(
             gathered=np.zeros(MOST_GATHERED, np.int32),
-            key=np.zeros(MOST_GATHERED, np.int64),
             place=np.zeros(windows, np.int32),
-            changed=np.zeros(8 * MOST_GATHERED, np.int32),
-            reached=np.zeros(8 * MOST_GATHERED, np.int64),
-            parent=np.zeros(8 * MOST_GATHERED, np.int32),
-            counts=np.zeros(3, np.int64),
+            reached=np.zeros(MOST_GATHERED, np.int64),
+            parent=np.zeros(MOST_GATHERED, np.int32),
+            is_guessed=np.zeros(MOST_GATHERED, np.int32),
+            keys=np.zeros(entries, np.int64),
+            nodes=np.zeros(entries, np.int32),
         ),
     )
 
