@@ -33,6 +33,19 @@ def test_cases_are_planned_and_stand_beside_the_tracker_and_other_planners(carpr
     assert judged.code == 0, judged
 
 
+def test_another_planner_is_told_to_play_rounds(carproof: Run) -> None:
+    paths = "Agent 0:(0,0)->(0,1)->(0,2)->\nAgent 1:(1,2)->(1,1)->(1,0)->\n"
+    program = Path("silent")
+    program.write_text(
+        f'#!/bin/sh\ncase "$*" in *"--maxIterations 1"*) printf \'{paths}\' > "$(eval echo \\$$#)";; esac\n'
+    )
+    outcome = carproof(
+        "experiment benchmark --maps maps --bounds bounds.csv --seconds 1 --bound-seconds 0 --lns2 silent"
+    )
+    assert outcome.code == 0, outcome
+    assert "yard even-1 00002 4.0 4 4 4" in " ".join(outcome.stdout.split())
+
+
 @pytest.mark.parametrize(
     ("line", "rule"),
     [("yard,even-2,2,4,4", "benchmark/files"), ("yard,even-1,two,4,4", "benchmark/bounds")],

@@ -24,6 +24,8 @@ from carproof.formats import mapf_tracker, read_foreign_solution
 from carproof.formats.movingai import read_movingai
 
 COLUMNS = ("map", "scen", "agents", "lower", "upper")
+MANY = 10**9
+"""The rounds of MAPF-LNS2, which plays none unless their number is given."""
 LONGER = 3
 """Another planner is ended after this many times its time and 10 seconds."""
 OTHERS = {
@@ -33,7 +35,7 @@ OTHERS = {
     ],
     "LNS2": lambda program, files, seconds: [
         *(program, "-m", files["map"], "-a", files["scen"], "-k", files["agents"]),
-        *("-t", seconds, "--outputPaths", files["result"]),
+        *("-t", seconds, "--maxIterations", str(MANY), "--outputPaths", files["result"]),
     ],
 }
 
