@@ -36,6 +36,8 @@ FIRST_PARTS, ROUGH_PARTS, PROVED_PARTS, PARTS = 1, 13, 15, 16
 
 On a spanning tree prices alone still climb after a quarter of a minute, but with claims they climb faster.
 """
+WAYS_AT_END = 3
+"""How often the ways of all robots are still looked for when the time is over, so that it is over before."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,8 +75,8 @@ def lower_bound(
     first = _limit(seconds, steps, FIRST_PARTS, clock)
     rough = _limit(seconds, steps, ROUGH_PARTS, clock)
     proved = _limit(seconds, None, PROVED_PARTS, clock)
-    end = _limit(seconds, steps, PARTS, clock)
-    search = PriceSearch(instance, SCALE)
+    end = _limit(seconds, steps, PARTS, clock, lambda: WAYS_AT_END * search.longest)
+    search = PriceSearch(instance, SCALE, clock)
     deadlines = DeadlineSearch(search)
     sights = SightSearch(search)
 
@@ -94,7 +96,7 @@ def lower_bound(
             sights.prove(lambda: proved(0))
 
     def climb(gain: int, check: Callable[[int], None]) -> None:
-        search.climb(gain, max(ROUGH_AIM, search.best // LARGE), lambda: check(search.count), report)
+        search.climb(gain, max(ROUGH_AIM, search.best // LARGE), lambda: check(search.count), report, lambda: end(0))
 
     def gain_of_sights() -> int:
         return min(sights.round(look), search.best // NEXT_AIM) if seen else 0
@@ -109,7 +111,13 @@ def lower_bound(
         while gain > 0:
             before = search.best
             if by_sights > 0:
-                search.roam(by_sights // 4, max(ROUGH_AIM, search.best // LARGE), lambda: rough(search.count), watch)
+                search.roam(
+                    by_sights // 4,
+                    max(ROUGH_AIM, search.best // LARGE),
+                    lambda: rough(search.count),
+                    watch,
+                    lambda: end(0),
+                )
             climb(by_sights or gain, rough)
             prove()
             fruitless = by_sights > 0 and (search.best - before) * LEAST_RISE < search.best
@@ -117,7 +125,9 @@ def lower_bound(
             gain = by_sights or min(deadlines.round(look), search.best // NEXT_AIM)
     prove()
     with suppress(TimeOver):
-        search.climb(max(ROUGH_AIM, search.best // FINAL_AIM), FINE_AIM, lambda: end(search.count), report)
+        search.climb(
+            max(ROUGH_AIM, search.best // FINAL_AIM), FINE_AIM, lambda: end(search.count), report, lambda: end(0)
+        )
     search.finish()
     return _certificate(search)
 
@@ -128,13 +138,22 @@ def _require(instance: Instance, **limits: float | None) -> None:
     refuse(instance, "stops")
 
 
-def _limit(seconds: float | None, steps: int | None, parts: int, clock: Callable[[], int]) -> Callable[[int], None]:
-    """A function of the steps taken that raises `TimeOver` once this part of the time, or of the steps, is over."""
+def _limit(
+    seconds: float | None,
+    steps: int | None,
+    parts: int,
+    clock: Callable[[], int],
+    ahead: Callable[[], int] = lambda: 0,
+) -> Callable[[int], None]:
+    """A function of the steps taken that raises `TimeOver` once this part of the time, or of the steps, is over.
+
+    The time is over that many nanoseconds ahead of its end.
+    """
     deadline = None if seconds is None else Deadline(seconds * parts / PARTS, clock)
 
     def check(count: int) -> None:
         if deadline is not None:
-            deadline.check()
+            deadline.check(ahead())
         if steps is not None and count >= steps * parts // PARTS:
             raise TimeOver
 

@@ -3,7 +3,7 @@
 import ast
 import subprocess
 import sys
-from itertools import product
+from itertools import count, product
 from pathlib import Path
 
 import msgspec
@@ -31,6 +31,7 @@ from carp_spec.plan_rules import plan_cost
 from carp_verify.bound import verify as page
 from carp_verify.bound.verify import Tariff, verify_bound
 from carp_verify.optimum.joint_search import least_total_cost
+from carproof.generate import Fleet, Grid, grid_instance
 from carproof.testing.strategies import PlannedInstance, Sizes, instances, planned_instances
 
 
@@ -175,3 +176,15 @@ def test_the_cheapest_plan_is_found_where(start: str, prices: tuple[tuple[str, i
     instance = Instance(lane, (Robot("robot", start, "b"),), "park")
     empty = BoundDocument(BOUND_FORMAT, digest(instance), 0, SCALE, HORIZON, prices, (), (), ())
     assert completed(instance, empty).robots == (("robot", least),)
+
+
+def test_the_clock_is_looked_at_within_a_step_and_what_is_found_by_then_is_a_bound() -> None:
+    instance = grid_instance(Grid(12, 12), Fleet(robots=140, seed=1, after_goal="park"))
+    certificate = lower_bound(instance, seconds=10**6, steps=20, clock=(looks := count()).__next__)
+    assert next(looks) > 20 * 140 / 32
+    assert verify_bound(instance, certificate) == certificate.bound
+    for seconds in range(10, 50, 3):
+        ticks = count(step=10**9)
+        certificate = lower_bound(instance, seconds=seconds, clock=ticks.__next__)
+        assert next(ticks) // 10**9 <= seconds + 8
+        assert verify_bound(instance, certificate) == certificate.bound

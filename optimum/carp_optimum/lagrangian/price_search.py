@@ -1,6 +1,7 @@
 """The search for good prices: the work between the compiled steps of `carp_optimum.lagrangian.price_steps`."""
 
 from collections.abc import Callable, Sequence
+from time import monotonic_ns
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +14,7 @@ from carp_optimized.state.encoding import encode_graph, refuse_tick, refuse_what
 from carp_optimum.lagrangian.deadlines import Deadlines, flattened
 from carp_optimum.lagrangian.multipliers import charges_of, market_of, refuse_table, requests_of, sized
 from carp_optimum.lagrangian.price_steps import KEPT, LARGEST_GAIN, PARTS, UNIT, turn_all, walk_all
-from carp_optimum.lagrangian.priced_paths import find_rests, find_ways, least_cost, see_ways
+from carp_optimum.lagrangian.priced_paths import begin_ways, find_rests, find_ways, least_cost, see_ways
 from carp_spec import Instance, Refusal, ResourceId, RobotId
 from carp_spec.documents.bounds import DeadlinesDocument
 from carp_verify.bound.rules import LARGEST_TABLE, LONGEST_STAY, stay_is_searched
@@ -29,6 +30,7 @@ ENOUGH, LEAST_ENOUGH = 32, 4096
 On a spanning tree the bound rises slowly and long, in steps that are small beside the aim.
 """
 SPAN = 200  # steps
+PART = 32  # robots between two looks at the clock
 ENOUGH_OF_SPAN = 16  # parts of the aim
 
 
@@ -53,7 +55,10 @@ class PriceSearch:
     Deadlines say that one of their members does not keep its own; `fees` are their prices.
     """
 
-    def __init__(self, instance: Instance, scale: int) -> None:
+    def __init__(self, instance: Instance, scale: int, clock: Callable[[], int] = monotonic_ns) -> None:
+        """`clock` gives nanoseconds, of which `longest` is what all ways together have taken at most."""
+        self._clock = clock
+        self.longest = 0
         refuse_what_is_too_large(instance)
         robots, resources = len(instance.robots), len(instance.graph.resources)
         refuse_table("$.robots", "robots times resources", robots * resources)
@@ -88,11 +93,21 @@ class PriceSearch:
         prices = self.market.prices
         return Point(prices.resource.copy(), prices.exchange.copy(), self.fees.copy())
 
-    def _bound(self) -> int:
-        """The bound that the prices prove; gives each robot a cheapest way."""
+    def _bound(self, check: Callable[[], None] = lambda: None) -> int:
+        """The bound that the prices prove; gives each robot a cheapest way.
+
+        `check` is called after every few robots, and may raise `TimeOver`: then only `_restore` makes all whole again.
+        """
+        began = self._clock()
         worth = int((self.fees * (self._flat.sizes - 1)).sum())
         self._charge()
-        return find_ways(self.native) - worth
+        total = -worth - begin_ways(self.native)
+        robots = len(self.instance.robots)
+        for first in range(0, robots, PART):
+            check()
+            total += find_ways(self.native, first, min(first + PART, robots))
+        self.longest = max(self.longest, self._clock() - began)
+        return total
 
     def _charge(self) -> None:
         """Fill the tables of what an arrival costs each robot, by its delay, and of what it pays on its way."""
@@ -202,12 +217,19 @@ class PriceSearch:
         return True
 
     def climb(
-        self, first_aim: int, last_aim: int, check: Callable[[], None], on_step: Callable[[int, int], None]
+        self,
+        first_aim: int,
+        last_aim: int,
+        check: Callable[[], None],
+        on_step: Callable[[int, int], None],
+        within: Callable[[], None] = lambda: None,
     ) -> None:
         """Take steps that aim closer and closer to the best bound, from the first aim to the last, in parts of a tick.
 
-        `check` is called before each and may raise `TimeOver`; `on_step` gets the steps and the best bound.
+        `check` is called before each, `within` during each, and both may raise `TimeOver`; `on_step` gets the steps and
+        the best bound.
         """
+        check()
         bound = self._restore()
         self.best = max(self.best, bound)
         aim = max(first_aim, last_aim)
@@ -217,7 +239,7 @@ class PriceSearch:
             check()
             if not self._step(min(max(self.best + aim - bound, 0), LARGEST_GAIN)):
                 break
-            bound = self._bound()
+            bound = self._bound(within)
             failures += 1
             if bound > self.best:
                 self.best = bound
@@ -233,7 +255,12 @@ class PriceSearch:
             on_step(self.count, self.best)
 
     def roam(
-        self, first_aim: int, last_aim: int, check: Callable[[], None], on_step: Callable[[int, int], None]
+        self,
+        first_aim: int,
+        last_aim: int,
+        check: Callable[[], None],
+        on_step: Callable[[int, int], None],
+        within: Callable[[], None] = lambda: None,
     ) -> None:
         """Take steps as `climb` does, but never back to the best prices, while `on_step` may add deadlines.
 
@@ -251,7 +278,7 @@ class PriceSearch:
                 near = max(aim * left * left // (SPAN * SPAN), min(aim, self.scale))
                 if not self._step(min(max(self.best + near - bound, 0), LARGEST_GAIN)):
                     return
-                bound = self._bound()
+                bound = self._bound(within)
                 if bound > self.best:
                     self.best = bound
                     self._kept = self._point()

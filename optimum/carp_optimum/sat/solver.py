@@ -29,9 +29,9 @@ class Deadline:
         self._start = clock()
         self._end = self._start + int(seconds * NANOSECONDS)
 
-    def check(self) -> None:
-        """Raise `TimeOver` if it has passed."""
-        if self._clock() >= self._end:
+    def check(self, ahead: int = 0) -> None:
+        """Raise `TimeOver` if it has passed, or will have in that many nanoseconds."""
+        if self._clock() + ahead >= self._end:
             raise TimeOver
 
     def is_past(self, of: int) -> bool:
