@@ -197,6 +197,11 @@ def shown(value: object) -> str:
     return "-" if value is None else str(value)
 
 
+def found(program: str) -> str:
+    """The program where it is, as it is run in another folder."""
+    return str(Path(program).absolute()) if Path(program).is_file() else program
+
+
 def benchmark_cases(
     table: Path,
     maps: Path,
@@ -209,6 +214,6 @@ def benchmark_cases(
     lines = read_lines(table)
     for line in lines:
         files_of(line, maps)
-    given = tuple((name, program) for name, program in others.items() if program is not None)
+    given = tuple((name, found(program)) for name, program in others.items() if program is not None)
     folder = None if plans is None else str(plans)
     return [BenchmarkCase(line, str(maps), tuple(seconds), bound_seconds, given, folder) for line in lines]
