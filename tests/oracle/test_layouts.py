@@ -1,6 +1,7 @@
 """Layouts of fleet systems: what becomes of each feature, what is listed instead, and where a broken file is wrong."""
 
 import json
+import re
 from fractions import Fraction
 from itertools import permutations
 from pathlib import Path
@@ -95,9 +96,6 @@ def test_what_is_not_expressed_is_listed_with_its_lines() -> None:
     assert any("doors" in each.feature for each in import_layout(BUILDING.encode()).notes)
 
 
-# openTCS, user's guide, "Block" and "Default scheduler": a path is allocated with the point to which it leads before
-# the vehicle moves, and freed when it has arrived; a request for a member of a SINGLE_VEHICLE_ONLY block is granted if
-# all members are free for the vehicle.
 PLANT = """<model version="6.0.0" name="cross">
 {points}
 {paths}
@@ -118,33 +116,30 @@ def cross(members: str) -> Instance:
     return imported(PLANT.format(points=points, paths=paths, members=named), robots=0)
 
 
-@pytest.mark.parametrize(
-    ("members", "places", "granted"),
-    [
-        pytest.param("ab xy", "ab xy", False, id="two vehicles on two paths of a block"),
-        pytest.param("ab xy", "ab cd", True, id="one in the block, one outside"),
-        pytest.param("ab xy", "a x", True, id="points before the paths of a block are not in it"),
-        pytest.param("b xy", "b xy", False, id="a point of a block is held by who stands there"),
-        pytest.param("b xy", "ab xy", False, id="a path holds the point to which it leads"),
-        pytest.param("b xy", "bc xy", False, id="a path holds the point that it left until the vehicle has arrived"),
-        pytest.param("b xy", "c xy", True, id="the point is free after that"),
-        pytest.param("xy", "ab bc", False, id="without a block too, two paths of one point are not used together"),
-        pytest.param("xy", "ab c", True, id="a path and the point after the next"),
-        pytest.param("xy", "ab b", False, id="a path to a point where a vehicle stands"),
-        pytest.param("a cd xy", "a cd xy", False, id="three vehicles in a block"),
-        pytest.param("cd xy", "a cd y", True, id="three vehicles, one behind a path of the block"),
-        pytest.param("cd xy", "a cd x", True, id="three vehicles, one of them before the block"),
-        pytest.param("ab", "ab cd xy", True, id="three vehicles on paths that share nothing"),
-    ],
-)
-def test_blocks_of_opentcs_admit_what_its_scheduler_grants(members: str, places: str, granted: bool) -> None:
-    instance = cross(members)
-    for order in permutations(places.split()):
+def blocks() -> list[tuple[str, str, bool, str]]:
+    """The rows of the table of openTCS's semantics, with the sections of its user's guide that they follow."""
+    page = Path(__file__).parents[2] / "docs" / "reference" / "opentcs-blocks.md"
+    rows = [re.split(r" *\| *", line)[1:-1] for line in page.read_text().splitlines() if line.startswith("| ")][1:]
+    return [(members, places, allowed == "yes", source) for members, places, allowed, _, source in rows]
+
+
+def test_each_case_of_blocks_has_its_source() -> None:
+    cases = blocks()
+    assert {len(places.split(",")) for _, places, _, _ in cases} == {2, 3}
+    assert all(source for _, _, _, source in cases)
+
+
+@pytest.mark.parametrize(("members", "places", "granted", "source"), blocks())
+def test_blocks_of_opentcs_admit_what_its_scheduler_grants(
+    members: str, places: str, granted: bool, source: str
+) -> None:
+    instance = cross(members.replace(",", " "))
+    for order in permutations(places.split(", ")):
         robots = tuple(Robot(f"r{number}", place, place) for number, place in enumerate(order))
         standing = Instance(instance.graph, robots, "park", instance.following)
         plans = [Plan(robot.id, (Visit(robot.start, 0, None),)) for robot in robots]
         verdict = judge(standing, Solution.of(standing, plans))
-        assert {each.rule for each in verdict.violations} == (set() if granted else {"joint/group"})
+        assert {each.rule for each in verdict.violations} == (set() if granted else {"joint/group"}), source
 
 
 BROKEN = {

@@ -1,0 +1,86 @@
+"""A large plant of openTCS made of equal tiles, and how long `carproof plan` takes for its fleets.
+
+A tile has four crossings of one-way streets, and two bays at each, where vehicles stand. Streets go on from tile to
+tile, in turn one way and the other. `python -m carp_experiments.measuring.tiled_plant` prints the table.
+"""
+
+from collections.abc import Callable, Iterator
+from os import times
+
+import carp_optimized
+from carp_optimized.improve.anytime import plan_within
+from carp_spec import Carp, Instance, Solution, judge
+from carproof.layouts import Settings, import_layout
+
+PITCH = 5000
+"""Between two crossings, in mm."""
+TILES = 12
+"""In a row, and in a column."""
+FLEETS = (125, 250, 500, 1000)
+SECONDS = 10
+
+
+def tiled_plant(tiles: int = TILES) -> bytes:
+    """The plant model of a square of tiles."""
+    parts = "".join(part for x in range(2 * tiles) for y in range(2 * tiles) for part in _crossing(x, y, 2 * tiles - 1))
+    return f'<model version="7.0.0" name="tiles">{parts}</model>'.encode()
+
+
+def _crossing(x: int, y: int, last: int) -> Iterator[str]:
+    """A crossing with its bays, and the streets that lead out of it: rows go east and west, columns up and down."""
+    name = f"{x},{y}"
+    yield _point(name, PITCH * x, PITCH * y, "HALT_POSITION")
+    for number, (dx, dy) in enumerate(((1500, 1500), (-1500, 1500))):
+        bay = f"{name} bay {number}"
+        yield _point(bay, PITCH * x + dx, PITCH * y + dy, "PARK_POSITION")
+        yield _path(f"to {bay}", name, bay, 2122, 1000)
+    east, down = x + (-1 if y % 2 else 1), y + (1 if x % 2 else -1)
+    if 0 <= east <= last:
+        yield _path(f"{name} to {east},{y}", name, f"{east},{y}", PITCH, 0)
+    if 0 <= down <= last:
+        yield _path(f"{name} to {x},{down}", name, f"{x},{down}", PITCH, 0)
+
+
+def _point(name: str, x: int, y: int, kind: str) -> str:
+    return f'<point name="{name}" positionX="{x}" positionY="{y}" type="{kind}"/>'
+
+
+def _path(name: str, source: str, target: str, length: int, back: int) -> str:
+    ends = f'sourcePoint="{source}" destinationPoint="{target}"'
+    return f'<path name="{name}" {ends} length="{length}" maxVelocity="1000" maxReverseVelocity="{back}"/>'
+
+
+def tiled_instance(robots: int, tiles: int = TILES) -> Instance:
+    """The plant with a fleet that vanishes at its goals."""
+    settings = Settings(robots=robots, after_goal="vanish")
+    return import_layout(tiled_plant(tiles), "tiles.xml", settings=settings).instance
+
+
+def _row(robots: int) -> str:
+    """The numbers of a fleet: its plans by CARP alone, and within ten seconds."""
+    instance = tiled_instance(robots)
+    row: list[object] = [robots, len(instance.graph.resources), len(instance.graph.groups)]
+    planners: tuple[Callable[[], Solution], ...] = (
+        lambda: carp_optimized.plan(instance, Carp()),
+        lambda: plan_within(instance, seconds=SECONDS),
+    )
+    for make in planners:
+        started = _processor_seconds()
+        solution = make()
+        row.append(f"{_processor_seconds() - started:.2f}")
+        verdict = judge(instance, solution)
+        if not verdict.valid:
+            raise AssertionError(verdict.violations[0])
+        row += [verdict.unplanned, verdict.cost]
+    return f"| {' | '.join(map(str, row))} |"
+
+
+def _processor_seconds() -> float:
+    """Of this process and those that it has waited for."""
+    return sum(times()[:4])
+
+
+if __name__ == "__main__":
+    carp_optimized.plan(tiled_instance(1, 1), Carp())  # compiles
+    for count in FLEETS:
+        print(_row(count), flush=True)  # noqa: T201 - the table
