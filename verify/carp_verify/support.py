@@ -16,8 +16,6 @@ UNSUPPORTED: Mapping[str, str] = {
     "instance/position": _DATA,
     "instance/after-goal": _DATA,
     "instance/following": _DATA,
-    "instance/stops": _DATA,
-    "plan/stops": "it is a greedy count over the visits, and a later visit in place of an earlier one serves no more",
     "trace/robots": _DATA,
     "trace/prefix": _DATA,
     "trace/ticks": _DATA,
