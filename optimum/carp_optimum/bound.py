@@ -177,4 +177,5 @@ def _certificate(search: "PriceSearch") -> BoundDocument:
         cuts=(),
         robots=robots,
         deadlines=priced,
+        groups=prices.groups,
     )

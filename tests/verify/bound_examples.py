@@ -61,6 +61,8 @@ def certificates(draw: st.DrawFn, instance: Instance) -> BoundDocument:
     both = [move for move in moves if (*reversed(move),) in graph.moves]
     resources = draw(st.dictionaries(st.tuples(places, ticks), prices, max_size=8))
     exchanges = draw(st.dictionaries(st.tuples(st.sampled_from(both), ticks), prices, max_size=8)) if both else {}
+    ids = [group.id for group in graph.groups]
+    groups = draw(st.dictionaries(st.tuples(st.sampled_from(ids), ticks), prices, max_size=8)) if ids else {}
     certificate = BoundDocument(
         format=BOUND_FORMAT,
         instance=digest(instance),
@@ -71,11 +73,12 @@ def certificates(draw: st.DrawFn, instance: Instance) -> BoundDocument:
         exchanges=tuple((*pair, tick, price) for (pair, tick), price in exchanges.items()),
         cuts=(),
         robots=(),
+        groups=tuple((group, tick, price) for (group, tick), price in groups.items()),
     )
     return completed(instance, certificate)
 
 
-def payment(certificate: BoundDocument, plan: Plan) -> int:
+def payment(instance: Instance, certificate: BoundDocument, plan: Plan) -> int:
     """The payments of a plan, tick by tick."""
     ticks = range(certificate.horizon)
     at = {
@@ -87,6 +90,8 @@ def payment(certificate: BoundDocument, plan: Plan) -> int:
     moves = {(b.enter, a.resource, b.resource) for a, b in pairwise(plan.visits)}
     stays = {(t, v.resource) for v in plan.visits for t in ticks if v.enter < t and (v.leave is None or t < v.leave)}
     paid = sum(price for resource, tick, price in certificate.resources if at.get(tick) == resource)
+    members = {group.id: group.resources for group in instance.graph.groups}
+    paid += sum(price for group, tick, price in certificate.groups if at.get(tick) in members[group])
     for one, other, tick, price in certificate.exchanges:
         pays = {(tick, one, other), (tick, other, one)} & moves or (tick, one) in stays
         paid += price if pays else 0

@@ -3,6 +3,7 @@
 import ast
 import subprocess
 import sys
+from dataclasses import replace
 from itertools import count, product
 from pathlib import Path
 
@@ -23,10 +24,11 @@ from tests.verify.bound_examples import (
 from tests.verify.tiny import TINY
 
 from carp_optimum.bound import Progress, lower_bound
-from carp_spec import Instance, Resource, ResourceGraph, Robot
+from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
 from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, read_bound
 from carp_spec.documents.decoding import write
 from carp_spec.documents.instances import digest
+from carp_spec.model import Group
 from carp_spec.plan_rules import plan_cost
 from carp_verify.bound import verify as page
 from carp_verify.bound.verify import Tariff, verify_bound
@@ -36,16 +38,21 @@ from carproof.testing.strategies import PlannedInstance, Sizes, instances, plann
 
 
 @settings(max_examples=draws(120))
-@given(st.data(), instances(Sizes(resources=3, robots=1, capacity=1, duration=2, release=3, pace=1), least_robots=1))
+@given(
+    st.data(),
+    instances(Sizes(resources=3, robots=1, capacity=1, duration=2, release=3, pace=1, groups=2), least_robots=1),
+)
 def test_the_least_cost_is_that_of_the_cheapest_of_all_plans(data: st.DataObject, instance: Instance) -> None:
     certificate = data.draw(certificates(instance))
     robot = instance.robots[0]
-    costs = [SCALE * plan_cost(instance, plan) + payment(certificate, plan) for plan in plans_of(instance, robot)]
+    costs = [
+        SCALE * plan_cost(instance, plan) + payment(instance, certificate, plan) for plan in plans_of(instance, robot)
+    ]
     assert certificate.robots == ((robot.id, min(costs, default=None)),)
 
 
 @settings(max_examples=draws(300))
-@given(st.data(), planned_instances(Sizes(resources=4, robots=4, release=2, wait=1)))
+@given(st.data(), planned_instances(Sizes(resources=4, robots=4, release=2, wait=1, groups=2)))
 def test_whatever_the_prices_sound_plans_pay_no_more_than_they_are_worth_and_cost_no_less_than_the_least(
     data: st.DataObject, planned: PlannedInstance
 ) -> None:
@@ -56,12 +63,12 @@ def test_whatever_the_prices_sound_plans_pay_no_more_than_they_are_worth_and_cos
     for plan in plans:
         own = least[plan.robot]
         assert own is not None
-        assert own <= SCALE * plan_cost(instance, plan) + payment(certificate, plan)
-    assert sum(payment(certificate, plan) for plan in plans) <= Tariff(instance, certificate).worth
+        assert own <= SCALE * plan_cost(instance, plan) + payment(instance, certificate, plan)
+    assert sum(payment(instance, certificate, plan) for plan in plans) <= Tariff(instance, certificate).worth
 
 
 @settings(max_examples=draws(80))
-@given(instances(TINY, least_robots=2))
+@given(instances(replace(TINY, groups=2), least_robots=2))
 def test_a_bound_that_was_found_is_verified_and_at_most_the_optimum(instance: Instance) -> None:
     seen: list[Progress] = []
     certificate = lower_bound(instance, steps=600, on_step=seen.append)
@@ -80,6 +87,39 @@ def test_prices_find_what_the_shortest_paths_miss() -> None:
     seen: list[Progress] = []
     certificate = lower_bound(instance, steps=500, on_step=seen.append)
     assert (seen[0].bound, certificate.bound, least_total_cost(instance)) == (6, 9, 11)
+
+
+def test_prices_of_groups_find_what_those_of_resources_miss() -> None:
+    lanes = tuple((f"a{lane}", f"b{lane}", f"c{lane}") for lane in range(3))
+    edges = tuple(move for a, b, c in lanes for move in ((a, b), (b, c)))
+    cells = tuple(Resource(cell) for lane in lanes for cell in lane)
+    block = Group("block", tuple(b for _, b, _ in lanes))
+    robots = tuple(Robot(f"r{number}", a, c) for number, (a, _, c) in enumerate(lanes))
+    instance = Instance(ResourceGraph(cells, edges, groups=(block,)), robots)
+    certificate = lower_bound(instance, steps=400)
+    assert len(certificate.groups) > 0
+    assert (certificate.bound, least_total_cost(instance)) == (9, 9)
+    assert verify_bound(instance, certificate) == 9
+    without = completed(instance, msgspec.structs.replace(certificate, groups=()))
+    assert without.bound == 6
+
+
+@pytest.mark.parametrize(
+    ("prices", "rule"),
+    [
+        ((("block", 0, -1),), "bound/price"),
+        ((("block", 6, 1),), "bound/price"),
+        ((("a", 0, 1),), "bound/price"),
+        ((("block", 0, 1), ("block", 0, 1)), "bound/once"),
+    ],
+)
+def test_wrong_prices_of_groups_are_refused(prices: tuple[tuple[str, int, int], ...], rule: str) -> None:
+    lane = ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),), groups=(Group("block", ("a", "b")),))
+    instance = Instance(lane, (Robot("robot", "a", "b"),))
+    wrong = BoundDocument(BOUND_FORMAT, digest(instance), 0, SCALE, HORIZON, (), (), (), (("robot", 0),), groups=prices)
+    with pytest.raises(Refusal) as refused:
+        verify_bound(instance, wrong)
+    assert (refused.value.rule, refused.value.path) == (rule, f"$.groups[{len(prices) - 1}]")
 
 
 def test_a_horizon_far_beyond_the_last_price_costs_nothing() -> None:
@@ -118,6 +158,7 @@ def test_the_verifier_shares_nothing_with_the_finder_and_loads_nothing_compiled(
         "carp_spec.documents.instances",
         "carp_spec.limits",
         "carp_spec.inputs.values",
+        "carp_spec.model",
         "carp_spec.rule",
         "carp_verify.bound.rules",
         "carp_verify.bound.cuts",

@@ -45,7 +45,7 @@ def test_who_keeps_a_deadline_pays_for_it_and_may_drive_on_through_the_goal_to_m
     fees = data.draw(st.lists(st.tuples(st.integers(0, HORIZON - 1), st.integers(0, 4 * SCALE)), max_size=3))
     costs = [
         SCALE * plan_cost(instance, plan)
-        + payment(certificate, plan)
+        + payment(instance, certificate, plan)
         + sum(price for tick, price in fees if plan.visits[-1].enter <= tick)
         for plan in plans_of(instance, robot)
     ]
@@ -66,7 +66,7 @@ def test_who_is_seen_in_a_place_on_the_way_pays_for_it_once(data: st.DataObject,
     fees = Fees([*arrivals, (0, 0)], sights)
     costs = [
         SCALE * plan_cost(instance, plan)
-        + payment(certificate, plan)
+        + payment(instance, certificate, plan)
         + sum(price for tick, price in arrivals if plan.visits[-1].enter <= tick)
         + sum(
             price

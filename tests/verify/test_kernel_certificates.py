@@ -259,6 +259,11 @@ TAMPERS = (
     replaced(exchanges=lambda prices: tuple((two, one, tick, price) for one, two, tick, price in prices)),
     replaced(exchanges=lambda prices: tuple((one, one, tick, price) for one, _, tick, price in prices)),
     replaced(resources=lambda prices: tuple(("no place", tick, price) for _, tick, price in prices)),
+    replaced(groups=lambda prices: (*prices, *prices[:1])),
+    replaced(groups=lambda prices: tuple(("no group", tick, price) for _, tick, price in prices)),
+    replaced(groups=lambda prices: tuple((group, tick + 1, price) for group, tick, price in prices)),
+    replaced(groups=lambda prices: tuple((group, tick, price + 1) for group, tick, price in prices)),
+    replaced(groups=lambda prices: tuple((group, tick, price - 99) for group, tick, price in prices)),
     with_price(1, 1),
     with_price(1, -1),
     with_price(2, 1),
@@ -270,7 +275,7 @@ TAMPERS = (
 )
 
 
-@given(st.data(), instances(TINY, least_robots=1))
+@given(st.data(), instances(replace(TINY, groups=2), least_robots=1))
 def test_bounds_are_accepted_and_refused_as_by_carp_verify(data: st.DataObject, instance: Instance) -> None:
     certificate = data.draw(certificates(instance))
     verdict = check_bound(instance, certificate)

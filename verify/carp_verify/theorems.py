@@ -165,6 +165,12 @@ THEOREMS = (
         ("joint/capacity", "joint/exchange"),
     ),
     Theorem(
+        "Prices",
+        "all_pay_no_more_than_group_prices_times_capacities",
+        "the robots of a lawful solution together pay at most the prices of groups times their capacities",
+        ("joint/group",),
+    ),
+    Theorem(
         "Labels",
         "claim_is_below_every_plan",
         "no plan of a robot has less weighted cost and prices than its labels show",

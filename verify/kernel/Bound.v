@@ -35,8 +35,13 @@ Record certificate := Certificate {
   prices : list price;
   cuts : list cut;
   claims : list (Z * option Z);
-  groups : list group
+  groups : list group;
+  group_prices : list group_price
 }.
+
+(** The prices of resources and exchanges, and those of groups as their resources have them. *)
+Definition all_prices (i : instance) (c : certificate) : list price :=
+  prices c ++ flat_map (prices_within i) (group_prices c).
 
 (** What shows a robot's claim: for resources that lead to its goal, the least ticks from leaving them to entering it;
     labels ((resource, tick), amount); and the resources of a way after its start. *)
@@ -56,13 +61,19 @@ Definition price_accepted (i : instance) (known : Z -> bool) (successors : Z -> 
   (0 <=? amount x) && (0 <=? tick x) && (tick x <? price_horizon c) && known (place x) &&
   match other x with None => true | Some o => known o && leads (place x) o && leads o (place x) end.
 
+(** The same for a price of a group. *)
+Definition group_price_accepted (i : instance) (c : certificate) (x : group_price) : bool :=
+  (0 <=? group_amount x) && (0 <=? group_tick x) && (group_tick x <? price_horizon c) &&
+  match group_of i x with Some _ => true | None => false end.
+
 (** bound/once: no price twice for the same place and tick. *)
 Definition prices_are_different (c : certificate) : bool :=
   Pairs.distinct (flat_map (fun x => match key_here x with Some k => [k] | None => [] end) (prices c)) &&
-  Triples.distinct (flat_map (fun x => match key_exchange x with Some k => [k] | None => [] end) (prices c)).
+  Triples.distinct (flat_map (fun x => match key_exchange x with Some k => [k] | None => [] end) (prices c)) &&
+  Pairs.distinct (map (fun x => (priced_group x, group_tick x)) (group_prices c)).
 
-(** bound/size: tables have 20,000,000 entries at most: of robots, and of those of cuts and deadlines, by resource, and of
-    priced resources by tick, up to the last price. *)
+(** bound/size: tables have 20,000,000 entries at most: of robots, and of those of cuts and deadlines, by resource, of the
+    resources of groups with prices, and of priced resources by tick, up to the last price. *)
 Definition size_accepted (i : instance) (c : certificate) : bool :=
   let fits n m := n * m <=? 20000000 in
   let count {A} (l : list A) := total_of (fun _ => 1) l in
@@ -70,7 +81,8 @@ Definition size_accepted (i : instance) (c : certificate) : bool :=
   fits (count (robots i)) all &&
   fits (total_of (fun k => count (members k)) (cuts c)) all &&
   fits (total_of (fun g => count (deadlines g)) (groups c)) all &&
-  fits (last_tick (prices c)) (Z.of_nat (Ids.S.cardinal (Ids.of_list (map place (prices c))))).
+  fits (total_of (fun x => count (prices_within i x)) (group_prices c)) 1 &&
+  let priced := all_prices i c in fits (last_tick priced) (Z.of_nat (Ids.S.cardinal (Ids.of_list (map place priced)))).
 
 (** bound/cut: what a robot's own ticks count, in parts of a tick, where its cuts count the rest. *)
 Definition weight_of (c : certificate) (id : Z) : Z :=
@@ -150,14 +162,15 @@ Fixpoint refused_claims (i : instance) (tf : tariff) (successors : Z -> list Z) 
   end.
 
 (** bound/total: all parts together. *)
-Definition parts (table : Map.t resource) (c : certificate) : Z :=
+Definition parts (i : instance) (table : Map.t resource) (c : certificate) : Z :=
   total_of (fun k => match snd k with Some n => n | None => 0 end) (claims c) +
   total_of (fun k => multiplier k * least_total k) (cuts c) -
   total_of group_worth (groups c) -
+  total_of (fun x => group_amount x * group_room i x) (group_prices c) -
   total_of (fun x => amount x * room_in table (place x)) (prices c).
 
-Definition total_accepted (table : Map.t resource) (c : certificate) : bool :=
-  bound c =? - ((- parts table c) / scale c).
+Definition total_accepted (i : instance) (table : Map.t resource) (c : certificate) : bool :=
+  bound c =? - ((- parts i table c) / scale c).
 
 (** The rules, one after the other: the first that is broken, or none. *)
 Inductive bound_rule :=
@@ -170,13 +183,14 @@ Definition broken_rule (i : instance) (c : certificate) (all : list (unit -> evi
   let ids := Ids.of_list (resource_ids i) in
   if negb (scale_accepted c) then Some Scale
   else if negb (forallb (price_accepted i (Ids.contains ids) successors c) (prices c)) then Some Price_rule
+  else if negb (forallb (group_price_accepted i c) (group_prices c)) then Some Price_rule
   else if negb (prices_are_different c) then Some Once
   else if negb (size_accepted i c) then Some Size
   else if negb (cuts_accepted i c) then Some Cut_rule
   else if negb (groups_accepted c) then Some Deadline_rule
-  else match refused_claims i (tariff_of (prices c)) successors table c (robots i) (claims c) all with
+  else match refused_claims i (tariff_of (all_prices i c)) successors table c (robots i) (claims c) all with
        | Some refused => Some (Robots refused)
-       | None => if total_accepted table c then None else Some Total
+       | None => if total_accepted i table c then None else Some Total
        end.
 
 Definition bound_accepted (i : instance) (c : certificate) (all : list (unit -> evidence)) : bool :=
@@ -254,19 +268,20 @@ Hypothesis groups_hold : forall g, In g (groups c) -> Group_holds s g.
 
 Let successors := listed (successor_table i).
 Let table := resource_table i.
-Let tf := tariff_of (prices c).
+Let tf := tariff_of (all_prices i c).
 
 (** What visits pay for deadlines. *)
 Let fees (dues : list (Z * deadline)) (vs : list visit) : Z :=
   fees_at_arrival dues (arrives vs) + passed (fees_on_the_way dues) vs.
 
 (** What a plan costs, weighted, together with its prices and those of the deadlines that it keeps. *)
-Let own_plan (p : plan) : Z := paid (prices c) (visits p) + weight_of c (plan_robot p) * cost_of_plan i p.
+Let own_plan (p : plan) : Z := paid (all_prices i c) (visits p) + weight_of c (plan_robot p) * cost_of_plan i p.
 Let priced_plan (p : plan) : Z := own_plan p + fees (dues_of c (plan_robot p)) (visits p).
 
 Hypothesis scaled : 0 < scale c.
-Hypothesis prices_right : forall x, In x (prices c) -> 0 <= amount x /\ In (place x) (resource_ids i) /\
+Hypothesis own_prices_right : forall x, In x (prices c) -> 0 <= amount x /\ In (place x) (resource_ids i) /\
   match other x with Some o => In o (resource_ids i) | None => True end.
+Hypothesis group_prices_right : forall x, In x (group_prices c) -> 0 <= group_amount x.
 Hypothesis weights_right : forall id, In id (robot_ids i) -> 0 <= weight_of c id.
 Hypothesis multipliers_right : forall k, In k (cuts c) -> 0 <= multiplier k.
 Hypothesis fees_right : forall g, In g (groups c) -> 0 <= fee g.
@@ -332,8 +347,11 @@ Proof.
     destruct (who d =? plan_robot p); cbn [sum fold_right fst snd Z.b2z]; ring.
 Qed.
 
-Lemma prices_are_held : Holds_prices tf (prices c).
-Proof. apply tariff_holds_prices. intros x Hx. apply (prices_right x Hx). Qed.
+Lemma prices_are_held : Holds_prices tf (all_prices i c).
+Proof.
+  apply tariff_holds_prices. intros x Hx. apply in_app_iff in Hx as [Hx | Hx]; [apply (own_prices_right x Hx) |].
+  apply in_flat_map in Hx as (y & Hy & Hx). apply (prices_within_are_right i y x right (group_prices_right y Hy) Hx).
+Qed.
 
 Lemma cost_is_of_robot a p : In a (robots i) -> plan_robot p = robot_id a -> cost_of_plan i p = cost a p.
 Proof.
@@ -356,7 +374,7 @@ Qed.
 Lemma priced_plan_is_not_negative p : In p (plans s) -> 0 <= priced_plan p.
 Proof.
   intros Hp. destruct (plan_is_a_way i s right lawful p Hp) as (a & Ha & E & W).
-  pose proof (nothing_is_paid_below_0 tf (prices c) prices_are_held (visits p)).
+  pose proof (nothing_is_paid_below_0 tf (all_prices i c) prices_are_held (visits p)).
   pose proof (plans_lawful i s lawful p a Hp Ha E) as L.
   destruct (starts_at_release i a p L) as (v & rest & V & _ & T).
   pose proof (way_does_not_arrive_before_it_starts a (visits p) Ha W v rest V) as A.
@@ -389,7 +407,7 @@ Proof.
   rewrite (cost_is_of_robot a p), E, Z.add_assoc by auto.
   eapply (claim_is_below_every_plan i tf successors (takes_in table a) a
     (Claim n (weight_of c (robot_id a)) _ _ (fees_at_arrival (dues_of c (robot_id a)))
-      (fees_on_the_way (dues_of c (robot_id a)))) (prices c) p right Ha
+      (fees_on_the_way (dues_of c (robot_id a)))) (all_prices i c) p right Ha
     prices_are_held).
   - intros r t. apply successors_are_moves, right.
   - intros r. apply takes_what_is_needed, right.
@@ -454,13 +472,18 @@ Proof.
 Qed.
 
 Lemma all_parts_are_below_the_total : refused_claims i tf successors table c (robots i) (claims c) all = None ->
-  parts table c <= scale c * total_cost i s.
+  parts i table c <= scale c * total_cost i s.
 Proof.
   intros H. apply accepted_claims_are_below_plans in H; auto. rewrite each_plan_counts_once in H.
   unfold priced_plan in H. rewrite sum_of_sums in H. unfold own_plan in H.
   rewrite sum_of_sums, cuts_count_the_rest in H.
   pose proof fees_are_no_more_than_their_worth as Fees.
-  pose proof (all_pay_no_more_than_prices_times_capacities i s right lawful (prices c) prices_right) as Paid.
+  pose proof (all_pay_no_more_than_prices_times_capacities i s right lawful (prices c) own_prices_right) as Paid.
+  pose proof (all_pay_no_more_than_group_prices_times_capacities i s right lawful (group_prices c) group_prices_right)
+    as Group_paid.
+  rewrite (sum_of_equal (fun p => paid (all_prices i c) (visits p)) (fun p => paid (prices c) (visits p) +
+    paid (flat_map (prices_within i) (group_prices c)) (visits p))) in H by (intros; apply paid_of_joined).
+  rewrite sum_of_sums in H.
   unfold parts. rewrite !total_of_is_the_sum.
   rewrite (sum_of_equal (fun x => amount x * room_in table (place x)) (fun x => amount x * room i (place x)))
     by (intros; unfold table; rewrite room_is_looked_up; auto).
@@ -497,25 +520,28 @@ Proof.
   intros right H lawful complete cuts_hold groups_hold. unfold bound_accepted, broken_rule in H.
   destruct (scale_accepted c) eqn:Scaled; [| discriminate]. cbn [negb] in H.
   destruct (forallb (price_accepted _ _ _ c) (prices c)) eqn:Priced; [| discriminate]. cbn [negb] in H.
+  destruct (forallb (group_price_accepted i c) (group_prices c)) eqn:Groups_priced; [| discriminate]. cbn [negb] in H.
   destruct (prices_are_different c); [| discriminate]. cbn [negb] in H.
   destruct (size_accepted i c); [| discriminate]. cbn [negb] in H.
   destruct (cuts_accepted i c) eqn:Cutted; [| discriminate]. cbn [negb] in H.
   destruct (groups_accepted c) eqn:Grouped; [| discriminate]. cbn [negb] in H.
   destruct (refused_claims _ _ _ _ c _ _ all) eqn:Claimed; [discriminate |].
-  destruct (total_accepted _ c) eqn:Totalled; [| discriminate].
+  destruct (total_accepted _ _ c) eqn:Totalled; [| discriminate].
   apply andb_true_iff in Scaled as [Scaled _]. apply Z.ltb_lt in Scaled. apply Z.eqb_eq in Totalled.
   apply andb_true_iff in Cutted as [Multipliers Weights]. rewrite forallb_forall in Multipliers, Weights, Priced.
-  assert (P : parts (resource_table i) c <= scale c * total_cost i s).
+  assert (P : parts i (resource_table i) c <= scale c * total_cost i s).
   { apply (all_parts_are_below_the_total i s c all); auto.
     - intros x Hx. specialize (Priced x Hx). unfold price_accepted in Priced. rewrite !andb_true_iff in Priced.
       destruct Priced as ((((A & _) & _) & K) & O). apply Z.leb_le in A. apply Ids.contains_of_list in K.
       repeat split; auto. destruct (other x) as [o |]; auto. rewrite !andb_true_iff in O. destruct O as ((O & _) & _).
       apply Ids.contains_of_list in O. exact O.
+    - intros x Hx. pose proof (proj1 (forallb_forall _ _) Groups_priced x Hx) as A. unfold group_price_accepted in A.
+      rewrite !andb_true_iff in A. destruct A as (((A & _) & _) & _). apply Z.leb_le in A. exact A.
     - intros id Hid. apply Z.leb_le, Weights, Hid.
     - intros k Hk. specialize (Multipliers k Hk). rewrite !andb_true_iff in Multipliers.
       destruct Multipliers as ((((M & _) & _) & _) & _). apply Z.leb_le in M. exact M.
     - intros g Hg. apply Z.leb_le, (proj1 (forallb_forall _ _) Grouped g Hg). }
-  rewrite Totalled. pose proof (Z.mul_div_le (- parts (resource_table i) c) (scale c) Scaled).
-  pose proof (Z.mod_pos_bound (- parts (resource_table i) c) (scale c) Scaled).
-  pose proof (Z.div_mod (- parts (resource_table i) c) (scale c)). nia.
+  rewrite Totalled. pose proof (Z.mul_div_le (- parts i (resource_table i) c) (scale c) Scaled).
+  pose proof (Z.mod_pos_bound (- parts i (resource_table i) c) (scale c) Scaled).
+  pose proof (Z.div_mod (- parts i (resource_table i) c) (scale c)). nia.
 Qed.

@@ -80,6 +80,30 @@ Definition room (i : instance) (id : Z) : Z :=
 (** The prices times the capacities. *)
 Definition worth (i : instance) (xs : list price) : Z := sum (fun x => amount x * room i (place x)) xs.
 
+(** A price of being in one of the resources of a group at the tick. *)
+Record group_price := Group_price { priced_group : Z; group_tick : Z; group_amount : Z }.
+
+Definition group_of (i : instance) (x : group_price) : option group :=
+  find (fun g => group_id g =? priced_group x) (groups i).
+
+(** Who is in a resource pays the prices of its groups. *)
+Definition prices_within (i : instance) (x : group_price) : list price :=
+  match group_of i x with
+  | Some g => map (fun r => Price r None (group_tick x) (group_amount x)) (group_resources g)
+  | None => []
+  end.
+
+Definition group_room (i : instance) (x : group_price) : Z :=
+  match group_of i x with Some g => group_capacity g | None => 0 end.
+
+Lemma prices_within_are_right i x y : Well_formed i -> 0 <= group_amount x -> In y (prices_within i x) ->
+  0 <= amount y /\ In (place y) (resource_ids i) /\ match other y with Some r => In r (resource_ids i) | None => True end.
+Proof.
+  intros right A H. unfold prices_within in H. destruct (group_of i x) as [g |] eqn:G; [| destruct H].
+  apply find_some in G as [Hg _]. apply in_map_iff in H as (r & <- & Hr). simpl. repeat split; auto.
+  apply (groups_are_of_the_graph i right g r Hg Hr).
+Qed.
+
 (** * How often a plan pays a price *)
 
 Fixpoint times (x : price) (vs : list visit) : Z :=
@@ -97,6 +121,11 @@ Proof.
   destruct rest as [| w later]; rewrite ?Z.add_0_r, <- !sum_of_sums; apply sum_of_equal; intros; lia.
 Qed.
 
+Lemma paid_of_joined xs ys vs : paid (xs ++ ys) vs = paid xs vs + paid ys vs.
+Proof.
+  rewrite !paid_is_by_price. induction xs as [| x xs IH]; simpl; [lia |]. rewrite IH. lia.
+Qed.
+
 Lemma times_from_the_second_visit_on x v w later :
   times x (v :: w :: later) = Z.b2z (visit_pays x v) + Z.b2z (move_pays x v w) + times x (w :: later).
 Proof. reflexivity. Qed.
@@ -105,6 +134,13 @@ Lemma times_is_not_negative x vs : 0 <= times x vs.
 Proof.
   induction vs as [| v rest IH]; cbn [times]; [lia |].
   destruct rest as [| w later], (visit_pays x v); try destruct (move_pays x v w); simpl Z.b2z; lia.
+Qed.
+
+Lemma one_place_at_most r ids : NoDup ids -> sum (fun id => Z.b2z (r =? id)) ids <= 1.
+Proof.
+  intros N. induction N as [| id ids Hid N IH]; simpl; [lia |]. destruct (Z.eqb_spec r id) as [-> |]; [| simpl; lia].
+  rewrite (sum_of_equal _ (fun _ => 0)); [rewrite sum_of_zeros; simpl; lia |].
+  intros x Hx. destruct (Z.eqb_spec id x) as [-> |]; [contradiction | reflexivity].
 Qed.
 
 Ltac split_bools := repeat match goal with
@@ -148,6 +184,28 @@ Proof.
     + destruct (move_pays x v w) eqn:Moves; [| simpl Z.b2z; lia].
       unfold move_pays in Moves. destruct (other x); [| discriminate]. rewrite Later; [simpl Z.b2z; lia |].
       unfold moves_at in Moves. apply orb_true_iff in Moves as [M | M]; split_bools; lia.
+Qed.
+
+(** A robot is in one resource at a time: of the same price in different resources it pays one. *)
+Lemma one_of_many_places_is_paid t n ids vs : NoDup ids -> Way i a vs ->
+  sum (fun r => times (Price r None t n) vs) ids <= 1.
+Proof.
+  intros N H. induction H as [v Hg Hl | v w later Hl Hn Hm Hw IH].
+  - apply Z.le_trans with (sum (fun r => Z.b2z (visit_resource v =? r)) ids).
+    + apply sum_is_monotone. intros r _. cbn [times]. unfold visit_pays. cbn [place other tick].
+      destruct (visit_resource v =? r), (is_before _ _), (enter v <=? t); simpl Z.b2z; lia.
+    + apply one_place_at_most, N.
+  - destruct (enter w <=? t) eqn:Later.
+    + rewrite (sum_of_equal _ (fun r => times (Price r None t n) (w :: later))); [exact IH |].
+      intros r _. rewrite times_from_the_second_visit_on. unfold visit_pays, move_pays. rewrite Hl.
+      cbn [place other tick is_before]. apply Z.leb_le in Later. destruct (Z.ltb_spec t (enter w)); [lia |].
+      rewrite andb_false_r. reflexivity.
+    + apply Z.leb_gt in Later.
+      apply Z.le_trans with (sum (fun r => Z.b2z (visit_resource v =? r)) ids); [| apply one_place_at_most, N].
+      apply sum_is_monotone. intros r _. rewrite times_from_the_second_visit_on.
+      rewrite (later_visits_pay_nothing (Price r None t n) (w :: later) Hw w later eq_refl) by exact Later.
+      unfold visit_pays, move_pays. cbn [place other tick].
+      destruct (visit_resource v =? r), (is_before _ _), (enter v <=? t); simpl Z.b2z; lia.
 Qed.
 
 (** Who pays for a resource is there; who pays for an exchange stays there from just before, or moves. *)
@@ -336,6 +394,63 @@ Proof.
   rewrite sums_are_exchanged. apply sum_is_monotone. intros x Hx. destruct (H x Hx) as (Ha & Hp & Ho).
   rewrite (sum_of_multiples (fun p => times x (visits p))). apply Z.mul_le_mono_nonneg_l; auto.
   eapply Z.le_trans; [apply price_is_paid_by_payers | apply payers_have_room; auto].
+Qed.
+
+(** All robots together pay for a group at most its price times its capacity. *)
+Lemma group_price_is_paid_by_few x : 0 <= group_amount x ->
+  sum (fun p => paid (prices_within i x) (visits p)) (plans s) <= group_amount x * group_room i x.
+Proof.
+  intros A. unfold prices_within, group_room. destruct (group_of i x) as [g |] eqn:G.
+  2: { rewrite (sum_of_equal _ (fun _ => 0)); [rewrite sum_of_zeros; lia |].
+       intros p _. rewrite paid_is_by_price. reflexivity. }
+  apply find_some in G as [Hg _].
+  set (often := fun p => sum (fun r => times (Price r None (group_tick x) (group_amount x)) (visits p)) (group_resources g)).
+  rewrite (sum_of_equal _ (fun p => group_amount x * often p)).
+  2: { intros p _. rewrite paid_is_by_price. unfold often. rewrite <- sum_of_multiples. 
+       generalize (group_resources g). intros ids. induction ids as [| r ids IH]; simpl; [reflexivity |]. rewrite <- IH.
+       reflexivity. }
+  rewrite sum_of_multiples. apply Z.mul_le_mono_nonneg_l; auto.
+  set (those := filter (fun p => 0 <? often p) (plans s)).
+  apply Z.le_trans with (Z.of_nat (length those)).
+  - assert (O : forall p, In p (plans s) -> 0 <= often p <= 1).
+    { intros p Hp. split; [apply sum_is_not_negative; intros; apply times_is_not_negative |].
+      destruct (plan_is_a_way p Hp) as (a & Ha & _ & W).
+      apply (one_of_many_places_is_paid i a right Ha); auto. apply (groups_name_resources_once i right g Hg). }
+    unfold those. clear those. induction (plans s) as [| p ps IH]; simpl; [lia |].
+    pose proof (O p (or_introl eq_refl)). assert (IHps := IH (fun q Hq => O q (or_intror Hq))).
+    destruct (Z.ltb_spec 0 (often p)); simpl length; lia.
+  - change (group_capacity g) with (limit_capacity (Limit (group_resources g) (group_capacity g))).
+    rewrite <- (map_length plan_robot). apply (limits_are_kept i s lawful) with (tick := group_tick x).
+    + unfold limits. apply in_or_app. right. apply in_map_iff. eauto.
+    + pose proof robots_have_one_plan as N. unfold those, planned in *. clear those.
+      induction (plans s) as [| p ps IH]; simpl in *; auto.
+      inversion N as [| ? ? Hn Hd]; subst. destruct (0 <? often p); simpl; auto. constructor; auto.
+      intros H. apply Hn. apply in_map_iff in H as (q & E & Hq). apply filter_In in Hq as [Hq _].
+      apply in_map_iff. eauto.
+    + intros id Hid. apply in_map_iff in Hid as (p & <- & Hp). apply filter_In in Hp as [Hp Often].
+      apply Z.ltb_lt in Often. unfold often in Often.
+      assert (E : exists r, In r (group_resources g) /\ 0 < times (Price r None (group_tick x) (group_amount x)) (visits p)).
+      { clear -Often. induction (group_resources g) as [| r ids IH]; simpl in Often; [lia |].
+        destruct (Z.ltb_spec 0 (times (Price r None (group_tick x) (group_amount x)) (visits p))).
+        - exists r. simpl. auto.
+        - destruct IH as (q & Hq & T); [lia |]. exists q. simpl. auto. }
+      destruct E as (r & Hr & T). exists r, 0. rewrite Z.sub_0_r.
+      split; [exact Hr |]. split; [unfold gap; destruct (following_is_forbidden i); lia |].
+      destruct (who_pays_visits_or_moves _ (visits p) T) as [(v & Hv & V) | (before & v & w & later & E & Mv)].
+      * apply paying_visit_holds in V as (Place & Held & _). cbn [place tick] in Place, Held. rewrite <- Place.
+        apply holding_visit_occupies; auto.
+      * unfold move_pays in Mv. simpl in Mv. discriminate.
+Qed.
+
+(** Prices of groups, at least 0: all robots together pay no more than prices times capacities. *)
+Theorem all_pay_no_more_than_group_prices_times_capacities xs : (forall x, In x xs -> 0 <= group_amount x) ->
+  sum (fun p => paid (flat_map (prices_within i) xs) (visits p)) (plans s) <=
+  sum (fun x => group_amount x * group_room i x) xs.
+Proof.
+  intros H. rewrite (sum_of_equal _ (fun p => sum (fun x => paid (prices_within i x) (visits p)) xs)).
+  - rewrite sums_are_exchanged. apply sum_is_monotone. intros x Hx. apply group_price_is_paid_by_few, H, Hx.
+  - intros p _. induction xs as [| x xs IH]; [rewrite paid_is_by_price; reflexivity |]. simpl.
+    rewrite paid_of_joined, IH; [reflexivity |]. intros y Hy. apply H. right. exact Hy.
 Qed.
 
 End Solution.

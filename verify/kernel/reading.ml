@@ -190,7 +190,7 @@ let require_format path format json =
 
 (* ---- Instances ---- *)
 
-type instance = { instance : Law.instance; resource_numbers : numbers; robot_numbers : numbers }
+type instance = { instance : Law.instance; resource_numbers : numbers; robot_numbers : numbers; group_numbers : numbers }
 
 (* A robot of one stop, without service. *)
 let has_goal_alone (a : Law.robot) =
@@ -337,7 +337,7 @@ let instance_of_json path json =
   let robots = required field "robots" (elements robot) in
   let instance = { Law.resources; edges; directed; groups; after_goal; following_is_forbidden; robots } in
   if not (Checker.instance_accepted instance) then name_fault path instance;
-  { instance; resource_numbers; robot_numbers }
+  { instance; resource_numbers; robot_numbers; group_numbers }
 
 (* Refuse robots with stops where the kernel decides nothing about them. *)
 let require_goals { instance; _ } =
@@ -382,7 +382,7 @@ type bound = {
   of_deadlines : string list;
 }
 
-let bound_of_json { resource_numbers; robot_numbers; _ } path json =
+let bound_of_json { resource_numbers; robot_numbers; group_numbers; _ } path json =
   require_format path "carproof-bound/1" json;
   let robot path json = number robot_numbers (id path json) in
   let resource path json = number resource_numbers (id path json) in
@@ -399,6 +399,13 @@ let bound_of_json { resource_numbers; robot_numbers; _ } path json =
         { Prices.place = resource (path ^ "[0]") place; other = Some (resource (path ^ "[1]") other);
           tick = whole (path ^ "[2]") tick; amount = whole (path ^ "[3]") amount }
     | _ -> shape path "an array of two resources, a tick and a price"
+  in
+  let group_price path (json : Yojson.Safe.t) =
+    match json with
+    | `List [ group; tick; amount ] ->
+        { Prices.priced_group = number group_numbers (id (path ^ "[0]") group);
+          group_tick = whole (path ^ "[1]") tick; group_amount = whole (path ^ "[2]") amount }
+    | _ -> shape path "an array of a group, a tick and a price"
   in
   let cut path json =
     let names = [ "robots"; "least"; "multiplier"; "horizons"; "order"; "refutation" ] in
@@ -435,7 +442,7 @@ let bound_of_json { resource_numbers; robot_numbers; _ } path json =
     | _ -> shape path "an array of a robot and a whole number or null"
   in
   let names = [ "format"; "instance"; "bound"; "scale"; "horizon"; "resources"; "exchanges"; "cuts"; "robots" ] in
-  let field = fields path ~required:names ~optional:[ "deadlines" ] json in
+  let field = fields path ~required:names ~optional:[ "deadlines"; "groups" ] json in
   let cuts = required field "cuts" (elements cut) in
   let groups = optional [] field "deadlines" (elements group) in
   let resource_prices = required field "resources" (elements resource_price) in
@@ -447,7 +454,8 @@ let bound_of_json { resource_numbers; robot_numbers; _ } path json =
         prices = List.rev_append (List.rev resource_prices) exchange_prices;
         cuts = List.map fst cuts;
         claims = required field "robots" (elements claim);
-        groups = List.map fst groups };
+        groups = List.map fst groups;
+        group_prices = optional [] field "groups" (elements group_price) };
     named_instance = required field "instance" text;
     of_cuts = List.map snd cuts;
     of_deadlines = List.map snd groups }

@@ -133,7 +133,8 @@ let labels_below budget claimed weight (tariff : Labels.tariff) dues horizon tak
 (* The evidence of each robot's claim, looked for when it is asked for. Raises [Too_many_steps] and [Too_much_work]. *)
 let evidence (instance : Law.instance) (certificate : Bound.certificate) =
   let onwards, backwards = moves_of instance in
-  let tariff = Tables.tariff_of certificate.prices and table = Tables.resource_table instance in
+  let prices = Bound.all_prices instance certificate in
+  let tariff = Tables.tariff_of prices and table = Tables.resource_table instance in
   let claims = Hashtbl.of_seq (List.to_seq certificate.claims) in
   (* Nothing is paid after the last price, the last deadline, and the last tick at which a robot is seen. *)
   let after last (d : Bound.deadline) =
@@ -143,7 +144,7 @@ let evidence (instance : Law.instance) (certificate : Bound.certificate) =
   let deadlines = List.concat_map (fun (g : Bound.group) -> g.deadlines) certificate.groups in
   let horizon = List.fold_left after tariff.horizon deadlines in
   let priced = Hashtbl.create 1024 in
-  List.iter (fun (x : Prices.price) -> Hashtbl.add priced x.place x) certificate.prices;
+  List.iter (fun (x : Prices.price) -> Hashtbl.add priced x.place x) prices;
   let known = Hashtbl.create 64 and budget = { steps = most_steps; work = most_work } in
   let of_robot (a : Law.robot) () =
     let takes = Tables.takes_in table a in

@@ -49,7 +49,7 @@ def market_of(instance: Instance, graph: Graph, requests: Requests, longest: int
     )
     back = moves_back(instance)
     numbers = np.array([back.get(move, NONE) for move in range(edges)], np.int32)
-    prices = Prices(wide, wide, numbers, wide, wide, wide, wide)
+    prices = Prices(wide, wide, wide, numbers, wide, wide, wide, wide)
     usage = Usage(empty, empty, empty, wide, wide)
     ways = Ways(np.zeros(0, np.int32), empty, empty)
     charges = Charges(wide, wide, empty, wide, empty)
@@ -73,9 +73,11 @@ def sized(market: Market, horizon: int, delays: int) -> Market:
     visits = ticks // int(graph.duration.min(initial=1)) + 2
     refuse_table("$.robots", "robots times the visits of a plan", robots * visits)
     slots = resources * market.scratch.head.size
+    limits = graph.room.size
     return market._replace(
         prices=market.prices._replace(
-            resource=np.zeros((resources, horizon), np.int64),
+            limit=np.zeros((limits, horizon), np.int64),
+            present=np.zeros((resources, horizon), np.int64),
             exchange=np.zeros((edges, horizon), np.int64),
             stay=np.zeros((resources, horizon + 1), np.int64),
             across=np.zeros((resources, horizon + 1), np.int64),
@@ -87,10 +89,10 @@ def sized(market: Market, horizon: int, delays: int) -> Market:
             np.zeros(robots, np.int32), np.zeros((robots, visits), np.int32), np.zeros((robots, visits), np.int32)
         ),
         usage=Usage(
-            present=np.zeros((resources, horizon), np.int32),
+            present=np.zeros((limits, horizon), np.int32),
             moving=np.zeros((edges, horizon), np.int32),
             staying=np.zeros((resources, horizon), np.int32),
-            course=np.zeros((resources, horizon), np.int64),
+            course=np.zeros((limits, horizon), np.int64),
             course_of_exchange=np.zeros((edges, horizon), np.int64),
         ),
         scratch=market.scratch._replace(

@@ -39,12 +39,13 @@ class PriceLists(NamedTuple):
 
     resources: tuple[tuple[ResourceId, int, int], ...]
     exchanges: tuple[tuple[ResourceId, ResourceId, int, int], ...]
+    groups: tuple[tuple[ResourceId, int, int], ...]
 
 
 class Point(NamedTuple):
-    """Prices of places, and of deadlines."""
+    """Prices of constraints and exchanges, and of deadlines."""
 
-    resource: LongTable
+    limit: LongTable
     exchange: LongTable
     fees: Longs
 
@@ -65,7 +66,8 @@ class PriceSearch:
         self.instance = instance
         self.scale = scale
         graph = encode_graph(instance)
-        graph = graph._replace(capacity=np.minimum(graph.room[:resources], robots).astype(np.int32))
+        room = np.minimum(graph.room, robots).astype(np.int32)
+        graph = graph._replace(capacity=room[:resources].copy(), room=room)
         requests = requests_of(instance, scale)
         longest = max((robot.pace for robot in instance.robots), default=1) * int(graph.duration.max(initial=1))
         if not stay_is_searched(longest):
@@ -76,7 +78,7 @@ class PriceSearch:
         find_rests(native)
         last = max(requests.earliest.tolist(), default=0)
         refuse_tick("$.graph", last)
-        rows = resources + graph.target.size
+        rows = graph.room.size + graph.target.size
         self.horizon = min(max(last, 0) + longest + TICKS_BEYOND, LARGEST_TABLE // max(rows, robots, 1), LAST_TICK)
         wanted = min(max(DELAYS * longest, self.horizon + longest), LARGEST_TABLE // max(robots, 1))
         self.market = sized(market, self.horizon, max(1, min(wanted, MOST_NODES // max(resources, 1), LARGEST - last)))
@@ -91,7 +93,7 @@ class PriceSearch:
 
     def _point(self) -> Point:
         prices = self.market.prices
-        return Point(prices.resource.copy(), prices.exchange.copy(), self.fees.copy())
+        return Point(prices.limit.copy(), prices.exchange.copy(), self.fees.copy())
 
     def _bound(self, check: Callable[[], None] = lambda: None) -> int:
         """The bound that the prices prove; gives each robot a cheapest way.
@@ -126,7 +128,7 @@ class PriceSearch:
 
     def _restore(self) -> int:
         """Go back to the best prices, without a course: their bound."""
-        self.market.prices.resource[:], self.market.prices.exchange[:], fees = self._kept
+        self.market.prices.limit[:], self.market.prices.exchange[:], fees = self._kept
         self.fees = fees.copy()
         self.market.usage.course[:] = 0
         self.market.usage.course_of_exchange[:] = 0
@@ -319,20 +321,24 @@ class PriceSearch:
     def prices(self) -> PriceLists:
         """The prices that are not 0."""
         graph = self.instance.graph
-        ids = [resource.id for resource in graph.resources]
-        moves = [(source, target) for source in ids for target in graph.successors[source]]
-        resource, exchange = self.market.prices.resource, self.market.prices.exchange
+        ids = [each.id for each in graph.constraints]
+        size = len(graph.resources)
+        moves = [(source, target) for source in graph.index for target in graph.successors[source]]
+        limit, exchange = self.market.prices.limit, self.market.prices.exchange
+        priced = [(int(row), (ids[row], int(tick), int(limit[row, tick]))) for row, tick in np.argwhere(limit)]
         return PriceLists(
-            tuple((ids[here], int(tick), int(resource[here, tick])) for here, tick in np.argwhere(resource)),
+            tuple(price for row, price in priced if row < size),
             tuple((*moves[move], int(tick), int(exchange[move, tick])) for move, tick in np.argwhere(exchange)),
+            tuple(price for row, price in priced if row >= size),
         )
 
     @property
     def worth(self) -> int:
         """The prices times the capacities."""
         prices = self.market.prices
-        of_resource = prices.stay[:, self.horizon] + prices.across[:, self.horizon]
-        return int((of_resource * self.market.graph.capacity).sum())
+        graph = self.market.graph
+        of_limits = prices.limit.sum(axis=1) * graph.room
+        return int(of_limits.sum() + (prices.across[:, self.horizon] * graph.capacity).sum())
 
     def least_costs(self) -> tuple[tuple[RobotId, int | None], ...]:
         """The least priced cost of each robot, `None` where it cannot reach its goal."""

@@ -3,9 +3,9 @@
 The surplus of a row is how many robots more than its capacity use it; it is a subgradient of the bound. The course is
 the surplus and a part of the course before. The step is Polyak's: what is still to be gained, by the course's square.
 
-A stay counts in the row of its resource, and in those of all exchanges there. If each of these took the whole step, the
-stay's price would change by several steps. So the rows of exchanges take a smaller step, by `LESS`, and count for as
-much less in the square: the gain stays the same.
+A stay counts in the row of its resource, and in those of all its groups and of all exchanges there. If each of these
+took the whole step, the stay's price would change by several steps. So the rows of groups and exchanges take a smaller
+step, by `LESS`, and count for as much less in the square: the gain stays the same.
 """
 
 from carp_optimized.jit.compiling import compiled, entry
@@ -16,7 +16,7 @@ from carp_optimum.lagrangian.state import Market, market_at
 
 UNIT = 64  # of a course
 KEPT, PARTS = 15, 16  # of the course before
-LESS = 16  # the steps of exchange rows are smaller by this
+LESS = 16  # the steps of the rows of exchanges and groups are smaller by this
 MOST_SURPLUS = 100
 LARGEST_GAIN = 1 << 34
 LARGEST_PRICE = 1 << 40
@@ -28,10 +28,11 @@ def turn_all(native: Native[Market]) -> int:
     market = market_at(native)
     graph = market.graph
     square = 0
+    for limit in range(graph.room.size):
+        course, present = market.usage.course[limit], market.usage.present[limit]
+        turned_by = turn(market.prices.limit[limit], course, present, int(graph.room[limit]), market.horizon)
+        square += turned_by if limit < graph.duration.size else turned_by // LESS
     for here in range(graph.duration.size):
-        capacity = int(graph.capacity[here])
-        course = market.usage.course[here]
-        square += turn(market.prices.resource[here], course, market.usage.present[here], capacity, market.horizon)
         for move in range(int(graph.first[here]), int(graph.first[here + 1])):
             if market.prices.back[move] != NONE:
                 square += turn_exchange(market, here, move) // LESS
@@ -42,8 +43,9 @@ def turn_all(native: Native[Market]) -> int:
 def walk_all(native: Native[Market], gain: int, square: int) -> None:
     """Change all prices along their course, of that square together with whatever else is changed, to gain so much."""
     market = market_at(native)
-    for here in range(market.graph.duration.size):
-        walk(market.prices.resource[here], market.usage.course[here], gain, square, market.horizon)
+    for limit in range(market.graph.room.size):
+        less = 1 if limit < market.graph.duration.size else LESS
+        walk(market.prices.limit[limit], market.usage.course[limit], gain, square * less, market.horizon)
     for move in range(market.graph.target.size):
         if market.prices.back[move] != NONE:
             course = market.usage.course_of_exchange[move]

@@ -9,6 +9,7 @@ graph, as in `carp_verify.optimum.robot_clauses`.
 """
 
 from carp_optimized.jit.compiling import compiled, entry
+from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
 from carp_optimized.queries.heap import push, replace_root
 from carp_optimized.state.arrays import NONE
@@ -332,12 +333,20 @@ def count_way(market: Market, robot: int, sign: int) -> None:
                 moving[end] = int(moving[end]) + sign
         elif not market.parks:
             end = enter + duration_of(market, robot, here)
-        present = usage.present[here]
+        end = min(end, market.horizon)
         staying = usage.staying[here]
-        for tick in range(enter, min(end, market.horizon)):
-            present[tick] = int(present[tick]) + sign
-            if tick > enter:
-                staying[tick] = int(staying[tick]) + sign
+        for tick in range(enter + 1, end):
+            staying[tick] = int(staying[tick]) + sign
+        count_stay(usage.present[here], enter, end, sign)
+        for k in range(int(market.graph.groups_first[here]), int(market.graph.groups_first[here + 1])):
+            count_stay(usage.present[market.graph.duration.size + market.graph.group[k]], enter, end, sign)
+
+
+@compiled
+def count_stay(present: Ints, enter: int, end: int, sign: int) -> None:
+    """Add a stay in [enter, end) to the use of a constraint, or take it off again."""
+    for tick in range(enter, end):
+        present[tick] = int(present[tick]) + sign
 
 
 @entry

@@ -1,6 +1,7 @@
 """The arrays of the search for prices, and what they say: what robots pay for stays, moves and arrivals, compiled.
 
-A robot pays for each tick that it is in a resource (`joint/capacity`), and for each exchange row (r, s, t) if at t it
+A robot pays for each tick that it is in a resource (`joint/capacity`) or a group (`joint/group`): these are the
+constraints, resources first, numbered as in `Graph`. It pays for each exchange row (r, s, t) if at t it
 moves from r to s or from s to r, or is in r just before t and at t (`joint/exchange`). Prices end at the horizon.
 """
 
@@ -30,15 +31,17 @@ class Requests(NamedTuple):
 
 
 class Prices(NamedTuple):
-    """Prices by resource and tick, and by move (r, s) and tick for the exchange row (r, s).
+    """Prices by constraint and tick, and by move (r, s) and tick for the exchange row (r, s).
 
-    `back[move]` is the number of the move back, or `NONE`. `stay[r][t]` is the sum of the prices of r before t, and
-    `across[r][t]` that of all exchange rows of r. A search goes from tick to tick, so what a robot pays at a tick lies
+    `present[r][t]` is the price of r with those of its groups. `back[move]` is
+    the number of the move back, or `NONE`. `stay[r][t]` is the sum of what is paid in r before t, and `across[r][t]`
+    that of all exchange rows of r. A search goes from tick to tick, so what a robot pays at a tick lies
     together: `waiting[t][r]` for being in r just before t and at t, `entering[t][move]` for moving at t, with the price
     of the target at t. From the horizon on these are 0.
     """
 
-    resource: LongTable
+    limit: LongTable
+    present: LongTable
     exchange: LongTable
     back: Ints
     stay: LongTable
@@ -73,7 +76,7 @@ class Ways(NamedTuple):
 
 
 class Usage(NamedTuple):
-    """The use of the ways: robots by resource and tick, by move and tick, and those in a resource before and at a tick.
+    """The use of the ways: robots by constraint and tick, by move and tick, those in a resource before and at a tick.
 
     `course` and `course_of_exchange` are the direction in which the prices of the rows were changed last.
     """
@@ -177,14 +180,39 @@ def move_between(market: Market, source: int, target: int) -> int:
 
 
 @compiled
+def price_groups(market: Market) -> int:
+    """Add the prices of groups to those of their resources: their worth beyond that of resources at these prices."""
+    graph = market.graph
+    resources = graph.duration.size
+    for here in range(resources):
+        for tick in range(market.horizon):
+            market.prices.present[here][tick] = market.prices.limit[here][tick]
+    worth = 0
+    for group in range(graph.room.size - resources):
+        room = int(graph.room[resources + group])
+        members = range(int(graph.members_first[group]), int(graph.members_first[group + 1]))
+        for k in members:
+            room -= int(graph.capacity[graph.member[k]])
+        prices = market.prices.limit[resources + group]
+        for tick in range(market.horizon):
+            price = int(prices[tick])
+            if price != 0:
+                worth += price * room
+                for k in members:
+                    present = market.prices.present[graph.member[k]]
+                    present[tick] = int(present[tick]) + price
+    return worth
+
+
+@compiled
 def add_up(market: Market) -> int:
     """Make the sums of the prices: the sum of all prices times their capacities."""
     graph = market.graph
-    worth = 0
+    worth = price_groups(market)
     for here in range(graph.duration.size):
         stay = market.prices.stay[here]
         across = market.prices.across[here]
-        price = market.prices.resource[here]
+        price = market.prices.present[here]
         for tick in range(market.horizon):
             of_rows = 0
             for move in range(int(graph.first[here]), int(graph.first[here + 1])):
@@ -194,7 +222,7 @@ def add_up(market: Market) -> int:
             market.prices.waiting[tick][here] = int(price[tick]) + of_rows
             for move in range(int(graph.first[here]), int(graph.first[here + 1])):
                 target = int(graph.target[move])
-                paid = move_price(market, move, tick) + int(market.prices.resource[target][tick])
+                paid = move_price(market, move, tick) + int(market.prices.present[target][tick])
                 market.prices.entering[tick][move] = paid
         worth += (int(stay[market.horizon]) + int(across[market.horizon])) * int(graph.capacity[here])
     return worth

@@ -128,15 +128,19 @@ def _reduced_cost(
 
 
 def _prices_of_empty_places(encoding: Encoding, bound: PricedBound, unit: int) -> list[list[Literal]]:
-    """For each price of a resource at a tick, a number that is at least its level if nobody is there."""
+    """For each price of a resource or a group at a tick, a number that is at least its level if nobody is there."""
     numbers = []
-    for resource, tick, price in bound.certificate.resources:
+    graph = encoding.instance.graph
+    members = {group.id: group.resources for group in graph.groups}
+    of_groups = ((members[id], tick, price) for id, tick, price in bound.certificate.groups)
+    of_resources = (((id,), tick, price) for id, tick, price in bound.certificate.resources)
+    for resources, tick, price in (*of_resources, *of_groups):
         level = _level(price, unit)
         if level > 0:
             number = _number(encoding.formula, level)
             robots = range(len(encoding.robots))
-            place = encoding.instance.graph.index[resource]
-            present = [encoding.presence(position, place, tick) for position in robots]
+            places = [graph.index[each] for each in resources]
+            present = [encoding.presence(position, place, tick) for position in robots for place in places]
             encoding.formula.add(*(literal for literal in present if literal is not None), number[-1])
             numbers.append(number)
     return numbers

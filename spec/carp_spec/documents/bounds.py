@@ -54,9 +54,9 @@ class BoundDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omi
 
     `instance` is the digest of the instance's document. Prices, multipliers and least costs are in parts of a tick,
     `scale` of them. A price of `resources` is [resource, tick, price], one of `exchanges` [resource, other, tick,
-    price]; those not listed are 0, and so are all at or after the tick `horizon`. `robots` gives each robot's least
-    cost with prices, those of its deadlines among them, or null where no way leads to its goal. A document without
-    deadlines may leave `deadlines` out.
+    price], and one of `groups` [group, tick, price]; those not listed are 0, and so are all at or after the tick
+    `horizon`. `robots` gives each robot's least cost with prices, those of its deadlines among them, or null where no
+    way leads to its goal. A document may leave out `deadlines` and `groups` that it does not have.
     """
 
     format: Literal["carproof-bound/1"]
@@ -69,6 +69,7 @@ class BoundDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omi
     cuts: tuple[CutDocument, ...]
     robots: tuple[tuple[RobotId, int | None], ...]
     deadlines: tuple[DeadlinesDocument, ...] = ()
+    groups: tuple[tuple[ResourceId, Tick, Price], ...] = ()
 
 
 def read_bound(data: bytes) -> BoundDocument:

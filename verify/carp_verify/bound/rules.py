@@ -25,8 +25,8 @@ def is_scale(scale: object) -> bool:
 
 @rule(
     "bound/price",
-    "A price is a whole number of at least 0, for a resource or a move with a move back, at a tick from 0 up to, not "
-    "including, the horizon.",
+    "A price is a whole number of at least 0, for a resource, a group, or a move with a move back, at a tick from 0 "
+    "up to, not including, the horizon.",
     DESIGN,
 )
 def is_price(price: object, tick: object, horizon: int) -> bool:

@@ -13,6 +13,8 @@ kernel's theorem is `accepted_bound_is_below_every_solution`.
   its places at the tick: once, as it is in one place. One that is seen at more ticks pays for each.
 
 - A price of a resource r at a tick t is paid by all who are in r at t: at most the capacity of r, by `joint/capacity`.
+- A price of a group at a tick is paid by all who are in one of its resources at the tick: at most the capacity of the
+  group, by `joint/group`. Who is in a resource pays the prices of all its groups.
 - An exchange price of (r, s) at t is paid by all who move from r to s or from s to r at t, and by all who are in r both
   just before t and at t. No more of them than the capacity of r: by `joint/exchange` nobody makes one of the moves;
   those who make the other are in r just before t, or at t, together with those who stay.
@@ -36,6 +38,7 @@ from carp_spec.documents.bounds import BoundDocument, CutDocument, DeadlinesDocu
 from carp_spec.documents.instances import digest
 from carp_spec.inputs.values import require_instance
 from carp_spec.limits import refuse
+from carp_spec.model import Group
 from carp_spec.rule import is_whole
 from carp_verify.bound.rules import (
     LARGEST_FORMULA,
@@ -99,8 +102,7 @@ def verify_bound(instance: Instance, certificate: BoundDocument) -> int:
     """The bound that the certificate proves of the instance; raises `Refusal` with what is wrong with it.
 
     No plans of all robots that can reach their goals have a smaller total cost. Where one cannot, `robots` has null.
-    Prices are on resources and exchanges alone: without the groups there are only more plans. Cuts and deadlines know
-    groups.
+    Cuts and deadlines know groups too.
     """
     require_instance(instance)
     refuse(instance, "stops")
@@ -215,20 +217,45 @@ class Tariff:
         self.moves: dict[tuple[ResourceId, ...], dict[int, int]] = {}
         present: dict[ResourceId, dict[int, int]] = {}
         across: dict[ResourceId, dict[int, int]] = {}
+        graph = instance.graph
+        groups = {group.id: group for group in graph.groups}
+        for id, tick, price in self._group_prices(certificate, groups):
+            self.horizon = max(self.horizon, tick + 1)
+            for resource in groups[id].resources:
+                of_groups = present.setdefault(resource, {})
+                of_groups[tick] = of_groups.get(tick, 0) + price
+            self.worth += price * groups[id].capacity
         for place, tick, price in self._prices(certificate):
             source = place[0]
             self.horizon = max(self.horizon, tick + 1)
             if len(place) == 1:
-                present.setdefault(source, {})[tick] = price
+                of_resource = present.setdefault(source, {})
+                of_resource[tick] = of_resource.get(tick, 0) + price
             else:
                 of_rows = across.setdefault(source, {})
                 of_rows[tick] = of_rows.get(tick, 0) + price
                 self.moves.setdefault(place, {})[tick] = price
-            self.worth += price * instance.graph.resource[source].capacity
+            self.worth += price * graph.resource[source].capacity
         size = self.horizon * len({*present, *across})
         _require_size(size, LARGEST_TABLE, "$.resources", "the prices by resource and tick, up to the last,")
         self.present = {resource: self._sums(prices) for resource, prices in present.items()}
         self.across = {resource: self._sums(prices) for resource, prices in across.items()}
+
+    def _group_prices(
+        self, certificate: BoundDocument, groups: Mapping[ResourceId, Group]
+    ) -> Iterator[tuple[ResourceId, int, int]]:
+        """The prices of groups, checked."""
+        known: set[tuple[ResourceId, int]] = set()
+        size = sum(len(groups[id].resources) for id, _, _ in certificate.groups if id in groups)
+        _require_size(size, LARGEST_TABLE, "$.groups", "the resources of groups with prices")
+        for number, (id, tick, price) in enumerate(certificate.groups):
+            path = f"$.groups[{number}]"
+            message = f"{price!r} at {tick!r} must be a price of at least 0 at a tick below {certificate.horizon}"
+            _require(is_price, is_price(price, tick, certificate.horizon), path, message)
+            _require(is_price, id in groups, path, f"{id} must be a group")
+            _require(is_new, is_new((id, tick), known), path, f"{id} must have one price at tick {tick}")
+            known.add((id, tick))
+            yield id, tick, price
 
     def _prices(self, certificate: BoundDocument) -> Iterator[tuple[tuple[ResourceId, ...], int, int]]:
         """The prices with their places, checked: one resource, or the two of an exchange."""

@@ -93,7 +93,7 @@ def _bound(problem: Instance, file: str, kernel: bool, as_json: bool) -> Answer:
     elif verdict.bound is None:
         print_line(f"not proved: {verdict.path}: {verdict.reason} [{verdict.rule}]")
     else:
-        prices = len(document.resources) + len(document.exchanges)
+        prices = len(document.resources) + len(document.exchanges) + len(document.groups)
         groups = [len(document.cuts), len(document.deadlines)]
         row = [verdict.bound, len(document.robots), prices, *groups, document.horizon, verdict.by]
         print_table(OF_BOUND, [row], numbers=OF_BOUND[:-1])
