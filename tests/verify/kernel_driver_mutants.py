@@ -283,7 +283,7 @@ def started(program: Path) -> "subprocess.Popen[str]":
 
 def commanded(program: Path, tests: Sequence[Asked]) -> Iterator[tuple[Asked, int, bytes]]:
     """All that runs of the program answer, each with its test and the number of its command there."""
-    with TemporaryDirectory() as name:
+    with TemporaryDirectory(ignore_cleanup_errors=True) as name:
         folder = Path(name)
         lines: list[str] = []
         for asked in tests:
