@@ -7,6 +7,7 @@ from itertools import product
 from carp_experiments.beyond.delayed import execution_report, execution_row
 from carp_experiments.beyond.following import following_report, following_row
 from carp_experiments.beyond.left_out import left_out_report, left_out_row
+from carp_experiments.beyond.lifelong import lifelong_report, lifelong_row
 from carp_experiments.beyond.people import people_report, people_row
 from carp_experiments.beyond.streams import stream_report, stream_row
 from carp_experiments.paper.adding_time import PAPERS_MAP, time_report, time_row
@@ -172,6 +173,15 @@ EXPERIMENTS = (
         Profile(2, 200, (10, FULL_MAP)),
         stream_row,
         stream_report,
+        places=MOST_STREAMED,
+    ),
+    Experiment(
+        "lifelong",
+        "Pick-and-drop orders that come at random: throughput, time in the system and time an order.",
+        Profile(4, 200, (10, FULL_MAP, WAREHOUSE)),
+        Profile(2, 30, (10, FULL_MAP)),
+        lifelong_row,
+        lifelong_report,
         places=MOST_STREAMED,
     ),
 )

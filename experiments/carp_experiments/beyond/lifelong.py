@@ -1,0 +1,141 @@
+"""Orders without end: pick here, drop there, and plans that are polished between arrivals.
+
+Robots come in docks at random ticks, as in a stream, each with an order: a pick, which takes time, and a drop. A fleet
+in memory takes them up one by one, by CARP or by the neighbourhood planner, or improves its plans by polish after each.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from time import process_time
+
+import msgspec
+
+from carp_experiments.beyond.streams import TICKS, middle_half, stream_instance
+from carp_experiments.paper.map_cases import MapCase, place_name, rows_by_map
+from carp_experiments.report import ExperimentReport, Table
+from carp_experiments.statistics import Interval, mean_interval
+from carp_experiments.store import Row
+from carp_spec import Instance, Neighbourhood, Plan, RobotId, Stop, violations_of
+from carp_spec.permutations import splitmix64
+
+RATES = (200, 400, 800)
+SERVICE = 5
+ROUNDS = 10
+PLANNERS = {
+    "CARP": (Neighbourhood(m=1), 0),
+    "Proposed_4": (Neighbourhood(m=4), 0),
+    "Proposed_4, polished": (Neighbourhood(m=4), ROUNDS),
+}
+
+
+class Served(msgspec.Struct, frozen=True):
+    """The orders of a stream: the ticks in which the middle half is done, those in the system, and microseconds."""
+
+    half: int
+    taken: int
+    microseconds: int
+
+
+class LifelongRow(msgspec.Struct, frozen=True):
+    """A stored row of the experiment: the streams of each planner, one for each rate."""
+
+    map: int
+    planners: dict[str, tuple[Served, ...]]
+
+
+def lifelong_row(case: MapCase) -> Row:
+    """The streams of each planner."""
+    return {"planners": {name: [msgspec.to_builtins(served(case, name, rate)) for rate in RATES] for name in PLANNERS}}
+
+
+def served(case: MapCase, name: str, rate: int) -> Served:
+    """Take up the orders of a stream; raises `AssertionError` if one has no plan, or plans break a rule."""
+    from carproof import Fleet  # noqa: PLC0415 - each worker loads it
+
+    planner, rounds = PLANNERS[name]
+    instance = order_instance(case, rate)
+    fleet = Fleet(replace(instance, robots=()), planner=planner)
+    fleet.polish(iterations=0)  # what is loaded once is not counted
+    plans: dict[RobotId, Plan] = {}
+    began = process_time()
+    for robot in sorted(instance.robots, key=lambda robot: robot.release):
+        plans |= {plan.robot: plan for plan in fleet.add(robot, now=robot.release).plans}
+        if rounds:
+            plans |= {plan.robot: plan for plan in fleet.polish(iterations=rounds, seed=case.assignment).plans}
+    seconds = process_time() - began
+    made = [plans[robot.id] for robot in instance.robots if robot.id in plans]
+    broken = violations_of(instance, made)
+    if broken or len(made) < len(instance.robots):
+        raise AssertionError(broken)
+    taken = sum(plan.visits[-1].enter - instance.robot[plan.robot].release for plan in made)
+    return Served(middle_half(made), taken, round(1e6 * seconds))
+
+
+def order_instance(case: MapCase, rate: int) -> Instance:
+    """The robots of a stream, each with a pick on its way: the goal of another robot."""
+    instance = stream_instance(case, rate)
+    goals, stream = [robot.goal for robot in instance.robots], splitmix64(case.assignment)
+    robots = []
+    for robot in instance.robots:
+        picks = [goal for goal in dict.fromkeys(goals) if goal != robot.goal]
+        pick = picks[next(stream) % len(picks)] if picks else robot.goal
+        stops = (Stop(pick, SERVICE), Stop(robot.goal)) if picks else robot.stops
+        robots.append(replace(robot, stops=stops))
+    return replace(instance, robots=tuple(robots))
+
+
+@dataclass(frozen=True, slots=True)
+class LifelongOf:
+    """Means over the streams of a planner on one map at a rate of orders in 100 ticks.
+
+    `throughput` is how many orders are done in 100 ticks, `taken` how many ticks an order is in the system, and
+    `milliseconds` the processor's time for an order.
+    """
+
+    map: int
+    planner: str
+    rate: int
+    streams: int
+    throughput: Interval
+    taken: Interval
+    milliseconds: Interval
+
+
+def lifelong_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
+    """A table of all maps."""
+    summary = tuple(
+        _mean(map, planner, rate, [row.planners[planner][place] for row in each], robots)
+        for map, each in rows_by_map(rows, LifelongRow).items()
+        for place, rate in enumerate(RATES)
+        for planner in PLANNERS
+    )
+    columns = ("place", "orders", "planner", "done", "ticks in system", "ms an order")
+    title = (
+        f"Streams of {robots} pick-and-drop orders, means with 95 % intervals: orders that come in {TICKS} ticks, "
+        f"orders done in as many, ticks from an order's arrival to its drop, and processor time. A pick takes "
+        f"{SERVICE} ticks; polish plays {ROUNDS} rounds after each arrival"
+    )
+    lines = [
+        (
+            place_name(each.map),
+            str(each.rate),
+            each.planner,
+            f"{each.throughput:.0f}",
+            f"{each.taken:.1f}",
+            f"{each.milliseconds:.2f}",
+        )
+        for each in summary
+    ]
+    return ExperimentReport(summary, (Table("lifelong", title, columns, tuple(lines), columns[3:]),))
+
+
+def _mean(map: int, planner: str, rate: int, found: list[Served], robots: int) -> LifelongOf:
+    return LifelongOf(
+        map,
+        planner,
+        rate,
+        len(found),
+        mean_interval([TICKS * (3 * robots // 4 - robots // 4) / each.half for each in found]),
+        mean_interval([each.taken / robots for each in found]),
+        mean_interval([each.microseconds / robots / 1000 for each in found]),
+    )
