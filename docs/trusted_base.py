@@ -12,7 +12,7 @@ from carproof.markdown import markdown_table
 ROOT = Path(__file__).parents[1]
 KERNEL = ROOT / "verify" / "kernel"
 LAW = ("check", "joint_rules", "plan_rules", "instance_rules", "model", "rule", "refusal")
-BOUND = ("bound/verify", "bound/rules", "documents/bounds")
+BOUND = ("bound/verify", "bound/rules", "documents/bounds", "routes")
 FOOTPRINT = ("apart", "floor", "meeting", "rules")
 ENCODER = ("optimum/encoding", "optimum/robot_clauses", "optimum/clauses", "optimum/rules", "routes")
 UNSOLVABLE = ("optimum/proof", "optimum/unsolvable")
@@ -21,7 +21,7 @@ VERDICTS: dict[str, tuple[tuple[str, ...], str]] = {
     CHECK: (("documents/decoding", "documents/fields", "documents/instances", "documents/solutions"), ""),
     "`check --footprint`: vehicles keep apart": (tuple(f"footprint/{each}" for each in FOOTPRINT), ""),
     "`verify-bound`, without cuts": (BOUND, ""),
-    "`verify-bound`, with cuts": ((*BOUND, "bound/cuts", *ENCODER, "optimum/refutation"), ""),
+    "`verify-bound`, with cuts": ((*BOUND, "bound/cuts", *ENCODER[:-1], "optimum/refutation"), ""),
     "`verify-query` and `audit`": (("query/verify", "query/rules", "documents/query_certificates"), ""),
     "with `--kernel`": (
         ("kernel", "documents/bounds"),

@@ -19,7 +19,7 @@ from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument
 from carp_spec.documents.instances import digest
 from carp_spec.inputs.options import BOUND_SECONDS, require_limits
 from carp_spec.inputs.values import require_instance
-from carp_spec.limits import refuse
+from carp_spec.limits import goals_stand_alone
 
 if TYPE_CHECKING:
     from carp_optimum.lagrangian.price_search import PriceSearch
@@ -64,10 +64,29 @@ def lower_bound(
     Without a limit the search takes 10 seconds.
     With steps alone, the same instance gives the same certificate. `on_step` is called after each step, and now and
     then while claims are searched for; `clock` gives nanoseconds. `seen` is whether robots with deadlines may be seen
-    at ticks, for which the search for an optimum has no literals. Raises `Refusal` for numbers that are too large.
+    at ticks, for which the search for an optimum has no literals. Over stops, cuts alone are searched for. Raises
+    `Refusal` for numbers that are too large.
     """
     _require(instance, seconds=seconds, steps=steps)
     seconds = BOUND_SECONDS if seconds is None and steps is None else seconds
+    if goals_stand_alone(instance):
+        return _by_prices(instance, seconds, steps, on_step, clock, seen=seen)
+    from carp_optimum.claims.disjoint_cuts import bound_by_cuts  # noqa: PLC0415 - it loads a solver
+
+    check = _limit(seconds, steps, PARTS, clock)
+    return bound_by_cuts(instance, check, lambda count, bound: on_step(Progress(count, bound)))
+
+
+def _by_prices(
+    instance: Instance,
+    seconds: float | None,
+    steps: int | None,
+    on_step: Callable[[Progress], None],
+    clock: Callable[[], int],
+    *,
+    seen: bool,
+) -> BoundDocument:
+    """The bound of robots with goals alone."""
     from carp_optimum.claims.deadline_search import DeadlineSearch  # noqa: PLC0415 - numba is slow to load
     from carp_optimum.claims.pair_search import SightSearch  # noqa: PLC0415
     from carp_optimum.lagrangian.price_search import PriceSearch  # noqa: PLC0415
@@ -135,7 +154,6 @@ def lower_bound(
 def _require(instance: Instance, **limits: float | None) -> None:
     require_instance(instance)
     require_limits(**limits)
-    refuse(instance, "stops")
 
 
 def _limit(

@@ -156,7 +156,7 @@ def test_the_verifier_shares_nothing_with_the_finder_and_loads_nothing_compiled(
         "carp_spec",
         "carp_spec.documents.bounds",
         "carp_spec.documents.instances",
-        "carp_spec.limits",
+        "carp_verify.routes",
         "carp_spec.inputs.values",
         "carp_spec.model",
         "carp_spec.rule",

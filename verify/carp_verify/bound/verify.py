@@ -31,13 +31,11 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from heapq import heappop, heappush
 from itertools import accumulate
 from operator import itemgetter
-from typing import TypeAlias
 
 from carp_spec import Instance, Refusal, ResourceGraph, ResourceId, Robot, RobotId, Rule
 from carp_spec.documents.bounds import BoundDocument, CutDocument, DeadlinesDocument
 from carp_spec.documents.instances import digest
 from carp_spec.inputs.values import require_instance
-from carp_spec.limits import refuse
 from carp_spec.model import Group
 from carp_spec.rule import is_whole
 from carp_verify.bound.rules import (
@@ -54,8 +52,7 @@ from carp_verify.bound.rules import (
     is_weight,
     size_fits,
 )
-
-Before: TypeAlias = Mapping[ResourceId, Sequence[ResourceId]]
+from carp_verify.routes import Before, Place, routes_of
 
 
 class Fees:
@@ -105,13 +102,12 @@ def verify_bound(instance: Instance, certificate: BoundDocument) -> int:
     Cuts and deadlines know groups too.
     """
     require_instance(instance)
-    refuse(instance, "stops")
     _require(is_about, is_about(certificate.instance, digest(instance)), "$.instance", "it is about another instance")
     scale = certificate.scale
     _require(is_scale, is_scale(scale), "$.scale", f"the scale must be a power of two, and is {scale!r}")
     if [robot for robot, _ in certificate.robots] != list(instance.robot):
         raise Refusal("document", "$.robots", is_least.id, "it must name each robot of the instance once, in its order")
-    table = len(instance.robots) * len(instance.graph.resources)
+    table = _places(instance, list(instance.robot))
     _require_size(table, LARGEST_TABLE, "$.robots", "the table of robots by resources")
     tariff = Tariff(instance, certificate)
     weights, proved, clauses = _weights(instance, certificate)
@@ -130,6 +126,12 @@ def verify_bound(instance: Instance, certificate: BoundDocument) -> int:
     return certificate.bound
 
 
+def _places(instance: Instance, robots: Sequence[RobotId]) -> int:
+    """The places in which so many robots are searched for: resources, for each of their stops."""
+    stops = [len(instance.robot[robot].stops) if robot in instance.robot else 1 for robot in robots]
+    return sum(stops) * len(instance.graph.resources)
+
+
 def _require_size(size: int, limit: int, path: str, what: str) -> None:
     _require(size_fits, size_fits(size, limit), path, f"{what} would be {size}, and at most {limit} are allowed")
 
@@ -142,9 +144,8 @@ def _require(rule: Rule[..., bool], kept: bool, path: str, message: str) -> None
 def _weights(instance: Instance, certificate: BoundDocument) -> tuple[Sequence[int], int, int]:
     """The weight of a tick for each robot, the cuts' least totals by their multipliers, and their clauses."""
     left = dict.fromkeys(instance.robot, certificate.scale)
-    resources = len(instance.graph.resources)
-    members = sum(len(cut.robots) for cut in certificate.cuts)
-    _require_size(members * resources, LARGEST_TABLE, "$.cuts", "the resources that robots of cuts are searched in")
+    size = sum(_places(instance, cut.robots) for cut in certificate.cuts)
+    _require_size(size, LARGEST_TABLE, "$.cuts", "the resources that robots of cuts are searched in")
     proved = clauses = 0
     for number, cut in enumerate(certificate.cuts):
         path = f"$.cuts[{number}]"
@@ -169,8 +170,7 @@ def _worth(instance: Instance, certificate: BoundDocument, clauses: int) -> int:
 
     The formulas of the cuts have `clauses` clauses already.
     """
-    members = sum(len(deadlines.robots) for deadlines in certificate.deadlines)
-    size = members * len(instance.graph.resources)
+    size = sum(_places(instance, deadlines.robots) for deadlines in certificate.deadlines)
     _require_size(size, LARGEST_TABLE, "$.deadlines", "the resources that robots with deadlines are searched in")
     worth = 0
     for number, deadlines in enumerate(certificate.deadlines):
@@ -328,18 +328,20 @@ class RobotSearch:
         self.parks = tariff.instance.after_goal == "park"
         self.fees = fees
         self.horizon = max(tariff.horizon, fees.last + 1)
-        self.drives_on = self.parks or len(fees.arrivals) > 0
-        self.duration = {resource: tariff.instance.duration(robot.id, resource) for resource in before}
-        self.rest = ticks_after_leaving(robot, self.duration, before)
-        self.queue: list[tuple[int, int, int, ResourceId | None, int]] = []
+        self.routes = routes_of(tariff.instance, robot, before)
+        self.drives_on = self.parks or len(fees.arrivals) > 0 or self.routes.must_pass
+        self.rest = self.routes.rests()
+        self.number = {place: number for number, place in enumerate(self.routes.duration)}
+        self.queue: list[tuple[int, int, int, Place | None, int]] = []
 
     def least_cost(self) -> int | None:
         """The least weighted cost plus prices of all plans of the robot alone, or `None` if it has none."""
-        start, release = self.robot.start, self.robot.release
-        if start == self.robot.goal:
+        release = self.robot.release
+        if self.routes.is_there:
             self.arrive(release, 0)
-        if start != self.robot.goal or self.drives_on:
-            self.enter(start, release, 0)
+        if not self.routes.is_there or self.drives_on:
+            for start in self.routes.starts:
+                self.enter(start, release, 0)
         settled: set[tuple[int, int]] = set()
         while self.queue:
             estimate, minus_tick, number, here, paid = heappop(self.queue)
@@ -350,34 +352,34 @@ class RobotSearch:
                 self.leave(here, -minus_tick, paid)
         return None
 
-    def leave(self, here: ResourceId, tick: int, paid: int) -> None:
-        """Wait in a resource for a tick, or move on from it."""
+    def leave(self, place: Place, tick: int, paid: int) -> None:
+        """Wait in a place for a tick, or move on from it."""
         self.budget.spend()
+        here = self.routes.resource(place)
         waiting = self.tariff.stay(here, tick - 1, tick + 1) - self.tariff.stay(here, tick - 1, tick)
-        self.reach(here, tick + 1, paid + waiting + self.fees.on_the_way(here, tick, tick + 1))
-        for target in self.tariff.instance.graph.successors[here]:
-            moved = paid + self.tariff.move(here, target, tick)
-            if target == self.robot.goal:
+        self.reach(place, tick + 1, paid + waiting + self.fees.on_the_way(here, tick, tick + 1))
+        for target in self.routes.successors[place]:
+            moved = paid + self.tariff.move(here, self.routes.resource(target), tick)
+            if target == self.routes.there:
                 self.arrive(tick, moved)
-            if target != self.robot.goal or self.drives_on:
+            if target != self.routes.there or self.drives_on:
                 self.enter(target, tick, moved)
 
-    def enter(self, resource: ResourceId, tick: int, paid: int) -> None:
-        """Stay in a resource for as long as it takes."""
-        ready = tick + self.duration[resource]
+    def enter(self, place: Place, tick: int, paid: int) -> None:
+        """Stay in a place for as long as it takes."""
+        resource, ready = self.routes.resource(place), tick + self.routes.duration[place]
         staying = self.tariff.stay(resource, tick, ready) + self.fees.on_the_way(resource, tick, ready)
-        self.reach(resource, ready, paid + staying)
+        self.reach(place, ready, paid + staying)
 
-    def reach(self, resource: ResourceId, tick: int, paid: int) -> None:
+    def reach(self, place: Place, tick: int, paid: int) -> None:
         """Be free to leave at the tick."""
-        if resource in self.rest:
-            estimate = paid + self.weight * (tick + self.rest[resource] - self.robot.release)
-            number = self.tariff.instance.graph.index[resource]
-            heappush(self.queue, (estimate, -tick, number, resource, paid))
+        if place in self.rest:
+            estimate = paid + self.weight * (tick + self.rest[place] - self.robot.release)
+            heappush(self.queue, (estimate, -tick, self.number[place], place, paid))
 
     def arrive(self, tick: int, paid: int) -> None:
         """Enter the goal for the last time."""
-        leave = tick + self.duration[self.robot.goal]
+        leave = tick + self.routes.stay
         last = self.tariff.stay(self.robot.goal, tick, max(leave, self.tariff.horizon) if self.parks else leave)
         total = paid + last + self.fees.at_arrival(tick) + self.weight * (tick - self.robot.release)
         heappush(self.queue, (total, -tick, -1, None, total))
@@ -390,18 +392,3 @@ def predecessors(instance: Instance) -> Before:
         for target in targets:
             before[target].append(source)
     return before
-
-
-def ticks_after_leaving(robot: Robot, duration: Mapping[ResourceId, int], before: Before) -> Mapping[ResourceId, int]:
-    """The least ticks from leaving a resource to entering the robot's goal, for those that lead there: Dijkstra."""
-    ticks: dict[ResourceId, int] = {}
-    queue = [(0, number, resource) for number, resource in enumerate(before[robot.goal])]
-    number = len(queue)
-    while queue:
-        rest, _, resource = heappop(queue)
-        if resource not in ticks:
-            ticks[resource] = rest
-            for source in before[resource]:
-                number += 1
-                heappush(queue, (rest + duration[resource], number, source))
-    return ticks

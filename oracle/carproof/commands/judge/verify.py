@@ -74,7 +74,7 @@ def command(*, files: tuple[str, ...], instance: str | None, kernel: bool, as_js
     if not others:
         _refuse("a certificate needs its instance")
     problem = read_instance_file(others[0])
-    if len(others) == 1:
+    if kernel and len(others) == 1:
         refuse_in(others[0], problem, "stops")
     if len(others) > 1:
         return _query(problem, others[1], file, kernel, as_json)

@@ -1,0 +1,114 @@
+"""A lower bound by cuts alone: groups of robots, no robot in two, that cost more together than each does alone.
+
+It begins with each robot by itself, on its cheapest plan. Groups whose plans conflict become one group, and its optimum
+is searched for (`carp_optimum.sat.core_guided`), until no plans conflict or groups would be too large. The sum of the
+groups' lower bounds is the bound. Searches for prices know goals alone, so this is the bound over stops. Source: the
+independence detection of Standley 2010.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import count
+
+from carp_optimum.sat.core_guided import core_guided
+from carp_optimum.sat.proving import refutation
+from carp_optimum.sat.solver import NANOSECONDS, Deadline, TimeOver
+from carp_spec import Instance, Plan, Refusal, RobotId, violations_of
+from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, CutDocument
+from carp_spec.documents.instances import digest
+from carp_verify.bound.cuts import group_of
+from carp_verify.optimum.encoding import Encoding, beat_formula
+
+LOOKS = 400  # of the search for a group's optimum at its clock
+LARGEST_GROUP = 8
+LONGEST_REFUTATION = 1_000_000  # characters
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Robots, the best plans of them that were found, if any, and the proof that they cost more than alone, if any."""
+
+    robots: tuple[RobotId, ...]
+    plans: Sequence[Plan]
+    cut: CutDocument | None = None
+
+
+def bound_by_cuts(
+    instance: Instance, check: Callable[[int], None], on_step: Callable[[int, int], None]
+) -> BoundDocument:
+    """Search until nothing is gained any more, or until `check`, which gets the steps, raises `TimeOver`.
+
+    A step is a group that is searched; `on_step` gets the steps and the bound so far.
+    """
+    shortest = {robot.robot.id: robot.shortest for robot in Encoding(instance).robots}
+    groups = []
+    steps = count(1)
+    try:
+        for robot, cost in shortest.items():
+            if cost is not None:
+                groups.append(_searched(instance, (robot,), lambda: check(0)))
+        while (pair := _meeting(instance, groups)) is not None:
+            check(step := next(steps))
+            merged = _searched(instance, (*pair[0].robots, *pair[1].robots), lambda: check(step))
+            groups = [*(each for each in groups if each not in pair), merged]
+            on_step(step, _total(shortest, groups))
+    except TimeOver:
+        pass
+    cuts = tuple(group.cut for group in groups if group.cut is not None)
+    cut = {robot for each in cuts for robot in each.robots}
+    return BoundDocument(
+        format=BOUND_FORMAT,
+        instance=digest(instance),
+        bound=_total(shortest, groups),
+        scale=1,
+        horizon=0,
+        resources=(),
+        exchanges=(),
+        cuts=cuts,
+        robots=tuple((robot, 0 if robot in cut else cost) for robot, cost in shortest.items()),
+    )
+
+
+def _total(shortest: dict[RobotId, int | None], groups: Sequence[Group]) -> int:
+    rises = [each.cut.least - sum(shortest[robot] or 0 for robot in each.robots) for each in groups if each.cut]
+    return sum(cost or 0 for cost in shortest.values()) + sum(rises)
+
+
+def _meeting(instance: Instance, groups: Sequence[Group]) -> tuple[Group, Group] | None:
+    """Two groups whose plans conflict, if they are not too large together: the smallest such pair."""
+    pairs = [
+        (len(one.robots) + len(other.robots), position, one, other)
+        for position, one in enumerate(groups)
+        for other in groups[position + 1 :]
+        if len(one.robots) + len(other.robots) <= LARGEST_GROUP
+    ]
+    for _, _, one, other in sorted(pairs, key=lambda pair: pair[:2]):
+        if one.plans and other.plans and violations_of(instance, (*one.plans, *other.plans)):
+            return one, other
+    return None
+
+
+def _searched(instance: Instance, robots: tuple[RobotId, ...], check: Callable[[], None]) -> Group:
+    """The group with its best plans and its cut; its plans are none where it has none."""
+    looks = count()
+
+    def clock() -> int:
+        check()
+        return next(looks) * NANOSECONDS
+
+    group = group_of(instance, robots)
+    best = core_guided(group, LOOKS, clock)
+    check()
+    plans = () if best.solution is None else best.solution.plans
+    if best.shortest is None or best.lower <= best.shortest:
+        return Group(robots, plans)
+    try:
+        lines = refutation(beat_formula(group, best.lower, best.evidence).formula, Deadline(LOOKS, clock))
+    except (TimeOver, Refusal):
+        check()
+        return Group(robots, plans)
+    if len(lines) > LONGEST_REFUTATION:
+        return Group(robots, plans)
+    evidence = best.evidence
+    document = CutDocument(robots, best.lower, 1, evidence.horizons, evidence.order, lines)
+    return Group(robots, plans, document)
