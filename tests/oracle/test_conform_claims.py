@@ -17,7 +17,9 @@ from carproof.conform.judging import optimum
 from carproof.conform.judging.claims import FEATURES, Claims, features, is_solvable
 from carproof.conform.levels import Level
 from carproof.conform.programs.function import Function
+from carproof.conform.python import conforms
 from carproof.conform.run import Options, conform
+from carproof.engines import engine_named
 
 
 @pytest.fixture(autouse=True)
@@ -158,3 +160,23 @@ def test_a_case_is_solvable_where_the_robots_that_it_asks_for_can_have_plans(cas
     assert is_solvable(case) is can_be
     assert Claims().why_not(case) is None
     assert Claims(solvable=True).why_not(case) == (None if can_be else "it does not claim robots without a plan")
+
+
+def test_only_a_planner_that_claims_groups_is_asked_for_them() -> None:
+    asked: list[bool] = []
+
+    def blind(instance: Instance) -> Solution:
+        """It plans as if there were no groups."""
+        asked.append(bool(instance.graph.groups))
+        return engine_named("reference").plan(replace(instance, graph=replace(instance.graph, groups=())), Carp())
+
+    assert conforms(blind, examples=40, large=0).conforms
+    assert not any(asked)
+    report = conforms(blind, examples=40, large=0, groups=True)
+    assert any("joint/group" in str(each) for each in report.failures)
+    assert any(asked)
+
+    def seeing(instance: Instance) -> Solution:
+        return engine_named("reference").plan(instance, Carp())
+
+    assert conforms(seeing, examples=40, large=0, groups=True).conforms

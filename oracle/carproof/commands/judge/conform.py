@@ -97,6 +97,7 @@ _LEVELS = "\n".join(
     metavar="FEATURE",
     help=f"Ask nothing that has it; may be repeated. One of {', '.join(FEATURES)}.",
 )
+@click.option("--groups", is_flag=True, help="Ask for instances with groups too, which PROGRAM claims to plan.")
 @click.option("--one-shot", is_flag=True, help="PROGRAM plans one {instance}, or {map} and {scen}.")
 @click.option("--executor", is_flag=True, help="PROGRAM executes plans, by the op drive.")
 @click.option(
@@ -128,6 +129,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     memory: int,
     solvable: bool,
     without: tuple[str, ...],
+    groups: bool,
     one_shot: bool,
     executor: bool,
     format: str | None,
@@ -150,6 +152,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     optimum is not an answer. It may give up at most half of the random cases of an op that have an answer. carproof
     rules program/answers and program/tries have the details. Random cases are new each time, so that they cannot be
     known in advance; the verdict names the seed that repeats them.
+
+    With --groups, PROGRAM is asked for instances with groups too, at every level.
 
     A planner that does not claim all of this is asked less: --without capacities --without directed, or --solvable. The
     verdict lists the parts that were left out.
@@ -189,7 +193,9 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     subject: Subject = _one_shot(program, limits, format) if one_shot else Executor(process) if executor else process
     classical = isinstance(subject, OneShot) and subject.is_classical
     _require_level(LEVELS[level], one_shot, classical, executor, kernel)
-    claims = Claims(frozenset(without), solvable)
+    if groups and classical:
+        raise click.UsageError("--groups concerns instances of carproof, and the program plans maps.")
+    claims = Claims(frozenset(without), solvable, groups)
     options = Options(
         LEVELS[level], number, seed, timeout, shrinking, one_shot, classical, claims, executor=executor, large=large
     )

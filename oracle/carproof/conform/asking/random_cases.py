@@ -12,6 +12,7 @@ from carp_spec import (
     Carp,
     FixedPaths,
     Greedy,
+    Group,
     Instance,
     LongestFirst,
     Neighbourhood,
@@ -37,6 +38,7 @@ SIZES = Sizes(resources=6, robots=4)
 OPTIMUM_SIZES = Sizes(resources=5, robots=3, duration=2, release=2)
 WIDTH, HEIGHT = 4, 3
 CLASSICAL_SIZES = Sizes(robots=4, release=0, pace=1)
+MOST_GROUPS = 2
 LONGEST_DELAY = 3
 MOST_DELAYS = 4
 EXACT_PLANNERS: tuple[Planner, ...] = (
@@ -77,7 +79,9 @@ def _shaped_graphs(draw: st.DrawFn, sizes: Sizes, shapes: Sequence[Edges] = SHAP
     numbers = st.tuples(st.sampled_from([1, 1, 1, sizes.capacity]), st.integers(1, sizes.duration))
     attributes = draw(st.lists(numbers, min_size=count, max_size=count))
     resources = tuple(Resource(id, capacity, duration) for id, (capacity, duration) in enumerate(attributes))
-    return ResourceGraph(resources, edges)
+    members = st.lists(st.sampled_from(range(count)), min_size=2, max_size=3, unique=True).map(tuple)
+    drawn = draw(st.lists(st.tuples(members, st.integers(1, sizes.capacity)), max_size=sizes.groups))
+    return ResourceGraph(resources, edges, groups=tuple(Group(id, *each) for id, each in enumerate(drawn)))
 
 
 def _swaps(sizes: Sizes) -> st.SearchStrategy[Instance]:
@@ -168,7 +172,7 @@ def execution_cases(claims: Claims = EVERYTHING) -> st.SearchStrategy[Case]:
 def _claimed(sizes: Sizes, claims: Claims) -> Sizes:
     """The sizes with which few cases have features that are not claimed."""
     left_out = {each.name: each.number.least for each in NUMBERS if each.number.feature in claims.without}
-    return replace(sizes, **left_out)
+    return replace(sizes, **left_out, groups=MOST_GROUPS if claims.groups else 0)
 
 
 def random_cases(

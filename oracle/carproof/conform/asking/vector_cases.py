@@ -14,21 +14,24 @@ from carproof.protocol.ops import OPS
 from carproof.testing.vectors import vectors
 
 
-def vector_cases(ops: Sequence[str], level: Level, whole: bool) -> Iterator[Case]:
+def vector_cases(ops: Sequence[str], level: Level, whole: bool, groups: bool = False) -> Iterator[Case]:
     """The vectors of the ops that are offered; those with malformed documents are for readers of documents.
 
-    A program need not support instances that forbid following, or have groups or stops.
+    A program need not support instances that forbid following, or have stops, nor, unless it claims them, `groups`.
     """
     for vector in vectors():
         op = next((op for op in ASKED_OPS if op == vector.op), None)
-        if op is not None and op in ops and "refused" not in vector.answer and _is_known(vector.read_instance()):
+        if op is None or op not in ops or "refused" in vector.answer:
+            continue
+        if _is_known(vector.read_instance(), groups):
             case = case_of(vector, op)
             if _is_asked(case, level, whole):
                 yield replace(case, planner=None) if whole else case
 
 
-def _is_known(instance: Instance) -> bool:
-    return instance.following == "allowed" and groups_are_absent(instance) and goals_stand_alone(instance)
+def _is_known(instance: Instance, groups: bool) -> bool:
+    knows_groups = groups or groups_are_absent(instance)
+    return instance.following == "allowed" and knows_groups and goals_stand_alone(instance)
 
 
 def _is_asked(case: Case, level: Level, whole: bool) -> bool:

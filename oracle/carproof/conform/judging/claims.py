@@ -31,10 +31,14 @@ def features(case: Case) -> frozenset[str]:
 
 @dataclass(frozen=True, slots=True)
 class Claims:
-    """The features that a program does not claim; `solvable`: nor instances in which robots cannot have plans."""
+    """The features that a program does not claim; `solvable`: nor instances in which robots cannot have plans.
+
+    Only with `groups` it claims groups.
+    """
 
     without: frozenset[str] = frozenset()
     solvable: bool = False
+    groups: bool = False
 
     @property
     def left_out(self) -> list[str]:
@@ -43,6 +47,8 @@ class Claims:
 
     def why_not(self, case: Case) -> str | None:
         """The reason why the program is not asked a case, `None` if it is asked."""
+        if case.instance.graph.groups and not self.groups:
+            return "it does not claim groups"
         for name, has in FEATURES.items():
             if name in self.without and has(case):
                 return f"it does not claim {name}"
