@@ -1,8 +1,17 @@
 """Streams of pick-and-drop orders: what is drawn, and what the table says."""
 
+import msgspec
 import pytest
 
-from carp_experiments.beyond.lifelong import PLANNERS, RATES, SERVICE, lifelong_report, lifelong_row, order_instance
+from carp_experiments.beyond.lifelong import (
+    PLANNERS,
+    RATES,
+    SERVICE,
+    LifelongOf,
+    lifelong_report,
+    lifelong_row,
+    order_instance,
+)
 from carp_experiments.paper.map_cases import MapCase
 from carp_spec import Stop
 
@@ -19,16 +28,16 @@ def test_each_robot_picks_elsewhere_than_it_drops() -> None:
 
 def test_each_planner_serves_all_orders_at_each_rate() -> None:
     row = {"map": 20, **lifelong_row(CASE)}
-    report = lifelong_report([row], 8)
-    assert [(each.rate, each.planner) for each in report.summary] == [
-        (rate, name) for rate in RATES for name in PLANNERS
-    ]
-    assert all(each.taken.estimate > SERVICE for each in report.summary)
+    summary = msgspec.convert(lifelong_report([row], 8).summary, tuple[LifelongOf, ...])
+    assert [(each.rate, each.planner) for each in summary] == [(rate, name) for rate in RATES for name in PLANNERS]
+    assert all(each.taken.estimate > SERVICE for each in summary)
 
 
 def test_a_mean_counts_the_orders_of_all_streams() -> None:
     streams = [{"half": half, "taken": taken, "microseconds": 16_000} for half, taken in ((4, 80), (8, 160))]
     rows = [{"map": 20, "planners": {name: [each] * len(RATES) for name in PLANNERS}} for each in streams]
-    first = lifelong_report(rows, 8).summary[0]
-    assert (first.streams, first.throughput.estimate, first.taken.estimate) == (2, pytest.approx(75), pytest.approx(15))
+    first = msgspec.convert(lifelong_report(rows, 8).summary, tuple[LifelongOf, ...])[0]
+    assert first.streams == 2
+    assert first.throughput.estimate == pytest.approx(75)
+    assert first.taken.estimate == pytest.approx(15)
     assert first.milliseconds.estimate == pytest.approx(2)
