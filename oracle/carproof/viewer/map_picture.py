@@ -228,7 +228,9 @@ def pose_of(track: Track, scene: Scene, tick: int) -> Pose | None:
     for number in reversed(range(len(track.stays))):
         at_stand, enter, leave = track.stays[number]
         stand = scene.stands[at_stand]
-        if enter <= tick and (leave is None or tick < leave) and stand.at is not None:
+        if enter <= tick and (leave is None or tick < leave):
+            if stand.at is None:
+                return None
             serves = any(start <= tick < end for start, end in track.services)
             here = scene.places[stand.place].way
             if here is not None:

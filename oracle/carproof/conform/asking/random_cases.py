@@ -79,6 +79,8 @@ def _shaped_graphs(draw: st.DrawFn, sizes: Sizes, shapes: Sequence[Edges] = SHAP
     numbers = st.tuples(st.sampled_from([1, 1, 1, sizes.capacity]), st.integers(1, sizes.duration))
     attributes = draw(st.lists(numbers, min_size=count, max_size=count))
     resources = tuple(Resource(id, capacity, duration) for id, (capacity, duration) in enumerate(attributes))
+    if not sizes.groups:
+        return ResourceGraph(resources, edges)
     members = st.lists(st.sampled_from(range(count)), min_size=2, max_size=3, unique=True).map(tuple)
     drawn = draw(st.lists(st.tuples(members, st.integers(1, sizes.capacity)), max_size=sizes.groups))
     return ResourceGraph(resources, edges, groups=tuple(Group(id, *each) for id, each in enumerate(drawn)))
