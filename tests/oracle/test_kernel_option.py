@@ -8,7 +8,7 @@ import msgspec
 import pytest
 from tests.oracle.running import EAST, Outcome, Run, corridor, save, solution
 from tests.oracle.test_optimum import UNSOLVABLE
-from tests.verify.bound_examples import crossing, cut_certificate
+from tests.verify.bound_examples import crossing, cut_certificate, deadline_certificate
 from tests.verify.kernel_program import program
 
 import carp_verify.kernel
@@ -257,3 +257,18 @@ def test_a_bound_with_cuts_is_verified_by_the_kernel(carproof: Run, folder: Path
     outcome = carproof(COMMANDS[-1])
     assert (outcome.code, outcome.stderr) == (1, "")
     assert outcome.stdout.startswith("not proved: $: the proof of cut 0 does not hold: the refutation does not derive")
+
+
+@pytest.mark.parametrize("change", [{"ticks": (2,)}, {"ticks": (2, 2, 2)}, {"seen": ((1, ("middle",)),)}])
+def test_deadlines_that_are_not_of_each_robot_are_refused_by_the_kernel_too(
+    carproof: Run, folder: Path, change: dict[str, object]
+) -> None:
+    program()
+    certificate = deadline_certificate()
+    deadlines = (msgspec.structs.replace(certificate.deadlines[0], **change),)
+    (folder / "town.json").write_bytes(write_instance(crossing()))
+    (folder / "bound.json").write_bytes(write(msgspec.structs.replace(certificate, deadlines=deadlines)))
+    assert carproof("verify town.json bound.json").code == 1
+    outcome = carproof("verify --kernel town.json bound.json")
+    assert (outcome.code, outcome.stderr) == (1, "")
+    assert "[bound/deadline]" in outcome.stdout

@@ -425,16 +425,13 @@ let bound_of_json { resource_numbers; robot_numbers; group_numbers; _ } path jso
   let group path json =
     let field = fields path ~required:[ "robots"; "ticks"; "price"; "refutation" ] ~optional:[ "seen" ] json in
     let robots = required field "robots" (elements robot) and ticks = required field "ticks" (elements whole) in
-    if List.compare_lengths robots ticks <> 0 then shape path "a tick for each robot";
-    let sights =
-      match optional [] field "seen" (elements sight) with
-      | [] -> List.map (fun _ -> None) robots
-      | sights when List.compare_lengths robots sights = 0 -> List.map Option.some sights
-      | _ -> shape (path ^ ".seen") "a tick and places for each robot"
-    in
+    let sights = optional [] field "seen" (elements sight) in
+    let seen = if sights = [] then List.map (fun _ -> None) robots else List.map Option.some sights in
+    let is_of_each_robot = List.compare_lengths robots ticks = 0 && List.compare_lengths robots seen = 0 in
     let deadline (who, due) seen = { Bound.who; due; seen } in
-    ( { Bound.deadlines = List.map2 deadline (List.combine robots ticks) sights; fee = required field "price" whole },
-      required field "refutation" text )
+    (* Without a tick, or a sight, for each robot it is a group of no robots, which bound/deadline refuses. *)
+    let deadlines = if is_of_each_robot then List.map2 deadline (List.combine robots ticks) seen else [] in
+    ({ Bound.deadlines; fee = required field "price" whole }, required field "refutation" text)
   in
   let claim path (json : Yojson.Safe.t) =
     match json with
