@@ -157,7 +157,6 @@ def test_the_kernel_refuses_tampered_sights(tamper: Tamper) -> None:
 @pytest.mark.parametrize(
     ("seen", "path", "expected"),
     [
-        ([[1, ["middle"]]], "$.certificate.deadlines[0].seen", "a tick and places for each robot"),
         ([[1, ["middle"]], [1]], "$.certificate.deadlines[0].seen[1]", "an array of a tick and an array of resources"),
         ([[1, ["middle"]], [1, "middle"]], "$.certificate.deadlines[0].seen[1][1]", "an array"),
         ([[1, ["middle"]], [1.0, ["middle"]]], "$.certificate.deadlines[0].seen[1][0]", "a whole number"),
