@@ -77,10 +77,11 @@ class BenchmarkCase:
         for seconds in self.seconds:
             found = plan_within(instance, seconds=seconds, clock=time.process_time)
             measured[f"ours {seconds} s"] = self._kept(instance, found, f"{seconds}s")
+            for name, program in self.others:
+                total = total_of(name, program, instance, files, self.line.agents, seconds)
+                measured[f"{name} {seconds} s"] = total
         if self.bound_seconds:
             measured["bound"] = self._bound(instance)
-        for name, program in self.others:
-            measured[name] = total_of(name, program, instance, files, self.line.agents, self.seconds[0])
         return {"case": self.key, "lower": self.line.lower, "upper": self.line.upper, MEASURED: measured}
 
     def _kept(self, instance: Instance, found: Solution, suffix: str) -> int | None:
@@ -114,9 +115,9 @@ def judged(instance: Instance, solution: Solution) -> int | None:
 
 
 def files_of(line: Line, maps: Path) -> Mapping[str, Path]:
-    """The files of a case, wherever they are in the folder; raises `Refusal` if one is missing."""
+    """The files of a case by absolute paths, wherever in the folder; raises `Refusal` if one is missing."""
     names = {"map": f"{line.map}.map", "scen": f"{line.map}-{line.scen}.scen"}
-    found = {kind: next(iter(sorted(maps.rglob(name))), None) for kind, name in names.items()}
+    found = {kind: next(iter(sorted(maps.absolute().rglob(name))), None) for kind, name in names.items()}
     for kind, path in found.items():
         if path is None:
             raise Refusal("document", str(maps), "benchmark/files", f"the folder has no file {names[kind]}")
@@ -186,9 +187,9 @@ def benchmark_report(stored: Iterable[Row]) -> ExperimentReport:
 
 
 def is_least(measured: Mapping[str, int | None], ours: str) -> bool:
-    """Whether no other planner has a smaller total."""
+    """Whether no other planner has a smaller total in the same time."""
     total = measured.get(ours)
-    others = [measured[name] for name in OTHERS if measured.get(name) is not None]
+    others = [measured.get(ours.replace("ours", name)) for name in OTHERS]
     return total is not None and all(other is None or total <= other for other in others)
 
 
