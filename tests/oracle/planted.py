@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from carp_spec import Carp, Instance, Plan, Resource, Robot, Solution, Visit
 from carproof.conform.answers import Answer, Reply
 from carproof.conform.cases import Case, request_of
+from carproof.conform.judging.claims import EVERYTHING, Claims
 from carproof.conform.levels import Level
 from carproof.conform.run import Options, Report, conform
 from carproof.engines import engine_named
@@ -34,6 +35,7 @@ class Bug:
     op: str
     level: Level
     answer: Callable[[Case], Reply | None]
+    claims: Claims = EVERYTHING
 
 
 class Planted:
@@ -169,6 +171,10 @@ def arrives_only(case: Case) -> Reply | None:
     return query_document(Plan(plan.robot, (*visits, replace(last, leave=leave))))
 
 
+def short_services(robot: Robot) -> Robot:
+    return replace(robot, stops=tuple(replace(stop, service=min(stop.service, 5)) for stop in robot.stops))
+
+
 def beyond(measure: Callable[[Case], int], most: int, wrongly: Tamper) -> Callable[[Case], Reply | None]:
     return lambda case: wrongly(case) if measure(case) > most else None
 
@@ -239,12 +245,14 @@ BUGS: Sequence[Bug] = (
     Bug("the others are forgotten", "20 robots", "add", SOUND, beyond(robots, 20, others_lost)),
     Bug("the search ends", "500 ticks", "query", Level.COMPLETE_IN_CONTEXT, gives_up_late),
     Bug("a tick too late", "40 plans", "query", OPTIMAL, waits),
+    Bug("services are cut", "service 5", "plan", SOUND, believing(lambda r: r, short_services), Claims(stops=True)),
     Bug("another order", "50 robots", "plan", Level.EXACT, beyond(robots, 50, any_order)),
 )
 
 
 def run(bug: Bug, large: float, examples: int = 20, shrinking: float = 0.0, seed: int = 1) -> Report:
-    return conform(Planted(bug), Options(bug.level, examples, seed, 60.0, shrinking, large=large))
+    options = Options(bug.level, examples, seed, 60.0, shrinking, claims=bug.claims, large=large)
+    return conform(Planted(bug), options)
 
 
 def main() -> None:

@@ -10,7 +10,8 @@ from tests.oracle.running import Run
 from tests.oracle.test_conform_judges import Tampered, as_it_is
 
 import carp_reference
-from carp_spec import Carp, Greedy, Instance, Resource, ResourceGraph, Robot, Solution
+from carp_spec import Carp, Greedy, Instance, Plan, Resource, ResourceGraph, Robot, Solution, Stop
+from carp_spec.limits import goals_stand_alone
 from carproof.conform.asking.smoke import EAST, FIRST, FIRST_GOES, WEST, committed, passing_place, row
 from carproof.conform.cases import ASKED_OPS, Case
 from carproof.conform.judging import optimum
@@ -180,3 +181,48 @@ def test_only_a_planner_that_claims_groups_is_asked_for_them() -> None:
         return engine_named("reference").plan(instance, Carp())
 
     assert conforms(seeing, examples=40, large=0, groups=True).conforms
+
+
+def test_a_planner_that_claims_stops_must_serve_them_in_order() -> None:
+    asked: list[bool] = []
+
+    def planner(tamper: Callable[[Robot], tuple[Stop, ...]]) -> Callable[[Instance], Solution]:
+        def plan(instance: Instance) -> Solution:
+            asked.append(not goals_stand_alone(instance))
+            robots = tuple(replace(robot, stops=tamper(robot)) for robot in instance.robots)
+            believed = replace(instance, robots=robots)
+            plans = carp_reference.plan(believed, Carp()).plans
+            return Solution.of(instance, [ended(instance, plan) for plan in plans])
+
+        return plan
+
+    def without_service(robot: Robot) -> tuple[Stop, ...]:
+        return tuple(Stop(stop.resource) for stop in robot.stops)
+
+    def without_the_second(robot: Robot) -> tuple[Stop, ...]:
+        kept = robot.stops[:1] + robot.stops[2:] if len(robot.stops) > 2 else robot.stops
+        return kept if kept[0].resource != kept[-1].resource else robot.stops
+
+    def out_of_order(robot: Robot) -> tuple[Stop, ...]:
+        *stops, last = robot.stops
+        turned = stops[::-1]
+        return (*turned, last) if not stops or turned[-1].resource != last.resource else robot.stops
+
+    assert conforms(planner(lambda robot: robot.stops[-1:]), examples=40, large=0).conforms
+    assert not any(asked)
+    assert conforms(planner(lambda robot: robot.stops), examples=40, large=2, stops=True).conforms
+    assert any(asked)
+    for wrong, robots, stops in ((without_service, 1, 2), (without_the_second, 1, 3), (out_of_order, 1, 3)):
+        report = conforms(planner(wrong), examples=200, large=0, stops=True)
+        broken = [each for each in report.failures if each.finding is not None and each.finding.rule == "plan/stops"]
+        assert broken, wrong
+        smallest = broken[0].case.instance
+        assert len(smallest.robots) == robots, smallest
+        assert len(smallest.robots[0].stops) <= stops, smallest
+
+
+def ended(instance: Instance, plan: Plan) -> Plan:
+    *visits, last = plan.visits
+    stay = instance.stay(plan.robot, instance.robot[plan.robot].stops[-1])
+    leave = None if instance.after_goal == "park" else last.enter + stay
+    return Plan(plan.robot, (*visits, replace(last, leave=leave)))

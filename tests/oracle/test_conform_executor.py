@@ -22,6 +22,7 @@ from carproof.conform.asking.random_cases import execution_cases
 from carproof.conform.asking.smoke import committed, row
 from carproof.conform.cases import EXECUTION, Case
 from carproof.conform.findings import Fault
+from carproof.conform.judging.claims import Claims
 from carproof.conform.judging.driving import execution, execution_findings
 from carproof.conform.levels import Level
 from carproof.conform.programs.child import Limits
@@ -103,7 +104,7 @@ def test_who_keeps_to_the_clock_enters_too_early() -> None:
 
 
 @settings(max_examples=draws(200))
-@given(execution_cases())
+@given(execution_cases(Claims(stops=True)))
 def test_carproof_drives_as_its_simulation_in_order_does(case: Case) -> None:
     driven = execution(case, lambda request: drive(request, engine_named("reference")))
     assert isinstance(driven, Trace)
@@ -203,10 +204,11 @@ def test_a_failing_execution_is_saved_and_asked_again_with_its_delays(tmp_path: 
     save_all(report.failures, tmp_path, Origin("carproof conform"))
     (again,) = read_saved(tmp_path, whole=False).cases
     _, case = smallest(report)
-    assert (again.op, again.instance, again.solution, again.delays) == (
+    assert (again.op, again.instance, again.solution, again.now, again.delays) == (
         EXECUTION,
         case.instance,
         case.solution,
+        0,
         case.delays,
     )
     saved = json.loads((tmp_path / "vector.json").read_bytes())

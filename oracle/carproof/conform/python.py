@@ -26,23 +26,24 @@ def conforms(  # noqa: PLR0913 - the options of the command
     without: Collection[str] = (),
     solvable: bool = False,
     groups: bool = False,
+    stops: bool = False,
     large: float = LARGE_SECONDS,
     saved: Sequence[Case] = (),
 ) -> Report:
     """Judge a planner that takes an `Instance` and returns a `Solution`, as `carproof conform` judges a program.
 
     With `documents`, it takes and returns the documents, as dictionaries. `without` names features that it is not
-    asked, and with `solvable` all robots can have plans. Only with `groups` instances have groups. For `large` seconds
-    it is also asked about 10 to 1,000 robots; no other time limits it. `saved` are cases to ask first. The report's
-    `conforms` is the answer, and its `failures` have the smallest cases found. Raises `Refusal` for an unknown level or
-    feature.
+    asked, and with `solvable` all robots can have plans. Only with `groups` instances have groups, and only
+    with `stops` robots have several stops or service. For `large` seconds it is also asked about 10 to 1,000 robots; no
+    other time limits it. `saved` are cases to ask first. The report's `conforms` is the answer, and its `failures` have
+    the smallest cases found. Raises `Refusal` for an unknown level or feature.
     """
     require("hypothesis", "pysat")
     _require_known("level", [level], [each.label for each in WHOLE_LEVELS])
     _require_known("without", without, [*FEATURES])
     name = getattr(planner, "__name__", type(planner).__name__)
     called = by_documents(cast("Any", planner)) if documents else planner
-    claims = Claims(frozenset(without), solvable, groups)
+    claims = Claims(frozenset(without), solvable, groups, stops)
     options = Options(LEVELS[level], examples, seed, whole=True, claims=claims, large=large)
     return conform(Function(cast("Callable[[Instance], Solution]", called), name), options, saved=saved)
 

@@ -11,7 +11,7 @@ from functools import partial
 from typing import TypeAlias, TypeVar
 
 from carp_reference.execution import order_of
-from carp_spec import Group, Instance, Plan, Refusal, Resource, ResourceGraph, ResourceId, RobotId, Stop, Visit
+from carp_spec import Group, Instance, Plan, Refusal, Resource, ResourceGraph, ResourceId, Robot, RobotId, Stop, Visit
 from carp_spec.requests import sound_solution
 from carproof.conform.cases import EXECUTION, NUMBERS, Case, NumberOf
 from carproof.execution.delays import stuck
@@ -84,8 +84,8 @@ def _made(case: Case, instance: Instance, plans: Sequence[Plan]) -> Case:
 def _ended(instance: Instance, plan: Plan) -> Plan:
     """The plan with the end of its last visit that the instance asks for."""
     *visits, last = plan.visits
-    lasts = instance.duration(plan.robot, last.resource)
-    leave = None if instance.after_goal == "park" else last.enter + lasts
+    stay = instance.stay(plan.robot, instance.robot[plan.robot].stops[-1])
+    leave = None if instance.after_goal == "park" else last.enter + stay
     return Plan(plan.robot, (*visits, Visit(last.resource, last.enter, leave)))
 
 
@@ -167,7 +167,7 @@ def _moved(case: Case, gone: frozenset[ResourceId], became: Mapping[ResourceId, 
     moves = [(became[source], became[target]) for source, target in graph.edges]
     distinct = {(move if graph.directed else frozenset(move)): move for move in moves if move[0] != move[1]}
     resources = tuple(each for each in graph.resources if each.id not in gone)
-    robots = tuple(each.in_names(became.__getitem__) for each in case.instance.robots)
+    robots = tuple(_once(each.in_names(became.__getitem__)) for each in case.instance.robots)
     groups = tuple(
         replace(group, resources=tuple(dict.fromkeys(became[each] for each in group.resources if each in became)))
         for group in graph.groups
@@ -191,6 +191,39 @@ def _moved(case: Case, gone: frozenset[ResourceId], became: Mapping[ResourceId, 
     delays = {(robot, places[robot, place]): ticks for robot, place, ticks in case.delays}
     joined = replace(case, delays=tuple((*node, ticks) for node, ticks in delays.items()))
     return _made(joined, replace(case.instance, graph=smaller, robots=robots), plans)
+
+
+def _once(robot: Robot) -> Robot:
+    """The robot with one stop where neighbouring ones came to be at one place."""
+    stops = robot.stops
+    kept = tuple(stop for place, stop in enumerate(stops) if stop.resource != stops[max(place - 1, 0)].resource)
+    return replace(robot, stops=(stops[0], *kept))
+
+
+def _fewer_stops(case: Case) -> Iterable[Edit]:
+    """Take stops but the last, then ticks of service."""
+
+    def without(robot: RobotId, place: int, case: Case) -> Case | None:
+        stops = case.instance.robot[robot].stops if robot in case.instance.robot else ()
+        if place >= len(stops) - 1:
+            return None
+        return _with_stops(case, robot, (*stops[:place], *stops[place + 1 :]))
+
+    def shorter(robot: RobotId, place: int, step: int, case: Case) -> Case | None:
+        stops = case.instance.robot[robot].stops if robot in case.instance.robot else ()
+        if place >= len(stops) or stops[place].service < step:
+            return None
+        stop = Stop(stops[place].resource, stops[place].service - step)
+        return _with_stops(case, robot, (*stops[:place], stop, *stops[place + 1 :]))
+
+    each = [(robot.id, place, stop) for robot in case.instance.robots for place, stop in enumerate(robot.stops)]
+    yield from (partial(without, robot, place) for robot, place, _ in reversed(each))
+    yield from (partial(shorter, robot, place, step) for robot, place, stop in each for step in _steps(stop.service, 0))
+
+
+def _with_stops(case: Case, robot: RobotId, stops: tuple[Stop, ...]) -> Case:
+    robots = (_once(replace(each, stops=stops)) if each.id == robot else each for each in case.instance.robots)
+    return _made(case, replace(case.instance, robots=tuple(robots)), case.solution.plans)
 
 
 def _fewer_edges(case: Case) -> Iterable[Edit]:
@@ -377,6 +410,7 @@ KINDS: Sequence[Callable[[Case], Iterable[Edit]]] = (
     _fewer_resources,
     _fewer_edges,
     _simpler,
+    _fewer_stops,
     _smaller_numbers,
     _sooner,
     _fewer_visits,

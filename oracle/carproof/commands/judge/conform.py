@@ -98,6 +98,7 @@ _LEVELS = "\n".join(
     help=f"Ask nothing that has it; may be repeated. One of {', '.join(FEATURES)}.",
 )
 @click.option("--groups", is_flag=True, help="Ask for instances with groups too, which PROGRAM claims to plan.")
+@click.option("--stops", is_flag=True, help="Ask for robots with stops and service too, which PROGRAM claims to plan.")
 @click.option("--one-shot", is_flag=True, help="PROGRAM plans one {instance}, or {map} and {scen}.")
 @click.option("--executor", is_flag=True, help="PROGRAM executes plans, by the op drive.")
 @click.option(
@@ -130,6 +131,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     solvable: bool,
     without: tuple[str, ...],
     groups: bool,
+    stops: bool,
     one_shot: bool,
     executor: bool,
     format: str | None,
@@ -153,7 +155,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     rules program/answers and program/tries have the details. Random cases are new each time, so that they cannot be
     known in advance; the verdict names the seed that repeats them.
 
-    With --groups, PROGRAM is asked for instances with groups too, at every level.
+    With --groups, PROGRAM is asked for instances with groups too, at every level; with --stops, for robots with several
+    stops and with service.
 
     A planner that does not claim all of this is asked less: --without capacities --without directed, or --solvable. The
     verdict lists the parts that were left out.
@@ -193,9 +196,9 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     subject: Subject = _one_shot(program, limits, format) if one_shot else Executor(process) if executor else process
     classical = isinstance(subject, OneShot) and subject.is_classical
     _require_level(LEVELS[level], one_shot, classical, executor, kernel)
-    if groups and classical:
-        raise click.UsageError("--groups concerns instances of carproof, and the program plans maps.")
-    claims = Claims(frozenset(without), solvable, groups)
+    if (groups or stops) and classical:
+        raise click.UsageError("--groups and --stops concern instances of carproof, and the program plans maps.")
+    claims = Claims(frozenset(without), solvable, groups, stops)
     options = Options(
         LEVELS[level], number, seed, timeout, shrinking, one_shot, classical, claims, executor=executor, large=large
     )

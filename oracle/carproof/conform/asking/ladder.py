@@ -30,13 +30,14 @@ from carproof.generate import Fleet, Grid, Range, Traits, Warehouse, grid_instan
 from carproof.generate.fleet import random_robots
 from carproof.generate.grid import cell_edges, cell_graph
 from carproof.generate.options import JUST_ONE
-from carproof.testing.random_instances import Draw
+from carproof.testing.random_instances import Draw, Mix, draw_stops
 
 SIZES = (10, 30, 100, 300, 1000)
 """Numbers of robots."""
 LARGE_OPS = ("plan", "query", "add", "polish", "check")
 FAR_ID = 2**32
 """Far ids are multiples of it: all are equal if they are cut to 32 bits."""
+SERVICES = (0, 1, 10, 1000)
 DAYS = (0, 40_000, 200_000, 1_000_000)
 """Ticks about which robots are released: the second needs more than 15 bits, the third more than 17."""
 PLANNERS: Sequence[Planner] = (
@@ -61,18 +62,19 @@ class Traffic:
     releases: bool = False
     far_ids: bool = False
     directed: bool = False
+    stops: int = 1
 
 
 TRAFFIC: Sequence[Traffic] = (
     Traffic("plain"),
     Traffic("capacities", capacity=100),
-    Traffic("durations", duration=1000),
-    Traffic("park", park=True),
+    Traffic("durations", duration=1000, stops=3),
+    Traffic("park", park=True, stops=3),
     Traffic("paces", pace=1000),
     Traffic("releases", releases=True),
     Traffic("far ids", far_ids=True),
     Traffic("one-way streets", directed=True, park=True),
-    Traffic("all at once", capacity=10, duration=100, pace=10, releases=True, far_ids=True, directed=True),
+    Traffic("all at once", capacity=10, duration=100, pace=10, releases=True, far_ids=True, directed=True, stops=2),
 )
 
 
@@ -138,6 +140,7 @@ def _claimed(traffic: Traffic, claims: Claims) -> Traffic:
         pace=1 if "paces" in without else traffic.pace,
         releases=traffic.releases and "releases" not in without,
         directed=traffic.directed and "directed" not in without,
+        stops=traffic.stops if claims.stops else 1,
     )
 
 
@@ -230,7 +233,7 @@ def _range(most: int) -> Range:
 
 
 def _with_traffic(instance: Instance, traffic: Traffic, claims: Claims, draw: Draw) -> Instance:
-    """The instance with releases, paces, one-way streets, far ids and a policy."""
+    """The instance with releases, paces, one-way streets, stops, far ids and a policy."""
     graph, robots = instance.graph, instance.robots
     if traffic.releases:
         robots = tuple(replace(each, release=draw.one_of(DAYS) + draw.between(0, 9)) for each in robots)
@@ -240,6 +243,9 @@ def _with_traffic(instance: Instance, traffic: Traffic, claims: Claims, draw: Dr
     if traffic.directed:
         back = [(target, source) for source, target in graph.edges if not draw.happens(4)]
         graph = ResourceGraph(graph.resources, (*graph.edges, *back), directed=True)
+    if traffic.stops > 1:
+        mix = Mix(stops=traffic.stops, services=SERVICES)
+        robots = tuple(replace(each, stops=draw_stops(draw, [*graph.index], each, mix)) for each in robots)
     policy: AfterGoal = "park" if traffic.park else "vanish"
     made = Instance(graph, robots, policy)
     return _far(made, draw) if traffic.far_ids else made

@@ -25,6 +25,7 @@ from carp_spec import (
     Stop,
     TimeExpanded,
 )
+from carp_spec.limits import goals_stand_alone
 from carproof.conform.cases import EXECUTION, NUMBERS, Case
 from carproof.conform.judging.claims import EVERYTHING, Claims
 from carproof.conform.levels import Level
@@ -39,6 +40,8 @@ OPTIMUM_SIZES = Sizes(resources=5, robots=3, duration=2, release=2)
 WIDTH, HEIGHT = 4, 3
 CLASSICAL_SIZES = Sizes(robots=4, release=0, pace=1)
 MOST_GROUPS = 2
+MOST_STOPS = 3
+LONGEST_SERVICE = 5
 LONGEST_DELAY = 3
 MOST_DELAYS = 4
 EXACT_PLANNERS: tuple[Planner, ...] = (
@@ -121,12 +124,13 @@ def _queries(draw: st.DrawFn, sizes: Sizes, under_way: bool) -> Case:
     return Case("random", "query", "query", instance, Solution.of(instance, plans), robot, now)
 
 
-def _plans(planners: Sequence[Planner | None], sizes: Sizes) -> st.SearchStrategy[Case]:
-    return st.builds(
-        lambda instance, planner: Case("random", "plan", "plan", instance, planner=planner),
-        _instances(sizes),
-        st.sampled_from(planners),
-    )
+@st.composite
+def _plans(draw: st.DrawFn, planners: Sequence[Planner | None], sizes: Sizes) -> Case:
+    """Whole instances; fixed paths are for goals alone."""
+    instance = draw(_instances(sizes))
+    knows_stops = [planner for planner in planners if not isinstance(planner, FixedPaths)]
+    planner = draw(st.sampled_from(planners if goals_stand_alone(instance) else knows_stops))
+    return Case("random", "plan", "plan", instance, planner=planner)
 
 
 @st.composite
@@ -174,7 +178,10 @@ def execution_cases(claims: Claims = EVERYTHING) -> st.SearchStrategy[Case]:
 def _claimed(sizes: Sizes, claims: Claims) -> Sizes:
     """The sizes with which few cases have features that are not claimed."""
     left_out = {each.name: each.number.least for each in NUMBERS if each.number.feature in claims.without}
-    return replace(sizes, **left_out, groups=MOST_GROUPS if claims.groups else 0)
+    groups = MOST_GROUPS if claims.groups else 0
+    if not claims.stops:
+        return replace(sizes, **left_out, groups=groups)
+    return replace(sizes, **left_out, groups=groups, stops=MOST_STOPS, service=LONGEST_SERVICE)
 
 
 def random_cases(

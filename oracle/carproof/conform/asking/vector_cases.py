@@ -8,30 +8,32 @@ from carp_spec.documents.decoding import write
 from carp_spec.documents.vectors import Vector
 from carp_spec.limits import goals_stand_alone, groups_are_absent
 from carproof.conform.cases import ASKED_OPS, Case
+from carproof.conform.judging.claims import EVERYTHING, Claims
 from carproof.conform.levels import Level
 from carproof.protocol.lines import Request
 from carproof.protocol.ops import OPS
 from carproof.testing.vectors import vectors
 
 
-def vector_cases(ops: Sequence[str], level: Level, whole: bool, groups: bool = False) -> Iterator[Case]:
+def vector_cases(ops: Sequence[str], level: Level, whole: bool, claims: Claims = EVERYTHING) -> Iterator[Case]:
     """The vectors of the ops that are offered; those with malformed documents are for readers of documents.
 
-    A program need not support instances that forbid following, or have stops, nor, unless it claims them, `groups`.
+    A program need not support instances that forbid following, nor, unless it claims them, groups and stops.
     """
     for vector in vectors():
         op = next((op for op in ASKED_OPS if op == vector.op), None)
         if op is None or op not in ops or "refused" in vector.answer:
             continue
-        if _is_known(vector.read_instance(), groups):
+        if _is_known(vector.read_instance(), claims):
             case = case_of(vector, op)
             if _is_asked(case, level, whole):
                 yield replace(case, planner=None) if whole else case
 
 
-def _is_known(instance: Instance, groups: bool) -> bool:
-    knows_groups = groups or groups_are_absent(instance)
-    return instance.following == "allowed" and knows_groups and goals_stand_alone(instance)
+def _is_known(instance: Instance, claims: Claims) -> bool:
+    knows_groups = claims.groups or groups_are_absent(instance)
+    knows_stops = claims.stops or goals_stand_alone(instance)
+    return instance.following == "allowed" and knows_groups and knows_stops
 
 
 def _is_asked(case: Case, level: Level, whole: bool) -> bool:
@@ -46,6 +48,6 @@ def case_of(vector: Vector, op: str) -> Case:
     request = Request(write({"id": vector.id, **vector.request}))
     asked = OPS[request.op()].read(request)
     names = ("solution", "robot", "now", "planner", "delays")
-    fields = {name: getattr(asked, name) for name in names if hasattr(asked, name)}
+    fields = {name: getattr(asked, name) for name in names if getattr(asked, name, None) is not None}
     options = {"planner": asked.options} if op == "add" else {}
     return Case("vectors", vector.id, op, asked.instance, **fields, **options)

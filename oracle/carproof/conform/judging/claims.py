@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from carp_spec import Carp
+from carp_spec.limits import goals_stand_alone
 from carproof.conform.cases import NUMBERS, Case, NumberOf, engine_for
 from carproof.conform.judging.optimum import found_cost
 
@@ -33,12 +34,13 @@ def features(case: Case) -> frozenset[str]:
 class Claims:
     """The features that a program does not claim; `solvable`: nor instances in which robots cannot have plans.
 
-    Only with `groups` it claims groups.
+    Only with `groups` it claims groups, and only with `stops` robots with several stops or with service.
     """
 
     without: frozenset[str] = frozenset()
     solvable: bool = False
     groups: bool = False
+    stops: bool = False
 
     @property
     def left_out(self) -> list[str]:
@@ -49,6 +51,8 @@ class Claims:
         """The reason why the program is not asked a case, `None` if it is asked."""
         if case.instance.graph.groups and not self.groups:
             return "it does not claim groups"
+        if not (self.stops or goals_stand_alone(case.instance)):
+            return "it does not claim stops"
         for name, has in FEATURES.items():
             if name in self.without and has(case):
                 return f"it does not claim {name}"

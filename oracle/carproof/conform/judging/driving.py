@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 from carp_spec import Instance, Plan, RobotId, Violation, Visit, violations_of
 from carp_spec.execution.execution_rules import trace_violations
 from carp_spec.execution.traces import Trace
+from carp_spec.plan_rules import least_stays
 from carproof.conform.answers import Skipped
 from carproof.conform.cases import Case
 from carproof.conform.findings import Fault, Finding, all_arrive, are_ready, wrong
@@ -58,7 +59,7 @@ def _free_at(case: Case, plan: Plan, entered: Sequence[int]) -> int:
         return case.instance.robot[plan.robot].release
     place = len(entered) - 1
     delay = sum(ticks for robot, visit, ticks in case.delays if (robot, visit) == (plan.robot, place))
-    return entered[-1] + case.instance.duration(plan.robot, plan.visits[place].resource) + delay
+    return entered[-1] + least_stays(case.instance, plan)[place] + delay
 
 
 def _trace(case: Case, entered: dict[RobotId, list[int]], now: int) -> Trace:
