@@ -93,7 +93,7 @@ def show_addition(instance: Instance, before: Solution, after: Solution, robot: 
     if robot not in plans:
         show_unplanned(instance, after, [robot], now)
         return
-    changed = [str(plan.robot) for plan in before.plans if plans[plan.robot] != plan]
+    changed = [str(plan.robot) for plan in before.plans if plan.robot != robot and plans[plan.robot] != plan]
     print_line(f"robot {robot} arrives at tick {plans[robot].visits[-1].enter}")
     print_line(f"plans of other robots that changed: {', '.join(changed) or 'none'}")
     print_line(f"total cost {total_cost(instance, before.plans)} before, {total_cost(instance, after.plans)} now")

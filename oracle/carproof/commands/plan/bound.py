@@ -56,7 +56,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     """Find a lower bound on the total cost of any plans for all robots of INSTANCE.
 
     Robots pay prices for places that they contend for. The bound is the cheapest priced paths minus the most that
-    the prices can collect. --output writes the prices as a certificate, which verify-bound checks. The gap is
+    the prices can collect. --output writes the prices as a certificate, which the command verify checks. The gap is
     that of the plans given, or else of the best of ten orders in which the robots are planned one after the other.
 
     Exit codes: 0 a bound is found, 1 a robot has no way to its goal (the bound is that of the others), 2 bad input.

@@ -46,7 +46,7 @@ def command(
 
     The answer comes from a search and is not proved: it rests on the solver. With --proof it is proved: the command
     writes files with which others can check the least cost, or that the robots cannot all be planned. Writing takes at
-    most --limit seconds more, and the files are checked at once (see verify-proof).
+    most --limit seconds more, and the files are checked at once (see carproof verify).
 
     --output writes the plans as a solution; --json prints cost, lower bound and solution. In the document, "decided" is
     true if the search ended with an answer, and "proved" if the proof of --proof was checked.

@@ -49,8 +49,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 ) -> Answer:
     """Find the plan with which ROBOT arrives earliest beside the plans of SOLUTION.
 
-    Those plans stay as they are. If SOLUTION has a plan of ROBOT, the robot has followed it until --now. carproof
-    verify-query checks the file of --certificate, which is also written if there is no plan.
+    Those plans stay as they are. If SOLUTION has a plan of ROBOT, the robot has followed it until --now.
+    The command verify checks the file of --certificate, which is also written if there is no plan.
 
     Exit codes: 0 a plan is found, 1 no plan exists, 2 bad input.
     """
