@@ -12,9 +12,28 @@ from carp_optimized.jit.references import Native
 from carp_optimized.state.arrays import LARGEST, NONE
 from carp_optimized.state.encoding import encode_graph, refuse_tick, refuse_what_is_too_large
 from carp_optimum.lagrangian.deadlines import Deadlines, flattened
-from carp_optimum.lagrangian.multipliers import charges_of, market_of, refuse_table, requests_of, sized
-from carp_optimum.lagrangian.price_steps import KEPT, LARGEST_GAIN, PARTS, UNIT, turn_all, walk_all
+from carp_optimum.lagrangian.multipliers import (
+    LARGEST_ARRAY,
+    charges_of,
+    market_of,
+    refuse_table,
+    requests_of,
+    sized,
+    with_rows,
+)
+from carp_optimum.lagrangian.price_steps import (
+    KEPT,
+    LARGEST_GAIN,
+    PARTS,
+    UNIT,
+    forget_prices,
+    price_exchange,
+    price_limit,
+    turn_all,
+    walk_all,
+)
 from carp_optimum.lagrangian.priced_paths import begin_ways, find_rests, find_ways, least_cost, see_ways
+from carp_optimum.lagrangian.usage import count_ways
 from carp_spec import Instance, Refusal, ResourceId, RobotId
 from carp_spec.documents.bounds import DeadlinesDocument
 from carp_verify.bound.rules import LARGEST_TABLE, LONGEST_STAY, stay_is_searched
@@ -43,10 +62,12 @@ class PriceLists(NamedTuple):
 
 
 class Point(NamedTuple):
-    """Prices of constraints and exchanges, and of deadlines."""
+    """Prices of cells of constraints and of exchanges, as `Courses` numbers them, and of deadlines."""
 
-    limit: LongTable
-    exchange: LongTable
+    limits: Longs
+    prices: Longs
+    exchanges: Longs
+    prices_of_exchanges: Longs
     fees: Longs
 
 
@@ -78,8 +99,8 @@ class PriceSearch:
         find_rests(native)
         last = max(requests.earliest.tolist(), default=0)
         refuse_tick("$.graph", last)
-        rows = graph.room.size + graph.target.size
-        self.horizon = min(max(last, 0) + longest + TICKS_BEYOND, LARGEST_TABLE // max(rows, robots, 1), LAST_TICK)
+        most = min(LARGEST_ARRAY // max(graph.room.size, 1), LARGEST_TABLE // max(robots, 1))
+        self.horizon = min(max(last, 0) + longest + TICKS_BEYOND, most, LAST_TICK)
         wanted = min(max(DELAYS * longest, self.horizon + longest), LARGEST_TABLE // max(robots, 1))
         self.market = sized(market, self.horizon, max(1, min(wanted, MOST_NODES // max(resources, 1), LARGEST - last)))
         self.native = Native(self.market)
@@ -92,8 +113,13 @@ class PriceSearch:
         self.count = 0
 
     def _point(self) -> Point:
-        prices = self.market.prices
-        return Point(prices.limit.copy(), prices.exchange.copy(), self.fees.copy())
+        courses, prices = self.market.courses, self.market.prices
+        of_limits, of_exchanges = courses.size.tolist()
+        limits, exchanges = courses.limits[:of_limits], courses.exchanges[:of_exchanges]
+        limit = prices.limit[prices.row[limits // self.horizon], limits % self.horizon]
+        exchange = prices.exchange[prices.entry[exchanges // self.horizon], exchanges % self.horizon]
+        priced, priced_too = limit > 0, exchange > 0
+        return Point(limits[priced], limit[priced], exchanges[priced_too], exchange[priced_too], self.fees.copy())
 
     def _bound(self, check: Callable[[], None] = lambda: None) -> int:
         """The bound that the prices prove; gives each robot a cheapest way.
@@ -108,8 +134,23 @@ class PriceSearch:
         for first in range(0, robots, PART):
             check()
             total += find_ways(self.native, first, min(first + PART, robots))
+        if self.market.usage.met_anew[0] > 0:
+            self._add_rows()
         self.longest = max(self.longest, self._clock() - began)
         return total
+
+    def _add_rows(self) -> None:
+        """Give rows to the constraints where robots met without one, and to the resources of groups among them."""
+        usage, graph = self.market.usage, self.market.graph
+        for group in np.flatnonzero(usage.met[graph.duration.size :]).tolist():
+            usage.met[graph.member[graph.members_first[group] : graph.members_first[group + 1]]] = 1
+        self.market = with_rows(self.market, np.flatnonzero((usage.met > 0) & (self.market.prices.row == 0)).tolist())
+        self.native = Native(self.market)
+        usage = self.market.usage
+        for counts in (usage.present, usage.moving, usage.staying, usage.met, usage.met_anew):
+            counts[...] = 0
+        count_ways(self.native)
+        usage.met_anew[0] = 0
 
     def _charge(self) -> None:
         """Fill the tables of what an arrival costs each robot, by its delay, and of what it pays on its way."""
@@ -128,10 +169,13 @@ class PriceSearch:
 
     def _restore(self) -> int:
         """Go back to the best prices, without a course: their bound."""
-        self.market.prices.limit[:], self.market.prices.exchange[:], fees = self._kept
-        self.fees = fees.copy()
-        self.market.usage.course[:] = 0
-        self.market.usage.course_of_exchange[:] = 0
+        forget_prices(self.native)
+        kept = self._kept
+        for cell, price in zip(kept.limits.tolist(), kept.prices.tolist(), strict=True):
+            price_limit(self.native, cell, price)
+        for cell, price in zip(kept.exchanges.tolist(), kept.prices_of_exchanges.tolist(), strict=True):
+            price_exchange(self.native, cell, price)
+        self.fees = kept.fees.copy()
         self._course_of_fees[:] = 0
         return self._bound()
 
@@ -324,21 +368,20 @@ class PriceSearch:
         ids = [each.id for each in graph.constraints]
         size = len(graph.resources)
         moves = [(source, target) for source in graph.index for target in graph.successors[source]]
-        limit, exchange = self.market.prices.limit, self.market.prices.exchange
-        priced = [(int(row), (ids[row], int(tick), int(limit[row, tick]))) for row, tick in np.argwhere(limit)]
+        point, horizon = self._point(), self.horizon
+        priced = sorted(zip(point.limits.tolist(), point.prices.tolist(), strict=True))
+        rows = [(cell // horizon, (ids[cell // horizon], cell % horizon, price)) for cell, price in priced]
+        of_exchanges = sorted(zip(point.exchanges.tolist(), point.prices_of_exchanges.tolist(), strict=True))
         return PriceLists(
-            tuple(price for row, price in priced if row < size),
-            tuple((*moves[move], int(tick), int(exchange[move, tick])) for move, tick in np.argwhere(exchange)),
-            tuple(price for row, price in priced if row >= size),
+            tuple(price for row, price in rows if row < size),
+            tuple((*moves[cell // horizon], cell % horizon, price) for cell, price in of_exchanges),
+            tuple(price for row, price in rows if row >= size),
         )
 
     @property
     def worth(self) -> int:
         """The prices times the capacities."""
-        prices = self.market.prices
-        graph = self.market.graph
-        of_limits = prices.limit.sum(axis=1) * graph.room
-        return int(of_limits.sum() + (prices.across[:, self.horizon] * graph.capacity).sum())
+        return int(self.market.prices.worth[0])
 
     def least_costs(self) -> tuple[tuple[RobotId, int | None], ...]:
         """The least priced cost of each robot, `None` where it cannot reach its goal."""

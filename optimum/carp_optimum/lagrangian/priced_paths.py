@@ -9,7 +9,6 @@ graph, as in `carp_verify.optimum.robot_clauses`.
 """
 
 from carp_optimized.jit.compiling import compiled, entry
-from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
 from carp_optimized.queries.heap import push, replace_root
 from carp_optimized.state.arrays import NONE
@@ -25,6 +24,7 @@ from carp_optimum.lagrangian.state import (
     move_price,
     stay_price,
 )
+from carp_optimum.lagrangian.usage import count_way
 
 ENDLESS = 1 << 62
 
@@ -87,9 +87,7 @@ def find_ways(native: Native[Market], begin: int, end: int) -> int:
     total = 0
     for robot in range(begin, end):
         if market.requests.earliest[robot] != NONE:
-            count_way(market, robot, -1)
             total += find_way(market, robot)
-            count_way(market, robot, 1)
     return total
 
 
@@ -110,9 +108,11 @@ def find_way(market: Market, robot: int) -> int:
         at_once = goal_price(market, robot, release) + int(market.charges.cost[robot][0])
         if at_once < best:
             best = at_once
+            count_way(market, robot, -1)
             market.ways.length[robot] = 1
             market.ways.resource[robot][0] = start
             market.ways.enter[robot][0] = release
+            count_way(market, robot, 1)
     if requests.rest[robot][start] != NONE:
         best = settle(market, robot, best)
         best = min(best, int(market.charges.least[robot][market.delays]))
@@ -238,6 +238,8 @@ def leave(market: Market, robot: int, node: int, tick: int, paid: int) -> int:
     earliest = int(market.requests.earliest[robot])
     waiting = market.prices.waiting[min(tick, market.horizon)]
     entering = market.prices.entering[min(tick, market.horizon)]
+    rows = market.prices.row
+    entries = market.prices.entry
     fee = market.charges.fee[int(market.charges.row[robot][tick]) if tick < market.horizon else 0]
     scratch = market.scratch
     size = graph.duration.size
@@ -246,7 +248,7 @@ def leave(market: Market, robot: int, node: int, tick: int, paid: int) -> int:
     reached = 0
     if tick + int(rest[here]) - earliest + 1 < market.delays:
         place = place_after(scratch, now, 1)
-        waited = paid + int(waiting[here]) + int(fee[here])
+        waited = paid + int(waiting[int(rows[here])]) + int(fee[here])
         reached += reach(scratch, place, place * size + here, node + size, waited, node)
     for move in range(int(graph.first[here]), int(graph.first[here + 1])):
         target = int(graph.target[move])
@@ -254,7 +256,7 @@ def leave(market: Market, robot: int, node: int, tick: int, paid: int) -> int:
             ready = tick + duration_of(market, robot, target)
             delay = ready + int(rest[target]) - earliest
             if delay < market.delays:
-                moved = paid + int(entering[move]) + int(fee[target])
+                moved = paid + int(entering[int(entries[move])]) + int(fee[target])
                 moved += further_price(market, target, tick + 1, ready)
                 for later in range(tick + 1, min(ready, market.horizon)):
                     moved += fee_of(market, robot, target, later)
@@ -293,6 +295,7 @@ def tick_of(market: Market, robot: int, node: int) -> int:
 @compiled
 def take_way(market: Market, robot: int, last: int) -> None:
     """Write the way that arrives from the node."""
+    count_way(market, robot, -1)
     resources = market.ways.resource[robot]
     enters = market.ways.enter[robot]
     parent = market.scratch.parent
@@ -313,40 +316,7 @@ def take_way(market: Market, robot: int, last: int) -> None:
             enters[visit] = tick_of(market, robot, node) - duration_of(market, robot, here)
             visit -= 1
         node = int(parent[node])
-
-
-@compiled
-def count_way(market: Market, robot: int, sign: int) -> None:
-    """Add what the robot's way uses, or take it off again."""
-    usage = market.usage
-    resources = market.ways.resource[robot]
-    enters = market.ways.enter[robot]
-    last = int(market.ways.length[robot]) - 1
-    for visit in range(last + 1):
-        here = int(resources[visit])
-        enter = int(enters[visit])
-        end = market.horizon
-        if visit < last:
-            end = int(enters[visit + 1])
-            if end < market.horizon:
-                moving = usage.moving[move_between(market, here, int(resources[visit + 1]))]
-                moving[end] = int(moving[end]) + sign
-        elif not market.parks:
-            end = enter + duration_of(market, robot, here)
-        end = min(end, market.horizon)
-        staying = usage.staying[here]
-        for tick in range(enter + 1, end):
-            staying[tick] = int(staying[tick]) + sign
-        count_stay(usage.present[here], enter, end, sign)
-        for k in range(int(market.graph.groups_first[here]), int(market.graph.groups_first[here + 1])):
-            count_stay(usage.present[market.graph.duration.size + market.graph.group[k]], enter, end, sign)
-
-
-@compiled
-def count_stay(present: Ints, enter: int, end: int, sign: int) -> None:
-    """Add a stay in [enter, end) to the use of a constraint, or take it off again."""
-    for tick in range(enter, end):
-        present[tick] = int(present[tick]) + sign
+    count_way(market, robot, 1)
 
 
 @entry

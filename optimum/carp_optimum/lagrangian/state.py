@@ -8,7 +8,7 @@ moves from r to s or from s to r, or is in r just before t and at t (`joint/exch
 from typing import NamedTuple
 
 from carp_optimized.jit.compiling import compiled
-from carp_optimized.jit.kinds import Ints, IntTable, Longs, LongTable
+from carp_optimized.jit.kinds import Ints, IntTable, Longs, LongTable, ShortTable
 from carp_optimized.jit.references import dereference
 from carp_optimized.state.arrays import NONE, Graph
 
@@ -33,21 +33,31 @@ class Requests(NamedTuple):
 class Prices(NamedTuple):
     """Prices by constraint and tick, and by move (r, s) and tick for the exchange row (r, s).
 
-    `present[r][t]` is the price of r with those of its groups. `back[move]` is
-    the number of the move back, or `NONE`. `stay[r][t]` is the sum of what is paid in r before t, and `across[r][t]`
-    that of all exchange rows of r. A search goes from tick to tick, so what a robot pays at a tick lies
-    together: `waiting[t][r]` for being in r just before t and at t, `entering[t][move]` for moving at t, with the price
-    of the target at t. From the horizon on these are 0.
+    Tables have rows only for places where robots have met: `row` has that of each constraint and `entry` that of each
+    move, 0 for all others. Row 0 is without prices. `back[move]` is the number of the move back, or `NONE`, and the
+    moves to r are `into[backward_first[r]:...]`.
+
+    `limit` and `exchange` are the prices. `present` is the price of a resource with those of its groups, and `crossing`
+    that of all exchange rows of it. `stay[row][t]` and `across[row][t]` are the sums of these before t, up to date but
+    for ticks from `changed[row]` on. A search goes from tick to tick, so what a robot pays at a tick lies together:
+    `waiting[t]` for being in r just before t and at t, by row, `entering[t]` for moving at t, by entry, with the price
+    of the target at t. From the horizon on these are 0. `worth[0]` is the sum of all prices times their capacities.
     """
 
-    limit: LongTable
-    present: LongTable
-    exchange: LongTable
+    row: Ints
+    entry: Ints
     back: Ints
+    into: Ints
+    limit: LongTable
+    exchange: LongTable
+    present: LongTable
+    crossing: LongTable
     stay: LongTable
     across: LongTable
+    changed: Ints
     waiting: LongTable
     entering: LongTable
+    worth: Longs
 
 
 class Charges(NamedTuple):
@@ -76,16 +86,33 @@ class Ways(NamedTuple):
 
 
 class Usage(NamedTuple):
-    """The use of the ways: robots by constraint and tick, by move and tick, those in a resource before and at a tick.
+    """The use of the ways: robots by constraint and tick, by entry and tick, those in a row before and at a tick.
 
-    `course` and `course_of_exchange` are the direction in which the prices of the rows were changed last.
+    `met` is 1 for constraints without a row where robots have met, and `met_anew[0]` if there is one.
     """
 
     present: IntTable
     moving: IntTable
     staying: IntTable
-    course: LongTable
-    course_of_exchange: LongTable
+    met: Ints
+    met_anew: Longs
+
+
+class Courses(NamedTuple):
+    """The direction in which prices were changed last, by row or entry, and by tick.
+
+    Only that of `active` cells is not 0, nor is the price or the surplus of any other greater. A cell is the number of
+    a constraint or move by the horizon, and a tick; the first `size[0]` of `limits` are active, the first `size[1]` of
+    `exchanges`, and just these are marked as `listed`.
+    """
+
+    limit: LongTable
+    exchange: LongTable
+    listed: ShortTable
+    listed_exchange: ShortTable
+    limits: Longs
+    exchanges: Longs
+    size: Longs
 
 
 class Scratch(NamedTuple):
@@ -116,6 +143,7 @@ class Market(NamedTuple):
     charges: Charges
     ways: Ways
     usage: Usage
+    courses: Courses
     scratch: Scratch
     horizon: int
     delays: int
@@ -134,8 +162,9 @@ def duration_of(market: Market, robot: int, resource: int) -> int:
 @compiled
 def stay_price(market: Market, resource: int, enter: int, leave: int) -> int:
     """The price of a stay in [enter, leave)."""
-    stay = market.prices.stay[resource]
-    across = market.prices.across[resource]
+    row = int(market.prices.row[resource])
+    stay = market.prices.stay[row]
+    across = market.prices.across[row]
     end = min(leave, market.horizon)
     present = int(stay[end]) - int(stay[min(enter, end)])
     return present + int(across[end]) - int(across[min(enter + 1, end)])
@@ -146,8 +175,9 @@ def further_price(market: Market, resource: int, tick: int, leave: int) -> int:
     """The price of staying in [tick, leave) in a resource that the robot is in just before the tick, and later ones."""
     if tick >= leave:
         return 0
-    stay = market.prices.stay[resource]
-    across = market.prices.across[resource]
+    row = int(market.prices.row[resource])
+    stay = market.prices.stay[row]
+    across = market.prices.across[row]
     begin = min(tick, market.horizon)
     end = min(leave, market.horizon)
     return int(stay[end]) - int(stay[begin]) + int(across[end]) - int(across[begin])
@@ -156,10 +186,11 @@ def further_price(market: Market, resource: int, tick: int, leave: int) -> int:
 @compiled
 def move_price(market: Market, move: int, tick: int) -> int:
     """The price of a move at the tick."""
-    back = int(market.prices.back[move])
+    prices = market.prices
+    back = int(prices.back[move])
     if tick >= market.horizon or back == NONE:
         return 0
-    return int(market.prices.exchange[move][tick]) + int(market.prices.exchange[back][tick])
+    return int(prices.exchange[int(prices.entry[move])][tick]) + int(prices.exchange[int(prices.entry[back])][tick])
 
 
 @compiled
@@ -180,49 +211,69 @@ def move_between(market: Market, source: int, target: int) -> int:
 
 
 @compiled
-def price_groups(market: Market) -> int:
-    """Add the prices of groups to those of their resources: their worth beyond that of resources at these prices."""
+def change_limit(market: Market, limit: int, tick: int, more: int) -> None:
+    """Raise the price of a constraint with a row."""
     graph = market.graph
-    resources = graph.duration.size
-    for here in range(resources):
-        for tick in range(market.horizon):
-            market.prices.present[here][tick] = market.prices.limit[here][tick]
-    worth = 0
-    for group in range(graph.room.size - resources):
-        room = int(graph.room[resources + group])
-        members = range(int(graph.members_first[group]), int(graph.members_first[group + 1]))
-        for k in members:
-            room -= int(graph.capacity[graph.member[k]])
-        prices = market.prices.limit[resources + group]
-        for tick in range(market.horizon):
-            price = int(prices[tick])
-            if price != 0:
-                worth += price * room
-                for k in members:
-                    present = market.prices.present[graph.member[k]]
-                    present[tick] = int(present[tick]) + price
-    return worth
+    prices = market.prices.limit[int(market.prices.row[limit])]
+    prices[tick] = int(prices[tick]) + more
+    market.prices.worth[0] = int(market.prices.worth[0]) + more * int(graph.room[limit])
+    group = limit - graph.duration.size
+    if group < 0:
+        change_present(market, limit, tick, more)
+    else:
+        for k in range(int(graph.members_first[group]), int(graph.members_first[group + 1])):
+            change_present(market, int(graph.member[k]), tick, more)
+
+
+@compiled
+def change_present(market: Market, here: int, tick: int, more: int) -> None:
+    """Raise what robots in the resource pay at the tick."""
+    prices = market.prices
+    row = int(prices.row[here])
+    present = prices.present[row]
+    present[tick] = int(present[tick]) + more
+    change_waiting(market, row, tick, more)
+    entering = prices.entering[tick]
+    for k in range(int(market.graph.backward_first[here]), int(market.graph.backward_first[here + 1])):
+        entry = int(prices.entry[int(prices.into[k])])
+        entering[entry] = int(entering[entry]) + more
+
+
+@compiled
+def change_exchange(market: Market, move: int, tick: int, more: int) -> None:
+    """Raise the price of the exchange row of a move from a resource with a row."""
+    prices = market.prices
+    back = int(prices.back[move])
+    here = int(market.graph.target[back])
+    row, entry = int(prices.row[here]), int(prices.entry[move])
+    exchange, crossing, entering = prices.exchange[entry], prices.crossing[row], prices.entering[tick]
+    exchange[tick] = int(exchange[tick]) + more
+    crossing[tick] = int(crossing[tick]) + more
+    prices.worth[0] = int(prices.worth[0]) + more * int(market.graph.capacity[here])
+    change_waiting(market, row, tick, more)
+    entering[entry] = int(entering[entry]) + more
+    entry = int(prices.entry[back])
+    entering[entry] = int(entering[entry]) + more
+
+
+@compiled
+def change_waiting(market: Market, row: int, tick: int, more: int) -> None:
+    """Raise what robots pay that wait in the resource of the row."""
+    waiting = market.prices.waiting[tick]
+    waiting[row] = int(waiting[row]) + more
+    market.prices.changed[row] = min(int(market.prices.changed[row]), tick)
 
 
 @compiled
 def add_up(market: Market) -> int:
-    """Make the sums of the prices: the sum of all prices times their capacities."""
-    graph = market.graph
-    worth = price_groups(market)
-    for here in range(graph.duration.size):
-        stay = market.prices.stay[here]
-        across = market.prices.across[here]
-        price = market.prices.present[here]
-        for tick in range(market.horizon):
-            of_rows = 0
-            for move in range(int(graph.first[here]), int(graph.first[here + 1])):
-                of_rows += int(market.prices.exchange[move][tick])
-            across[tick + 1] = int(across[tick]) + of_rows
-            stay[tick + 1] = int(stay[tick]) + int(price[tick])
-            market.prices.waiting[tick][here] = int(price[tick]) + of_rows
-            for move in range(int(graph.first[here]), int(graph.first[here + 1])):
-                target = int(graph.target[move])
-                paid = move_price(market, move, tick) + int(market.prices.present[target][tick])
-                market.prices.entering[tick][move] = paid
-        worth += (int(stay[market.horizon]) + int(across[market.horizon])) * int(graph.capacity[here])
-    return worth
+    """Bring the sums of the prices up to date: the sum of all prices times their capacities."""
+    prices = market.prices
+    for row in range(prices.changed.size):
+        if prices.changed[row] < market.horizon:
+            stay, across = prices.stay[row], prices.across[row]
+            present, crossing = prices.present[row], prices.crossing[row]
+            for tick in range(int(prices.changed[row]), market.horizon):
+                stay[tick + 1] = int(stay[tick]) + int(present[tick])
+                across[tick + 1] = int(across[tick]) + int(crossing[tick])
+            prices.changed[row] = market.horizon
+    return int(prices.worth[0])
