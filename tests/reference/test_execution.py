@@ -3,7 +3,6 @@
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.oracle.test_delays import delayed
 from tests.profiles import draws
 from tests.spec.making import CROSSED, plan_of
 
@@ -13,6 +12,16 @@ from carp_spec import Carp, Instance, Plan, Refusal, Solution, Visit, check_upda
 from carp_spec.execution.execution_rules import trace_violations
 from carp_spec.execution.traces import Trace
 from carproof.execution.delays import Delay, executed, in_order, planned, stuck
+from carproof.testing.strategies import Sizes, planned_instances
+
+
+@st.composite
+def delayed(draw: st.DrawFn) -> tuple[Instance, Solution, tuple[Delay, ...]]:
+    """A solution and delays of some visits that are no robot's last."""
+    case = draw(planned_instances(Sizes(resources=4, robots=4, groups=2)))
+    places = [(plan.robot, place) for plan in case.solution.plans for place in range(len(plan.visits) - 1)]
+    chosen = draw(st.lists(st.sampled_from(places), max_size=4, unique=True)) if places else []
+    return case.instance, case.solution, tuple(Delay(*node, draw(st.integers(1, 4))) for node in chosen)
 
 
 @settings(max_examples=draws(300))

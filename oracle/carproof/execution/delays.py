@@ -9,10 +9,9 @@ from dataclasses import dataclass, replace
 from itertools import groupby
 
 from carp_reference.execution import Order, earliest, order_with
-from carp_spec import Instance, Plan, RobotId, Solution, Visit
+from carp_spec import Instance, Plan, ResourceGraph, ResourceId, RobotId, Solution, Visit
 from carp_spec.execution.dependencies import Dependency, Node, stays_by_constraint
 from carp_spec.execution.traces import Trace
-from carp_spec.limits import refuse
 from carp_spec.plan_rules import least_stays
 
 
@@ -34,9 +33,7 @@ def delayed(order: Order, delays: Iterable[Delay]) -> Order:
     """The order with longer edges out of the visits that are delayed."""
     more = longer(delays)
     edges = (
-        replace(edge, ticks=edge.ticks + more[edge.before])
-        if edge.before in more and waits_for_leaving(order, edge)
-        else edge
+        replace(edge, ticks=edge.ticks + more[edge.before]) if edge.before in more and edge.holds else edge
         for edge in order.edges
     )
     return order_with(order.instance, order.solution, tuple(edges))
@@ -45,11 +42,6 @@ def delayed(order: Order, delays: Iterable[Delay]) -> Order:
 def is_last(order: Order, node: Node) -> bool:
     """Whether the plan ends with the visit."""
     return node[1] == len(order.plans[node[0]].visits) - 1
-
-
-def waits_for_leaving(order: Order, edge: Dependency) -> bool:
-    """Whether the edge holds the duration of the visit that it leads from."""
-    return edge.kind == "travel" or edge.resource == order.visit(edge.before).resource
 
 
 def planned(order: Order) -> dict[Node, int]:
@@ -82,7 +74,7 @@ def slack(order: Order) -> dict[Node, int | None]:
 
 
 def _slack_at(order: Order, latest: Mapping[Node, int], node: Node) -> int | None:
-    edges = (edge for edge in order.out_of.get(node, ()) if waits_for_leaving(order, edge))
+    edges = (edge for edge in order.out_of.get(node, ()) if edge.holds)
     return min((latest[edge.after] - edge.ticks - order.visit(node).enter for edge in edges), default=None)
 
 
@@ -97,7 +89,7 @@ def smallest_collision(instance: Instance, solution: Solution) -> tuple[Delay, .
     """Delays of the least sum by which robots that keep to the clock collide; `None` if no delays do that.
 
     A robot on the clock enters each visit at its planned tick, or as soon after it as its own durations and delays
-    allow. A collision is either too many robots in a resource when one enters, or two robots that exchange their
+    allow. A collision is either too many robots in a resource or a group when one enters, or two robots that exchange
     places. A delay is spent best at the visit that it makes too long. Of equal sums the fewest delays are taken.
     """
     best: tuple[Delay, ...] | None = None
@@ -113,10 +105,10 @@ def _worth(delays: Sequence[Delay]) -> tuple[int, int]:
 
 def _collisions(instance: Instance, solution: Solution) -> Iterator[tuple[Delay, ...]]:
     """The shortest delays that make a collision, for each visit and all robots that may be there when it begins."""
-    refuse(instance, "groups")
-    least = {plan.robot: least_stays(instance, plan) for plan in solution.plans}
-    for constraint, stays in stays_by_constraint(instance.graph, solution.plans).items():
-        capacity = instance.graph.resources[constraint].capacity
+    graph, constraints = instance.graph, instance.graph.constraints
+    plans = {plan.robot: (plan.visits, least_stays(instance, plan)) for plan in solution.plans}
+    for constraint, stays in stays_by_constraint(graph, solution.plans).items():
+        capacity = constraints[constraint].capacity
         for stay in stays:
             tick = stay.visit.enter
             present = {
@@ -126,16 +118,21 @@ def _collisions(instance: Instance, solution: Solution) -> Iterator[tuple[Delay,
             }
             found: dict[RobotId, Delay] = {}
             for each in stays:
-                robot, place = each.node
+                robot, place = each.last
                 if robot in present or each.visit.leave is None or each.visit.leave > tick:
                     continue
-                ticks = tick + 1 - each.visit.enter - least[robot][place]
-                if each.target is not None and each.target == stay.source and ticks > 1:
+                visits, least = plans[robot]
+                ticks = tick + 1 - visits[place].enter - least[place]
+                if ticks > 1 and graph.is_area(constraint) and _is_close(graph, each.target, stay.source):
                     yield (Delay(robot, place, ticks - 1),)
                 found[robot] = Delay(robot, place, ticks)  # of a later visit of the same robot, the shorter one
             missing = capacity + 1 - len(present)
             if missing <= len(found):
                 yield tuple(sorted(found.values(), key=lambda delay: delay.ticks)[:missing])
+
+
+def _is_close(graph: ResourceGraph, target: ResourceId | None, source: ResourceId | None) -> bool:
+    return target is not None and source is not None and graph.are_close(target, source)
 
 
 def on_the_clock(order: Order, delays: Iterable[Delay]) -> dict[Node, int]:
@@ -191,7 +188,7 @@ def may_enter(order: Order, trace: Trace, ready: Iterable[RobotId]) -> tuple[Rob
     def is_over(edge: Dependency) -> bool:
         if edge.before not in enters:
             return False
-        if not waits_for_leaving(order, edge):
+        if not edge.holds:
             return enters[edge.before] + edge.ticks <= trace.now
         leave = leaves.get(edge.before)
         return leave is not None and leave + edge.ticks - order.duration(edge.before) <= trace.now

@@ -20,7 +20,7 @@ Driver: TypeAlias = Literal["clock", "order", "switching"]
 DRIVERS: tuple[Driver, ...] = get_args(Driver)
 MILLION = 1_000_000
 DIGITS = 6  # of a chance, behind the point
-TOGETHER = ("joint/capacity", "joint/exchange")
+TOGETHER = ("joint/capacity", "joint/group", "joint/exchange")
 
 
 @rule(

@@ -1,22 +1,26 @@
 """An executor that switches the order of robots where this is safe and makes them arrive earlier (SADG).
 
 The executor learns of a delay when a robot enters the visit that takes longer. Then it looks at each robot that waits
-for a late one, and lets it go first, in that resource and in all resources that the two share next to it, if the
+for a late one, and lets it go first, in that resource or group and in all that the two share next to it, if the
 dependency graph still has no cycle and the sum of all arrivals becomes smaller. Source: Berndt et al. 2020.
 """
 
 from collections import defaultdict
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import islice, pairwise
+from typing import TypeAlias
 
 from carp_reference.execution import Order, order_of, order_with, solution_at
-from carp_spec import Instance, ResourceId, Solution
-from carp_spec.execution.dependencies import Dependency, Node
-from carp_spec.limits import refuse
-from carproof.execution.delays import Delay, delayed, is_last, reached, stuck
+from carp_spec import Instance, RobotId, Solution
+from carp_spec.execution.dependencies import Dependency, Node, Stay, stays_by_constraint, waiting
+from carproof.execution.delays import Delay, delayed, reached, stuck
 
 MOST_TRIED = 20
+
+Pair: TypeAlias = tuple[int, Stay, Stay]
+"""The index of a resource or group, and two stays in it, the second right after the first."""
+Sequences: TypeAlias = Mapping[int, Sequence[Stay]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,8 +59,9 @@ def _better(
     """The order after the first switch tried that makes the sum of arrivals smaller."""
     lasts = [(plan.robot, len(plan.visits) - 1) for plan in order.solution.plans]
     total = sum(enters[node] for node in lasts)
-    for pairs in _switches(order, enters, now):
-        switched = order_with(order.instance, order.solution, _switched(order, pairs))
+    sequences = _sequences(order)
+    for pairs in _switches(order, sequences, enters, now):
+        switched = order_with(order.instance, order.solution, _switched(order, sequences, pairs))
         times = reached(delayed(switched, known), least)
         if len(times) < len(order.nodes) or sum(times[node] for node in lasts) >= total:
             continue
@@ -66,28 +71,20 @@ def _better(
     return None
 
 
-def _switches(order: Order, enters: Mapping[Node, int], now: int) -> Iterator[frozenset[tuple[Node, Node]]]:
-    """Pairs of visits that change places, all of two robots, where one waits for the other; the first waits first."""
-    behind = dict.fromkeys(_neighbours(order))
+def _switches(order: Order, sequences: Sequences, enters: Mapping[Node, int], now: int) -> Iterator[tuple[Pair, ...]]:
+    """Pairs of stays that change places, all of two robots, where one waits for the other; the first waits first."""
+    behind: dict[tuple[RobotId, RobotId], list[Pair]] = defaultdict(list)
+    for constraint, stays in sequences.items():
+        for first, second in pairwise(stays):
+            if second.visit.leave is not None and min(enters[first.node], enters[second.node]) > now:
+                behind[first.node[0], second.node[0]].append((constraint, first, second))
     waits = sorted(
-        (pair for pair in behind if min(enters[pair[0]], enters[pair[1]]) > now and pair[0][0] != pair[1][0]),
-        key=lambda pair: (enters[pair[1]], str(pair)),
+        (pair for robots, pairs in behind.items() if robots[0] != robots[1] for pair in pairs),
+        key=lambda pair: (enters[pair[2].node], str(pair[1:])),
     )
-    tried = 0
-    for first, second in waits:
-        if not _is_waiting(order, enters, first, second):
-            continue
-        found = {(first, second)}
-        for step in (1, -1):
-            for way in (1, -1):
-                one, other = (first[0], first[1] + step), (second[0], second[1] + way * step)
-                while (one, other) in behind and min(enters[one], enters[other]) > now:
-                    found.add((one, other))
-                    one, other = (one[0], one[1] + step), (other[0], other[1] + way * step)
-        yield frozenset(found)
-        tried += 1
-        if tried == MOST_TRIED:
-            return
+    late = (pair for pair in waits if _is_waiting(order, enters, pair[1].node, pair[2].node))
+    for pair in islice(late, MOST_TRIED):
+        yield _beside(pair, behind[pair[1].node[0], pair[2].node[0]])
 
 
 def _is_waiting(order: Order, enters: Mapping[Node, int], first: Node, second: Node) -> bool:
@@ -96,39 +93,40 @@ def _is_waiting(order: Order, enters: Mapping[Node, int], first: Node, second: N
     return second[1] > 0 and enters[second] > enters[before] + order.duration(before) and enters[second] > enters[first]
 
 
-def _neighbours(order: Order) -> Iterator[tuple[Node, Node]]:
-    """The pairs of visits to places for one robot, the second right after the first; who parks goes last."""
-    for visits in _sequences(order).values():
-        yield from (pair for pair in pairwise(visits) if order.visit(pair[1]).leave is not None)
+def _beside(pair: Pair, pairs: Collection[Pair]) -> tuple[Pair, ...]:
+    """The pairs that lead from this one to each other over visits that are the next of both robots, or the same."""
+    found = {pair: None}
+    along = [pair]
+    for one in along:
+        new = [each for each in pairs if each not in found and all(map(_touch, one[1:], each[1:]))]
+        found.update(dict.fromkeys(new))
+        along += new
+    return tuple(found)
 
 
-def _sequences(order: Order) -> dict[ResourceId, list[Node]]:
-    refuse(order.instance, "groups")
-    sequences: dict[ResourceId, list[Node]] = defaultdict(list)
-    for node in order.nodes:
-        resource = order.visit(node).resource
-        if order.instance.graph.resource[resource].capacity == 1:
-            sequences[resource].append(node)
-    return sequences
+def _touch(one: Stay, other: Stay) -> bool:
+    return one.node[1] <= other.last[1] + 1 and other.node[1] <= one.last[1] + 1
 
 
-def _switched(order: Order, pairs: Collection[tuple[Node, Node]]) -> tuple[Dependency, ...]:
+def _sequences(order: Order) -> Sequences:
+    """The stays in each resource and group that has room for one robot, in their order."""
+    constraints = order.instance.graph.constraints
+    return {
+        constraint: sorted(stays, key=lambda stay: stay.visit.enter)
+        for constraint, stays in stays_by_constraint(order.instance.graph, order.solution.plans).items()
+        if constraints[constraint].capacity == 1
+    }
+
+
+def _switched(order: Order, sequences: Sequences, pairs: Collection[Pair]) -> tuple[Dependency, ...]:
     """The edges after the switch."""
-    sequences = _sequences(order)
-    changed = {order.visit(first).resource for first, _ in pairs}
-    for first, second in pairs:
-        visits = sequences[order.visit(first).resource]
-        place = visits.index(first)
-        visits[place : place + 2] = [second, first]
-    edges = [edge for edge in order.edges if edge.kind == "travel" or edge.resource not in changed]
-    for resource in changed:
-        for first, second in pairwise(sequences[resource]):
-            ticks = order.instance.gap
-            if is_last(order, first):
-                edges.append(Dependency("order", first, second, order.duration(first) + ticks, resource))
-            else:
-                following = (first[0], first[1] + 1)
-                came_from = order.visit((second[0], second[1] - 1)).resource if second[1] > 0 else None
-                ticks = max(ticks, int(order.visit(following).resource == came_from))
-                edges.append(Dependency("order", following, second, ticks, resource))
+    changed = {constraint: [*sequences[constraint]] for constraint, _, _ in pairs}
+    for constraint, first, second in pairs:
+        stays = changed[constraint]
+        place = stays.index(first)
+        stays[place : place + 2] = [second, first]
+    edges = [edge for edge in order.edges if edge.kind == "travel" or edge.constraint not in changed]
+    for constraint, stays in changed.items():
+        for first, second in pairwise(stays):
+            edges.append(waiting(order.instance, constraint, first, second, order.duration(first.last)))
     return tuple(edges)

@@ -36,7 +36,9 @@ class Dependency:
     """The visit `after` is entered no earlier than `ticks` after the visit `before`.
 
     `travel` keeps a robot in a resource for the duration, or for the service of a stop. `order` lets a robot enter
-    `resource` only after another has left it, by entering its next visit or by staying as long as its last takes.
+    `resource` only after another has left it, or a group that both lie in, by entering its next visit or by staying as
+    long as its last takes. `constraint` is the index of that resource or group. `holds` tells whether the ticks hold
+    the least stay of the visit `before`; else they count from the move into it.
     """
 
     kind: Literal["travel", "order"]
@@ -44,6 +46,8 @@ class Dependency:
     after: Node
     ticks: int
     resource: ResourceId
+    constraint: int = 0
+    holds: bool = False
 
 
 def stays_by_constraint(graph: ResourceGraph, plans: Sequence[Plan]) -> dict[int, list[Stay]]:
@@ -67,22 +71,31 @@ def stays_by_constraint(graph: ResourceGraph, plans: Sequence[Plan]) -> dict[int
 
 def dependencies(instance: Instance, plans: Sequence[Plan]) -> Iterator[Dependency]:
     """The edges of the dependency graph of lawful plans, without those that follow from others."""
-    graph = instance.graph
+    graph, index = instance.graph, instance.graph.index
     least = {plan.robot: least_stays(instance, plan) for plan in plans}
     for plan in plans:
         for place, visit in enumerate(plan.visits[:-1]):
             ticks = least[plan.robot][place]
-            yield Dependency("travel", (plan.robot, place), (plan.robot, place + 1), ticks, visit.resource)
+            following = (plan.robot, place + 1)
+            yield Dependency(
+                "travel", (plan.robot, place), following, ticks, visit.resource, index[visit.resource], True
+            )
     for constraint, stays in stays_by_constraint(graph, plans).items():
         for one, other in _direct(instance, stays):
-            opposite = one.target is not None and other.source is not None and graph.is_area(constraint)
-            is_opposite = opposite and graph.are_close(cast("ResourceId", one.target), cast("ResourceId", other.source))
-            ticks = max(instance.gap, int(is_opposite))
             robot, place = one.last
-            if one.target is None:
-                yield Dependency("order", one.last, other.node, least[robot][place] + ticks, other.visit.resource)
-            else:
-                yield Dependency("order", (robot, place + 1), other.node, ticks, other.visit.resource)
+            yield waiting(instance, constraint, one, other, least[robot][place])
+
+
+def waiting(instance: Instance, constraint: int, one: Stay, other: Stay, least: int) -> Dependency:
+    """The edge by which the other stay in the constraint begins after one, whose last visit takes `least` ticks."""
+    graph = instance.graph
+    opposite = one.target is not None and other.source is not None and graph.is_area(constraint)
+    is_opposite = opposite and graph.are_close(cast("ResourceId", one.target), cast("ResourceId", other.source))
+    ticks = max(instance.gap, int(is_opposite))
+    if one.target is None:
+        return Dependency("order", one.last, other.node, least + ticks, other.visit.resource, constraint, True)
+    robot, place = one.last
+    return Dependency("order", (robot, place + 1), other.node, ticks, other.visit.resource, constraint)
 
 
 def _direct(instance: Instance, stays: Sequence[Stay]) -> Iterator[tuple[Stay, Stay]]:
