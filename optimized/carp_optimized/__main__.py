@@ -4,7 +4,19 @@ from carp_optimized.execution.following import retime
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.improve.planning import plan_crowd
 from carp_optimized.jit.compiling import note_that_it_is_compiled
-from carp_spec import Instance, Neighbourhood, Plan, Resource, ResourceGraph, Robot, Shuffled, Solution, Stop, Visit
+from carp_spec import (
+    FixedPaths,
+    Instance,
+    Neighbourhood,
+    Plan,
+    Resource,
+    ResourceGraph,
+    Robot,
+    Shuffled,
+    Solution,
+    Stop,
+    Visit,
+)
 from carp_spec.execution.traces import Trace
 
 
@@ -26,6 +38,8 @@ def compile_all() -> None:
     fleet.commit(plans)
     fleet.polish(fleet.polishing(0), 1)
     fleet.forget()
+    fleet.fixed_paths(FixedPaths(2))
+    fleet.fixed_paths(FixedPaths(2, "disjoint"))
     with_stops = Robot("u", "a", stops=(Stop("b", 1), Stop("c")))
     PlannedFleet(Instance(graph, (with_stops,))).potentials(0)
     plan_crowd(Instance(graph, instance.robots[:2]), iterations=1, seconds=None)

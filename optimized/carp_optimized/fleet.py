@@ -7,6 +7,7 @@ from typing import TypeAlias, TypeVar
 import numpy as np
 
 from carp_optimized import passes
+from carp_optimized.fixed_paths import Path, PathMoves, disjoint_paths, shortest_paths
 from carp_optimized.jit.compiling import RecordsExhausted, RoomExhausted, TicksExhausted
 from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
@@ -36,8 +37,9 @@ from carp_optimized.state.arrays import (
     State,
 )
 from carp_optimized.state.records import keep_records
-from carp_spec import Instance, Neighbourhood, Plan, Refusal, Robot, RobotId, Shuffled
+from carp_spec import FixedPaths, Instance, Neighbourhood, Plan, Refusal, Robot, RobotId, Shuffled
 from carp_spec.inputs.values import require_instance
+from carp_spec.limits import refuse
 from carp_spec.permutations import shuffle, splitmix64
 
 T = TypeVar("T")
@@ -66,6 +68,7 @@ class PlannedFleet:
         self.instance = instance
         self.reuse = reuse or Reuse()
         self._adding: Native[Adding] | None = None
+        self._path_moves: PathMoves | None = None
         self._take(encoding.encode(instance, shortcuts=shortcuts))
         self._ids = [robot.id for robot in instance.robots]
         self._names = [*instance.graph.index]
@@ -379,6 +382,37 @@ class PlannedFleet:
         for _ in range(planned):
             advance()
 
+    def fixed_paths(self, options: FixedPaths) -> None:
+        """Plan all robots in the order given, as if there were no plans yet, each on the best of a few paths."""
+        refuse(self.instance, "stops")
+        self.clear()
+        for robot in range(len(self._records)):
+            self.add_on_path(robot, self.paths(robot, options))
+
+    def paths(self, robot: int, options: FixedPaths) -> list[Path]:
+        """The paths from which a robot may choose."""
+        start, goal = int(self._state.robots.start[robot]), int(self._state.robots.goal[robot])
+        choose = shortest_paths if options.paths == "shortest" else disjoint_paths
+        return self._call(lambda: choose(self._native, start, goal, options.k))
+
+    def add_on_path(self, robot: int, paths: Sequence[Path]) -> bool:
+        """Add a robot on the path on which it arrives first, the first of equals; whether it has a plan on any."""
+        self.forget_old_records()
+
+        def attempt() -> list[int]:
+            passes.reach_from_everywhere(self._native, robot)
+            moves = self._path_moves = self._path_moves or PathMoves(self._state)
+            return [passes.find_one(moves.along(path), robot, NONE, 0) for path in paths]
+
+        found = [record for record in self._call(attempt) if record != NONE]
+        if not found:
+            return False
+        best = np.array([min(found, key=lambda record: int(self._state.records.arrival[record]))], np.int32)
+        self._call(lambda: passes.reserve_all(self._native, best))
+        robots = np.append(self._order, np.int32(robot))
+        self._hold(robots, np.append(self._records[self._order], best))
+        return True
+
     def add(
         self, robot: int, now: int, options: Neighbourhood, number: int | None = None, before: Plan | None = None
     ) -> bool:
@@ -470,6 +504,7 @@ class PlannedFleet:
         self._native = Native(state)
         self._empty = Native(encoding.without_reservations(state))
         self._adding = None
+        self._path_moves = None
 
     def _make_room(self, size: int, robot: Robot) -> None:
         """Make room for that many robots, up to that robot's pace, and more destinations; guides are made again."""

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from carp_optimized.neighbourhood.reuse import Reuse
 from carp_spec import (
     Carp,
+    FixedPaths,
     Greedy,
     Instance,
     LongestFirst,
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
 
 ROUNDS = 50  # of a polish in one compiled call, if there are not so many
 VISITS = 20_000  # in all plans together
-PLANNERS = (Carp, Shuffled, LongestFirst, Greedy, Neighbourhood)
+PLANNERS = (Carp, Shuffled, LongestFirst, Greedy, Neighbourhood, FixedPaths)
 
 
 def _fleet(instance: Instance, reuse: Reuse | None = None) -> "PlannedFleet":
@@ -114,6 +115,8 @@ def plan_with_fleet(
             fleet.carp(sorted(everyone, key=lambda robot: -fleet.ticks_to_goal(robot)))
         case Greedy():
             fleet.greedy(advance)
+        case FixedPaths():
+            fleet.fixed_paths(planner)
         case Neighbourhood():
             for robot in everyone:
                 fleet.add(robot, 0, planner)

@@ -2,9 +2,12 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 from carp_spec import Instance, Plan, ResourceId, Robot, RobotId
+
+if TYPE_CHECKING:
+    import networkx as nx
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,10 +45,17 @@ def ticks_to(instance: Instance, robot: Robot, place: ResourceId) -> Mapping[Res
     """Dijkstra backwards from a place; the cost of a move is the time in the resource that it leaves."""
     import networkx as nx  # noqa: PLC0415 - loaded only where used
 
+    ticks = nx.single_source_dijkstra_path_length(backward_graph(instance, robot), place, weight="ticks")
+    return cast("dict[ResourceId, int]", ticks)  # sums of ints
+
+
+def backward_graph(instance: Instance, robot: Robot) -> "nx.DiGraph[ResourceId]":
+    """The moves backwards, each with the ticks that the robot takes in the resource that it leaves."""
+    import networkx as nx  # noqa: PLC0415 - loaded only where used
+
     backward: nx.DiGraph[ResourceId] = nx.DiGraph()
     backward.add_nodes_from(instance.graph.index)
     for source, targets in instance.graph.successors.items():
         for target in targets:
             backward.add_edge(target, source, ticks=instance.duration(robot.id, source))
-    ticks = nx.single_source_dijkstra_path_length(backward, place, weight="ticks")
-    return cast("dict[ResourceId, int]", ticks)  # sums of ints
+    return backward

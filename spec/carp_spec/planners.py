@@ -69,7 +69,8 @@ class FixedPaths:
     """Each robot takes, of its k shortest or at most k disjoint paths, the first on which it arrives earliest.
 
     Disjoint paths share no resource but start and goal; they are as many as possible, of the least total length on the
-    empty graph. Source: ter Mors' comparison, as the paper cites it.
+    empty graph. Of shortest paths of equal length, those come first whose resources do in the graph. Source: ter Mors'
+    comparison, as the paper cites it.
     """
 
     name: ClassVar[str] = "fixed-paths"

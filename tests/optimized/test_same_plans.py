@@ -1,5 +1,9 @@
 """The optimised planner makes the reference's plans, visit for visit, whatever kinds of reuse are on."""
 
+from dataclasses import replace
+from random import Random
+from typing import get_args
+
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -8,6 +12,7 @@ import carp_reference
 from carp_optimized import Reuse
 from carp_spec import (
     Carp,
+    FixedPaths,
     Greedy,
     Instance,
     LongestFirst,
@@ -18,6 +23,9 @@ from carp_spec import (
     Stop,
     has_ended,
 )
+from carp_spec.model import AfterGoal
+from carp_spec.planners import PathKind
+from carproof.generate import Fleet, Grid, grid_instance
 from carproof.testing.strategies import FleetUnderWay, Sizes, fleets_under_way, instances
 
 SIZES = Sizes(resources=6, robots=6, groups=2)
@@ -56,6 +64,22 @@ def test_a_query_finds_the_same_plan(fleet: FleetUnderWay, data: st.DataObject) 
 @given(instances(SIZES) | instances(WITH_STOPS), planners(), kinds_of_reuse())
 def test_planning_all_robots_makes_the_same_solution(instance: Instance, planner: Planner, reuse: Reuse) -> None:
     assert carp_optimized.plan(instance, planner, reuse=reuse) == carp_reference.plan(instance, planner)
+
+
+def crowded_grid(seed: int) -> Instance:
+    """A small grid on which many paths are of equal length and robots wait for one another."""
+    random = Random(seed)  # noqa: S311 - no secret
+    fleet = Fleet(10, seed=seed, after_goal=random.choice(get_args(AfterGoal)))
+    drawn = grid_instance(Grid(5, 5, random.randint(8, 20), seed), fleet)
+    resources = tuple(replace(each, duration=random.choice([1, 1, 2, 4, 9])) for each in drawn.graph.resources)
+    return replace(drawn, graph=replace(drawn.graph, resources=resources))
+
+
+@given(st.builds(crowded_grid, SEEDS) | instances(SIZES), st.integers(1, 6))
+def test_robots_take_the_same_of_a_few_paths(instance: Instance, k: int) -> None:
+    for kind in get_args(PathKind):
+        planner = FixedPaths(k, kind)
+        assert carp_optimized.plan(instance, planner) == carp_reference.plan(instance, planner)
 
 
 @given(fleets_under_way(SIZES) | fleets_under_way(WITH_STOPS), neighbourhoods(), kinds_of_reuse())

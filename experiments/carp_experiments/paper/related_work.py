@@ -5,7 +5,7 @@ to the first that one of the two methods leaves unplanned. As each robot is plan
 are those of an instance with these robots alone.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import takewhile
 
@@ -16,17 +16,16 @@ from carp_experiments.paper.quality import plan_all
 from carp_experiments.report import ExperimentReport, Figure, Table
 from carp_experiments.statistics import Interval, mean_interval, proportion_interval
 from carp_experiments.store import Row
-from carp_spec import Instance, LongestFirst, Plan, ResourceId, Robot, plan_cost
+from carp_spec import FixedPaths, Instance, LongestFirst, Plan, plan_cost
 
-Path = tuple[ResourceId, ...]
-MOST_SHORTEST = 10
-MOST_DISJOINT = 3
-FIXED: Mapping[str, tuple[str, int]] = {
-    "the shortest path": ("shortest", 1),
-    "3 shortest paths": ("shortest", 3),
-    "10 shortest paths": ("shortest", MOST_SHORTEST),
-    "3 disjoint paths": ("disjoint", MOST_DISJOINT),
+FIXED: Mapping[str, FixedPaths] = {
+    "the shortest path": FixedPaths(1),
+    "3 shortest paths": FixedPaths(3),
+    "10 shortest paths": FixedPaths(10),
+    "3 disjoint paths": FixedPaths(3, "disjoint"),
 }
+CHOSEN = ("10 shortest paths", "3 disjoint paths")
+"""The widest choices of each kind: fewer shortest paths are the first of more."""
 ONE_BY_ONE = (*FIXED, "CARP")
 ORDERED = ("LF", "greedy")
 METHODS = (*ONE_BY_ONE, *ORDERED)
@@ -38,8 +37,15 @@ def related_row(case: MapCase) -> Row:
     Robots are planned in the order given, but by LF and greedy.
     """
     fleet = fleet_of(case)
-    plans = fixed_plans(fleet.instance)
-    fleet.carp(range(case.robots))
+    plans: dict[str, Sequence[Plan]] = {}
+    everyone = range(case.robots)
+    paths = {FIXED[name].paths: [fleet.paths(robot, FIXED[name]) for robot in everyone] for name in CHOSEN}
+    for name, options in FIXED.items():
+        fleet.clear()
+        for robot, choice in zip(everyone, paths[options.paths], strict=True):
+            fleet.add_on_path(robot, choice[: options.k])
+        plans[name] = fleet.plans
+    fleet.carp(everyone)
     plans["CARP"] = fleet.plans
     plan_all(fleet, LongestFirst())
     plans["LF"] = fleet.plans
@@ -52,37 +58,6 @@ def costs_of(instance: Instance, plans: Sequence[Plan]) -> list[int | None]:
     """The cost of the plan of each robot, in the order of the instance."""
     cost = {plan.robot: plan_cost(instance, plan) for plan in plans}
     return [cost.get(robot.id) for robot in instance.robots]
-
-
-def fixed_plans(instance: Instance) -> dict[str, Sequence[Plan]]:
-    """The plans by each kind of fixed paths; the k shortest paths are the first k of the most."""
-    from carp_reference.fixed_paths import disjoint_paths, shortest_paths  # noqa: PLC0415 - each worker loads it
-    from carp_reference.problem import prepare  # noqa: PLC0415
-
-    problem = prepare(instance, 0)
-    paths: dict[str, list[list[Path]]] = {
-        "shortest": [shortest_paths(problem, robot, MOST_SHORTEST) for robot in instance.robots],
-        "disjoint": [disjoint_paths(problem, robot, MOST_DISJOINT) for robot in instance.robots],
-    }
-    return {name: schedule(instance, [of_robot[:k] for of_robot in paths[kind]]) for name, (kind, k) in FIXED.items()}
-
-
-def schedule(instance: Instance, paths: Sequence[Sequence[Path]]) -> list[Plan]:
-    """Plan each robot on the path on which it arrives first."""
-    from carp_reference.fixed_paths import find_on_path  # noqa: PLC0415
-    from carp_reference.problem import prepare  # noqa: PLC0415
-
-    problem = prepare(instance, 0)
-    plans: list[Plan] = []
-
-    def on_path(robot: Robot) -> Callable[[Path], Plan | None]:
-        return lambda path: find_on_path(problem, plans, robot, path)
-
-    for robot, of_robot in zip(instance.robots, paths, strict=True):
-        found = [plan for plan in map(on_path(robot), of_robot) if plan is not None]
-        if found:
-            plans.append(min(found, key=lambda plan: plan_cost(instance, plan)))
-    return plans
 
 
 @dataclass(frozen=True, slots=True)
