@@ -3,7 +3,7 @@
 from typing import Any
 
 from carp_spec import Rule
-from carp_spec.limits import goals_stand_alone, groups_are_absent
+from carp_spec.limits import goals_stand_alone
 from carp_spec.planners import ticks_are_held
 from carp_verify.bound.rules import BOUND_RULES
 from carp_verify.footprint.rules import FOOTPRINT_RULES
@@ -28,7 +28,6 @@ from carproof.viewer.limits import VIEW_RULES
 ALL_RULES: tuple[Rule[..., Any] | Code, ...] = (
     *RULES,
     ticks_are_held,
-    groups_are_absent,
     goals_stand_alone,
     INSTALLED,
     *REQUEST_RULES,

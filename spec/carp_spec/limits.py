@@ -7,12 +7,7 @@ from carp_spec.model import Instance
 from carp_spec.refusal import Refusal
 from carp_spec.rule import DESIGN, Rule, rule
 
-Feature: TypeAlias = Literal["groups", "stops"]
-
-
-@rule("limit/groups", "What does not know groups refuses an instance that has any.", DESIGN)
-def groups_are_absent(instance: Instance) -> bool:  # noqa: D103 - its statement stands in its decorator
-    return not instance.graph.groups
+Feature: TypeAlias = Literal["stops"]
 
 
 @rule("limit/stops", "What knows goals alone refuses robots with several stops or with service.", DESIGN)
@@ -21,11 +16,6 @@ def goals_stand_alone(instance: Instance) -> bool:  # noqa: D103 - its statement
 
 
 LIMITS: Mapping[Feature, tuple[Rule[[Instance], bool], str, str]] = {
-    "groups": (
-        groups_are_absent,
-        "$.graph.groups",
-        "there must be no groups here: checks and planners alone know of instances that have them",
-    ),
     "stops": (
         goals_stand_alone,
         "$.robots",

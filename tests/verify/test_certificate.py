@@ -1,21 +1,28 @@
 """The capacity certificate: it agrees with the checker, and names what it refuses."""
 
 import json
+import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
+from hypothesis import strategies as st
 from tests.oracle.running import Run
 from tests.profiles import draws
 
-from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Solution, Visit, violations_of
+from carp_reference import plan
+from carp_spec import Carp, Instance, Plan, Resource, ResourceGraph, Robot, Solution, Violation, Visit, violations_of
 from carp_spec.documents.instances import write_instance
 from carp_spec.documents.solutions import write_solution
+from carp_spec.permutations import splitmix64
 from carp_verify import certificate
 from carp_verify.certificate import Breach, certify, certify_together
 from carp_verify.lemmas.smt import Solver, Undecided
-from carproof.testing.strategies import BrokenSolution, PlannedInstance, broken_solutions, planned_instances
+from carproof.testing.random_instances import Draw, Mix, draw_instance
+from carproof.testing.strategies import BrokenSolution, PlannedInstance, Sizes, broken_solutions, planned_instances
 
+CROWDED = Mix(robots=(3, 4), paces=(1,), groups=(1, 2), followings=("allowed", "allowed", "forbidden"), stops=2)
 LINE = ResourceGraph((Resource("a"), Resource("b", capacity=2), Resource("c")), (("a", "b"), ("b", "c")))
 INSTANCE = Instance(LINE, (Robot("r1", "a", "c"), Robot("r2", "c", "a"), Robot("r3", "b", "b", 1)), "vanish")
 EASTWARD = Plan("r1", (Visit("a", 0, 1), Visit("b", 1, 2), Visit("c", 2, 3)))
@@ -24,29 +31,40 @@ STANDING = Plan("r3", (Visit("b", 1, 2),))
 
 
 def agree(instance: Instance, plans: tuple[Plan, ...]) -> None:
-    """Both find fault with the same resources; the certificate's tick and robots are among the checker's."""
+    """Both find fault with the same resources and groups; the certificate's tick and robots are among the checker's."""
     certified = certify_together(instance, plans)
     reported = [violation for violation in violations_of(instance, plans) if violation.rule.startswith("joint/")]
-    blamed = {(violation.rule, violation.resource) for violation in reported}
-    assert {(breach.rule, breach.resource) for breach in certified.breaches} == blamed
+    assert {blamed(instance, each) for each in certified.breaches} == {blamed(instance, each) for each in reported}
     for breach in certified.breaches:
         assert any(
-            violation.rule == breach.rule
-            and set(violation.robots) >= set(breach.robots)
-            and violation.resource == breach.resource
+            blamed(instance, violation) == blamed(instance, breach)
+            and (set(violation.robots) >= set(breach.robots) or exchange_among_more(instance, violation, breach))
             and (violation.start or 0) <= breach.tick
             and (violation.end is None or breach.tick < violation.end)
             for violation in reported
         )
 
 
-@given(planned_instances())
+def exchange_among_more(instance: Instance, violation: Violation, breach: Breach) -> bool:
+    """Whether two of the robots exchange areas: the checker blames each two moves, the certificate all of them."""
+    shared = set(violation.robots) & set(breach.robots)
+    return bool(instance.graph.groups) and breach.rule == "joint/exchange" and len(shared) > 1
+
+
+def blamed(instance: Instance, found: Breach | Violation) -> tuple[object, ...]:
+    """The rule with the group, or else the resource; where there are groups, of an exchange the rule alone."""
+    group = re.search(r" of group [^,]*", found.reason)
+    alone = instance.graph.groups and found.rule == "joint/exchange"
+    return (found.rule,) if alone else (found.rule, group[0] if group else found.resource)
+
+
+@given(st.one_of(planned_instances(), planned_instances(Sizes(groups=3))))
 @settings(max_examples=draws(200))
 def test_sound_solutions_are_certified(planned: PlannedInstance) -> None:
     assert certify(planned.instance, planned.solution).accepted
 
 
-@given(broken_solutions())
+@given(st.one_of(broken_solutions(), broken_solutions(Sizes(groups=3))))
 def test_no_broken_solution_is_certified(broken: BrokenSolution) -> None:
     assert not certify(broken.instance, broken.solution).accepted
 
@@ -91,10 +109,17 @@ def test_a_checker_and_z3_that_contradict_each_other_are_a_fault(
         certify(INSTANCE, Solution.of(INSTANCE, plans))
 
 
-@given(broken_solutions())
+@given(st.one_of(broken_solutions(), broken_solutions(Sizes(groups=3))))
 @settings(max_examples=draws(500))
 def test_certificate_and_checker_agree_on_broken_solutions(broken: BrokenSolution) -> None:
     agree(broken.instance, broken.solution.plans)
+
+
+def test_certificate_and_checker_agree_on_robots_that_know_nothing_of_each_other_among_groups() -> None:
+    for number in range(draws(2500)):
+        instance = draw_instance(Draw(splitmix64(number)), CROWDED)
+        alone = [plan(replace(instance, robots=(robot,)), Carp()).plans for robot in instance.robots]
+        agree(instance, tuple(each for plans in alone for each in plans))
 
 
 def test_plans_that_follow_each_other_are_certified() -> None:

@@ -1,7 +1,8 @@
 """The certificate of a solution: `carp_spec` finds no rule broken, and z3 confirms the rules of robots together.
 
-For each resource, z3 searches for a tick, any whole number, at which more robots occupy it than its capacity. For each
-pair of resources between which robots move both ways, it searches for a tick at which two robots make opposite moves.
+For each resource and each group, z3 searches for a tick, any whole number, at which more robots occupy it than its
+capacity. For each pair of areas between which robots move both ways, it searches for a tick at which two robots make
+opposite moves. An area is a group of capacity 1, or a resource that is in none.
 Each robot's stays are one tracked term, so that an answer names the robots. The question is the negation of the rule:
 if z3 finds no answer, no such tick exists. This part shares no code with `carp_spec.check`, which sweeps over events
 instead. The rules of single plans and of the list of plans get no second opinion here.
@@ -9,22 +10,22 @@ instead. The rules of single plans and of the list of plans get no second opinio
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import pairwise, product
 from typing import TypeAlias
 
-from carp_spec import Instance, Plan, Resource, ResourceId, RobotId, Solution, Violation, Visit, judge
-from carp_spec.limits import refuse
+from carp_spec import Instance, Plan, ResourceId, RobotId, Solution, Violation, Visit, judge
+from carp_spec.model import Group, Move
 from carp_spec.rule import named
 from carp_verify.lemmas.smt import Bool, Int, Model, Solver, any_of, at_least, between, equal, integer
 
 Stays: TypeAlias = dict[RobotId, list[Visit]]
-Ticks: TypeAlias = dict[RobotId, list[int]]
-Pair: TypeAlias = tuple[ResourceId, ResourceId]
+Moves: TypeAlias = dict[RobotId, list[tuple[int, Move]]]
+"""The moves of each robot with their ticks."""
 
 
 @dataclass(frozen=True, slots=True)
 class Breach:
-    """A tick at which a rule is broken: all robots in the resource, or all that exchange it and another."""
+    """A tick at which a rule is broken: all robots in the resource or group, or all that exchange places."""
 
     rule: str
     robots: tuple[RobotId, ...]
@@ -39,7 +40,7 @@ class Breach:
 
 @dataclass(frozen=True, slots=True)
 class Certificate:
-    """The numbers of visited resources and of pairs with moves both ways that z3 was asked about, and the bad ticks.
+    """The numbers of visited resources and groups, and of pairs with moves both ways, and the bad ticks.
 
     If `carp_spec` finds another rule broken, there are violations, and z3 is not asked.
     """
@@ -83,9 +84,10 @@ class Terms:
 
 
 def certify(instance: Instance, solution: Solution, advance: Callable[[], None] = lambda: None) -> Certificate:
-    """Check the solution, and have z3 confirm the rules of robots together; `advance` is called for each resource.
+    """Check the solution, and have z3 confirm the rules of robots together.
 
-    Raises `smt.Undecided`, and `RuntimeError` if the checker and z3 contradict each other.
+    `advance` is called for each resource and group. Raises `smt.Undecided`, and `RuntimeError` if the checker and z3
+    contradict each other.
     """
     verdict = judge(instance, solution)
     violations = tuple(each for each in verdict.violations if not each.rule.startswith("joint/"))
@@ -100,44 +102,73 @@ def certify(instance: Instance, solution: Solution, advance: Callable[[], None] 
 def certify_together(
     instance: Instance, plans: Sequence[Plan], advance: Callable[[], None] = lambda: None
 ) -> Certificate:
-    """Ask z3 about every resource that is visited: the rules `joint/...` alone."""
-    refuse(instance, "groups", "stops")
+    """Ask z3 about every resource and group that is visited: the rules `joint/...` alone."""
     solver, terms = Solver(), Terms()
-    index = instance.graph.index
-    stays = stays_by_resource(instance, plans)
-    moves = moves_by_pair(instance, plans)
-    opposite = [(one, other) for one, other in moves if index[one] < index[other] and (other, one) in moves]
     breaches: list[Breach] = []
-    for resource, visitors in stays.items():
-        place = instance.graph.resource[resource]
-        breaches.extend(overfull(solver, terms, "joint/capacity", place, visitors))
+    places = visited(instance, plans)
+    for place in places:
+        stays = stays_in(place, plans)
+        breaches.extend(overfull(solver, terms, place, stays))
         if instance.gap:
-            breaches.extend(overfull(solver, terms, "joint/following", place, longer(visitors, instance.gap)))
+            breaches.extend(
+                overfull(solver, terms, replace(place, rule="joint/following"), longer(stays, instance.gap))
+            )
         advance()
+    moves = moves_between(instance, plans)
+    opposite = [(one, other) for one, other in moves if one <= other and (other, one) in moves]
     for one, other in opposite:
-        breaches.extend(exchanged(solver, terms, (one, other), moves[one, other], moves[other, one]))
-    return Certificate(len(stays), len(opposite), tuple(breaches))
+        breaches.extend(exchanged(solver, terms, moves[one, other], moves[other, one]))
+    return Certificate(len(places), len(opposite), tuple(breaches))
 
 
-def stays_by_resource(instance: Instance, plans: Sequence[Plan]) -> Mapping[ResourceId, Stays]:
-    """The visits to each resource of the graph, by robot."""
-    stays: dict[ResourceId, Stays] = {}
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Resources that robots occupy together, no more of them than the capacity, by the rule."""
+
+    rule: str
+    resources: frozenset[ResourceId]
+    capacity: int
+    of: str = ""
+
+
+def visited(instance: Instance, plans: Sequence[Plan]) -> list[Place]:
+    """The resources of the graph and the groups that have a visit."""
+    used = {visit.resource for plan in plans for visit in plan.visits}
+    graph = instance.graph
+    alone = [Place("joint/capacity", frozenset([each.id]), each.capacity) for each in graph.resources]
+    groups = [Place("joint/group", frozenset(each.resources), each.capacity, _named(each)) for each in graph.groups]
+    return [place for place in alone + groups if not used.isdisjoint(place.resources)]
+
+
+def _named(group: Group) -> str:
+    return "" if group.resources == (group.id,) else f" of group {group.id}"
+
+
+def stays_in(place: Place, plans: Sequence[Plan]) -> Stays:
+    """The visits to its resources, by robot."""
+    stays: Stays = {}
     for plan in plans:
         for visit in plan.visits:
-            if visit.resource in instance.graph.resource:
-                stays.setdefault(visit.resource, {}).setdefault(plan.robot, []).append(visit)
+            if visit.resource in place.resources:
+                stays.setdefault(plan.robot, []).append(visit)
     return stays
 
 
-def moves_by_pair(instance: Instance, plans: Sequence[Plan]) -> Mapping[Pair, Ticks]:
-    """The ticks of the moves from one resource of the graph to another, by robot."""
-    known = instance.graph.resource
-    moves: dict[Pair, Ticks] = {}
+def moves_between(instance: Instance, plans: Sequence[Plan]) -> Mapping[tuple[int, int], Moves]:
+    """The moves from one area of the graph to another, or within one, by robot."""
+    areas: dict[ResourceId, list[int]] = {each.id: [] for each in instance.graph.resources}
+    for number, group in enumerate(instance.graph.groups):
+        for resource in group.resources if group.capacity == 1 else ():
+            areas[resource].append(number)
+    for number, resource in enumerate(areas):
+        areas[resource] = areas[resource] or [len(instance.graph.groups) + number]
+    moves: dict[tuple[int, int], Moves] = {}
     for plan in plans:
         for visit, following in pairwise(plan.visits):
             pair = (visit.resource, following.resource)
-            if visit.resource in known and following.resource in known:
-                moves.setdefault(pair, {}).setdefault(plan.robot, []).append(following.enter)
+            if visit.resource != following.resource and set(pair) <= areas.keys():
+                for way in product(areas[visit.resource], areas[following.resource]):
+                    moves.setdefault(way, {}).setdefault(plan.robot, []).append((following.enter, pair))
     return moves
 
 
@@ -149,18 +180,26 @@ def longer(stays: Stays, gap: int) -> Stays:
     }
 
 
-def overfull(solver: Solver, terms: Terms, rule: str, resource: Resource, stays: Stays) -> Iterator[Breach]:
-    """A tick at which more robots are in the resource than its capacity, if there is one."""
+def overfull(solver: Solver, terms: Terms, place: Place, stays: Stays) -> Iterator[Breach]:
+    """A tick at which more robots are in the place than its capacity, if there is one."""
     occupies = {robot: any_of(*map(terms.in_visit, visits)) for robot, visits in stays.items()}
-    model = solver.find_model([at_least(resource.capacity + 1, list(occupies.values()))])
+    model = solver.find_model([at_least(place.capacity + 1, list(occupies.values()))])
     if model is not None:
-        reason = f"capacity {resource.capacity}"
-        yield Breach(rule, _robots_of(model, occupies), resource.id, int(model.value(terms.tick)), reason)
+        robots, tick = _robots_of(model, occupies), int(model.value(terms.tick))
+        at = next(each.resource for each in stays[robots[0]] if _covers(each, tick))
+        yield Breach(place.rule, robots, at, tick, f"capacity {place.capacity}{place.of}")
 
 
-def exchanged(solver: Solver, terms: Terms, pair: Pair, there: Ticks, back: Ticks) -> Iterator[Breach]:
-    """A tick at which two robots move opposite ways between the pair, if there is one."""
-    goes, comes = ({robot: any_of(*map(terms.is_at, ticks)) for robot, ticks in ways.items()} for ways in (there, back))
+def _covers(visit: Visit, tick: int) -> bool:
+    return visit.enter <= tick and (visit.leave is None or tick < visit.leave)
+
+
+def exchanged(solver: Solver, terms: Terms, there: Moves, back: Moves) -> Iterator[Breach]:
+    """A tick at which two robots move opposite ways between two areas, if there is one."""
+    goes, comes = (
+        {robot: any_of(*(terms.is_at(tick) for tick, _ in moves)) for robot, moves in ways.items()}
+        for ways in (there, back)
+    )
     both = {robot: any_of(goes[robot], comes[robot]) for robot in goes if robot in comes}
     movers = {**goes, **comes, **both}
     different = (
@@ -168,9 +207,15 @@ def exchanged(solver: Solver, terms: Terms, pair: Pair, there: Ticks, back: Tick
     )  # else the robot that goes is not the one that comes
     model = solver.find_model([any_of(*goes.values()), any_of(*comes.values()), *different])
     if model is not None:
-        reason = f"they exchange {pair[0]} and {pair[1]}"
-        robots = _robots_of(model, movers)
-        yield Breach("joint/exchange", robots, pair[0], int(model.value(terms.tick)), reason)
+        tick = int(model.value(terms.tick))
+        pairs = product(_moves_at(tick, there), _moves_at(tick, back))
+        one, other = next((move, opposite) for (robot, move), (another, opposite) in pairs if robot != another)
+        what = f"{one[0]} and {one[1]}" if other == one[::-1] else f"{one} and {other}"
+        yield Breach("joint/exchange", _robots_of(model, movers), one[0], tick, f"they exchange {what}")
+
+
+def _moves_at(tick: int, ways: Moves) -> list[tuple[RobotId, Move]]:
+    return [(robot, move) for robot, moves in ways.items() for at, move in moves if at == tick]
 
 
 def _robots_of(model: Model, terms: Mapping[RobotId, Bool]) -> tuple[RobotId, ...]:

@@ -15,7 +15,7 @@ from carp_verify.footprint.rules import FOOTPRINT_RULES
 from carp_verify.kernel import KernelVerdict, ask, request
 from carproof.api.judging import check
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import print_document, refuse_in, write_whole
+from carproof.command_line.files import print_document, write_whole
 from carproof.command_line.foreign import Problem, solution_files
 from carproof.command_line.options import examples, json_option, kernel_option, output_option
 from carproof.command_line.tables import print_line, print_table, say
@@ -71,9 +71,9 @@ def command(  # noqa: PLR0913 - an argument an option
 
     With --kernel the proved kernel decides, and --json prints its verdict.
 
-    With --z3 a solution that breaks no rule is looked at by other means: z3 shows for each resource that it is too
-    full at no tick at all, and for each pair of resources that no two robots exchange it. Where it cannot tell, the
-    answer is undecided.
+    With --z3 a solution that breaks no rule is looked at by other means: z3 shows for each resource and group that
+    it is too full at no tick at all, and for each pair of them that no two robots exchange it. Where it cannot tell,
+    the answer is undecided.
 
     With --footprint, vehicles of that size must keep apart: what they sweep is computed from positions in mm and from
     plans alone, in whole numbers, whatever the groups of INSTANCE.
@@ -86,7 +86,6 @@ def command(  # noqa: PLR0913 - an argument an option
     size = None if footprint is None else footprint_of(footprint)
     instance, given = problem.read(as_named=True)
     if z3:
-        refuse_in(problem.names[0], instance, "stops", "groups")
         return certified(instance, given, as_json)
     most = None if everything else MOST_LISTED
     verdict = check(instance, given, most, size)

@@ -17,13 +17,12 @@ if TYPE_CHECKING:
 
 def certified(instance: Instance, solution: Solution, as_json: bool) -> Answer:
     """Print what z3 says of a solution that `check` accepts: too full at no tick at all, and no exchange."""
-    from carp_verify.certificate import certify  # noqa: PLC0415 - loads z3
+    from carp_verify.certificate import certify, visited  # noqa: PLC0415 - loads z3
     from carp_verify.lemmas.smt import Undecided  # noqa: PLC0415
 
-    visited = {visit.resource for plan in solution.plans for visit in plan.visits} & instance.graph.resource.keys()
     started = perf_counter()
     try:
-        with progress("certifying", len(visited)) as advance:
+        with progress("certifying", len(visited(instance, solution.plans))) as advance:
             certificate = certify(instance, solution, advance)
     except Undecided as undecided:
         remark(f"Undecided: {undecided}.")
@@ -39,7 +38,7 @@ def certified(instance: Instance, solution: Solution, as_json: bool) -> Answer:
 
 def summary(certificate: "Certificate") -> str:
     """The outcome in a line."""
-    asked = f"{certificate.resources} resources and {certificate.pairs} pairs of resources"
+    asked = f"{certificate.resources} resources and groups and {certificate.pairs} pairs of them"
     if certificate.accepted:
         return f"certified: check finds no rule broken, and z3 no tick too full and no exchange in {asked}"
     if certificate.violations:

@@ -6,7 +6,7 @@ from dataclasses import replace
 from carp_spec import Carp, Instance
 from carp_spec.documents.decoding import write
 from carp_spec.documents.vectors import Vector
-from carp_spec.limits import goals_stand_alone, groups_are_absent
+from carp_spec.limits import goals_stand_alone
 from carproof.conform.cases import ASKED_OPS, Case
 from carproof.conform.judging.claims import EVERYTHING, Claims
 from carproof.conform.levels import Level
@@ -31,7 +31,7 @@ def vector_cases(ops: Sequence[str], level: Level, whole: bool, claims: Claims =
 
 
 def _is_known(instance: Instance, claims: Claims) -> bool:
-    knows_groups = claims.groups or groups_are_absent(instance)
+    knows_groups = claims.groups or not instance.graph.groups
     knows_stops = claims.stops or goals_stand_alone(instance)
     return instance.following == "allowed" and knows_groups and knows_stops
 
