@@ -18,6 +18,7 @@ from carp_experiments.measuring.crosscheck_campaign import (
 from carp_experiments.measuring.kernel_texts import FULL_TEXTS, QUICK_TEXTS, text_cases, text_report
 from carp_experiments.measuring.kernel_verdicts import FULL_VERDICTS, QUICK_VERDICTS, kernel_cases, kernel_report
 from carp_experiments.paper.map_cases import WAREHOUSE
+from carp_experiments.paper.recomputed import AGAIN, DRAWN, again_report, cases_again
 from carp_verify.kernel import program
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import print_document
@@ -49,6 +50,7 @@ F = TypeVar("F", bound=Callable[..., Any])
         "carproof experiment kernel --verdicts 100000",
         "carproof experiment texts --store texts.sqlite",
         "carproof experiment benchmark --maps maps --bounds bounds.csv",
+        "carproof experiment recomputed quality full.sqlite",
         "carproof experiment report -o report",
     )
 )
@@ -223,6 +225,37 @@ def benchmark(  # noqa: PLR0913, PLR0917 - one parameter for each option
     identity = f"benchmark of {', '.join(map(str, seconds))} s, bounds {bound_seconds} s"
     command = f"carproof experiment benchmark {' '.join(f'--seconds {each}' for each in seconds)}"
     return go("benchmark", identity, command, f"{len(cases)} cases", cases, benchmark_report, **campaign)
+
+
+@command.command("recomputed")
+@click.argument("experiment", metavar="EXPERIMENT", type=click.Choice([*AGAIN]))
+@click.argument("stored", metavar="STORED", type=TABLE)
+@click.option("--cases", "count", type=click.IntRange(min=1), default=DRAWN, show_default=True, help="How many cases.")
+@click.option("--seed", type=click.IntRange(0, 2**64 - 1), default=0, show_default=True, help="The seed of the draw.")
+@click.option("--robots", type=click.IntRange(min=1), help="How many robots the stored run has, if not in full size.")
+@campaign_options
+def recomputed(
+    experiment: str,
+    stored: Path,
+    count: int,
+    seed: int,
+    robots: int | None,
+    **campaign: Any,  # noqa: ANN401 - click's
+) -> Answer:
+    """Compute random cases of a stored run again with the reference planner.
+
+    STORED is the store of a run of EXPERIMENT. Its bounds, optima, times and polishes are left out, and of the slow
+    algorithms of 100 robots few cases are drawn, or none.
+
+    Exit codes: 0 all equal, 1 a case is not, 2 bad usage.
+    """
+    from carp_experiments.store import stored_rows  # noqa: PLC0415 - loaded with the experiment
+
+    size = robots or next(each.full.robots for each in EXPERIMENTS if each.name == experiment)
+    cases = cases_again(experiment, stored_rows(stored, f"{experiment} of {size} robots"), size, count, seed)
+    identity = f"{experiment} recomputed with seed {seed}"
+    command = f"carproof experiment recomputed {experiment} {stored.name} --cases {count} --seed {seed}"
+    return go("recomputed", identity, command, f"{count} cases of {experiment}", cases, again_report, **campaign)
 
 
 @command.command("report")

@@ -11,7 +11,7 @@ from carp_experiments.beyond.lifelong import lifelong_report, lifelong_row
 from carp_experiments.beyond.people import people_report, people_row
 from carp_experiments.beyond.streams import stream_report, stream_row
 from carp_experiments.paper.adding_time import PAPERS_MAP, time_report, time_row
-from carp_experiments.paper.conventions import conventions_row
+from carp_experiments.paper.conventions import conventions_row, nearest_row
 from carp_experiments.paper.conventions_report import conventions_report
 from carp_experiments.paper.map_cases import FULL_MAP, WAREHOUSE, MapCase
 from carp_experiments.paper.polishing import polish_report, polish_row
@@ -132,6 +132,14 @@ EXPERIMENTS = (
         Profile(100, 100, (10, FULL_MAP)),
         Profile(2, 30, (10, FULL_MAP)),
         conventions_row,
+        conventions_report,
+    ),
+    Experiment(
+        "nearest",
+        "The conventions that bring the paper's numbers out best, over more assignments.",
+        Profile(100, 100, (10, FULL_MAP)),
+        Profile(2, 30, (10, FULL_MAP)),
+        nearest_row,
         conventions_report,
     ),
     Experiment(

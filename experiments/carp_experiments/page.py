@@ -108,12 +108,19 @@ def results(stored: Path = RESULTS) -> str:
     runs = {name: read_run(path) for name in TITLES if (path := stored / f"{name}.json").exists()}
     claims = [claim for run in runs.values() for claim in claims_of(run)]
     lines = [
-        f"| {claim.claim} | **{claim.verdict}** | {claim.with_baseline or ''} | {claim.found} |\n" for claim in claims
+        f"| {claim.claim} | {with_reason(claim.verdict, claim.reason)} | "
+        f"{with_reason(claim.with_baseline or '', claim.reason_with_baseline)} | {claim.found} |\n"
+        for claim in claims
     ]
     head = "| the paper says | as published | with the baseline | we find |\n| --- | --- | --- | --- |\n"
     parts = [f"## The paper's claims\n\n{head}{''.join(lines)}\n{EXPLANATIONS}"]
     parts += [section(name, run, stored) for name, run in runs.items()]
     return "\n".join(parts)
+
+
+def with_reason(verdict: str, reason: str) -> str:
+    """A verdict in bold, or with its reason behind it; fpdf prints no cell that is both."""
+    return f"{verdict}: {reason}" if reason else f"**{verdict}**" if verdict else ""
 
 
 def section(name: str, run: Run, stored: Path) -> str:

@@ -27,7 +27,7 @@ class Store:
     opening it for another campaign is refused.
     """
 
-    def __init__(self, path: Path, campaign: str) -> None:
+    def __init__(self, path: Path, campaign: str, *, of_any_version: bool = False) -> None:
         self._path = path
         self._version = version("carproof")
         identity = f"{campaign} by carproof {self._version}"
@@ -40,7 +40,7 @@ class Store:
         except sqlite3.Error as error:
             self.close()
             raise self._unusable(error) from error
-        if known != identity:
+        if known != identity and not (of_any_version and known.startswith(f"{campaign} by carproof ")):
             self.close()
             raise self._refusal(f"it holds the results of another campaign, {known}, not of {identity}")
 
@@ -102,6 +102,15 @@ class Store:
 
     def _refusal(self, message: str) -> Refusal:
         return Refusal("request", str(self._path), "campaign/store", message)
+
+
+def stored_rows(path: Path, campaign: str) -> Mapping[str, Row]:
+    """The rows of a campaign by the keys of their cases, whichever version of carproof has computed them."""
+    store = Store(path, campaign, of_any_version=True)
+    try:
+        return dict(store.rows())
+    finally:
+        store.close()
 
 
 @contextmanager

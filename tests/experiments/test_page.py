@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from carp_experiments.page import RESULTS, results
+from carp_experiments.page import RESULTS, claims_of, read_run, results
 from carp_experiments.paper.claims import above_zero, below_zero, up_to, verdict_of
 from carp_experiments.paper.quality import Saving
 from carp_experiments.statistics import Interval
@@ -14,6 +14,14 @@ def test_the_page_shows_every_figure_and_the_tables_of_every_stored_run() -> Non
     page = results()
     assert set(re.findall(r"!\[.*?\]\(figures/(.*?)\)", page)) == {path.name for path in RESULTS.glob("*.svg")}
     assert all(path.read_text() in page for path in RESULTS.glob("*.md"))
+
+
+def test_what_is_reproduced_in_part_has_its_reason_beside_it() -> None:
+    claims = [claim for path in RESULTS.glob("*.json") for claim in claims_of(read_run(path))]
+    for claim in claims:
+        assert bool(claim.reason) == (claim.verdict == "in part")
+        assert bool(claim.reason_with_baseline) == (claim.with_baseline == "in part")
+        assert all(f": {reason} |" in results() for reason in (claim.reason, claim.reason_with_baseline) if reason)
 
 
 @pytest.mark.parametrize(

@@ -121,6 +121,19 @@ TOGETHER = tuple(
 
 CONVENTIONS = (*ALONE, *TOGETHER)
 
+NEAREST = (
+    Convention(),
+    Convention(late=True),
+    Convention(repeated=True),
+    Convention(stay=1),
+    Convention(stay=1, late=True),
+    Convention(stay=1, repeated=True),
+    Convention(stay=1, swaps=True),
+    Convention(tree="depth first"),
+    Convention(tree="random walk"),
+)
+"""Those that the screening brought nearest, for more assignments than it had, and carproof's beside them."""
+
 
 PASSES: Mapping[str, int] = {"CARP": 1, "CARP10": 10, "CARP100": 100}
 LISTED = ("Proposed_4", "Proposed_5", "Proposed_6", "Proposed_10")
@@ -134,9 +147,19 @@ LONGEST_FIRST = "LF"
 
 
 def conventions_row(case: MapCase) -> Row:
-    """For each convention and algorithm the robots planned, their total cost, and their moves."""
+    """The screening: for each convention and algorithm the robots planned, and their total cost."""
+    return row_under(CONVENTIONS, case)
+
+
+def nearest_row(case: MapCase) -> Row:
+    """The same for the nearest conventions."""
+    return row_under(NEAREST, case)
+
+
+def row_under(conventions: Sequence[Convention], case: MapCase) -> Row:
+    """For each of these conventions and each algorithm the robots planned, and their total cost."""
     results: dict[str, dict[str, tuple[int, int]]] = {}
-    for convention in CONVENTIONS:
+    for convention in conventions:
         results[convention.name] = {**rivals(case, convention.traffic), **proposed(case, convention)}
     return {"results": results}
 

@@ -9,8 +9,9 @@ import msgspec
 
 from carp_experiments.paper.claims import TENTH_MAP, Claim, quality_claims
 from carp_experiments.paper.map_cases import FULL_MAP
-from carp_experiments.paper.quality import QualitySummary, summarise
+from carp_experiments.paper.quality import QualitySummary, interval_of_means, summarise
 from carp_experiments.report import ExperimentReport, Table
+from carp_experiments.statistics import Interval
 from carp_experiments.store import Row
 
 PAPERS = {TENTH_MAP: (65, ("Proposed_6",)), FULL_MAP: (35, ("Proposed_6", "Proposed_10"))}
@@ -25,7 +26,8 @@ MEANS = ("neither fails", "own successes", "nobody fails")
 class Nearness:
     """A convention and a variant of the algorithm beside the paper.
 
-    `savings` are those of the paper's algorithms over CARP by map and kind of mean, `None` where there is no case.
+    `savings` are those of the paper's algorithms over CARP by map and kind of mean, `None` where there is no case;
+    `intervals` are those where neither fails, of the assignments' means over these algorithms.
     `broken` are the paper's comparisons that the measurements contradict; `distance` is as `conventions` defines it,
     with the mean over the assignments on which neither fails.
     """
@@ -34,6 +36,7 @@ class Nearness:
     variant: str
     assignments: int
     savings: dict[str, dict[str, float | None]]
+    intervals: dict[str, Interval | None]
     failures: dict[str, dict[str, int]]
     verdicts: dict[str, str]
     broken: int
@@ -72,6 +75,7 @@ def nearness_of(convention: str, variant: str, stored: Sequence[ConventionsRow],
         str(map): {means: saving_of(stored, convention, variant, map, means, robots) for means in MEANS}
         for map in PAPERS
     }
+    intervals = {str(map): interval_of(stored, convention, variant, map, robots) for map in PAPERS}
     failures = {
         str(map): {
             each.algorithm: each.failures
@@ -88,7 +92,7 @@ def nearness_of(convention: str, variant: str, stored: Sequence[ConventionsRow],
     known = [each for each in apart if each is not None]
     distance = sum(known) + broken if len(known) == len(apart) else None
     assignments = len({row.assignment for row in stored})
-    return Nearness(convention, variant, assignments, savings, failures, verdicts, broken, distance)
+    return Nearness(convention, variant, assignments, savings, intervals, failures, verdicts, broken, distance)
 
 
 def comparisons_of(summary: QualitySummary) -> list[Claim]:
@@ -123,6 +127,19 @@ def saving_of(
     return fmean(savings) if savings else None
 
 
+def interval_of(
+    stored: Sequence[ConventionsRow], convention: str, variant: str, map: int, robots: int
+) -> Interval | None:
+    """The interval of the actions that the paper's algorithms of a map save, where CARP and they plan all robots."""
+    names = [each + VARIANTS[variant] for each in PAPERS[map][1]]
+    saved = []
+    for found in (row.results[convention] for row in stored if row.map == map):
+        whole = {name: total for name, (planned, total) in found.items() if planned == robots}
+        saved.append([whole["CARP"] - whole[name] for name in names if name in whole and "CARP" in whole])
+    groups = [each for each in saved if each]
+    return interval_of_means(groups) if groups else None
+
+
 def distance_table(ordered: Sequence[Nearness]) -> Table:
     """Each convention with its savings and failures, the nearest first."""
     columns = ("convention", "variant", "saved, map 10", "saved, map 20", "failures, map 10", "broken", "distance")
@@ -130,8 +147,7 @@ def distance_table(ordered: Sequence[Nearness]) -> Table:
         (
             each.convention,
             each.variant,
-            " / ".join(number(each.savings[str(TENTH_MAP)][means]) for means in MEANS),
-            " / ".join(number(each.savings[str(FULL_MAP)][means]) for means in MEANS),
+            *(saved_on(each, map) for map in (TENTH_MAP, FULL_MAP)),
             " / ".join(
                 str(each.failures[str(TENTH_MAP)].get(name, "-"))
                 for name in ("CARP", "CARP10", "Proposed_6" + VARIANTS[each.variant])
@@ -147,6 +163,13 @@ def distance_table(ordered: Sequence[Nearness]) -> Table:
         "CARP10, Proposed_6; comparisons that are contradicted"
     )
     return Table("conventions", title, columns, rows, columns[2:])
+
+
+def saved_on(each: Nearness, map: int) -> str:
+    """The savings on a map, by kind of mean."""
+    first, *others = (number(each.savings[str(map)][means]) for means in MEANS)
+    interval = each.intervals[str(map)]
+    return " / ".join([first if interval is None else f"{interval:.0f}", *others])
 
 
 def claims_table(ordered: Sequence[Nearness]) -> Table:

@@ -13,7 +13,7 @@ from carp_experiments.paper.quality import ALGORITHMS, outcome, plan_all, seeded
 from carp_experiments.report import ExperimentReport, Figure, Table
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import Row
-from carp_spec import Greedy, Planner, total_cost
+from carp_spec import Greedy, Instance, Planner, total_cost
 from carp_verify.bound.rules import require_kept
 
 SIDE = 8
@@ -40,10 +40,8 @@ def gap_row(case: MapCase) -> Row:
     from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415
     from carp_optimum.bound import lower_bound  # noqa: PLC0415
     from carp_optimum.optimum import optimum  # noqa: PLC0415
-    from carproof.generate import Fleet, Grid, grid_instance  # noqa: PLC0415
 
-    grid = Grid(SIDE, SIDE, case.map, map_seed=case.assignment)
-    instance = grid_instance(grid, Fleet(robots=case.robots, seed=case.assignment))
+    instance = small_instance(case)
     fleet = PlannedFleet(instance)
     results = {}
     for name, planner in COMPARED.items():
@@ -67,6 +65,14 @@ def gap_row(case: MapCase) -> Row:
         "decided": best.decided,
         "results": results,
     }
+
+
+def small_instance(case: MapCase) -> Instance:
+    """The map of an assignment with its robots."""
+    from carproof.generate import Fleet, Grid, grid_instance  # noqa: PLC0415 - each worker loads it
+
+    grid = Grid(SIDE, SIDE, case.map, map_seed=case.assignment)
+    return grid_instance(grid, Fleet(robots=case.robots, seed=case.assignment))
 
 
 @dataclass(frozen=True, slots=True)

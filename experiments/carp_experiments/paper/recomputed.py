@@ -1,0 +1,121 @@
+"""Random cases of a stored run computed again with the reference planner, one algorithm at a time.
+
+The quick algorithms come first. The reference takes minutes for the neighbourhood planner with 100 robots, so it plans
+few cases of that, and none of larger neighbourhoods. What has no reference is left out: bounds, optima, times, polishes
+and the planner of `conventions`.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TypeAlias, cast
+
+from carp_experiments.paper.map_cases import MapCase, instance_of
+from carp_experiments.paper.quality import ALGORITHMS, seeded
+from carp_experiments.paper.related_work import FIXED, costs_of
+from carp_experiments.paper.small_gaps import COMPARED, small_instance
+from carp_experiments.report import ExperimentReport, Table
+from carp_experiments.store import Row
+from carp_spec import Carp, Greedy, Instance, LongestFirst, Neighbourhood, Planner, total_cost
+from carp_spec.permutations import shuffle, splitmix64
+
+Found: TypeAlias = Sequence[int | None]
+DRAWN = 50
+FEW = 2
+RELATED: Mapping[str, Planner] = {**FIXED, "CARP": Carp(), "LF": LongestFirst(), "greedy": Greedy()}
+AGAIN: Mapping[str, Sequence[str]] = {
+    "gap": ("CARP", "LF", "greedy", "CARP10", "Proposed_4", "Proposed_4 + baseline", "Proposed_5", "CARP100"),
+    "related": tuple(name for name in RELATED if name != "greedy"),
+    "quality": ("CARP", "LF", "CARP10"),
+    "polish": (),
+}
+"""By experiment: the algorithms that are computed again in each case drawn."""
+AGAIN_IN_FEW: Mapping[str, Sequence[str]] = {
+    "gap": ("Proposed_6", "Proposed_10", "Proposed_6 + baseline", "Proposed_10 + baseline"),
+    "related": ("greedy",),
+    "quality": ("CARP100", "Proposed_4", "Proposed_4 + baseline"),
+    "polish": ("Proposed_4",),
+}
+"""The slow ones, which are computed again in few of the cases."""
+
+
+@dataclass(frozen=True, slots=True)
+class Again:
+    """A case of a stored run, an algorithm, and what the run found."""
+
+    experiment: str
+    case: MapCase
+    algorithm: str
+    place: int
+    stored: Found
+
+    @property
+    def key(self) -> str:
+        """The algorithms in their order, so that a run that is stopped has the quick ones."""
+        return f"{self.place:02} {self.algorithm} {self.case.key}"
+
+    def run(self) -> Row:
+        """Whether the reference finds the same."""
+        found = again(self.experiment, self.case, self.algorithm, self.stored)
+        return {"algorithm": self.algorithm, "case": self.case.key, "equal": [*found] == [*self.stored]}
+
+
+def again(experiment: str, case: MapCase, algorithm: str, stored: Found) -> Found:
+    """What the reference finds: the costs of all robots' plans (`related`), or the robots planned and their total."""
+    import carp_reference  # noqa: PLC0415 - each worker loads it
+
+    if experiment == "related":
+        instance = instance_of(case)
+        return costs_of(instance, carp_reference.plan(instance, RELATED[algorithm]).plans)
+    instance = small_instance(case) if experiment == "gap" else instance_of(case)
+    planner = seeded(COMPARED[algorithm] if experiment == "gap" else ALGORITHMS[algorithm], case.assignment)
+    if isinstance(planner, Neighbourhood) and experiment != "polish":
+        instance = first_robots(instance, cast("int", stored[0]) + 1)  # the run stopped at the first without a plan
+    plans = carp_reference.plan(instance, planner).plans
+    return [len(plans), total_cost(instance, plans)]
+
+
+def first_robots(instance: Instance, count: int) -> Instance:
+    """The instance with its first robots alone."""
+    return replace(instance, robots=instance.robots[:count])
+
+
+def cases_again(experiment: str, rows: Mapping[str, Row], robots: int, count: int, seed: int) -> Sequence[Again]:
+    """The cases to compute again, drawn from the rows of a store by their keys."""
+    drawn = shuffle(sorted(rows), splitmix64(seed))[:count]
+    algorithms = [
+        *((name, drawn) for name in AGAIN[experiment]),
+        *((name, drawn[:FEW]) for name in AGAIN_IN_FEW[experiment]),
+    ]
+    return [
+        Again(experiment, case_of(rows[key], robots), name, place, results_of(rows[key])[name])
+        for place, (name, keys) in enumerate(algorithms)
+        for key in keys
+    ]
+
+
+def results_of(row: Row) -> Mapping[str, Found]:
+    """What a stored row has by algorithm."""
+    return cast("Mapping[str, Found]", row["costs"] if "costs" in row else row["results"])
+
+
+def case_of(row: Row, robots: int) -> MapCase:
+    """The case of a stored row."""
+    return MapCase(no_row, cast("int", row["map"]), cast("int", row["assignment"]), robots)
+
+
+def no_row(case: MapCase) -> Row:
+    """Nothing: the case names a map and an assignment alone."""
+    return {"case": case.key}
+
+
+def again_report(rows: Iterable[Row]) -> ExperimentReport:
+    """How many cases of each algorithm are equal; it holds if all are."""
+    stored = [*rows]
+    names = dict.fromkeys(str(row["algorithm"]) for row in stored)
+    equal = {name: [bool(row["equal"]) for row in stored if row["algorithm"] == name] for name in names}
+    cells = tuple((name, str(len(each)), str(sum(each))) for name, each in equal.items())
+    columns = ("algorithm", "cases", "equal")
+    table = Table("recomputed", "Cases computed again with the reference planner", columns, cells, columns[1:])
+    summary = {name: {"cases": len(each), "equal": sum(each)} for name, each in equal.items()}
+    others = tuple(f"not equal: {row['algorithm']}, {row['case']}" for row in stored if not row["equal"])
+    return ExperimentReport(summary, (table,), others, holds=not others)
