@@ -27,7 +27,7 @@ class Nearness:
     """A convention and a variant of the algorithm beside the paper.
 
     `savings` are those of the paper's algorithms over CARP by map and kind of mean, `None` where there is no case;
-    `intervals` are those where neither fails, of the assignments' means over these algorithms.
+    `intervals` are those where neither fails, of the assignments' means over these algorithms, if there are several.
     `broken` are the paper's comparisons that the measurements contradict; `distance` is as `conventions` defines it,
     with the mean over the assignments on which neither fails.
     """
@@ -130,14 +130,14 @@ def saving_of(
 def interval_of(
     stored: Sequence[ConventionsRow], convention: str, variant: str, map: int, robots: int
 ) -> Interval | None:
-    """The interval of the actions that the paper's algorithms of a map save, where CARP and they plan all robots."""
+    """The interval of the actions saved on a map, where CARP and the other plan all robots; of several assignments."""
     names = [each + VARIANTS[variant] for each in PAPERS[map][1]]
     saved = []
     for found in (row.results[convention] for row in stored if row.map == map):
         whole = {name: total for name, (planned, total) in found.items() if planned == robots}
         saved.append([whole["CARP"] - whole[name] for name in names if name in whole and "CARP" in whole])
     groups = [each for each in saved if each]
-    return interval_of_means(groups) if groups else None
+    return interval_of_means(groups) if len(groups) > 1 else None
 
 
 def distance_table(ordered: Sequence[Nearness]) -> Table:
