@@ -20,7 +20,8 @@ PROPOSED = ("Proposed_4", "Proposed_5", "Proposed_6", "Proposed_10")
 TENTH_MAP = 10
 COMPARABLE_PER_CENT = 1.0
 OTHER_CONVENTIONS = (
-    "fewer, but not as many; the number comes out with the baseline and robots that stay one tick longer at their goals"
+    "fewer, but not as many; the number comes out with the baseline, robots that stay one tick longer at their goals, "
+    "and starts and goals that repeat"
 )
 SOME_MAPS = "the intervals show it on some maps, but not on every one"
 FASTER = (
