@@ -23,6 +23,8 @@ svg, img { width: 100%; height: auto }
 """
 WIDTHS = {"the paper says": 20, "as published": 16, "with the baseline": 14, "we find": 50}
 """The parts of the width of a page that the columns of the claims take."""
+WIDEST, HIGHEST = 480, 500
+"""Points of a page that a figure may take."""
 ABOUT = """\
 The experiments of Hvězda, Rybecký, Kulich and Přeučil (ITSC 2018) with the planners of carproof {version}. Each
 section has the command of its run, its size, its processor time, and the digest of its rows, which depends neither on
@@ -85,10 +87,16 @@ def pdf_of(body: str, stored: Path) -> bytes:
         for name in FIGURES:
             if (stored / f"{name}.json").exists():
                 drawn |= draw_figures(stored, name, Path(place), "png")
-        printed = IMAGE.sub(lambda image: f'src="{drawn[image[1]]}" width="480"', body)
+        printed = IMAGE.sub(lambda image: f'src="{drawn[image[1]]}" width="{width_of(drawn[image[1]])}"', body)
         printed = printed.replace("<td>", '<td align="left">')
         for heading, width in WIDTHS.items():
             printed = printed.replace(f"<th>{heading}</th>", f'<th width="{width}%">{heading}</th>')
         faces = {"code": FontFace(family="DejaVu Mono", size_pt=7)}
         pdf.write_html(printed, font_family="DejaVu", tag_styles=faces, table_line_separators=True)
         return bytes(pdf.output())
+
+
+def width_of(picture: Path) -> int:
+    """The points that a picture is wide in print, so that it ends within a page; its size is in the file's head."""
+    wide, high = (int.from_bytes(picture.read_bytes()[at : at + 4]) for at in (16, 20))
+    return min(WIDEST, HIGHEST * wide // high)
