@@ -12,7 +12,7 @@ from carp_optimized.jit.compiling import RecordsExhausted, RoomExhausted, TicksE
 from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
 from carp_optimized.neighbourhood.adding import add_robot
-from carp_optimized.neighbourhood.polishing import QUEUED, TURN, play_rounds
+from carp_optimized.neighbourhood.polishing import NOW, QUEUED, TURN, play_rounds
 from carp_optimized.neighbourhood.reuse import Queries, Reuse
 from carp_optimized.queries.over_stops import STANDING
 from carp_optimized.recording import copied, enlarged, read_plan, write_plan
@@ -440,19 +440,23 @@ class PlannedFleet:
             return False
         return self._fall_back(robot, followed, now, Shuffled(options.fallback, options.seed))
 
-    def polishing(self, seed: int) -> Native[Polish]:
-        """The arrays for polishing this fleet, from the plans that it has."""
+    def polishing(self, seed: int, now: int = 0) -> Native[Polish]:
+        """The arrays for polishing this fleet at a tick, from the plans that it has."""
+        encoding.refuse_tick("$.now", now)
 
-        def find_alone(robot: int) -> int:
-            return passes.find_one(self._empty, robot, NONE, 0)  # another one, if there was too little room
+        def find_alone(robot: int) -> int:  # another `_empty`, if there was too little room
+            return passes.find_one(self._empty, robot, int(self._records[robot]) if now > 0 else NONE, now)
 
-        found = [self._call(partial(find_alone, robot)) for robot in range(len(self._records))]
-        alone = np.array(found, np.int32)
-        has_path = alone != NONE
-        least = np.zeros(alone.size, np.int64)
-        least[has_path] = [self._cost(alone[robot : robot + 1]) for robot in np.flatnonzero(has_path)]
-        polish = encoding.no_polish(copied(self._state.records), alone, least, self._state.graph.duration.size)
+        able = range(len(self._records)) if now == 0 else sorted(self.order)
+        found = np.full(len(self._records), NONE, np.int32)
+        for robot in able:
+            found[robot] = self._call(partial(find_alone, robot))
+        has_path = found != NONE
+        least = np.zeros(found.size, np.int64)
+        least[has_path] = [self._cost(found[robot : robot + 1]) for robot in np.flatnonzero(has_path)]
+        polish = encoding.no_polish(copied(self._state.records), found, least, self._state.graph.duration.size)
         polish.stream[0] = seed
+        polish.counts[NOW] = now
         return Native(polish)
 
     def polish(self, polishing: Native[Polish], rounds: int) -> int:

@@ -27,7 +27,7 @@ from carp_spec.inputs.options import require_planner, require_polish_options
 from carp_spec.inputs.values import known, require_instance
 from carp_spec.planners import BY_DEFAULT
 from carp_spec.polish_rules import last_round
-from carp_spec.requests import require_addition, require_assignment, require_query, sound_solution
+from carp_spec.requests import require_addition, require_assignment, require_query, require_tick, sound_solution
 
 if TYPE_CHECKING:
     from carp_optimized.certifying import Certifier
@@ -180,22 +180,24 @@ def polish(
     iterations: int | None = None,
     seconds: float | None = None,
     seed: int = 0,
+    now: int = 0,
     advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
 ) -> Solution:
     """Improve a solution for that many rounds or seconds; `advance` gets rounds, unplanned robots and total.
 
-    It ends earlier if no plan can be shorter. All robots are planned from their release on: none is under way. Equal
-    iterations and seed give an equal solution. The time is that of the rounds,
-    looked at between calls of `advance`, at most `ROUNDS` rounds apart.
+    It ends earlier if no plan can be shorter. Robots keep what they have done by the tick `now`; after tick 0, those
+    without a plan get none. Equal iterations and seed give an equal solution. The time is that of the rounds, looked at
+    between calls of `advance`, at most `ROUNDS` rounds apart.
     Raises `Refusal` for wrong options, for a solution that breaks a rule, and for numbers that are too large.
     """
     require_polish_options(iterations, seconds, seed)
+    require_tick(now)
     whole = sound_solution(instance, solution)
     last = last_round(iterations, seconds)
     by_robot = {each.robot: each for each in whole.plans}
     fleet = _fleet(instance)
     fleet.commit([by_robot[each] for each in whole.order])
-    polishing = fleet.polishing(seed)
+    polishing = fleet.polishing(seed, now)
     played = fleet.polish(polishing, 0)
     started = perf_counter()
     most = rounds_between_looks(whole)

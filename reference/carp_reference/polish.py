@@ -4,7 +4,7 @@ Robots without a plan come first, so polishing also repairs a solution.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from time import perf_counter
 
 from carp_reference.problem import Problem, prepare
@@ -15,7 +15,7 @@ from carp_spec.inputs.options import require_polish_options
 from carp_spec.inputs.values import known
 from carp_spec.neighbourhood_rules import distance
 from carp_spec.permutations import splitmix64
-from carp_spec.requests import sound_solution
+from carp_spec.requests import require_tick, sound_solution
 
 Plans = Mapping[RobotId, Plan]
 
@@ -29,28 +29,32 @@ class Polish:
     stream: Iterator[int]
 
 
-def polish(
+def polish(  # noqa: PLR0913 - how long, how, and when
     instance: Instance,
     solution: Solution,
     *,
     iterations: int | None = None,
     seconds: float | None = None,
     seed: int = 0,
+    now: int = 0,
     advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
 ) -> Solution:
     """Improve a solution for that many rounds or seconds; `advance` gets rounds, unplanned robots and total.
 
-    The polish ends earlier if no plan can be shorter. Equal iterations and seed give an equal solution. Raises
-    `Refusal` for wrong options or a broken rule.
+    Robots keep what they have done by the tick `now`; after tick 0, those without a plan get none. The polish ends
+    earlier if no plan can be shorter. Equal iterations and seed give an equal solution. Raises `Refusal` for wrong
+    options or a broken rule.
     """
     require_polish_options(iterations, seconds, seed)
+    require_tick(now)
     whole = sound_solution(instance, solution)
     last = rules.last_round(iterations, seconds)
     started = perf_counter()
-    problem = prepare(instance, 0)
-    alone = {robot.id: plan for robot in instance.robots if (plan := find_plan(problem, (), robot.id)) is not None}
-    polishing = Polish(problem, alone, splitmix64(seed))
     by_robot = {plan.robot: plan for plan in whole.plans}
+    problem = replace(prepare(instance, now), before=by_robot)
+    able = [robot.id for robot in instance.robots if now == 0 or robot.id in by_robot]
+    alone = {robot: plan for robot in able if (plan := find_plan(problem, (), robot)) is not None}
+    polishing = Polish(problem, alone, splitmix64(seed))
     plans: Plans = {robot: by_robot[robot] for robot in whole.order}
     turn = 0
     while turn != last and (seconds is None or perf_counter() - started < seconds):
@@ -76,7 +80,9 @@ def _round(polishing: Polish, plans: Plans, turn: int) -> Plans | None:
     weights = {"repair": unplanned, "delayed": delays}.get(kind, [int(robot in plans) for robot in everyone])
     pivot = everyone[rules.pivot_of(weights, stream)]
     members = rules.members_of(pivot, _candidates(polishing, plans, kind, pivot), everyone, stream)
-    changed = _replan(polishing.problem, plans, rules.order_of(members, kind == "repair", stream))
+    changed = _replan(
+        replace(polishing.problem, before=plans), plans, rules.order_of(members, kind == "repair", stream)
+    )
     return changed if rules.is_kept(_worth(instance, plans), _worth(instance, changed)) else plans
 
 

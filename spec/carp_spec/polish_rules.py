@@ -1,7 +1,7 @@
 """The rules of polishing, large neighbourhood search (LNS): `polish/...`.
 
 A round removes a few robots from a solution and replans them. It draws, one after the other: its kind, its pivot, its
-candidates, its members, and their order. No robot is under way.
+candidates, its members, and their order.
 """
 
 from bisect import bisect_right
@@ -73,7 +73,7 @@ def pivot_of(weights: Sequence[int], stream: Iterator[int]) -> int:
     "polish/members",
     f"The neighbourhood has {LEAST_MEMBERS} robots and a choice among {SIZES} more, but at most all that have a path: "
     "the pivot, then the first of the candidates, then robots drawn from the others that have a path, in the order of "
-    "the instance.",
+    "the instance. After tick 0 a robot without a plan counts as one without a path.",
     DESIGN,
 )
 def members_of(pivot: T, candidates: Sequence[T], everyone: Sequence[T], stream: Iterator[int]) -> list[T]:
@@ -147,9 +147,10 @@ def order_of(members: Sequence[T], is_repair: bool, stream: Iterator[int]) -> tu
 
 @rule(
     "polish/kept",
-    "Each member is planned by CARP at tick 0 against the robots outside and the members before it; one that finds "
-    "no plan is unplanned. The new plans are kept if fewer robots are unplanned than before, or equally many and the "
-    "total is not larger. The planning order is then that of the robots outside, then that of the members.",
+    "Each member is planned by CARP, at the tick at which plans are polished, against the robots outside and the "
+    "members before it: it keeps what it has done by then (`fleet/history`). One that finds no plan is unplanned. The "
+    "new plans are kept if fewer robots are unplanned than before, or equally many and the total is not larger. The "
+    "planning order is then that of the robots outside, then that of the members.",
     DESIGN,
 )
 def is_kept(before: tuple[int, int], after: tuple[int, int]) -> bool:

@@ -238,11 +238,21 @@ class Client:
         return instance, solution
 
     def forget(self) -> None:
-        instance, solution = self.rest()
+        before = self.rest()
         answer = self.server.ask(op="fleet/forget", fleet="f")
-        self.instance, self.plans = instance, {plan.robot: plan for plan in solution.plans}
+        robots = []
+        for document in answer["result"]["plans"]:
+            robot, plan = self.instance.robot[document["robot"]], self.plans[document["robot"]]
+            done = plan.visits[: len(plan.visits) - len(document["visits"])]
+            here = plan.visits[len(done)]
+            stops = robot.stops[carproof.stops_served(robot.stops[:-1], done) :]
+            robots.append(replace(robot, start=here.resource, release=here.enter, stops=stops))
+            self.plans[robot.id] = replace(plan, visits=plan.visits[len(done) :])
+        self.instance = replace(self.instance, robots=tuple(robots))
+        plans = {**self.plans}
         assert self.accept(answer)["left"] == []
-        assert {*self.plans.values()} == {*solution.plans}
+        assert self.plans == plans
+        assert self.rest() == before
 
 
 def soak(seed: int, requests: int) -> None:

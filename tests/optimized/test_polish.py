@@ -1,5 +1,7 @@
 """The optimised polish makes the reference's plans, visit for visit, and never worse ones."""
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -10,7 +12,8 @@ import carp_reference
 from carp_optimized.recording import enlarged
 from carp_optimized.state import encoding
 from carp_optimized.state.arrays import Records
-from carp_spec import Carp, Instance, Refusal, Solution, judge, total_cost
+from carp_spec import Carp, Instance, Refusal, Solution, check_update, judge, total_cost
+from carproof import polish
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances
 
@@ -18,16 +21,16 @@ SIZES = Sizes(resources=8, robots=12, groups=2)
 SEEDS = st.integers(0, 2**64 - 1)
 
 
-def both(instance: Instance, solution: Solution, iterations: int, seed: int) -> Solution:
+def both(instance: Instance, solution: Solution, iterations: int, seed: int, now: int = 0) -> Solution:
     """The polished solution, after a look at whether the two engines agree."""
     last: list[tuple[int, int, int]] = []
     readable = carp_reference.polish(
-        instance, solution, iterations=iterations, seed=seed, advance=lambda *reported: last.append(reported)
+        instance, solution, iterations=iterations, seed=seed, now=now, advance=lambda *reported: last.append(reported)
     )
     reference = last[-1:]
     last.clear()
     fast = carp_optimized.polish(
-        instance, solution, iterations=iterations, seed=seed, advance=lambda *reported: last.append(reported)
+        instance, solution, iterations=iterations, seed=seed, now=now, advance=lambda *reported: last.append(reported)
     )
     assert fast == readable
     assert not reference or last[-1] == reference[0]
@@ -45,6 +48,22 @@ def test_both_engines_polish_alike_and_never_make_it_worse(
     polished = both(planned.instance, planned.solution, iterations, seed)
     assert judge(planned.instance, polished).valid
     assert worth(planned.instance, polished) <= worth(planned.instance, planned.solution)
+
+
+@given(planned_instances(replace(SIZES, robots=6, stops=3, service=5)), st.integers(0, 25), SEEDS, st.integers(1, 20))
+def test_both_engines_keep_what_robots_have_done(
+    planned: PlannedInstance, iterations: int, seed: int, now: int
+) -> None:
+    instance, before = planned.instance, planned.solution
+    polished = both(instance, before, iterations, seed, now)
+    assert judge(instance, polished).valid
+    assert not check_update(before.plans, polished.plans, now)
+    assert {plan.robot for plan in polished.plans} == {plan.robot for plan in before.plans}
+    assert worth(instance, polished) <= worth(instance, before)
+    if before.plans:
+        annealed = polish(instance, before, seconds=0.01, seed=seed, now=now)
+        assert judge(instance, annealed).valid
+        assert not check_update(before.plans, annealed.plans, now)
 
 
 @pytest.mark.parametrize(

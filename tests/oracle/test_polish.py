@@ -7,7 +7,7 @@ import msgspec
 import pytest
 from tests.oracle.running import HEAD_ON, TWO, TWO_PLANNED, Run, corridor, save, solution
 
-from carp_spec import total_cost
+from carp_spec import check_update, total_cost
 from carp_spec.documents.instances import read_instance
 from carp_spec.documents.solutions import read_solution
 from carproof import polish
@@ -36,6 +36,24 @@ def test_polish_tells_what_it_gained_and_writes_the_plans(carproof: Run, engine:
     assert given.split() == ["given", "0", "7", "5", "40.00", "%"]
     assert polished.split()[:6] == ["polished", "0", "5", "5", "0.00", "%"]
     assert carproof("check town.json better.json").code == 0
+
+
+@pytest.mark.parametrize("engine", ["reference", "optimized"])
+def test_robots_under_way_keep_what_they_have_done(carproof: Run, engine: str) -> None:
+    assert carproof(f"polish town.json late.json --now 1 --engine {engine} -o better.json").code == 0
+    before, after = (read_solution(Path(name).read_bytes()) for name in ("late.json", "better.json"))
+    assert [visit.enter for visit in after.plans[0].visits] == [0, 1, 2]
+    assert carproof(f"polish town.json late.json --now 3 --engine {engine} -o better.json").code == 0
+    after = read_solution(Path("better.json").read_bytes())
+    assert [visit.enter for visit in after.plans[0].visits] == [0, 2, 3]
+    assert not check_update(before.plans, after.plans, 3)
+    refused = carproof("polish town.json late.json --now -1")
+    assert (refused.code, "request/now" in refused.stderr) == (2, True)
+
+
+def test_after_tick_0_a_robot_without_a_plan_gets_none(carproof: Run) -> None:
+    outcome = carproof("polish town.json one.json --json --iterations 9 --now 1")
+    assert (outcome.code, json.loads(outcome.stdout)["unplanned"]) == (1, ["r2"])
 
 
 def test_a_robot_without_a_plan_gets_one(carproof: Run) -> None:

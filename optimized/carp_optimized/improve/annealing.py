@@ -22,7 +22,7 @@ from carp_optimized.neighbourhood.polishing import CHANCE, SURE
 from carp_optimized.planners import rounds_between_looks
 from carp_spec import Instance, Refusal, Solution
 from carp_spec.inputs.options import require_polish_options
-from carp_spec.requests import sound_solution
+from carp_spec.requests import require_tick, sound_solution
 
 CYCLES, CYCLES_OF_LUCK = 8, 16
 LUCK = 2
@@ -48,24 +48,26 @@ def polish_or_anneal(
     iterations: int | None = None,
     seconds: float | None = None,
     seed: int = 0,
+    now: int = 0,
     advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
 ) -> Solution:
     """Improve a solution by large neighbourhood search; `advance` gets rounds, unplanned robots and total.
 
     With `seconds`, robots without a plan are planned first, which may take longer, and rounds may raise the total for a
     while (simulated annealing); the best plans seen are the result. Otherwise `iterations` rounds of `polish/...` are
-    played, 10,000 unless given. They never raise the total, and equal iterations and seed give an equal solution. All
-    robots are planned from their release on: none is under way. Raises `Refusal` for wrong options, for a solution that
-    breaks a rule, and for numbers that are too large.
+    played, 10,000 unless given. They never raise the total, and equal iterations and seed give an equal solution.
+    Robots keep what they have done by the tick `now`; after tick 0, those without a plan get none. Raises `Refusal` for
+    wrong options, for a solution that breaks a rule, and for numbers that are too large.
     """
     require_polish_options(iterations, seconds, seed)
+    require_tick(now)
     if seconds is None:
-        return carp_optimized.polish(instance, solution, iterations=iterations, seed=seed, advance=advance)
+        return carp_optimized.polish(instance, solution, iterations=iterations, seed=seed, now=now, advance=advance)
     whole = sound_solution(instance, solution)
-    found = improve_crowd(instance, whole, seconds, seed=seed, advance=advance)
+    found = improve_crowd(instance, whole, seconds, seed=seed, advance=advance) if now == 0 else None
     if found is not None:
         return found
-    return anneal(instance, solution, seconds, seed=seed, advance=advance)
+    return anneal(instance, solution, seconds, seed=seed, now=now, advance=advance, repairs=now == 0)
 
 
 def anneal(
@@ -74,6 +76,7 @@ def anneal(
     seconds: float,
     *,
     seed: int = 0,
+    now: int = 0,
     advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
     clock: Callable[[], float] = perf_counter,
     repairs: bool = True,
@@ -91,7 +94,7 @@ def anneal(
     by_robot = {each.robot: each for each in whole.plans}
     fleet = PlannedFleet(instance)
     fleet.commit([by_robot[each] for each in whole.order])
-    polishing = fleet.polishing(seed)
+    polishing = fleet.polishing(seed, now)
     least = int(polishing.fields.least.sum())
     played = fleet.polish(polishing, 0)
     given = plans = fleet.plans

@@ -23,7 +23,7 @@ from carp_optimized.state.arrays import BLOCK, MOST_MEMBERS, MOST_TURNS, NEVER, 
 from carp_optimized.state.natives import polish_at, state_at
 from carp_optimized.state.records import cost_of
 
-QUEUED, TURN, MARKS, CHANCE, MARKED = range(5)  # the counts
+QUEUED, TURN, MARKS, CHANCE, MARKED, NOW = range(6)  # the counts
 SURE = 1 << 16  # a chance is in parts of this
 REPAIR, DELAYED, CONTESTED, NEAR = range(4)
 LEAST_MEMBERS = 4
@@ -445,11 +445,13 @@ def plan_members(state: State, polish: Polish, size: int, missing: int, limit: i
         rest += int(polish.least[polish.members[k]])
     unplanned = 0
     cost = 0
+    now = int(polish.counts[NOW])
     for k in range(size):
         robot = int(polish.members[k])
         rest -= int(polish.least[robot])
         latest = NEVER if unplanned < missing else int(state.robots.release[robot]) + limit - cost - rest
-        record = find_plan_only(state, robot, NONE, 0, latest)
+        followed = int(polish.before[k]) if now > 0 else NONE
+        record = find_plan_only(state, robot, followed, now, latest)
         polish.chosen[k] = record
         if record == NONE:
             unplanned += 1

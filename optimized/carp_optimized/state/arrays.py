@@ -322,10 +322,10 @@ class Polish(NamedTuple):
     """The arrays for polishing.
 
     `queue` holds the robots that have a plan in planning order, and `plans` the plans by robot; `counts` how many
-    robots are in the queue, how many rounds are done, the generation of the marks, the chance that a round may raise
-    the total, and how many resources are marked. `stream[0]` is the state of the random numbers. `alone[robot]` is the
-    record, in `wishes`, of the plan that the robot has alone, `NONE` if it has no path, and `least[robot]` is its cost.
-    `has_path` says how many have one.
+    robots are in the queue, how many rounds are done, the generation of the marks, the chance that a round may
+    raise the total, how many resources are marked, and the tick by which what robots have done is kept. `stream[0]`
+    is the state of the random numbers. `alone[robot]` is the record, in `wishes`, of the plan that the robot has
+    alone, `NONE` if it has no path, and `least[robot]` is its cost. `has_path` says how many have one.
     By resource: the span of a plan, `first` to `last`, where `mark` is the generation of the marks; `marked` lists
     these resources. The candidates are in order; those that are ranked have the rank whole + rest / ticks. By place in
     the neighbourhood: the members, their plans before and their new ones. `others` is scratch by robot.

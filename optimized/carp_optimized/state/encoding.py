@@ -587,7 +587,7 @@ def no_polish(wishes: Records, alone: Ints, least: Longs, resources: int) -> Pol
     return Polish(
         queue=ints(alone.size),
         plans=ints(alone.size),
-        counts=longs(5),
+        counts=longs(6),
         stream=np.zeros(1, np.uint64),
         wishes=wishes,
         alone=alone,

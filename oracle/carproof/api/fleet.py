@@ -5,12 +5,12 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from carp_spec import Instance, Neighbourhood, Plan, Refusal, Robot, RobotId, Solution, Stop, Visit
+from carp_spec import Instance, Neighbourhood, Plan, Refusal, Robot, RobotId, Solution, Stop
 from carp_spec.execution.traces import Trace
 from carp_spec.inputs.options import require_planner
 from carp_spec.inputs.values import require_instance
 from carp_spec.instance_rules import ROBOT_RULES
-from carp_spec.plan_rules import has_ended, plan_serves_stops, stops_served
+from carp_spec.plan_rules import has_ended, stops_served
 from carp_spec.planners import BY_DEFAULT
 from carp_spec.requests import further_stops, require_tick, sound_solution
 from carp_spec.rule import DESIGN
@@ -92,26 +92,41 @@ class _Known:
         return Solution(tuple(self.plans[id] for id in self.robots), self.order)
 
     def rest(self) -> tuple[Instance, Solution]:
-        ahead = [self._ahead(robot, self.plans[id]) for id, robot in self.robots.items()]
-        plans = tuple(plan for _, plan in ahead)
-        return replace(self.empty, robots=tuple(robot for robot, _ in ahead)), Solution(plans, self.order)
+        return self._of([self._ahead(*each) for each in self._since(self.now)])
+
+    def left(self) -> tuple[Instance, Solution]:
+        """Without the visits that are over before now; moves at now may be in the way of others."""
+        return self._of(self._since(self.now - 1))
+
+    def _of(self, each: Sequence[tuple[Robot, Plan]]) -> tuple[Instance, Solution]:
+        robots, plans = tuple(robot for robot, _ in each), tuple(plan for _, plan in each)
+        return replace(self.empty, robots=robots), Solution(plans, self.order)
+
+    def _since(self, tick: int) -> list[tuple[Robot, Plan]]:
+        """Each robot in the place where it is at a tick, released as it entered it, and its plan from there."""
+        found = []
+        for id, robot in self.robots.items():
+            plan = self.plans[id]
+            place = max(_entered(plan, tick) - 1, 0)
+            here = plan.visits[place]
+            stops = robot.stops[stops_served(robot.stops[:-1], plan.visits[:place]) :]
+            kept = replace(robot, start=here.resource, stops=stops, release=here.enter)
+            found.append((kept, replace(plan, visits=plan.visits[place:])))
+        return found
 
     def _ahead(self, robot: Robot, plan: Plan) -> tuple[Robot, Plan]:
-        """The robot in the place where it is, released so late that it cannot leave by now, and its plan from there."""
-        place = _entered(plan, self.now) - 1
-        if place < 0:
-            return robot, plan
-        here, later = plan.visits[place], plan.visits[place + 1 :]
-        ends = not later and here.leave is not None
+        """The same, released so late that it cannot leave by now; of a service under way the rest is to do."""
+        here, *later = plan.visits
         ticks = robot.pace * self.empty.graph.resource[here.resource].duration
-        release = here.enter if ends else max(here.enter, self.now + 1 - ticks)
-        visits = (Visit(here.resource, release, here.leave), *later)
-        stops = robot.stops[stops_served(robot.stops[:-1], plan.visits[:place]) :]
+        release = max(here.enter, self.now + 1 - ticks)
+        if here.enter > self.now or (here.leave is not None and not later):
+            return robot, plan
+        stops = robot.stops
         if stops[0].resource == here.resource:
             left = max(stops[0].service - (release - here.enter), 0)
             stops = (replace(stops[0], service=left), *stops[1:])
-        rest = replace(robot, start=here.resource, stops=stops, release=release)
-        return rest, Plan(plan.robot, visits)
+        visits = (replace(here, enter=release), *later)
+        return replace(robot, stops=stops, release=release), replace(plan, visits=visits)
 
 
 class Fleet:
@@ -235,8 +250,8 @@ class Fleet:
             return self._take_over(core, known, changed, () if is_found else [robot], audit=audit)
 
     def forget(self) -> None:
-        """Forget what is done by the tick `now`: the fleet goes on with what `rest` shows."""
-        instance, solution = self.rest()
+        """Forget what is done by the tick `now`: robots start in the visits under way, as of when they entered them."""
+        instance, solution = self._known.left()
         core = _compiled(instance, [*in_order(solution)])
         plans = {plan.robot: plan for plan in solution.plans}
         places, ids = core.places
@@ -275,12 +290,9 @@ class Fleet:
     ) -> Change:
         """Improve the plans of the rest of the way as `carproof.polish` does; raises `Refusal` for wrong options."""
         polish = engine_named("optimized").polish
-        better = polish(*self.rest(), iterations=iterations, seconds=seconds, seed=seed)
-        plans = tuple(_joined(self._known.plans[plan.robot], plan, self.now) for plan in better.plans)
-        if any(True for plan in plans for _ in plan_serves_stops(self.instance, plan)):
-            plans = tuple(self._known.plans[plan.robot] for plan in plans)  # a service is broken off
-            better = self.solution
-        return self._replan(self.now, replace(better, plans=plans), audit=audit)
+        before = self.instance, self.solution
+        better = polish(*before, iterations=iterations, seconds=seconds, seed=seed, now=self.now)
+        return self._replan(self.now, better, audit=audit)
 
     def _replan(self, now: int, solution: Solution, *, audit: bool) -> Change:
         changed = [plan for plan in solution.plans if plan != self._known.plans[plan.robot]]
@@ -378,12 +390,3 @@ def _compiled(instance: Instance, plans: Sequence[Plan]) -> "PlannedFleet":
 def _entered(plan: Plan, now: int) -> int:
     """How many visits of a plan are entered by the tick now."""
     return sum(visit.enter <= now for visit in plan.visits)
-
-
-def _joined(before: Plan, ahead: Plan, now: int) -> Plan:
-    """The visits of a plan that are entered by now, and those of a plan of the rest of the way."""
-    count = _entered(before, now)
-    if count == 0:
-        return ahead
-    here = replace(before.visits[count - 1], leave=ahead.visits[0].leave)
-    return replace(before, visits=(*before.visits[: count - 1], here, *ahead.visits[1:]))

@@ -35,22 +35,23 @@ def certified_query(
     return certifier.certify(robot, own[-1] if own else None, now)
 
 
-def polish(
+def polish(  # noqa: PLR0913 - how long, how, and when
     instance: Instance,
     solution: Solution,
     *,
     iterations: int | None = None,
     seconds: float | None = None,
     seed: int = 0,
+    now: int = 0,
     advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
 ) -> Solution:
     """Improve a solution by large neighbourhood search; `advance` gets rounds, unplanned robots and total.
 
     With `seconds`, robots without a plan are planned first, which may take longer, and rounds may raise the total for a
     while (simulated annealing); the best plans seen are the result. Otherwise `iterations` rounds of `polish/...` are
-    played, 10,000 unless given. They never raise the total, and equal iterations and seed give an equal solution. All
-    robots are planned from their release on: none is under way. Raises `Refusal` for wrong options, for a solution that
-    breaks a rule, and for numbers that are too large.
+    played, 10,000 unless given. They never raise the total, and equal iterations and seed give an equal solution.
+    Robots keep what they have done by the tick `now`; after tick 0, those without a plan get none. Raises `Refusal` for
+    wrong options, for a solution that breaks a rule, and for numbers that are too large.
     """
     polished = engine_named(None).polish
-    return polished(instance, solution, iterations=iterations, seconds=seconds, seed=seed, advance=advance)
+    return polished(instance, solution, iterations=iterations, seconds=seconds, seed=seed, now=now, advance=advance)

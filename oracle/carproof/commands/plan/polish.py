@@ -5,15 +5,15 @@ from time import perf_counter
 
 import click
 
-from carp_spec import Instance, Solution, total_cost, violations_of
+from carp_spec import Instance, Solution, check_update, total_cost, violations_of
 from carp_spec.documents.solutions import write_solution
 from carp_spec.inputs.options import require_polish_options
 from carp_spec.polish_rules import ITERATIONS, last_round
-from carp_spec.requests import sound_solution
+from carp_spec.requests import require_tick, sound_solution
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import InputFile, naming, read_file, refuse_two_standard_inputs
 from carproof.command_line.foreign import Problem, solution_files
-from carproof.command_line.options import examples, gives_plans
+from carproof.command_line.options import examples, gives_plans, now_option
 from carproof.command_line.output import show_unplanned, write_result
 from carproof.command_line.tables import print_table
 from carproof.engines import engine_named, repaired, sum_of_shortest_paths, warm
@@ -28,6 +28,7 @@ COLUMNS = ("plans", "unplanned", "total cost", "bound", "gap", "rounds", "time")
         "carproof polish town.json plans.json -o better.json",
         "carproof polish town.json plans.json --seconds 5 -o better.json",
         "carproof polish town.json plans.json --iterations 2000 --seed 7",
+        "carproof polish town.json plans.json --now 12 -o better.json",
         "carproof polish town.json plans.json --bound certificate.json",
         "carproof polish --map town.map --scen town.scen result.txt -o better.json",
     ),
@@ -40,6 +41,7 @@ COLUMNS = ("plans", "unplanned", "total cost", "bound", "gap", "rounds", "time")
     help="For how long, in place of a number of rounds; to plan robots that are left out may take longer.",
 )
 @click.option("--seed", type=int, default=0, help="The seed of all choices.")
+@now_option
 @click.option("--bound", type=InputFile(), help="The certificate of a lower bound, of `carproof bound`.")
 @gives_plans
 def command(  # noqa: PLR0913 - one parameter for each argument and option
@@ -48,6 +50,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     iterations: int | None,
     seconds: float | None,
     seed: int,
+    now: int,
     bound: str | None,
     engine: str | None,
     output: Path | None,
@@ -55,10 +58,13 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 ) -> Answer:
     """Improve SOLUTION, plans for INSTANCE, round by round; robots without a plan get one, if it can be found.
 
-    SOLUTION is in any format that check reads (--from); the result is carproof's document. This is large neighbourhood
-    search: a round removes a few robots, replans them, and keeps the new plans if they are not worse. All robots are
-    planned from their release on: none is under way. Equal --iterations and --seed give equal plans. The lower bound is
-    the sum of the shortest paths, or that of --bound, which is verified first.
+    SOLUTION is in any format that check reads (--from); the result is carproof's document. This is large
+    neighbourhood search: a round removes a few robots, replans them, and keeps the new plans if they are not worse.
+    Equal --iterations and --seed give equal plans. The lower bound is the sum of the shortest paths, or that of
+    --bound, which is verified first.
+
+    With --now, robots are under way: all keep what they have done by that tick, those that have no plan get none, and
+    the lower bound is about whole plans all the same.
 
     With --seconds, rounds may raise the total for a while (simulated annealing), and the best plans seen are the
     result; --engine keeps to rounds that never raise it. Robots that are left out are planned together with others, in
@@ -68,6 +74,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     """
     refuse_two_standard_inputs(*problem.names, bound or "")
     require_polish_options(iterations, seconds, seed)
+    require_tick(now)
     instance, given = problem.read()
     with naming(problem.solution or ""):
         before = sound_solution(instance, given)
@@ -84,11 +91,11 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
             show(rounds, found_so_far(total, least, unplanned))
 
         polish = engine_named(engine).polish
-        after = polish(instance, before, iterations=iterations, seconds=seconds, seed=seed, advance=advance)
-        if seconds is None:
+        after = polish(instance, before, iterations=iterations, seconds=seconds, seed=seed, now=now, advance=advance)
+        if seconds is None and now == 0:
             after = repaired(instance, after)
     time = perf_counter() - started
-    for violation in violations_of(instance, after.plans):
+    for violation in (*violations_of(instance, after.plans), *check_update(before.plans, after.plans, now)):
         raise AssertionError(violation)
     write_result(write_solution(after), output, as_json)
     if not as_json:

@@ -117,7 +117,7 @@ class FleetForgetRequest:
 
 
 def fleet_forget(request: FleetForgetRequest, session: Session) -> FleetDocument:
-    """Forget what is done by now: the fleet goes on with what `fleet/rest` shows, and its plans are these."""
+    """Forget what is done by now: stops that are served, and all visits but those under way and to come."""
     fleet = _named(request.fleet, session)
     fleet.forget()
     return _document(fleet, Change(fleet.now, fleet.solution.plans, (), ()))

@@ -142,17 +142,19 @@ def assign(request: AssignRequest, engine: Engine) -> AssignDocument:
 
 @dataclass(frozen=True, slots=True)
 class PolishRequest:
-    """A solution to improve."""
+    """A solution to improve; robots keep what they have done by the tick `now`."""
 
     instance: Instance
     solution: Solution
+    now: int = 0
     options: PolishOptions = field(default_factory=PolishOptions)
 
 
 def polish(request: PolishRequest, engine: Engine) -> Solution:
-    """Improve a solution, for a number of rounds or for a time."""
+    """Improve a solution, for a number of rounds or for a time; after tick 0 robots without a plan get none."""
+    require_tick(request.now, "$.now")
     before = sound_within(request.instance, request.solution)
     if request.options.seconds is not None:
         warm()
     with inside("$.instance"):
-        return engine.polish(request.instance, before, **asdict(request.options))
+        return engine.polish(request.instance, before, now=request.now, **asdict(request.options))
