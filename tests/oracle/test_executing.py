@@ -18,7 +18,7 @@ from carproof.execution.simulation import DRIVERS, execute, random_delays
 from carproof.execution.untangling import untangle
 from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances
 
-SIZES = Sizes(resources=5, robots=5)
+SIZES = Sizes(resources=5, robots=5, stops=3, service=4)
 
 
 TRAIN = ["bc", "ab"]

@@ -16,7 +16,7 @@ from carproof.execution.giving_way import give_way, history
 from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances
 
 REFERENCE = engine_named("reference")
-SIZES = Sizes(resources=6, robots=5)
+SIZES = Sizes(resources=6, robots=5, stops=3, service=5)
 
 
 EAST = [["a", 0, 1], ["b", 1, 2], ["c", 2, 3], ["d", 3, 4]]

@@ -18,7 +18,7 @@ from carproof.testing.strategies import Sizes, planned_instances
 @st.composite
 def delayed(draw: st.DrawFn) -> tuple[Instance, Solution, tuple[Delay, ...]]:
     """A solution and delays of some visits that are no robot's last."""
-    case = draw(planned_instances(Sizes(resources=4, robots=4, groups=2)))
+    case = draw(planned_instances(Sizes(resources=4, robots=4, groups=2, stops=3, service=4)))
     places = [(plan.robot, place) for plan in case.solution.plans for place in range(len(plan.visits) - 1)]
     chosen = draw(st.lists(st.sampled_from(places), max_size=4, unique=True)) if places else []
     return case.instance, case.solution, tuple(Delay(*node, draw(st.integers(1, 4))) for node in chosen)

@@ -18,7 +18,7 @@ from carp_spec.execution.traces import Trace
 from carp_spec.joint_rules import following_is_avoided
 from carproof.testing.strategies import PlannedInstance, Sizes, instances, planned_instances
 
-SIZES = Sizes(resources=4, robots=4, groups=2)
+SIZES = Sizes(resources=4, robots=4, groups=2, stops=3, service=4)
 
 
 @st.composite
