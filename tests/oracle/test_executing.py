@@ -223,7 +223,7 @@ def test_untangled_plans_are_lawful_and_can_be_followed_in_order(case: PlannedIn
 
 
 @settings(max_examples=draws(60), deadline=None)
-@given(planned_instances(SIZES))
+@given(planned_instances(Sizes(resources=5, robots=5)))
 def test_who_switches_follows_the_order_that_came_of_it(case: PlannedInstance) -> None:
     instance, solution = case.instance, case.solution
     delays = random_delays(solution, 300_000, 5, 1)
