@@ -223,19 +223,21 @@ def test_untangled_plans_are_lawful_and_can_be_followed_in_order(case: PlannedIn
 
 
 @settings(max_examples=draws(60), deadline=None)
-@given(planned_instances(Sizes(resources=5, robots=5)))
+@given(planned_instances(SIZES))
 def test_who_switches_follows_the_order_that_came_of_it(case: PlannedInstance) -> None:
     instance, solution = case.instance, case.solution
     delays = random_delays(solution, 300_000, 5, 1)
-    order, switching = (execute(instance, solution, driver, delays) for driver in ("order", "switching"))
-    if order.standing:
+    switching = execute(instance, solution, "switching", delays)
+    if switching.standing:
         return
     assert not trace_violations(instance, switching.followed, switching.trace)
     assert not {each.rule for each in violations_of(instance, switching.trace.plans)} & {
         "joint/capacity",
         "joint/exchange",
     }
-    assert sum(switching.late.values()) <= sum(order.late.values())
+    # what a switch gains can be lost to a delay that comes later: with one delay nothing can
+    order, once = (execute(instance, solution, driver, delays[:1]) for driver in ("order", "switching"))
+    assert sum(once.late.values()) <= sum(order.late.values())
 
 
 def test_nobody_switches_to_park_in_the_way() -> None:
