@@ -235,9 +235,6 @@ def test_who_switches_follows_the_order_that_came_of_it(case: PlannedInstance) -
         "joint/capacity",
         "joint/exchange",
     }
-    # what a switch gains can be lost to a delay that comes later: with one delay nothing can
-    order, once = (execute(instance, solution, driver, delays[:1]) for driver in ("order", "switching"))
-    assert sum(once.late.values()) <= sum(order.late.values())
 
 
 def test_nobody_switches_to_park_in_the_way() -> None:
