@@ -39,7 +39,7 @@ from carp_optimized.state.arrays import (
 from carp_optimized.state.records import keep_records
 from carp_spec import FixedPaths, Instance, Neighbourhood, Plan, Refusal, Robot, RobotId, Shuffled
 from carp_spec.inputs.values import require_instance
-from carp_spec.limits import refuse
+from carp_spec.limits import refuse_stops
 from carp_spec.permutations import shuffle, splitmix64
 
 T = TypeVar("T")
@@ -384,7 +384,7 @@ class PlannedFleet:
 
     def fixed_paths(self, options: FixedPaths) -> None:
         """Plan all robots in the order given, as if there were no plans yet, each on the best of a few paths."""
-        refuse(self.instance, "stops")
+        refuse_stops(self.instance)
         self.clear()
         for robot in range(len(self._records)):
             self.add_on_path(robot, self.paths(robot, options))

@@ -10,7 +10,7 @@ from carp_reference.orderings import Plans
 from carp_reference.problem import Problem, backward_graph
 from carp_reference.query import find_plan
 from carp_spec import FixedPaths, Move, Plan, ResourceId, Robot, plan_cost
-from carp_spec.limits import refuse
+from carp_spec.limits import refuse_stops
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -20,7 +20,7 @@ Path = tuple[ResourceId, ...]
 
 def fixed_paths(problem: Problem, options: FixedPaths) -> Plans:
     """Plan the robots in the order given, each on its best path, the first of equals."""
-    refuse(problem.instance, "stops")
+    refuse_stops(problem.instance)
     paths_of = shortest_paths if options.paths == "shortest" else disjoint_paths
     plans: list[Plan] = []
     for robot in problem.instance.robots:

@@ -12,7 +12,7 @@ import msgspec
 
 from carp_spec import Instance, Refusal, Rule
 from carp_spec.documents.instances import instance_document
-from carp_spec.limits import refuse
+from carp_spec.limits import refuse_stops
 from carp_spec.rule import DESIGN, rule
 
 PROGRAM: Final = "carproof-kernel"
@@ -96,7 +96,7 @@ def program() -> str:
 def request(op: str, instance: Instance, **documents: object) -> bytes:
     """One line that asks the kernel; raises `Refusal` if it does not decide the question about such an instance."""
     if op == "verify-bound":
-        refuse(instance, "stops")
+        refuse_stops(instance)
     return msgspec.json.encode({"op": op, "instance": instance_document(instance), **documents}) + b"\n"
 
 

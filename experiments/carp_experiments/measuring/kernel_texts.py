@@ -22,7 +22,7 @@ from carp_spec.documents.decoding import require_json
 from carp_spec.documents.instances import digest, read_instance
 from carp_spec.documents.query_certificates import QueryCertificateDocument, read_query_certificate
 from carp_spec.documents.solutions import read_solution, solution_document
-from carp_spec.limits import refuse
+from carp_spec.limits import refuse_stops
 from carp_spec.permutations import splitmix64
 from carp_verify.bound.verify import verify_bound
 from carp_verify.kernel import KernelVerdict, is_answer, replies, request, verdict_of
@@ -103,7 +103,7 @@ def decided(text: bytes) -> Decided:
         decide = QUESTIONS[asked.op, tuple(name for name in DOCUMENTS if getattr(asked, name) is not ABSENT)]
         instance = read_instance(bytes(asked.instance))
         if asked.op == "verify-bound":
-            refuse(instance, "stops")
+            refuse_stops(instance)
         answer = decide(instance, asked)
     except (Refusal, msgspec.DecodeError, KeyError):
         return Decided("bad input")

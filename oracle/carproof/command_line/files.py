@@ -14,7 +14,6 @@ from click.shell_completion import CompletionItem
 from carp_spec import Instance, Refusal, Solution
 from carp_spec.documents.instances import read_instance
 from carp_spec.documents.solutions import read_solution
-from carp_spec.limits import Feature, refuse
 from carp_spec.requests import sound_solution
 from carproof.formats.layouts import layout_named
 
@@ -142,12 +141,6 @@ def naming(name: str) -> Iterator[None]:
         if refusal.kind == "option":
             raise
         raise click.ClickException(f"{shown(name)}: {refusal}") from refusal
-
-
-def refuse_in(name: str, instance: Instance, *features: Feature) -> None:
-    """Refuse the instance of that file if it has one of the features, for commands that do not know them."""
-    with naming(name):
-        refuse(instance, *features)
 
 
 def shown(name: str) -> str:

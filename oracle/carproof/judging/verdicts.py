@@ -9,7 +9,7 @@ from carp_spec.documents.bounds import BoundDocument
 from carp_spec.documents.instances import read_instance
 from carp_spec.documents.query_certificates import QueryCertificateDocument
 from carp_spec.documents.solutions import solution_document
-from carp_spec.limits import refuse
+from carp_spec.limits import refuse_stops
 from carp_verify.bound.rules import ContradictionError, is_about
 from carp_verify.bound.rules import size_fits as bound_size_fits
 from carp_verify.kernel import KernelVerdict, UndecidedError, ask, find_program, is_answer, request
@@ -97,7 +97,7 @@ def verify_proof(folder: Path, instance: Instance | None, kernel: bool) -> "tupl
 
 def _proof_by_kernel(proof: "ProofFiles", verified: "Verified") -> str:
     """The kernel's name, if its formula of a smaller total is refuted and it finds the plans lawful."""
-    refuse(read_instance(proof.contents["instance.json"]), "stops")
+    refuse_stops(read_instance(proof.contents["instance.json"]))
     names = ("instance.json", "manifest.json", "beat.lrat")
     answer = ask_about_proof({name: proof.contents[name] for name in names if name in proof.contents})
     if (answer.accepted, answer.bound) != (True, verified.cost):

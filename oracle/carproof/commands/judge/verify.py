@@ -9,14 +9,15 @@ from carp_spec import Instance
 from carp_spec.documents.bounds import read_bound
 from carp_spec.documents.decoding import write
 from carp_spec.documents.query_certificates import read_query_certificate
+from carp_spec.limits import refuse_stops
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import (
     InputFile,
+    naming,
     print_document,
     read_file,
     read_instance_file,
     read_solution_file,
-    refuse_in,
     refuse_two_standard_inputs,
 )
 from carproof.command_line.options import examples, json_option, kernel_option
@@ -75,7 +76,8 @@ def command(*, files: tuple[str, ...], instance: str | None, kernel: bool, as_js
         _refuse("a certificate needs its instance")
     problem = read_instance_file(others[0])
     if kernel and len(others) == 1:
-        refuse_in(others[0], problem, "stops")
+        with naming(others[0]):
+            refuse_stops(problem)
     if len(others) > 1:
         return _query(problem, others[1], file, kernel, as_json)
     return _bound(problem, file, kernel, as_json)
