@@ -147,17 +147,20 @@ class PlannedFleet:
 
     def dismiss(self, robots: Sequence[int]) -> None:
         """Forget robots, with the plans of those that have one; others may get their indices."""
-        if not robots:
-            return
-        gone = np.array(robots, np.int32)
-        held = self._records[gone]
-        self._withdraw(held[held != NONE])
-        order = self._order[~np.isin(self._order, gone)]
-        self._hold(order, self._records[order])
+        self.withdraw(robots)
         for index in robots:
             del self._index[self._ids[index]]
             self._vacant.append(index)
             encoding.forget_stops(self._state, index)
+
+    def withdraw(self, robots: Sequence[int]) -> None:
+        """Take the plans of robots away, of those that have one."""
+        if robots:
+            gone = np.array(robots, np.int32)
+            held = self._records[gone]
+            self._withdraw(held[held != NONE])
+            order = self._order[~np.isin(self._order, gone)]
+            self._hold(order, self._records[order])
 
     @property
     def places(self) -> tuple[Ints, list[RobotId]]:

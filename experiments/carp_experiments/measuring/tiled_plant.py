@@ -8,7 +8,9 @@ from collections.abc import Callable, Iterator
 from os import times
 
 import carp_optimized
-from carp_optimized.improve.anytime import plan_within
+from carp_optimized.fleet import PlannedFleet
+from carp_optimized.improve.anytime import nearest_first, plan_within
+from carp_optimized.improve.holding import plan_holding_starts
 from carp_spec import Carp, Instance, Solution, judge
 from carproof.layouts import Settings, import_layout
 
@@ -16,7 +18,8 @@ PITCH = 5000
 """Between two crossings, in mm."""
 TILES = 12
 """In a row, and in a column."""
-FLEETS = (125, 250, 500, 1000)
+FLEETS = ((100, 12), (300, 12), (1000, 12), (3000, 21))
+"""Robots, and tiles in a row: bays for 3,000 take a larger plant."""
 SECONDS = 10
 
 
@@ -56,12 +59,14 @@ def tiled_instance(robots: int, tiles: int = TILES) -> Instance:
     return import_layout(tiled_plant(tiles), "tiles.xml", settings=settings).instance
 
 
-def _row(robots: int) -> str:
-    """The numbers of a fleet: its plans by CARP alone, and within ten seconds."""
-    instance = tiled_instance(robots)
+def _row(robots: int, tiles: int) -> str:
+    """The numbers of a fleet: its plans by CARP alone, where each holds its start, and within ten seconds."""
+    instance = tiled_instance(robots, tiles)
+    by_way = nearest_first(PlannedFleet(instance), lambda: True)
     row: list[object] = [robots, len(instance.graph.resources), len(instance.graph.groups)]
     planners: tuple[Callable[[], Solution], ...] = (
         lambda: carp_optimized.plan(instance, Carp()),
+        lambda: plan_holding_starts(instance, by_way, lambda _: True),
         lambda: plan_within(instance, seconds=SECONDS),
     )
     for make in planners:
@@ -81,6 +86,6 @@ def _processor_seconds() -> float:
 
 
 if __name__ == "__main__":
-    carp_optimized.plan(tiled_instance(1, 1), Carp())  # compiles
-    for count in FLEETS:
-        print(_row(count), flush=True)  # noqa: T201 - the table
+    _row(8, 1)  # compiles
+    for count, size in FLEETS:
+        print(_row(count, size), flush=True)  # noqa: T201 - the table

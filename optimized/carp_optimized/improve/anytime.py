@@ -1,8 +1,9 @@
 """Plans in the time that a person has: the best ones that can be had in it.
 
 Robots that move a step a tick (classical MAPF) are planned by `carp_optimized.improve.planning`, which looks at the
-clock after each few milliseconds. All others are planned by CARP, the shortest way first, as long as there is time, and
-then by a repair and an annealing, if there is enough time for these. Nothing here is trusted: the law judges the plans.
+clock after each few milliseconds. All others are planned by CARP, the shortest way first, as long as there is time; if
+some get no plan, once more, where each holds its start until it is planned. Then follow a repair and an annealing, if
+there is enough time for these. Nothing here is trusted: the law judges the plans.
 """
 
 from collections.abc import Callable
@@ -14,6 +15,7 @@ import carp_optimized
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.improve.annealing import anneal
 from carp_optimized.improve.crowds import crowd_of, near
+from carp_optimized.improve.holding import plan_holding_starts
 from carp_optimized.improve.planning import Found, plan_crowd, time_of_visit
 from carp_spec import Instance, Solution, total_cost
 from carp_spec.documents.solutions import visits_document
@@ -89,19 +91,28 @@ def find_within(
 
 def _first_plans(instance: Instance, spent: Callable[[], float], seconds: float | None, visit: float) -> Solution:
     """The plans of CARP, the shortest way first, for as many robots as there is time for."""
+
+    def goes_on(visits: int) -> bool:
+        return seconds is None or spent() + visit * visits < seconds
+
     fleet = PlannedFleet(instance)
     visits = 0
-    for robot in _nearest_first(fleet, lambda: seconds is None or SORTING * spent() < seconds):
-        if seconds is not None and spent() + visit * visits >= seconds:
+    order = nearest_first(fleet, lambda: seconds is None or SORTING * spent() < seconds)
+    for robot in order:
+        if not goes_on(visits):
             break
         plan = fleet.find(robot, None, 0)
         if plan is not None:
             fleet.commit([plan])
             visits += len(plan.visits)
+    if len(fleet.order) < len(order) and (seconds is None or 2 * spent() < seconds):
+        other = plan_holding_starts(instance, order, goes_on)
+        if len(other.plans) > len(fleet.order):
+            return other
     return Solution.of(instance, fleet.plans)
 
 
-def _nearest_first(fleet: PlannedFleet, goes_on: Callable[[], bool]) -> list[int]:
+def nearest_first(fleet: PlannedFleet, goes_on: Callable[[], bool]) -> list[int]:
     """The robots by their shortest ways, or about so if there is no time to look for these."""
     ways = []
     for robot in range(len(fleet.instance.robots)):
