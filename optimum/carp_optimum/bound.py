@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 SCALE = 1 << 16
 FIRST_AIM, NEXT_AIM, FINAL_AIM = 10, 50, 1024
 """Parts of the best bound: the largest aims at the beginning, after new claims, and when all claims are proved."""
+LARGE_AIM, LARGE_FIRST = SCALE << 4, 100
+"""A first aim above this many parts of a tick is this part of the best bound instead, but no less than that."""
 ROUGH_AIM = SCALE >> 4
 LARGE = 16384  # parts of the best bound: the last aim before new claims, where that is more than the rough one
 FINE_AIM = SCALE >> 10
@@ -122,7 +124,7 @@ def _by_prices(
 
     report(0, search.best)
     with suppress(TimeOver):
-        gain = search.best // FIRST_AIM
+        gain = min(search.best // FIRST_AIM, max(search.best // LARGE_FIRST, LARGE_AIM))
         if seen:
             with suppress(TimeOver):
                 climb(gain, first)

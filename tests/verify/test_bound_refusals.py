@@ -45,7 +45,7 @@ def sized(change: str) -> tuple[Instance, BoundDocument]:
 @pytest.mark.parametrize(
     ("change", "limit", "size", "path"),
     [
-        ("robots", "LARGEST_TABLE", 3 * 6, "$.robots"),
+        ("robots", "LARGEST_RESTS", 3 * 6, "$.robots"),
         ("cuts", "LARGEST_TABLE", 2 * 2 * 6, "$.cuts"),
         ("prices", "LARGEST_TABLE", 30 * 2, "$.resources"),
         ("cuts", "LARGEST_FORMULA", 2 * 97, "$.cuts[1]"),

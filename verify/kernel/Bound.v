@@ -72,13 +72,14 @@ Definition prices_are_different (c : certificate) : bool :=
   Triples.distinct (flat_map (fun x => match key_exchange x with Some k => [k] | None => [] end) (prices c)) &&
   Pairs.distinct (map (fun x => (priced_group x, group_tick x)) (group_prices c)).
 
-(** bound/size: tables have 20,000,000 entries at most: of robots, and of those of cuts and deadlines, by resource, of the
-    resources of groups with prices, and of priced resources by tick, up to the last price. *)
+(** bound/size: robots by resources are 400,000,000 at most. Tables have 20,000,000 entries at most: of the robots of cuts
+    and deadlines by resource, of the resources of groups with prices, and of priced resources by tick, up to the last
+    price. *)
 Definition size_accepted (i : instance) (c : certificate) : bool :=
   let fits n m := n * m <=? 20000000 in
   let count {A} (l : list A) := total_of (fun _ => 1) l in
   let all := count (resources i) in
-  fits (count (robots i)) all &&
+  (count (robots i) * all <=? 400000000) &&
   fits (total_of (fun k => count (members k)) (cuts c)) all &&
   fits (total_of (fun g => count (deadlines g)) (groups c)) all &&
   fits (total_of (fun x => count (prices_within i x)) (group_prices c)) 1 &&

@@ -13,7 +13,7 @@ from carp_spec import Instance, Refusal
 from carp_verify.bound.rules import LARGEST_TABLE, size_fits
 
 LARGEST_ARRAY = 100_000_000  # entries of a table of counts
-LARGEST_PRICED = 25_000_000  # entries of a table of prices, of which there are about a dozen
+LARGEST_PRICED = 15_000_000  # entries of a table of prices, of which there are about a dozen
 N = TypeVar("N", bound=np.generic)
 
 
@@ -75,7 +75,10 @@ def market_of(instance: Instance, graph: Graph, requests: Requests, longest: int
     courses = Courses(wide, wide, short, short, np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(2, np.int64))
     ways = Ways(np.zeros(0, np.int32), empty, empty)
     charges = Charges(wide, wide, empty, wide, empty)
-    return Market(graph, requests, prices, charges, ways, usage, courses, scratch, 0, 1, instance.after_goal == "park")
+    is_even = bool((graph.duration == graph.duration[:1]).all())
+    return Market(
+        graph, requests, prices, charges, ways, usage, courses, scratch, 0, 1, instance.after_goal == "park", is_even
+    )
 
 
 def moves_back(instance: Instance) -> Mapping[int, int]:

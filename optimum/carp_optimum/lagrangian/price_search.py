@@ -36,7 +36,7 @@ from carp_optimum.lagrangian.priced_paths import begin_ways, find_rests, find_wa
 from carp_optimum.lagrangian.usage import count_ways
 from carp_spec import Instance, Refusal, ResourceId, RobotId
 from carp_spec.documents.bounds import DeadlinesDocument
-from carp_verify.bound.rules import LARGEST_TABLE, LONGEST_STAY, stay_is_searched
+from carp_verify.bound.rules import LARGEST_RESTS, LARGEST_TABLE, LONGEST_STAY, stay_is_searched
 
 TICKS_BEYOND = 32  # of the horizon beyond the last arrival of a robot that nothing delays
 DELAYS = 64
@@ -47,6 +47,12 @@ ENOUGH, LEAST_ENOUGH = 32, 4096
 """Parts of the aim, and of the best bound: patience begins again where both are gained.
 
 On a spanning tree the bound rises slowly and long, in steps that are small beside the aim.
+"""
+OVERSHOT, LEAST_PARTS = 4, 8192
+"""A first step that loses more than this part of the aim shows that the aim is too high: then this part is aimed for.
+No less than the second part of the bound is.
+
+On a large map robots have many ways that are as short, and prices that are much too high chase them from one to others.
 """
 SPAN = 200  # steps
 PART = 32  # robots between two looks at the clock
@@ -72,7 +78,7 @@ class Point(NamedTuple):
 
 
 class PriceSearch:
-    """Prices of an instance; `best` is the best bound found with them, in parts of a tick.
+    """Prices of an instance; `best` is the best bound found with them, in parts of a tick, `shortest` that without.
 
     Deadlines say that one of their members does not keep its own; `fees` are their prices.
     """
@@ -83,7 +89,7 @@ class PriceSearch:
         self.longest = 0
         refuse_what_is_too_large(instance)
         robots, resources = len(instance.robots), len(instance.graph.resources)
-        refuse_table("$.robots", "robots times resources", robots * resources)
+        refuse_table("$.robots", "robots times resources", robots * resources, LARGEST_RESTS)
         self.instance = instance
         self.scale = scale
         graph = encode_graph(instance)
@@ -108,7 +114,9 @@ class PriceSearch:
         self.fees = np.zeros(0, np.int64)
         self._course_of_fees = np.zeros(0, np.int64)
         self._flat, _ = flattened([], 0)
+        self._is_charged = False
         self.best = self._bound()
+        self.shortest = self.best
         self._kept = self._point()
         self.count = 0
 
@@ -155,6 +163,9 @@ class PriceSearch:
     def _charge(self) -> None:
         """Fill the tables of what an arrival costs each robot, by its delay, and of what it pays on its way."""
         requests, flat = self.market.requests, self._flat
+        if len(self.deadlines) == 0 and self._is_charged:
+            return  # nothing has changed
+        self._is_charged = True
         cost, least, _, fee, _ = self.market.charges
         cost[:] = 0
         delay = np.minimum(flat.arrival - requests.earliest[flat.robot], self.market.delays)
@@ -190,6 +201,7 @@ class PriceSearch:
         fee = np.zeros((len(rows) + 1, resources), np.int64)
         self.market = self.market._replace(charges=charges_of(row, fee, self.market.delays))
         self.native = Native(self.market)
+        self._is_charged = False
         none = np.zeros(len(deadlines), np.int64)
         self.fees = np.concatenate([self.fees, none])
         self._course_of_fees = np.concatenate([self._course_of_fees, none])
@@ -293,10 +305,12 @@ class PriceSearch:
             if self.best - before > max(aim // ENOUGH, self.best // LEAST_ENOUGH):
                 failures = 0
                 before = self.best
-            if failures > PATIENCE:
+            is_high = aim > self.best // LEAST_PARTS
+            overshot = is_high and self.best == self.shortest and (self.best - bound) * OVERSHOT > aim
+            if overshot or failures > PATIENCE:
                 failures = 0
                 before = self.best
-                aim = aim * 3 // 4
+                aim = min(aim, max(aim // OVERSHOT, self.best // LEAST_PARTS)) if overshot else aim * 3 // 4
                 bound = self._restore()
             on_step(self.count, self.best)
 

@@ -47,31 +47,45 @@ def find_rests(native: Native[Market]) -> None:
 
 @compiled
 def settle_rests(market: Market, robot: int) -> None:
-    """Fill the rests of one robot."""
+    """Fill the rests of one robot. Where all stays are alike, a heap's order is that of a queue."""
     graph = market.graph
     rest = market.requests.rest[robot]
     keys = market.scratch.keys
     nodes = market.scratch.nodes
     for here in range(graph.duration.size):
         rest[here] = NONE
+    first = 0
     size = 0
     goal = int(market.requests.goal[robot])
     for edge in range(int(graph.backward_first[goal]), int(graph.backward_first[goal + 1])):
-        push(keys, nodes, size, 0, int(graph.source[edge]))
-        size += 1
-    while size > 0:
-        ticks = int(keys[0])
-        here = int(nodes[0])
-        size -= 1
-        replace_root(keys, nodes, size, int(keys[size]), int(nodes[size]))
+        size = wait_for_rest(market, size, 0, int(graph.source[edge]))
+    while size > first:
+        ticks = int(keys[first])
+        here = int(nodes[first])
+        if market.is_even:
+            first += 1
+        else:
+            size -= 1
+            replace_root(keys, nodes, size, int(keys[size]), int(nodes[size]))
         if rest[here] != NONE:
             continue
         rest[here] = ticks
         further = ticks + duration_of(market, robot, here)
         for edge in range(int(graph.backward_first[here]), int(graph.backward_first[here + 1])):
             if rest[int(graph.source[edge])] == NONE:
-                push(keys, nodes, size, further, int(graph.source[edge]))
-                size += 1
+                size = wait_for_rest(market, size, further, int(graph.source[edge]))
+
+
+@compiled
+def wait_for_rest(market: Market, size: int, ticks: int, here: int) -> int:
+    """Put a resource into the queue or heap; its new size."""
+    keys, nodes = market.scratch.keys, market.scratch.nodes
+    if market.is_even:
+        keys[size] = ticks
+        nodes[size] = here
+    else:
+        push(keys, nodes, size, ticks, here)
+    return size + 1
 
 
 @entry
@@ -103,6 +117,8 @@ def find_way(market: Market, robot: int) -> int:
     requests = market.requests
     start = int(requests.start[robot])
     release = int(requests.release[robot])
+    if market.ways.length[robot] == 0 and start != requests.goal[robot]:
+        take_shortest(market, robot)
     best = way_price(market, robot)
     if start == requests.goal[robot]:
         at_once = goal_price(market, robot, release) + int(market.charges.cost[robot][0])
@@ -114,9 +130,41 @@ def find_way(market: Market, robot: int) -> int:
             market.ways.enter[robot][0] = release
             count_way(market, robot, 1)
     if requests.rest[robot][start] != NONE:
-        best = settle(market, robot, best)
+        least = int(market.charges.least[robot][0])
+        best = least if best > least and find_free(market, robot) else settle(market, robot, best)
         best = min(best, int(market.charges.least[robot][market.delays]))
     return best
+
+
+@compiled
+def take_shortest(market: Market, robot: int) -> None:
+    """Write a way that nothing delays, as the first one: always into the resource that fewest robots use then."""
+    graph, requests = market.graph, market.requests
+    rest = requests.rest[robot]
+    goal = int(requests.goal[robot])
+    here = int(requests.start[robot])
+    tick = int(requests.release[robot])
+    visits = 0
+    while here != goal:
+        market.ways.resource[robot][visits] = here
+        market.ways.enter[robot][visits] = tick
+        visits += 1
+        tick += duration_of(market, robot, here)
+        following = NONE
+        fewest = 0
+        for move in range(int(graph.first[here]), int(graph.first[here + 1])):
+            target = int(graph.target[move])
+            leads = rest[target] != NONE and rest[here] == rest[target] + duration_of(market, robot, target)
+            if (target == goal and rest[here] == 0) or leads:
+                used = int(market.usage.present[target][tick]) if tick < market.horizon else 0
+                if following == NONE or used < fewest:
+                    following = target
+                    fewest = used
+        here = following
+    market.ways.resource[robot][visits] = goal
+    market.ways.enter[robot][visits] = tick
+    market.ways.length[robot] = visits + 1
+    count_way(market, robot, 1)
 
 
 @compiled
@@ -150,6 +198,63 @@ def price_on_way(market: Market, robot: int, here: int, enter: int, leave: int) 
     paid = stay_price(market, here, enter, leave)
     for tick in range(enter, min(leave, market.horizon)):
         paid += fee_of(market, robot, here, tick)
+    return paid
+
+
+@compiled
+def find_free(market: Market, robot: int) -> bool:
+    """Search, depth first, for a way that nothing delays and that pays nothing, and take it.
+
+    Each resource has one tick at which such a way leaves it. Those where there is room are tried first, so that ways
+    meet less often. On a large map few nodes are seen, of many that are as good.
+    """
+    requests, scratch, graph = market.requests, market.scratch, market.graph
+    start, release = int(requests.start[robot]), int(requests.release[robot])
+    rest = requests.rest[robot]
+    ready = release + duration_of(market, robot, start)
+    is_free = market.charges.cost[robot][0] == market.charges.least[robot][0]
+    if not is_free or start == requests.goal[robot] or price_on_way(market, robot, start, release, ready) > 0:
+        return False
+    size = graph.duration.size
+    scratch.generation[0] = int(scratch.generation[0]) + scratch.parent.size
+    scratch.nodes[0] = (ready - release) * size + start
+    scratch.parent[int(scratch.nodes[0])] = NONE
+    waiting = 1
+    while waiting > 0:
+        waiting -= 1
+        node = int(scratch.nodes[waiting])
+        here = node % size
+        tick = release + node // size
+        if rest[here] == 0:
+            if arrival_price(market, robot, here, tick, 0) == market.charges.cost[robot][0]:
+                take_way(market, robot, node)
+                return True
+            continue
+        for has_room in range(2):
+            for move in range(int(graph.first[here]), int(graph.first[here + 1])):
+                target = int(graph.target[move])
+                ready = tick + duration_of(market, robot, target)
+                used = int(market.usage.present[target][tick]) if tick < market.horizon else 0
+                leads = rest[target] != NONE and rest[here] == int(rest[target]) + ready - tick
+                if leads and (used < graph.capacity[target]) == (has_room > 0):
+                    after = (ready - release) * size + target
+                    mark = int(scratch.generation[0]) + after
+                    if scratch.mark[target] != mark and entry_price(market, robot, move, tick, ready) == 0:
+                        scratch.mark[target] = mark
+                        scratch.parent[after] = node
+                        scratch.nodes[waiting] = after
+                        waiting += 1
+    return False
+
+
+@compiled
+def entry_price(market: Market, robot: int, move: int, tick: int, ready: int) -> int:
+    """The price of moving at the tick, and of a stay on the way until the robot is ready to leave again."""
+    target = int(market.graph.target[move])
+    entering = market.prices.entering[min(tick, market.horizon)]
+    paid = int(entering[int(market.prices.entry[move])]) + further_price(market, target, tick + 1, ready)
+    for later in range(tick, min(ready, market.horizon)):
+        paid += fee_of(market, robot, target, later)
     return paid
 
 

@@ -135,7 +135,10 @@ class Scratch(NamedTuple):
 
 
 class Market(NamedTuple):
-    """All arrays that the compiled functions read and write; nodes have delays below `delays`."""
+    """All arrays that the compiled functions read and write; nodes have delays below `delays`.
+
+    It is even if all stays of a robot take equally long.
+    """
 
     graph: Graph
     requests: Requests
@@ -148,6 +151,7 @@ class Market(NamedTuple):
     horizon: int
     delays: int
     parks: bool
+    is_even: bool
 
 
 market_at = dereference(Market)

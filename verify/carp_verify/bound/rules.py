@@ -6,6 +6,7 @@ from carp_spec import Rule
 from carp_spec.rule import DESIGN, is_whole, rule
 
 LARGEST_TABLE = 20_000_000
+LARGEST_RESTS = 400_000_000
 LARGEST_SEARCH = 5_000_000
 LARGEST_FORMULA = 5_000_000
 LONGEST_STAY = 100_000
@@ -89,9 +90,9 @@ def is_rounded_up(bound: object, parts: int, scale: int) -> bool:
 
 @rule(
     "bound/size",
-    "Tables by resource and tick, by robot and resource, or by a cut's robot and resource, have at most "
-    f"{LARGEST_TABLE} entries; the search for the robots' least costs takes at most {LARGEST_SEARCH} steps, and the "
-    f"formulas of all cuts and deadlines have at most {LARGEST_FORMULA} clauses together.",
+    f"Robots by resources are at most {LARGEST_RESTS}; tables by resource and tick, or by a cut's robot and resource, "
+    f"have at most {LARGEST_TABLE} entries; the search for the robots' least costs takes at most {LARGEST_SEARCH} "
+    f"steps, and the formulas of all cuts and deadlines have at most {LARGEST_FORMULA} clauses together.",
     DESIGN,
 )
 def size_fits(size: int, limit: int) -> bool:

@@ -40,6 +40,7 @@ from carp_spec.model import Group
 from carp_spec.rule import is_whole
 from carp_verify.bound.rules import (
     LARGEST_FORMULA,
+    LARGEST_RESTS,
     LARGEST_SEARCH,
     LARGEST_TABLE,
     is_about,
@@ -108,7 +109,7 @@ def verify_bound(instance: Instance, certificate: BoundDocument) -> int:
     if [robot for robot, _ in certificate.robots] != list(instance.robot):
         raise Refusal("document", "$.robots", is_least.id, "it must name each robot of the instance once, in its order")
     table = _places(instance, list(instance.robot))
-    _require_size(table, LARGEST_TABLE, "$.robots", "the table of robots by resources")
+    _require_size(table, LARGEST_RESTS, "$.robots", "the table of robots by resources")
     tariff = Tariff(instance, certificate)
     weights, proved, clauses = _weights(instance, certificate)
     worth = _worth(instance, certificate, clauses)
