@@ -8,6 +8,7 @@ from carp_experiments.beyond.delayed import execution_report, execution_row
 from carp_experiments.beyond.following import following_report, following_row
 from carp_experiments.beyond.left_out import left_out_report, left_out_row
 from carp_experiments.beyond.lifelong import lifelong_report, lifelong_row
+from carp_experiments.beyond.neighbours import neighbours_report, neighbours_row
 from carp_experiments.beyond.people import people_report, people_row
 from carp_experiments.beyond.streams import stream_report, stream_row
 from carp_experiments.paper.adding_time import PAPERS_MAP, time_report, time_row
@@ -141,6 +142,14 @@ EXPERIMENTS = (
         Profile(2, 30, (10, FULL_MAP)),
         nearest_row,
         conventions_report,
+    ),
+    Experiment(
+        "neighbours",
+        "Where the neighbourhood planner helps: kinds of instances, M, and polish for the same time.",
+        Profile(20, 100, (5, 10, 15, FULL_MAP)),
+        Profile(2, 20, (10, FULL_MAP)),
+        neighbours_row,
+        lambda rows, _: neighbours_report(rows),
     ),
     Experiment(
         "left-out",

@@ -33,6 +33,8 @@ REFERENCE = "CARP"
 WIDTH, HEIGHT = 5.0, 2.9
 """Inches: those of a column, names beside the lines included, and of a panel."""
 MOST_TICKS = 6
+HOLLOW = 3
+"""Above the lines."""
 LABEL_DISTANCE = 0.085
 """The least distance of labels, as a part of a panel's height."""
 
@@ -59,13 +61,14 @@ def line_figure(path: Path, drawn: Figure) -> None:
         for (plot,), (heading, names) in zip(plots, panels.items(), strict=True):
             plot.set_title(heading, fontsize="medium", loc="left")
             plot.set(ylabel=drawn.axes[1], yscale="log" if drawn.logarithmic else "linear")
-            end_where_values_do(plot, shown)
+            end_where_values_do(plot, shown, [value for each in drawn.papers.values() for _, value in each])
             of_panel = {name: shown[name] for name in names if shown[name]}
             for name, points in of_panel.items():
                 draw_line(plot, points, *strokes[name])
+            draw_papers(plot, drawn.papers, {family_of(name): strokes[name] for name in of_panel})
             write_names(plot, of_panel, {name: strokes[name][0] for name in of_panel})
         plots[-1][0].set_xlabel(drawn.axes[0])
-        figure.suptitle(drawn.title)
+        figure.suptitle("\n".join(filter(None, (drawn.title, drawn.cited))))
         figure.savefig(path, metadata={"Date": None, "Creator": None})
         plt.close(figure)
 
@@ -99,13 +102,14 @@ def known_points(drawn: Figure) -> Known:
     }
 
 
-def end_where_values_do(plot: "Axes", lines: Known) -> None:
-    """Let both axes begin and end with the values, intervals included."""
+def end_where_values_do(plot: "Axes", lines: Known, papers: Sequence[float]) -> None:
+    """Let both axes begin and end with the values, intervals and the paper's values included."""
     points = [point for line in lines.values() for point in line]
     first, last = min(x for x, _ in points), max(x for x, _ in points)
     plot.set_xlim(first, max(last, first + 1))
     plot.set_xticks(round_ticks(first, last))
-    low, high = min(each.low for _, each in points), max(each.high for _, each in points)
+    low = min([*(each.low for _, each in points), *papers])
+    high = max([*(each.high for _, each in points), *papers])
     if low < high:
         plot.set_ylim(low, high)
     plot.spines[["top", "right"]].set_visible(False)
@@ -126,6 +130,17 @@ def draw_line(plot: "Axes", points: Sequence[tuple[int, Interval]], colour: str,
     plot.vlines(xs, [each.low for _, each in points], [each.high for _, each in points], colour, alpha=0.3, lw=0.8)
     ys = [each.estimate for _, each in points]
     plot.plot(xs, ys, style, color=colour, marker=marker, markersize=3, linewidth=1.2, clip_on=False)
+
+
+def draw_papers(
+    plot: "Axes", papers: Mapping[str, Sequence[tuple[int, float]]], strokes: Mapping[str, tuple[str, str, str]]
+) -> None:
+    """Draw the paper's values of the families in this panel, with their markers, large and hollow."""
+    for family, (colour, marker, _) in strokes.items():
+        for x, value in papers.get(family, ()):
+            plot.plot(
+                x, value, marker, color=colour, markerfacecolor="white", markersize=8, clip_on=False, zorder=HOLLOW
+            )
 
 
 def write_names(plot: "Axes", lines: Known, colours: Mapping[str, str]) -> None:
@@ -155,15 +170,20 @@ def spread(heights: Sequence[float]) -> list[float]:
 
 def strokes_of(names: Sequence[str]) -> dict[str, tuple[str, str, str]]:
     """The colour, marker and style of each line; the families that are known have theirs in every figure."""
-    family_of = {name: name.partition(" + ")[0] for name in names}
-    used = set(family_of.values())
-    others = [family for family in dict.fromkeys(family_of.values()) if family not in FAMILIES]
+    families = {name: family_of(name) for name in names}
+    used = set(families.values())
+    others = [family for family in dict.fromkeys(families.values()) if family not in FAMILIES]
     looks = list(zip(COLOURS, MARKERS, strict=True))
     free = [look for family, look in zip_longest(FAMILIES, looks) if family not in used]
     look_of = {**dict(zip(FAMILIES, looks, strict=False)), **dict(zip(others, free, strict=False))}
     strokes = {}
     members: dict[str, int] = {}
-    for name, family in family_of.items():
+    for name, family in families.items():
         members[family] = members.get(family, -1) + 1
         strokes[name] = *look_of[family], STYLES[members[family] % len(STYLES)]
     return strokes
+
+
+def family_of(name: str) -> str:
+    """What names that differ only behind a plus have in common."""
+    return name.partition(" + ")[0]

@@ -1,7 +1,7 @@
 """The results of an experiment: tables, figures, and its numbers for programs."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -29,13 +29,18 @@ class Table:
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """Lines over numbers, each point with its 95 % interval; a point without a value is left out."""
+    """Lines over numbers, each point with its 95 % interval; a point without a value is left out.
+
+    `papers` are the values that the paper states, by the family of a line; `cited` says where it states them.
+    """
 
     name: str
     title: str
     axes: tuple[str, str]
     lines: Mapping[str, Sequence[tuple[int, Interval | None]]]
     logarithmic: bool = False
+    papers: Mapping[str, Sequence[tuple[int, float]]] = field(default_factory=dict)
+    cited: str = ""
 
 
 @dataclass(frozen=True, slots=True)

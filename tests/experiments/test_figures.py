@@ -30,6 +30,17 @@ def test_a_figure_names_its_lines_and_is_drawn_again_the_same(tmp_path: Path) ->
     assert (tmp_path / "again.svg").read_text() == drawn
 
 
+def test_the_papers_values_are_hollow_and_within_the_axes(tmp_path: Path) -> None:
+    lines: dict[str, list[tuple[int, Interval | None]]] = {"one": [(0, at(60)), (1, at(30))]}
+    line_figure(tmp_path / "with.svg", Figure("with", "Totals", ("map", "actions"), lines, papers={"one": [(1, 95)]}))
+    line_figure(tmp_path / "without.svg", Figure("without", "Totals", ("map", "actions"), lines))
+    drawn, plain = ((tmp_path / name).read_text() for name in ("with.svg", "without.svg"))
+    hollow = "fill: #ffffff; stroke: #000000"
+    assert drawn.count(hollow) == plain.count(hollow) + 1
+    assert ">90</text>" in drawn
+    assert ">90</text>" not in plain
+
+
 @pytest.mark.ci
 def test_the_stored_figures_are_those_of_the_stored_numbers(tmp_path: Path) -> None:
     for name in FIGURES:

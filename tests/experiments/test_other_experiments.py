@@ -32,9 +32,9 @@ def test_the_table_of_times_compares_with_carp() -> None:
 
     table = time_report([row(8000), row(12000)]).tables[0]
     cells = {line[0]: line for line in table.rows}
-    assert cells["CARP"][4:] == ("0.00 ± 0.00", "1.00 ± 0.00", "1.0")
-    assert cells["Proposed_4"][5] == "5.00 ± 1.96"
-    assert cells["Proposed_6"][6] == "47.4", "75.81 / 1.60"
+    assert cells["CARP"][5:] == ("0.00 ± 0.00", "1.60", "1.00 ± 0.00", "1.0")
+    assert cells["Proposed_4"][7] == "5.00 ± 1.96"
+    assert cells["Proposed_6"][8] == "47.4", "75.81 / 1.60"
 
 
 def test_queries_are_told_apart_by_what_they_are_for() -> None:

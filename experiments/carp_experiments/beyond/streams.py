@@ -95,7 +95,7 @@ def docked(instance: Instance) -> Instance:
     ways = [(dock, start) for start, dock in docks.items()]
     return replace(
         instance,
-        graph=ResourceGraph((*graph.resources, *resources), (*moves, *ways), directed=True),
+        graph=ResourceGraph((*graph.resources, *resources), (*moves, *ways), directed=True, groups=graph.groups),
         robots=tuple(replace(robot, start=docks[robot.start]) for robot in instance.robots),
     )
 

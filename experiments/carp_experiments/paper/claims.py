@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 from carp_experiments.paper.adding_time import PAPER, SHOWN, Time
-from carp_experiments.paper.map_cases import FULL_MAP
+from carp_experiments.paper.map_cases import FULL_MAP, TENTH_MAP
 from carp_experiments.paper.quality import RIVALS, QualitySummary, Saving
 from carp_experiments.paper.quality_report import FEWEST_SHOWN
 from carp_experiments.paper.related_work import FIXED, Related
@@ -17,7 +17,6 @@ Savings: TypeAlias = Mapping[tuple[int | None, str, str], Saving]
 Means: TypeAlias = Mapping[tuple[int, str], Interval]
 BASELINE = " + baseline"
 PROPOSED = ("Proposed_4", "Proposed_5", "Proposed_6", "Proposed_10")
-TENTH_MAP = 10
 COMPARABLE_PER_CENT = 1.0
 OTHER_CONVENTIONS = (
     "fewer, but not as many; the number comes out with the baseline, robots that stay one tick longer at their goals, "

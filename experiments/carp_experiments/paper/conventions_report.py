@@ -7,8 +7,8 @@ from statistics import fmean
 
 import msgspec
 
-from carp_experiments.paper.claims import TENTH_MAP, Claim, quality_claims
-from carp_experiments.paper.map_cases import FULL_MAP
+from carp_experiments.paper.claims import Claim, quality_claims
+from carp_experiments.paper.map_cases import FULL_MAP, TENTH_MAP
 from carp_experiments.paper.quality import QualitySummary, interval_of_means, summarise
 from carp_experiments.report import ExperimentReport, Table
 from carp_experiments.statistics import Interval

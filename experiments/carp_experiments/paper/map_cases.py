@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from carproof.generate import Fleet
 
 ROBOTS = 100
+TENTH_MAP = 10
 FULL_MAP = 20
 WAREHOUSE = 21
 """The number that a warehouse of the generator has beside the paper's maps."""
