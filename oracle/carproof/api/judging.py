@@ -2,30 +2,37 @@
 
 from dataclasses import replace
 
-from carp_spec import Instance, Solution, Verdict, judge, total_cost
+from carp_spec import Instance, Refusal, Solution, Verdict, judge, total_cost
 from carp_spec.check import MOST_LISTED
 from carp_spec.execution.execution_rules import trace_violations
 from carp_spec.execution.traces import Trace
 from carp_spec.requests import require_trace, sound_solution
 from carp_verify.footprint.apart import footprint_violations
-from carp_verify.footprint.rules import Footprint
+from carp_verify.footprint.rules import Footprint, cells_have_a_step
 from carproof.engines import engine_named
 from carproof.judging.audit import Audit, audit_in_order, audit_in_some_order
 
 
 def check(
-    instance: Instance, solution: Solution, most: int | None = MOST_LISTED, footprint: Footprint | None = None
+    instance: Instance,
+    solution: Solution,
+    most: int | None = MOST_LISTED,
+    footprint: Footprint | None = None,
+    cells: int | None = None,
 ) -> Verdict:
     """Judge a solution by the law, with at most the first `most` violations of each rule (`None`: all).
 
     With a footprint, vehicles of that size must keep apart, by the positions of resources in mm, whatever the groups.
-    Robots without a plan break no rule. Raises `Refusal` for a malformed instance or solution, and with a footprint for
-    resources without positions.
+    With `cells` no resource is a lane, and a step of the positions is so many mm long. Robots without a plan break no
+    rule. Raises `Refusal` for a malformed instance or solution, and with a footprint for resources without positions
+    and, without `cells`, for those that are neither points nor lanes.
     """
     verdict = judge(instance, solution, most)
+    for fault in cells_have_a_step(cells, footprint):
+        raise Refusal("option", fault.path, fault.rule, fault.message)
     if footprint is None:
         return verdict
-    too_near = footprint_violations(instance, solution.plans, footprint, most)
+    too_near = footprint_violations(instance, solution.plans, footprint, most, cells)
     return replace(verdict, violations=(*verdict.violations, *too_near))
 
 

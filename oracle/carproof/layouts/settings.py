@@ -76,3 +76,11 @@ def footprint(text: str) -> Footprint:
     if len(sizes) == 1:
         return Footprint(2 * sizes[0], 2 * sizes[0], round=True)
     return Footprint(sizes[0], sizes[1])
+
+
+def step_of_cells(text: str) -> int:
+    """The length of a step of the positions of cells, such as `1m`, in mm."""
+    step = millimetres(text, "cells")
+    if step.denominator > 1:
+        raise Refusal("option", "$.cells", RIGHT_SETTINGS.id, f"it must be in whole mm, not {text!r}")
+    return int(step)

@@ -4,14 +4,16 @@ from collections.abc import Iterator, Sequence
 from heapq import nsmallest
 from math import isqrt
 
-from carp_spec import Instance, Plan, ResourceId, RobotId, Violation
+from carp_spec import Instance, Plan, ResourceId, RobotId, Violation, Visit
 from carp_spec.refusal import Refusal
+from carp_verify.footprint.cells import swept_in_cells
 from carp_verify.footprint.floor import Shape, shapes
 from carp_verify.footprint.meeting import overlap
 from carp_verify.footprint.rules import (
     MOST_PAIRS,
     Footprint,
     Meeting,
+    cells_have_a_step,
     pairs_fit,
     vehicle_has_a_size,
     vehicles_keep_apart,
@@ -22,26 +24,47 @@ Stay = tuple[int, int | None, RobotId, ResourceId]
 
 
 def footprint_violations(
-    instance: Instance, plans: Sequence[Plan], size: Footprint, most: int | None = None
+    instance: Instance,
+    plans: Sequence[Plan],
+    size: Footprint,
+    most: int | None = None,
+    cells: int | None = None,
 ) -> tuple[Violation, ...]:
     """The violations of `footprint/apart`, at most the first `most` of them (`None`: all).
 
-    Visits that end before they begin, and those of unknown resources, are left to other rules. Raises `Refusal` for a
-    size that is none, a resource without a position, and resources that are neither points nor lanes.
+    With `cells`, the length in mm of a step of the positions, no resource is a lane. Visits that end before they begin,
+    and those of unknown resources, are left to other rules. Raises `Refusal` for a size that is none, a resource
+    without a position, and, without `cells`, resources that are neither points nor lanes.
     """
-    for fault in vehicle_has_a_size(size):
+    for fault in (*vehicle_has_a_size(size), *cells_have_a_step(cells, size)):
         raise Refusal("option", fault.path, fault.rule, fault.message)
-    shape = shapes(instance.graph)
+    # the middle of two cells may be at half a mm, so that all is doubled there
+    measured = size if cells is None else Footprint(2 * size.length, 2 * size.width, size.round)
+    swept = _swept_on_lanes(instance, plans) if cells is None else swept_in_cells(instance.graph, plans, 2 * cells)
     stays: dict[Shape, list[Stay]] = {}
-    for plan in plans:
-        for visit in plan.visits:
-            if visit.resource in shape and (visit.leave is None or visit.enter < visit.leave):
-                stay = (visit.enter, visit.leave, plan.robot, visit.resource)
-                stays.setdefault(shape[visit.resource], []).append(stay)
-    found = vehicles_keep_apart(_meetings(stays, size), size)
+    for shape, plan, visit in swept:
+        if visit.leave is None or visit.enter < visit.leave:
+            stays.setdefault(shape, []).append((visit.enter, visit.leave, plan.robot, visit.resource))
+    found = vehicles_keep_apart(_once(_meetings(stays, measured)), size)
     if most is None:
         return tuple(sorted(found, key=_first))
     return tuple(nsmallest(most, found, key=_first))
+
+
+def _swept_on_lanes(instance: Instance, plans: Sequence[Plan]) -> Iterator[tuple[Shape, Plan, Visit]]:
+    """The shape of each visit of a known resource, on a floor of points and lanes."""
+    shape = shapes(instance.graph)
+    return ((shape[each.resource], plan, each) for plan in plans for each in plan.visits if each.resource in shape)
+
+
+def _once(meetings: Iterator[Meeting]) -> Iterator[Meeting]:
+    """Each two visits once, of whose shapes several may overlap."""
+    seen: set[frozenset[tuple[RobotId, ResourceId, int]]] = set()
+    for each in meetings:
+        visits = frozenset((*pair, each.start) for pair in zip(each.robots, each.resources, strict=True))
+        if visits not in seen:
+            seen.add(visits)
+            yield each
 
 
 def _first(violation: Violation) -> int:
@@ -75,7 +98,7 @@ def _near(all_shapes: Sequence[Shape], size: Footprint) -> list[tuple[Shape, Sha
                 pairs.append((one, two))
         if not pairs_fit(len(pairs)):
             message = f"there must be at most {MOST_PAIRS} pairs of points and lanes so near that vehicles may overlap"
-            raise Refusal("limit", "$.solution", pairs_fit.id, message)
+            raise Refusal("limit", "$.graph", pairs_fit.id, message)
     return pairs
 
 

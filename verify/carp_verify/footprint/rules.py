@@ -50,6 +50,18 @@ def vehicle_has_a_size(size: Footprint) -> Iterator[tuple[str, str]]:  # noqa: D
         yield "$.footprint", "the length and the width of a round vehicle must be equal"
 
 
+@fault_rule(
+    "footprint/cells",
+    "Cells are those of a floor for a footprint; a step of their positions is at least 1 mm long, in whole mm.",
+    DESIGN,
+)
+def cells_have_a_step(cells: int | None, size: Footprint | None) -> Found:  # noqa: D103 - its statement stands above
+    if cells is not None and not is_between(cells, 1):
+        yield "$.cells", f"a step must be a whole number of at least 1 mm, not {cells!r}"
+    elif cells is not None and size is None:
+        yield "$.cells", "there must be a footprint, for cells"
+
+
 @fault_rule("footprint/positions", "For a footprint, each resource has a position, in mm.", DESIGN)
 def all_have_positions(resources: Sequence[Resource]) -> Found:  # noqa: D103
     for index, each in enumerate(resources):
@@ -60,14 +72,17 @@ def all_have_positions(resources: Sequence[Resource]) -> Found:  # noqa: D103
 @fault_rule(
     "footprint/lanes",
     "For a footprint, resources that an edge joins are at one place, or one of them is a lane. A lane is joined to two "
-    "other places, neither of them a lane, and lies at their middle, rounded down to whole mm.",
+    "other places, neither of them a lane, and lies at their middle, rounded down to whole mm. On a floor of cells no "
+    "resource is a lane.",
     DESIGN,
 )
 def lanes_lie_between_points(edges: Sequence[tuple[ResourceId, ResourceId, bool]]) -> Found:
     """Look at the edges, each with whether exactly one of its ends is a lane or both are at one place."""
     for index, (source, target, is_right) in enumerate(edges):
         if not is_right:
-            message = f"of {source!r} and {target!r}, one must be a lane at the middle of two points, for a footprint"
+            message = (
+                f"of {source!r} and {target!r}, one must be a lane at the middle of two points, unless all are cells"
+            )
             yield f"$.graph.edges[{index}]", message
 
 
@@ -84,8 +99,9 @@ def pairs_fit(pairs: int) -> bool:
 @violation_rule(
     "footprint/apart",
     "At no tick do the shapes that two vehicles of the size sweep in their resources overlap. On a lane a rectangle "
-    "sweeps a longer one. At a point it turns and sweeps a disc, unless all lanes there lie along one line. Shapes "
-    "that only touch do not overlap.",
+    "sweeps a longer one. At a point it turns and sweeps a disc, unless all lanes there lie along one line. In a cell "
+    "it sweeps what lies between it and half way from the one before and to the one after, and a disc unless these "
+    "ways lie along one line. Shapes that only touch do not overlap.",
     DESIGN,
 )
 def vehicles_keep_apart(meetings: Iterator[Meeting], size: Footprint) -> Iterator[Breach]:
@@ -97,6 +113,7 @@ def vehicles_keep_apart(meetings: Iterator[Meeting], size: Footprint) -> Iterato
 
 FOOTPRINT_RULES: tuple[Rule[..., Any], ...] = (
     vehicle_has_a_size,
+    cells_have_a_step,
     all_have_positions,
     lanes_lie_between_points,
     pairs_fit,

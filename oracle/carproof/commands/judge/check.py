@@ -21,6 +21,7 @@ from carproof.command_line.options import examples, json_option, kernel_option, 
 from carproof.command_line.tables import print_line, print_table, say
 from carproof.commands.judge.second_opinion import certified
 from carproof.layouts.settings import footprint as footprint_of
+from carproof.layouts.settings import step_of_cells
 from carproof.registry import RULES
 
 
@@ -33,6 +34,7 @@ from carproof.registry import RULES
         "carproof check town.json plans.json --require-all",
         "carproof check town.json result.txt --from lacam",
         "carproof check plant.json plans.json --footprint 900x600mm",
+        "carproof check grid.json plans.json --footprint 450mm --cells 1m",
         "carproof check town.json plans.json --kernel",
         "carproof check town.json plans.json --z3",
         "carproof check --map town.map --scen town.scen --agents 40 result.txt",
@@ -44,6 +46,9 @@ from carproof.registry import RULES
 @click.option(
     "--footprint", help="The size of vehicles, 900x600mm or a radius like 450mm, to check that they keep apart."
 )
+@click.option(
+    "--cells", help="With --footprint: no resource is a lane, and a step of the positions is so long, like 1m."
+)
 @click.option("--require-all", is_flag=True, help="Answer no also if a robot has no plan.")
 @click.option("--all", "everything", is_flag=True, help="List every violation, however many there are.")
 @output_option
@@ -54,6 +59,7 @@ def command(  # noqa: PLR0913 - an argument an option
     kernel: bool,
     z3: bool,
     footprint: str | None,
+    cells: str | None,
     require_all: bool,
     everything: bool,
     output: Path | None,
@@ -76,19 +82,21 @@ def command(  # noqa: PLR0913 - an argument an option
     the answer is undecided.
 
     With --footprint, vehicles of that size must keep apart: what they sweep is computed from positions in mm and from
-    plans alone, in whole numbers, whatever the groups of INSTANCE.
+    plans alone, in whole numbers, whatever the groups of INSTANCE. Resources are points and lanes or, with --cells,
+    cells: a vehicle is in one from half way from the one before until half way to the one after.
 
     Exit codes: 0 no rule is broken, 1 a rule is broken (--require-all: or a robot has no plan), 2 bad input,
     3 undecided.
     """
     if footprint is not None and (kernel or z3):
-        raise click.UsageError("--kernel and --z3 do not know --footprint.")
+        raise click.UsageError("--kernel and --z3 decide the law alone, which has no sizes; check --footprint apart.")
     size = None if footprint is None else footprint_of(footprint)
+    step = None if cells is None else step_of_cells(cells)
     instance, given = problem.read(as_named=True)
     if z3:
         return certified(instance, given, as_json)
     most = None if everything else MOST_LISTED
-    verdict = check(instance, given, most, size)
+    verdict = check(instance, given, most, size, step)
     decided = kernel_verdict(instance, given, verdict) if kernel else None
     document = write_verdict(verdict) if decided is None else write(decided)
     if output is not None:

@@ -2,30 +2,38 @@
 
 from dataclasses import dataclass
 
-from carp_spec import Instance, Solution, judge
+from carp_spec import Instance, Solution
 from carp_spec.documents.bounds import BoundDocument
 from carp_spec.documents.query_certificates import QueryCertificateDocument
 from carp_spec.documents.verdicts import VerdictDocument, verdict_document
+from carproof.api.judging import check as judged
 from carproof.engines import Engine
 from carproof.judging.audit import ask_kernel, audit_in_order
 from carproof.judging.documents import AuditDocument, VerifiedBoundDocument, VerifiedQueryDocument, audit_document
 from carproof.judging.verdicts import verify_bound as bound_verdict
 from carproof.judging.verdicts import verify_query as query_verdict
+from carproof.layouts.settings import footprint, step_of_cells
 from carproof.requests import inside, sound_within
 
 
 @dataclass(frozen=True, slots=True)
 class CheckRequest:
-    """A solution to judge."""
+    """A solution to judge; the size of vehicles that must keep apart, and the step of the positions of cells."""
 
     instance: Instance
     solution: Solution
+    footprint: str | None = None
+    cells: str | None = None
 
 
 def check(request: CheckRequest, engine: Engine) -> VerdictDocument:
-    """Judge a solution, and list the first 100 violations of each rule."""
+    """Judge a solution, with a footprint like 900x600mm also by it, and list the first 100 violations of each rule."""
     del engine
-    return verdict_document(judge(request.instance, request.solution))
+    size = None if request.footprint is None else footprint(request.footprint)
+    cells = None if request.cells is None else step_of_cells(request.cells)
+    with inside("$.instance"):
+        verdict = judged(request.instance, request.solution, footprint=size, cells=cells)
+    return verdict_document(verdict)
 
 
 @dataclass(frozen=True, slots=True)
