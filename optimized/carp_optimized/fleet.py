@@ -185,8 +185,11 @@ class PlannedFleet:
         return tuple(self._plan(int(record)) for record in held[held != before[self._order]])
 
     def replan(self, plans: Sequence[Plan], order: Sequence[RobotId]) -> None:
-        """Take over other plans of robots that have one, and the planning order of all."""
-        self._forget_readings()
+        """Take over other plans of robots that have one, and the planning order of all.
+
+        All queries are asked again: plans are withdrawn that have been in the way of others.
+        """
+        self._state.records.expansions[self._records[self._order]] = UNKNOWN
         changed = np.array([self._index[plan.robot] for plan in plans], np.int32)
         records = np.array([self.record(plan) for plan in plans], np.int32)
         self._withdraw(self._records[changed])
@@ -203,9 +206,9 @@ class PlannedFleet:
     ) -> bool:
         """Plan again, as `add` does, a robot that has other stops than `before`, and has followed the plan until now.
 
-        If it finds no plan, all is as before.
+        If it finds no plan, all is as before. What queries have read may stay: a robot with stops has it not used, and
+        once it has vanished, so has its plan before, which left no later.
         """
-        self._forget_readings()
         index, order = self._index[robot.id], self._order
         rest = order[order != index]
         self._withdraw(self._records[index : index + 1])
@@ -217,10 +220,6 @@ class PlannedFleet:
         self.commit([plan])
         self._hold(order, self._records[order])
         return False
-
-    def _forget_readings(self) -> None:
-        """Ask all queries again: plans are withdrawn that have been in the way of others."""
-        self._state.records.expansions[self._records[self._order]] = UNKNOWN
 
     @property
     def _kinds(self) -> Reuse:

@@ -54,7 +54,7 @@ def test_plans_are_those_that_add_makes_with_all_robots_that_ever_came(part: int
         fleet = Fleet(first, whole, planner=asked.options)
         known = {plan.robot: plan for plan in whole.plans}
         for robot, now in asked.robots:
-            change = fleet.add(instance.robot[robot], now=now, audit=instance.following == "allowed")
+            change = fleet.add(instance.robot[robot], now=now, audit=True)
             before, whole = whole, carp_optimized.add(instance, whole, robot, now, asked.options)
             known |= {plan.robot: plan for plan in change.plans}
             assert known == {plan.robot: plan for plan in whole.plans}, number
@@ -77,7 +77,7 @@ def test_news_of_every_kind_has_the_plans_of_whole_solutions(part: int) -> None:
             now += draw.one_of((0, 1, 2))
             robot = replace(each, release=max(each.release, now))
             instance = replace(instance, robots=(*instance.robots, robot))
-            change = fleet.add(robot, now=now, audit=instance.following == "allowed")
+            change = fleet.add(robot, now=now, audit=True)
             before, whole = whole, carp_optimized.add(instance, whole, robot.id, now, options)
             assert_news(fleet, change, before, whole)
             going = [each for each in fleet.instance.robots if not has_ended(plan_of(fleet, each.id), now)]
@@ -85,7 +85,7 @@ def test_news_of_every_kind_has_the_plans_of_whole_solutions(part: int) -> None:
                 chosen = draw.one_of(going)
                 places = [place for place in instance.graph.index if place != chosen.goal]
                 stops = [Stop(draw.one_of(places), draw.one_of((0, 3)))]
-                change = fleet.assign(chosen.id, stops, now, audit=instance.following == "allowed")
+                change = fleet.assign(chosen.id, stops, now, audit=True)
                 before = whole
                 further, whole = carp_optimized.assign(instance, whole, chosen.id, stops, now, options)
                 assert (chosen.id in change.unplanned) == (further is instance)
@@ -164,6 +164,47 @@ def test_robots_that_are_late_make_others_wait_and_keep_what_was_done() -> None:
     assert check(fleet.instance, fleet.solution).valid
     assert fleet.trace(Trace(4, ())).plans == (), "all is as planned now"
     assert fleet.advance(9).left == ("x", "y")
+
+
+def town(edges: str, slow: str = "") -> Instance:
+    """Places with names of one letter, joined by edges such as `ab`; a slow one takes three ticks."""
+    places = dict.fromkeys(edges.replace(" ", ""))
+    cells = tuple(Resource(place, duration=3 if place in slow else 1) for place in places)
+    return Instance(ResourceGraph(cells, tuple((each[0], each[1]) for each in edges.split())), (), "vanish")
+
+
+def test_who_need_not_wait_any_more_for_one_that_is_late_may_get_another_plan() -> None:
+    hall = town("pq qr ij jc ck uc cv ua ab bd dv")
+    waits, late, goes = Robot("p", "p", "r", pace=20), Robot("x", "i", "k", pace=10), Robot("y", "u", "v", release=20)
+    fleet = Fleet(hall, planner=Neighbourhood(m=2))
+    for robot in (waits, late, goes):
+        fleet.add(robot)
+    assert [visit.resource for visit in plan_of(fleet, "y").visits] == [*"uabdv"], "c is taken"
+    fleet.trace(Trace(18, (Plan("x", (Visit("i", 0, None),)),)))
+    near = Robot("z", "q", "r", release=70)
+    whole = carp_optimized.add(
+        replace(hall, robots=(waits, late, goes, near)), fleet.solution, "z", 18, Neighbourhood(m=2)
+    )
+    fleet.add(near, now=18)
+    assert {*fleet.solution.plans} == {*whole.plans}
+    assert [visit.resource for visit in plan_of(fleet, "y").visits] == [*"ucv"]
+
+
+def test_who_leaves_a_stop_unserved_to_give_way_serves_it_whole_later() -> None:
+    fleet = Fleet(town("as st ax ay", slow="s"), planner=Neighbourhood(m=3))
+    fleet.add(Robot("q", "s", "t"), Robot("r", "a", stops=(Stop("a", 20), Stop("t"))))
+    change = fleet.add(Robot("z", "x", "y", release=2), now=1, audit=True)
+    assert plan_of(fleet, "r").visits[:3] == (Visit("a", 0, 3), Visit("s", 3, 6), Visit("a", 6, 26))
+    assert change.audit is not None
+    assert change.audit.holds
+    instance, solution = fleet.rest()
+    assert instance.robot["r"].stops[0] == Stop("a", 20)
+    assert check(instance, solution).valid
+    assert audit(instance, solution, find_order=True).holds
+    fleet.advance(8)
+    instance, solution = fleet.rest()
+    assert instance.robot["r"].stops[0] == Stop("a", 18), "it is served now"
+    assert check(instance, solution).valid
 
 
 def test_a_polish_and_forgetting_keep_services_under_way() -> None:
@@ -309,7 +350,7 @@ def test_a_failure_in_the_middle_changes_nothing(monkeypatch: pytest.MonkeyPatch
 
 def test_a_change_whose_proof_fails_is_no_change(monkeypatch: pytest.MonkeyPatch) -> None:
     fleet, twin = Fleet(row()), Fleet(row())
-    monkeypatch.setattr("carproof.api.fleet.audit_in_order", raising)
+    monkeypatch.setattr("carproof.api.fleet.audit_changes", raising)
     with pytest.raises(Refusal):
         fleet.add(Robot("v", "a", "b", release=9), audit=True)
     assert_alike(fleet, twin)

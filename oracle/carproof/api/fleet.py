@@ -18,7 +18,7 @@ from carp_spec.shapes import require_shape
 from carproof.engines import compile_what_is_kept, engine_named
 from carproof.execution.delays import until
 from carproof.input_rules import Code
-from carproof.judging.audit import Audit, audit_in_order, in_order
+from carproof.judging.audit import Audit, audit_changes, in_order
 
 if TYPE_CHECKING:
     from carp_optimized.fleet import PlannedFleet
@@ -122,7 +122,8 @@ class _Known:
         if here.enter > self.now or (here.leave is not None and not later):
             return robot, plan
         stops = robot.stops
-        if stops[0].resource == here.resource:
+        serves = here.leave is None or here.leave - here.enter >= stops[0].service
+        if serves and stops[0].resource == here.resource:
             left = max(stops[0].service - (release - here.enter), 0)
             stops = (replace(stops[0], service=left), *stops[1:])
         visits = (replace(here, enter=release), *later)
@@ -134,8 +135,8 @@ class Fleet:
 
     What is not told is taken to have happened as planned. With `vanish` a robot leaves the fleet when its plan has
     ended. What is refused or fails leaves the fleet as it was. Plans are those that `add` makes at the same ticks.
-    With `audit` a change is proved: the law judges all plans, and no robot of a changed plan can arrive earlier beside
-    the plans before its own, after the moves of the tick `now`. That is refused where following is forbidden.
+    With `audit` a change is proved: the law judges all plans, and no robot of a changed plan, with what it has done by
+    the tick `now`, can arrive earlier beside the plans before its own.
     """
 
     def __init__(
@@ -187,7 +188,7 @@ class Fleet:
     def rest(self) -> tuple[Instance, Solution]:
         """What is to come after the moves of the tick `now`, as an instance and a solution of their own.
 
-        A robot under way starts where it is, with the stops that it has not left yet; of one that it may be serving,
+        A robot under way starts where it is, with the stops that it has not left yet; of one that its plan is serving,
         what is left of the service.
         """
         return self._known.rest()
@@ -222,7 +223,7 @@ class Fleet:
                 numbers={**self._known.numbers, **{each.id: k for k, each in enumerate(robots, self._known.count)}},
                 count=self._known.count + len(robots),
             )
-            return self._take_over(core, replace(known, now=now), changed, unplanned, audit=audit)
+            return self._take_over(core, replace(known, now=now), changed, unplanned, self._before(audit))
 
     def assign(self, robot: RobotId, stops: Sequence[Stop], now: int | None = None, *, audit: bool = False) -> Change:
         """Give a robot that is under way or parked further stops, behind those that it has, as `carproof.assign` does.
@@ -247,7 +248,8 @@ class Fleet:
             changed = [each for each in core.changed_since(held) if each != self._known.plans[each.robot]]
             robots = {**self._known.robots, robot: further if is_found else before}
             known = replace(self._known, robots=robots, now=now)
-            return self._take_over(core, known, changed, () if is_found else [robot], audit=audit)
+            unplanned = () if is_found else (robot,)
+            return self._take_over(core, known, changed, unplanned, self._before(audit))
 
     def forget(self) -> None:
         """Forget what is done by the tick `now`: robots start in the visits under way, as of when they entered them."""
@@ -283,7 +285,7 @@ class Fleet:
         others = tuple(plan for plan in held_up(instance, solution, trace).plans if plan.robot not in told)
         whole = Trace(now, (*trace.plans, *until(Trace(now, others), now).plans))
         after = retime(instance, solution, whole)
-        return self._replan(now, after, audit=audit)
+        return self._replan(now, after, after.plans if audit else None)
 
     def polish(
         self, *, iterations: int | None = None, seconds: float | None = None, seed: int = 0, audit: bool = False
@@ -292,13 +294,17 @@ class Fleet:
         polish = engine_named("optimized").polish
         before = self.instance, self.solution
         better = polish(*before, iterations=iterations, seconds=seconds, seed=seed, now=self.now)
-        return self._replan(self.now, better, audit=audit)
+        return self._replan(self.now, better, self._before(audit))
 
-    def _replan(self, now: int, solution: Solution, *, audit: bool) -> Change:
+    def _before(self, audit: bool) -> Sequence[Plan] | None:
+        return [*self._known.plans.values()] if audit else None
+
+    def _replan(self, now: int, solution: Solution, before: Sequence[Plan] | None) -> Change:
         changed = [plan for plan in solution.plans if plan != self._known.plans[plan.robot]]
         with self._changing() as core:
             core.replan(changed, solution.order)
-            return self._take_over(core, replace(self._known, now=now), changed, (), audit=audit)
+            known = replace(self._known, now=now)
+            return self._take_over(core, known, changed, (), before)
 
     def _tick(self, now: int | None) -> int:
         if now is None:
@@ -347,9 +353,17 @@ class Fleet:
         return self._core
 
     def _take_over(
-        self, core: "PlannedFleet", known: _Known, changed: Sequence[Plan], unplanned: Sequence[RobotId], *, audit: bool
+        self,
+        core: "PlannedFleet",
+        known: _Known,
+        changed: Sequence[Plan],
+        unplanned: Sequence[RobotId],
+        before: Sequence[Plan] | None,
     ) -> Change:
-        """Know what the compiled fleet holds, without the plans that have ended by now."""
+        """Know what the compiled fleet holds, without the plans that have ended by now.
+
+        With the plans before, which robots have followed until then, the changed ones are audited.
+        """
         ended = core.ended(known.now)
         robots, plans = {**known.robots}, {**known.plans, **{plan.robot: plan for plan in changed}}
         left = tuple(core.places[1][place] for place in ended)
@@ -360,15 +374,14 @@ class Fleet:
             plans.pop(id, None)
         places, ids = core.places
         after = replace(known, robots=robots, plans=plans, places=places, ids=ids, numbers=numbers)
-        found = self._audited(after, changed) if audit else None
+        found = None if before is None else _audited(after, changed, before)
         self._known = after
         return Change(known.now, tuple(changed), tuple(unplanned), left, found)
 
-    def _audited(self, known: _Known, changed: Sequence[Plan]) -> Audit:
-        sound_solution(known.instance, known.solution)
-        instance, solution = known.rest()
-        only = {plan.robot for plan in changed}
-        return audit_in_order(instance, sound_solution(instance, solution), engine_named("optimized"), only=only)
+
+def _audited(known: _Known, changed: Sequence[Plan], before: Sequence[Plan]) -> Audit:
+    sound, engine = sound_solution(known.instance, known.solution), engine_named("optimized")
+    return audit_changes(known.instance, sound, engine, {plan.robot for plan in changed}, before, known.now)
 
 
 def _require_time(robot: Robot, now: int, path: str) -> None:

@@ -6,7 +6,7 @@ fault. An audit does not judge the choice between plans that arrive at the same 
 without a plan.
 """
 
-from collections.abc import Callable, Container, Iterator
+from collections.abc import Callable, Container, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import msgspec
@@ -65,9 +65,9 @@ class Auditor:
         self._traffic.commit(plan)
         self._committed.append(plan)
 
-    def earlier_plan(self, plan: Plan) -> Plan | None:
-        """A plan that arrives earlier; if none exists, the plan is certified."""
-        best, certificate = self._certifier.certify(plan.robot)
+    def earlier_plan(self, plan: Plan, followed: Plan | None = None, now: int = 0) -> Plan | None:
+        """A plan that arrives earlier, of a robot that has followed a plan until now; without one this is certified."""
+        best, certificate = self._certifier.certify(plan.robot, followed, now)
         if best is not None and best.visits[-1].enter < plan.visits[-1].enter:
             if not self.has_room(best) or not plans_are_lawful(self._instance, [best]):
                 raise ContradictionError(f"an earlier plan was found for robot {plan.robot}, and it breaks a rule")
@@ -75,7 +75,7 @@ class Auditor:
         if best is None or best.visits[-1].enter > plan.visits[-1].enter:
             raise ContradictionError(f"robot {plan.robot} has a plan that was not found")
         try:
-            require_certificate(self._traffic, certificate)
+            require_certificate(self._traffic, certificate, followed)
         except Refusal as refusal:
             if refusal.rule == size_fits.id:
                 raise
@@ -94,20 +94,36 @@ class Auditor:
 
 
 def audit_in_order(
-    instance: Instance,
-    solution: Solution,
-    engine: Engine,
-    advance: Callable[[], None] = lambda: None,
-    only: Container[RobotId] | None = None,
+    instance: Instance, solution: Solution, engine: Engine, advance: Callable[[], None] = lambda: None
 ) -> Audit:
-    """Audit a solution that breaks no rule in its planning order, or only some robots of it."""
+    """Audit a solution that breaks no rule in its planning order."""
     auditor = Auditor(instance, engine)
     for plan in in_order(solution):
-        earlier = auditor.earlier_plan(plan) if only is None or plan.robot in only else None
+        earlier = auditor.earlier_plan(plan)
         if earlier is not None:
             auditor.is_late(plan, earlier)
         auditor.commit(plan)
         advance()
+    return auditor.audit
+
+
+def audit_changes(
+    instance: Instance,
+    solution: Solution,
+    engine: Engine,
+    changed: Container[RobotId],
+    before: Sequence[Plan],
+    now: int,
+) -> Audit:
+    """Audit, in its planning order, the changed plans of robots that have followed the plans before until now."""
+    auditor = Auditor(instance, engine)
+    followed = {plan.robot: plan for plan in before}
+    for plan in in_order(solution):
+        if plan.robot in changed:
+            earlier = auditor.earlier_plan(plan, followed.get(plan.robot), now)
+            if earlier is not None:
+                auditor.is_late(plan, earlier)
+        auditor.commit(plan)
     return auditor.audit
 
 
