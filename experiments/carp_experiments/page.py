@@ -26,6 +26,7 @@ TITLES = {
     "gap": "Small maps against the optimum",
     "related": "Fixed paths and greedy best-first",
     "polish": "The distance to the optimum at the paper's size, and the polish",
+    "neighbours": "Where the neighbourhood planner helps: kinds of instances, M, and polish",
     "execution": "Late robots: drivers compared",
     "following": "The price of plans without rotations",
     "people": "People first: the cost for the robots",
@@ -36,7 +37,12 @@ MEANINGS = {
     "are broken. Each line changes such answers, and has the paper's algorithms as published or with all plans as they "
     "are as a candidate. The distance was fixed before the run: the relative errors of the two savings, and 1 for each "
     "comparison that is contradicted.",
-    "nearest": "The conventions that the screening brought nearest, for more assignments than it had, and carproof's.",
+    "nearest": "The conventions that the screening brought nearest, for more assignments than it had, and carproof's. "
+    "Most probably the paper's program kept all plans as they are as one more candidate, and its robots stayed at "
+    "their goals one tick longer than carproof's.",
+    "neighbours": "Robots wait in docks beside their starts, so every planner plans all of them. Neighbours save most "
+    "where robots are in each other's way. With little time, few neighbours save more than a polish of CARP's plans; "
+    "with more, the polish does, which plans all robots again.",
     "execution": "On the clock late robots collide; in order, and switching, none collides or stands for ever, but "
     "robots are later.",
     "following": "Removing rotations costs next to nothing; forbidding following costs much more, and leaves more "

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from carp_experiments.beyond.delayed import DriverOf, execution_figures
 from carp_experiments.beyond.following import FollowingOf, following_figures
+from carp_experiments.beyond.neighbours import Helped, neighbours_figures
 from carp_experiments.beyond.people import PeopleOf, people_figures
 from carp_experiments.beyond.streams import StreamOf, stream_figures
 from carp_experiments.figures import line_figure
@@ -23,6 +24,7 @@ FIGURES: Mapping[str, Callable[[Run], Sequence[Figure]]] = {
     "gap": lambda run: gap_figures(summary_of(run, tuple[GapOf, ...])),
     "related": lambda run: related_figures(summary_of(run, tuple[Related, ...])),
     "polish": lambda run: polish_figures(summary_of(run, PolishSummary)),
+    "neighbours": lambda run: neighbours_figures(summary_of(run, tuple[Helped, ...])),
     "execution": lambda run: execution_figures(summary_of(run, tuple[DriverOf, ...])),
     "following": lambda run: following_figures(summary_of(run, tuple[FollowingOf, ...])),
     "people": lambda run: people_figures(summary_of(run, tuple[PeopleOf, ...])),

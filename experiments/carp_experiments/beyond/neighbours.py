@@ -257,7 +257,7 @@ def neighbours_figures(summary: Sequence[Helped]) -> tuple[Figure, ...]:
     by_size = {name: by_size[name] for name in sorted(by_size, key=lambda name: (int(name.split()[1]), name))}
     per_cent = "per cent of CARP's total"
     return (
-        Figure("neighbours-kinds", "Saved by M = 4, by kind of instance", (MAP_AXIS, per_cent), saved),
-        Figure("neighbours-polish", "Polish saves more in the time of M = 4", (MAP_AXIS, per_cent), more),
-        Figure("neighbours-sizes", "Saved by M, and by polish in its time", ("M", per_cent), by_size),
+        Figure("neighbours-kinds", "Saved by four robots planned together", (MAP_AXIS, per_cent), saved),
+        Figure("neighbours-polish", "Saved by polish beyond M = 4, in as much time", (MAP_AXIS, per_cent), more),
+        Figure("neighbours-sizes", "Saved by M robots together, and by polish in their time", ("M", per_cent), by_size),
     )
