@@ -105,7 +105,7 @@ $(PAPER): paper-%: install
 
 # Compute 50 random cases of each stored run again with the reference planner; continues where it stopped.
 paper-recomputed: install
-	for name in gap related quality polish; do \
+	for name in gap related time quality polish; do \
 	    xz -dkc experiments/results/$$name.sqlite.xz > $$name.stored && \
 	    nice $(BIN)/carproof experiment recomputed $$name $$name.stored --store $$name.again --workers 2 || exit 1; \
 	done

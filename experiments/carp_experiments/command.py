@@ -274,12 +274,12 @@ def recomputed(
     help="The folder of the report.",
 )
 def report(stored: Path | None, output: Path) -> Answer:
-    """Write one report on all runs of a folder, as HTML and as PDF."""
+    """Write one report on all runs of a folder, as HTML and as PDF, and beside it each figure as a PDF of its own."""
     require("matplotlib", "markdown", "fpdf")
     from carp_experiments.page import RESULTS  # noqa: PLC0415 - loads the experiments
-    from carp_experiments.printed import write_printed  # noqa: PLC0415
+    from carp_experiments.printed import write_figures, write_printed  # noqa: PLC0415
 
-    for path in write_printed(output, stored or RESULTS):
+    for path in (*write_printed(output, stored or RESULTS), *write_figures(output, stored or RESULTS)):
         print_line(f"wrote {path}")
     return Answer.of(True)
 

@@ -55,7 +55,7 @@ def line_figure(path: Path, drawn: Figure) -> None:
     panels = panels_of([*drawn.lines])
     strokes = strokes_of([*drawn.lines])
     shown = known_points(drawn)
-    with plt.rc_context({"svg.hashsalt": "carproof", "svg.fonttype": "none", "font.size": 9}):
+    with plt.rc_context({"svg.hashsalt": "carproof", "svg.fonttype": "none", "pdf.fonttype": 42, "font.size": 9}):
         size = (WIDTH, HEIGHT * len(panels) + 0.3)
         figure, plots = plt.subplots(len(panels), figsize=size, squeeze=False, layout="constrained")
         for (plot,), (heading, names) in zip(plots, panels.items(), strict=True):
@@ -69,7 +69,7 @@ def line_figure(path: Path, drawn: Figure) -> None:
             write_names(plot, of_panel, {name: strokes[name][0] for name in of_panel})
         plots[-1][0].set_xlabel(drawn.axes[0])
         figure.suptitle("\n".join(filter(None, (drawn.title, drawn.cited))))
-        figure.savefig(path, metadata={"Date": None, "Creator": None})
+        figure.savefig(path, metadata={"Creator": None, "CreationDate" if path.suffix == ".pdf" else "Date": None})
         plt.close(figure)
 
 

@@ -3,6 +3,7 @@
 import platform
 import re
 from base64 import b64encode
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from importlib.metadata import version
 from os import cpu_count
@@ -51,6 +52,12 @@ def write_printed(folder: Path, stored: Path) -> tuple[Path, Path]:
     write_whole(html, page_of(body, stored).encode())
     write_whole(pdf, pdf_of(body, stored))
     return html, pdf
+
+
+def write_figures(folder: Path, stored: Path) -> Sequence[Path]:
+    """Write each figure of the runs stored in a folder as a PDF, for a paper to print; returns their paths."""
+    runs = [name for name in FIGURES if (stored / f"{name}.json").exists()]
+    return [path for name in runs for path in draw_figures(stored, name, folder, "pdf").values()]
 
 
 def machine() -> str:

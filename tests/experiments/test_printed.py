@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from carp_experiments.page import RESULTS
-from carp_experiments.printed import write_printed
+from carp_experiments.printed import write_figures, write_printed
 
 
 def test_the_report_is_whole_and_the_same_each_time(tmp_path: Path) -> None:
@@ -18,3 +18,5 @@ def test_the_report_is_whole_and_the_same_each_time(tmp_path: Path) -> None:
     text = html.read_text(encoding="utf-8")
     assert 'src="figures' not in text
     assert "data:image/svg+xml;base64," in text
+    (figure,) = write_figures(tmp_path / "one", stored)
+    assert figure.read_bytes().startswith(b"%PDF")
