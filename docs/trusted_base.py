@@ -12,7 +12,11 @@ from carproof.markdown import markdown_table
 ROOT = Path(__file__).parents[1]
 KERNEL = ROOT / "verify" / "kernel"
 LAW = ("check", "joint_rules", "plan_rules", "instance_rules", "model", "rule", "refusal")
-BOUND = ("bound/verify", "bound/rules", "documents/bounds", "routes")
+BOUND = (
+    *(f"bound/{each}" for each in ("verify", "least", "network", "tariff", "rules")),
+    "documents/bounds",
+    "routes",
+)
 FOOTPRINT = ("apart", "cells", "floor", "meeting", "rules")
 ENCODER = ("optimum/encoding", "optimum/robot_clauses", "optimum/clauses", "optimum/rules", "routes")
 UNSOLVABLE = ("optimum/proof", "optimum/unsolvable")

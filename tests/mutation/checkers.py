@@ -47,6 +47,9 @@ TESTS: Mapping[str, Sequence[str]] = {
     "carp_spec.documents.solutions": ("verify/test_documents",),
     "carp_spec.documents.decoding": ("verify/test_documents",),
     "carp_verify.bound.verify": BOUNDS,
+    "carp_verify.bound.least": (*BOUNDS, "verify/test_bound_stops"),
+    "carp_verify.bound.network": BOUNDS,
+    "carp_verify.bound.tariff": BOUNDS,
     "carp_verify.bound.rules": (*BOUNDS, "verify/test_gap", "oracle/test_bound"),
     "carp_verify.bound.cuts": BOUNDS,
     "carp_verify.optimum.refutation": ("verify/test_refutation", "verify/test_forgery"),
@@ -95,6 +98,18 @@ PLANTED: Mapping[str, Sequence[tuple[str, str]]] = {
     "carp_verify.bound.verify": (
         ("is_weight(0, -left[robot])", "is_weight(certificate.scale, cut.multiplier)"),  # per cut, not per robot
         ("is_weight(0, -left[robot])", "True"),
+    ),
+    "carp_verify.bound.least": (
+        ("apart(place) < most", "apart(place) < most - 1"),
+        ("ticks + each * takes[place]", "ticks + 2 * each * takes[place]"),
+        ("tick >= self.horizon", "tick >= self.horizon - 1"),
+        ("min(cost, at.get(place, cost))", "cost"),  # the last to come, not the cheapest
+    ),
+    "carp_verify.bound.network": (
+        ("map(sub, marks[place], of_source)", "map(sub, of_source, marks[place])"),
+        (" - network.duration[each] for each", " for each"),
+    ),
+    "carp_verify.bound.tariff": (
         ("price * instance.graph.resource[source].capacity", "price"),
         ("(self.across.get(resource), enter + 1)", "(None, 0)"),  # only movers pay for exchanges
         ("max(self.horizon, tick + 1)", "max(self.horizon, tick)"),

@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import msgspec
 from hypothesis import strategies as st
+from tests.verify.plain_search import plain_least_cost
 
 from carp_optimum.bound import lower_bound
 from carp_optimum.sat.proving import refutation
@@ -14,7 +15,8 @@ from carp_spec import Instance, Plan, Resource, ResourceGraph, ResourceId, Robot
 from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, CutDocument, DeadlinesDocument
 from carp_spec.documents.instances import digest
 from carp_verify.bound.cuts import formula_of_deadlines, group_of
-from carp_verify.bound.verify import Budget, RobotSearch, Tariff, fees_of, predecessors, verify_bound
+from carp_verify.bound.tariff import Tariff, fees_of
+from carp_verify.bound.verify import verify_bound
 from carp_verify.optimum.encoding import Evidence, beat_formula
 
 SCALE = 4
@@ -36,14 +38,13 @@ def crossing() -> Instance:
 def completed(instance: Instance, certificate: BoundDocument) -> BoundDocument:
     """The certificate with all that its prices and cuts prove."""
     tariff = Tariff(instance, certificate)
-    before, fees = predecessors(instance), fees_of(instance, certificate.deadlines)
+    fees = fees_of(instance, certificate.deadlines)
     weight = dict.fromkeys(instance.robot, certificate.scale)
     for cut in certificate.cuts:
         for robot in cut.robots:
             weight[robot] = max(weight.get(robot, 0) - cut.multiplier, 0)
     robots = tuple(
-        (robot.id, RobotSearch(tariff, robot, weight[robot.id], before, Budget(), fees[robot.id]).least_cost())
-        for robot in instance.robots
+        (robot.id, plain_least_cost(tariff, robot, weight[robot.id], fees[robot.id])) for robot in instance.robots
     )
     worth = sum(deadlines.price * (len(deadlines.robots) - 1) for deadlines in certificate.deadlines)
     proved = sum(cut.multiplier * cut.least for cut in certificate.cuts)

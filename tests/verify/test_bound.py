@@ -6,6 +6,7 @@ import sys
 from dataclasses import replace
 from itertools import count, product
 from pathlib import Path
+from random import Random
 
 import msgspec
 import pytest
@@ -21,6 +22,7 @@ from tests.verify.bound_examples import (
     payment,
     plans_of,
 )
+from tests.verify.plain_search import least_cost_of
 from tests.verify.tiny import TINY
 
 from carp_optimum.bound import Progress, lower_bound
@@ -28,10 +30,11 @@ from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
 from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, read_bound
 from carp_spec.documents.decoding import write
 from carp_spec.documents.instances import digest
-from carp_spec.model import Group
+from carp_spec.model import AfterGoal, Group
 from carp_spec.plan_rules import plan_cost
 from carp_verify.bound import verify as page
-from carp_verify.bound.verify import Tariff, verify_bound
+from carp_verify.bound.tariff import Fees, Tariff
+from carp_verify.bound.verify import verify_bound
 from carp_verify.optimum.joint_search import least_total_cost
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.testing.strategies import PlannedInstance, Sizes, instances, planned_instances
@@ -49,6 +52,33 @@ def test_the_least_cost_is_that_of_the_cheapest_of_all_plans(data: st.DataObject
         SCALE * plan_cost(instance, plan) + payment(instance, certificate, plan) for plan in plans_of(instance, robot)
     ]
     assert certificate.robots == ((robot.id, min(costs, default=None)),)
+    least_cost_of(Tariff(instance, certificate), robot, SCALE, Fees())
+
+
+@settings(max_examples=draws(100))
+@given(st.data(), instances(Sizes(resources=5, robots=2, duration=2, release=3, pace=2, groups=2), least_robots=1))
+def test_a_claim_is_judged_alike_with_shortcuts_and_without(data: st.DataObject, instance: Instance) -> None:
+    tariff = Tariff(instance, data.draw(certificates(instance)))
+    times = st.integers(0, HORIZON)
+    places = st.sets(st.sampled_from(list(instance.graph.index)))
+    arrivals = data.draw(st.lists(st.tuples(times, st.integers(0, 9)), max_size=2))
+    sights = data.draw(st.lists(st.tuples(times, places, st.integers(0, 9)), max_size=2))
+    for robot in instance.robots:
+        least_cost_of(
+            tariff, robot, data.draw(st.integers(0, SCALE)), Fees([*arrivals, *((0, 0) for _ in sights)], sights)
+        )
+
+
+@pytest.mark.parametrize("after_goal", ["park", "vanish"])
+def test_where_many_ways_meet_a_claim_is_judged_alike_with_shortcuts_and_without(after_goal: AfterGoal) -> None:
+    for seed in range(20):
+        random = Random(seed)  # noqa: S311 - no secret
+        instance = grid_instance(Grid(3, 3), Fleet(robots=2, seed=seed, after_goal=after_goal))
+        cells = [cell for cell in product(instance.graph.index, range(HORIZON)) if random.random() < 0.6]
+        prices = tuple((*cell, random.randrange(9)) for cell in cells)
+        empty = BoundDocument(BOUND_FORMAT, digest(instance), 0, SCALE, HORIZON, prices, (), (), ())
+        for robot in instance.robots:
+            least_cost_of(Tariff(instance, empty), robot, random.randrange(SCALE + 1), Fees())
 
 
 @settings(max_examples=draws(300))
@@ -146,23 +176,23 @@ def test_a_certificate_is_read_as_it_was_written() -> None:
 
 
 def test_the_verifier_shares_nothing_with_the_finder_and_loads_nothing_compiled() -> None:
-    names = {
-        name
-        for node in ast.walk(ast.parse(Path(page.__file__).read_text()))
-        for name in ([node.module] if isinstance(node, ast.ImportFrom) else [])
-    }
-    ours = {name for name in names if name is not None and name.startswith("carp_")}
-    assert ours == {
+    pages = [Path(str(page.__file__)).parent / f"{name}.py" for name in ("verify", "least", "network", "tariff")]
+    nodes = [node for each in pages for node in ast.walk(ast.parse(each.read_text()))]
+    names = {node.module for node in nodes if isinstance(node, ast.ImportFrom) and node.module is not None}
+    assert {name for name in names if name.startswith("carp_")} == {
         "carp_spec",
         "carp_spec.documents.bounds",
         "carp_spec.documents.instances",
-        "carp_verify.routes",
         "carp_spec.inputs.values",
         "carp_spec.model",
         "carp_spec.rule",
-        "carp_verify.bound.rules",
         "carp_verify.bound.cuts",
+        "carp_verify.bound.least",
+        "carp_verify.bound.network",
+        "carp_verify.bound.rules",
+        "carp_verify.bound.tariff",
         "carp_verify.optimum.refutation",
+        "carp_verify.routes",
     }
     program = "import sys; own = {*sys.modules}; import carp_verify.bound.verify; print(*({*sys.modules} - own))"
     loaded = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True).stdout.split()

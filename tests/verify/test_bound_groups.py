@@ -22,6 +22,7 @@ from tests.verify.bound_examples import (
     plans_of,
     sight_certificate,
 )
+from tests.verify.plain_search import least_cost_of
 
 from carp_optimum.bound import lower_bound
 from carp_optimum.sat.solver import Solver
@@ -31,7 +32,8 @@ from carp_spec.documents.decoding import write
 from carp_spec.documents.instances import digest
 from carp_spec.plan_rules import plan_cost
 from carp_verify.bound.cuts import formula_of, formula_of_deadlines
-from carp_verify.bound.verify import Budget, Fees, RobotSearch, Tariff, fees_of, predecessors, verify_bound
+from carp_verify.bound.tariff import Fees, Tariff, fees_of
+from carp_verify.bound.verify import verify_bound
 from carproof.testing.strategies import Sizes, instances
 
 
@@ -50,8 +52,7 @@ def test_who_keeps_a_deadline_pays_for_it_and_may_drive_on_through_the_goal_to_m
         for plan in plans_of(instance, robot)
     ]
     tariff = Tariff(instance, certificate)
-    search = RobotSearch(tariff, robot, SCALE, predecessors(instance), Budget(), Fees(fees))
-    assert search.least_cost() == min(costs, default=None)
+    assert least_cost_of(tariff, robot, SCALE, Fees(fees)) == min(costs, default=None)
 
 
 @settings(max_examples=draws(200))
@@ -76,8 +77,7 @@ def test_who_is_seen_in_a_place_on_the_way_pays_for_it_once(data: st.DataObject,
         for plan in plans_of(instance, robot)
     ]
     tariff = Tariff(instance, certificate)
-    search = RobotSearch(tariff, robot, SCALE, predecessors(instance), Budget(), fees)
-    assert search.least_cost() == min(costs, default=None)
+    assert least_cost_of(tariff, robot, SCALE, fees) == min(costs, default=None)
 
 
 @pytest.mark.parametrize(
@@ -95,8 +95,7 @@ def test_a_robot_is_late_where_that_is_cheaper(
     lane = Instance(ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),)), (Robot("r", "a", "b"),))
     certificate = BoundDocument(BOUND_FORMAT, digest(lane), 0, SCALE, HORIZON, prices, (), (), ())
     paid = [(tick, SCALE * price) for tick, price in fees]
-    search = RobotSearch(Tariff(lane, certificate), lane.robots[0], SCALE, predecessors(lane), Budget(), Fees(paid))
-    assert search.least_cost() == SCALE * least
+    assert least_cost_of(Tariff(lane, certificate), lane.robots[0], SCALE, Fees(paid)) == SCALE * least
 
 
 def test_deadlines_find_what_prices_alone_miss_and_carry_their_proofs() -> None:
@@ -223,8 +222,7 @@ def test_who_arrives_after_it_is_seen_pays_nothing_and_who_waits_where_it_is_see
     lane = Instance(ResourceGraph(tuple(map(Resource, "abc")), (("a", "b"), ("b", "c"))), (Robot("r", "a", "c"),))
     certificate = BoundDocument(BOUND_FORMAT, digest(lane), 0, SCALE, HORIZON, (("b", 1, 9 * SCALE),), (), (), ())
     waits = Fees([], [(1, ("a",), SCALE)])
-    search = RobotSearch(Tariff(lane, certificate), lane.robots[0], SCALE, predecessors(lane), Budget(), waits)
-    assert search.least_cost() == 4 * SCALE
+    assert least_cost_of(Tariff(lane, certificate), lane.robots[0], SCALE, waits) == 4 * SCALE
 
 
 def test_who_is_seen_several_times_pays_for_each_tick_of_its_stay_in_whatever_order_they_are_named() -> None:

@@ -13,6 +13,7 @@ from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, read_bound
 from carp_spec.documents.decoding import write
 from carp_spec.documents.instances import digest
 from carp_verify.bound import rules as bound_rules
+from carp_verify.bound import tariff
 from carp_verify.bound import verify as page
 from carp_verify.bound.verify import verify_bound
 
@@ -34,7 +35,7 @@ def sized(change: str) -> tuple[Instance, BoundDocument]:
     """A certificate with one size larger than all others."""
     if change == "prices":
         lane = Instance(ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),)), (Robot("r", "a", "b"),))
-        prices = {"resources": (("a", 29, 1),), "exchanges": (("b", "a", 29, 1), ("a", "b", 3, 1))}
+        prices = {"resources": (("a", 29, 1), ("b", 1, 1)), "exchanges": (("b", "a", 29, 1), ("a", "b", 3, 1))}
         return lane, completed(lane, msgspec.structs.replace(lower_bound(lane, steps=1), horizon=30, **prices))
     cuts = {"cuts": 2, "both": 1}.get(change, 0) * cut_certificate().cuts
     deadlines = {"deadlines": 3, "both": 1}.get(change, 0) * deadline_certificate().deadlines
@@ -59,9 +60,14 @@ def test_each_size_is_accepted_up_to_its_limit(
     change: str, limit: str, size: int, path: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     instance, certificate = sized(change)
-    monkeypatch.setattr(page, limit, size)
+
+    def set_limit(most: int) -> None:
+        for module in (page, tariff):
+            monkeypatch.setattr(module, limit, most, raising=False)
+
+    set_limit(size)
     assert verify_bound(instance, certificate) == certificate.bound
-    monkeypatch.setattr(page, limit, size - 1)
+    set_limit(size - 1)
     with pytest.raises(Refusal, match=f"at most {size - 1}|more than {size - 1}") as refused:
         verify_bound(instance, certificate)
     assert (refused.value.path, refused.value.rule) == (path, "bound/size")

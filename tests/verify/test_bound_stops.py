@@ -6,13 +6,15 @@ from itertools import count
 
 import msgspec
 import pytest
+from tests.verify.plain_search import least_cost_of
 from tests.verify.tiny import STOPPING, case
 
 from carp_optimum.bound import lower_bound
 from carp_spec import Instance, Refusal, ResourceId, Robot
 from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument
 from carp_spec.documents.instances import digest
-from carp_verify.bound.verify import Budget, Fees, RobotSearch, Tariff, predecessors, verify_bound
+from carp_verify.bound.tariff import Fees, Tariff
+from carp_verify.bound.verify import verify_bound
 from carp_verify.optimum.joint_search import WAITS, State, _Search, least_total_cost
 from carproof.testing.random_instances import Draw
 
@@ -83,8 +85,8 @@ def test_what_robots_pay_at_least_is_that_of_a_search_by_ticks(part: int) -> Non
     for number in range(part * SIZE, (part + 1) * SIZE):
         instance, draw = case(number, STOPPING)
         prices = drawn_prices(instance, draw)
-        tariff, before = Tariff(instance, prices), predecessors(instance)
-        least = [RobotSearch(tariff, robot, SCALE, before, Budget(), Fees()).least_cost() for robot in instance.robots]
+        tariff = Tariff(instance, prices)
+        least = [least_cost_of(tariff, robot, SCALE, Fees()) for robot in instance.robots]
         assert least == [least_by_ticks(instance, robot, prices) for robot in instance.robots], number
         if None not in least:
             parts = sum(each or 0 for each in least) - tariff.worth

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from carp_spec import Instance, ResourceId, RobotId
 from carp_spec.documents.bounds import BoundDocument
-from carp_verify.bound.verify import Tariff, fees_of
+from carp_verify.bound.tariff import Tariff, fees_of
 from carp_verify.optimum.robot_clauses import Node, RobotClauses
 
 

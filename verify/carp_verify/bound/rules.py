@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from carp_spec import Rule
+from carp_spec import Refusal, Rule
 from carp_spec.rule import DESIGN, is_whole, rule
 
 LARGEST_TABLE = 20_000_000
@@ -112,6 +112,17 @@ def stay_is_searched(ticks: int) -> bool:
 
 class ContradictionError(RuntimeError):
     """Plans that break no rule cost less than an accepted bound: one of the two checkers is wrong."""
+
+
+def require_size(size: int, limit: int, path: str, what: str) -> None:
+    """Raise `Refusal` if what the path names would have a size above the limit."""
+    require(size_fits, size_fits(size, limit), path, f"{what} would be {size}, and at most {limit} are allowed")
+
+
+def require(rule: Rule[..., bool], kept: bool, path: str, message: str) -> None:
+    """Raise `Refusal` if the rule is not kept at the path."""
+    if not kept:
+        raise Refusal("document", path, rule.id, message)
 
 
 def require_kept(bound: int, cost: int) -> None:

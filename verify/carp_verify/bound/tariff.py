@@ -1,0 +1,157 @@
+"""What a robot pays by the prices of a certificate: in resources, for moves, and for the deadlines that it keeps."""
+
+from bisect import bisect_left
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from itertools import accumulate
+from operator import itemgetter
+
+from carp_spec import Instance, ResourceGraph, ResourceId, RobotId
+from carp_spec.documents.bounds import BoundDocument, DeadlinesDocument
+from carp_spec.model import Group
+from carp_verify.bound.rules import LARGEST_TABLE, is_new, is_price, require, require_size
+
+
+class Fees:
+    """The prices of a robot's deadlines.
+
+    Each (tick, price) of `arrivals` is paid by a robot that arrives by the tick. Each (tick, places, price) of `sights`
+    is paid by one that is in one of the places at the tick, on its way.
+    """
+
+    def __init__(
+        self,
+        arrivals: Sequence[tuple[int, int]] = (),
+        sights: Sequence[tuple[int, Collection[ResourceId], int]] = (),
+    ) -> None:
+        self.arrivals = arrivals
+        self._sights = sorted(sights, key=itemgetter(0))
+        self._ticks = [tick for tick, _, _ in self._sights]
+        self.last = max([-1, *(tick for tick, _ in arrivals), *self._ticks])
+        """The last tick at which anything is paid, if it is not negative."""
+
+    def on_the_way(self, resource: ResourceId, first: int, end: int) -> int:
+        """The payment of a robot that is in the resource in [first, end), on its way."""
+        if not self._ticks:
+            return 0
+        seen = self._sights[bisect_left(self._ticks, first) : bisect_left(self._ticks, end)]
+        return sum(price for _, places, price in seen if resource in places)
+
+    def at_arrival(self, tick: int) -> int:
+        """The payment of a robot that enters its goal for the last time at the tick."""
+        return sum(price for last, price in self.arrivals if tick <= last)
+
+
+def fees_of(instance: Instance, deadlines: Sequence[DeadlinesDocument]) -> Mapping[RobotId, Fees]:
+    """The prices of each robot's deadlines."""
+    arrivals: dict[RobotId, list[tuple[int, int]]] = {robot: [] for robot in instance.robot}
+    sights: dict[RobotId, list[tuple[int, Collection[ResourceId], int]]] = {robot: [] for robot in instance.robot}
+    for each in deadlines:
+        for number, (robot, tick) in enumerate(zip(each.robots, each.ticks, strict=True)):
+            seen, places = each.seen[number] if each.seen else (tick, ())
+            arrivals.setdefault(robot, []).append((min(tick, seen), each.price))
+            sights.setdefault(robot, []).append((seen, frozenset(places), each.price))
+    return {robot: Fees(paid, sights[robot]) for robot, paid in arrivals.items()}
+
+
+class Tariff:
+    """The prices of a certificate; `worth` is the most that all robots together can pay."""
+
+    def __init__(self, instance: Instance, certificate: BoundDocument) -> None:
+        """Raises `Refusal` for a price that is not valid."""
+        self.instance = instance
+        self.worth = 0
+        self.horizon = 0
+        self.moves: dict[tuple[ResourceId, ...], dict[int, int]] = {}
+        present: dict[ResourceId, dict[int, int]] = {}
+        across: dict[ResourceId, dict[int, int]] = {}
+        graph = instance.graph
+        groups = {group.id: group for group in graph.groups}
+        for id, tick, price in self._group_prices(certificate, groups):
+            self.horizon = max(self.horizon, tick + 1)
+            for resource in groups[id].resources:
+                of_groups = present.setdefault(resource, {})
+                of_groups[tick] = of_groups.get(tick, 0) + price
+            self.worth += price * groups[id].capacity
+        for place, tick, price in self._prices(certificate):
+            source = place[0]
+            self.horizon = max(self.horizon, tick + 1)
+            if len(place) == 1:
+                of_resource = present.setdefault(source, {})
+                of_resource[tick] = of_resource.get(tick, 0) + price
+            else:
+                of_rows = across.setdefault(source, {})
+                of_rows[tick] = of_rows.get(tick, 0) + price
+                self.moves.setdefault(place, {})[tick] = price
+            self.worth += price * graph.resource[source].capacity
+        size = self.horizon * len({*present, *across})
+        require_size(size, LARGEST_TABLE, "$.resources", "the prices by resource and tick, up to the last,")
+        self.present = {resource: self._sums(prices) for resource, prices in present.items()}
+        self.across = {resource: self._sums(prices) for resource, prices in across.items()}
+
+    def _group_prices(
+        self, certificate: BoundDocument, groups: Mapping[ResourceId, Group]
+    ) -> Iterator[tuple[ResourceId, int, int]]:
+        """The prices of groups, checked."""
+        known: set[tuple[ResourceId, int]] = set()
+        size = sum(len(groups[id].resources) for id, _, _ in certificate.groups if id in groups)
+        require_size(size, LARGEST_TABLE, "$.groups", "the resources of groups with prices")
+        for number, (id, tick, price) in enumerate(certificate.groups):
+            path = f"$.groups[{number}]"
+            message = f"{price!r} at {tick!r} must be a price of at least 0 at a tick below {certificate.horizon}"
+            require(is_price, is_price(price, tick, certificate.horizon), path, message)
+            require(is_price, id in groups, path, f"{id} must be a group")
+            require(is_new, is_new((id, tick), known), path, f"{id} must have one price at tick {tick}")
+            known.add((id, tick))
+            yield id, tick, price
+
+    def _prices(self, certificate: BoundDocument) -> Iterator[tuple[tuple[ResourceId, ...], int, int]]:
+        """The prices with their places, checked: one resource, or the two of an exchange."""
+        rows: list[tuple[tuple[ResourceId, ...], int, int]] = [
+            ((resource,), tick, price) for resource, tick, price in certificate.resources
+        ]
+        pairs = [((source, target), tick, price) for source, target, tick, price in certificate.exchanges]
+        graph = self.instance.graph
+        known: set[tuple[tuple[ResourceId, ...], int]] = set()
+        for number, (place, tick, price) in enumerate([*rows, *pairs]):
+            path = f"$.resources[{number}]" if number < len(rows) else f"$.exchanges[{number - len(rows)}]"
+            message = f"{price!r} at {tick!r} must be a price of at least 0 at a tick below {certificate.horizon}"
+            require(is_price, is_price(price, tick, certificate.horizon), path, message)
+            exists = place[0] in graph.index if len(place) == 1 else is_both_ways(graph, *place)
+            shown = " and ".join(map(str, place))
+            require(is_price, exists, path, f"{shown} must be a resource, or two with a move each way")
+            require(is_new, is_new((place, tick), known), path, f"{shown} must have one price at tick {tick}")
+            known.add((place, tick))
+            yield place, tick, price
+
+    def _sums(self, prices: Mapping[int, int]) -> Sequence[int]:
+        """The sum of the prices before each tick, up to the horizon."""
+        return [0, *accumulate(prices.get(tick, 0) for tick in range(self.horizon))]
+
+    def stay(self, resource: ResourceId, enter: int, leave: int) -> int:
+        """The payment of a stay in [enter, leave)."""
+        paid = 0
+        for sums, first in ((self.present.get(resource), enter), (self.across.get(resource), enter + 1)):
+            if sums is not None and first < leave:
+                paid += sums[min(leave, self.horizon)] - sums[min(first, self.horizon)]
+        return paid
+
+    def wait(self, resource: ResourceId, tick: int) -> int:
+        """The payment of a tick of waiting: that of a stay that goes on for the tick."""
+        paid = 0
+        for sums in (self.present.get(resource), self.across.get(resource)):
+            if sums is not None and tick < self.horizon:
+                paid += sums[tick + 1] - sums[tick]
+        return paid
+
+    def move(self, source: ResourceId, target: ResourceId, tick: int) -> int:
+        """The payment of a move at the tick."""
+        paid = 0
+        for prices in (self.moves.get((source, target)), self.moves.get((target, source))):
+            if prices is not None:
+                paid += prices.get(tick, 0)
+        return paid
+
+
+def is_both_ways(graph: ResourceGraph, source: ResourceId, target: ResourceId) -> bool:
+    """Whether moves lead from one to the other and back."""
+    return {(source, target), (target, source)} <= graph.moves
