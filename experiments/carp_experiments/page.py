@@ -36,10 +36,12 @@ MEANINGS = {
     "conventions": "The paper does not say how long a robot stays at its goal, whether it may appear late, or how ties "
     "are broken. Each line changes such answers, and has the paper's algorithms as published or with all plans as they "
     "are as a candidate. The distance was fixed before the run: the relative errors of the two savings, and 1 for each "
-    "comparison that is contradicted.",
+    "comparison that is contradicted. Robots that stay until all have arrived have the plans of those that park. "
+    "Not tried: that a robot for which CARP fails at line 10 keeps its plan, which others may then meet (where the "
+    "algorithm ends instead, the savings are nearly the same), and other divisors of the distance of two robots.",
     "nearest": "The conventions that the screening brought nearest, for more assignments than it had, and carproof's. "
-    "Most probably the paper's program kept all plans as they are as one more candidate, and its robots stayed at "
-    "their goals one tick longer than carproof's.",
+    "Most probably the paper's program kept all plans as they are as one more candidate, its robots stayed at their "
+    "goals one tick longer than carproof's, and goals were repeated.",
     "neighbours": "Robots wait in docks beside their starts, so every planner plans all of them. Neighbours save most "
     "where robots are in each other's way. With little time, few neighbours save more than a polish of CARP's plans; "
     "with more, the polish does, which plans all robots again.",

@@ -12,6 +12,7 @@ from carp_experiments.paper.conventions import (
     Convention,
     add_robot,
     conventions_row,
+    drawn_robots,
     drawn_tree,
     grid_edges,
     one_pass,
@@ -83,6 +84,17 @@ def test_robots_that_stay_keep_their_goals_free_of_others() -> None:
     for robot in range(planned):
         arrival = int(world.arrival[robot])
         assert all(world.occupant[arrival : arrival + 6, world.goal[robot]] == robot)
+
+
+def test_ends_repeat_where_the_convention_says_so() -> None:
+    case = replace(CASE, robots=100)
+    for convention, repeats in {
+        Convention(): (False, False),
+        Convention(goals_repeated=True): (False, True),
+        Convention(repeated=True): (True, True),
+    }.items():
+        starts, goals, _ = zip(*drawn_robots(case, convention), strict=True)
+        assert tuple(len(set(ends)) < case.robots for ends in (starts, goals)) == repeats
 
 
 @pytest.mark.parametrize("is_depth_first", [True, False])

@@ -22,6 +22,7 @@ from carp_spec.permutations import orders, shuffle, splitmix64
 if TYPE_CHECKING:
     from carp_experiments.paper.space_time import World
     from carp_optimized.jit.kinds import Ints
+    from carproof.generate.options import Distinct
 
 SIDE = 20
 FOR_EVER = -1
@@ -32,7 +33,10 @@ class Convention:
     """Answers to what the paper leaves open; by default, those of carproof and of the listing."""
 
     stay: int = 0
-    """Ticks for which a robot stays at its goal, beyond the tick of its arrival; -1: it parks."""
+    """Ticks for which a robot stays at its goal, beyond the tick of its arrival; -1: it parks.
+
+    Parking has the plans of a stay until all have arrived: afterwards nobody moves.
+    """
     swaps: bool = False
     """Whether two robots may swap places."""
     following: bool = True
@@ -51,6 +55,8 @@ class Convention:
     """Whether the listing's `return`, which stands within the loop, ends the algorithm after the first round."""
     repeated: bool = False
     """Whether starts and goals are drawn with replacement; robots then appear once their start is free."""
+    goals_repeated: bool = False
+    """Whether goals alone are drawn with replacement."""
     late: bool = False
     """Whether a robot may appear at its start after its release."""
     spread: bool = False
@@ -128,6 +134,8 @@ NEAREST = (
     Convention(stay=1),
     Convention(stay=1, late=True),
     Convention(stay=1, repeated=True),
+    Convention(goals_repeated=True),
+    Convention(stay=1, goals_repeated=True),
     Convention(stay=1, swaps=True),
     Convention(tree="depth first"),
     Convention(tree="random walk"),
@@ -366,7 +374,8 @@ def drawn_robots(case: MapCase, convention: Convention) -> list[tuple[int, int, 
     """Start, goal and release of each robot."""
     from carproof.generate import Fleet, Grid, grid_instance  # noqa: PLC0415 - each worker loads it
 
-    fleet = Fleet(robots=case.robots, seed=case.assignment, distinct="none" if convention.repeated else "both")
+    distinct: Distinct = "none" if convention.repeated else "starts" if convention.goals_repeated else "both"
+    fleet = Fleet(robots=case.robots, seed=case.assignment, distinct=distinct)
     instance = grid_instance(Grid(SIDE, SIDE), fleet)
     index = instance.graph.index
     releases = range(case.robots) if convention.spread else [0] * case.robots
