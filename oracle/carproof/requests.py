@@ -41,17 +41,19 @@ def robot_called(instance: Instance, name: str) -> RobotId:
 
 @contextmanager
 def inside(prefix: str) -> Iterator[None]:
-    """Put the paths of refusals below a prefix: `$.graph` inside `$.instance` is `$.instance.graph`.
-
-    A refusal of an option stays as it is, because options stand beside the documents.
-    """
+    """Put the paths of refusals below a prefix: `$.graph` inside `$.instance` is `$.instance.graph`."""
     try:
         yield
     except Refusal as refusal:
-        if refusal.kind == "option":
-            raise
-        path = prefix + refusal.path.removeprefix("$")
-        raise Refusal(refusal.kind, path, refusal.rule, refusal.message) from refusal
+        raise below(prefix, refusal) from refusal
+
+
+def below(prefix: str, refusal: Refusal) -> Refusal:
+    """The refusal with its path below a prefix; one of an option stays, because options stand beside the documents."""
+    if refusal.kind == "option":
+        return refusal
+    path = prefix + refusal.path.removeprefix("$")
+    return Refusal(refusal.kind, path, refusal.rule, refusal.message)
 
 
 def sound_within(instance: Instance, solution: Solution, asked: RobotId | None = None) -> Solution:

@@ -51,7 +51,7 @@ def require_shape(value: object, kind: Any, path: str = "$") -> None:  # noqa: A
         for name, of in given.items():
             require_shape(getattr(value, name), of, path + PATHS.get(f"{kind.__name__}.{name}", f".{name}"))
     elif is_tuple and type(value) is tuple and (is_list or len(value) == len(kinds)):
-        for place, each in enumerate(() if _are(value, kinds[0]) else value):
+        for place, each in enumerate(() if _all_are(kinds[0])(value) else value):
             require_shape(each, kinds[0], path + (f"[{place}]" if is_list else ENDS[place]))
     elif is_tuple or not (type(value) in kinds or (type(value) is str and value in kinds)):
         right = "a tuple" if is_tuple else " or ".join(_word(each) for each in kinds)
@@ -91,13 +91,24 @@ def _parts(kind: Any) -> tuple[tuple[Any, ...], bool, Mapping[str, Any] | None]:
     return get_args(kind) or (kind,), get_origin(kind) is tuple, given
 
 
-def _are(values: Sequence[Any], kind: Any) -> bool:  # noqa: ANN401 - any type
-    """Whether all values are of the type, as far as that is seen quickly."""
+@cache
+def _all_are(kind: Any) -> Callable[[Sequence[Any]], bool]:  # noqa: ANN401 - any type
+    """A function that tells whether all values are of the type, as far as that is seen quickly."""
     kinds, is_tuple, given = _parts(kind)
     if is_tuple:
-        same = {*map(type, values)} <= {tuple} and (... in kinds or {*map(len, values)} <= {len(kinds)})
-        return same and _are([each for value in values for each in value], kinds[0])
+        of_members, sizes = _all_are(kinds[0]), None if ... in kinds else {len(kinds)}
+
+        def are_tuples(values: Sequence[Any]) -> bool:
+            same = {*map(type, values)} <= {tuple} and (sizes is None or {*map(len, values)} <= sizes)
+            return same and of_members([each for value in values for each in value])
+
+        return are_tuples
     if given is not None:
-        same = {*map(type, values)} <= {kind}
-        return same and all(_are([*map(attrgetter(name), values)], of) for name, of in given.items())
-    return {*map(type, values)} <= {*kinds}
+        fields = [(attrgetter(name), _all_are(of)) for name, of in given.items()]
+
+        def are_of_class(values: Sequence[Any]) -> bool:
+            return {*map(type, values)} <= {kind} and all(are([*map(get, values)]) for get, are in fields)
+
+        return are_of_class
+    allowed = {*kinds}
+    return lambda values: {*map(type, values)} <= allowed

@@ -5,7 +5,6 @@ have plans by CARP, and 40 more are added by the client and by the core in turns
 and of the wall's.
 """
 
-import json
 import subprocess
 import sys
 from dataclasses import replace
@@ -41,7 +40,7 @@ class Client:
         assert self.process.stdout is not None
         self.process.stdin.write(msgspec.json.encode({"id": 1, **fields}) + b"\n")
         self.process.stdin.flush()
-        answer: dict[str, dict[str, object]] = json.loads(self.process.stdout.readline())
+        answer: dict[str, dict[str, object]] = msgspec.json.decode(self.process.stdout.readline())
         return answer["result"]
 
     def processor_seconds(self) -> float:

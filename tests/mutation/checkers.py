@@ -40,6 +40,10 @@ REPORT = ("oracle/test_conform_report", *ANSWERS)
 OUTCOMES = ("oracle/test_conform_outcome",)
 LEMMAS = ("verify/test_lemmas", "verify/test_formulas")
 TESTS: Mapping[str, Sequence[str]] = {
+    "carp_spec.instance_rules": ("spec/test_instance_rules", "spec/test_plan_rules", "oracle/test_assign"),
+    "carp_spec.plan_rules": ("spec/test_plan_rules", "spec/test_check"),
+    "carp_spec.execution.logs": ("spec/test_logs", "oracle/test_check_log"),
+    "carp_spec.requests": ("oracle/test_assign",),
     "carp_spec.polish_rules": ("spec/test_polish_rules",),
     "carp_spec.windows": ("spec/test_windows",),
     "carp_spec.documents.fields": ("spec/test_described_documents", "verify/test_documents"),

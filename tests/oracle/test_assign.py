@@ -1,6 +1,7 @@
 """Robots under way or parked get further stops: by the command, by the op, and from Python."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -73,22 +74,35 @@ def test_a_stop_to_which_no_way_leads_changes_nothing() -> None:
 
 
 @pytest.mark.parametrize(
-    ("robot", "stops", "now", "rule"),
+    ("robot", "stops", "now", "rule", "path"),
     [
-        ("r2", [Stop("p")], 4, "instance/stops"),
-        ("r2", [Stop("d"), Stop("d")], 4, "instance/stops"),
-        ("r2", [Stop("nowhere")], 4, "instance/stops"),
-        ("r2", [Stop("d", -1)], 4, "instance/stops"),
-        ("r2", [], 4, "instance/stops"),
-        ("r2", [Stop("d")], -1, "request/now"),
-        ("r9", [Stop("d")], 4, "request/robot"),
+        ("r2", [Stop("p")], 4, "instance/stops", "$.stops[0].resource"),
+        ("r2", [Stop("d"), Stop("d")], 4, "instance/stops", "$.stops[1].resource"),
+        ("r1", [Stop("d"), Stop("c"), Stop("nowhere")], 4, "instance/stops", "$.stops[2].resource"),
+        ("r2", [Stop("d", -1)], 4, "instance/stops", "$.stops[0].service"),
+        ("r2", [], 4, "instance/stops", "$.stops"),
+        ("r2", ["d"], 4, "document/shape", "$.stops[0]"),
+        ("r2", [Stop("d")], -1, "request/now", "$.now"),
+        ("r9", [Stop("d")], 4, "request/robot", "$.robot"),
     ],
 )
-def test_wrong_stops_and_ticks_are_refused(robot: str, stops: list[Stop], now: int, rule: str) -> None:
+def test_wrong_stops_and_ticks_are_refused(robot: str, stops: list[Stop], now: int, rule: str, path: str) -> None:
     instance, plans = read_instance(json.dumps(HALL).encode()), read_solution(json.dumps(PLANS).encode())
     with pytest.raises(Refusal) as refused:
         carproof.assign(instance, plans, robot, stops, now)
-    assert refused.value.rule == rule
+    assert (refused.value.rule, refused.value.path) == (rule, path)
+
+
+def test_plans_that_break_a_rule_get_no_further_stops() -> None:
+    instance, plans = read_instance(json.dumps(HALL).encode()), read_solution(json.dumps(PLANS).encode())
+    alone = replace(plans, plans=plans.plans[1:], order=("r1",), unplanned=("r2",))
+    with pytest.raises(Refusal) as refused:
+        carproof.assign(instance, alone, "r2", [Stop("d")], 4)
+    assert refused.value.rule == "request/robot"
+    jumps = replace(plans.plans[0], visits=(plans.plans[0].visits[0], *plans.plans[0].visits[2:]))
+    with pytest.raises(Refusal) as refused:
+        carproof.assign(instance, replace(plans, plans=(jumps, plans.plans[1])), "r2", [Stop("d")], 4)
+    assert refused.value.rule == "plan/move"
 
 
 def test_a_robot_that_has_left_is_refused() -> None:

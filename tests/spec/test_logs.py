@@ -43,7 +43,8 @@ def test_stops_served_so_far_are_told_with_the_visits_that_served_them() -> None
     done = judge_log(instance, Trace(9, (back,)))
     assert (done.valid, done.done, done.cost) == (True, 1, 4)
     hasty = Plan("r", (*UNDER_WAY.visits[:2], Visit("c", 2, 3), Visit("b", 3, 4)))
-    assert [each.rule for each in judge_log(instance, Trace(9, (hasty,))).violations] == ["plan/stops"]
+    judged = judge_log(instance, Trace(9, (hasty,)))
+    assert ([each.rule for each in judged.violations], judged.served) == (["plan/stops"], ())
 
 
 @pytest.mark.parametrize(
@@ -65,13 +66,46 @@ def test_a_log_keeps_the_rules_of_plans(visits: list[tuple[str, int, int | None]
     assert rule in found
 
 
+@pytest.mark.parametrize(
+    ("release", "visits", "rules"),
+    [
+        (6, [], []),
+        (5, [], ["plan/start"]),
+        (6, [("a", 3, None)], ["plan/start"]),
+    ],
+)
+def test_a_robot_appears_at_its_release(
+    release: int, visits: list[tuple[str, int, int | None]], rules: list[str]
+) -> None:
+    instance = Instance(LANE, (Robot("r", "a", "b", release=release),))
+    plans = (Plan("r", tuple(Visit(*visit) for visit in visits)),) if visits else ()
+    assert [each.rule for each in judge_log(instance, Trace(5, plans)).violations] == rules
+
+
+def test_what_robots_do_together_is_judged_up_to_the_end_of_the_log() -> None:
+    instance = Instance(LANE, (Robot("r", "a", "c"), Robot("s", "c", "a")))
+    both = (Plan("r", (Visit("a", 0, 1), Visit("b", 1, None))), Plan("s", (Visit("c", 0, 1), Visit("b", 1, None))))
+    found = judge_log(instance, Trace(4, both)).violations
+    assert [(each.rule, each.start, each.end) for each in found] == [("joint/capacity", 1, 5)]
+
+
 def test_robots_that_are_released_later_may_be_absent_and_unknown_ones_may_not() -> None:
     instance = Instance(LANE, (Robot("late", "a", "b", release=6), Robot("now", "d", "b")))
     log = Trace(5, (Plan("now", (Visit("d", 0, None),)), Plan("who", (Visit("a", 0, None),))))
     assert [(each.rule, each.robots) for each in judge_log(instance, log).violations] == [("solution/covers", ("who",))]
 
 
-def test_nothing_happens_after_the_end_of_a_log() -> None:
+@pytest.mark.parametrize("last", [Visit("b", 2, None), Visit("b", 1, 2), Visit("b", 2, 3)])
+def test_nothing_happens_after_the_end_of_a_log(last: Visit) -> None:
     with pytest.raises(Refusal) as refusal:
-        judge_log(Instance(LANE, (EAST,)), Trace(1, (UNDER_WAY,)))
+        judge_log(Instance(LANE, (EAST,)), Trace(1, (Plan("r", (Visit("a", 0, 1), last)),)))
     assert (refusal.value.rule, refusal.value.path) == ("log/now", "$.plans[0].visits[1]")
+
+
+def test_malformed_instances_and_logs_are_refused() -> None:
+    with pytest.raises(Refusal) as refusal:
+        judge_log(Instance(LANE, (EAST, EAST)), Trace(9, (UNDER_WAY,)))
+    assert refusal.value.rule == "instance/robot-id"
+    with pytest.raises(Refusal) as refusal:
+        judge_log(Instance(LANE, (EAST,)), Trace(9, (UNDER_WAY, "r")))  # type: ignore[arg-type]
+    assert refusal.value.rule == "document/shape"

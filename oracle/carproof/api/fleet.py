@@ -219,11 +219,12 @@ class Fleet:
             changed = [plan for plan in core.changed_since(before) if plan != self._known.plans.get(plan.robot)]
             known = replace(
                 self._known,
+                now=now,
                 robots={**self._known.robots, **{robot.id: robot for robot in robots}},
                 numbers={**self._known.numbers, **{each.id: k for k, each in enumerate(robots, self._known.count)}},
                 count=self._known.count + len(robots),
             )
-            return self._take_over(core, replace(known, now=now), changed, unplanned, self._before(audit))
+            return self._take_over(core, known, changed, unplanned, self._before(audit))
 
     def assign(self, robot: RobotId, stops: Sequence[Stop], now: int | None = None, *, audit: bool = False) -> Change:
         """Give a robot that is under way or parked further stops, behind those that it has, as `carproof.assign` does.
@@ -365,13 +366,14 @@ class Fleet:
         With the plans before, which robots have followed until then, the changed ones are audited.
         """
         ended = core.ended(known.now)
-        robots, plans = {**known.robots}, {**known.plans, **{plan.robot: plan for plan in changed}}
+        plans = {**known.plans, **{plan.robot: plan for plan in changed}}
+        robots, numbers = known.robots, known.numbers
         left = tuple(core.places[1][place] for place in ended)
         core.dismiss(ended)
-        numbers = {**known.numbers}
-        for id in (*left, *(each for each in unplanned if each not in plans)):
-            del robots[id], numbers[id]
-            plans.pop(id, None)
+        if gone := {*left, *(each for each in unplanned if each not in plans)}:
+            robots = {id: robot for id, robot in robots.items() if id not in gone}
+            numbers = {id: number for id, number in numbers.items() if id not in gone}
+            plans = {id: plan for id, plan in plans.items() if id not in gone}
         places, ids = core.places
         after = replace(known, robots=robots, plans=plans, places=places, ids=ids, numbers=numbers)
         found = None if before is None else _audited(after, changed, before)

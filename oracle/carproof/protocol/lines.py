@@ -11,6 +11,7 @@ or `{"id": same, "error": {"kind", "path", "rule", "message"}}`. The kinds of er
 """
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any, Literal, TypeVar
 
 import msgspec
@@ -19,7 +20,7 @@ from carp_spec import Refusal
 from carp_spec.documents.decoding import require_json, uncapitalized, with_values
 from carp_spec.rule import DESIGN
 from carproof.input_rules import Code
-from carproof.requests import inside
+from carproof.requests import below
 
 VERSION = 1
 LONGEST_LINE = 64 * 2**20
@@ -55,13 +56,16 @@ SPOKEN_VERSION = Code("protocol/version", f"The version of the protocol is {VERS
 PROTOCOL_RULES: tuple[Code, ...] = (SHORT_LINE, RIGHT_FIELDS, SPOKEN_VERSION)
 
 
+_FIELDS = msgspec.json.Decoder(dict[str, msgspec.Raw])
+
+
 class Request:
     """The fields of a request that its op has not taken yet; each is decoded when it is taken."""
 
     def __init__(self, line: bytes) -> None:
         require_json(line)
         try:
-            self._fields = msgspec.json.decode(line, type=dict[str, msgspec.Raw])
+            self._fields = _FIELDS.decode(line)
         except msgspec.ValidationError as error:
             raise Refusal("request", "$", RIGHT_FIELDS.id, "a request must be an object") from error
         self.id = self._fields.pop("id", MISSING)
@@ -74,8 +78,10 @@ class Request:
         """Decode a field and take it out."""
         if name not in self._fields:
             raise Refusal("request", f"$.{name}", RIGHT_FIELDS.id, "the field must be there")
-        with inside(f"$.{name}"):
+        try:
             return decode(bytes(self._fields.pop(name)))
+        except Refusal as refusal:
+            raise below(f"$.{name}", refusal) from refusal
 
     def op(self) -> str:
         """The op; the request must have an id too."""
@@ -94,12 +100,14 @@ class Request:
             raise Refusal("request", f"$.{name}", RIGHT_FIELDS.id, "the op has no such field")
 
 
+@cache
 def value_of(kind: Any) -> Callable[[bytes], Any]:  # noqa: ANN401 - msgspec's own word for a type
     """A decoder of plain values, strict as documents are."""
+    decoder = msgspec.json.Decoder(kind)
 
     def decode(data: bytes) -> Any:  # noqa: ANN401 - a value of the kind
         try:
-            return msgspec.json.decode(data, type=kind)
+            return decoder.decode(data)
         except msgspec.ValidationError as error:
             message, _, path = str(error).replace("`", "").partition(" - at ")
             reason = uncapitalized(with_values(message, kind, path))

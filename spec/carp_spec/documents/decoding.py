@@ -47,8 +47,11 @@ def _whole_number(digits: str) -> int:
     return int(digits)
 
 
+_DECODER: Final = json.JSONDecoder(object_pairs_hook=_members, parse_int=_whole_number)
+
+
 def _parsed(data: bytes) -> object:
-    return json.loads(data.decode(), object_pairs_hook=_members, parse_int=_whole_number)
+    return _DECODER.decode(data.decode())
 
 
 def _place(data: bytes, error: str) -> str:
@@ -68,6 +71,8 @@ def _place(data: bytes, error: str) -> str:
 
 def require_json(data: bytes) -> None:
     """Raise `Refusal` if the data is no JSON."""
+    if decode_quickly(data, object) is not None:
+        return
     try:
         msgspec.json.decode(data)
         _parsed(data)

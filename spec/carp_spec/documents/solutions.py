@@ -1,7 +1,8 @@
 """The documents of plans: solutions, `carproof-solution/1`, and traces, `carproof-trace/1`."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import fields
+from operator import attrgetter
 from types import GenericAlias
 from typing import Annotated, Final, Literal, TypeAlias
 
@@ -91,9 +92,12 @@ def visits_of(
     return msgspec.convert(tuple(map(_VISIT, resources, enters, leaves)), tuple[Visit, ...], from_attributes=True)
 
 
+_FIELDS_OF_VISIT: Callable[[Visit], VisitDocument] = attrgetter("resource", "enter", "leave")
+
+
 def visits_document(plan: Plan) -> tuple[VisitDocument, ...]:
     """The visits of a plan as documents write them."""
-    return tuple((visit.resource, visit.enter, visit.leave) for visit in plan.visits)
+    return tuple(map(_FIELDS_OF_VISIT, plan.visits))
 
 
 def plan_documents(plans: Sequence[Plan]) -> tuple[PlanDocument, ...]:
