@@ -183,6 +183,29 @@ def test_only_a_planner_that_claims_groups_is_asked_for_them() -> None:
     assert conforms(seeing, examples=40, large=0, groups=True).conforms
 
 
+def blind_beyond(resources: int) -> Callable[[Instance], Solution]:
+    """A planner that does not look at groups on larger maps."""
+
+    def planner(instance: Instance) -> Solution:
+        seen = instance.graph.groups if len(instance.graph.resources) <= resources else ()
+        return engine_named(None).plan(replace(instance, graph=replace(instance.graph, groups=seen)), Carp())
+
+    return planner
+
+
+def test_smoke_cases_alone_tell_who_does_not_look_at_groups() -> None:
+    report = conforms(blind_beyond(0), examples=0, large=0, groups=True)
+    assert {each.finding.rule for each in report.failures if each.finding} == {"joint/group", "joint/exchange"}
+    assert all(each.case.stage == "smoke" for each in report.failures)
+
+
+def test_large_cases_tell_who_does_not_look_at_groups_on_large_maps() -> None:
+    assert conforms(blind_beyond(12), examples=20, large=0, groups=True).conforms
+    report = conforms(blind_beyond(12), examples=20, large=60, groups=True)
+    assert any("joint/group" in str(each) for each in report.failures)
+    assert conforms(blind_beyond(12), examples=20, large=2).conforms
+
+
 def test_a_planner_that_claims_stops_must_serve_them_in_order() -> None:
     asked: list[bool] = []
 

@@ -215,7 +215,7 @@ def _ask_everything(subject: Subject, report: Report, advance: Callable[[], None
     subject.start()
     _ask_fixed(subject, report, (case for case in saved if case.op in subject.ops), advance)
     asked = (subject.ops, options.level, options.whole)
-    _ask_fixed(subject, report, smoke_cases(*asked), advance)
+    _ask_fixed(subject, report, smoke_cases(*asked, options.claims.groups), advance)
     _ask_fixed(subject, report, vector_cases(*asked, options.claims), advance)
     _ask_random(subject, report, advance)
     if options.large and options.examples and not options.executor and not report.findings:

@@ -4,6 +4,7 @@ A planner that is right on maps of six resources may have a fixed number of robo
 a tick that needs more than 16 bits. Equal seeds give equal cases.
 """
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
@@ -21,6 +22,7 @@ from carp_spec import (
     Shuffled,
     Solution,
 )
+from carp_spec.model import Group
 from carp_spec.permutations import splitmix64
 from carproof.conform.cases import Case
 from carproof.conform.judging.claims import UNSOLVABLE, Claims
@@ -38,6 +40,8 @@ LARGE_OPS = ("plan", "query", "add", "polish", "check")
 FAR_ID = 2**32
 """Far ids are multiples of it: all are equal if they are cut to 32 bits."""
 SERVICES = (0, 1, 10, 1000)
+SPARSE = 10
+"""Resources for each group."""
 DAYS = (0, 40_000, 200_000, 1_000_000)
 """Ticks about which robots are released: the second needs more than 15 bits, the third more than 17."""
 PLANNERS: Sequence[Planner] = (
@@ -63,18 +67,29 @@ class Traffic:
     far_ids: bool = False
     directed: bool = False
     stops: int = 1
+    groups: bool = False
 
 
 TRAFFIC: Sequence[Traffic] = (
     Traffic("plain"),
-    Traffic("capacities", capacity=100),
+    Traffic("capacities", capacity=100, groups=True),
     Traffic("durations", duration=1000, stops=3),
     Traffic("park", park=True, stops=3),
-    Traffic("paces", pace=1000),
+    Traffic("paces", pace=1000, groups=True),
     Traffic("releases", releases=True),
     Traffic("far ids", far_ids=True),
-    Traffic("one-way streets", directed=True, park=True),
-    Traffic("all at once", capacity=10, duration=100, pace=10, releases=True, far_ids=True, directed=True, stops=2),
+    Traffic("one-way streets", directed=True, park=True, groups=True),
+    Traffic(
+        "all at once",
+        capacity=10,
+        duration=100,
+        pace=10,
+        releases=True,
+        far_ids=True,
+        directed=True,
+        stops=2,
+        groups=True,
+    ),
 )
 
 
@@ -141,6 +156,7 @@ def _claimed(traffic: Traffic, claims: Claims) -> Traffic:
         releases=traffic.releases and "releases" not in without,
         directed=traffic.directed and "directed" not in without,
         stops=traffic.stops if claims.stops else 1,
+        groups=traffic.groups and claims.groups,
     )
 
 
@@ -233,7 +249,7 @@ def _range(most: int) -> Range:
 
 
 def _with_traffic(instance: Instance, traffic: Traffic, claims: Claims, draw: Draw) -> Instance:
-    """The instance with releases, paces, one-way streets, stops, far ids and a policy."""
+    """The instance with releases, paces, one-way streets, stops, groups, far ids and a policy."""
     graph, robots = instance.graph, instance.robots
     if traffic.releases:
         robots = tuple(replace(each, release=draw.one_of(DAYS) + draw.between(0, 9)) for each in robots)
@@ -246,9 +262,23 @@ def _with_traffic(instance: Instance, traffic: Traffic, claims: Claims, draw: Dr
     if traffic.stops > 1:
         mix = Mix(stops=traffic.stops, services=SERVICES)
         robots = tuple(replace(each, stops=draw_stops(draw, [*graph.index], each, mix)) for each in robots)
+    if traffic.groups:
+        graph = replace(graph, groups=tuple(_groups(graph, robots, draw)))
     policy: AfterGoal = "park" if traffic.park else "vanish"
     made = Instance(graph, robots, policy)
     return _far(made, draw) if traffic.far_ids else made
+
+
+def _groups(graph: ResourceGraph, robots: Sequence[Robot], draw: Draw) -> Iterator[Group]:
+    """Groups of resources side by side, which overlap at times, with room for those that start in them."""
+    starts = Counter(each.start for each in robots)
+    for number in range(max(1, len(graph.resources) // SPARSE)):
+        members = dict.fromkeys([draw.one_of(graph.resources).id])
+        for _ in range(draw.between(1, 5)):
+            beside = graph.successors[draw.one_of([*members])]
+            members |= dict.fromkeys([draw.one_of(beside)] if beside else [])
+        capacity = max(draw.between(1, 3), sum(starts[each] for each in members))
+        yield Group(number, tuple(members), capacity)
 
 
 def _far(instance: Instance, draw: Draw) -> Instance:
@@ -262,10 +292,14 @@ def _far(instance: Instance, draw: Draw) -> Instance:
     ids = {id: far(number) for id, number in graph.index.items()}
     resources = tuple(replace(each, id=ids[each.id]) for each in graph.resources)
     edges = tuple((ids[source], ids[target]) for source, target in graph.edges)
+    groups = tuple(
+        replace(each, id=far(number), resources=tuple(ids[member] for member in each.resources))
+        for number, each in enumerate(graph.groups)
+    )
     robots = tuple(
         replace(each.in_names(ids.__getitem__), id=far(number)) for number, each in enumerate(instance.robots)
     )
-    return Instance(ResourceGraph(resources, edges, graph.directed), robots, instance.after_goal)
+    return Instance(ResourceGraph(resources, edges, graph.directed, groups), robots, instance.after_goal)
 
 
 def _asked(rung: Rung, instance: Instance, solution: Solution, draw: Draw, claims: Claims) -> Case | None:

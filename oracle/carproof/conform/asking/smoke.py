@@ -1,6 +1,7 @@
 """The smoke cases: small questions, each about one thing that planners get wrong."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 from carp_spec import (
@@ -16,6 +17,7 @@ from carp_spec import (
     Solution,
     Visit,
 )
+from carp_spec.model import Group
 from carproof.conform.cases import Case
 from carproof.conform.levels import Level
 
@@ -42,6 +44,11 @@ def passing_place(robots: Sequence[Robot], after_goal: AfterGoal = "vanish") -> 
     resources = (*(Resource(cell, 1, 1, x, 0) for x, cell in enumerate("abcd")), Resource("p", 1, 1, 1, 1))
     edges = (("a", "b"), ("b", "c"), ("c", "d"), ("b", "p"))
     return Instance(ResourceGraph(resources, edges), tuple(robots), after_goal)
+
+
+def grouped(instance: Instance, *groups: Group) -> Instance:
+    """The instance with groups."""
+    return replace(instance, graph=replace(instance.graph, groups=groups))
 
 
 def committed(instance: Instance, **plans: Sequence[Stay]) -> Solution:
@@ -180,12 +187,81 @@ def _polishes() -> Iterator[Case]:
         yield Case("smoke", f"polish: {name}", "polish", instance, solution)
 
 
-def smoke_cases(ops: Sequence[str], level: Level, whole: bool) -> Iterator[Case]:
+BLOCK = Group("block", ("b", "c"))
+"""The two cells in the middle of a row, for one robot at a time."""
+
+
+def _through_groups() -> Iterator[Case]:
+    yield _query("moves within a group", grouped(row([EAST]), BLOCK), Solution((), (), ("new",)), "new")
+    before = row([Robot("first", "b", "d"), EAST])
+    slowly: Sequence[Stay] = [("b", 0, 2), ("c", 2, 4), ("d", 4, 5)]
+    for what, groups in {
+        "the whole group is taken": (BLOCK,),
+        "a group has room for two": (replace(BLOCK, capacity=2),),
+        "groups overlap": (BLOCK, Group("end", ("c", "d"))),
+    }.items():
+        yield _query(what, grouped(before, *groups), committed(before, first=slowly), "new")
+    turning = _turning()
+    goes: Sequence[Stay] = [("p", 0, 1), ("c", 1, 2), ("d", 2, 3)]
+    yield _query("no exchange with a resource of the same group", turning, committed(turning, first=goes), "new")
+    for name, instance, plans in (
+        (
+            "two in a group",
+            grouped(before, BLOCK),
+            {"first": slowly, "new": [("a", 0, 2), ("b", 2, 4), ("c", 4, 5), ("d", 5, 6)]},
+        ),
+        (
+            "exchange with a resource of the same group",
+            turning,
+            {"first": goes, "new": [("c", 0, 1), ("b", 1, 2), ("a", 2, 3)]},
+        ),
+        (
+            "one after the other through a group",
+            turning,
+            {"first": goes, "new": [("c", 0, 2), ("b", 2, 3), ("a", 3, 4)]},
+        ),
+    ):
+        yield Case("smoke", f"check: {name}", "check", instance, committed(instance, **plans))
+
+
+def _turning() -> Instance:
+    """A row whose second cell is split in two, b and p; each is joined to the third, which has room for two."""
+    resources = tuple(
+        Resource(each, 1 + (each == "c"), 1, x, 0) for each, x in zip("abpcd", (0, 1, 1, 2, 3), strict=True)
+    )
+    graph = ResourceGraph(
+        resources, (("a", "b"), ("b", "c"), ("p", "c"), ("c", "d")), groups=(Group("cell", ("b", "p")),)
+    )
+    return Instance(graph, (Robot("first", "p", "d"), Robot("new", "c", "a")))
+
+
+def _whole_with_groups(planner: Carp | None) -> Iterator[Case]:
+    instances = {
+        "one behind the other through a group": grouped(row([FIRST, Robot("new", "b", "d")]), BLOCK),
+        "head-on beside a group": grouped(passing_place([FIRST, WEST]), Group("middle", ("b", "c"), 2)),
+        "a cell is split": _turning(),
+    }
+    for name, instance in instances.items():
+        yield Case("smoke", f"plan: {name}", "plan", instance, planner=planner)
+
+
+def smoke_cases(ops: Sequence[str], level: Level, whole: bool, groups: bool = False) -> Iterator[Case]:
     """The smoke cases; `whole`: of a program that plans whole instances by a planner of its own."""
     if whole:
         yield from _whole(None)
+        yield from _whole_with_groups(None) if groups else ()
         return
-    each = (*_alone(), *_with_others(), *_under_way(), *_whole(Carp()), *_checks(), *_additions(), *_polishes())
+    with_groups = (*_through_groups(), *_whole_with_groups(Carp())) if groups else ()
+    each = (
+        *_alone(),
+        *_with_others(),
+        *_under_way(),
+        *_whole(Carp()),
+        *_checks(),
+        *_additions(),
+        *_polishes(),
+        *with_groups,
+    )
     yield from (case for case in each if case.op in ops)
     if "bound" in ops:
         yield from (Case("smoke", f"bound: {case.name[6:]}", "bound", case.instance) for case in _whole(None))
