@@ -81,6 +81,26 @@ def test_requests_name_robots_starts_goals_and_releases() -> None:
             imported(OPENTCS, requests=rows)
 
 
+def test_degrees_become_lengths_on_the_ground() -> None:
+    """At 60 degrees north a degree is 55.80 km from west to east and 111.41 km from south to north."""
+    vertices = "- [5, 60, {name: a}]\n      - [5.01, 60, {name: b}]\n      - [5.01, 60.01, {name: c}]"
+    text = f"coordinate_system: wgs84\nlevels:\n  L1:\n    lanes: [[0, 1], [1, 2]]\n    vertices:\n      {vertices}\n"
+    places = {each.id: (each.x, each.y) for each in imported(text, robots=0).graph.resources}
+    assert places["a"] == (0, 0)
+    assert places["b"] == pytest.approx((558_000, 0), abs=100)
+    assert places["c"] == pytest.approx((558_000, 1_114_120), abs=100)
+
+
+def test_a_lift_of_lif_joins_nodes_at_one_place_of_two_maps() -> None:
+    document = json.loads(lif("0.11.0"))
+    lower, upper = document["layouts"][0]["nodes"][:2]
+    lower["mapId"], upper["mapId"] = "ground", "first"
+    upper["nodePosition"] = lower["nodePosition"]
+    with_lift = import_layout(json.dumps(document, indent=1).encode(), settings=Settings(robots=0))
+    assert with_lift.instance.graph.resource["ab"].duration == 1
+    assert any("between maps" in each.feature for each in with_lift.notes)
+
+
 def test_mutexes_and_conflicts_become_groups() -> None:
     for text in (BUILDING, NAV_GRAPH):
         assert groups(imported(text, robots=0))["mutex door way"] >= {"a -> b", "b -> c"}
@@ -167,8 +187,18 @@ BROKEN = {
     "negative limit": (NAV_GRAPH.replace("0.5}", "-0.5}"), 7, "must be above 0"),
     "infinite coordinate": (NAV_GRAPH.replace("[3.0, 4.0", "[.inf, 4.0"), 12, "must be a number"),
     "field twice": (NAV_GRAPH.replace("building_name: row", "levels: {}"), 4, "must be given once"),
-    "degrees": (BUILDING.replace("reference_image", "wgs84"), 2, "must be reference_image or cartesian_meters"),
-    "lif 3": (lif("3.0"), 3, "the version must be 1 or 2"),
+    "degrees on Mars": (
+        BUILDING.replace("reference_image", "iau2000"),
+        2,
+        "must be reference_image, cartesian_meters or",
+    ),
+    "degrees beyond the pole": (
+        BUILDING.replace("reference_image", "wgs84").replace("[0, 0, 0, a", "[0, 90, 0, a"),
+        11,
+        "must be between -85 and 85",
+    ),
+    "lif 3": (lif("3.0"), 3, "the version must be 1, 0.11 as in"),
+    "lif 0.10": (lif("0.10.0"), 3, "the version must be 1, 0.11 as in"),
     "lif node": (lif("1.0").replace('"endNodeId": "b"', '"endNodeId": "q"', 1), 42, "'q' must be one of the layout"),
     "not a number in JSON": (nav2().replace("3.0", "NaN", 1), 25, "must be a number, not 'NaN'"),
     "unfinished JSON": (nav2()[:-2], 86, "it must be JSON"),

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import count
 from pathlib import Path
+from time import process_time
 
 import pytest
 from hypothesis import given
@@ -29,6 +30,8 @@ from carproof import (
 )
 from carproof.engines import engine_named
 from carproof.execution.delays import until
+from carproof.generate import Fleet
+from carproof.generate.grid import Grid, grid_instance
 from carproof.testing.random_instances import Draw, Mix, draw_instance
 
 Held = tuple[tuple[int, int], ...]
@@ -286,3 +289,39 @@ def test_exit_codes(carproof: Run, elsewhere: Path) -> None:
     asked = {"": 0, " --beyond": 0, " --beyond --states 1": 3, " --grants safe.json": 0, " --grants wrong.json": 2}
     asked |= {" --grants blocking.json": 1, " --grants blocking.json --states 1": 3, " --beyond --grants safe.json": 2}
     assert {options: carproof(command + options).code for options in asked} == asked
+
+
+def crowded() -> tuple[Instance, Solution, Trace]:
+    """Twenty robots in a maze at their starts, and two questions that take long."""
+    instance = grid_instance(Grid(8, 8, 6), Fleet(20, 0, "vanish"))
+    solution = engine_named("optimized").plan(instance, Carp())
+    begun = tuple(Plan(plan.robot, (Visit(plan.visits[0].resource, 0, None),)) for plan in solution.plans)
+    return instance, solution, Trace(0, begun)
+
+
+@pytest.mark.parametrize("seconds", [0.2, 1.0])
+def test_the_time_is_kept_and_what_is_open_then_is_undecided(seconds: float) -> None:
+    instance, solution, trace = crowded()
+    robots = [plan.robot for plan in solution.plans]
+    release(instance, solution, trace)
+    started = process_time()
+    found = release(instance, solution, trace, robots, seconds=seconds)
+    assert process_time() - started <= 1.05 * seconds + 0.3
+    undecided = [each for each in found.beyond if each.answer == "undecided"]
+    assert undecided
+    open_ones = [Grant(each.grant.robot, (*each.grant.resources, each.next)) for each in undecided if each.next]
+    started = process_time()
+    verdict = check_grants(instance, solution, trace, open_ones[:1], seconds=seconds)
+    assert process_time() - started <= 1.05 * seconds + 0.3
+    assert verdict.answer in ("undecided", "unsafe")
+
+
+@pytest.mark.parametrize("seconds", [0, -1, float("nan"), float("inf"), True])
+def test_a_time_that_is_none_is_refused(seconds: float, carproof: Run, elsewhere: Path) -> None:
+    with pytest.raises(Refusal, match="request/limit"):
+        check_grants(ROW, ONE_BY_ONE, LATE, [], seconds=seconds)
+    (elsewhere / "row.json").write_bytes(write_instance(ROW))
+    (elsewhere / "plans.json").write_bytes(write_solution(ONE_BY_ONE))
+    (elsewhere / "trace.json").write_bytes(write_trace(LATE))
+    assert carproof(f"release row.json plans.json trace.json --seconds {seconds}").code == 2
+    assert carproof("release row.json plans.json trace.json --seconds 9 --beyond").code == 0

@@ -1,6 +1,8 @@
 """Executions of solutions by robots that are late."""
 
 from collections.abc import Sequence
+from math import inf
+from time import perf_counter
 
 from carp_spec import Instance, Refusal, RobotId, Solution
 from carp_spec.execution.traces import Trace
@@ -9,7 +11,7 @@ from carp_spec.rule import is_between
 from carp_spec.shapes import require_shape
 from carp_verify.release.rules import Grant
 from carproof.execution.delays import Delay
-from carproof.execution.releasing import MOST_STATES, GrantsVerdict, Released, Releasing
+from carproof.execution.releasing import MOST_STATES, GrantsVerdict, Limit, Released, Releasing
 from carproof.execution.simulation import DRIVERS, Driver, Execution, delays_are_right
 from carproof.execution.simulation import execute as executed
 
@@ -35,35 +37,48 @@ def release(
     solution: Solution,
     trace: Trace,
     beyond: Sequence[RobotId] = (),
-    states: int = MOST_STATES,
+    states: int | None = None,
+    seconds: float | None = None,
 ) -> Released:
     """Which further resources robots may be granted at the tick of a trace, so that everybody can still finish.
 
     By the planned order, all robots may have theirs together. For the robots of `beyond`, it is also decided what each
-    may have alone, whatever the order, by a search of at most so many states for each resource. Raises `Refusal` for a
-    solution that breaks a rule, and for a trace that does not keep to its paths and durations.
+    may have alone, whatever the order, by searches that take at most so many seconds together, and each at most so many
+    states: 20,000 if neither is given. Raises `Refusal` for a solution that breaks a rule, and for a trace that does
+    not keep to its paths and durations.
     """
-    _require_states(states)
+    limit = _limit(states, seconds)
     situation = Releasing(instance, solution, trace)
     for robot in beyond:
         require_robot(instance, robot, "$.beyond")
-    return situation.released([robot for robot in beyond if robot in situation.plans], states)
+    return situation.released([robot for robot in beyond if robot in situation.plans], limit)
 
 
 def check_grants(
-    instance: Instance, solution: Solution, trace: Trace, grants: Sequence[Grant], states: int = MOST_STATES
+    instance: Instance,
+    solution: Solution,
+    trace: Trace,
+    grants: Sequence[Grant],
+    states: int | None = None,
+    seconds: float | None = None,
 ) -> GrantsVerdict:
     """Whether robots can all finish if they are granted these resources at the tick of a trace, with a witness.
 
-    The answer is undecided if a search would look at more than so many states. Raises `Refusal` as `release` does, and
-    for grants of other than the next resources of plans.
+    The answer is undecided if a search would take more than so many states or seconds, 20,000 states if neither is
+    given. Raises `Refusal` as `release` does, and for grants of other than the next resources of plans.
     """
-    _require_states(states)
+    limit = _limit(states, seconds)
     require_shape(tuple(grants), tuple[Grant, ...], "$.grants")
-    return Releasing(instance, solution, trace).check(grants, states)
+    return Releasing(instance, solution, trace).check(grants, limit)
 
 
-def _require_states(states: object) -> None:
-    if not is_between(states, 1):
+def _limit(states: int | None, seconds: float | None) -> Limit:
+    """The limit of searches that begin now."""
+    if states is not None and not is_between(states, 1):
         message = f"it must be a whole number of at least 1, not {states!r}"
         raise Refusal("option", "$.states", "request/limit", message)
+    if seconds is None:
+        return Limit(states or MOST_STATES)
+    if type(seconds) not in (int, float) or not 0 < seconds < inf:
+        raise Refusal("option", "$.seconds", "request/limit", f"it must be a number above 0, not {seconds!r}")
+    return Limit(states or inf, perf_counter() + seconds)

@@ -7,6 +7,8 @@ others.
 
 from collections import defaultdict, deque
 from collections.abc import Mapping, Sequence
+from math import inf
+from time import perf_counter
 
 from carp_spec import RobotId
 from carp_verify.release.holding import State, Ways
@@ -14,20 +16,26 @@ from carp_verify.release.verify import Places
 
 
 class CutOffError(Exception):
-    """More states than the limit would have to be looked at."""
+    """More states than the limit would have to be looked at, or the time is over."""
 
 
 class Budget:
-    """The number of states that may still be looked at."""
+    """The number of states that may still be looked at, and until when, by `perf_counter`."""
 
-    def __init__(self, states: int) -> None:
-        self.left = states
+    def __init__(self, states: float, until: float = inf) -> None:
+        self.left, self.until = states, until
 
     def spend(self) -> None:
         """Look at one; raises `CutOffError` if none is left."""
+        self.look_at_the_clock()
         if self.left == 0:
             raise CutOffError
         self.left -= 1
+
+    def look_at_the_clock(self) -> None:
+        """Raise `CutOffError` if the time is over."""
+        if perf_counter() >= self.until:
+            raise CutOffError
 
 
 class Search:
@@ -78,6 +86,7 @@ class Search:
         used = self.ways.used(state)
         waiting = deque(self.robots)
         while waiting:
+            self.budget.look_at_the_clock()
             robot = waiting.popleft()
             place = best = state[robot]
             while self.ways.is_open(robot, place, used):

@@ -8,6 +8,8 @@ robots finish. Before it goes through all states, it tries to keep the order of 
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from math import inf
+from time import perf_counter
 from typing import Literal, TypeAlias
 
 from carp_spec import Instance, Refusal, ResourceId, RobotId, Solution
@@ -23,6 +25,30 @@ from carproof.execution.release_search import Budget, CutOffError, Search, all_p
 
 Answer: TypeAlias = Literal["safe", "unsafe", "undecided"]
 MOST_STATES = 20_000
+SHARE = 3
+"""A search has one of this many parts of the time; to check its witness and to write it take no more than it does."""
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """The most states that each search looks at, and the tick of `perf_counter` at which all must have ended."""
+
+    states: float = MOST_STATES
+    until: float = inf
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the time is over."""
+        return perf_counter() >= self.until
+
+    def part(self, count: int) -> "Limit":
+        """A limit for one of so many parts of the time that is left."""
+        now = perf_counter()
+        return Limit(self.states, now + (self.until - now) / count)
+
+    def budget(self) -> Budget:
+        """The budget of a search that begins now."""
+        return Budget(self.states, self.part(SHARE).until)
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +130,7 @@ class Releasing:
             for fault in there_is_room(self.ways.overfull(self.now, self.now)):
                 raise Refusal("document", fault.path, fault.rule, fault.message)
         self.in_order = self._in_order() if self.follows else self.now
-        if self.follows and self._keeping_order(self.in_order) is None:
+        if self.follows and self._keeping_order(self.in_order, Budget(inf)) is None:
             for violation in is_acyclic(instance, self.solution):
                 message = f"{violation.message}; carproof execution untangle makes plans without rotations"
                 raise Refusal("request", "$", is_acyclic.id, message)
@@ -122,7 +148,7 @@ class Releasing:
         released = {robot for robot in most if self.instance.robot[robot].release <= self.trace.now}
         return {robot: max(most[robot], now) if robot in released else now for robot, now in self.now.items()}
 
-    def _keeping_order(self, start: State) -> Finish | None:
+    def _keeping_order(self, start: State, budget: Budget) -> Finish | None:
         """Moves by which all finish if robots go on in the planned order from there; `None` if they do not."""
         state, moves = dict(start), list[RobotId]()
         used = self.ways.used(state)
@@ -142,6 +168,7 @@ class Releasing:
         while count < len(moves):
             count = len(moves)
             for robot in self.plans:
+                budget.look_at_the_clock()
                 while may_move(robot):
                     used.subtract(self.ways.held(robot, state[robot], state[robot]))
                     state[robot] += 1
@@ -150,13 +177,13 @@ class Releasing:
         has_ended = all(self.ways.has_ended(robot, place) for robot, place in state.items())
         return Finish(tuple(moves)) if has_ended else None
 
-    def check(self, grants: Sequence[Grant], states: int = MOST_STATES) -> GrantsVerdict:
-        """Whether grants are safe; looks at no more than so many states."""
+    def check(self, grants: Sequence[Grant], limit: Limit) -> GrantsVerdict:
+        """Whether grants are safe, as far as that can be told within the limit."""
         for fault in grants_are_next(self.instance, self.solution.plans, self.trace, grants):
             raise Refusal("document", fault.path, fault.rule, fault.message)
         granted = {**self.now, **{each.robot: self.now[each.robot] + len(each.resources) for each in grants}}
         try:
-            witness = self._witness(granted, Budget(states))
+            witness = self._witness(granted, limit.budget())
         except CutOffError:
             return GrantsVerdict(None)
         if not answer_is_shown(self.instance, self.solution.plans, self.now, granted, witness):
@@ -166,7 +193,7 @@ class Releasing:
     def _witness(self, granted: State, budget: Budget) -> Witness:
         for constraint, robots in self.ways.overfull(self.now, granted):
             return Overfull(constraint, robots)
-        kept = self._keeping_order(granted)
+        kept = self._keeping_order(granted, budget)
         if kept is not None:
             return kept
         planned = {robot: [visit.enter for visit in plan.visits] for robot, plan in self.plans.items()}
@@ -194,22 +221,24 @@ class Releasing:
         for robot in ahead:
             yield from ((robot, other) for other in rest if other != robot and not rest[robot].isdisjoint(rest[other]))
 
-    def released(self, beyond: Sequence[RobotId] = (), states: int = MOST_STATES) -> Released:
+    def released(self, beyond: Sequence[RobotId], limit: Limit) -> Released:
         """What the planned order grants, and for these robots what each may be granted alone."""
         in_order = tuple(self._grant(robot, place) for robot, place in self.in_order.items())
-        return Released(self.follows, in_order, tuple(self._beyond(robot, states) for robot in beyond))
+        parts = range(len(beyond), 0, -1)
+        alone = (self._beyond(robot, limit.part(part)) for part, robot in zip(parts, beyond, strict=True))
+        return Released(self.follows, in_order, tuple(alone))
 
     def _grant(self, robot: RobotId, last: int) -> Grant:
         visits = self.plans[robot].visits[self.now[robot] + 1 : last + 1]
         return Grant(robot, tuple(visit.resource for visit in visits))
 
-    def _beyond(self, robot: RobotId, states: int) -> Beyond:
+    def _beyond(self, robot: RobotId, limit: Limit) -> Beyond:
         best = self._grant(robot, self.in_order[robot])
         if self.instance.robot[robot].release > self.trace.now:
             return Beyond(best)
         for last in range(self.in_order[robot] + 1, len(self.plans[robot].visits)):
             grant = self._grant(robot, last)
-            verdict = self.check([grant], states)
+            verdict = GrantsVerdict(None) if limit.is_over else self.check([grant], limit)
             if verdict.answer != "safe":
                 witness = verdict.witness
                 robots = () if witness is None or isinstance(witness, Finish) else witness.robots

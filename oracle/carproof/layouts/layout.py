@@ -110,10 +110,12 @@ class Layout:
         back_speed: Fraction | None = None,
         share: Fraction | None = None,
         backwards: bool = False,
+        level: bool = True,
     ) -> tuple[str, ...]:
         """Add a lane, and with `back` a second one the other way; without a name it is called by its ends.
 
-        `backwards` is whether vehicles drive backwards on the second, or on the one.
+        `backwards` is whether vehicles drive backwards on the second, or on the one. The positions of ends that are not
+        on one `level` do not tell the length.
         """
         for end in ends:
             if end not in self.points:
@@ -126,7 +128,7 @@ class Layout:
         if name in self.lanes or name in self.points:
             raise at.refuse(f"the name {name!r} must be given once")
         one, two = self.points[ends[0]], self.points[ends[1]]
-        distance = self.distance(at, one, two)
+        distance = self.distance(at, one, two) if level else None
         millimetres = distance if length is None else -(-length // 1)
         strip = self.straight.get((ends[1], ends[0]), name) if millimetres == distance else name
         if millimetres == distance:

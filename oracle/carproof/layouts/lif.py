@@ -2,9 +2,12 @@
 
 Fields: LIF.md of the repository Intralogistics-2X-LIF/Layout-Interchange-Format, section 8.3, in the branches
 release/V1.0 and dev/V2. Positions and lengths are in m, speeds in m/s. An edge leads from its start to its end. Version
-2 has layouts within origins, and robot types in place of vehicle types.
+1.0 calls itself 0.11.0 in that section and in its examples. Version 2 has layouts within origins, and robot types in
+place of vehicle types.
 """
 
+from collections.abc import Mapping, Sequence
+from collections.abc import Set as AbstractSet
 from fractions import Fraction
 
 from carproof.layouts.layout import Layout, Reader
@@ -32,21 +35,19 @@ def _looks_like(tree: Tree) -> bool:
 def read(tree: Tree) -> Layout:
     """Read all layouts of the file."""
     version = tree["metaInformation"]["lifVersion"]
-    if version.text.partition(".")[0] not in ("1", "2"):
-        raise version.refuse(f"the version must be 1 or 2, not {version.shown}")
-    if version.text.startswith("1"):
+    major, minor = (*version.text.split("."), "")[:2]
+    if major not in ("1", "2") and (major, minor) != ("0", "11"):
+        raise version.refuse(
+            f"the version must be 1, 0.11 as in the document of version 1.0, or 2, not {version.shown}"
+        )
+    if major != "2":
         layouts = tree["layouts"].entries
     else:
         layouts = [each for origin in tree["origins"].entries for each in origin["layouts"].entries]
     layout = Layout(tree)
     stations = [(each, station) for each in layouts for station in each.all("stations")]
     served = {node.text for _, station in stations for node in station["interactionNodeIds"].entries}
-    for each in layouts:
-        for node in each["nodes"].entries:
-            name, place = node["nodeId"].text, node["nodePosition"]
-            at = (METRE * place["x"].number, METRE * place["y"].number)
-            layout.point(node, name, at, stands=not served or name in served)
-            _types(layout, node, NODES)
+    maps = _nodes(layout, layouts, served)
     for _, station in stations:
         for node in station["interactionNodeIds"].entries:
             if node.text not in layout.points:
@@ -54,8 +55,23 @@ def read(tree: Tree) -> Layout:
         layout.note("stations; their nodes are where vehicles stand", station)
     for each in layouts:
         for edge in each["edges"].entries:
-            _edge(layout, edge)
+            _edge(layout, edge, maps)
     return layout
+
+
+def _nodes(layout: Layout, layouts: Sequence[Tree], served: AbstractSet[str]) -> Mapping[str, str]:
+    """Add the nodes, and return the map of each that has one."""
+    maps: dict[str, str] = {}
+    for node in (node for each in layouts for node in each["nodes"].entries):
+        name, place, level = node["nodeId"].text, node["nodePosition"], node.get("mapId")
+        at = (METRE * place["x"].number, METRE * place["y"].number)
+        layout.point(node, name, at, stands=not served or name in served)
+        _types(layout, node, NODES)
+        if level is not None:
+            maps[name] = level.text
+            if level.text != next(iter(maps.values())):
+                layout.note("maps beside the first; the positions of all are in one plane", level)
+    return maps
 
 
 def _types(layout: Layout, thing: Tree, names: tuple[str, ...]) -> list[Tree]:
@@ -70,7 +86,7 @@ def _types(layout: Layout, thing: Tree, names: tuple[str, ...]) -> list[Tree]:
     return types
 
 
-def _edge(layout: Layout, edge: Tree) -> None:
+def _edge(layout: Layout, edge: Tree, maps: Mapping[str, str]) -> None:
     ends = edge["startNodeId"].text, edge["endNodeId"].text
     speeds: list[Fraction] = []
     lengths: list[Fraction] = []
@@ -87,13 +103,24 @@ def _edge(layout: Layout, edge: Tree) -> None:
                 "the shape of trajectories; their length is that of the control polygon, which is no less", curve
             )
             lengths.append(_polygon(curve))
+    is_lift = _is_lift(layout, ends, maps)
+    if is_lift:
+        layout.note("the way up and down between maps; it takes a tick unless its length is given", edge)
     layout.lane(
         edge,
         edge["edgeId"].text,
         ends,
+        level=not is_lift,
         speed=min(speeds, default=None),
         length=max((each for each in lengths if each), default=None),
     )
+
+
+def _is_lift(layout: Layout, ends: tuple[str, str], maps: Mapping[str, str]) -> bool:
+    """Whether the ends are at one place of two maps."""
+    one, two = (layout.points.get(end) for end in ends)
+    levels = {maps[end] for end in ends if end in maps}
+    return one is not None and two is not None and (one.x, one.y) == (two.x, two.y) and len(levels) > 1
 
 
 def _polygon(curve: Tree) -> Fraction:

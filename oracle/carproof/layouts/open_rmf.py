@@ -2,12 +2,15 @@
 
 Fields: `rmf_building_map_tools/building_map` of open-rmf/rmf_traffic_editor for buildings, `parse_graph.cpp` of
 open-rmf/rmf_ros2 for graphs. A building has positions in pixels of its drawing, with y downwards; the scale is the mean
-over the measurements of a level of distance by length, in m for each pixel. Mutexes name lanes and vertices in which
-one robot may be at a time.
+over the measurements of a level of distance by length, in m for each pixel. Positions in degrees (`wgs84`) become those
+on the ground east and north of the first vertex, by the lengths of a degree there. Mutexes name lanes and vertices in
+which one robot may be at a time.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
+from decimal import Context, Decimal, localcontext
 from fractions import Fraction
+from functools import partial
 from math import isqrt
 
 from carproof.layouts.layout import Layout, Reader
@@ -16,6 +19,11 @@ from carproof.layouts.located import Tree
 METRE = 1000
 FINE = 10**9
 """Steps of a pixel to which the lengths of measurements are known."""
+AXIS = 6_378_137_000
+"""Half the major axis of the ellipsoid WGS 84, in mm."""
+FLATNESS = Decimal("0.00669437999014")
+"""The square of its eccentricity."""
+RADIAN = Decimal("3.14159265358979323846") / 180
 STANDS = ("is_parking_spot", "is_charger", "is_holding_point")
 LEFT_OUT = {
     "door_name": "doors",
@@ -28,6 +36,8 @@ LEFT_OUT = {
 
 
 Groups = dict[str, list[tuple[Tree, str]]]
+Place = tuple[Fraction, Fraction]
+Onto = Callable[[Fraction, Fraction], Place]
 
 
 def _looks_like(tree: Tree) -> bool:
@@ -38,14 +48,18 @@ def read(tree: Tree) -> Layout:
     """Read a building or a navigation graph."""
     levels = tree["levels"].fields
     system = tree.get("coordinate_system")
-    if system is not None and system.value not in ("reference_image", "cartesian_meters"):
-        raise system.refuse(f"the coordinate system must be reference_image or cartesian_meters, not {system.shown}")
+    if system is not None and system.value not in ("reference_image", "cartesian_meters", "wgs84"):
+        message = f"the coordinate system must be reference_image, cartesian_meters or wgs84, not {system.shown}"
+        raise system.refuse(message)
     is_drawn = "building_name" not in tree.fields and (system is None or system.value == "reference_image")
     layout, groups = Layout(tree), Groups()
-    scale: Fraction | None = None
+    onto: Onto = _in_metres if system is None or system.value != "wgs84" else _around(levels.values())
+    scale = Fraction(0)
     for name, level in levels.items():
-        scale = _scale(layout, level, scale) if is_drawn else None
-        ids = _vertices(layout, level, scale, f"{name}/" if len(levels) > 1 else "")
+        if is_drawn:
+            scale = _scale(layout, level, scale)
+            onto = partial(_drawn, scale)
+        ids = _vertices(layout, level, onto, f"{name}/" if len(levels) > 1 else "")
         for lane in level.all("lanes"):
             _lane(layout, lane, ids, groups)
         for (vertex, options), id in zip(_options(level), ids, strict=True):
@@ -79,7 +93,7 @@ def _plain(value: Tree | None) -> Tree | None:
     return value
 
 
-def _scale(layout: Layout, level: Tree, before: Fraction | None) -> Fraction:
+def _scale(layout: Layout, level: Tree, before: Fraction) -> Fraction:
     """The mm of a pixel."""
     places = [_place(vertex) for vertex in level.all("vertices")]
     found = []
@@ -96,7 +110,7 @@ def _scale(layout: Layout, level: Tree, before: Fraction | None) -> Fraction:
     return before or Fraction(METRE)
 
 
-def _place(vertex: Tree) -> tuple[Fraction, Fraction]:
+def _place(vertex: Tree) -> Place:
     if len(vertex.entries) < 2:  # noqa: PLR2004 - a position
         raise vertex.refuse("a vertex must have x and y")
     return vertex.entries[0].number, vertex.entries[1].number
@@ -123,7 +137,37 @@ def _options(level: Tree) -> list[tuple[Tree, Mapping[str, Tree]]]:
     ]
 
 
-def _vertices(layout: Layout, level: Tree, scale: Fraction | None, prefix: str) -> list[str]:
+def _in_metres(x: Fraction, y: Fraction) -> Place:
+    """Of metres, with y upwards."""
+    return METRE * x, METRE * y
+
+
+def _drawn(scale: Fraction, x: Fraction, y: Fraction) -> Place:
+    """Of pixels, with y downwards."""
+    return x * scale, -y * scale
+
+
+def _around(levels: Iterable[Tree]) -> Onto:
+    """Of degrees of longitude and latitude, by the lengths of a degree at the first vertex."""
+    first = next((vertex for level in levels for vertex in level.all("vertices")), None)
+    if first is None:
+        return _in_metres
+    origin = _place(first)
+    if abs(origin[1]) > 85:  # noqa: PLR2004 - as far as maps in Mercator's projection go
+        raise first.refuse("the latitude must be between -85 and 85 degrees")
+    with localcontext(Context(prec=30)):
+        angle = Decimal(origin[1].numerator) / origin[1].denominator * RADIAN
+        term = cosine = Decimal(1)
+        for number in range(1, 40, 2):
+            term *= -angle * angle / (number * (number + 1))
+            cosine += term
+        bend = 1 - FLATNESS * (1 - cosine * cosine)
+        east = Fraction(AXIS * cosine / bend.sqrt() * RADIAN)
+        north = Fraction(AXIS * (1 - FLATNESS) / (bend * bend.sqrt()) * RADIAN)
+    return lambda x, y: ((x - origin[0]) * east, (y - origin[1]) * north)
+
+
+def _vertices(layout: Layout, level: Tree, onto: Onto, prefix: str) -> list[str]:
     """Add the vertices, and return their ids: the name, or the index where there is none or a second."""
     ids = []
     for number, (vertex, options) in enumerate(_options(level)):
@@ -134,8 +178,7 @@ def _vertices(layout: Layout, level: Tree, scale: Fraction | None, prefix: str) 
         id = f"{prefix}{name or number}"
         if id in layout.points:
             id = f"{prefix}{name} {number}"
-        x, y = _place(vertex)
-        at = (METRE * x, METRE * y) if scale is None else (x * scale, -y * scale)
+        at = onto(*_place(vertex))
         flags = [_plain(options.get(each)) for each in STANDS]
         layout.point(vertex, id, at, stands=bool(name) or any(each is not None and each.is_true for each in flags))
         layout.note("docks", options.get("dock_name"))

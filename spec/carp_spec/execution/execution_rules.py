@@ -97,7 +97,7 @@ def order_is_kept(instance: Instance, solution: Solution, trace: Trace) -> Itera
     ADG,
 )
 def exchange_order_is_kept(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Breach]:
-    areas = instance.graph.areas_of
+    areas, happened = instance.graph.areas_of, trace.happened
     leaving: dict[tuple[int, int], list[Stay]] = defaultdict(list)
     entering: dict[tuple[int, int], list[Stay]] = defaultdict(list)
     for constraint, stays in stays_by_constraint(instance.graph, solution.plans).items():
@@ -106,7 +106,7 @@ def exchange_order_is_kept(instance: Instance, solution: Solution, trace: Trace)
             for ways, neighbour in ((leaving, stay.target), (entering, stay.source)):
                 for way in () if neighbour is None else product(here, areas(neighbour)):
                     ways[way].append(stay)
-    found = (_too_early(stays, entering.get(way, ()), trace.happened, 1, 1) for way, stays in leaving.items())
+    found = (_too_early(stays, entering.get(way, ()), happened, 1, 1) for way, stays in leaving.items())
     yield from dict.fromkeys(breach for breaches in found for breach in breaches)
 
 

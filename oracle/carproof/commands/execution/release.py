@@ -1,6 +1,7 @@
 """`carproof release`: which further resources robots may be granted so that everybody can still finish."""
 
 from pathlib import Path
+from time import perf_counter
 
 import click
 
@@ -29,6 +30,9 @@ from carproof.execution.release_documents import (
 )
 from carproof.execution.releasing import MOST_STATES
 
+ENDING = 0.05
+"""The seconds that it takes to print the answer, and to end."""
+SHORTEST = 1e-3
 MOST_SHOWN = 8
 """The resources of a grant that are printed."""
 ANSWERS = {"safe": Answer.YES, "unsafe": Answer.NO, "undecided": Answer.UNDECIDED}
@@ -40,6 +44,7 @@ ANSWERS = {"safe": Answer.YES, "unsafe": Answer.NO, "undecided": Answer.UNDECIDE
         "carproof release town.json plans.json trace.json",
         "carproof release town.json plans.json trace.json --beyond",
         "carproof release town.json plans.json trace.json --grants wanted.json",
+        "carproof release town.json plans.json trace.json --beyond --seconds 10",
     ),
 )
 @instance_argument
@@ -47,17 +52,25 @@ ANSWERS = {"safe": Answer.YES, "unsafe": Answer.NO, "undecided": Answer.UNDECIDE
 @trace_argument
 @click.option("--beyond", is_flag=True, help="Tell also what each robot may have alone, whatever the planned order.")
 @click.option("--grants", type=InputFile(), help="Tell whether these grants, a document, are safe together.")
-@click.option("--states", type=click.IntRange(min=1), default=MOST_STATES, help="The most states of a search.")
+@click.option(
+    "--states",
+    type=click.IntRange(min=1),
+    help=f"The most states of a search.  [default: {MOST_STATES}, or none with --seconds]",
+)
+@click.option("--seconds", type=float, help="The time of the whole command.")
 @output_option
 @json_option
+@click.pass_context
 def command(  # noqa: PLR0913 - one parameter for each argument and option
+    context: click.Context,
     *,
     instance: str,
     solution: str,
     trace: str,
     beyond: bool,
     grants: str | None,
-    states: int,
+    states: int | None,
+    seconds: float | None,
     output: Path | None,
     as_json: bool,
 ) -> Answer:
@@ -68,25 +81,34 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     --beyond, a search decides what each robot may have alone while the others get nothing. With --grants, it decides
     whether grants are safe, and shows how everybody finishes, or which robots are in each other's way for ever.
 
-    A search that would look at more than --states states for one question is cut off, and its answer is undecided.
+    A search that would look at more than --states states for one question is cut off, and its answer is undecided. With
+    --seconds, answers that are not found in this time are undecided; what the order grants is listed in any case.
 
     Exit codes: 0 listed, or the grants are safe, 1 they are not, 2 bad input, 3 undecided.
     """
     if beyond and grants is not None:
         raise click.UsageError("--beyond lists grants, and --grants asks about some: give one of them.")
+    started: float = context.find_root().obj
+
+    def left() -> float | None:
+        """What is left of a time that is right, and otherwise the wrong time, which is refused."""
+        if seconds is None or not seconds > 0:
+            return seconds
+        return max(seconds - (perf_counter() - started) - ENDING, SHORTEST)
+
     problem, sound = read_sound(instance, solution, trace, *([] if grants is None else [grants]))
     done = read_file(trace, read_trace)
     if grants is not None:
         wanted = read_file(grants, read_grants)
         with naming(grants):
-            verdict = grants_verdict_document(problem, check_grants(problem, sound, done, wanted, states))
+            verdict = grants_verdict_document(problem, check_grants(problem, sound, done, wanted, states, left()))
         write_result(write(verdict), output, as_json)
         if not as_json:
-            print_line(_sentence(verdict, states))
+            print_line(_sentence(verdict, states, seconds))
         return ANSWERS[verdict.answer]
     robots = [plan.robot for plan in sound.plans] if beyond else []
     with naming(trace):
-        document = released_document(released_of(problem, sound, done, robots, states))
+        document = released_document(released_of(problem, sound, done, robots, states, left()))
     write_result(write(document), output, as_json)
     if not as_json:
         _show(document)
@@ -117,9 +139,11 @@ def _resources(resources: tuple[object, ...]) -> str:
     return (shown or "-") + (f" and {more} more" if more > 0 else "")
 
 
-def _sentence(document: GrantsVerdictDocument, states: int) -> str:
+def _sentence(document: GrantsVerdictDocument, states: int | None, seconds: float | None) -> str:
     if document.answer == "undecided":
-        return f"undecided within {counted(states, 'state')}"
+        time = "" if seconds is None else f"{seconds:g} s"
+        most = counted(states or MOST_STATES, "state") if states or not time else ""
+        return f"undecided within {most}{' and ' * bool(most and time)}{time}"
     if document.answer == "safe":
         how = "in the planned order" if document.by_order else f"by {counted(len(document.moves or ()), 'move')}"
         return f"safe: everybody can finish {how}"

@@ -24,7 +24,6 @@ from carproof.execution.release_documents import (
     grants_verdict_document,
     released_document,
 )
-from carproof.execution.releasing import MOST_STATES
 from carproof.execution.simulation import DependenciesDocument, Driver, delays_are_right, dependencies_document
 from carproof.execution.simulation import execute as executed
 from carproof.execution.untangling import untangle as untangled
@@ -224,7 +223,8 @@ class ReleaseRequest:
     solution: Solution
     trace: Trace
     beyond: tuple[RobotId, ...] = ()
-    states: int = MOST_STATES
+    states: int | None = None
+    seconds: float | None = None
 
 
 def release(request: ReleaseRequest, engine: Engine) -> ReleaseDocument:
@@ -232,7 +232,7 @@ def release(request: ReleaseRequest, engine: Engine) -> ReleaseDocument:
     del engine
     sound = sound_within(request.instance, request.solution)
     with inside("$.trace"):
-        found = released(request.instance, sound, request.trace, request.beyond, request.states)
+        found = released(request.instance, sound, request.trace, request.beyond, request.states, request.seconds)
     return released_document(found)
 
 
@@ -244,7 +244,8 @@ class CheckGrantsRequest:
     solution: Solution
     trace: Trace
     grants: tuple[GrantDocument, ...]
-    states: int = MOST_STATES
+    states: int | None = None
+    seconds: float | None = None
 
 
 def check_grants(request: CheckGrantsRequest, engine: Engine) -> GrantsVerdictDocument:
@@ -252,7 +253,7 @@ def check_grants(request: CheckGrantsRequest, engine: Engine) -> GrantsVerdictDo
     del engine
     sound = sound_within(request.instance, request.solution)
     grants = [Grant(each.robot, each.resources) for each in request.grants]
-    verdict = grants_checked(request.instance, sound, request.trace, grants, request.states)
+    verdict = grants_checked(request.instance, sound, request.trace, grants, request.states, request.seconds)
     return grants_verdict_document(request.instance, verdict)
 
 
