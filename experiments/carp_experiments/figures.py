@@ -55,20 +55,21 @@ def line_figure(path: Path, drawn: Figure) -> None:
     panels = panels_of([*drawn.lines])
     strokes = strokes_of([*drawn.lines])
     shown = known_points(drawn)
+    papers = papers_within(drawn, shown)
     with plt.rc_context({"svg.hashsalt": "carproof", "svg.fonttype": "none", "pdf.fonttype": 42, "font.size": 9}):
         size = (WIDTH, HEIGHT * len(panels) + 0.3)
         figure, plots = plt.subplots(len(panels), figsize=size, squeeze=False, layout="constrained")
         for (plot,), (heading, names) in zip(plots, panels.items(), strict=True):
             plot.set_title(heading, fontsize="medium", loc="left")
             plot.set(ylabel=drawn.axes[1], yscale="log" if drawn.logarithmic else "linear")
-            end_where_values_do(plot, shown, [value for each in drawn.papers.values() for _, value in each])
+            end_where_values_do(plot, shown, [value for each in papers.values() for _, value in each])
             of_panel = {name: shown[name] for name in names if shown[name]}
             for name, points in of_panel.items():
                 draw_line(plot, points, *strokes[name])
-            draw_papers(plot, drawn.papers, {family_of(name): strokes[name] for name in of_panel})
+            draw_papers(plot, papers, {family_of(name): strokes[name] for name in of_panel})
             write_names(plot, of_panel, {name: strokes[name][0] for name in of_panel})
         plots[-1][0].set_xlabel(drawn.axes[0])
-        figure.suptitle("\n".join(filter(None, (drawn.title, drawn.cited))))
+        figure.suptitle("\n".join((drawn.title, drawn.cited) if papers else (drawn.title,)))
         figure.savefig(path, metadata={"Creator": None, "CreationDate" if path.suffix == ".pdf" else "Date": None})
         plt.close(figure)
 
@@ -100,6 +101,16 @@ def known_points(drawn: Figure) -> Known:
         name: [(x, each) for x, each in points if each is not None and (each.low > 0 or not drawn.logarithmic)]
         for name, points in drawn.lines.items()
     }
+
+
+def papers_within(drawn: Figure, lines: Known) -> Mapping[str, Sequence[tuple[int, float]]]:
+    """The paper's values beside which there are values of ours: a small run has fewer maps, or robots."""
+    xs = [x for line in lines.values() for x, _ in line]
+    within = {
+        family: [(x, value) for x, value in points if min(xs) <= x <= max(xs)]
+        for family, points in drawn.papers.items()
+    }
+    return {family: points for family, points in within.items() if points}
 
 
 def end_where_values_do(plot: "Axes", lines: Known, papers: Sequence[float]) -> None:

@@ -32,12 +32,14 @@ def test_a_figure_names_its_lines_and_is_drawn_again_the_same(tmp_path: Path) ->
 
 def test_the_papers_values_are_hollow_and_within_the_axes(tmp_path: Path) -> None:
     lines: dict[str, list[tuple[int, Interval | None]]] = {"one": [(0, at(60)), (1, at(30))]}
-    line_figure(tmp_path / "with.svg", Figure("with", "Totals", ("map", "actions"), lines, papers={"one": [(1, 95)]}))
+    papers = {"one": [(1, 95), (7, 200)]}  # there is nothing at 7 to be compared with
+    line_figure(tmp_path / "with.svg", Figure("with", "Totals", ("map", "actions"), lines, papers=papers))
     line_figure(tmp_path / "without.svg", Figure("without", "Totals", ("map", "actions"), lines))
     drawn, plain = ((tmp_path / name).read_text() for name in ("with.svg", "without.svg"))
     hollow = "fill: #ffffff; stroke: #000000"
     assert drawn.count(hollow) == plain.count(hollow) + 1
     assert ">90</text>" in drawn
+    assert ">100</text>" not in drawn
     assert ">90</text>" not in plain
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from carp_experiments.paper.map_cases import FULL_MAP, MAP_AXIS, TENTH_MAP, shown_maps
+from carp_experiments.paper.map_cases import FULL_MAP, MAP_AXIS, ROBOTS, TENTH_MAP, shown_maps
 from carp_experiments.paper.quality import ALGORITHMS, QualitySummary, Summary, summarise
 from carp_experiments.report import ExperimentReport, Figure, Table
 from carp_experiments.statistics import Interval
@@ -57,7 +57,7 @@ def quality_figures(summary: QualitySummary) -> tuple[Figure, ...]:
             "Fewer actions than CARP, where neither fails",
             (MAP_AXIS, "actions"),
             on_maps,
-            papers=PAPERS_SAVINGS,
+            papers=PAPERS_SAVINGS if summary.robots == ROBOTS else {},
             cited="(large, hollow: the paper's, in its section IV)",
         ),
     )
