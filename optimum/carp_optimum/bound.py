@@ -181,11 +181,16 @@ def _limit(
 
 
 def _certificate(search: "PriceSearch") -> BoundDocument:
-    prices = search.prices()
-    robots = search.least_costs()
-    priced = search.priced_deadlines()
+    """What the prices prove in the steps that the checker takes; the sum of shortest ways where that is more."""
+    from carp_optimum.lagrangian.price_search import PriceLists  # noqa: PLC0415 - numba is slow to load
+
+    prices, priced, robots = search.prices(), search.priced_deadlines(), search.least_costs()
     parts = sum(least or 0 for _, least in robots) - search.worth
     parts -= sum(each.price * (len(each.robots) - 1) for each in priced)
+    shortest = search.shortest_costs()
+    sure = sum(least or 0 for _, least in shortest)
+    if parts < sure:
+        prices, priced, robots, parts = PriceLists((), (), ()), (), shortest, sure
     return BoundDocument(
         format=BOUND_FORMAT,
         instance=digest(search.instance),

@@ -8,6 +8,7 @@ import pytest
 from tests.verify.bound_examples import Tamper, completed, crossing, cut_certificate, deadline_certificate
 
 from carp_optimum.bound import lower_bound
+from carp_optimum.lagrangian import price_search
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, Rule
 from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, read_bound
 from carp_spec.documents.decoding import write
@@ -16,6 +17,7 @@ from carp_verify.bound import rules as bound_rules
 from carp_verify.bound import tariff
 from carp_verify.bound import verify as page
 from carp_verify.bound.verify import verify_bound
+from carproof.generate import Fleet, Grid, grid_instance
 
 
 def test_a_horizon_below_zero_is_malformed() -> None:
@@ -29,6 +31,22 @@ def test_a_search_for_least_costs_that_takes_too_long_is_refused(monkeypatch: py
     with pytest.raises(Refusal, match="takes more than 2 steps") as refused:
         verify_bound(crossing(), lower_bound(crossing(), steps=500))
     assert refused.value.rule == "bound/size"
+
+
+def test_a_bound_whose_claims_take_the_checker_too_long_claims_less_and_no_less_than_shortest_ways(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    instance = grid_instance(Grid(5, 5), Fleet(robots=14, seed=3, after_goal="park"))
+    shortest = lower_bound(instance, steps=0).bound
+    bounds = []
+    for most in (0, 30, 120, 10**6):
+        monkeypatch.setattr(price_search, "MOST_STEPS", most)
+        monkeypatch.setattr(page, "LARGEST_SEARCH", most * 4 // 3)
+        certificate = lower_bound(instance, steps=400)
+        assert verify_bound(instance, certificate) == certificate.bound
+        bounds.append(certificate.bound)
+    assert bounds == sorted(bounds)
+    assert bounds[0] == shortest < bounds[-1]
 
 
 def sized(change: str) -> tuple[Instance, BoundDocument]:

@@ -53,6 +53,7 @@ def market_of(instance: Instance, graph: Graph, requests: Requests, longest: int
         head=np.full(longest + 1, NONE, np.int32),
         keys=np.zeros(edges + 1, np.int64),
         nodes=np.zeros(edges + 1, np.int32),
+        steps=np.zeros(1, np.int64),
     )
     back = moves_back(instance)
     prices = Prices(

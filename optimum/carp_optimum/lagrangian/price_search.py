@@ -36,7 +36,7 @@ from carp_optimum.lagrangian.priced_paths import begin_ways, find_rests, find_wa
 from carp_optimum.lagrangian.usage import count_ways
 from carp_spec import Instance, Refusal, ResourceId, RobotId
 from carp_spec.documents.bounds import DeadlinesDocument
-from carp_verify.bound.rules import LARGEST_RESTS, LARGEST_TABLE, LONGEST_STAY, stay_is_searched
+from carp_verify.bound.rules import LARGEST_RESTS, LARGEST_SEARCH, LARGEST_TABLE, LONGEST_STAY, stay_is_searched
 
 TICKS_BEYOND = 32  # of the horizon beyond the last arrival of a robot that nothing delays
 DELAYS = 64
@@ -57,6 +57,8 @@ On a large map robots have many ways that are as short, and prices that are much
 SPAN = 200  # steps
 PART = 32  # robots between two looks at the clock
 ENOUGH_OF_SPAN = 16  # parts of the aim
+MOST_STEPS = LARGEST_SEARCH * 3 // 4
+"""What the checker may take for all claims: less than it allows, as it takes a few more where deadlines have prices."""
 
 
 class PriceLists(NamedTuple):
@@ -398,9 +400,40 @@ class PriceSearch:
         return int(self.market.prices.worth[0])
 
     def least_costs(self) -> tuple[tuple[RobotId, int | None], ...]:
-        """The least priced cost of each robot, `None` where it cannot reach its goal."""
-        earliest = self.market.requests.earliest
+        """What each robot claims: its least priced cost, `None` where it cannot reach its goal.
+
+        Where the checker would take more than `MOST_STEPS`, those robots that gain least by a step claim their shortest
+        ways alone, which takes it no step.
+        """
+        shortest = self.shortest_costs()
+        claims: list[tuple[int, int, int]] = []
+        steps = self.market.scratch.steps
+        for position, (_, sure) in enumerate(shortest):
+            if sure is not None:
+                steps[0] = 0
+                claims.append((position, least_cost(self.native, position), int(steps[0])))
+        costs = dict(shortest)
+        ids = [robot for robot, _ in shortest]
+        left = MOST_STEPS
+        for position, least, taken in sorted(claims, key=lambda claim: self._steps_by_gain(*claim)):
+            if taken <= left:
+                left -= taken
+                costs[ids[position]] = least
+        return tuple(costs.items())
+
+    def _steps_by_gain(self, position: int, least: int, taken: int) -> float:
+        """How many steps the checker takes for a part of a tick of the claim that is more than the shortest way's."""
+        requests = self.market.requests
+        gain = least - self.scale * int(requests.earliest[position] - requests.release[position])
+        return taken / max(gain, 1)
+
+    def shortest_costs(self) -> tuple[tuple[RobotId, int | None], ...]:
+        """The cost of each robot's shortest way, in parts of a tick."""
+        requests = self.market.requests
         return tuple(
-            (robot.id, None if earliest[position] == NONE else least_cost(self.native, position))
-            for position, robot in enumerate(self.instance.robots)
+            (
+                robot.id,
+                None if requests.earliest[each] == NONE else self.scale * int(requests.earliest[each] - robot.release),
+            )
+            for each, robot in enumerate(self.instance.robots)
         )

@@ -291,6 +291,7 @@ def settle(market: Market, robot: int, best: int) -> int:
                     if price < best:
                         best = price
                         found = node
+                scratch.steps[0] = int(scratch.steps[0]) + 1
                 pending += leave(market, robot, node, tick, paid)
             slot = following
         tick += 1

@@ -121,7 +121,7 @@ class Scratch(NamedTuple):
     `parent[node]` is the node before. A tick has a place: the tick modulo one more than the longest stay. A place and a
     resource are a slot, which keeps what was paid on the way to the node, the slot of the next node of the tick, and as
     `mark` the sum of the search's `generation` and the node. `head` is the first slot of each place. `keys` and `nodes`
-    are a heap.
+    are a heap. `steps` counts the nodes that were left.
     """
 
     generation: Longs
@@ -132,6 +132,7 @@ class Scratch(NamedTuple):
     head: Ints
     keys: Longs
     nodes: Ints
+    steps: Longs
 
 
 class Market(NamedTuple):
