@@ -78,8 +78,9 @@ bench: install
 	$(BIN)/pytest -q -s tests/bench/bench_speed.py
 
 # A hundred thousand requests of four clients to servers that keep fleets, each answer judged: an hour on a quiet machine.
+# SEED decides what is asked; after MINUTES the clients stop.
 soak: install
-	$(BIN)/python -m tests.bench.soak $(or $(REQUESTS),100000)
+	nice -n 19 $(BIN)/python -m tests.bench.soak $(or $(REQUESTS),100000) $(or $(SEED),0) $(or $(MINUTES),1440)
 
 # What a fleet in memory costs beside the compiled core, and how fast documents of large fleets are read.
 bench-fleet: install

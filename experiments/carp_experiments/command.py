@@ -17,7 +17,7 @@ from carp_experiments.measuring.crosscheck_campaign import (
 )
 from carp_experiments.measuring.kernel_texts import FULL_TEXTS, QUICK_TEXTS, text_cases, text_report
 from carp_experiments.measuring.kernel_verdicts import FULL_VERDICTS, QUICK_VERDICTS, kernel_cases, kernel_report
-from carp_experiments.paper.map_cases import WAREHOUSE
+from carp_experiments.paper.map_cases import SORTING, WAREHOUSE
 from carp_experiments.paper.recomputed import AGAIN, DRAWN, again_report, cases_again
 from carp_verify.kernel import program
 from carproof.command_line.answer import Answer
@@ -106,9 +106,9 @@ def command_of(experiment: Experiment) -> click.Command:
     @click.option(
         "--map",
         "maps",
-        type=click.IntRange(0, WAREHOUSE),
+        type=click.IntRange(0, SORTING),
         multiple=True,
-        help=f"Only this map ({WAREHOUSE}: a warehouse); may be repeated.",
+        help=f"Only this map ({WAREHOUSE}: a warehouse, {SORTING}: a sorting centre); may be repeated.",
     )
     @campaign_options
     def run(

@@ -14,7 +14,7 @@ from carp_experiments.beyond.streams import stream_report, stream_row
 from carp_experiments.paper.adding_time import PAPERS_MAP, time_report, time_row
 from carp_experiments.paper.conventions import conventions_row, nearest_row
 from carp_experiments.paper.conventions_report import conventions_report
-from carp_experiments.paper.map_cases import FULL_MAP, WAREHOUSE, MapCase
+from carp_experiments.paper.map_cases import FULL_MAP, SORTING, WAREHOUSE, MapCase
 from carp_experiments.paper.polishing import polish_report, polish_row
 from carp_experiments.paper.quality import quality_row
 from carp_experiments.paper.quality_report import quality_report
@@ -195,7 +195,7 @@ EXPERIMENTS = (
     Experiment(
         "lifelong",
         "Pick-and-drop orders that come at random: throughput, time in the system and time an order.",
-        Profile(4, 200, (10, FULL_MAP, WAREHOUSE)),
+        Profile(4, 200, (10, FULL_MAP, WAREHOUSE, SORTING)),
         Profile(2, 30, (10, FULL_MAP)),
         lifelong_row,
         lifelong_report,

@@ -1,9 +1,10 @@
-"""A soak of `carproof serve` with fleets: `make soak`, or `python -m tests.bench.soak REQUESTS`.
+"""A soak of `carproof serve` with fleets: `make soak`, or `python -m tests.bench.soak REQUESTS SEED MINUTES`.
 
 Four clients ask servers of their own over pipes: robots come, get further stops, are late, are polished and forgotten;
 lines are hostile, and clients vanish in the middle of a line. A client keeps what it was told. It judges each answer:
 all plans of its fleet break no rule together, histories are kept, a wrong request is refused by the right rule and
-changes nothing, a server whose client has vanished ends, and its memory stays flat.
+changes nothing, a server whose client has vanished ends, and its memory stays flat. The seed decides all that is asked;
+after so many minutes the clients stop, and say how many requests they have asked.
 """
 
 import json
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
 CLIENTS = 4
 MOST = 12  # robots of a fleet
+OFTEN = 500  # requests from one look at the memory to the next
 HOSTILE: tuple[tuple[bytes, str], ...] = (
     (b"", "document/json"),
     (b"nonsense", "document/json"),
@@ -118,8 +120,8 @@ class Client:
         """Ask something, and judge the answer."""
         kinds: tuple[Callable[[], object], ...] = (self.add, self.add, self.add, self.assign, self.assign)
         kinds = (*kinds, self.advance, self.trace, self.polish, self.rest, self.forget)
-        kinds = (*kinds, self.hostile, self.past, self.twice)
-        if self.draw.happens(400):
+        kinds = (*kinds, self.hostile, self.past, self.twice, self.wrong)
+        if self.draw.happens(1500):
             self.server.vanish(self.draw.one_of((b"", b'{"id": 1, "op": "fleet/ad', b"x")))
             self.counts["vanish"] += 1
             self.server = Server()
@@ -226,6 +228,20 @@ class Client:
         document = instance_document(self.instance)
         self.refuse(self.server.ask(op="fleet/open", fleet="f", instance=document), "fleet/name")
 
+    def wrong(self) -> None:
+        """An order that breaks `instance/stops`, or is for a robot that is not there or has left."""
+        robots = [*self.instance.robots]
+        if not robots:
+            return
+        robot, service = self.draw.one_of(robots), self.draw.between(0, 3)
+        wrong: tuple[list[ResourceId], ...] = ([robot.goal], ["nowhere"], [self.place(robot.goal)], [])
+        places = self.draw.one_of(wrong)
+        stops = [
+            {"resource": place, "service": service if place in (robot.goal, "nowhere") else -1} for place in places
+        ]
+        answer = self.server.ask(op="fleet/assign", fleet="f", robot=robot.id, stops=stops, now=self.now)
+        self.refuse(answer, "fleet/robot" if has_ended(self.plans[robot.id], self.now) else "instance/stops")
+
     def rest(self) -> tuple[Instance, Solution]:
         result = self.server.ask(op="fleet/rest", fleet="f")["result"]
         instance = carproof.read_instance(msgspec.json.encode(result["instance"]))
@@ -255,26 +271,33 @@ class Client:
         assert self.rest() == before
 
 
-def soak(seed: int, requests: int) -> None:
-    """Ask, and print what was asked and the memory by tenths."""
-    client = Client(seed)
-    memory = []
-    for tenth in range(10):
-        for _ in range(requests // 10):
-            client.request()
-        memory.append(client.server.memory())
-        sys.stdout.write(f"client {seed}: {requests // 10 * (tenth + 1)} requests, {memory[-1]} MB\n")
-        sys.stdout.flush()
-    assert max(memory[5:]) <= 1.1 * max(memory[:5]) + 8, f"memory grows: {memory}"
+def soak(requests: int, seed: int, minutes: int) -> None:
+    """Ask until there were so many requests, or so many minutes are over; print what was asked, and the memory."""
+    client, memory, end = Client(seed), [0], monotonic() + 60 * minutes
+    asked = 0
+    while asked < requests and monotonic() < end:
+        client.request()
+        asked += 1
+        if asked % OFTEN == 0:
+            memory.append(client.server.memory())
+            sys.stdout.write(f"client {seed}: {asked} requests, {memory[-1]} MB\n")
+            sys.stdout.flush()
+    half = len(memory) // 2
+    assert max(memory[half:]) <= 1.1 * max(memory[:half], default=0) + 8 or half < 2, f"memory grows: {memory}"
     assert client.server.ask(op="stop")["result"] == {}
-    sys.stdout.write(f"client {seed}: {dict(client.counts)}, memory {memory} MB\n")
+    kinds = ", ".join(f"{name} {count}" for name, count in sorted(client.counts.items()))
+    sys.stdout.write(f"client {seed}: {asked} requests ({kinds}), {min(memory[1:] or [0])} to {max(memory)} MB\n")
+
+
+def main(requests: int, seed: int = 0, minutes: int = 24 * 60) -> int:
+    """Let the clients ask that much together."""
+    command = [sys.executable, "-m", "tests.bench.soak", "client", str(requests // CLIENTS)]
+    clients = [subprocess.Popen([*command, str(CLIENTS * seed + number), str(minutes)]) for number in range(CLIENTS)]
+    return max(client.wait() for client in clients)
 
 
 if __name__ == "__main__":
-    if len(sys.argv) > 2:
-        soak(int(sys.argv[2]), int(sys.argv[1]))
+    if sys.argv[1] == "client":
+        soak(*map(int, sys.argv[2:]))
     else:
-        each = str(int(sys.argv[1] if len(sys.argv) > 1 else "100000") // CLIENTS)
-        command = [sys.executable, "-m", "tests.bench.soak", each]
-        clients = [subprocess.Popen([*command, str(seed)]) for seed in range(CLIENTS)]
-        sys.exit(max([client.wait() for client in clients]))
+        sys.exit(main(*map(int, sys.argv[1:])))

@@ -13,7 +13,9 @@ from carp_experiments.beyond.lifelong import (
     order_instance,
 )
 from carp_experiments.paper.map_cases import MapCase
+from carp_experiments.paper.sorting import sorting_instance
 from carp_spec import Stop
+from carproof.generate import Fleet
 
 CASE = MapCase(lifelong_row, 20, 1, 8)
 
@@ -41,3 +43,15 @@ def test_a_mean_counts_the_orders_of_all_streams() -> None:
     assert first.throughput.estimate == pytest.approx(75)
     assert first.taken.estimate == pytest.approx(15)
     assert first.milliseconds.estimate == pytest.approx(2)
+
+
+def test_the_sorting_centre_is_laid_out_as_published_and_all_its_cells_can_be_left() -> None:
+    instance = sorting_instance(Fleet(robots=30, distinct="none"))
+    graph = instance.graph
+    assert (len(graph.resources), len(graph.moves)) == (2570, 3792)
+    here, back = {graph.resources[0].id}, {graph.resources[0].id}
+    for found, way in ((here, 1), (back, -1)):
+        for _ in range(200):
+            found |= {move[::way][1] for move in graph.moves if move[::way][0] in found}
+    assert here == back == {*graph.index}
+    assert {str(robot.start).partition(",")[2] for robot in instance.robots} == {"0", "36"}

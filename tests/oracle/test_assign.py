@@ -60,6 +60,25 @@ def test_a_parked_robot_moves_again(carproof: Run, elsewhere: Path) -> None:
     assert [visit.resource for visit in plan.visits] == ["d", "c", "b", "p", "b", "c", "d", "c", "b", "p"]
 
 
+@pytest.mark.parametrize(
+    ("arguments", "error"),
+    [
+        ("r2 d:-1 p --now 4", "STOP 1: the service must be a whole number of at least 0, not -1 [instance/stops]"),
+        ("r2 d b:x --now 4", "STOP 2: it must be the id of a resource, and 'b:x' is not [instance/stops]"),
+        ("r9 d --now 4", "ROBOT: the instance must have the robot, and has no 'r9' [request/robot]"),
+    ],
+)
+def test_the_command_names_the_argument_that_is_wrong(
+    carproof: Run, elsewhere: Path, arguments: str, error: str
+) -> None:
+    del elsewhere
+    save(hall=HALL, plans=PLANS)
+    outcome = carproof(f"assign hall.json plans.json {arguments} -o next.json --instance after.json")
+    assert (outcome.code, outcome.stderr) == (2, f"Error: {error}\n")
+    assert not Path("next.json").exists()
+    assert not Path("after.json").exists()
+
+
 def test_the_op_answers_with_the_instance_and_the_plans() -> None:
     fields = {"instance": HALL, "solution": PLANS, "robot": "r2", "now": 4}
     result = asked("assign", **fields, stops=[{"resource": "d", "service": 2}, {"resource": "p"}])["result"]

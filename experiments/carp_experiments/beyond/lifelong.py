@@ -11,7 +11,7 @@ from time import process_time
 import msgspec
 
 from carp_experiments.beyond.streams import TICKS, middle_half, stream_instance
-from carp_experiments.paper.map_cases import MapCase, place_name, rows_by_map
+from carp_experiments.paper.map_cases import SORTING, MapCase, place_name, rows_by_map
 from carp_experiments.report import ExperimentReport, Table
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import Row
@@ -72,8 +72,12 @@ def served(case: MapCase, name: str, rate: int) -> Served:
 
 
 def order_instance(case: MapCase, rate: int) -> Instance:
-    """The robots of a stream, each with a pick on its way: the goal of another robot."""
+    """The robots of a stream, each with a pick on its way: the goal of another, or the station where it starts."""
     instance = stream_instance(case, rate)
+    if case.map == SORTING:
+        starts = {robot.id: instance.graph.successors[robot.start][0] for robot in instance.robots}
+        sorters = (replace(each, stops=(Stop(starts[each.id], SERVICE), *each.stops)) for each in instance.robots)
+        return replace(instance, robots=tuple(sorters))
     goals, stream = [robot.goal for robot in instance.robots], splitmix64(case.assignment)
     robots = []
     for robot in instance.robots:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Protocol, TypeVar
 
 import msgspec
 
+from carp_experiments.paper.sorting import sorting_instance
 from carp_experiments.store import Row
 from carp_spec import Instance
 
@@ -19,6 +20,8 @@ TENTH_MAP = 10
 FULL_MAP = 20
 WAREHOUSE = 21
 """The number that a warehouse of the generator has beside the paper's maps."""
+SORTING = 22
+"""That of a sorting centre."""
 STATIONS = 20
 MAP_AXIS = f"map (0: spanning tree, {FULL_MAP}: full grid)"
 SHOWN_MAPS = (0, 5, 10, 15, 20)
@@ -55,19 +58,21 @@ class MapCase:
 
 
 def instance_of(case: MapCase) -> Instance:
-    """The paper's grid or the warehouse with the robots; raises `Refusal` where they have no place on it."""
+    """The map with the robots; raises `Refusal` where they have no place on it."""
     from carproof.generate import Fleet  # noqa: PLC0415 - each worker loads it
 
     fleet = Fleet(robots=case.robots, seed=case.assignment)
-    return map_instance(case.map, replace(fleet, distinct="starts") if case.map == WAREHOUSE else fleet)
+    return map_instance(case.map, replace(fleet, distinct="starts") if case.map > FULL_MAP else fleet)
 
 
 def map_instance(map: int, fleet: "Fleet") -> Instance:
-    """A map or the warehouse with a fleet; raises `Refusal` where it has no place on it."""
+    """A map, the warehouse or the sorting centre with a fleet; raises `Refusal` where it has no place on it."""
     from carproof.generate import Grid, Warehouse, grid_instance, warehouse_instance  # noqa: PLC0415
 
     if map == WAREHOUSE:
         return warehouse_instance(Warehouse(stations=STATIONS), fleet)
+    if map == SORTING:
+        return sorting_instance(fleet)
     return grid_instance(Grid(map=map), fleet)
 
 
@@ -89,7 +94,7 @@ def rows_by_map(rows: Iterable[Row], shape: type[R]) -> dict[int, list[R]]:
 
 def place_name(map: int) -> str:
     """The name of a map for people."""
-    return "the warehouse" if map == WAREHOUSE else f"map {map}"
+    return {WAREHOUSE: "the warehouse", SORTING: "the sorting centre"}.get(map, f"map {map}")
 
 
 def shown_maps(maps: Iterable[int]) -> list[int]:

@@ -3,6 +3,7 @@
 import gc
 import io
 import os
+import re
 import sys
 import traceback
 from collections.abc import Iterator, Sequence
@@ -126,7 +127,11 @@ def _naming_extras(context: click.Context) -> Iterator[None]:
 
 
 def _option(path: str) -> str:
-    """The command line's name of an option that Python and documents call `$.map_seed`."""
+    """The command line's name of what Python and documents call `$.map_seed`, `$.robot` or `$.stops[0].resource`."""
+    if path == "$.robot":
+        return "ROBOT"
+    if stop := re.match(r"\$\.stops\[(\d+)\]", path):
+        return f"STOP {int(stop[1]) + 1}"
     return "--" + path[2:].replace("_", "-") if path.startswith("$.") else path
 
 

@@ -80,6 +80,6 @@ def stop_called(instance: Instance, name: str) -> Stop:
     """The stop that RESOURCE or RESOURCE:SERVICE names; if there is no such resource, a rule says so."""
     places: dict[str, ResourceId] = {str(id): id for id in instance.graph.index}
     resource, _, service = name.rpartition(":")
-    if name in places or not (service.isascii() and service.isdigit()):
+    if name in places or not (service.isascii() and service.removeprefix("-").isdigit()):
         return Stop(places.get(name, name))
     return Stop(places.get(resource, resource), int(service))
