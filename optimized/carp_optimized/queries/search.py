@@ -26,6 +26,7 @@ from carp_optimized.state.records import start_record, write_record
 EVERY = (1 << BLOCK) - 1
 LOW = (1 << 32) - 1
 FIRST_TRY = 32  # expansions until the end of the plan is looked for
+FEWEST_LOOKS = 64  # at windows, when it is
 STANDING = 0  # the slot of no row: a copy of the window in which the robot is when it sets out
 
 
@@ -290,7 +291,8 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
             next_try = expansions + expansions // 2
             next_f = key >> 32
             if not (beyond and is_unseen(state, slot, expansions, next_f)):
-                end = end_from(state, robot, slot, goal_window, own_slot, next_f, min(latest, LARGEST), expansions)
+                looks = FEWEST_LOOKS + expansions // 8
+                end = end_from(state, robot, slot, goal_window, own_slot, next_f, min(latest, LARGEST), looks)
                 if end == FURTHER:
                     return FURTHER
                 if end == ENDED:

@@ -158,14 +158,18 @@ class Ending(NamedTuple):
     """The scratch of looking for the end of a query (`carp_optimized.queries.ends`).
 
     `gathered` are windows, with what they had for `reached` and `parent` before; `place` is where a window is among
-    them, if it is, and `is_guessed` whether its entry has been guessed. `keys` and `nodes` are their heap.
+    them, if it is. By place: `until`, the last entry that counts; `is_due`, whether what leads there is still to be
+    looked at; `trace`, the number of the last trace that has met the window. `keys` and `nodes` are a heap.
     """
 
     gathered: Ints
     place: Ints
     reached: Longs
     parent: Ints
-    is_guessed: Ints
+    until: Ints
+    is_due: Ints
+    trace: Longs
+    counts: Longs
     keys: Longs
     nodes: Ints
 
