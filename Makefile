@@ -105,7 +105,7 @@ $(PAPER): paper-%: install
 	nice $(BIN)/carproof experiment $* --store $*.sqlite --workers 2 --report report
 
 # Compute 50 random cases of each stored run again with the reference planner; continues where it stopped. Seconds of processor time:
-# gap 1,000; related 1,100; time 460; quality 730; polish 120.
+# gap 1,400; related 1,200; time 420; quality 730; polish 120.
 paper-recomputed: install
 	for name in gap related time quality polish; do \
 	    xz -dkc experiments/results/$$name.sqlite.xz > $$name.stored && \
