@@ -16,6 +16,7 @@ from carproof.execution.simulation import delays_are_right
 from carproof.extras import INSTALLED
 from carproof.formats import ADAPTER_RULES
 from carproof.formats.movingai import MOVINGAI_RULES
+from carproof.generate.headings import CELLS_SIDE_BY_SIDE
 from carproof.generate.options import GENERATE_RULES
 from carproof.input_rules import Code
 from carproof.layouts import LAYOUT_RULES
@@ -33,6 +34,7 @@ ALL_RULES: tuple[Rule[..., Any] | Code, ...] = (
     *REQUEST_RULES,
     delays_are_right,
     *GENERATE_RULES,
+    CELLS_SIDE_BY_SIDE,
     *MOVINGAI_RULES,
     *ADAPTER_RULES,
     *LAYOUT_RULES,

@@ -11,7 +11,7 @@ from carp_spec import AfterGoal
 from carproof.command_line.answer import Answer
 from carproof.command_line.options import RangeType, examples, json_option, output_option
 from carproof.command_line.output import show_instance
-from carproof.generate import Fleet, Grid, Traits, Warehouse, grid_instance, warehouse_instance
+from carproof.generate import Fleet, Grid, Traits, Warehouse, grid_instance, warehouse_instance, with_headings
 from carproof.generate.options import JUST_ONE, Distinct, Orders, Side
 
 T = TypeVar("T", Fleet, Grid, Traits, Warehouse)
@@ -47,6 +47,7 @@ def fleet_options(default: Fleet) -> Callable[[F], F]:
         click.option("--pace", type=RangeType(), default=default.pace, help="Paces, like 1..2."),
         click.option("--capacity", type=RangeType(), default=JUST_ONE, help="Capacities of resources, like 1..2."),
         click.option("--duration", type=RangeType(), default=JUST_ONE, help="Durations of resources, like 1..3."),
+        click.option("--headings", is_flag=True, help="Split cells by heading, so that robots turn as in the League."),
         output_option,
         json_option,
     ]
@@ -65,6 +66,9 @@ def command() -> None:
 
     The document goes to standard output, or with -o to a file. Equal options and seeds give an equal
     document, on every machine. A range is LOW..HIGH, both included.
+
+    With --headings a cell is split into a resource for each heading, and robots drive on or turn by a quarter, each
+    in the duration of the cell: the model of the League of Robot Runners 2023 and 2024.
     """
 
 
@@ -74,20 +78,21 @@ def command() -> None:
         "carproof generate grid --map 10 --map-seed 7 --seed 3 | carproof plan -",
         "carproof generate grid --width 6 --height 6 --robots 12 --after-goal park",
         "carproof generate grid --robots 20 --duration 1..3 --release 0..40",
+        "carproof generate grid --robots 20 --headings --after-goal park",
     )
 )
 @click.option("--width", type=int, default=20, help="Cells from left to right.")
 @click.option("--height", type=int, default=20, help="Cells from top to bottom.")
 @click.option("--map", type=int, default=20, help="0 is a spanning tree, 20 the full grid.")
 @fleet_options(Fleet())
-def grid(output: Path | None, as_json: bool, **options: Any) -> Answer:  # noqa: ANN401 - dataclasses check them
+def grid(output: Path | None, as_json: bool, headings: bool, **options: Any) -> Answer:  # noqa: ANN401 - dataclasses check them
     """Make a map of the paper.
 
     Map 0 is a random minimum spanning tree of the grid; map i has i twentieths of the other edges too. The
     maps of one seed are nested. Robots start and end anywhere.
     """
     instance = grid_instance(made_of(Grid, options), made_of(Fleet, options), made_of(Traits, options))
-    return show_instance(instance, output, as_json)
+    return show_instance(with_headings(instance) if headings else instance, output, as_json)
 
 
 @command.command(
@@ -106,13 +111,13 @@ def grid(output: Path | None, as_json: bool, **options: Any) -> Answer:  # noqa:
 @click.option("--stations", type=int, default=6, help="Picking stations at the left side.")
 @click.option("--start-at", type=click.Choice(get_args(Side)), default="racks", help="Where robots start.")
 @fleet_options(Fleet(robots=40, distinct="starts"))
-def warehouse(output: Path | None, as_json: bool, **options: Any) -> Answer:  # noqa: ANN401 - dataclasses check them
+def warehouse(output: Path | None, as_json: bool, headings: bool, **options: Any) -> Answer:  # noqa: ANN401 - dataclasses check them
     """Make a warehouse with racks, aisles and picking stations.
 
     Robots go from cells beside the racks to the stations, or the other way.
     """
     instance = warehouse_instance(made_of(Warehouse, options), made_of(Fleet, options), made_of(Traits, options))
-    return show_instance(instance, output, as_json)
+    return show_instance(with_headings(instance) if headings else instance, output, as_json)
 
 
 def made_of(kind: type[T], options: Mapping[str, Any]) -> T:
