@@ -17,7 +17,9 @@ from carp_optimized.improve.rounds import (
     ROUNDS,
     SURE,
     TOTAL,
+    TURNING,
     Rounds,
+    make_way,
     plan_each,
     plan_first,
     play,
@@ -60,7 +62,7 @@ class Improving:
             changed=np.zeros(robots, np.int32),
             is_changed=np.zeros(robots, np.int32),
             weight=np.full(KINDS, FIRST_WEIGHT, np.int64),
-            counts=np.zeros(9, np.int64),
+            counts=np.zeros(10, np.int64),
             stream=np.array([seed], np.uint64),
         )
         self._native = Native(self.rounds)
@@ -115,9 +117,10 @@ class Improving:
         self.rounds.stays.size[:] = 0
         return self.begin(goes_on)
 
-    def play(self, rounds: int, work: int, chance: int = 0) -> int:
-        """Play that many rounds, or as many as take that much work; how many."""
+    def play(self, rounds: int, work: int, chance: int = 0, *, turning: bool = False) -> int:
+        """Play that many rounds, or as many as take that much work; how many. Equally early paths are tried in turn."""
         self.rounds.counts[CHANCE] = min(chance, SURE - 1)
+        self.rounds.counts[TURNING] = turning
         played = play(self._native, rounds, work)
         if played != FULL:
             return played
@@ -131,6 +134,26 @@ class Improving:
     def plan_first(self, order: Ints, goes_on: Callable[[], bool]) -> None:
         """Plan robots that have no paths yet, one after the other, those that find none left out."""
         self._go_through(plan_first, order, goes_on)
+
+    def make_way(self, goes_on: Callable[[int], bool]) -> Paths:
+        """Plan robots that have no paths, others again that were in their way; `goes_on` gets the number that wait.
+
+        Returns the paths when the fewest waited.
+        """
+        missing = np.flatnonzero(self.rounds.paths.size == 0)
+        waiting = np.zeros(self.rounds.paths.size.size, np.int32)
+        waiting[: missing.size] = missing
+        fewest = count = missing.size
+        self._remember()
+        while count > 0 and goes_on(count):
+            count = make_way(self._native, waiting, count, WORK)
+            if count < 0:
+                count = ~count
+                self._make_room()
+            if count < fewest:
+                fewest = count
+                self._remember()
+        return self.rounds.best
 
     def _go_through(
         self, step: Callable[[Native[Rounds], Ints, int, int], int], order: Ints, goes_on: Callable[[], bool]

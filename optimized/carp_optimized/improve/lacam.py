@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from carp_optimized.improve.crowds import FAR, GONE, Crowd, can_begin, crowd_of, is_stepwise, measure, ways_of
+from carp_optimized.improve.guides import Guides
 from carp_optimized.improve.pibt import NOWHERE, Step, begin, choose, end, is_open, no_step, rank_choices, take
 from carp_optimized.jit.compiling import compiled, entry
 from carp_optimized.jit.kinds import Ints, IntTable, Longs, Numbers
@@ -82,11 +83,11 @@ class Search:
 
     __slots__ = ("_native", "outcome", "ways")
 
-    def __init__(self, crowd: Crowd, seed: int = 0) -> None:
+    def __init__(self, crowd: Crowd, seed: int = 0, guides: Guides | None = None) -> None:
         """The crowd has been measured, and `can_begin`."""
         self.outcome = RUNNING
         self.ways: IntTable | None = None
-        self._native = Native(Lacam(crowd, no_step(crowd, seed), _no_nodes(crowd, ROOM)))
+        self._native = Native(Lacam(crowd, no_step(crowd, seed, guides), _no_nodes(crowd, ROOM)))
         _place_root(self._native.fields)
 
     @property

@@ -9,8 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from carp_optimized.improve.crowds import GONE, Crowd
+from carp_optimized.improve.guides import Guides, next_on_guide
 from carp_optimized.jit.compiling import compiled
-from carp_optimized.jit.kinds import Ints, IntTable, Numbers
+from carp_optimized.jit.kinds import Ints, IntTable, Longs, Numbers
 from carp_optimized.neighbourhood.orders import next_number
 from carp_optimized.state.arrays import NONE
 
@@ -35,10 +36,13 @@ class Step(NamedTuple):
     tried: Ints
     wished: Ints
     wishes: IntTable
+    way: Ints
+    way_first: Longs
+    way_size: Ints
     stream: Numbers
 
 
-def no_step(crowd: Crowd, seed: int) -> Step:
+def no_step(crowd: Crowd, seed: int, guides: Guides | None = None) -> Step:
     """The arrays of a step."""
     robots, resources = crowd.start.size, crowd.queue.size
     choices = int(np.diff(crowd.first).max(initial=0)) + 1
@@ -52,6 +56,9 @@ def no_step(crowd: Crowd, seed: int) -> Step:
         tried=np.empty(robots + 1, np.int32),
         wished=np.empty(robots + 1, np.int32),
         wishes=np.empty((robots + 1, choices), np.int32),
+        way=np.zeros(1, np.int32) if guides is None else guides.way,
+        way_first=np.zeros(robots, np.int64) if guides is None else guides.first,
+        way_size=np.zeros(robots, np.int32) if guides is None else guides.size,
         stream=np.array([seed], np.uint64),
     )
 
@@ -148,15 +155,17 @@ def rank_choices(crowd: Crowd, step: Step, robot: int, place: int, wishes: Ints)
     wishes[count - 1] = place
     draws = next_number(step.stream) >> np.uint64(1)
     distance = crowd.distance[robot]
+    size = int(step.way_size[robot])
+    best = next_on_guide(step.way, int(step.way_first[robot]), size, int(distance[place]), place) if size > 0 else NONE
     for k in range(count):
         left = np.uint64(count - k)
         other = k + int(draws % left)
         draws //= left
         wish = int(wishes[other])
         wishes[other] = wishes[k]
-        far = int(distance[wish])
+        far = int(distance[wish]) if wish != best else NONE
         at = k
-        while at > 0 and distance[int(wishes[at - 1])] > far:
+        while at > 0 and wishes[at - 1] != best and distance[int(wishes[at - 1])] > far:
             wishes[at] = wishes[at - 1]
             at -= 1
         wishes[at] = wish

@@ -1,9 +1,11 @@
 """Plans of a crowd in a given time or a number of rounds: the best that can be had (anytime search).
 
 First come plans by LaCAM, and by prioritized planning with the shortest way first: robots that arrive early park early,
-and those that come later go around them. Then rounds improve the better ones. They may raise the sum for a while
-(simulated annealing, Kirkpatrick et al. 1983): on average by a share of a robot's mean delay, which falls to 0 as the
-cube of what is left of the cycle. There are several cycles, each from the best paths so far.
+and those that come later go around them. Who finds no path takes a shortest way, and those that it meets are planned
+again. Where that leads nowhere, LaCAM follows guides. Then rounds improve the best ones. They may raise the sum for a
+while (simulated annealing, Kirkpatrick et al. 1983): on average by a share of a robot's mean delay, which falls to 0 as
+the cube of what is left of the cycle. There are several cycles, each from the best paths so far. Where there is time
+for many rounds, each path is one of those that arrive equally early.
 
 A clock is looked at after each few milliseconds of work. What takes time at the end is timed on a part before. Where
 there is no time to measure all distances, the nearest robots are planned, with distances that end a little beyond
@@ -15,12 +17,14 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import starmap
+from math import inf
 from time import perf_counter
 
 import numpy as np
 
 from carp_optimized.improve.checking import require_lawful
 from carp_optimized.improve.crowds import FAR, Crowd, are_apart, crowd_of, is_stepwise, measure, near, only, ways_of
+from carp_optimized.improve.guides import guides_of
 from carp_optimized.improve.improving import LONGER, Improving, arrivals, paths_of
 from carp_optimized.improve.lacam import RUNNING, STEPS, Search
 from carp_optimized.improve.rounds import SURE
@@ -41,10 +45,12 @@ MEASURING = 0.6
 """The part of the time in which the distances of all robots must be measured; else only the nearest are planned."""
 BEYOND = 64
 """How much further than to its start the distances of a robot are then measured."""
-ATTEMPTS = 50
-"""Orders of prioritized planning where LaCAM finds no plans; else one that fails is not worth another."""
-SHARE = 3
-"""The part of the time that LaCAM has at first, and prioritized planning beside it: one of this many."""
+SEARCHING, GUIDING, GUIDED, ALL = 3, 4, 5, 8
+"""The eighths of the time after which LaCAM and prioritized planning end, then guides, and then LaCAM with guides."""
+MISSES = 8
+"""Prioritized planning gives up when robots have found no path this often, on average."""
+HOPE = 4
+"""From one of this many parts of its time on, it gives up if too many robots wait for what is left of it."""
 LONGEST = 700
 """The visits of a path by prioritized planning, if LaCAM has found none that shows how many they are."""
 CYCLES = 8
@@ -76,9 +82,15 @@ class Clock:
         """The seconds since the start."""
         return self.now() - self.started
 
-    def goes_on(self, share: int = 1) -> bool:
-        """Whether the time, or one of so many parts of what was left of it, is not over."""
-        return self.seconds is None or self.spent - self.begun < (self.seconds - self.reserved - self.begun) / share
+    def left(self, eighths: int = ALL) -> float:
+        """The seconds that are left of so many eighths of the time."""
+        if self.seconds is None:
+            return inf
+        return self.begun + (self.seconds - self.reserved - self.begun) * eighths / ALL - self.spent
+
+    def goes_on(self, eighths: int = ALL) -> bool:
+        """Whether so many eighths of the time are not over."""
+        return self.left(eighths) > 0
 
     def reserve(self, visits: int) -> None:
         """Leave time for that many visits."""
@@ -247,19 +259,24 @@ def _nearest(crowd: Crowd, timer: Clock) -> Paths:
 
 
 def first_paths(crowd: Crowd, timer: Clock, seed: int) -> Paths:
-    """The better paths of LaCAM and of prioritized planning; of as many robots as possible if neither has all."""
+    """The best paths of LaCAM and of prioritized planning; of as many robots as possible if neither has all."""
     search = Search(crowd, seed)
-    ways = _searched(search, STEPS, lambda: timer.goes_on(SHARE))
-    if ways is not None:
-        by_steps = paths_of(ways)
-        in_order = _planned_in_order(crowd, timer, SHARE, by_steps.place.shape[1], 1)
-        has_all = bool(in_order.size.all())
-        return in_order if has_all and arrivals(in_order).sum() < arrivals(by_steps).sum() else by_steps
-    in_order = _planned_in_order(crowd, timer, 2, LONGEST, ATTEMPTS)
+    ways = _searched(search, STEPS, lambda: timer.goes_on(SEARCHING))
+    by_steps = [] if ways is None else [paths_of(ways)]
+    in_order = _planned_in_order(crowd, timer, by_steps[0].place.shape[1] if by_steps else LONGEST, seed)
     if in_order.size.all():
-        return in_order
-    ways = _searched(search, STEPS if timer.seconds is None else NO_LIMIT, timer.goes_on)
-    return in_order if ways is None else paths_of(ways)
+        return min(in_order, *by_steps, key=_sum)
+    guides = guides_of(crowd, lambda: timer.goes_on(GUIDING))
+    ways = _searched(Search(crowd, seed, guides), STEPS, lambda: timer.goes_on(GUIDED))
+    if ways is None and not by_steps:
+        ways = _searched(search, STEPS if timer.seconds is None else NO_LIMIT, timer.goes_on)
+    if ways is not None:
+        by_steps.append(paths_of(ways))
+    return min(by_steps, key=_sum, default=in_order)
+
+
+def _sum(paths: Paths) -> int:
+    return int(arrivals(paths).sum())
 
 
 def _searched(search: Search, steps: int, goes_on: Callable[[], bool]) -> IntTable | None:
@@ -270,25 +287,21 @@ def _searched(search: Search, steps: int, goes_on: Callable[[], bool]) -> IntTab
     return search.ways
 
 
-def _planned_in_order(crowd: Crowd, timer: Clock, share: int, room: int, attempts: int) -> Paths:
-    """The paths of the best of some passes, each with the robots first that the one before left out."""
+def _planned_in_order(crowd: Crowd, timer: Clock, room: int, seed: int) -> Paths:
+    """The paths of a pass of prioritized planning, and then of the robots that it missed, as long as they get fewer."""
     robots = crowd.start.size
-    order = np.argsort(ways_of(crowd), kind="stable").astype(np.int32)
-    best = no_paths(robots, room)
-    for _ in range(attempts):
-        improving = Improving(crowd, no_paths(robots, room))
+    improving = Improving(crowd, no_paths(robots, room), seed)
+    improving.plan_first(np.argsort(ways_of(crowd), kind="stable").astype(np.int32), lambda: timer.goes_on(SEARCHING))
+    missing = int(np.count_nonzero(improving.rounds.paths.size == 0))
+    most = improving.missed + MISSES * robots
+    begun, left = timer.spent, timer.left(SEARCHING)
 
-        def goes_on(improving: Improving = improving) -> bool:
-            return timer.goes_on(share) and (attempts > 1 or improving.missed == 0)
+    def goes_on(waiting: int) -> bool:
+        spent = timer.spent - begun
+        is_soon = waiting * spent <= (missing - waiting) * (left - spent)
+        return improving.missed < most and timer.goes_on(SEARCHING) and (HOPE * spent <= left or is_soon)
 
-        improving.plan_first(order, goes_on)
-        paths = improving.rounds.paths
-        if np.count_nonzero(paths.size) > np.count_nonzero(best.size):
-            best = paths
-        if best.size.all() or not timer.goes_on(share):
-            break
-        order = order[np.argsort(paths.size[order] > 0, kind="stable")]
-    return best
+    return improving.make_way(goes_on)
 
 
 def improved(crowd: Crowd, paths: Paths, iterations: int | None, timer: Clock, seed: int, advance: Advance) -> Paths:
@@ -309,7 +322,7 @@ def improved(crowd: Crowd, paths: Paths, iterations: int | None, timer: Clock, s
                 break
         expected = iterations or PARTS * improving.played // max(gone, 1)
         heat = (REHEAT if cycle else HEAT) * (improving.total - least)
-        improving.play(rounds, WORK, _chance(heat, robots, expected, PARTS - part))
+        improving.play(rounds, WORK, _chance(heat, robots, expected, PARTS - part), turning=expected >= ENOUGH * robots)
         advance(improving.played, 0, improving.best)
         if improving.best == least:
             break

@@ -6,6 +6,8 @@ earliest arrival in each gap is enough. Arrivals are looked at in the order of t
 goal, and the latest found first among equals: with steps of one tick these bounds are small whole numbers, so they have
 buckets.
 
+Of paths that arrive equally early, the order of the edges chooses one. A turn of that order chooses another.
+
 Parked robots never leave. So no arrival is earlier than the last stay in the goal ends, which is known at the start.
 """
 
@@ -21,7 +23,9 @@ from carp_optimized.state.arrays import NEVER, NONE
 
 BUCKETS = 1 << 14
 """Paths that arrive later than the first bound by more ticks than this are not found."""
-GENERATION, LABELS, TOP, EXPANDED = range(4)  # the counts
+PLACES = 7
+"""Places that differ in these bits have their edges turned by other bits of the turn."""
+GENERATION, LABELS, TOP, EXPANDED, TURN = range(5)  # the counts
 
 
 class Query(NamedTuple):
@@ -49,7 +53,7 @@ def no_query(stays: Stays) -> Query:
         gap=np.empty(labels, np.int32),
         tick=np.empty(labels, np.int32),
         later=np.empty(labels, np.int32),
-        counts=np.zeros(4, np.int64),
+        counts=np.zeros(5, np.int64),
     )
 
 
@@ -107,8 +111,11 @@ def expand(crowd: Crowd, stays: Stays, query: Query, robot: int, gap: int, least
     soon = int(query.arrive[gap]) + 1
     until = end_of(stays, gap)
     distance = crowd.distance[robot]
-    for edge in range(int(crowd.first[place]), int(crowd.first[place + 1])):
-        target = int(crowd.target[edge])
+    begin = int(crowd.first[place])
+    choices = int(crowd.first[place + 1]) - begin
+    turn = int(query.counts[TURN]) >> (place & PLACES)
+    for k in range(choices):
+        target = int(crowd.target[begin + (k + turn) % choices])
         rest = int(distance[target])
         if max(soon + rest, least) > latest:
             continue
