@@ -23,6 +23,7 @@ from carp_spec import Instance, Plan, ResourceId, Robot, RobotId, Solution, Stop
 from carp_spec.documents.instances import instance_document, robot_document
 from carp_spec.permutations import splitmix64
 from carp_spec.plan_rules import has_ended
+from carproof.engines import warm
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.testing.random_instances import Draw
 
@@ -290,7 +291,8 @@ def soak(requests: int, seed: int, minutes: int) -> None:
 
 
 def main(requests: int, seed: int = 0, minutes: int = 24 * 60) -> int:
-    """Let the clients ask that much together."""
+    """Let the clients ask that much together, once all is compiled: a server that compiles holds more memory."""
+    warm()
     command = [sys.executable, "-m", "tests.bench.soak", "client", str(requests // CLIENTS)]
     clients = [subprocess.Popen([*command, str(CLIENTS * seed + number), str(minutes)]) for number in range(CLIENTS)]
     return max(client.wait() for client in clients)
