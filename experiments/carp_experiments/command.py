@@ -18,7 +18,7 @@ from carp_experiments.measuring.crosscheck_campaign import (
 from carp_experiments.measuring.kernel_texts import FULL_TEXTS, QUICK_TEXTS, text_cases, text_report
 from carp_experiments.measuring.kernel_verdicts import FULL_VERDICTS, QUICK_VERDICTS, kernel_cases, kernel_report
 from carp_experiments.paper.map_cases import SORTING, WAREHOUSE
-from carp_experiments.paper.recomputed import AGAIN, DRAWN, again_report, cases_again
+from carp_experiments.recomputed import AGAIN, DRAWN, again_report, cases_again
 from carp_verify.kernel import program
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import print_document

@@ -12,7 +12,7 @@ from carp_experiments.beyond.neighbours import neighbours_report, neighbours_row
 from carp_experiments.beyond.people import people_report, people_row
 from carp_experiments.beyond.streams import stream_report, stream_row
 from carp_experiments.paper.adding_time import PAPERS_MAP, time_report, time_row
-from carp_experiments.paper.conventions import conventions_row, nearest_row
+from carp_experiments.paper.conventions import conventions_row, nearest_row, remaining_row
 from carp_experiments.paper.conventions_report import conventions_report
 from carp_experiments.paper.map_cases import FULL_MAP, SORTING, WAREHOUSE, MapCase
 from carp_experiments.paper.polishing import polish_report, polish_row
@@ -141,6 +141,14 @@ EXPERIMENTS = (
         Profile(100, 100, (10, FULL_MAP)),
         Profile(2, 30, (10, FULL_MAP)),
         nearest_row,
+        conventions_report,
+    ),
+    Experiment(
+        "remaining",
+        "Conventions that the screening left out: divisors of the distance, and plans kept where CARP fails.",
+        Profile(100, 100, (10, FULL_MAP)),
+        Profile(2, 30, (10, FULL_MAP)),
+        remaining_row,
         conventions_report,
     ),
     Experiment(

@@ -21,6 +21,7 @@ TITLES = {
     "quality": "Experiment 1: failures and total cost",
     "conventions": "Under which conventions the paper's numbers come out",
     "nearest": "The conventions nearest to the paper, over more assignments",
+    "remaining": "Conventions that the screening left out",
     "time": "Experiment 2: the time to plan when the k-th robot comes",
     "reuse": "Queries asked and avoided",
     "gap": "Small maps against the optimum",
@@ -37,8 +38,8 @@ MEANINGS = {
     "are broken. Each line changes such answers, and has the paper's algorithms as published or with all plans as they "
     "are as a candidate. The distance was fixed before the run: the relative errors of the two savings, and 1 for each "
     "comparison that is contradicted. Robots that stay until all have arrived have the plans of those that park. "
-    "Not tried: that a robot for which CARP fails at line 10 keeps its plan, which others may then meet (where the "
-    "algorithm ends instead, the savings are nearly the same), and other divisors of the distance of two robots.",
+    "Not among these, but run below: that a robot for which CARP fails at line 10 keeps its plan, and "
+    "other divisors of the distance of two robots.",
     "nearest": "The conventions that the screening brought nearest, for more assignments than it had, and carproof's. "
     "Most probably the paper's program kept all plans as they are as one more candidate, its robots stayed at their "
     "goals one tick longer than carproof's, and goals were repeated.",

@@ -2,20 +2,28 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
+import numpy as np
 import pytest
 
+from carp_experiments.paper import space_time
 from carp_experiments.paper.conventions import (
     CONVENTIONS,
+    DIVISORS,
+    PROPOSED,
     Convention,
     add_robot,
     conventions_row,
     drawn_robots,
     drawn_tree,
     grid_edges,
+    ints,
+    meetings_of,
     one_pass,
+    remaining_row,
     world_of,
 )
 from carp_experiments.paper.conventions_report import conventions_report
@@ -105,6 +113,62 @@ def test_a_tree_spans_the_map_without_a_circle(is_depth_first: bool) -> None:
     while more := {end for edge in tree if reached & set(edge) for end in edge} - reached:
         reached |= more
     assert len(reached) == 20 * 20
+
+
+def test_a_robot_that_finds_no_plan_keeps_its_own_and_meets_another() -> None:
+    """Planned again in the opposite order, some find no plan; what they keep is in the way of somebody before them."""
+    kept_in_all = 0
+    for assignment in range(4):
+        world = world_of(replace(CASE, map=0, assignment=assignment), Convention())
+        planned, _ = one_pass(world, range(CASE.robots))
+        before = world._replace(path=world.path.copy(), arrival=world.arrival.copy())
+        order = range(planned)[::-1]
+        assert meetings_of(world, order) == 0
+        kept = space_time.lay_keeping(world, ints(order), 0)
+        after = world.arrival.copy()
+        assert (meetings_of(world, order) > 0) == (kept > 0)
+        kept_in_all += kept
+        for place, robot in enumerate(order):
+            if space_time.lay(world, ints(order[: place + 1]), place) == place:  # none beside those before it
+                kept -= 1
+                assert after[robot] == before.arrival[robot]
+                assert np.array_equal(world.path[robot], before.path[robot])
+            assert after[robot] in (before.arrival[robot], world.arrival[robot])
+            world.arrival[robot] = after[robot]
+        assert kept == 0
+    assert kept_in_all > 0
+
+
+def test_robots_that_swap_places_meet() -> None:
+    world = world_of(CASE, Convention())
+    for robot, cells in enumerate([(0, 1), (1, 0), (2, 3)]):
+        world.path[robot, :2], world.entered[robot], world.arrival[robot] = cells, 0, 1
+    assert meetings_of(world, range(3)) == 1
+
+
+@pytest.mark.parametrize("divisor", DIVISORS)
+def test_the_nearest_robot_is_that_of_the_divisor(divisor: str) -> None:
+    world = world_of(CASE, Convention())
+    planned, _ = one_pass(world, range(CASE.robots))
+
+    def distance(one: int, other: int) -> Fraction:
+        last = int(max(world.arrival[one], world.arrival[other]))
+        places = [
+            [world.path[each, min(tick, world.arrival[each])] for tick in range(last + 1)] for each in (one, other)
+        ]
+        total = sum(int(world.apart[at, there]) for at, there in zip(*places, strict=True))
+        return Fraction(total, {"ticks": last + 1, "difference": last, "none": 1}[divisor])
+
+    for member in range(planned):
+        outside = [each for each in range(planned) if each != member]
+        near = space_time.nearest(world, world, ints(outside), ints([member]), False, DIVISORS.index(divisor))
+        assert outside[near] == min(outside, key=lambda each: distance(each, member))
+
+
+def test_the_report_says_where_robots_meet() -> None:
+    report = conventions_report([MapCase(remaining_row, map, 0, 6).run() for map in (10, 20)], 6)
+    assert [row[0] for row in report.tables[-1].rows] == ["failure keep"] * len(PROPOSED)
+    assert report.tables[-1].rows[0][2:] == ("0 of 1", "0 of 1")
 
 
 def test_the_report_has_each_convention_twice() -> None:

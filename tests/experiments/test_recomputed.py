@@ -13,7 +13,12 @@ pytestmark = pytest.mark.usefixtures("elsewhere")
 
 
 @pytest.mark.parametrize(
-    "experiment", ["related", *(pytest.param(name, marks=pytest.mark.ci) for name in ("quality", "gap", "time"))]
+    "experiment",
+    [
+        "related",
+        "reuse",
+        *(pytest.param(name, marks=pytest.mark.ci) for name in ("quality", "gap", "time", "neighbours")),
+    ],
 )
 def test_the_reference_finds_what_a_run_has_stored(carproof: Run, experiment: str) -> None:
     small = SMALL.replace("--assignments 2", "--assignments 1") if experiment == "gap" else SMALL

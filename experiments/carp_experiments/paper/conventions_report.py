@@ -49,6 +49,8 @@ class ConventionsRow(msgspec.Struct, frozen=True):
     map: int
     assignment: int
     results: dict[str, dict[str, tuple[int, int]]]
+    meetings: dict[str, dict[str, int]] = {}
+    """Of conventions whose plans may break the law: how often robots meet, by algorithm."""
 
 
 def conventions_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
@@ -60,7 +62,8 @@ def conventions_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
         for variant in VARIANTS
     ]
     ordered = sorted(summary, key=lambda each: (each.distance is None, each.distance or 0.0))
-    return ExperimentReport(tuple(ordered), (distance_table(ordered), claims_table(ordered)))
+    met = [meetings_table(stored, robots)] if any(row.meetings for row in stored) else []
+    return ExperimentReport(tuple(ordered), (distance_table(ordered), claims_table(ordered), *met))
 
 
 def nearness_of(convention: str, variant: str, stored: Sequence[ConventionsRow], robots: int) -> Nearness:
@@ -187,6 +190,22 @@ def claims_table(ordered: Sequence[Nearness]) -> Table:
     return Table(
         "conventions-claims", "The paper's comparisons over the conventions", columns, tuple(rows), columns[2:6]
     )
+
+
+def meetings_table(stored: Sequence[ConventionsRow], robots: int) -> Table:
+    """Of plans for all robots, in how many assignments two robots meet."""
+    maps = sorted({row.map for row in stored})
+    names = dict.fromkeys((name, each) for row in stored for name, met in row.meetings.items() for each in met)
+    rows = []
+    for name, algorithm in names:
+        cells = []
+        for map in maps:
+            whole = [row for row in stored if row.map == map and row.results[name][algorithm][0] == robots]
+            cells.append(f"{sum(row.meetings[name][algorithm] > 0 for row in whole)} of {len(whole)}")
+        rows.append((name, algorithm, *cells))
+    columns = ("convention", "algorithm", *(f"map {map}" for map in maps))
+    title = "Assignments in which robots meet, of those in which all have a plan"
+    return Table("conventions-meetings", title, columns, tuple(rows), columns[2:])
 
 
 def number(value: float | None, digits: int = 0) -> str:

@@ -15,6 +15,7 @@ HORIZON = 400
 NONE = -1
 FOR_EVER = -1
 ALL = 1 << 40
+TICKS, DIFFERENCE, UNDIVIDED = range(3)
 
 
 class World(NamedTuple):
@@ -261,6 +262,24 @@ def lay(world: World, robots: Ints, first: int) -> int:
 
 
 @entry
+def lay_keeping(world: World, robots: Ints, first: int) -> int:
+    """The same, but a robot that finds no plan keeps the one that it had, which others may meet. Returns their number.
+
+    All robots have a plan before.
+    """
+    clear(world)
+    kept = 0
+    for position in range(robots.size):
+        robot = int(robots[position])
+        before = world.arrival[robot]
+        if position >= first and not find(world, robot):
+            world.arrival[robot] = before
+            kept += 1
+        reserve(world, robot, robot)
+    return kept
+
+
+@entry
 def find_alone(world: World, robot: int) -> bool:
     """Plan a robot against what is reserved."""
     return find(world, robot)
@@ -339,15 +358,18 @@ def plan_order(  # noqa: PLR0913, PLR0917 - a step of `best_order`
 
 
 @entry
-def nearest(world: World, trajectories: World, outside: Ints, members: Ints, both_move: bool) -> int:
+def nearest(world: World, trajectories: World, outside: Ints, members: Ints, both_move: bool, divisor: int) -> int:
     """The position of the robot outside that is least distant from a member.
 
-    The distance is the mean from the earlier release to the later arrival, or while both move.
+    The distance is the mean from the earlier release to the later arrival, or while both move. The sum is divided by
+    the number of ticks, by `DIFFERENCE` one less, or by `UNDIVIDED` not at all.
     """
     best, best_ticks, found = 0, 0, NONE
     for position in range(outside.size):
         for member in members:
             distance, ticks = distance_of(world, trajectories, int(outside[position]), int(member), both_move)
+            if divisor != TICKS:
+                ticks = max(ticks - 1, 1) if divisor == DIFFERENCE else 1
             if found == NONE or distance * best_ticks < best * ticks:
                 best, best_ticks, found = distance, ticks, position
     return found

@@ -1,25 +1,30 @@
 """Random cases of a stored run computed again with the reference planner, one algorithm at a time.
 
 The quick algorithms come first. The reference takes a minute for CARP100 and for four neighbours with 100 robots, so it
-plans few cases of these, and none of larger neighbourhoods. What has no reference is left out: bounds, optima, times,
-polishes and the planner of `conventions`.
+plans few cases of these, and none of larger neighbourhoods. Of `reuse` its calls are counted: it has the paper's two
+reductions. What has no reference is left out: bounds, optima, times, long polishes and the planner of `conventions`.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias, cast
+from unittest.mock import patch
 
+from carp_experiments.beyond.neighbours import CARP, KINDS, PLAIN, POLISH, ROUNDS, kind_instance, named
 from carp_experiments.paper.map_cases import MapCase, instance_of
 from carp_experiments.paper.quality import ALGORITHMS, seeded
 from carp_experiments.paper.related_work import FIXED, costs_of
 from carp_experiments.paper.small_gaps import COMPARED, small_instance
 from carp_experiments.report import ExperimentReport, Table
 from carp_experiments.store import Row
-from carp_spec import Carp, Greedy, Instance, LongestFirst, Neighbourhood, Planner, total_cost
+from carp_spec import Carp, Greedy, Instance, LongestFirst, Neighbourhood, Planner, Solution, total_cost
 from carp_spec.permutations import shuffle, splitmix64
 
 Found: TypeAlias = Sequence[int | None]
 DRAWN = 50
+POLISHED = f": {CARP}, and {ROUNDS[0]} rounds of polish"
+PAIRS = f"{PLAIN}: {named(2)}"
+ADDED = "Proposed_"
 FEW = 2
 RELATED: Mapping[str, Planner] = {**FIXED, "CARP": Carp(), "LF": LongestFirst(), "greedy": Greedy()}
 AGAIN: Mapping[str, Sequence[str]] = {
@@ -31,6 +36,8 @@ AGAIN: Mapping[str, Sequence[str]] = {
     "quality": ("CARP", "LF", "CARP10"),
     "time": ("CARP", "LF", "CARP10"),
     "polish": (),
+    "reuse": (f"{ADDED}3", f"{ADDED}4"),
+    "neighbours": tuple(f"{kind}{POLISHED}" for kind in KINDS),
 }
 """By experiment: the algorithms that are computed again in each case drawn."""
 AGAIN_IN_FEW: Mapping[str, Sequence[str]] = {
@@ -39,6 +46,8 @@ AGAIN_IN_FEW: Mapping[str, Sequence[str]] = {
     "quality": ("CARP100", "Proposed_4", "Proposed_4 + baseline"),
     "time": ("CARP100", "Proposed_4"),
     "polish": ("Proposed_4",),
+    "reuse": (f"{ADDED}5", f"{ADDED}6"),
+    "neighbours": (PAIRS,),
 }
 """The slow ones, which are computed again in few of the cases."""
 
@@ -65,18 +74,49 @@ class Again:
 
 
 def again(experiment: str, case: MapCase, algorithm: str, stored: Found) -> Found:
-    """What the reference finds: all robots' costs (`related`), robots planned (`time`), or these and their total."""
+    """What the reference finds, as `results_of` has it."""
     import carp_reference  # noqa: PLC0415 - each worker loads it
 
     if experiment == "related":
         instance = instance_of(case)
         return costs_of(instance, carp_reference.plan(instance, RELATED[algorithm]).plans)
+    if experiment == "reuse":
+        return [queries_asked(case, int(algorithm.removeprefix(ADDED)))]
+    if experiment == "neighbours":
+        return neighbours_again(case, algorithm)
     instance = small_instance(case) if experiment == "gap" else instance_of(case)
     planner = seeded(COMPARED[algorithm] if experiment == "gap" else ALGORITHMS[algorithm], case.assignment)
     if isinstance(planner, Neighbourhood) and experiment not in {"polish", "time"}:
         instance = first_robots(instance, cast("int", stored[0]) + 1)  # the run stopped at the first without a plan
     plans = carp_reference.plan(instance, planner).plans
     return [len(plans)] if experiment == "time" else [len(plans), total_cost(instance, plans)]
+
+
+def queries_asked(case: MapCase, m: int) -> int:
+    """The queries that the reference asks to add the last robot to the plans of CARP for the others."""
+    import carp_reference.neighbourhood  # noqa: PLC0415 - each worker loads it
+    from carp_reference.query import find_plan  # noqa: PLC0415
+
+    instance = instance_of(case)
+    *others, last = instance.robots
+    committed = carp_reference.plan(first_robots(instance, len(others)), Carp())
+    solution = Solution.of(instance, committed.plans)
+    adding = Neighbourhood(m, None, case.assignment, baseline=False)
+    with patch.object(carp_reference.neighbourhood, "find_plan", wraps=find_plan) as asked:
+        carp_reference.add(instance, solution, last.id, 0, adding)
+    return asked.call_count
+
+
+def neighbours_again(case: MapCase, algorithm: str) -> Found:
+    """The totals of CARP and of a short polish of its plans on one kind of instance, or of pairs planned together."""
+    import carp_reference  # noqa: PLC0415 - each worker loads it
+
+    instance = kind_instance(case, algorithm.partition(":")[0])
+    if algorithm == PAIRS:
+        return [total_cost(instance, carp_reference.plan(instance, Neighbourhood(m=2, seed=case.assignment)).plans)]
+    solution = carp_reference.plan(instance, Carp())
+    polished = carp_reference.polish(instance, solution, iterations=ROUNDS[0], seed=case.assignment)
+    return [total_cost(instance, solution.plans), total_cost(instance, polished.plans)]
 
 
 def first_robots(instance: Instance, count: int) -> Instance:
@@ -99,7 +139,18 @@ def cases_again(experiment: str, rows: Mapping[str, Row], robots: int, count: in
 
 
 def results_of(row: Row) -> Mapping[str, Found]:
-    """What a stored row has by algorithm."""
+    """What a stored row has by algorithm.
+
+    All robots' costs (`related`), robots planned (`time`), queries asked (`reuse`), totals (`neighbours`), or robots
+    planned and their total.
+    """
+    if "asked" in row:
+        asked = cast("Mapping[str, Mapping[str, int]]", row["asked"])["the paper's"]
+        return {f"{ADDED}{m}": [count] for m, count in asked.items()}
+    if "totals" in row:
+        totals = cast("Mapping[str, Mapping[str, Sequence[int]]]", row["totals"])
+        polished = {f"{kind}{POLISHED}": [each[CARP][0], each[POLISH][0]] for kind, each in totals.items()}
+        return {**polished, PAIRS: totals[PLAIN][named(2)]}
     if "planned" in row:
         return {name: [count] for name, count in cast("Mapping[str, int]", row["planned"]).items()}
     return cast("Mapping[str, Found]", row["costs"] if "costs" in row else row["results"])
