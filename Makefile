@@ -6,7 +6,7 @@ export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 .DELETE_ON_ERROR:
-.PHONY: bench install compiled demo quick quick-tests test checked ci thorough paper-sized nightly coverage mutation conform planted lint format docs optimum-figures gap-figures texts generated kernel kernel-mutants kernel-driver-mutants clean
+.PHONY: bench install compiled demo quick quick-tests test checked ci thorough paper-sized nightly coverage mutation conform planted lint format docs optimum-figures profile-figures gap-figures texts generated kernel kernel-mutants kernel-driver-mutants clean
 
 install: .venv/installed
 
@@ -90,6 +90,10 @@ bench-fleet: install
 # Measure how long the search for an optimum takes, and put the table into docs/results/optima.md; takes up to half an hour.
 optimum-figures: install
 	$(BIN)/python -m carp_experiments.measuring.optimum_table
+
+# Measure where the time goes for 100, 1,000 and 10,000 robots, and put the table into docs/results/profile.md: some minutes.
+profile-figures: install
+	$(BIN)/python -m carp_experiments.measuring.where_time_goes
 
 # Measure how far polished plans are above the bound on the paper's maps, and put the tables into docs/results/gaps.md and bounds.md: four
 # hours. `python -m carp_experiments.measuring.gap_table --seeds 2` measures two assignments a map, `--quick` prints the tables of a few seconds.
