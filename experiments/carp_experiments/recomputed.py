@@ -7,24 +7,32 @@ reductions. What has no reference is left out: bounds, optima, times, long polis
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TypeAlias, cast
+from itertools import pairwise
+from typing import TYPE_CHECKING, TypeAlias, cast
 from unittest.mock import patch
 
 from carp_experiments.beyond.neighbours import CARP, KINDS, PLAIN, POLISH, ROUNDS, kind_instance, named
-from carp_experiments.paper.map_cases import MapCase, instance_of
+from carp_experiments.paper.conventions import LONGEST_FIRST, Convention, longest_first, one_pass, world_of
+from carp_experiments.paper.map_cases import MapCase, instance_of, map_instance
 from carp_experiments.paper.quality import ALGORITHMS, seeded
 from carp_experiments.paper.related_work import FIXED, costs_of
 from carp_experiments.paper.small_gaps import COMPARED, small_instance
 from carp_experiments.report import ExperimentReport, Table
 from carp_experiments.store import Row
-from carp_spec import Carp, Greedy, Instance, LongestFirst, Neighbourhood, Planner, Solution, total_cost
+from carp_spec import Carp, Greedy, Instance, LongestFirst, Neighbourhood, Plan, Planner, Solution, Visit, total_cost
 from carp_spec.permutations import shuffle, splitmix64
+
+if TYPE_CHECKING:
+    from carp_experiments.paper.space_time import World
+    from carproof.generate.options import Distinct
 
 Found: TypeAlias = Sequence[int | None]
 DRAWN = 50
 POLISHED = f": {CARP}, and {ROUNDS[0]} rounds of polish"
 PAIRS = f"{PLAIN}: {named(2)}"
 ADDED = "Proposed_"
+LAWFUL = {each.name: each for each in (Convention(), Convention(goals_repeated=True))}
+"""Conventions of `nearest` that the law has, on maps of the generator."""
 FEW = 2
 RELATED: Mapping[str, Planner] = {**FIXED, "CARP": Carp(), "LF": LongestFirst(), "greedy": Greedy()}
 AGAIN: Mapping[str, Sequence[str]] = {
@@ -38,6 +46,7 @@ AGAIN: Mapping[str, Sequence[str]] = {
     "polish": (),
     "reuse": (f"{ADDED}3", f"{ADDED}4"),
     "neighbours": tuple(f"{kind}{POLISHED}" for kind in KINDS),
+    "nearest": tuple(f"{name}: {each}" for name in LAWFUL for each in (CARP, LONGEST_FIRST)),
 }
 """By experiment: the algorithms that are computed again in each case drawn."""
 AGAIN_IN_FEW: Mapping[str, Sequence[str]] = {
@@ -48,6 +57,7 @@ AGAIN_IN_FEW: Mapping[str, Sequence[str]] = {
     "polish": ("Proposed_4",),
     "reuse": (f"{ADDED}5", f"{ADDED}6"),
     "neighbours": (PAIRS,),
+    "nearest": (),
 }
 """The slow ones, which are computed again in few of the cases."""
 
@@ -84,6 +94,8 @@ def again(experiment: str, case: MapCase, algorithm: str, stored: Found) -> Foun
         return [queries_asked(case, int(algorithm.removeprefix(ADDED)))]
     if experiment == "neighbours":
         return neighbours_again(case, algorithm)
+    if experiment == "nearest":
+        return nearest_again(case, algorithm)
     instance = small_instance(case) if experiment == "gap" else instance_of(case)
     planner = seeded(COMPARED[algorithm] if experiment == "gap" else ALGORITHMS[algorithm], case.assignment)
     if isinstance(planner, Neighbourhood) and experiment not in {"polish", "time"}:
@@ -119,6 +131,48 @@ def neighbours_again(case: MapCase, algorithm: str) -> Found:
     return [total_cost(instance, solution.plans), total_cost(instance, polished.plans)]
 
 
+def nearest_again(case: MapCase, algorithm: str) -> Found:
+    """The pass of CARP repeated, up to the first robot of which the reference says another arrival, or none.
+
+    Ties are broken in another way than by the reference, so this takes over the plans of the robots before.
+    """
+    import carp_reference  # noqa: PLC0415 - each worker loads it
+
+    name, _, which = algorithm.partition(": ")
+    instance, world = law_of(case, LAWFUL[name]), world_of(case, LAWFUL[name])
+    order = range(case.robots) if which == CARP else longest_first(world)
+    planned, cost = one_pass(world, order)
+    plans = plans_of(world, instance, order[:planned])
+    for number, robot in enumerate(order[: planned + 1]):
+        best = carp_reference.query(instance, plans[:number], instance.robots[robot].id)
+        arrival = plans[number].visits[-1].enter if number < planned else None
+        if (None if best is None else best.visits[-1].enter) != arrival:
+            return [number, None]
+    return [planned, cost]
+
+
+def law_of(case: MapCase, convention: Convention) -> Instance:
+    """The instance of a convention that the law has."""
+    from carproof.generate import Fleet  # noqa: PLC0415 - each worker loads it
+
+    distinct: Distinct = "starts" if convention.goals_repeated else "both"
+    return map_instance(case.map, Fleet(robots=case.robots, seed=case.assignment, distinct=distinct))
+
+
+def plans_of(world: "World", instance: Instance, order: Sequence[int]) -> list[Plan]:
+    """The plans of the planner of `conventions` as the law reads them."""
+    plans = []
+    for robot in order:
+        first, last = int(world.entered[robot]), int(world.arrival[robot])
+        cells = [int(cell) for cell in world.path[robot, first : last + 1]]
+        enters = [first, *(first + at for at in range(1, len(cells)) if cells[at] != cells[at - 1])]
+        ends = [*(end for _, end in pairwise(enters)), None if instance.after_goal == "park" else enters[-1] + 1]
+        ids = [instance.graph.resources[cells[enter - first]].id for enter in enters]
+        visits = tuple(Visit(*each) for each in zip(ids, enters, ends, strict=True))
+        plans.append(Plan(instance.robots[robot].id, visits))
+    return plans
+
+
 def first_robots(instance: Instance, count: int) -> Instance:
     """The instance with its first robots alone."""
     return replace(instance, robots=instance.robots[:count])
@@ -151,6 +205,9 @@ def results_of(row: Row) -> Mapping[str, Found]:
         totals = cast("Mapping[str, Mapping[str, Sequence[int]]]", row["totals"])
         polished = {f"{kind}{POLISHED}": [each[CARP][0], each[POLISH][0]] for kind, each in totals.items()}
         return {**polished, PAIRS: totals[PLAIN][named(2)]}
+    if LAWFUL.keys() <= cast("Row", row.get("results", {})).keys():
+        by_name = cast("Mapping[str, Mapping[str, Found]]", row["results"])
+        return {f"{name}: {each}": found for name in LAWFUL for each, found in by_name[name].items()}
     if "planned" in row:
         return {name: [count] for name, count in cast("Mapping[str, int]", row["planned"]).items()}
     return cast("Mapping[str, Found]", row["costs"] if "costs" in row else row["results"])

@@ -1,10 +1,8 @@
 """The planner of the experiment on conventions obeys the law where its rules are those of the law."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
-from itertools import pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -28,10 +26,13 @@ from carp_experiments.paper.conventions import (
 )
 from carp_experiments.paper.conventions_report import conventions_report
 from carp_experiments.paper.map_cases import MapCase, instance_of
-from carp_experiments.paper.space_time import World
+from carp_experiments.recomputed import plans_of
 from carp_optimized import query
-from carp_spec import Instance, Neighbourhood, Plan, Visit, violations_of
+from carp_spec import Neighbourhood, violations_of
 from carp_spec.permutations import splitmix64
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 CASE = MapCase(conventions_row, 15, 3, 30)
 LAWFUL: dict[str, tuple[Convention, dict[str, Any]]] = {
@@ -40,20 +41,6 @@ LAWFUL: dict[str, tuple[Convention, dict[str, Any]]] = {
     "following forbidden": (Convention(following=False), {"following": "forbidden"}),
     "first nodes first": (Convention(ties="shallow"), {}),
 }
-
-
-def plans_of(world: World, instance: Instance, order: Sequence[int]) -> list[Plan]:
-    """The world's plans as the law reads them."""
-    plans = []
-    for robot in order:
-        first, last = int(world.entered[robot]), int(world.arrival[robot])
-        cells = [int(cell) for cell in world.path[robot, first : last + 1]]
-        enters = [first, *(first + at for at in range(1, len(cells)) if cells[at] != cells[at - 1])]
-        ends = [*(end for _, end in pairwise(enters)), None if instance.after_goal == "park" else enters[-1] + 1]
-        ids = [instance.graph.resources[cells[enter - first]].id for enter in enters]
-        visits = tuple(Visit(*each) for each in zip(ids, enters, ends, strict=True))
-        plans.append(Plan(instance.robots[robot].id, visits))
-    return plans
 
 
 @pytest.mark.parametrize("name", LAWFUL)

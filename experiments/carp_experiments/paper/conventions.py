@@ -206,10 +206,14 @@ def row_under(conventions: Sequence[Convention], case: MapCase) -> Row:
 def rivals(case: MapCase, convention: Convention) -> Mapping[str, tuple[int, int]]:
     """The algorithms that plan one robot after the other."""
     world = world_of(case, convention)
-    in_turn = range(case.robots)
     found = {name: shuffled(world, passes, case.assignment) for name, passes in PASSES.items()}
-    longest = sorted(in_turn, key=lambda robot: -int(world.steps[world.start[robot], world.goal[robot]]))
-    return {**found, LONGEST_FIRST: one_pass(world, longest)}
+    return {**found, LONGEST_FIRST: one_pass(world, longest_first(world))}
+
+
+def longest_first(world: "World") -> Sequence[int]:
+    """The robots with the longest paths first."""
+    robots = range(len(world.start))
+    return sorted(robots, key=lambda robot: -int(world.steps[world.start[robot], world.goal[robot]]))
 
 
 def one_pass(world: "World", order: Sequence[int]) -> tuple[int, int]:
