@@ -42,7 +42,8 @@ def compile_all() -> None:
     fleet.fixed_paths(FixedPaths(2, "disjoint"))
     with_stops = Robot("u", "a", stops=(Stop("b", 1), Stop("c")))
     PlannedFleet(Instance(graph, (with_stops,))).potentials(0)
-    plan_crowd(Instance(graph, instance.robots[:2]), iterations=1, seconds=None)
+    siding = ResourceGraph((*graph.resources, Resource("d")), (*graph.edges, ("b", "d")))  # no order plans the two
+    plan_crowd(Instance(siding, (Robot("r", "a", "c"), Robot("s", "c", "a"))), iterations=1, seconds=None)
     here = Plan("t", (Visit("c", 9, 10),))
     retime(instance, Solution((here,), ("t",), ("r", "s")), Trace(0, (Plan("t", ()),)))
     note_that_it_is_compiled("carp_optimized")

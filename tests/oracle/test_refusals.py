@@ -192,7 +192,7 @@ FORMATS = (
 )
 EXPERIMENTS = (
     ("experiment quality --robots 500 --store st", "500 robots need as many distinct starts, and the map has 400"),
-    ("experiment quality --map 22 --store st", "22 is not in the range 0<=x<=21"),
+    ("experiment quality --map 23 --store st", "23 is not in the range 0<=x<=22"),
     ("experiment quality --assignments 0 --store st", "0 is not in the range x>=1"),
     ("experiment quality --backend dask --store st", "needs the address of its --scheduler"),
     ("experiment crosscheck --questions many --store st", "'many' is not a valid integer"),
