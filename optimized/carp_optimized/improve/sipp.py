@@ -113,9 +113,9 @@ def expand(crowd: Crowd, stays: Stays, query: Query, robot: int, gap: int, least
     distance = crowd.distance[robot]
     begin = int(crowd.first[place])
     choices = int(crowd.first[place + 1]) - begin
-    turn = int(query.counts[TURN]) >> (place & PLACES)
-    for k in range(choices):
-        target = int(crowd.target[begin + (k + turn) % choices])
+    turn = 0 if query.counts[TURN] == 0 else (int(query.counts[TURN]) >> (place & PLACES)) % choices
+    for k in range(turn, turn + choices):
+        target = int(crowd.target[begin + k if k < choices else begin + k - choices])
         rest = int(distance[target])
         if max(soon + rest, least) > latest:
             continue
