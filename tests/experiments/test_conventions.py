@@ -16,8 +16,6 @@ from carp_experiments.paper.conventions import (
     add_robot,
     conventions_row,
     drawn_robots,
-    drawn_tree,
-    grid_edges,
     ints,
     meetings_of,
     one_pass,
@@ -25,6 +23,7 @@ from carp_experiments.paper.conventions import (
     world_of,
 )
 from carp_experiments.paper.conventions_report import conventions_report
+from carp_experiments.paper.drawn_maps import drawn_tree, grid_edges
 from carp_experiments.paper.map_cases import MapCase, instance_of
 from carp_experiments.recomputed import plans_of
 from carp_optimized import query

@@ -40,7 +40,7 @@ def whole(claims: Claims) -> Options:
 def fails_where(is_hard: Callable[[Instance], bool]) -> Function:
     def plan(instance: Instance) -> Solution:
         if is_hard(instance):
-            raise NotImplementedError
+            raise RuntimeError
         return carp_reference.plan(instance, Carp())
 
     return Function(plan, "simple")

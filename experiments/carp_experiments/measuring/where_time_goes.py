@@ -25,9 +25,9 @@ SIDES = {100: 20, 1000: 64, 10_000: 200}
 SECONDS = 10
 PHASES = {
     "distances": "_measured",
-    "LaCAM, first plans": "_searched",
-    "guides of LaCAM": "guides_of",
-    "one robot after the other, first plans": "_planned_in_order",
+    "LaCAM": "_searched",
+    "guides": "guides_of",
+    "prioritized planning": "_planned_in_order",
     "rounds": "improved",
     "check": "require_lawful",
     "plans as a solution": "solution",
@@ -57,7 +57,7 @@ def rows_of(robots: int) -> dict[str, str]:
     timed("a pass of CARP", lambda: carproof.plan(instance, carproof.Carp(), repair=False))
     profile = Profile(builtins=False)
     found = profile.runcall(plan_within, instance, seconds=SECONDS, clock=process_time)
-    rows |= {f"`plan --seconds {SECONDS}`: {name}": share for name, share in shares_of(profile).items()}
+    rows |= {f"plan: {name}": share for name, share in shares_of(profile).items()}
     text = timed("write the plans", lambda: carproof.write_solution(found))
     plans = timed("read the plans", lambda: carproof.read_solution(text))
     timed("check", lambda: carproof.check(instance, plans))

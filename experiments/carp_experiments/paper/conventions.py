@@ -11,10 +11,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cache
 from itertools import pairwise, permutations
-from math import isqrt
 from typing import TYPE_CHECKING, Literal
 
-from carp_experiments.paper.map_cases import FULL_MAP, MapCase
+from carp_experiments.paper.drawn_maps import SIDE, map_arrays
+from carp_experiments.paper.map_cases import MapCase
 from carp_experiments.paper.quality import ALGORITHMS
 from carp_experiments.store import Row
 from carp_spec import Neighbourhood
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from carp_optimized.jit.kinds import Ints
     from carproof.generate.options import Distinct
 
-SIDE = 20
 FOR_EVER = -1
 
 
@@ -443,62 +442,3 @@ def drawn_robots(case: MapCase, convention: Convention) -> list[tuple[int, int, 
     index = instance.graph.index
     releases = range(case.robots) if convention.spread else [0] * case.robots
     return [(index[each.start], index[each.goal], tick) for each, tick in zip(instance.robots, releases, strict=True)]
-
-
-@cache
-def map_arrays(map: int, tree: str, seed: int) -> tuple["Ints", "Ints"]:
-    """The neighbours of each cell, int32 (cells, 4), and the distances of all pairs times 2^16, int64."""
-    import numpy as np  # noqa: PLC0415 - each worker loads it
-
-    cells = [(number % SIDE, number // SIDE) for number in range(SIDE * SIDE)]
-    neighbours = np.full((len(cells), 4), -1, np.int32)
-    used = [0] * len(cells)
-    for source, target in map_edges(map, tree, seed):
-        for one, other in ((source, target), (target, source)):
-            neighbours[one, used[one]] = other
-            used[one] += 1
-    apart = [[isqrt(((x - u) ** 2 + (y - v) ** 2) << 32) for u, v in cells] for x, y in cells]
-    return neighbours, np.array(apart, np.int64)
-
-
-def map_edges(map: int, tree: str, seed: int) -> list[tuple[int, int]]:
-    """The edges of a map, between indices of cells."""
-    from carproof.generate import Grid, grid_instance  # noqa: PLC0415 - each worker loads it
-
-    if tree == "Kruskal":
-        graph = grid_instance(Grid(SIDE, SIDE, map, seed)).graph
-        return [(graph.index[source], graph.index[target]) for source, target in graph.edges]
-    grid = grid_edges()
-    stream = splitmix64(seed)
-    kept = drawn_tree(grid, tree == "depth first", stream)
-    others = shuffle([edge for edge in grid if edge not in kept], stream)
-    return sorted(kept | set(others[: len(others) * map // FULL_MAP]))
-
-
-def grid_edges() -> list[tuple[int, int]]:
-    """The edges of the full grid: from each cell to the right, then downwards."""
-    cells = range(SIDE * SIDE)
-    across = [(cell, cell + 1) for cell in cells if cell % SIDE < SIDE - 1]
-    return sorted([*across, *((cell, cell + SIDE) for cell in cells if cell + SIDE in cells)])
-
-
-def drawn_tree(edges: Sequence[tuple[int, int]], is_depth_first: bool, stream: Iterator[int]) -> set[tuple[int, int]]:
-    """A spanning tree: of a depth-first search with random neighbours, or of a random walk (Aldous and Broder)."""
-    around: dict[int, list[int]] = {}
-    for one, other in edges:
-        around.setdefault(one, []).append(other)
-        around.setdefault(other, []).append(one)
-    tree: set[tuple[int, int]] = set()
-    seen, path = {0}, [0]
-    while len(seen) < len(around):
-        here = path[-1]
-        choices = [each for each in around[here] if each not in seen or not is_depth_first]
-        if not choices:
-            path.pop()
-            continue
-        there = choices[next(stream) % len(choices)]
-        if there not in seen:
-            seen.add(there)
-            tree.add((min(here, there), max(here, there)))
-        path.append(there)
-    return tree

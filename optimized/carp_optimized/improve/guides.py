@@ -105,9 +105,14 @@ def find_guides(native: Native[Guides], order: Ints, begin: int, end: int) -> No
 
 
 @compiled
-def entry_of(guides: Guides, tick: int, what: int) -> int:
-    """The entry of a place, or of a place more than there are and an edge, at a tick."""
-    key = tick * (guides.since.size + guides.crowd.target.size) + what
+def key_of(guides: Guides, tick: int, what: int) -> int:
+    """The key of a place at a tick, or of an edge: its number and that of places."""
+    return int(tick * (guides.since.size + guides.crowd.target.size) + what)
+
+
+@compiled
+def entry_of(guides: Guides, key: int) -> int:
+    """The entry of a key, or the empty one where it would stand."""
     mixed = np.uint64(key) * GOLDEN
     at = int(np.int64((mixed >> np.uint64(20)) % np.uint64(guides.use.size)))
     while guides.use[at] != key and guides.use[at] != NONE:
@@ -118,15 +123,15 @@ def entry_of(guides: Guides, tick: int, what: int) -> int:
 @compiled
 def uses_of(guides: Guides, tick: int, what: int) -> int:
     """How many guides use it at the tick."""
-    return int(guides.uses[entry_of(guides, tick, what)])
+    return int(guides.uses[entry_of(guides, key_of(guides, tick, what))])
 
 
 @compiled
 def count_use(guides: Guides, tick: int, what: int, sign: int) -> None:
     """Add a use, or take it off again."""
-    at = entry_of(guides, tick, what)
-    if guides.use[at] == NONE:
-        guides.use[at] = tick * (guides.since.size + guides.crowd.target.size) + what
+    key = key_of(guides, tick, what)
+    at = entry_of(guides, key)
+    guides.use[at] = key
     guides.uses[at] += sign
 
 

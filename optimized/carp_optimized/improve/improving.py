@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from carp_optimized.improve.crowds import GONE, Crowd, ways_of
+from carp_optimized.improve.making_way import make_way
 from carp_optimized.improve.rounds import (
     BEST,
     CHANCE,
@@ -19,7 +20,6 @@ from carp_optimized.improve.rounds import (
     TOTAL,
     TURNING,
     Rounds,
-    make_way,
     plan_each,
     plan_first,
     play,
@@ -79,7 +79,7 @@ class Improving:
 
     @property
     def missed(self) -> int:
-        """The robots for which `plan_first` has found no path."""
+        """How often `plan_first` and `make_way` have found no path."""
         return int(self.rounds.counts[MISSED])
 
     @property

@@ -1,6 +1,7 @@
 """The search for good prices: the work between the compiled steps of `carp_optimum.lagrangian.price_steps`."""
 
 from collections.abc import Callable, Sequence
+from fractions import Fraction
 from time import monotonic_ns
 from typing import NamedTuple
 
@@ -421,11 +422,11 @@ class PriceSearch:
                 costs[ids[position]] = least
         return tuple(costs.items())
 
-    def _steps_by_gain(self, position: int, least: int, taken: int) -> float:
+    def _steps_by_gain(self, position: int, least: int, taken: int) -> Fraction:
         """How many steps the checker takes for a part of a tick of the claim that is more than the shortest way's."""
         requests = self.market.requests
         gain = least - self.scale * int(requests.earliest[position] - requests.release[position])
-        return taken / max(gain, 1)
+        return Fraction(taken, max(gain, 1))
 
     def shortest_costs(self) -> tuple[tuple[RobotId, int | None], ...]:
         """The cost of each robot's shortest way, in parts of a tick."""

@@ -1,6 +1,7 @@
 """The first paths of a crowd: those that were missed get way, guides meet little, and turns find other paths."""
 
 import itertools
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
@@ -36,6 +37,22 @@ def planned_in_order(made: Crowd, seed: int = 0) -> Improving:
     return improving
 
 
+def shortest_way(made: Crowd, robot: int) -> list[int]:
+    """A shortest way, always by the first edge that leads on."""
+    way = [int(made.start[robot])]
+    distance = made.distance[robot]
+    while way[-1] != made.goal[robot]:
+        targets = made.target[made.first[way[-1]] : made.first[way[-1] + 1]].tolist()
+        way.append(next(each for each in targets if distance[each] < distance[way[-1]]))
+    return way
+
+
+def meetings(ways: list[list[int]]) -> int:
+    """How often one is in a place where another is at that tick."""
+    uses = Counter(use for way in ways for use in enumerate(way))
+    return uses.total() - len(uses)
+
+
 @pytest.mark.parametrize("after_goal", ["park", "vanish"])
 @pytest.mark.parametrize("seed", range(5))
 def test_robots_that_a_pass_missed_get_way_from_others(after_goal: AfterGoal, seed: int) -> None:
@@ -63,8 +80,10 @@ def test_the_fewest_wait_where_it_is_given_up() -> None:
 def test_guides_are_ways_and_plans_along_them_arrive_earlier(after_goal: AfterGoal) -> None:
     made = crowd(24, 250, after_goal)
     guides = guides_of(made, lambda: True)
+    ways = [guides.way[first:][:size].tolist() for first, size in zip(guides.first, guides.size, strict=True)]
+    assert 6 * meetings(ways) < meetings([shortest_way(made, robot) for robot in range(250)])
     for robot in range(250):
-        way = guides.way[guides.first[robot] :][: guides.size[robot]].tolist()
+        way = ways[robot]
         assert way[0] == made.start[robot]
         assert way[-1] == made.goal[robot]
         assert len(way) - 1 <= ways_of(made)[robot] + SLACK

@@ -141,9 +141,9 @@ def _resources(resources: tuple[object, ...]) -> str:
 
 def _sentence(document: GrantsVerdictDocument, states: int | None, seconds: float | None) -> str:
     if document.answer == "undecided":
-        time = "" if seconds is None else f"{seconds:g} s"
-        most = counted(states or MOST_STATES, "state") if states or not time else ""
-        return f"undecided within {most}{' and ' * bool(most and time)}{time}"
+        most = MOST_STATES if states is None and seconds is None else states
+        limits = [*([] if most is None else [counted(most, "state")]), *([] if seconds is None else [f"{seconds:g} s"])]
+        return f"undecided within {' and '.join(limits)}"
     if document.answer == "safe":
         how = "in the planned order" if document.by_order else f"by {counted(len(document.moves or ()), 'move')}"
         return f"safe: everybody can finish {how}"
