@@ -60,10 +60,12 @@ def _crowded(
                 changes[visit.resource] += [(visit.enter, 1, plan.robot), (visit.leave + gap, -1, plan.robot)]
     arrival = {robot: position for position, robot in enumerate(instance.robot)}
     for group in constraints:
-        inside = [change for resource in group.resources for change in changes[resource]]
+        inside = [change for resource in group.resources for change in changes.get(resource, ())]
+        if len({robot for _, _, robot in inside}) <= group.capacity:
+            continue
         for start, end, crowd in _crowds(group.capacity, inside):
             robots = tuple(sorted(crowd, key=arrival.__getitem__))
-            at = next(each for each in group.resources if any(one[:2] == (start, 1) for one in changes[each]))
+            at = next(each for each in group.resources if any(one[:2] == (start, 1) for one in changes.get(each, ())))
             of = "" if group.resources == (group.id,) else f" of group {group.id}"
             yield robots, at, start, end, f"capacity {group.capacity}{of}{more}"
 

@@ -53,8 +53,8 @@ class ResourceGraph:
     """The resources, the edges between them and groups of resources.
 
     An edge (r, s) of a directed graph is the move from r to s; of an undirected one, also the move back. The order of
-    `resources` breaks ties. The last five fields are look-ups: resources by id, indices, where one move leads in that
-    order, all moves, and for each resource of a group the indices of its groups.
+    `resources` breaks ties. The next five fields are look-ups: resources by id, indices, where one move leads in that
+    order, all moves, and for each resource of a group the indices of its groups. `seen` is of `inputs`.
     """
 
     resources: tuple[Resource, ...]
@@ -66,6 +66,7 @@ class ResourceGraph:
     successors: Mapping[ResourceId, tuple[ResourceId, ...]] = field(init=False, repr=False, compare=False)
     moves: frozenset[Move] = field(init=False, repr=False, compare=False)
     groups_of: Mapping[ResourceId, tuple[int, ...]] = field(init=False, repr=False, compare=False)
+    seen: list[Literal["right"]] = field(init=False, repr=False, compare=False)
 
     @of_shape("$.graph")
     def __post_init__(self) -> None:
@@ -86,6 +87,7 @@ class ResourceGraph:
         object.__setattr__(self, "successors", MappingProxyType(in_order))
         object.__setattr__(self, "moves", frozenset(moves))
         object.__setattr__(self, "groups_of", MappingProxyType(groups_of))
+        object.__setattr__(self, "seen", [])
 
     def __reduce__(self) -> tuple[type["ResourceGraph"], tuple[object, ...]]:
         """Pickle the fields alone."""

@@ -1,5 +1,6 @@
 """Every public function refuses what the reader of its document refuses, by the same rule and at the same path."""
 
+import cProfile
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -375,3 +376,19 @@ def test_an_instance_that_was_found_right_is_not_looked_at_again(monkeypatch: py
     carproof.check(instance, SOLVED)
     monkeypatch.setattr("carp_spec.inputs.values.instance_faults", lambda _: pytest.fail("it was looked at again"))
     assert carproof.check(instance, SOLVED).valid
+
+
+def test_a_graph_that_was_found_right_is_not_looked_at_again_with_other_robots() -> None:
+    robot = Robot("r", "0,0", "1,0")
+    plan = Plan("r", (Visit("0,0", 0, 1), Visit("1,0", 1, 2)))
+    empty = carproof.instance_from_array([[1] * 60] * 60, starts=[], goals=[], after_goal="vanish")
+
+    def calls(robots: tuple[Robot, ...]) -> int:
+        profile = cProfile.Profile()
+        profile.runcall(carproof.total_cost, replace(empty, robots=robots), [plan])
+        return sum(each.callcount for each in profile.getstats())
+
+    first = calls((robot,))
+    assert calls((robot, replace(robot, id="s"))) < first / 20
+    wrong = refused(lambda: calls((robot, Robot("s", "0,0", "nowhere"))))
+    assert wrong[1:] == ("instance/endpoint", "$.robots[1].goal")

@@ -2,7 +2,7 @@
 
 An instance remembers in `seen` what was looked at beside it: solutions, each with whether it is known to break no rule
 of it. It is empty until the instance itself is known to be right. The solutions are not kept alive by it, but for those
-that are made here of plans.
+that are made here of plans. A resource graph remembers whether it is right: instances of other robots share it.
 """
 
 from collections.abc import Callable, Sequence
@@ -12,21 +12,26 @@ from typing import Any, cast
 from weakref import ref
 
 from carp_spec.instance_rules import instance_faults
-from carp_spec.model import SEEN, Instance, Plan, Solution
+from carp_spec.model import SEEN, Instance, Plan, ResourceGraph, Solution
 from carp_spec.refusal import Refusal
 from carp_spec.shapes import require_shape
 
 NOTHING = Solution((), ())
+NOWHERE = ResourceGraph((), ())
 RECENT = SEEN // 2
 """What was looked at so lately is not forgotten next."""
 
 
 def require_instance(instance: Instance) -> None:
     """Raise `Refusal` with the first fault, unless the instance is known to be right."""
-    if not (isinstance(cast("object", instance), Instance) and instance.seen):
-        require_shape(instance, Instance)
+    found = cast("object", instance)
+    if not (isinstance(found, Instance) and found.seen):
+        graph = cast("object", found.graph) if isinstance(found, Instance) else None
+        is_known = isinstance(graph, ResourceGraph) and bool(graph.seen)
+        require_shape(replace(instance, graph=NOWHERE) if is_known else instance, Instance)
         for fault in instance_faults(instance):
             raise Refusal("document", fault.path, fault.rule, fault.message)
+        instance.graph.seen[:] = ["right"]
         remember(instance, ref(NOTHING))
 
 
