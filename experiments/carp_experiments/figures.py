@@ -28,11 +28,14 @@ MARKERS = ("o", "s", "D", "^", "v", "<", ">", "X", "P", "*")
 """As many as colours, so that lines of one panel differ in grey too."""
 STYLES = ("-", "--", ":")
 MOST_LINES = 7
-"""The most lines of a panel; what has more is drawn in panels, each with CARP to compare with."""
-REFERENCE = "CARP"
+"""The most lines of a panel; what has more is drawn in panels, each with the references to compare with."""
+REFERENCES = ("CARP", "CARP10")
+"""The paper states failures between those of these two, and totals below both."""
 WIDTH, HEIGHT = 5.0, 2.9
 """Inches: those of a column, names beside the lines included, and of a panel."""
 MOST_TICKS = 6
+NARROW = 50
+"""From this ratio of the largest value to the least on, a logarithmic axis is labelled with powers of ten."""
 HOLLOW = 3
 """Above the lines."""
 LABEL_DISTANCE = 0.085
@@ -87,7 +90,7 @@ def panels_of(names: Sequence[str]) -> dict[str, tuple[str, ...]]:
         "with neighbours, as published": [name for name in proposed if "+" not in name],
         "with neighbours, and more": [name for name in proposed if "+" in name],
     }
-    compared = [name for name in names if name == REFERENCE]
+    compared = [name for name in names if name in REFERENCES]
     panels = {heading: tuple(dict.fromkeys([*compared, *kind])) for heading, kind in kinds.items() if kind}
     if max(map(len, panels.values())) > MOST_LINES:
         message = f"a panel has at most {MOST_LINES} lines"
@@ -123,8 +126,19 @@ def end_where_values_do(plot: "Axes", lines: Known, papers: Sequence[float]) -> 
     high = max([*(each.high for _, each in points), *papers])
     if low < high:
         plot.set_ylim(low, high)
+        if plot.get_yscale() == "log" and high < NARROW * low:
+            label_few_decades(plot)
     plot.spines[["top", "right"]].set_visible(False)
     plot.grid(alpha=0.3)
+
+
+def label_few_decades(plot: "Axes") -> None:
+    """Write 0.5, 1, 2 and 5 beside a logarithmic axis, which has too few powers of ten."""
+    from matplotlib.ticker import LogLocator, NullFormatter  # noqa: PLC0415 - loaded only where a figure is drawn
+
+    plot.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    plot.yaxis.set_major_formatter("{x:g}")
+    plot.yaxis.set_minor_formatter(NullFormatter())
 
 
 def round_ticks(first: int, last: int) -> list[int]:

@@ -127,12 +127,20 @@ def time_report(rows: Iterable[Row]) -> ExperimentReport:
 
 
 def time_figures(summary: Sequence[Time]) -> tuple[Figure, ...]:
-    """The time of each algorithm over k."""
+    """The time of each algorithm over k, and how many times CARP's those with neighbours take."""
     lines = {name: [(each.k, each.milliseconds) for each in summary if each.algorithm == name] for name in PAPER}
-    axes = ("robot", "milliseconds")
+    ratios = {
+        name: [(each.k, each.ratio) for each in summary if each.algorithm == name]
+        for name in PAPER
+        if isinstance(ALGORITHMS[name], Neighbourhood)
+    }
     papers = {name: tuple(zip(SHOWN, times, strict=True)) for name, times in PAPER.items()}
     cited = "(large, hollow: the paper's, in its table I)"
-    return (Figure("time", "Time to plan when the k-th robot comes", axes, lines, True, papers, cited),)
+    title = "Time to plan when the k-th robot comes"
+    return (
+        Figure("time", title, ("robot", "milliseconds"), lines, True, papers, cited),
+        Figure("time-ratios", f"{title}, over CARP's", ("robot", "times CARP's"), ratios, True),
+    )
 
 
 def time_table(summary: Sequence[Time]) -> Table:

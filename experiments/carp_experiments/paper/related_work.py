@@ -116,9 +116,15 @@ def related_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
 
 
 def related_figures(summary: Sequence[Related]) -> tuple[Figure, ...]:
-    """The robots that each method leaves without a plan, over the maps."""
-    lines = {name: [(each.map, each.unplanned) for each in summary if each.method == name] for name in METHODS}
-    return (Figure("related", "Robots without a plan", (MAP_AXIS, "robots"), lines),)
+    """The robots that fixed paths and CARP leave without a plan, and how many more the other orders leave than CARP."""
+    by_method = {name: [each for each in summary if each.method == name] for name in METHODS}
+    fixed = {name: [(each.map, each.unplanned) for each in by_method[name]] for name in (*FIXED, "CARP")}
+    others = {name: [(each.map, each.more_unplanned) for each in by_method[name]] for name in ("LF", "greedy")}
+    axes = (MAP_AXIS, "robots")
+    return (
+        Figure("related", "Robots without a plan", axes, fixed),
+        Figure("related-orders", "Robots without a plan, more than with CARP", axes, others),
+    )
 
 
 def related_of(map: int, name: str, rows: Sequence[RelatedRow]) -> Related:
