@@ -100,11 +100,15 @@ class ResourceGraph:
 
     def constraints_of(self, resource: ResourceId) -> tuple[int, ...]:
         """The indices of the constraints on a resource: of its own capacity, and of its groups."""
+        if resource not in self.groups_of:
+            return (self.index[resource],)
         count = len(self.resources)
-        return (self.index[resource], *(count + group for group in self.groups_of.get(resource, ())))
+        return (self.index[resource], *(count + group for group in self.groups_of[resource]))
 
     def areas_of(self, resource: ResourceId) -> tuple[int, ...]:
         """Of these, the resource's own and the groups of capacity 1: resources that share one are close."""
+        if resource not in self.groups_of:
+            return (self.index[resource],)
         return tuple(each for each in self.constraints_of(resource) if self.is_area(each))
 
     def is_area(self, constraint: int) -> bool:

@@ -17,7 +17,10 @@ pytestmark = pytest.mark.usefixtures("elsewhere")
     [
         "related",
         "reuse",
-        *(pytest.param(name, marks=pytest.mark.ci) for name in ("quality", "gap", "time", "neighbours", "nearest")),
+        *(
+            pytest.param(name, marks=pytest.mark.ci)
+            for name in ("quality", "gap", "time", "neighbours", "nearest", "polish")
+        ),
     ],
 )
 def test_the_reference_finds_what_a_run_has_stored(carproof: Run, experiment: str) -> None:
