@@ -38,6 +38,7 @@ from carp_optimized.state.arrays import (
 )
 from carp_optimized.state.records import keep_records
 from carp_spec import FixedPaths, Instance, Neighbourhood, Plan, Refusal, Robot, RobotId, Shuffled
+from carp_spec.documents.solutions import PlanColumns
 from carp_spec.inputs.values import require_instance
 from carp_spec.limits import refuse_stops
 from carp_spec.permutations import shuffle, splitmix64
@@ -169,6 +170,8 @@ class PlannedFleet:
 
     def ended(self, now: int) -> tuple[int, ...]:
         """The robots whose plans are in nobody's way from the tick `now` on."""
+        if self._state.parks:
+            return ()
         leave = self._state.records.leave[self._records[self._order]]
         return tuple(self._order[(leave != NEVER) & (leave <= now - self._state.gap)].tolist())
 
@@ -177,12 +180,11 @@ class PlannedFleet:
         """The number by which the plan of each robot is known, `NONE` without a plan."""
         return self._records.copy()
 
-    def changed_since(self, records: Ints) -> tuple[Plan, ...]:
+    def changed_since(self, records: Ints) -> tuple[PlanColumns, ...]:
         """The plans that have another number than they had then, in planning order; robots may have come since."""
-        before = np.full(self._records.size, NONE, np.int32)
-        before[: records.size] = records
-        held = self._records[self._order]
-        return tuple(self._plan(int(record)) for record in held[held != before[self._order]])
+        is_other = self._records != NONE
+        is_other[: records.size] &= self._records[: records.size] != records
+        return tuple(map(self._columns, self._records[self._order[is_other[self._order]]].tolist()))
 
     def replan(self, plans: Sequence[Plan], order: Sequence[RobotId]) -> None:
         """Take over other plans of robots that have one, and the planning order of all.
@@ -614,8 +616,11 @@ class PlannedFleet:
 
     def _plan(self, record: int) -> Plan:
         if record not in self._plans:
-            self._plans[record] = read_plan(self._state, self._names, record, self._ids)
+            self._plans[record] = self._columns(record).plan
         return self._plans[record]
+
+    def _columns(self, record: int) -> PlanColumns:
+        return read_plan(self._state, self._names, record, self._ids)
 
 
 def _reaching(guide: Ints, rest: int) -> dict[int, int]:

@@ -10,7 +10,7 @@ from carp_optimized.jit.references import Native
 from carp_optimized.passes import record_plan
 from carp_optimized.state.arrays import NEVER, Records, State
 from carp_spec import Instance, Plan, ResourceId, RobotId
-from carp_spec.documents.solutions import visits_of
+from carp_spec.documents.solutions import PlanColumns
 
 T = TypeVar("T", bound=np.generic)
 
@@ -23,16 +23,18 @@ def write_plan(native: Native[State], instance: Instance, robot: int, plan: Plan
     return record_plan(native, robot, resources, enters, NEVER if leave is None else leave)
 
 
-def read_plan(state: State, names: Sequence[ResourceId], record: int, robots: Sequence[RobotId]) -> Plan:
+def read_plan(state: State, names: Sequence[ResourceId], record: int, robots: Sequence[RobotId]) -> PlanColumns:
     """The plan of a record; resources and robots are given by their indices."""
     records = state.records
     first = int(records.visits_at[record])
     end = first + int(records.visits[record])
-    entered = records.enter[first:end].tolist()
     last = int(records.leave[record])
-    leaves = [*entered[1:], None if last == NEVER else last]
-    resources = map(names.__getitem__, records.resource[first:end].tolist())
-    return Plan(robots[int(records.robot[record])], visits_of(resources, entered, leaves))
+    return PlanColumns(
+        robots[int(records.robot[record])],
+        tuple(map(names.__getitem__, records.resource[first:end].tolist())),
+        tuple(records.enter[first:end].tolist()),
+        None if last == NEVER else last,
+    )
 
 
 def enlarged(records: Records) -> Records:

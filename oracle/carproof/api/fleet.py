@@ -3,9 +3,11 @@
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from carp_spec import Instance, Neighbourhood, Plan, Refusal, Robot, RobotId, Solution, Stop
+from carp_spec.documents.solutions import PlanColumns
 from carp_spec.execution.traces import Trace
 from carp_spec.inputs.options import require_planner
 from carp_spec.inputs.values import require_instance
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
     from carp_optimized.fleet import PlannedFleet
     from carp_optimized.jit.kinds import Ints
 
+NOBODY: Mapping[RobotId, Robot] = MappingProxyType({})
 MOST_ROBOTS = 10_000
 MOST_STOPS = 64
 MOST_VISITS = 4_000_000
@@ -56,10 +59,15 @@ class Change:
     """
 
     now: int
-    plans: tuple[Plan, ...]
+    columns: tuple[PlanColumns, ...]
     unplanned: tuple[RobotId, ...]
     left: tuple[RobotId, ...]
     audit: Audit | None = None
+
+    @property
+    def plans(self) -> tuple[Plan, ...]:
+        """The plans that are new or other than before, made of their columns when they are asked for."""
+        return tuple(each.plan for each in self.columns)
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +81,7 @@ class _Known:
     empty: Instance
     now: int
     robots: Mapping[RobotId, Robot]
-    plans: Mapping[RobotId, Plan]
+    plans: Mapping[RobotId, PlanColumns]
     places: "Ints"
     ids: Sequence[RobotId]
     numbers: Mapping[RobotId, int]
@@ -89,7 +97,7 @@ class _Known:
 
     @property
     def solution(self) -> Solution:
-        return Solution(tuple(self.plans[id] for id in self.robots), self.order)
+        return Solution(tuple(self.plans[id].plan for id in self.robots), self.order)
 
     def rest(self) -> tuple[Instance, Solution]:
         return self._of([self._ahead(*each) for each in self._since(self.now)])
@@ -106,7 +114,7 @@ class _Known:
         """Each robot in the place where it is at a tick, released as it entered it, and its plan from there."""
         found = []
         for id, robot in self.robots.items():
-            plan = self.plans[id]
+            plan = self.plans[id].plan
             place = max(_entered(plan, tick) - 1, 0)
             here = plan.visits[place]
             stops = robot.stops[stops_served(robot.stops[:-1], plan.visits[:place]) :]
@@ -167,7 +175,8 @@ class Fleet:
         core = _compiled(replace(instance, robots=tuple(robots.values())), [by_robot[id] for id in sound.order])
         self._core: PlannedFleet | None = core
         numbers = {id: number for number, id in enumerate(robots)}
-        self._known = _Known(empty, now, robots, by_robot, *core.places, numbers, len(robots))
+        plans = {id: PlanColumns.of(plan) for id, plan in by_robot.items()}
+        self._known = _Known(empty, now, robots, plans, *core.places, numbers, len(robots))
         self.opening = self.add(*(each for each in instance.robots if each.id not in by_robot), now=now, audit=audit)
 
     @property
@@ -217,14 +226,8 @@ class Fleet:
                     core.dismiss([place])
                     unplanned.append(robot.id)
             changed = [plan for plan in core.changed_since(before) if plan != self._known.plans.get(plan.robot)]
-            known = replace(
-                self._known,
-                now=now,
-                robots={**self._known.robots, **{robot.id: robot for robot in robots}},
-                numbers={**self._known.numbers, **{each.id: k for k, each in enumerate(robots, self._known.count)}},
-                count=self._known.count + len(robots),
-            )
-            return self._take_over(core, known, changed, unplanned, self._before(audit))
+            change = Change(now, tuple(changed), tuple(unplanned), ())
+            return self._take_over(core, change, self._before(audit), {robot.id: robot for robot in robots})
 
     def assign(self, robot: RobotId, stops: Sequence[Stop], now: int | None = None, *, audit: bool = False) -> Change:
         """Give a robot that is under way or parked further stops, behind those that it has, as `carproof.assign` does.
@@ -236,7 +239,7 @@ class Fleet:
         now = self._tick(now)
         require_shape(robot, RobotId, "$.robot")
         before = self._known.robots.get(robot)
-        if before is None or has_ended(self._known.plans[robot], now):
+        if before is None or has_ended(self._known.plans[robot].plan, now):
             message = f"it must be a robot of the fleet that has not left by {now}, and {robot!r} is not"
             raise Refusal("request", "$.robot", OWN_ROBOTS.id, message)
         further = further_stops(self._known.empty, before, stops)
@@ -244,19 +247,17 @@ class Fleet:
         self._require_little("$.stops", len(further.stops))
         with self._changing() as core:
             core.forget_old_records()
-            held, plan = core.records, self._known.plans[robot]
+            held, plan = core.records, self._known.plans[robot].plan
             is_found = core.assign(further, before, plan, now, self._planner, self._known.numbers[robot])
             changed = [each for each in core.changed_since(held) if each != self._known.plans[each.robot]]
-            robots = {**self._known.robots, robot: further if is_found else before}
-            known = replace(self._known, robots=robots, now=now)
-            unplanned = () if is_found else (robot,)
-            return self._take_over(core, known, changed, unplanned, self._before(audit))
+            change = Change(now, tuple(changed), () if is_found else (robot,), ())
+            return self._take_over(core, change, self._before(audit), {robot: further} if is_found else {})
 
     def forget(self) -> None:
         """Forget what is done by the tick `now`: robots start in the visits under way, as of when they entered them."""
         instance, solution = self._known.left()
         core = _compiled(instance, [*in_order(solution)])
-        plans = {plan.robot: plan for plan in solution.plans}
+        plans = {plan.robot: PlanColumns.of(plan) for plan in solution.plans}
         places, ids = core.places
         self._known = replace(self._known, robots={**instance.robot}, plans=plans, places=places, ids=ids)
         self._core = core
@@ -298,14 +299,13 @@ class Fleet:
         return self._replan(self.now, better, self._before(audit))
 
     def _before(self, audit: bool) -> Sequence[Plan] | None:
-        return [*self._known.plans.values()] if audit else None
+        return [each.plan for each in self._known.plans.values()] if audit else None
 
     def _replan(self, now: int, solution: Solution, before: Sequence[Plan] | None) -> Change:
-        changed = [plan for plan in solution.plans if plan != self._known.plans[plan.robot]]
+        changed = [plan for plan in solution.plans if plan != self._known.plans[plan.robot].plan]
         with self._changing() as core:
             core.replan(changed, solution.order)
-            known = replace(self._known, now=now)
-            return self._take_over(core, known, changed, (), before)
+            return self._take_over(core, Change(now, tuple(map(PlanColumns.of, changed)), (), ()), before)
 
     def _tick(self, now: int | None) -> int:
         if now is None:
@@ -319,6 +319,8 @@ class Fleet:
         return now
 
     def _require_new(self, robots: tuple[Robot, ...], now: int) -> None:
+        if not robots:
+            return
         require_shape(robots, tuple[Robot, ...], "$.robots")
         alone = replace(self._known.empty, robots=robots)
         for fault in (fault for rule in ROBOT_RULES for fault in rule(alone)):
@@ -350,38 +352,37 @@ class Fleet:
 
     def _made(self) -> "PlannedFleet":
         if self._core is None:
-            self._core = _compiled(self.instance, [self._known.plans[id] for id in self._known.order])
+            self._core = _compiled(self.instance, [self._known.plans[id].plan for id in self._known.order])
         return self._core
 
     def _take_over(
         self,
         core: "PlannedFleet",
-        known: _Known,
-        changed: Sequence[Plan],
-        unplanned: Sequence[RobotId],
+        change: Change,
         before: Sequence[Plan] | None,
+        new: Mapping[RobotId, Robot] = NOBODY,
     ) -> Change:
         """Know what the compiled fleet holds, without the plans that have ended by now.
 
-        With the plans before, which robots have followed until then, the changed ones are audited.
+        Robots that are `new` have come or have other stops. With the plans before, which robots have followed until
+        then, the changed ones are audited.
         """
-        ended = core.ended(known.now)
-        plans = {**known.plans, **{plan.robot: plan for plan in changed}}
-        robots, numbers = known.robots, known.numbers
-        left = tuple(core.places[1][place] for place in ended)
+        known, ended = self._known, core.ended(change.now)
+        come = {id: number for number, id in enumerate((id for id in new if id not in known.robots), known.count)}
+        robots, numbers = {**known.robots, **new}, {**known.numbers, **come}
+        plans = {**known.plans, **{each.robot: each for each in change.columns}}
+        left = tuple(map(core.places[1].__getitem__, ended))
         core.dismiss(ended)
-        if gone := {*left, *(each for each in unplanned if each not in plans)}:
-            robots = {id: robot for id, robot in robots.items() if id not in gone}
-            numbers = {id: number for id, number in numbers.items() if id not in gone}
-            plans = {id: plan for id, plan in plans.items() if id not in gone}
-        places, ids = core.places
-        after = replace(known, robots=robots, plans=plans, places=places, ids=ids, numbers=numbers)
-        found = None if before is None else _audited(after, changed, before)
+        for id in (*left, *(each for each in change.unplanned if each not in plans)):
+            del robots[id], numbers[id]
+            plans.pop(id, None)
+        after = _Known(known.empty, change.now, robots, plans, *core.places, numbers, known.count + len(come))
+        found = None if before is None else _audited(after, change.columns, before)
         self._known = after
-        return Change(known.now, tuple(changed), tuple(unplanned), left, found)
+        return Change(change.now, change.columns, change.unplanned, left, found)
 
 
-def _audited(known: _Known, changed: Sequence[Plan], before: Sequence[Plan]) -> Audit:
+def _audited(known: _Known, changed: Sequence[PlanColumns], before: Sequence[Plan]) -> Audit:
     sound, engine = sound_solution(known.instance, known.solution), engine_named("optimized")
     return audit_changes(known.instance, sound, engine, {plan.robot for plan in changed}, before, known.now)
 

@@ -9,7 +9,7 @@ import msgspec
 from carp_spec import Instance, Neighbourhood, Refusal, Robot, RobotId, Solution, Stop
 from carp_spec.documents.fields import all_converted
 from carp_spec.documents.instances import InstanceDocument, StopDocument, instance_document
-from carp_spec.documents.solutions import PlanDocument, SolutionDocument, plan_documents, solution_document
+from carp_spec.documents.solutions import PlanColumns, PlanDocument, SolutionDocument, solution_document
 from carp_spec.execution.traces import Trace
 from carp_spec.requests import require_tick
 from carp_spec.rule import DESIGN
@@ -120,7 +120,7 @@ def fleet_forget(request: FleetForgetRequest, session: Session) -> FleetDocument
     """Forget what is done by now: stops that are served, and all visits but those under way and to come."""
     fleet = _named(request.fleet, session)
     fleet.forget()
-    return _document(fleet, Change(fleet.now, fleet.solution.plans, (), ()))
+    return _document(fleet, Change(fleet.now, tuple(map(PlanColumns.of, fleet.solution.plans)), (), ()))
 
 
 @dataclass(frozen=True, slots=True)
@@ -240,7 +240,9 @@ def _named(name: str, session: Session) -> Fleet:
 
 def _document(fleet: Fleet, change: Change) -> FleetDocument:
     audit = msgspec.UNSET if change.audit is None else audit_document(change.audit, fleet.solution)
-    return FleetDocument(change.now, plan_documents(change.plans), change.unplanned, change.left, audit)
+    return FleetDocument(
+        change.now, tuple(each.document for each in change.columns), change.unplanned, change.left, audit
+    )
 
 
 FLEET_RULES: tuple[Code, ...] = (OWN_NAMES, NOT_BACK, OWN_ROBOTS, FEW_ROBOTS, FEW_RESOURCES)

@@ -7,6 +7,7 @@ type in `DOCUMENTS` stands in JSON as its document; any other type is one that m
 import dataclasses
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, asdict, dataclass
+from functools import cache
 from types import NoneType
 from typing import Any, Literal, Union, get_args, get_type_hints
 
@@ -199,6 +200,7 @@ def document_of(hint: Any) -> Any:  # noqa: ANN401 - a type hint
     return DOCUMENTS[kind].document if kind in DOCUMENTS else kind
 
 
+@cache
 def reader_of(hint: Any) -> Callable[[bytes], Any]:  # noqa: ANN401 - a type hint
     """The decoder of a field or a result."""
     kind = _required(hint)
