@@ -248,6 +248,26 @@ class PlannedFleet:
         record = self._call(lambda: passes.find_one(self._native, robot, followed, now))
         return None if record == NONE else self._plan(record)
 
+    def plan_again(self, robot: int, now: int = 0) -> bool:
+        """Plan a robot beside the plans of all others; whether it has none so far, or one that arrives later.
+
+        If so, it comes last in the planning order; if not, all is as before. It keeps what it has done until now.
+        """
+        order = self._order
+        held, rest = self._records[robot : robot + 1].copy(), order[order != robot]
+        self._withdraw(held[held != NONE])
+        self._hold(rest, self._records[rest])
+        followed = int(held[0]) if now > 0 else NONE
+        found = np.full(1, self._call(lambda: passes.find_one(self._native, robot, followed, now)), np.int32)
+        is_better = found[0] != NONE and (held[0] == NONE or self._cost(found) < self._cost(held))
+        if is_better:
+            held, order = found, np.append(rest, np.int32(robot))
+        self._call(lambda: passes.reserve_all(self._native, held[held != NONE]))
+        after = self._records.copy()
+        after[robot] = held[0]
+        self._hold(order, after[order])
+        return bool(is_better)
+
     def find_beside(self, robot: int, records: Sequence[int]) -> Plan | None:
         """The plan of a robot as `find` makes it without history, beside further plans, which `record` has taken up."""
         further = np.array(records, np.int32)

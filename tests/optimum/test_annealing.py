@@ -82,17 +82,21 @@ def test_the_best_plans_seen_are_the_result(monkeypatch: pytest.MonkeyPatch) -> 
     instance = grid_instance(Grid(8, 8, map=8), Fleet(robots=24, seed=1))
     given = polish(instance, plan(instance, Carp()), iterations=ROUNDS)
     seen: list[tuple[int, int, int]] = []
-    annealed = anneal(instance, given, 6, clock=ticking(), advance=lambda *at: seen.append(at))
+    annealed = anneal(instance, given, 9, clock=ticking(), advance=lambda *at: seen.append(at))
     assert worth(annealed, instance) == seen[-1][1:] <= worth(given, instance)
-    assert [rounds for rounds, _, _ in seen] == [50, 100, 150, 200]
+    assert [rounds for rounds, _, _ in seen[:3]] == [50, 100, 150]
 
 
 def test_no_heat_gives_the_plans_of_a_polish(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(annealing, "HEAT", 0)
     monkeypatch.setattr(annealing, "REHEAT", 0)
     instance = grid_instance(Grid(8, 8, map=8), Fleet(robots=24, seed=1))
+    monkeypatch.setattr(annealing, "settle", lambda *_: False)
     given = plan(instance, Carp())
-    assert anneal(instance, given, 5, seed=5, clock=ticking()) == polish(instance, given, iterations=150, seed=5)
+    played: list[int] = []
+    annealed = anneal(instance, given, 9, seed=5, clock=ticking(), advance=lambda *at: played.append(at[0]))
+    assert played[-1] >= 150
+    assert annealed == polish(instance, given, iterations=played[-1], seed=5)
 
 
 def test_a_time_ends_by_the_clock_and_robots_left_out_are_planned_first() -> None:

@@ -73,12 +73,27 @@ def test_robots_are_drawn_on_points_where_vehicles_may_stand_and_that_reach_each
         imported(NAV_GRAPH, robots=3)
 
 
+def test_robots_are_drawn_only_where_they_may_stand_together() -> None:
+    shared = OPENTCS.replace('<member name="ab"/><member name="bc"/>', '<member name="a"/><member name="c"/>')
+    shared = shared.replace('type="HALT_POSITION"', 'type="PARK_POSITION"')
+    shared = shared.replace('maxReverseVelocity="0"', 'maxReverseVelocity="1000"')
+    for seed in range(8):
+        robots = imported(shared, robots=2, seed=seed).robots
+        assert {each.start for each in robots} != {"a", "c"} != {each.goal for each in robots}
+    with pytest.raises(Refusal, match="3 robots need as many distinct starts, and the map has 2"):
+        imported(shared, robots=3)
+
+
 def test_requests_name_robots_starts_goals_and_releases() -> None:
     rows = b"robot,start,goal,release\nr1,a,c,5\nr2,b,c,\n"
     assert imported(OPENTCS, requests=rows).robots == (Robot("r1", "a", "c", 5), Robot("r2", "b", "c"))
-    for rows, where in ((b"robot,start\nr1,a\n", "requests:2"), (b"robot,start,goal\nr1,a,z\n", "requests:2")):
+    for rows, where in (
+        (b"robot,start\nr1,a\n", "orders.csv:2"),
+        (b"robot,start,goal\nr1,a,z\n", "orders.csv:2"),
+        (b"robot,start,goal\nr1,a,b\nr1,b,c\n", "orders.csv:3"),
+    ):
         with pytest.raises(Refusal, match=where):
-            imported(OPENTCS, requests=rows)
+            imported(OPENTCS, requests=rows, requests_file="orders.csv")
 
 
 def test_degrees_become_lengths_on_the_ground() -> None:
@@ -99,6 +114,20 @@ def test_a_lift_of_lif_joins_nodes_at_one_place_of_two_maps() -> None:
     with_lift = import_layout(json.dumps(document, indent=1).encode(), settings=Settings(robots=0))
     assert with_lift.instance.graph.resource["ab"].duration == 1
     assert any("between maps" in each.feature for each in with_lift.notes)
+
+
+def test_nodes_of_lif_at_one_place_hold_one_robot_and_an_edge_between_them_is_a_turn() -> None:
+    """As the rotation station of LIF.md, section 10.9, and stations of several nodes."""
+    document = json.loads(lif("1.0.0"))
+    layout = document["layouts"][0]
+    layout["nodes"].append({**layout["nodes"][1], "nodeId": "turned"})
+    layout["edges"].append({**layout["edges"][0], "edgeId": "turn", "startNodeId": "b", "endNodeId": "turned"})
+    layout["edges"].append({**layout["edges"][0], "edgeId": "away", "startNodeId": "turned", "endNodeId": "a"})
+    with_turn = import_layout(json.dumps(document, indent=1).encode(), settings=Settings(robots=0))
+    assert with_turn.instance.graph.resource["turn"].duration == 1
+    assert {"b", "turned", "turn"} in groups(with_turn.instance).values()
+    assert {"ab", "away"} in groups(with_turn.instance).values(), "there and back, the same piece of the floor"
+    assert any("turns on the spot" in each.feature for each in with_turn.notes)
 
 
 def test_mutexes_and_conflicts_become_groups() -> None:
@@ -186,6 +215,8 @@ BROKEN = {
     "vertex that is none": (NAV_GRAPH.replace("[0, 1, {m", "[0, 9, {m"), 6, "must be one of the 3 vertices"),
     "negative limit": (NAV_GRAPH.replace("0.5}", "-0.5}"), 7, "must be above 0"),
     "infinite coordinate": (NAV_GRAPH.replace("[3.0, 4.0", "[.inf, 4.0"), 12, "must be a number"),
+    "position that is a text": (lif("1.0").replace('"x": 3.0', '"x": "3.0"', 1), 23, "a number, not the text '3.0'"),
+    "answer that is a text": (NODE_LINK.replace("true", '"true"'), 1, "true or false, not the text 'true'"),
     "field twice": (NAV_GRAPH.replace("building_name: row", "levels: {}"), 4, "must be given once"),
     "degrees on Mars": (
         BUILDING.replace("reference_image", "iau2000"),

@@ -18,6 +18,7 @@ import carp_optimized
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.improve.planning import improve_crowd
 from carp_optimized.improve.repair import repair
+from carp_optimized.improve.settling import settle
 from carp_optimized.neighbourhood.polishing import CHANCE, SURE
 from carp_optimized.planners import rounds_between_looks
 from carp_spec import Instance, Refusal, Solution
@@ -37,8 +38,13 @@ ENOUGH = 32
 """With fewer rounds a robot than this the raises are smaller by as much: there is no time to make up for them."""
 PARTS = 1 << 10
 """The time left is counted in parts of this."""
+ENDING, LEAST_ENDING, MOST_ENDING = 8, 32, 8
+"""At the end, plans are settled, which takes about so many times as long as to plan each robot without others.
+
+At least one of so many parts of the time is left for it, and at most another.
+"""
 BRIEF = 0.01
-"""The seconds of an annealing if a repair took the time."""
+"""The seconds of an annealing if what comes before took the time."""
 
 
 def polish_or_anneal(
@@ -89,12 +95,14 @@ def anneal(
     if repairs and len(solution.plans) < len(instance.robots):
         with suppress(Refusal):
             solution = repair(instance, solution)
-    seconds = max(seconds - (clock() - started), BRIEF)
     whole = sound_solution(instance, solution)
     by_robot = {each.robot: each for each in whole.plans}
     fleet = PlannedFleet(instance)
     fleet.commit([by_robot[each] for each in whole.order])
+    begun = clock()
     polishing = fleet.polishing(seed, now)
+    seconds = max(seconds - (clock() - started), BRIEF)
+    ending = min(max(ENDING * (clock() - begun), seconds / LEAST_ENDING), seconds / MOST_ENDING)
     least = int(polishing.fields.least.sum())
     played = fleet.polish(polishing, 0)
     given = plans = fleet.plans
@@ -105,7 +113,7 @@ def anneal(
     from_given = True
     rounds = rounds_between_looks(solution)
     started = clock()
-    while (spent := int(PARTS * (clock() - started) / seconds)) < PARTS:
+    while (spent := int(PARTS * (clock() - started) / (seconds - ending))) < PARTS:
         cycle, gone = divmod(cycles * spent, PARTS)
         if cycle > current:
             from_given = luck and played >= ENOUGH * len(instance.robots) and from_given == (best < before)
@@ -124,7 +132,12 @@ def anneal(
         advance(played, *best)
         if batch < rounds:
             break
-    return Solution.of(instance, plans)
+    if fleet.worth > best:
+        fleet.clear()
+        fleet.commit(plans)
+    if settle(fleet, lambda: clock() - started < seconds, now):
+        advance(played, *fleet.worth)
+    return Solution.of(instance, fleet.plans)
 
 
 def _chance(heated: int, robots: int, rounds: int, left: int) -> int:

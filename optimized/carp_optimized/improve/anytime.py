@@ -3,7 +3,7 @@
 Robots that move a step a tick (classical MAPF) are planned by `carp_optimized.improve.planning`, which looks at the
 clock after each few milliseconds. All others are planned by CARP, the shortest way first, as long as there is time; if
 some get no plan, once more, where each holds its start until it is planned. Then follow a repair and an annealing, if
-there is enough time for these. Nothing here is trusted: the law judges the plans.
+there is enough time for these, and the plans are settled. Nothing here is trusted: the law judges the plans.
 """
 
 from collections.abc import Callable
@@ -17,6 +17,7 @@ from carp_optimized.improve.annealing import anneal
 from carp_optimized.improve.crowds import crowd_of, near
 from carp_optimized.improve.holding import plan_holding_starts
 from carp_optimized.improve.planning import Found, plan_crowd, time_of_visit
+from carp_optimized.improve.settling import settled
 from carp_spec import Instance, Solution, total_cost
 from carp_spec.documents.solutions import visits_document
 from carp_spec.inputs.options import require_polish_options
@@ -28,8 +29,8 @@ ENOUGH = 4
 """The annealing begins if CARP has left this many times its own time, as it takes up the plans again."""
 AMPLE = 20
 """A repair of robots that are left out begins if CARP has taken at most one of this many parts of the time."""
-
-
+AGAIN = 2
+"""Plans are settled without them if there is time left of this many times CARP's own."""
 SORTING = 4
 """The shortest ways of all robots are looked up if that takes at most one of this many parts of the time."""
 
@@ -79,13 +80,15 @@ def find_within(
     solution = _first_plans(instance, lambda: clock() - started, seconds, visit)
     if seconds is None:
         solution = carp_optimized.polish(instance, solution, iterations=iterations, seed=seed, advance=advance)
-        return _found(instance, solution)
+        return _found(instance, settled(instance, solution))
     spent = clock() - started
     left = seconds - visit * sum(len(each.visits) for each in solution.plans)
     if left > (1 + ENOUGH) * spent:
         repairs = AMPLE * spent < seconds
         time = left - spent
         solution = anneal(instance, solution, time, seed=seed, advance=advance, clock=clock, repairs=repairs)
+    elif left > AGAIN * spent:
+        solution = settled(instance, solution, lambda: clock() - started < left)
     return _found(instance, solution)
 
 

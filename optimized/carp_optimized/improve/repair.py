@@ -17,6 +17,7 @@ from typing import TypeAlias
 from carp_optimized import polish
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.improve.lacam import plans_by_steps
+from carp_optimized.improve.settling import settled
 from carp_spec import Instance, Plan, RobotId, Solution, Visit, total_cost
 from carp_spec.joint_rules import JOINT_RULES
 from carp_spec.rule import Violation
@@ -40,10 +41,12 @@ def repair(instance: Instance, solution: Solution) -> Solution:
 
     An attempt plays rounds of `polish/...`, and plans robots jointly if few are left out and there are no groups of
     resources. If some robots still are, the next attempt begins with plans in another order, and the last with plans
-    made tick by tick. Raises `Refusal` for a solution that breaks a rule, and for numbers that are too large.
+    made tick by tick. In the end the plans are settled. Raises `Refusal` for a solution that breaks a rule, and for
+    numbers that are too large.
     """
     fleet = PlannedFleet(instance)
     without_path = {robot for robot in solution.unplanned if fleet.find(fleet.index(robot), None, 0) is None}
+    given = solution
     for seed in range(ATTEMPTS):
         if without_path.issuperset(solution.unplanned):
             break
@@ -57,7 +60,7 @@ def repair(instance: Instance, solution: Solution) -> Solution:
         found = plans_by_steps(replace(instance, robots=able))
         if found is not None:
             solution = polish(instance, Solution.of(instance, found), iterations=ROUNDS, seed=ATTEMPTS)
-    return solution
+    return solution if solution == given else settled(instance, solution)
 
 
 def plan_failed_first(instance: Instance, solution: Solution) -> Solution:

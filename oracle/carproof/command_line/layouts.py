@@ -92,6 +92,7 @@ def show_layout(
         after_goal,
         None if options.footprint is None else footprint(options.footprint),
         None if options.turning is None else seconds(options.turning, "turning"),
+        "requests" if options.requests is None else shown(options.requests),
     )
     imported = import_layout(read_bytes(name, layouts=True), shown(name), format, settings)
     if as_json and output is not None:

@@ -69,7 +69,8 @@ class Note:
 class Layout:
     """What a reader has found so far.
 
-    `holds_ends`: who is on a lane holds both its ends too. `straight` has the strips of straight lanes by their ends.
+    `holds_ends`: who is on a lane holds both its ends too. `places` has, of points that are one place on the floor, the
+    first. `straight` has the strips of straight lanes by the places of their ends.
     """
 
     tree: Tree
@@ -79,7 +80,8 @@ class Layout:
     blocks: dict[str, Block] = field(default_factory=dict)
     vehicles: dict[str, Vehicle] = field(default_factory=dict)
     left_out: dict[str, list[int]] = field(default_factory=dict)
-    straight: dict[tuple[str, str], str] = field(default_factory=dict)
+    places: dict[str, str] = field(default_factory=dict)
+    straight: dict[frozenset[str], str] = field(default_factory=dict)
 
     @property
     def notes(self) -> tuple[Note, ...]:
@@ -127,12 +129,12 @@ class Layout:
                 name += "'"
         if name in self.lanes or name in self.points:
             raise at.refuse(f"the name {name!r} must be given once")
-        one, two = self.points[ends[0]], self.points[ends[1]]
-        distance = self.distance(at, one, two) if level else None
+        distance = self.distance(*ends) if level else None
+        if distance == 0 and length is None:
+            raise at.refuse(f"the length of a lane must be above 0, and {ends[0]!r} and {ends[1]!r} are at one place")
         millimetres = distance if length is None else -(-length // 1)
-        strip = self.straight.get((ends[1], ends[0]), name) if millimetres == distance else name
-        if millimetres == distance:
-            self.straight.setdefault(ends, strip)
+        floor = frozenset(self.places.get(end, end) for end in ends)
+        strip = self.straight.setdefault(floor, name) if millimetres == distance else name
         self.lanes[name] = Lane(name, *ends, millimetres, speed, strip, share or Fraction(1), backwards and not back)
         if not back:
             return (name,)
@@ -173,15 +175,13 @@ class Layout:
             raise at.refuse(f"a position must be between -{LARGEST} and {LARGEST} mm")
         return round(value)
 
-    @staticmethod
-    def distance(at: Tree, one: Point, two: Point) -> int | None:
+    def distance(self, source: str, target: str) -> int | None:
         """The distance of two points in mm, rounded up; `None` where they have no positions."""
+        one, two = self.points[source], self.points[target]
         if one.x is None or one.y is None or two.x is None or two.y is None:
             return None
         square = (one.x - two.x) ** 2 + (one.y - two.y) ** 2
-        if square == 0:
-            raise at.refuse(f"the length of a lane must be above 0, and {one.id!r} and {two.id!r} are at one place")
-        return 1 + isqrt(square - 1)
+        return 1 + isqrt(square - 1) if square else 0
 
 
 @dataclass(frozen=True, slots=True)

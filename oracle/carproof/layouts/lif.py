@@ -3,10 +3,11 @@
 Fields: LIF.md of the repository Intralogistics-2X-LIF/Layout-Interchange-Format, section 8.3, in the branches
 release/V1.0 and dev/V2. Positions and lengths are in m, speeds in m/s. An edge leads from its start to its end. Version
 1.0 calls itself 0.11.0 in that section and in its examples. Version 2 has layouts within origins, and robot types in
-place of vehicle types.
+place of vehicle types. Nodes of one map at one place are for different vehicles or actions there; an edge between them
+is a turn on the spot (section 10.9).
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from collections.abc import Set as AbstractSet
 from fractions import Fraction
 
@@ -47,7 +48,7 @@ def read(tree: Tree) -> Layout:
     layout = Layout(tree)
     stations = [(each, station) for each in layouts for station in each.all("stations")]
     served = {node.text for _, station in stations for node in station["interactionNodeIds"].entries}
-    maps = _nodes(layout, layouts, served)
+    _nodes(layout, layouts, served)
     for _, station in stations:
         for node in station["interactionNodeIds"].entries:
             if node.text not in layout.points:
@@ -55,23 +56,24 @@ def read(tree: Tree) -> Layout:
         layout.note("stations; their nodes are where vehicles stand", station)
     for each in layouts:
         for edge in each["edges"].entries:
-            _edge(layout, edge, maps)
+            _edge(layout, edge)
     return layout
 
 
-def _nodes(layout: Layout, layouts: Sequence[Tree], served: AbstractSet[str]) -> Mapping[str, str]:
-    """Add the nodes, and return the map of each that has one."""
-    maps: dict[str, str] = {}
+def _nodes(layout: Layout, layouts: Sequence[Tree], served: AbstractSet[str]) -> None:
+    """Add the nodes, and find those that are at one place of one map."""
+    first: dict[object, str] = {}
+    main: str | None = None
     for node in (node for each in layouts for node in each["nodes"].entries):
         name, place, level = node["nodeId"].text, node["nodePosition"], node.get("mapId")
         at = (METRE * place["x"].number, METRE * place["y"].number)
         layout.point(node, name, at, stands=not served or name in served)
         _types(layout, node, NODES)
-        if level is not None:
-            maps[name] = level.text
-            if level.text != next(iter(maps.values())):
-                layout.note("maps beside the first; the positions of all are in one plane", level)
-    return maps
+        map = None if level is None else level.text
+        if main is not None and map not in (None, main):
+            layout.note("maps beside the first; the positions of all are in one plane", level)
+        main = map if main is None else main
+        layout.places[name] = first.setdefault((map, layout.points[name].x, layout.points[name].y), name)
 
 
 def _types(layout: Layout, thing: Tree, names: tuple[str, ...]) -> list[Tree]:
@@ -86,7 +88,7 @@ def _types(layout: Layout, thing: Tree, names: tuple[str, ...]) -> list[Tree]:
     return types
 
 
-def _edge(layout: Layout, edge: Tree, maps: Mapping[str, str]) -> None:
+def _edge(layout: Layout, edge: Tree) -> None:
     ends = edge["startNodeId"].text, edge["endNodeId"].text
     speeds: list[Fraction] = []
     lengths: list[Fraction] = []
@@ -103,24 +105,21 @@ def _edge(layout: Layout, edge: Tree, maps: Mapping[str, str]) -> None:
                 "the shape of trajectories; their length is that of the control polygon, which is no less", curve
             )
             lengths.append(_polygon(curve))
-    is_lift = _is_lift(layout, ends, maps)
-    if is_lift:
+    stays = ends[0] != ends[1] and layout.points.keys() >= set(ends) and layout.distance(*ends) == 0
+    if stays and layout.places[ends[0]] == layout.places[ends[1]]:
+        layout.note(
+            "turns on the spot, from node to node at one place; they take a tick unless a length is given", edge
+        )
+    elif stays:
         layout.note("the way up and down between maps; it takes a tick unless its length is given", edge)
     layout.lane(
         edge,
         edge["edgeId"].text,
         ends,
-        level=not is_lift,
+        level=not stays,
         speed=min(speeds, default=None),
         length=max((each for each in lengths if each), default=None),
     )
-
-
-def _is_lift(layout: Layout, ends: tuple[str, str], maps: Mapping[str, str]) -> bool:
-    """Whether the ends are at one place of two maps."""
-    one, two = (layout.points.get(end) for end in ends)
-    levels = {maps[end] for end in ends if end in maps}
-    return one is not None and two is not None and (one.x, one.y) == (two.x, two.y) and len(levels) > 1
 
 
 def _polygon(curve: Tree) -> Fraction:
@@ -130,9 +129,7 @@ def _polygon(curve: Tree) -> Fraction:
     for number, place in enumerate(places):
         at = (METRE * place["x"].number, METRE * place["y"].number)
         layout.point(place, str(number), at)
-        one, two = layout.points[str(max(0, number - 1))], layout.points[str(number)]
-        if (one.x, one.y) != (two.x, two.y):
-            total += layout.distance(place, one, two) or 0
+        total += layout.distance(str(max(0, number - 1)), str(number)) or 0
     return Fraction(total)
 
 

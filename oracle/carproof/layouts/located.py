@@ -35,11 +35,15 @@ Value: TypeAlias = "str | list[Tree] | dict[str, Tree]"
 
 @dataclass(frozen=True, slots=True)
 class Tree:
-    """A value: text, a list, or a mapping. The children of an element of XML are lists named `<tag>`."""
+    """A value: text, a list, or a mapping. The children of an element of XML are lists named `<tag>`.
+
+    A text that is `quoted`, in YAML or JSON, is neither a number nor true or false.
+    """
 
     file: str
     line: int
     value: Value
+    quoted: bool = False
 
     def refuse(self, message: str) -> Refusal:
         """The refusal of this value."""
@@ -73,6 +77,8 @@ class Tree:
     @property
     def number(self) -> Fraction:
         """The number, exactly as it is written."""
+        if self.quoted:
+            raise self.refuse(f"it must be a number, not the text {self.shown}")
         if not isinstance(self.value, str) or _NUMBER.fullmatch(self.value) is None:
             raise self.refuse(f"it must be a number, not {self.shown}")
         number = Fraction(self.value)
@@ -98,8 +104,8 @@ class Tree:
     @property
     def is_true(self) -> bool:
         """Whether it says true."""
-        if self.value not in ("true", "True", "false", "False", "1", "0"):
-            raise self.refuse(f"it must be true or false, not {self.shown}")
+        if self.quoted or self.value not in ("true", "True", "false", "False", "1", "0"):
+            raise self.refuse(f"it must be true or false, not {'the text ' if self.quoted else ''}{self.shown}")
         return self.value in ("true", "True", "1")
 
     @property
@@ -197,7 +203,7 @@ def _yaml(text: str, file: str) -> Tree:  # noqa: C901, PLR0915 - one branch for
             line = event.start_mark.line + 1
             anchor = getattr(event, "anchor", None)
             if kind == "Scalar":
-                put(tree := Tree(file, line, event.value), 1)
+                put(tree := Tree(file, line, event.value, quoted=event.style in ("'", '"')), 1)
                 if anchor:
                     anchors[anchor] = (tree, 1)
             elif kind in ("SequenceStart", "MappingStart"):

@@ -51,7 +51,7 @@ def _middle(one: int | None, two: int | None) -> int | None:
 
 
 def _groups(layout: Layout, settings: Settings) -> Iterator[Group]:
-    """The strips with two lanes, the ends that vehicles on lanes hold, the blocks, and what a footprint forbids."""
+    """The strips with two lanes, points at one place, the ends that vehicles on lanes hold, blocks, and footprints."""
     strips: dict[str, list[str]] = {}
     at: dict[str, list[str]] = {each: [each] for each in layout.points}
     for lane in layout.lanes.values():
@@ -70,15 +70,28 @@ def _groups(layout: Layout, settings: Settings) -> Iterator[Group]:
     if layout.holds_ends:
         yield from (Group(named(f"at {point}"), tuple(held)) for point, held in at.items() if len(held) > 1)
     yield from (Group(named(f"strip {name}"), tuple(lanes)) for name, lanes in strips.items() if len(lanes) > 1)
+    yield from (Group(named(f"place {name}"), held) for name, held in _at_one_place(layout) if len(held) > 1)
     yield from (Group(each.id, each.members, each.capacity) for each in layout.blocks.values())
     if settings.footprint is not None:
         for each in conflicts(layout, settings.footprint):
             yield Group(named(str(each.id)), each.resources)
 
 
+def _at_one_place(layout: Layout) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """The points at each place, with the lanes that stay there."""
+    held: dict[str, list[str]] = {}
+    for point, place in layout.places.items():
+        held.setdefault(place, []).append(point)
+    for lane in layout.lanes.values():
+        here = layout.places.get(lane.source)
+        if here is not None and here == layout.places.get(lane.target):
+            held[here].append(lane.id)
+    return ((place, tuple(members)) for place, members in held.items())
+
+
 def _robots(layout: Layout, graph: ResourceGraph, settings: Settings) -> tuple[Robot, ...]:
     if settings.requests is not None:
-        return tuple(_requested(layout, settings.requests))
+        return tuple(_requested(layout, settings.requests, settings.requests_file))
     if settings.robots is None:
         return _vehicles(layout, graph, settings)
     places = [each.id for each in _standing(layout, graph)]
@@ -88,14 +101,26 @@ def _robots(layout: Layout, graph: ResourceGraph, settings: Settings) -> tuple[R
 
 
 def _standing(layout: Layout, graph: ResourceGraph) -> list[Point]:
-    """The points where vehicles may stand, of the largest part of the layout in which each is reached from each."""
+    """The points where vehicles may stand together, of the largest part of the layout where each is reached from each.
+
+    Of points in one group as many as its capacity, the first ones.
+    """
     import networkx as nx  # noqa: PLC0415 - slow to load
 
     moves: nx.DiGraph[object] = nx.DiGraph(list(graph.edges))
     moves.add_nodes_from(layout.points)
     stands = [each for each in layout.points.values() if each.stands]
     parts = [[each for each in stands if each.id in part] for part in nx.strongly_connected_components(moves)]
-    return max(parts, key=lambda part: (len(part), [each.id for each in part]), default=[])
+    largest = max(parts, key=lambda part: (len(part), [each.id for each in part]), default=[])
+    room = [each.capacity for each in graph.constraints]
+    together = []
+    for point in largest:
+        places = graph.constraints_of(point.id)
+        if all(room[place] > 0 for place in places):
+            together.append(point)
+            for place in places:
+                room[place] -= 1
+    return together
 
 
 def _vehicles(layout: Layout, graph: ResourceGraph, settings: Settings) -> tuple[Robot, ...]:
@@ -113,20 +138,24 @@ def _vehicles(layout: Layout, graph: ResourceGraph, settings: Settings) -> tuple
     return tuple(Robot(each.id, each.start, each.goal or goals[each.id]) for each in layout.vehicles.values())
 
 
-def _requested(layout: Layout, data: bytes) -> Iterator[Robot]:
+def _requested(layout: Layout, data: bytes, file: str) -> Iterator[Robot]:
     """The robots of a table."""
 
     def refuse(line: int, message: str) -> Refusal:
-        return Refusal("document", f"requests:{line}", RIGHT_SETTINGS.id, message)
+        return Refusal("document", f"{file}:{line}", RIGHT_SETTINGS.id, message)
 
     try:
         reader = csv.DictReader(io.StringIO(data.decode("utf-8-sig")), strict=True)
         rows = [(reader.line_num, row) for row in reader]
     except (UnicodeDecodeError, csv.Error) as error:
         raise refuse(1, f"it must be CSV in UTF-8: {error}") from None
+    seen: set[str] = set()
     for line, row in rows:
         if any(row.get(name) is None for name in ("robot", "start", "goal")) or None in row:
             raise refuse(line, "the row must have the columns robot, start and goal, and perhaps release")
+        if row["robot"] in seen:
+            raise refuse(line, f"the robot {row['robot']!r} must be given once")
+        seen.add(row["robot"])
         for name in ("start", "goal"):
             if row[name] not in layout.points:
                 raise refuse(line, f"the {name} must be a point of the layout, not {row[name]!r}")

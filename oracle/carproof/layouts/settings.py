@@ -28,8 +28,9 @@ class Settings:
     """How an instance is made: the tick in seconds, the speed of vehicles in mm/s, and the robots.
 
     Without `robots` and `requests`, they are the vehicles of the file. Goals that the file does not give are drawn.
-    `turning` is the time of a quarter turn in seconds; without it vehicles turn at once. Without a footprint vehicles
-    may use all points and lanes together that the file does not forbid.
+    Refusals of requests name their `requests_file`. `turning` is the time of a quarter turn in seconds; without it
+    vehicles turn at once. Without a footprint vehicles may use all points and lanes together that the file does not
+    forbid.
     """
 
     tick: Fraction = Fraction(1)
@@ -40,6 +41,7 @@ class Settings:
     after_goal: AfterGoal = "park"
     footprint: Footprint | None = None
     turning: Fraction | None = None
+    requests_file: str = "requests"
 
 
 def seconds(text: str, name: str = "tick") -> Fraction:

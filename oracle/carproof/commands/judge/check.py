@@ -15,7 +15,7 @@ from carp_verify.footprint.rules import FOOTPRINT_RULES
 from carp_verify.kernel import KernelVerdict, ask, request
 from carproof.api.judging import check
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import print_document, write_whole
+from carproof.command_line.files import naming, print_document, write_whole
 from carproof.command_line.foreign import Problem, solution_files
 from carproof.command_line.options import examples, json_option, kernel_option, output_option
 from carproof.command_line.tables import print_line, print_table, say
@@ -96,7 +96,8 @@ def command(  # noqa: PLR0913 - an argument an option
     if z3:
         return certified(instance, given, as_json)
     most = None if everything else MOST_LISTED
-    verdict = check(instance, given, most, size, step)
+    with naming(problem.names[0]):
+        verdict = check(instance, given, most, size, step)
     decided = kernel_verdict(instance, given, verdict) if kernel else None
     document = write_verdict(verdict) if decided is None else write(decided)
     if output is not None:
