@@ -7,13 +7,17 @@ while (simulated annealing, Kirkpatrick et al. 1983): on average by a share of a
 the cube of what is left of the cycle. There are several cycles, each from the best paths so far. Where there is time
 for many rounds, each path is one of those that arrive equally early.
 
+The better start may be a trap: where robots with short ways went first through a narrow place, crowds wait behind them,
+and no few robots can change that. Plans by LaCAM have no such order. So most cycles begin from the worse start, unless
+there are too few rounds to come down from it, or enough to leave a trap. The last cycle goes on from the best paths.
+
 A clock is looked at after each few milliseconds of work. What takes time at the end is timed on a part before. Where
 there is no time to measure all distances, the nearest robots are planned, with distances that end a little beyond
 their starts.
 """
 
 import gc
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import starmap
@@ -53,7 +57,10 @@ HOPE = 4
 """From one of this many parts of its time on, it gives up if too many robots wait for what is left of it."""
 LONGEST = 700
 """The visits of a path by prioritized planning, if LaCAM has found none that shows how many they are."""
-CYCLES = 8
+CYCLES, LEAVING, CHOOSING = 8, 1, 7
+"""The cycles; the one that leaves the better start for the worse one, and the one that chooses the best paths."""
+FEW, MANY = 8, 100
+"""The worse start is tried if at least so many rounds a robot are expected, and fewer than so many."""
 HEAT, REHEAT = 64, 16
 """The mean raise of the first rounds of the first cycle and of others, in 16ths of the mean delay of a robot."""
 ENOUGH = 32
@@ -192,7 +199,7 @@ def improve_crowd(
     timer.reserve(int(paths.size.sum()))
     if not _measured(crowd, timer):
         return solution
-    paths = improved(crowd, paths, None, timer, seed, advance)
+    paths = improved(crowd, [paths], None, timer, seed, advance)
     require_lawful(crowd, paths)
     return found_along(instance, instance.robots, paths, ways_of(crowd)).solution()
 
@@ -232,13 +239,14 @@ def _paths(crowd: Crowd, timer: Clock, is_measured: bool, iterations: int | None
     if is_measured:
         timer.reserve(int(ways_of(crowd).sum()))
         timer.begun = timer.spent
-        paths = first_paths(crowd, timer, seed)
+        starts = first_paths(crowd, timer, seed)
         timer.begun = 0.0
     else:
-        paths = _nearest(crowd, timer)
-    timer.reserve(int(paths.size.sum()))
+        starts = [_nearest(crowd, timer)]
+    timer.reserve(max(int(each.size.sum()) for each in starts))
+    paths = starts[0]
     if paths.size.all() and timer.goes_on():
-        return improved(crowd, paths, iterations, timer, seed, advance)
+        return improved(crowd, starts, iterations, timer, seed, advance)
     advance(0, int(np.count_nonzero(paths.size == 0)), int(arrivals(paths)[paths.size > 0].sum()))
     return paths
 
@@ -258,21 +266,21 @@ def _nearest(crowd: Crowd, timer: Clock) -> Paths:
     return improving.rounds.paths
 
 
-def first_paths(crowd: Crowd, timer: Clock, seed: int) -> Paths:
-    """The best paths of LaCAM and of prioritized planning; of as many robots as possible if neither has all."""
+def first_paths(crowd: Crowd, timer: Clock, seed: int) -> list[Paths]:
+    """First paths of all robots, the best ones first; those of as many as possible if nothing has all."""
     search = Search(crowd, seed)
     ways = _searched(search, STEPS, lambda: timer.goes_on(SEARCHING))
     by_steps = [] if ways is None else [paths_of(ways)]
     in_order = _planned_in_order(crowd, timer, by_steps[0].place.shape[1] if by_steps else LONGEST, seed)
     if in_order.size.all():
-        return min(in_order, *by_steps, key=_sum)
+        return sorted([in_order, *by_steps], key=_sum)
     guides = guides_of(crowd, lambda: timer.goes_on(GUIDING))
     ways = _searched(Search(crowd, seed, guides), STEPS, lambda: timer.goes_on(GUIDED))
     if ways is None and not by_steps:
         ways = _searched(search, STEPS if timer.seconds is None else NO_LIMIT, timer.goes_on)
     if ways is not None:
         by_steps.append(paths_of(ways))
-    return min(by_steps, key=_sum, default=in_order)
+    return sorted(by_steps, key=_sum) or [in_order]
 
 
 def _sum(paths: Paths) -> int:
@@ -304,40 +312,62 @@ def _planned_in_order(crowd: Crowd, timer: Clock, room: int, seed: int) -> Paths
     return improving.make_way(goes_on)
 
 
-def improved(crowd: Crowd, paths: Paths, iterations: int | None, timer: Clock, seed: int, advance: Advance) -> Paths:
-    """The best paths that rounds make of these."""
-    improving = Improving(crowd, paths, seed)
-    if not improving.begin(timer.goes_on):
-        return paths
+def improved(
+    crowd: Crowd, starts: Sequence[Paths], iterations: int | None, timer: Clock, seed: int, advance: Advance
+) -> Paths:
+    """The best paths that rounds make of the first start, and in some cycles of another, if there is one."""
+    searches = _begun(crowd, starts[0], timer, seed)
+    if not searches:
+        return starts[0]
     robots = crowd.start.size
-    least = int(improving.rounds.least.sum())
-    delays = arrivals(paths) - improving.rounds.least
-    improving.plan_each(np.argsort(-delays, kind="stable").astype(np.int32), timer.goes_on)
+    least = int(ways_of(crowd).sum())
     current = 0
-    for gone, rounds in _parts(iterations, timer, improving):
+    for gone, rounds in _parts(iterations, timer, searches):
         cycle, part = divmod(CYCLES * gone, PARTS)
+        expected = iterations or PARTS * _played(searches) // max(gone, 1)
         if cycle > current:
             current = cycle
-            if improving.total > improving.best and not improving.return_to_best(timer.goes_on):
+            if cycle == LEAVING and FEW * robots <= expected < MANY * robots:
+                for other in starts[1:2]:
+                    searches += _begun(crowd, other, timer, seed)
+            elif cycle == CHOOSING:
+                searches.sort(key=lambda each: each.best, reverse=True)
+            if searches[-1].total > searches[-1].best and not searches[-1].return_to_best(timer.goes_on):
                 break
-        expected = iterations or PARTS * improving.played // max(gone, 1)
+        improving = searches[-1]
         heat = (REHEAT if cycle else HEAT) * (improving.total - least)
         improving.play(rounds, WORK, _chance(heat, robots, expected, PARTS - part), turning=expected >= ENOUGH * robots)
-        advance(improving.played, 0, improving.best)
-        if improving.best == least:
+        best = min(each.best for each in searches)
+        advance(_played(searches), 0, best)
+        if best == least:
             break
-    return improving.rounds.best
+    return min(searches, key=lambda each: each.best).rounds.best
 
 
-def _parts(iterations: int | None, timer: Clock, improving: Improving) -> Iterator[tuple[int, int]]:
+def _begun(crowd: Crowd, paths: Paths, timer: Clock, seed: int) -> list[Improving]:
+    """A search from these paths in which each robot has been planned again; none if there is no time for it."""
+    improving = Improving(crowd, paths, seed)
+    if not improving.begin(timer.goes_on):
+        return []
+    delays = arrivals(paths) - improving.rounds.least
+    improving.plan_each(np.argsort(-delays, kind="stable").astype(np.int32), timer.goes_on)
+    return [improving]
+
+
+def _played(searches: Sequence[Improving]) -> int:
+    return sum(each.played for each in searches)
+
+
+def _parts(iterations: int | None, timer: Clock, searches: Sequence[Improving]) -> Iterator[tuple[int, int]]:
     """The parts of the time, or of the rounds, that are gone, and how many rounds to play next at most."""
     started = timer.spent
     while timer.goes_on():
         if iterations is None:
             left = (timer.seconds or 0) - timer.reserved - started
             yield min(int(PARTS * (timer.spent - started) / left), PARTS - 1), SURE
-        elif improving.played < iterations:
-            yield PARTS * improving.played // iterations, min(iterations - improving.played, 100)
+        elif _played(searches) < iterations:
+            played = _played(searches)
+            yield PARTS * played // iterations, min(iterations - played, 100)
         else:
             break
 
