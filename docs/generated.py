@@ -166,7 +166,7 @@ def figures() -> str:
     """Each figure of the site as wide as the page, under its name."""
     parts = []
     for folder in ("assets", "results/figures"):
-        for path in sorted(COPIED[folder].glob("*.svg")):
+        for path in sorted(COPIED[folder].glob("*.svg"), key=lambda path: path.stem):
             name = path.stem.replace("-", ", ").capitalize()
             parts.append(f"## {name}\n\n![{name}](../{folder}/{path.name}){{ .figure }}\n")
     return "\n".join(parts)

@@ -140,5 +140,6 @@ def section(name: str, run: Run, stored: Path) -> str:
     note = f"{run.note} Digest: `{run.digest}`.".strip()
     meaning = f"{MEANINGS[name]}\n\n" if name in MEANINGS else ""
     tables = (stored / f"{name}.md").read_text(encoding="utf-8")
-    figures = "".join(f"\n![{path.stem}](figures/{path.name})\n" for path in sorted(stored.glob(f"{name}*.svg")))
+    drawn = sorted(path.stem for path in stored.glob(f"{name}*.svg"))
+    figures = "".join(f"\n![{each}](figures/{each}.svg)\n" for each in drawn)
     return f"## {TITLES[name]}\n\n{made}\n{note}\n\n{meaning}{tables}{figures}"
