@@ -143,6 +143,9 @@ def test_what_is_not_expressed_is_listed_with_its_lines() -> None:
     assert notes["vehicle envelopes of points"] == (6,)
     assert notes["blocks of the type SAME_DIRECTION_ONLY"] == (13,)
     assert any("doors" in each.feature for each in import_layout(BUILDING.encode()).notes)
+    document = lif("1.0.0").replace('"maxSpeed": 1', '"maxSpeed": 1, "maxHeight": 2, "flies": true', 1)
+    listed = {each.feature for each in import_layout(document.encode(), settings=Settings(robots=0)).notes}
+    assert {"limits of height", "the field flies"} <= listed
 
 
 PLANT = """<model version="6.0.0" name="cross">
@@ -195,6 +198,7 @@ BROKEN = {
     "wrong version": (OPENTCS.replace('"7.0.0"', '"5.0.0"'), 2, "the version must be"),
     "external entity": ('<!DOCTYPE m [<!ENTITY e SYSTEM "file:///etc/passwd">]>\n' + OPENTCS[39:], 1, "document type"),
     "bomb": ('<!DOCTYPE m [<!ENTITY e "ha"><!ENTITY f "&e;&e;">]>\n<model version="7">&f;</model>', 1, "document type"),
+    "unknown encoding": (OPENTCS.replace('"UTF-8"', '"UTF-88"'), 1, "its encoding must be UTF-8"),
     "no end": (OPENTCS[:-10], 13, "it must be XML"),
     "dangling path": (OPENTCS.replace('sourcePoint="a"', 'sourcePoint="z"'), 8, "'z' must be one of the layout"),
     "dangling member": (OPENTCS.replace('<member name="bc"/>', '<member name="zz"/>'), 12, "'zz' must be a point or"),

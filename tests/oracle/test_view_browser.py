@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -17,12 +18,15 @@ from carp_spec.documents.instances import read_instance
 from carp_spec.documents.solutions import read_solution
 from carp_spec.execution.traces import Trace
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
+from carproof.layouts import Settings, import_layout
 from carproof.viewer.map_picture import ROBOT_RADIUS
 from carproof.viewer.page import page
 from carproof.viewer.stills import map_still
 
 LATER = 30
 FEWEST_FRAMES = 30
+READABLE = 8
+"""The least height of a name, in pixels."""
 FRAMES = 30
 CHART_IS_DRAWN = "return document.getElementById('chart').width > 400"
 
@@ -117,6 +121,27 @@ def test_the_page_and_the_still_agree_on_a_plant(driver: Chrome, tmp_path: Path)
         assert drawn == pytest.approx(placed(still[-1][0].get("transform", "")), abs=1)
         shown.script("document.getElementById('forward').click()")
     assert logged(driver, "browser") == []
+
+
+def test_names_of_a_plant_are_readable_where_it_is_drawn_small_and_none_is_over_another(
+    driver: Chrome, tmp_path: Path
+) -> None:
+    shown = opened(driver, tmp_path, *row_of_bays(24))
+    boxes = shown.script(
+        "return [...document.querySelectorAll('.point-name')].map((name) => name.getBoundingClientRect())"
+        ".map((box) => [box.left, box.right, box.height])"
+    )
+    assert len(boxes) == 24
+    assert all(height > READABLE for _, _, height in boxes)
+    assert all(one[1] <= other[0] for one, other in pairwise(sorted(boxes)))
+
+
+def row_of_bays(count: int) -> tuple[Instance, Solution]:
+    """Points in a row, with a lane from each to the next."""
+    nodes = [{"id": f"bay-{number}", "x": 4 * number, "y": number % 2} for number in range(count)]
+    links = [{"source": f"bay-{number}", "target": f"bay-{number + 1}"} for number in range(count - 1)]
+    row = json.dumps({"directed": True, "nodes": nodes, "links": links})
+    return import_layout(row.encode(), settings=Settings(robots=0)).instance, Solution((), ())
 
 
 def placed(transform: str) -> tuple[float, ...]:

@@ -21,12 +21,22 @@ LEFT_OUT = {
     "actions": "actions of nodes and edges",
     "loadRestriction": "restrictions by load",
     "corridor": "corridors",
+    "rotationAllowed": "rotation on edges",
     "rotationAtStartNodeAllowed": "directions of rotation at nodes",
     "rotationAtEndNodeAllowed": "directions of rotation at nodes",
+    "reachOrientationBeforeEntering": "orientations on edges",
     "vehicleOrientation": "orientations on edges",
+    "vehicleOrientations": "orientations on edges",
     "mobileRobotOrientations": "orientations on edges",
     "theta": "orientations at nodes",
+    "maxRotationSpeed": "speeds of rotation; --turning sets one time for all",
+    "maximumRotationSpeed": "speeds of rotation; --turning sets one time for all",
+    "reentryAllowed": "edges on which vehicles may be taken over",
 }
+HEIGHTS = ("minHeight", "maxHeight", "minimumLoadHandlingDeviceHeight", "maximumMobileRobotHeight")
+LEFT_OUT |= dict.fromkeys(HEIGHTS, "limits of height")
+KNOWN = {"vehicleTypeId", "mobileRobotTypeId", "orientationType", "maxSpeed", "maximumSpeed", "trajectory"}
+KNOWN.add("physicalLineGuidedProperty")
 
 
 def _looks_like(tree: Tree) -> bool:
@@ -83,8 +93,9 @@ def _types(layout: Layout, thing: Tree, names: tuple[str, ...]) -> list[Tree]:
     if len(types) > 1:
         layout.note("differences between types of vehicles; lanes are open to all, at the lowest speed", found)
     for each in types:
-        for name, feature in LEFT_OUT.items():
-            layout.note(feature, each.get(name))
+        for name, value in each.fields.items():
+            if name not in KNOWN:
+                layout.note(LEFT_OUT.get(name, f"the field {name}"), value)
     return types
 
 

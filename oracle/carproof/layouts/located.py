@@ -273,6 +273,8 @@ def _xml(data: bytes, file: str) -> Tree:
     except SAXParseException as error:
         line = error.getLineNumber() or 1
         raise Tree(file, line, "").refuse(f"it must be XML: {error.getMessage()}") from None
+    except LookupError:
+        raise Tree(file, 1, "").refuse("its encoding must be UTF-8") from None
     except DefusedXmlException:
         line = data.count(b"\n", 0, max(0, data.find(b"<!"))) + 1
         raise Tree(file, line, "").refuse("a document type and entities are not allowed") from None

@@ -33,6 +33,13 @@ LEFT_OUT = {
     "undock_name": "docks",
     "demo_mock_lift_name": "lifts that lanes stand for",
 }
+LEFT_OUT_AT_VERTICES = {
+    "dock_name": "docks",
+    "is_passthrough_point": "points that robots only pass through; here they may wait there",
+    "is_cleaning_zone": "zones to be cleaned",
+    "pickup_dispenser": "dispensers and ingestors",
+    "dropoff_ingestor": "dispensers and ingestors",
+}
 
 
 Groups = dict[str, list[tuple[Tree, str]]]
@@ -181,7 +188,9 @@ def _vertices(layout: Layout, level: Tree, onto: Onto, prefix: str) -> list[str]
         at = onto(*_place(vertex))
         flags = [_plain(options.get(each)) for each in STANDS]
         layout.point(vertex, id, at, stands=bool(name) or any(each is not None and each.is_true for each in flags))
-        layout.note("docks", options.get("dock_name"))
+        for name, feature in LEFT_OUT_AT_VERTICES.items():
+            value = _plain(options.get(name))
+            layout.note(feature, None if value is None or value.value in ("false", "False") else vertex)
         robot = _plain(options.get("spawn_robot_name"))
         if robot is not None and robot.value:
             layout.vehicle(vertex, robot.text, id)

@@ -31,6 +31,7 @@ def read(tree: Tree) -> Layout:
         if kind is not None and kind.value == "REPORT_POSITION":
             layout.note("report positions, at which vehicles may not halt", point)
         layout.note("vehicle envelopes of points", point.get("<vehicleEnvelope>"))
+        layout.note("bounding boxes that vehicles must fit at points", _first(point, "maxVehicleBoundingBox"))
         angle = point.get("vehicleOrientationAngle")
         layout.note("orientations at points", angle if angle is not None and angle.value != "NaN" else None)
     paths = {path["name"].text: _path(layout, path) for path in elements(tree, "path")}
@@ -45,6 +46,11 @@ def read(tree: Tree) -> Layout:
     for vehicle in elements(tree, "vehicle"):
         _vehicle(layout, vehicle)
     return layout
+
+
+def _first(thing: Tree, tag: str) -> Tree | None:
+    """The first child of the tag, if any."""
+    return next(elements(thing, tag), None)
 
 
 _PLACES = (("positionX", "xPosition"), ("positionY", "yPosition"))

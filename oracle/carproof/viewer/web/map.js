@@ -8,6 +8,8 @@ const SMALLEST_GOAL = 2;
 const SMALLEST_WITH_NAME = 6;
 const SIZE_OF_LENGTH = [0, 1.3, 1.1, 0.8, 0.6];
 const READABLE = 0.75;
+const NAME_SIZE = 9;
+const WIDTH_OF_LETTER = 0.6;
 const LARGEST = 4;
 const LARGEST_WHOLE = 2.5;
 const CLICK_DISTANCE = 4;
@@ -48,12 +50,30 @@ function pointOn(from, to, part) {
   return { x: from[0] + (to[0] - from[0]) * part, y: from[1] + (to[1] - from[1]) * part };
 }
 
+/** Where a plant is drawn small, its points have larger names, but none over another: note how large each may be. */
+function giveRoom(names) {
+  const found = names.map((name) => {
+    const [x, y, length] = [+name.getAttribute("x"), +name.getAttribute("y"), name.textContent.length];
+    const inside = (2 * Math.min(x, scene.width - x)) / (length * WIDTH_OF_LETTER);
+    return { x, y, length, name, most: Math.min(4 * NAME_SIZE, inside) };
+  });
+  for (const one of found)
+    for (const other of found)
+      if (one !== other) {
+        const letters = (one.length + other.length) / 2 + 1;
+        const beside = Math.abs(one.x - other.x) / (letters * WIDTH_OF_LETTER);
+        one.most = Math.min(one.most, Math.max(beside, Math.abs(one.y - other.y)));
+      }
+  for (const each of found) each.name.style.setProperty("--most-size", `${Math.floor(each.most)}px`);
+}
+
 class MapView {
   constructor(view, choose) {
     this.view = view;
     this.svg = view.querySelector("svg");
     [this.back, this.canvas] = view.querySelectorAll("canvas");
     this.dots = new Map();
+    giveRoom([...this.svg.querySelectorAll(".point-name")]);
     this.colours = colours();
     this.shown = { goals: true, waits: false };
     this.chosen = [];
@@ -159,6 +179,7 @@ class MapView {
     this.x = within(x, width, scene.width) - width / 2;
     this.y = within(y, height, scene.height) - height / 2;
     this.svg.setAttribute("viewBox", `${this.x} ${this.y} ${width} ${height}`);
+    this.svg.style.setProperty("--name-size", `${Math.round(NAME_SIZE / this.scale)}px`);
     this.view.classList.toggle("whole", this.isWhole);
     this.hasGoals = false;
     this.drawSoon();
