@@ -27,7 +27,14 @@ from carp_spec.inputs.options import require_planner, require_polish_options
 from carp_spec.inputs.values import known, require_instance
 from carp_spec.planners import BY_DEFAULT
 from carp_spec.polish_rules import last_round
-from carp_spec.requests import require_addition, require_assignment, require_query, require_tick, sound_solution
+from carp_spec.requests import (
+    about_stops,
+    require_addition,
+    require_assignment,
+    require_query,
+    require_tick,
+    sound_solution,
+)
 
 if TYPE_CHECKING:
     from carp_optimized.certifying import Certifier
@@ -165,7 +172,8 @@ def assign(
     """
     further = require_assignment(instance, solution, robot, stops, now, options)
     by_robot = {each.robot: each for each in solution.plans}
-    fleet = _fleet(further)
+    with about_stops([*further.robot].index(robot)):
+        fleet = _fleet(further)
     fleet.commit([by_robot[each] for each in solution.order if each != robot])
     if not fleet.add(fleet.index(robot), now, options, before=by_robot[robot]):
         return instance, solution

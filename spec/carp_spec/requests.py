@@ -3,7 +3,8 @@
 The rules are those of `carproof.requests`.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 
 from carp_spec.check import judge, solution_violations, violations_of
@@ -85,6 +86,17 @@ def further_stops(instance: Instance, robot: Robot, stops: Sequence[Stop]) -> Ro
         path = f"$.stops[{int(place) - len(robot.stops)}]{name}"
         raise Refusal("request", path, fault.rule, fault.message)
     return further
+
+
+@contextmanager
+def about_stops(robot: int) -> Iterator[None]:
+    """Put what is refused about the stops of that robot of an instance where a request for further ones has them."""
+    try:
+        yield
+    except Refusal as refusal:
+        if refusal.path != f"$.robots[{robot}].stops":
+            raise
+        raise Refusal(refusal.kind, "$.stops", refusal.rule, refusal.message) from refusal
 
 
 def require_trace(instance: Instance, solution: Solution, trace: Trace) -> None:

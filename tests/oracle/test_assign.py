@@ -65,6 +65,7 @@ def test_a_parked_robot_moves_again(carproof: Run, elsewhere: Path) -> None:
     [
         ("r2 d:-1 p --now 4", "STOP 1: the service must be a whole number of at least 0, not -1 [instance/stops]"),
         ("r2 d b:x --now 4", "STOP 2: it must be the id of a resource, and 'b:x' is not [instance/stops]"),
+        ("r2 d:9999999999 --now 4", "STOP: the services must be at most 1073741823 together, and are more; "),
         ("r9 d --now 4", "ROBOT: the instance must have the robot, and has no 'r9' [request/robot]"),
     ],
 )
@@ -74,9 +75,20 @@ def test_the_command_names_the_argument_that_is_wrong(
     del elsewhere
     save(hall=HALL, plans=PLANS)
     outcome = carproof(f"assign hall.json plans.json {arguments} -o next.json --instance after.json")
-    assert (outcome.code, outcome.stderr) == (2, f"Error: {error}\n")
+    assert outcome.code == 2
+    assert outcome.stderr.startswith(f"Error: {error}")
+    assert outcome.stderr.endswith("]\n")
     assert not Path("next.json").exists()
     assert not Path("after.json").exists()
+
+
+@pytest.mark.parametrize("names", ["-o same.json --instance ./same.json", "-o - --instance -"])
+def test_instance_and_plans_are_not_written_over_each_other(carproof: Run, elsewhere: Path, names: str) -> None:
+    save(hall=HALL, plans=PLANS)
+    outcome = carproof(f"assign hall.json plans.json r2 d --now 4 {names}")
+    assert (outcome.code, outcome.stdout) == (2, "")
+    assert "another option writes there too" in outcome.stderr
+    assert not (elsewhere / "same.json").exists()
 
 
 def test_the_op_answers_with_the_instance_and_the_plans() -> None:

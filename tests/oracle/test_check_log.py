@@ -97,13 +97,21 @@ def test_bad_logs_are_refused_by_name(carproof: Run, log: str, format: str, rule
 
 
 @pytest.mark.parametrize(
-    "table", ["", "robot,tick\n1,2\n", "robot,tick,resource\n1,x,a\n", "robot,tick,resource\n1,2,a\n1,1,b\n"]
+    ("table", "line"),
+    [
+        ("", 1),
+        ("robot,tick\n1,2\n", 1),
+        ("robot,tick,resource\n1,x,a\n", 2),
+        ("robot,tick,resource\n1,2,a\n1,1,b\n", 3),
+        ("robot,tick,resource\n1,0,6,1\n", 2),
+    ],
 )
-def test_bad_tables_are_refused_by_name(carproof: Run, table: str) -> None:
+def test_bad_tables_are_refused_by_name_and_line(carproof: Run, table: str, line: int) -> None:
     save(town=corridor([{"id": 1, "start": "a", "goal": "c"}]))
     Path("log.csv").write_text(table)
     found = carproof("check-log", "town.json", "log.csv", "--from", "csv")
     assert found.code == 2
+    assert found.stderr.startswith(f"Error: log.csv:{line}: ")
     assert found.stderr.rstrip().endswith("[adapter/log]")
 
 

@@ -313,6 +313,8 @@ def test_what_is_refused_changes_nothing(monkeypatch: pytest.MonkeyPatch, name: 
     with pytest.raises(Refusal) as refusal:
         news()[name](fleet)
     assert refusal.value.rule == name.partition(" ")[0]
+    if name == "limit/ticks service":
+        assert refusal.value.path == "$.stops"
     assert_alike(fleet, twin)
 
 

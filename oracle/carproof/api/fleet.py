@@ -14,7 +14,7 @@ from carp_spec.inputs.values import require_instance
 from carp_spec.instance_rules import ROBOT_RULES
 from carp_spec.plan_rules import has_ended, stops_served
 from carp_spec.planners import BY_DEFAULT
-from carp_spec.requests import further_stops, require_tick, sound_solution
+from carp_spec.requests import about_stops, further_stops, require_tick, sound_solution
 from carp_spec.rule import DESIGN
 from carp_spec.shapes import require_shape
 from carproof.engines import compile_what_is_kept, engine_named
@@ -243,7 +243,8 @@ class Fleet:
             message = f"it must be a robot of the fleet that has not left by {now}, and {robot!r} is not"
             raise Refusal("request", "$.robot", OWN_ROBOTS.id, message)
         further = further_stops(self._known.empty, before, stops)
-        self._made().require_robots(replace(self._known.empty, robots=(further,)))
+        with about_stops(0):
+            self._made().require_robots(replace(self._known.empty, robots=(further,)))
         self._require_little("$.stops", len(further.stops))
         with self._changing() as core:
             core.forget_old_records()

@@ -21,6 +21,7 @@ T = TypeVar("T")
 STANDARD_INPUT = "-"
 STANDARD_OUTPUT = Path("/dev/stdout")
 TAKEN = "carproof.standard-output-is-taken"
+WRITTEN = "carproof.files-to-write"
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
 
@@ -63,9 +64,12 @@ class OutputFile(click.ParamType[Path]):
         """Refuse a name that cannot be written, before any work is done."""
         if not value:
             self.fail("the name of a file must not be empty.", param, ctx)
+        path = take_standard_output(ctx) if value == "-" else target(Path(value))
+        others: dict[Path, object] = {} if ctx is None else ctx.meta.setdefault(WRITTEN, {})
+        if others.setdefault(path, param) is not param and (value == "-" or not path.exists() or path.is_file()):
+            self.fail(f"{value}: another option writes there too.", param, ctx)
         if value == "-":
-            return take_standard_output(ctx)
-        path = target(Path(value))
+            return path
         if path.is_dir():
             self.fail(f"{value}: it is a folder.", param, ctx)
         if not path.parent.is_dir():

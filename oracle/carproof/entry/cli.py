@@ -42,6 +42,9 @@ check --require-all, a robot without a plan), 2 bad input or usage,
 3 undecided within the limit given.
 """
 
+ARGUMENTS = {"$.robot": "ROBOT", "$.stops": "STOP"}
+"""The arguments of commands that stand for fields of requests."""
+
 
 @click.group(
     cls=LazyGroup,
@@ -128,8 +131,8 @@ def _naming_extras(context: click.Context) -> Iterator[None]:
 
 def _option(path: str) -> str:
     """The command line's name of what Python and documents call `$.map_seed`, `$.robot` or `$.stops[0].resource`."""
-    if path == "$.robot":
-        return "ROBOT"
+    if path in ARGUMENTS:
+        return ARGUMENTS[path]
     if stop := re.match(r"\$\.stops\[(\d+)\]", path):
         return f"STOP {int(stop[1]) + 1}"
     return "--" + path[2:].replace("_", "-") if path.startswith("$.") else path

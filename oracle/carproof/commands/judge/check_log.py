@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Sequence
+from contextlib import nullcontext
 from dataclasses import astuple
 
 import click
@@ -62,7 +63,7 @@ def command(
     data, name = read_bytes(files[-1]), shown(files[-1])
     if map is None:
         instance = read_instance_file(files[0])
-        with naming(files[-1]):
+        with naming(files[-1]) if format == "trace" else nullcontext():  # the others name it with the line
             log = read_log(data, instance, format, name)
     else:
         instance, log = read_log_on_map(data, read_map(read_bytes(map), shown(map)), format, name)

@@ -27,6 +27,9 @@ def read(data: bytes, instance: Instance, file: str) -> Trace:
     now = 0
     for number, row in enumerate(rows, start=2):
         require_bounded(number, file)
+        if None in row:
+            message = "the line must have no more values than the first has columns; a value with a comma is quoted"
+            raise wrong(f"{file}:{number}", message)
         robot, tick, resource = (row[name] for name in COLUMNS)
         if robot is None or tick is None or resource is None or not re.fullmatch(r"\d{1,18}", tick.strip()):
             raise wrong(
