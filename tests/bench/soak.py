@@ -115,6 +115,7 @@ class Client:
         self.instance = replace(drawn, robots=(), after_goal="park" if self.draw.happens(2) else "vanish")
         self.plans: dict[RobotId, Plan] = {}
         self.now = 0
+        self.told: tuple[RobotId, int, int] = ("", 0, -1)
         self.accept(self.server.ask(op="fleet/open", fleet="f", instance=instance_document(self.instance), m=2))
 
     def request(self) -> None:
@@ -148,6 +149,10 @@ class Client:
         robots = tuple(robot for robot in self.instance.robots if robot.id in self.plans)
         self.instance = replace(self.instance, robots=robots)
         assert carproof.check(self.instance, Solution.of(self.instance, self.plans.values())).valid, answer
+        robot, entered, tick = self.told
+        if tick == self.now and robot in self.plans:
+            here = next(visit for visit in self.plans[robot].visits if visit.enter == entered)
+            assert here.leave is None or here.leave > tick, answer
         if keeps_history:
             assert not carproof.check_update(before, tuple(self.plans.values()), self.now), answer
         return result
@@ -210,6 +215,7 @@ class Client:
                 if "error" in answer:
                     self.refuse(answer, "plan/start")
                 else:
+                    self.told = (plan.robot, done[-2].enter, self.now)
                     self.accept(answer, keeps_history=False)
                 return
         self.advance()

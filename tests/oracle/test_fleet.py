@@ -71,29 +71,30 @@ def test_news_of_every_kind_has_the_plans_of_whole_solutions(part: int) -> None:
         mix = replace(CROWDED if number % 3 else ROOMS, stops=draw.one_of((1, 3)), services=(0, 0, 1, 4))
         drawn = draw_instance(draw, mix)
         options = draw_options(draw)
-        instance, whole, now = replace(drawn, robots=()), Solution((), ()), 0
+        instance, whole, now, told_at = replace(drawn, robots=()), Solution((), ()), 0, -1
         fleet = Fleet(instance, planner=options)
         for each in drawn.robots:
             now += draw.one_of((0, 1, 2))
             robot = replace(each, release=max(each.release, now))
             instance = replace(instance, robots=(*instance.robots, robot))
-            change = fleet.add(robot, now=now, audit=True)
-            before, whole = whole, carp_optimized.add(instance, whole, robot.id, now, options)
+            change, at = fleet.add(robot, now=now, audit=True), max(now, told_at + 1)
+            before, whole = whole, carp_optimized.add(instance, whole, robot.id, at, options)
             assert_news(fleet, change, before, whole)
-            going = [each for each in fleet.instance.robots if not has_ended(plan_of(fleet, each.id), now)]
+            going = [each for each in fleet.instance.robots if not has_ended(plan_of(fleet, each.id), at)]
             if going and draw.happens(2):
                 chosen = draw.one_of(going)
                 places = [place for place in instance.graph.index if place != chosen.goal]
                 stops = [Stop(draw.one_of(places), draw.one_of((0, 3)))]
                 change = fleet.assign(chosen.id, stops, now, audit=True)
                 before = whole
-                further, whole = carp_optimized.assign(instance, whole, chosen.id, stops, now, options)
+                further, whole = carp_optimized.assign(instance, whole, chosen.id, stops, at, options)
                 assert (chosen.id in change.unplanned) == (further is instance)
                 instance = further
                 assert_news(fleet, change, before, whole)
             late = late_plan(fleet, now)
             if late and draw.happens(2):
                 after = {plan.robot: plan for plan in told(fleet, Trace(now, (late,)))}
+                told_at = now if after else told_at
                 whole = replace(whole, plans=tuple(after.get(plan.robot, plan) for plan in whole.plans))
             assert check(*fleet.rest()).valid
         known = fleet.rest()
@@ -166,6 +167,24 @@ def test_robots_that_are_late_make_others_wait_and_keep_what_was_done() -> None:
     assert fleet.advance(9).left == ("x", "y")
 
 
+def test_who_was_told_to_stand_somewhere_has_not_left_by_then() -> None:
+    fleet = Fleet(lane(capacity=2))
+    fleet.add(Robot("r", "a", "g"))
+    fleet.trace(Trace(3, (Plan("r", (Visit("a", 0, 1), Visit("b", 1, None))),)))
+    news: tuple[Callable[[], Change], ...] = (
+        lambda: fleet.polish(iterations=5, audit=True),
+        lambda: fleet.add(Robot("s", "h", "a", release=3), audit=True),
+        lambda: fleet.assign("r", [Stop("h")], audit=True),
+    )
+    for each in news:
+        change = each()
+        assert change.audit is not None
+        assert not change.audit.late
+        assert plan_of(fleet, "r").visits[1] == Visit("b", 1, 4)
+    fleet.trace(Trace(3, (Plan("s", (Visit("h", 3, None),)),)))
+    assert plan_of(fleet, "r").visits[1] == Visit("b", 1, 4)
+
+
 def town(edges: str, slow: str = "") -> Instance:
     """Places with names of one letter, joined by edges such as `ab`; a slow one takes three ticks."""
     places = dict.fromkeys(edges.replace(" ", ""))
@@ -183,7 +202,7 @@ def test_who_need_not_wait_any_more_for_one_that_is_late_may_get_another_plan() 
     fleet.trace(Trace(18, (Plan("x", (Visit("i", 0, None),)),)))
     near = Robot("z", "q", "r", release=70)
     whole = carp_optimized.add(
-        replace(hall, robots=(waits, late, goes, near)), fleet.solution, "z", 18, Neighbourhood(m=2)
+        replace(hall, robots=(waits, late, goes, near)), fleet.solution, "z", 19, Neighbourhood(m=2)
     )
     fleet.add(near, now=18)
     assert {*fleet.solution.plans} == {*whole.plans}

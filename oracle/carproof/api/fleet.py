@@ -75,7 +75,7 @@ class _Known:
     """What a fleet knows: robots in the order of their arrival, their plans, and how many came so far.
 
     `empty` is the instance without robots; `places` are the numbers of the robots in planning order, and `ids` the ids
-    by number. `numbers` say how many came before each robot.
+    by number. `numbers` say how many came before each robot. `told` is the tick of the last trace, -1 without one.
     """
 
     empty: Instance
@@ -86,6 +86,11 @@ class _Known:
     ids: Sequence[RobotId]
     numbers: Mapping[RobotId, int]
     count: int
+    told: int = -1
+
+    def from_tick(self, now: int) -> int:
+        """The tick from which plans may change at the tick now: what a trace told of its tick has happened."""
+        return max(now, self.told + 1)
 
     @property
     def order(self) -> tuple[RobotId, ...]:
@@ -222,7 +227,7 @@ class Fleet:
             before = core.records
             for number, robot in enumerate(robots, self._known.count):
                 place = core.enlist(robot)
-                if not core.add(place, now, self._planner, number):
+                if not core.add(place, self._known.from_tick(now), self._planner, number):
                     core.dismiss([place])
                     unplanned.append(robot.id)
             changed = [plan for plan in core.changed_since(before) if plan != self._known.plans.get(plan.robot)]
@@ -249,7 +254,8 @@ class Fleet:
         with self._changing() as core:
             core.forget_old_records()
             held, plan = core.records, self._known.plans[robot].plan
-            is_found = core.assign(further, before, plan, now, self._planner, self._known.numbers[robot])
+            at = self._known.from_tick(now)
+            is_found = core.assign(further, before, plan, at, self._planner, self._known.numbers[robot])
             changed = [each for each in core.changed_since(held) if each != self._known.plans[each.robot]]
             change = Change(now, tuple(changed), () if is_found else (robot,), ())
             return self._take_over(core, change, self._before(audit), {robot: further} if is_found else {})
@@ -271,8 +277,8 @@ class Fleet:
         """Report what robots have done by the tick of a trace, where it is not what was planned; plans are retimed.
 
         Robots that the trace does not name have done what was planned, later only where they wait for others in the
-        planned order. Raises `Refusal` for a tick that has passed, unknown robots, and a trace that does not follow
-        the plans.
+        planned order. Nobody moves otherwise at that tick any more: other news of it changes plans from the next on.
+        Raises `Refusal` for a tick that has passed, unknown robots, and a trace that does not follow the plans.
         """
         require_shape(trace, Trace)
         now = self._tick(trace.now)
@@ -288,7 +294,7 @@ class Fleet:
         others = tuple(plan for plan in held_up(instance, solution, trace).plans if plan.robot not in told)
         whole = Trace(now, (*trace.plans, *until(Trace(now, others), now).plans))
         after = retime(instance, solution, whole)
-        return self._replan(now, after, after.plans if audit else None)
+        return self._replan(now, after, after.plans if audit else None, now)
 
     def polish(
         self, *, iterations: int | None = None, seconds: float | None = None, seed: int = 0, audit: bool = False
@@ -296,17 +302,18 @@ class Fleet:
         """Improve the plans of the rest of the way as `carproof.polish` does; raises `Refusal` for wrong options."""
         polish = engine_named("optimized").polish
         before = self.instance, self.solution
-        better = polish(*before, iterations=iterations, seconds=seconds, seed=seed, now=self.now)
-        return self._replan(self.now, better, self._before(audit))
+        better = polish(*before, iterations=iterations, seconds=seconds, seed=seed, now=self._known.from_tick(self.now))
+        return self._replan(self.now, better, self._before(audit), self._known.told)
 
     def _before(self, audit: bool) -> Sequence[Plan] | None:
         return [each.plan for each in self._known.plans.values()] if audit else None
 
-    def _replan(self, now: int, solution: Solution, before: Sequence[Plan] | None) -> Change:
+    def _replan(self, now: int, solution: Solution, before: Sequence[Plan] | None, told: int) -> Change:
         changed = [plan for plan in solution.plans if plan != self._known.plans[plan.robot].plan]
         with self._changing() as core:
             core.replan(changed, solution.order)
-            return self._take_over(core, Change(now, tuple(map(PlanColumns.of, changed)), (), ()), before)
+            change = Change(now, tuple(map(PlanColumns.of, changed)), (), ())
+            return self._take_over(core, change, before, told=told)
 
     def _tick(self, now: int | None) -> int:
         if now is None:
@@ -362,6 +369,7 @@ class Fleet:
         change: Change,
         before: Sequence[Plan] | None,
         new: Mapping[RobotId, Robot] = NOBODY,
+        told: int | None = None,
     ) -> Change:
         """Know what the compiled fleet holds, without the plans that have ended by now.
 
@@ -377,7 +385,8 @@ class Fleet:
         for id in (*left, *(each for each in change.unplanned if each not in plans)):
             del robots[id], numbers[id]
             plans.pop(id, None)
-        after = _Known(known.empty, change.now, robots, plans, *core.places, numbers, known.count + len(come))
+        last = known.told if told is None else told
+        after = _Known(known.empty, change.now, robots, plans, *core.places, numbers, known.count + len(come), last)
         found = None if before is None else _audited(after, change.columns, before)
         self._known = after
         return Change(change.now, change.columns, change.unplanned, left, found)
@@ -385,7 +394,9 @@ class Fleet:
 
 def _audited(known: _Known, changed: Sequence[PlanColumns], before: Sequence[Plan]) -> Audit:
     sound, engine = sound_solution(known.instance, known.solution), engine_named("optimized")
-    return audit_changes(known.instance, sound, engine, {plan.robot for plan in changed}, before, known.now)
+    return audit_changes(
+        known.instance, sound, engine, {plan.robot for plan in changed}, before, known.from_tick(known.now)
+    )
 
 
 def _require_time(robot: Robot, now: int, path: str) -> None:
