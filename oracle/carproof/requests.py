@@ -5,6 +5,8 @@ Refusals name paths in the wrong document: `$.plans[2].visits[0]`.
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from math import inf
+from time import perf_counter
 
 from carp_spec import Instance, Refusal, RobotId, Solution
 from carp_spec.requests import require_robot, sound_solution
@@ -26,6 +28,15 @@ SOUND_PLANS = Code(
 POSITIVE_LIMIT = Code("request/limit", "The limit of a search, in seconds or steps, is a number above 0.", DESIGN)
 PAST_LOG = Code("log/now", "Nothing in a log happens after its tick now.", DESIGN)
 REQUEST_RULES: tuple[Code, ...] = (KNOWN_ROBOT, TICK, SOUND_PLANS, POSITIVE_LIMIT, PAST_LOG)
+
+
+def deadline(seconds: object) -> float:
+    """The tick of `perf_counter` at which so many seconds are over (`None`: never); raises `Refusal` for wrong ones."""
+    if seconds is None:
+        return inf
+    if (type(seconds) is int or type(seconds) is float) and 0 < seconds < inf:
+        return perf_counter() + seconds
+    raise Refusal("option", "$.seconds", POSITIVE_LIMIT.id, f"it must be a number above 0, not {seconds!r}")
 
 
 def robot_called(instance: Instance, name: str) -> RobotId:

@@ -2,11 +2,12 @@
 
 import json
 from dataclasses import replace
-from itertools import permutations
+from itertools import chain, permutations, repeat
 from pathlib import Path
 
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
 from tests.oracle.running import EAST, EAST_PLAN, TWO_PLANNED, Run, corridor, line, save, solution, town
 
 import carp_reference
@@ -33,30 +34,30 @@ def _alone(folder: Path) -> None:
 
 
 def last_row(stdout: str) -> list[str]:
-    return stdout.splitlines()[2].split()[:5]
+    return stdout.splitlines()[2].split()[:6]
 
 
 def test_plans_that_are_optimal_in_their_order_are_certified(carproof: Run) -> None:
     save(plans={**TWO_PLANNED, "order": ["r2", "r1"]})
     outcome = carproof("audit town.json plans.json")
     assert (outcome.code, outcome.stderr) == (0, "")
-    assert last_row(outcome.stdout) == ["2", "2", "0", "0", "carp_verify"]
+    assert last_row(outcome.stdout) == ["2", "2", "0", "0", "0", "carp_verify"]
     document = json.loads(carproof("audit town.json plans.json --json").stdout)
-    assert document == {"certified": ["r2", "r1"], "late": [], "unplanned": 0, "by": "carp_verify"}
+    assert document == {"certified": ["r2", "r1"], "late": [], "undecided": [], "unplanned": 0, "by": "carp_verify"}
 
 
 def test_a_late_plan_is_shown_with_an_earlier_one(carproof: Run) -> None:
     for engine in ("optimized", "reference"):
         outcome = carproof(f"audit alone.json late.json --engine {engine}")
         assert outcome.code == 1
-        assert last_row(outcome.stdout)[:4] == ["1", "0", "1", "0"]
+        assert last_row(outcome.stdout)[:5] == ["1", "0", "1", "0", "0"]
         assert outcome.stdout.splitlines()[-1] == "robot r1 arrives at 3, and can at 2: a[0,1) b[1,2) c[2,3)"
     late = json.loads(carproof("audit alone.json late.json --json").stdout)["late"]
     assert late == [{"robot": "r1", "arrival": 3, "earliest": 2, "plan": EAST_PLAN}]
 
 
 def test_robots_without_a_plan_are_counted(carproof: Run) -> None:
-    assert last_row(carproof("audit town.json one.json").stdout)[:4] == ["2", "1", "0", "1"]
+    assert last_row(carproof("audit town.json one.json").stdout)[:5] == ["2", "1", "0", "0", "1"]
 
 
 def test_an_order_is_found_for_plans_in_another_planners_format(carproof: Run, folder: Path) -> None:
@@ -66,7 +67,7 @@ def test_an_order_is_found_for_plans_in_another_planners_format(carproof: Run, f
     result.write_text("solution=\n0:(0,0),(1,0),\n1:(1,0),(1,1),\n2:(2,0),(1,1),\n")
     outcome = carproof(audit)
     assert (outcome.code, outcome.stderr) == (0, "")
-    assert last_row(outcome.stdout)[:4] == ["2", "2", "0", "0"]
+    assert last_row(outcome.stdout)[:5] == ["2", "2", "0", "0", "0"]
     result.write_text("solution=\n0:(0,0),(1,0),\n1:(0,0),(1,1),\n2:(1,0),(1,1),\n3:(2,0),(1,1),\n")
     late = carproof(audit)
     assert late.code == 1
@@ -82,6 +83,14 @@ def test_another_order_is_looked_for_where_it_is_asked_for(carproof: Run) -> Non
     assert carproof("audit cross.json plans.json").code == 1
     outcome = carproof("audit cross.json plans.json --find-order --json")
     assert (outcome.code, json.loads(outcome.stdout)["certified"]) == (0, ["r2", "r1"])
+
+
+@pytest.mark.parametrize("seconds", ["0", "-1", "nan", "inf"])
+def test_a_wrong_time_is_refused(carproof: Run, seconds: str) -> None:
+    save(town=town("ab", [{"id": "r1", "start": "a", "goal": "b"}]), plans=solution({"r1": [["a", 0, 1], ["b", 1, 2]]}))
+    assert carproof(f"audit town.json plans.json --seconds {seconds}").code == 2
+    assert carproof("audit town.json plans.json --seconds 0.001").code == 3
+    assert carproof("audit town.json plans.json --seconds 9").code == 0
 
 
 @given(planned_instances(Sizes(groups=1, stops=3, service=3)))
@@ -110,6 +119,20 @@ def test_an_order_is_found_if_there_is_one(planned: PlannedInstance) -> None:
     if possible:
         order = tuple(plan.robot for plan in audit.certified)
         assert audit_in_order(planned.instance, _ordered(planned, order), REFERENCE).holds
+
+
+@given(planned_instances(), st.integers(0, 9))
+def test_what_there_is_no_time_for_is_undecided(planned: PlannedInstance, most: int) -> None:
+    for look in (audit_in_order, audit_in_some_order):
+        questions = chain(repeat(True, most), repeat(False))
+        audit = look(planned.instance, planned.solution, REFERENCE, goes_on=questions.__next__)
+        whole = look(planned.instance, planned.solution, REFERENCE)
+        found = [*audit.certified, *(each.plan for each in audit.late), *audit.undecided]
+        assert sorted(found, key=str) == sorted(planned.solution.plans, key=str)
+        assert audit.certified == whole.certified[: len(audit.certified)]
+        assert len(audit.certified) + len(audit.late) <= most
+        assert audit.holds <= whole.holds
+        assert audit == whole or audit.undecided
 
 
 def _ordered(planned: PlannedInstance, order: tuple[RobotId, ...]) -> Solution:

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from math import inf
-from time import perf_counter
 
 from carp_spec import Instance, Refusal, RobotId, Solution
 from carp_spec.execution.traces import Trace
@@ -14,6 +13,7 @@ from carproof.execution.delays import Delay
 from carproof.execution.releasing import MOST_STATES, GrantsVerdict, Limit, Released, Releasing
 from carproof.execution.simulation import DRIVERS, Driver, Execution, delays_are_right
 from carproof.execution.simulation import execute as executed
+from carproof.requests import deadline
 
 
 def execute(instance: Instance, solution: Solution, driver: Driver, delays: Sequence[Delay] = ()) -> Execution:
@@ -77,8 +77,5 @@ def _limit(states: int | None, seconds: float | None) -> Limit:
     if states is not None and not is_between(states, 1):
         message = f"it must be a whole number of at least 1, not {states!r}"
         raise Refusal("option", "$.states", "request/limit", message)
-    if seconds is None:
-        return Limit(states or MOST_STATES)
-    if type(seconds) not in (int, float) or not 0 < seconds < inf:
-        raise Refusal("option", "$.seconds", "request/limit", f"it must be a number above 0, not {seconds!r}")
-    return Limit(states or inf, perf_counter() + seconds)
+    until = deadline(seconds)
+    return Limit(states or (MOST_STATES if seconds is None else inf), until)

@@ -1,6 +1,7 @@
 """Solutions and traces checked, and audits."""
 
 from dataclasses import replace
+from time import perf_counter
 
 from carp_spec import Instance, Refusal, Solution, Verdict, judge, total_cost
 from carp_spec.check import MOST_LISTED
@@ -11,6 +12,7 @@ from carp_verify.footprint.apart import footprint_violations
 from carp_verify.footprint.rules import Footprint, cells_have_a_step
 from carproof.engines import engine_named
 from carproof.judging.audit import Audit, audit_in_order, audit_in_some_order
+from carproof.requests import deadline
 
 
 def check(
@@ -47,12 +49,13 @@ def check_trace(instance: Instance, solution: Solution, trace: Trace) -> Verdict
     return Verdict(total_cost(instance, sound.plans), len(sound.unplanned), violations)
 
 
-def audit(instance: Instance, solution: Solution, *, find_order: bool = False) -> Audit:
+def audit(instance: Instance, solution: Solution, *, find_order: bool = False, seconds: float | None = None) -> Audit:
     """Certify that no robot can arrive earlier beside the plans before its own, or find the earlier plans.
 
-    The order is that of the solution; with `find_order`, any in which each plan is optimal, if there is one. Raises
-    `Refusal` for a solution that breaks a rule.
+    The order is that of the solution; with `find_order`, any in which each plan is optimal, if there is one. Plans
+    are undecided that are not looked at in so many seconds. Raises `Refusal` for a solution that breaks a rule.
     """
+    until = deadline(seconds)
     sound = sound_solution(instance, solution)
     audited = audit_in_some_order if find_order else audit_in_order
-    return audited(instance, sound, engine_named(None))
+    return audited(instance, sound, engine_named(None), goes_on=lambda: perf_counter() < until)

@@ -7,7 +7,7 @@ without a plan.
 """
 
 from collections.abc import Callable, Container, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import msgspec
 
@@ -35,18 +35,20 @@ class Late:
 class Audit:
     """The findings of an audit, in the order in which it looked at the plans, and the checker that decided.
 
-    The certificates are in JSON: those of 1,000 robots may have millions of potentials.
+    What it had no time to look at is undecided. The certificates are in JSON: those of 1,000 robots may have millions
+    of potentials.
     """
 
     certified: list[Plan] = field(default_factory=list)
     certificates: list[msgspec.Raw] = field(default_factory=list)
     late: list[Late] = field(default_factory=list)
+    undecided: list[Plan] = field(default_factory=list)
     by: str = CHECKER
 
     @property
     def holds(self) -> bool:
         """Whether each plan is certified."""
-        return not self.late
+        return not self.late and not self.undecided
 
 
 class Auditor:
@@ -94,11 +96,18 @@ class Auditor:
 
 
 def audit_in_order(
-    instance: Instance, solution: Solution, engine: Engine, advance: Callable[[], None] = lambda: None
+    instance: Instance,
+    solution: Solution,
+    engine: Engine,
+    advance: Callable[[], None] = lambda: None,
+    goes_on: Callable[[], bool] = lambda: True,
 ) -> Audit:
-    """Audit a solution that breaks no rule in its planning order."""
+    """Audit a solution that breaks no rule in its planning order, as long as there is time."""
     auditor = Auditor(instance, engine)
     for plan in in_order(solution):
+        if not goes_on():
+            auditor.audit.undecided.append(plan)
+            continue
         earlier = auditor.earlier_plan(plan)
         if earlier is not None:
             auditor.is_late(plan, earlier)
@@ -128,20 +137,28 @@ def audit_changes(
 
 
 def audit_in_some_order(
-    instance: Instance, solution: Solution, engine: Engine, advance: Callable[[], None] = lambda: None
+    instance: Instance,
+    solution: Solution,
+    engine: Engine,
+    advance: Callable[[], None] = lambda: None,
+    goes_on: Callable[[], bool] = lambda: True,
 ) -> Audit:
     """Audit a solution that breaks no rule in an order in which each plan is optimal, if there is one.
 
     A plan that is optimal beside some plans stays optimal beside more of them, which leave less room. So every plan can
     be committed as soon as it is optimal. If none of the rest is optimal, no such order exists: the first of the rest
-    would be late in it. A plan stays late as long as there is room for the earlier one that was found.
+    would be late in it. A plan stays late as long as there is room for the earlier one that was found. If the time is
+    over before, the rest is undecided.
     """
     auditor = Auditor(instance, engine)
     waiting: list[tuple[Plan, Plan | None]] = [(plan, None) for plan in in_order(solution)]
     is_moving = True
     while is_moving:
         is_moving, asked, waiting = False, waiting, []
-        for plan, known in asked:
+        for number, (plan, known) in enumerate(asked):
+            if not goes_on():
+                auditor.audit.undecided = [each for each, _ in (*waiting, *asked[number:])]
+                return auditor.audit
             earlier = known if known is not None and auditor.has_room(known) else auditor.earlier_plan(plan)
             if earlier is None:
                 auditor.commit(plan)
@@ -161,14 +178,13 @@ def in_order(solution: Solution) -> Iterator[Plan]:
     return (plans[robot] for robot in solution.order)
 
 
-def ask_kernel(instance: Instance, solution: Solution, audit: Audit) -> None:
+def ask_kernel(instance: Instance, audit: Audit) -> None:
     """Let the kernel decide: the certificates of all plans, or that each earlier plan found breaks no rule.
 
     Raises `ContradictionError` if it decides otherwise.
     """
-    if audit.holds:
-        order = tuple(plan.robot for plan in audit.certified)
-        document = solution_document(replace(solution, order=order))
+    if not audit.late:
+        document = solution_document(Solution.of(instance, audit.certified))
         requests = [request("audit", instance, solution=document, certificates=audit.certificates)]
     else:
         solutions = [Solution.of(instance, (*late.before, late.earlier)) for late in audit.late]

@@ -42,10 +42,14 @@ class LateDocument(msgspec.Struct, frozen=True):
 
 
 class AuditDocument(msgspec.Struct, frozen=True):
-    """The robots whose plans are certified, in order, those whose plans are late, and the checker that decided."""
+    """The robots whose plans are certified, in order, those whose plans are late, and the checker that decided.
+
+    Robots are undecided that the audit had no time to look at.
+    """
 
     certified: tuple[RobotId, ...]
     late: tuple[LateDocument, ...]
+    undecided: tuple[RobotId, ...]
     unplanned: int
     by: str
 
@@ -59,6 +63,7 @@ def audit_document(audit: Audit, solution: Solution) -> AuditDocument:
     return AuditDocument(
         certified=tuple(plan.robot for plan in audit.certified),
         late=tuple(late),
+        undecided=tuple(plan.robot for plan in audit.undecided),
         unplanned=len(solution.unplanned),
         by=audit.by,
     )

@@ -26,8 +26,11 @@ from carproof.formats import format_of, read_foreign_solution
 from carproof.judging.audit import Audit, ask_kernel, audit_in_order, audit_in_some_order
 from carproof.judging.documents import arrival_of, audit_document
 from carproof.progress import progress
+from carproof.requests import deadline
 
-COLUMNS = ("robots", "certified", "late", "unplanned", "decided by", "time")
+COLUMNS = ("robots", "certified", "late", "undecided", "unplanned", "decided by", "time")
+ENDING = 0.05
+"""The seconds that it takes to print the answer, and to end."""
 OWN_FORMAT = "carproof"
 
 
@@ -36,6 +39,7 @@ OWN_FORMAT = "carproof"
     epilog=examples(
         "carproof audit town.json plans.json",
         "carproof audit town.json plans.json --kernel",
+        "carproof audit town.json plans.json --seconds 10",
         "carproof audit --map town.map --scen town.scen --agents 40 result.txt",
     ),
 )
@@ -43,10 +47,13 @@ OWN_FORMAT = "carproof"
 @movingai_options
 @from_option
 @click.option("--find-order", is_flag=True, help="Look for an order in which no plan is late, whatever SOLUTION says.")
+@click.option("--seconds", type=float, help="The time of the whole command, without the kernel's.")
 @kernel_option
 @engine_option
 @json_option
+@click.pass_context
 def command(  # noqa: PLR0913 - one parameter for each argument and option
+    context: click.Context,
     *,
     files: Sequence[str],
     map: str | None,
@@ -54,6 +61,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     agents: int | None,
     format: str | None,
     find_order: bool,
+    seconds: float | None,
     kernel: bool,
     engine: str | None,
     as_json: bool,
@@ -68,8 +76,11 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     An audit does not judge ties, whether another order would be better, or whether robots without a plan could have
     one.
 
-    Exit codes: 0 each plan is certified, 1 a plan is late, 2 bad input.
+    With --seconds, plans that the audit has no time to look at are undecided.
+
+    Exit codes: 0 each plan is certified, 1 a plan is late, 2 bad input, 3 no plan is late, and some are undecided.
     """
+    until = deadline(seconds) - perf_counter() + context.find_root().obj - ENDING
     *instances, solution = files
     benchmark = MovingAI.of(map, scen, agents)
     if len(instances) != (benchmark is None):
@@ -85,19 +96,19 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     certifying = engine_named(engine or "optimized")  # compiled before the clock starts
     started = perf_counter()
     with progress("auditing", len(sound.plans)) as advance:
-        audit = look(instance, sound, certifying, advance)
+        audit = look(instance, sound, certifying, advance, lambda: perf_counter() < until)
     if kernel:
-        ask_kernel(instance, sound, audit)
+        ask_kernel(instance, audit)
     if as_json:
         print_document(write(audit_document(audit, sound)))
     else:
-        seconds = f"{perf_counter() - started:.2f} s"
-        row = [len(instance.robots), len(audit.certified), len(audit.late), len(sound.unplanned), audit.by, seconds]
-        print_table(COLUMNS, [row], numbers=COLUMNS[:4])
+        time = f"{perf_counter() - started:.2f} s"
+        counted = (instance.robots, audit.certified, audit.late, audit.undecided, sound.unplanned)
+        print_table(COLUMNS, [[*(len(each) for each in counted), audit.by, time]], numbers=COLUMNS[:5])
         print_late(audit)
-        if look is audit_in_some_order and not audit.holds:
+        if look is audit_in_some_order and audit.late:
             print_line("in no order are all plans optimal: these are late beside the plans that are certified")
-    return Answer.of(audit.holds)
+    return Answer.UNDECIDED if audit.undecided and not audit.late else Answer.of(audit.holds)
 
 
 def print_late(audit: Audit) -> None:

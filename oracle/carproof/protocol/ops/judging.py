@@ -1,6 +1,7 @@
 """The ops that judge: solutions, and certificates."""
 
 from dataclasses import dataclass
+from time import perf_counter
 
 from carp_spec import Instance, Solution
 from carp_spec.documents.bounds import BoundDocument
@@ -13,7 +14,7 @@ from carproof.judging.documents import AuditDocument, VerifiedBoundDocument, Ver
 from carproof.judging.verdicts import verify_bound as bound_verdict
 from carproof.judging.verdicts import verify_query as query_verdict
 from carproof.layouts.settings import footprint, step_of_cells
-from carproof.requests import inside, sound_within
+from carproof.requests import deadline, inside, sound_within
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,18 +70,20 @@ def verify_query(request: VerifyQueryRequest, engine: Engine) -> VerifiedQueryDo
 
 @dataclass(frozen=True, slots=True)
 class AuditRequest:
-    """A solution, and whether the proved kernel is to decide."""
+    """A solution, whether the proved kernel is to decide, and the time to look at plans."""
 
     instance: Instance
     solution: Solution
     kernel: bool = False
+    seconds: float | None = None
 
 
 def audit(request: AuditRequest, engine: Engine) -> AuditDocument:
     """Certify that no robot can arrive earlier beside the plans before its own in planning order."""
+    until = deadline(request.seconds)
     sound = sound_within(request.instance, request.solution)
     with inside("$.instance"):
-        found = audit_in_order(request.instance, sound, engine)
+        found = audit_in_order(request.instance, sound, engine, goes_on=lambda: perf_counter() < until)
     if request.kernel:
-        ask_kernel(request.instance, sound, found)
+        ask_kernel(request.instance, found)
     return audit_document(found, sound)
