@@ -29,13 +29,16 @@ POSITIVE_LIMIT = Code("request/limit", "The limit of a search, in seconds or ste
 PAST_LOG = Code("log/now", "Nothing in a log happens after its tick now.", DESIGN)
 REQUEST_RULES: tuple[Code, ...] = (KNOWN_ROBOT, TICK, SOUND_PLANS, POSITIVE_LIMIT, PAST_LOG)
 
+LONGEST = 10**9
+"""More seconds than anybody waits; a float cannot hold each larger number."""
+
 
 def deadline(seconds: object) -> float:
     """The tick of `perf_counter` at which so many seconds are over (`None`: never); raises `Refusal` for wrong ones."""
     if seconds is None:
         return inf
     if (type(seconds) is int or type(seconds) is float) and 0 < seconds < inf:
-        return perf_counter() + seconds
+        return perf_counter() + min(seconds, LONGEST)
     raise Refusal("option", "$.seconds", POSITIVE_LIMIT.id, f"it must be a number above 0, not {seconds!r}")
 
 
