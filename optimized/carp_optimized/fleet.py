@@ -268,6 +268,37 @@ class PlannedFleet:
         self._hold(order, after[order])
         return bool(is_better)
 
+    def put_in_order(self, goes_on: Callable[[], bool]) -> None:
+        """Put plans of tick 0 into an order in which none is late beside those before it, as far as there is one.
+
+        A plan that is best beside some plans stays so beside more: it is next as soon as it is. Others come last, and
+        so do those for which there is no time.
+        """
+        records, waiting, last = self._records.copy(), [*self.order], -1
+        self.clear()
+        while len(waiting) != last and goes_on():
+            last = len(waiting)
+            for robot in tuple(waiting):
+                if goes_on() and self._is_best(robot, records[robot : robot + 1]):
+                    waiting.remove(robot)
+                    self._reserve_next([robot], records)
+        self._reserve_next(waiting, records)
+
+    def _is_best(self, robot: int, record: Ints) -> bool:
+        """Whether the robot, which has no plan now, could not arrive earlier than by that one."""
+        used = self._state.records.used.copy()
+        found = np.full(1, self._call(lambda: passes.find_one(self._native, robot, NONE, 0)), np.int32)
+        is_best = found[0] != NONE and self._cost(found) == self._cost(record)
+        self._state.records.used[:] = used
+        return bool(is_best)
+
+    def _reserve_next(self, robots: Sequence[int], records: Ints) -> None:
+        """Hold further plans behind those held."""
+        new = np.array(robots, np.int32)
+        self._call(lambda: passes.reserve_all(self._native, records[new]))
+        order = np.append(self._order, new)
+        self._hold(order, records[order])
+
     def find_beside(self, robot: int, records: Sequence[int]) -> Plan | None:
         """The plan of a robot as `find` makes it without history, beside further plans, which `record` has taken up."""
         further = np.array(records, np.int32)

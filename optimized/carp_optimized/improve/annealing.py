@@ -101,8 +101,7 @@ def anneal(
     fleet.commit([by_robot[each] for each in whole.order])
     begun = clock()
     polishing = fleet.polishing(seed, now)
-    seconds = max(seconds - (clock() - started), BRIEF)
-    ending = min(max(ENDING * (clock() - begun), seconds / LEAST_ENDING), seconds / MOST_ENDING)
+    alone = clock() - begun
     least = int(polishing.fields.least.sum())
     played = fleet.polish(polishing, 0)
     given = plans = fleet.plans
@@ -112,6 +111,8 @@ def anneal(
     current = 0
     from_given = True
     rounds = rounds_between_looks(solution)
+    seconds = max(seconds - (clock() - started), BRIEF)
+    ending = min(max(ENDING * alone, seconds / LEAST_ENDING), seconds / MOST_ENDING)
     started = clock()
     while (spent := int(PARTS * (clock() - started) / (seconds - ending))) < PARTS:
         cycle, gone = divmod(cycles * spent, PARTS)

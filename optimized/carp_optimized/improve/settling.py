@@ -19,7 +19,7 @@ def settle(fleet: PlannedFleet, goes_on: Callable[[], bool] = lambda: True, now:
     before = fleet.worth
     _plan_again(fleet, goes_on, now)
     if now == 0:
-        _put_in_order(fleet, goes_on)
+        fleet.put_in_order(goes_on)
     return fleet.worth < before
 
 
@@ -33,20 +33,6 @@ def _plan_again(fleet: PlannedFleet, goes_on: Callable[[], bool], now: int) -> N
                 return
             fleet.forget_old_records()
             is_better |= fleet.plan_again(robot, now)
-
-
-def _put_in_order(fleet: PlannedFleet, goes_on: Callable[[], bool]) -> None:
-    """A plan that is best beside some plans stays so beside more: it is next as soon as it is. Others come last."""
-    waiting = dict(zip(fleet.order, fleet.plans, strict=True))
-    count = len(waiting) + 1
-    fleet.clear()
-    while len(waiting) < count and goes_on():
-        count = len(waiting)
-        for robot, plan in tuple(waiting.items()):
-            found = fleet.find(robot, None, 0) if goes_on() else None
-            if found is not None and found.visits[-1].enter == plan.visits[-1].enter:
-                fleet.commit([waiting.pop(robot)])
-    fleet.commit([*waiting.values()])
 
 
 def settled(instance: Instance, solution: Solution, goes_on: Callable[[], bool] = lambda: True) -> Solution:
