@@ -319,6 +319,8 @@ def news() -> dict[str, Callable[[Fleet], Change]]:
         "limit/ticks late": lambda fleet: fleet.add(robot, replace(robot, id="v", pace=2**29)),
         "trace/prefix trace": lambda fleet: fleet.trace(Trace(3, (replace(stays, visits=(Visit("c", 0, None),)),))),
         "request/now negative": lambda fleet: fleet.advance(-1),
+        "request/now none": lambda fleet: fleet.advance(None),  # type: ignore[arg-type]
+        "document/shape stop": lambda fleet: fleet.assign("x", Stop("a")),  # type: ignore[arg-type]
         "polish/options iterations": lambda fleet: fleet.polish(iterations=-1),
     }
 

@@ -271,6 +271,7 @@ class Fleet:
 
     def advance(self, now: int, *, audit: bool = False) -> Change:
         """Let time go on as planned. Raises `Refusal` for a tick that has passed."""
+        require_tick(now)
         return self.add(now=now, audit=audit)
 
     def trace(self, trace: Trace, *, audit: bool = False) -> Change:
