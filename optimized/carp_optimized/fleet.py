@@ -274,6 +274,8 @@ class PlannedFleet:
         A plan that is best beside some plans stays so beside more: it is next as soon as it is. Others come last, and
         so do those for which there is no time.
         """
+        if not goes_on():
+            return
         records, waiting, last = self._records.copy(), [*self.order], -1
         self.clear()
         while len(waiting) != last and goes_on():
