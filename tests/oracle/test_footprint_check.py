@@ -99,6 +99,7 @@ def driven(robot: Robot, late: int = 0) -> Plan:
         (Footprint(900, 600), 599, False),
         (Footprint(900, 900, round=True), 900, True),
         (Footprint(900, 900, round=True), 899, False),
+        (Footprint(900, 900, round=True), 0, False),  # the lanes cross, far from their ends
     ],
 )
 def test_vehicles_may_touch(size: Footprint, gap: int, are_apart: bool) -> None:
