@@ -9,7 +9,8 @@ for many rounds, each path is one of those that arrive equally early.
 
 The better start may be a trap: where robots with short ways went first through a narrow place, crowds wait behind them,
 and no few robots can change that. Plans by LaCAM have no such order. So most cycles begin from the worse start, unless
-there are too few rounds to come down from it, or enough to leave a trap. The last cycle goes on from the best paths.
+there are too few rounds to come down from it, or so little room that LaCAM moves robots to and fro. The last cycle goes
+on from the best paths.
 
 A clock is looked at after each few milliseconds of work. What takes time at the end is timed on a part before. Where
 there is no time to measure all distances, the nearest robots are planned, with distances that end a little beyond
@@ -59,8 +60,8 @@ LONGEST = 700
 """The visits of a path by prioritized planning, if LaCAM has found none that shows how many they are."""
 CYCLES, LEAVING, CHOOSING = 8, 1, 7
 """The cycles; the one that leaves the better start for the worse one, and the one that chooses the best paths."""
-FEW, MANY = 8, 100
-"""The worse start is tried if at least so many rounds a robot are expected, and fewer than so many."""
+FEW, SPARSE = 8, 8
+"""The worse start is tried if at least so many rounds a robot are expected, and each robot has so many places."""
 HEAT, REHEAT = 64, 16
 """The mean raise of the first rounds of the first cycle and of others, in 16ths of the mean delay of a robot."""
 ENOUGH = 32
@@ -327,7 +328,7 @@ def improved(
         expected = iterations or PARTS * _played(searches) // max(gone, 1)
         if cycle > current:
             current = cycle
-            if cycle == LEAVING and FEW * robots <= expected < MANY * robots:
+            if cycle == LEAVING and FEW * robots <= expected and SPARSE * robots <= crowd.queue.size:
                 for other in starts[1:2]:
                     searches += _begun(crowd, other, timer, seed)
             elif cycle == CHOOSING:

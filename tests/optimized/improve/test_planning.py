@@ -48,10 +48,12 @@ def test_plans_break_no_rule_are_the_same_again_and_no_worse_than_the_first(inst
         assert total_cost(instance, found.plans) <= total_cost(instance, first)
 
 
+@pytest.mark.parametrize("side", [12, 23])
 @pytest.mark.parametrize("after_goal", ["park", "vanish"])
-def test_rounds_improve_a_crowd_and_its_best_total_never_rises(after_goal: AfterGoal) -> None:
-    assert planning.FEW <= 3000 / 60 < planning.MANY  # so that both starts are tried
-    instance = crowd(12, 60, after_goal)
+def test_rounds_improve_a_crowd_and_its_best_total_never_rises(after_goal: AfterGoal, side: int) -> None:
+    both_starts_are_tried = planning.FEW * 60 <= 3000 and side**2 >= planning.SPARSE * 60
+    assert both_starts_are_tried == (side == 23)
+    instance = crowd(side, 60, after_goal)
     seen: list[int] = []
     found = plan_crowd(instance, iterations=3000, seconds=None, advance=lambda _, __, total: seen.append(total))
     assert judge(instance, found).valid
