@@ -83,6 +83,17 @@ def test_who_where_and_when(carproof: Run, elsewhere: Path) -> None:
     assert "2000,-2000 -> 2000,2000" in found["message"]
 
 
+def test_floors_with_too_many_pairs_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    instance, size = crossing(), Footprint(900, 600)
+    solution = engine_named("reference").plan(instance, Carp())
+    pairs = 5  # each lane with both its ends, and the two lanes
+    monkeypatch.setattr("carp_verify.footprint.rules.MOST_PAIRS", pairs)
+    assert check(instance, solution, footprint=size).violations
+    monkeypatch.setattr("carp_verify.footprint.rules.MOST_PAIRS", pairs - 1)
+    with pytest.raises(Refusal, match="at most"):
+        check(instance, solution, footprint=size)
+
+
 def driven(robot: Robot, late: int = 0) -> Plan:
     """At once over its lane."""
     lane = f"{robot.start} -> {robot.goal}"

@@ -73,7 +73,6 @@ def _first(violation: Violation) -> int:
 
 def _meetings(stays: dict[Shape, list[Stay]], size: Footprint) -> Iterator[Meeting]:
     for here in stays.values():
-        here.sort(key=lambda stay: stay[0])
         yield from _together(here, ())
     for one, two in _near([*stays], size):
         if overlap(one, two, size):
