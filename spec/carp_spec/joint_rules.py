@@ -62,7 +62,7 @@ def _crowded(
     for group in constraints:
         inside = [change for resource in group.resources for change in changes.get(resource, ())]
         if len({robot for _, _, robot in inside}) <= group.capacity:
-            continue
+            continue  # no more robots are ever in it than have room together
         for start, end, crowd in _crowds(group.capacity, inside):
             robots = tuple(sorted(crowd, key=arrival.__getitem__))
             at = next(each for each in group.resources if any(one[:2] == (start, 1) for one in changes.get(each, ())))

@@ -91,8 +91,8 @@ def do_overlap(one: Shape, two: Shape, size: Footprint) -> bool:
     if one.heading is not None and two.heading is not None:
         return reaches_inside(differences(corners(one, size), corners(two, size)))
     disc, box = (one, two) if one.heading is None else (two, one)
-    halved = [(2 * x, 2 * y) for x, y in differences(ends(disc), corners(box, size))]
-    return is_within(halved, square)
+    doubled = [(2 * x, 2 * y) for x, y in differences(ends(disc), corners(box, size))]
+    return is_within(doubled, square)
 
 
 def shapes_at(start: Point) -> list[Shape]:
@@ -110,3 +110,12 @@ def test_shapes_overlap_just_where_the_hull_of_their_differences_says_so(size: F
                 met += do_overlap(one, two, size)
                 assert overlap(one, two, size) == overlap(two, one, size) == do_overlap(one, two, size), (one, two)
     assert met > 0
+
+
+@pytest.mark.parametrize("size", [Footprint(1, 1, True), Footprint(2, 2, True)])
+def test_so_do_the_least_round_vehicles_on_the_shortest_lanes(size: Footprint) -> None:
+    near = [(x, y) for x in range(-2, 3) for y in range(-2, 3)]
+    for way, place, other in product(near, near, near):
+        one = Shape((0, 0), way, (1, 0))
+        two = Shape(place, (place[0] + other[0], place[1] + other[1]), (1, 0))
+        assert overlap(one, two, size) == do_overlap(one, two, size), (one, two)
