@@ -7,7 +7,18 @@ from itertools import permutations
 from pathlib import Path
 
 import pytest
-from tests.oracle.layout_files import ANNOTATED, BUILDING, LAYOUTS, NAV_GRAPH, NODE_LINK, OPENTCS, lif, nav2
+from tests.oracle.layout_files import (
+    ANNOTATED,
+    BUILDING,
+    GRAPHML,
+    LAYOUTS,
+    NAV_GRAPH,
+    NODE_LINK,
+    OLD_OPENTCS,
+    OPENTCS,
+    lif,
+    nav2,
+)
 from tests.oracle.running import Run
 
 from carp_spec import Instance, Plan, Refusal, Robot, Solution, Visit, judge
@@ -148,6 +159,54 @@ def test_what_is_not_expressed_is_listed_with_its_lines() -> None:
     assert {"limits of height", "the field flies"} <= listed
 
 
+UNKNOWN = {
+    "nav2": (
+        nav2()
+        .replace(
+            '"metadata": {}', '"overridable": true,\n"lit": true, "metadata": {"speed_limit": 50,\n"gate": {"open": 1}}'
+        )
+        .replace('"id": "a"', '"id": "a",\n"metadata": {"speed_limit": 50, "class": null}'),
+        {"the field speed_limit": [8], "costs of edges": [50], "the field lit": [51], "the field gate": [52]},
+    ),
+    "roadmap": (
+        NODE_LINK.replace('"id": "b"', '\n"floor": 2, "id": "b"').replace('"length": 4', '"length": 4,\n"slope": 3'),
+        {"the field floor": [2], "the field slope": [3]},
+    ),
+    "graphml": (
+        GRAPHML.replace("<graph e", '<key id="d3" attr.name="slope"/>\n<graph e').replace(
+            'target="b"/>', 'target="b">\n<data key="d3">2</data></edge>'
+        ),
+        {"the field slope": [10]},
+    ),
+    "annotated": (
+        ANNOTATED,
+        {"vertices without an edge to themselves, where robots may not wait; here they may": [4]},
+    ),
+    "building": (
+        BUILDING.replace("spawn_robot_name:", "dock_name: [1, ''], lit: [4, true],\n spawn_robot_name:").replace(
+            "mutex: [1", "\n orientation: [1, forward], slope: [3, 2.0], flat: [4, false], mutex: [1", 1
+        ),
+        {"the field lit": [12], "orientations of robots on lanes": [9], "the field slope": [9], "doors": [18]},
+    ),
+    "old opentcs": (
+        OLD_OPENTCS.replace('locked="true"/>', '><property name="wet" value="yes"/></path>').replace(
+            '<vehicle name="v1"', '<vehicle name="v1" length="900"'
+        ),
+        {"properties of points and paths": [10], "sizes of vehicles; --footprint sets one for all": [11]},
+    ),
+}
+
+
+@pytest.mark.parametrize("name", UNKNOWN)
+def test_fields_that_are_not_known_are_listed_with_their_lines(name: str, carproof: Run, elsewhere: Path) -> None:
+    text, features = UNKNOWN[name]
+    (elsewhere / "plant").write_text(text)
+    listed = json.loads(carproof("convert plant -o plant.json --robots 0 --json").stdout)["not_expressed"]
+    found = {each["feature"]: each["lines"] for each in listed}
+    assert found | features == found
+    assert not {each for each in found if each.startswith("the field")} - features.keys()
+
+
 PLANT = """<model version="6.0.0" name="cross">
 {points}
 {paths}
@@ -220,6 +279,22 @@ BROKEN = {
     "negative limit": (NAV_GRAPH.replace("0.5}", "-0.5}"), 7, "must be above 0"),
     "infinite coordinate": (NAV_GRAPH.replace("[3.0, 4.0", "[.inf, 4.0"), 12, "must be a number"),
     "position that is a text": (lif("1.0").replace('"x": 3.0', '"x": "3.0"', 1), 23, "a number, not the text '3.0'"),
+    "lif node of null": (lif("1.0").replace('"nodeId": "a"', '"nodeId": null'), 11, "a text in quotes, not null"),
+    "lif node that is a number": (lif("1.0").replace('"nodeId": "a"', '"nodeId": 7'), 11, "in quotes, not 7"),
+    "lif version that is a number": (lif("1.0").replace('"1.0"', "1.0"), 3, "a text in quotes, not 1.0"),
+    "lif map of null": (lif("2.0").replace('"nodeId"', '"mapId": null, "nodeId"', 1), 14, "in quotes, not null"),
+    "lif edge that is a list": (lif("1.0").replace('"edgeId": "ab"', '"edgeId": []'), 43, "in quotes, not a list"),
+    "lif end of null": (lif("1.0").replace('"endNodeId": "b"', '"endNodeId": null', 1), 45, "in quotes, not null"),
+    "lif station of null": (lif("1.0").replace('"a",\n', "null,\n"), 77, "a text in quotes, not null"),
+    "nav2 node of null": (nav2().replace('"id": "a"', '"id": null'), 7, "a text or a number, not null"),
+    "nav2 edge of null": (nav2().replace('"id": "ab"', '"id": null'), 46, "a text or a number, not null"),
+    "nav2 end of null": (nav2().replace('"endid": "b"', '"endid": null', 1), 48, "a text or a number, not null"),
+    "nav2 position that is a text": (nav2().replace("3.0", '"3.0"', 1), 25, "a number, not the text '3.0'"),
+    "node of null": (NODE_LINK.replace('"id": "b"', '"id": null'), 1, "a text or a number, not null"),
+    "end of null": (NODE_LINK.replace('"target": "b"', '"target": null', 1), 1, "a text or a number, not null"),
+    "position of null": (NODE_LINK.replace('"x": 3', '"x": null', 1), 1, "it must be a number, not null"),
+    "position in a roadmap that is a text": (NODE_LINK.replace('"x": 3', '"x": "3"', 1), 1, "not the text '3'"),
+    "agent of null": (ANNOTATED.replace("name: agent0", "name: ~"), 17, "a text or a number, not null"),
     "answer that is a text": (NODE_LINK.replace("true", '"true"'), 1, "true or false, not the text 'true'"),
     "field twice": (NAV_GRAPH.replace("building_name: row", "levels: {}"), 4, "must be given once"),
     "degrees on Mars": (

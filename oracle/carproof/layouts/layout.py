@@ -3,12 +3,14 @@
 Lengths and positions are whole millimetres, speeds are millimetres a second.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import isqrt
 
 from carproof.layouts.located import LARGEST, Tree
+
+NO_FEATURES: Mapping[str, str] = {}
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,8 +92,14 @@ class Layout:
 
     def note(self, feature: str, at: Tree | None) -> None:
         """Note a feature that is not expressed, if it is there."""
-        if at is not None and at.value not in ([], {}, "", "null"):
+        if at is not None and at.value not in ([], {}, "", None):
             self.left_out.setdefault(feature, []).append(at.line)
+
+    def note_others(self, thing: Tree, known: Container[str], features: Mapping[str, str] = NO_FEATURES) -> None:
+        """Note the fields that are not known, by their features or, where there are none, by their names."""
+        for name, value in thing.fields.items():
+            if name not in known:
+                self.note(features.get(name, f"the field {name}"), value)
 
     def point(self, at: Tree, id: str, place: tuple[Fraction, Fraction] | None, *, stands: bool = True) -> None:
         """Add a point, at a place in mm."""

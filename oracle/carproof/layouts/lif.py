@@ -46,7 +46,7 @@ def _looks_like(tree: Tree) -> bool:
 def read(tree: Tree) -> Layout:
     """Read all layouts of the file."""
     version = tree["metaInformation"]["lifVersion"]
-    major, minor = (*version.text.split("."), "")[:2]
+    major, minor = (*version.quoted_text.split("."), "")[:2]
     if major not in ("1", "2") and (major, minor) != ("0", "11"):
         raise version.refuse(
             f"the version must be 1, 0.11 as in the document of version 1.0, or 2, not {version.shown}"
@@ -57,12 +57,12 @@ def read(tree: Tree) -> Layout:
         layouts = [each for origin in tree["origins"].entries for each in origin["layouts"].entries]
     layout = Layout(tree)
     stations = [(each, station) for each in layouts for station in each.all("stations")]
-    served = {node.text for _, station in stations for node in station["interactionNodeIds"].entries}
+    served = {node.quoted_text for _, station in stations for node in station["interactionNodeIds"].entries}
     _nodes(layout, layouts, served)
     for _, station in stations:
         for node in station["interactionNodeIds"].entries:
-            if node.text not in layout.points:
-                raise node.refuse(f"the node {node.text!r} must be one of the layout")
+            if node.quoted_text not in layout.points:
+                raise node.refuse(f"the node {node.quoted_text!r} must be one of the layout")
         layout.note("stations; their nodes are where vehicles stand", station)
     for each in layouts:
         for edge in each["edges"].entries:
@@ -75,11 +75,11 @@ def _nodes(layout: Layout, layouts: Sequence[Tree], served: AbstractSet[str]) ->
     first: dict[object, str] = {}
     main: str | None = None
     for node in (node for each in layouts for node in each["nodes"].entries):
-        name, place, level = node["nodeId"].text, node["nodePosition"], node.get("mapId")
+        name, place, level = node["nodeId"].quoted_text, node["nodePosition"], node.get("mapId")
         at = (METRE * place["x"].number, METRE * place["y"].number)
         layout.point(node, name, at, stands=not served or name in served)
         _types(layout, node, NODES)
-        map = None if level is None else level.text
+        map = None if level is None else level.quoted_text
         if main is not None and map not in (None, main):
             layout.note("maps beside the first; the positions of all are in one plane", level)
         main = map if main is None else main
@@ -93,14 +93,12 @@ def _types(layout: Layout, thing: Tree, names: tuple[str, ...]) -> list[Tree]:
     if len(types) > 1:
         layout.note("differences between types of vehicles; lanes are open to all, at the lowest speed", found)
     for each in types:
-        for name, value in each.fields.items():
-            if name not in KNOWN:
-                layout.note(LEFT_OUT.get(name, f"the field {name}"), value)
+        layout.note_others(each, KNOWN, LEFT_OUT)
     return types
 
 
 def _edge(layout: Layout, edge: Tree) -> None:
-    ends = edge["startNodeId"].text, edge["endNodeId"].text
+    ends = edge["startNodeId"].quoted_text, edge["endNodeId"].quoted_text
     speeds: list[Fraction] = []
     lengths: list[Fraction] = []
     for each in _types(layout, edge, EDGES):
@@ -125,7 +123,7 @@ def _edge(layout: Layout, edge: Tree) -> None:
         layout.note("the way up and down between maps; it takes a tick unless its length is given", edge)
     layout.lane(
         edge,
-        edge["edgeId"].text,
+        edge["edgeId"].quoted_text,
         ends,
         level=not stays,
         speed=min(speeds, default=None),

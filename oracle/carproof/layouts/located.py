@@ -9,6 +9,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from types import NoneType
 from typing import Any, TypeAlias, cast
 
 from carp_spec import Refusal
@@ -28,16 +29,17 @@ RIGHT_LAYOUT = Code(
     "above 0.",
     DESIGN,
 )
+_NULL = ("", "~", "null", "Null", "NULL")
 _NUMBER = re.compile(r"[+-]?(?:\d{1,40}(?:\.\d{0,40})?|\.\d{1,40})(?:[eE][+-]?\d{1,2})?")
 
-Value: TypeAlias = "str | list[Tree] | dict[str, Tree]"
+Value: TypeAlias = "str | list[Tree] | dict[str, Tree] | None"
 
 
 @dataclass(frozen=True, slots=True)
 class Tree:
-    """A value: text, a list, or a mapping. The children of an element of XML are lists named `<tag>`.
+    """A value: text, a list, a mapping, or null. The children of an element of XML are lists named `<tag>`.
 
-    A text that is `quoted`, in YAML or JSON, is neither a number nor true or false.
+    A text that is `quoted`, in YAML or JSON, is neither a number nor true, false or null.
     """
 
     file: str
@@ -54,7 +56,7 @@ class Tree:
         """The fields of a mapping; none where there is nothing."""
         if isinstance(self.value, dict):
             return self.value
-        if self.value in ("", "null", "~", []):
+        if self.value in (None, "", []):
             return {}
         raise self.refuse("it must be a mapping")
 
@@ -63,16 +65,24 @@ class Tree:
         """The entries of a list; none where there is nothing."""
         if isinstance(self.value, list):
             return self.value
-        if self.value in ("", "null", "~", {}):
+        if self.value in (None, "", {}):
             return []
         raise self.refuse("it must be a list")
 
     @property
     def text(self) -> str:
-        """The text."""
+        """The text, or a number as it is written."""
         if isinstance(self.value, str):
             return self.value
-        raise self.refuse("it must be a text or a number")
+        raise self.refuse(f"it must be a text or a number, not {self.shown}")
+
+    @property
+    def quoted_text(self) -> str:
+        """The text, which a number is not."""
+        if isinstance(self.value, str) and self.quoted:
+            return self.value
+        shown = self.value[:40] if isinstance(self.value, str) else self.shown
+        raise self.refuse(f"it must be a text in quotes, not {shown}")
 
     @property
     def number(self) -> Fraction:
@@ -111,7 +121,7 @@ class Tree:
     @property
     def shown(self) -> str:
         """The value for a message."""
-        kind = {list: "a list", dict: "a mapping"}.get(type(self.value))
+        kind = {list: "a list", dict: "a mapping", NoneType: "null"}.get(type(self.value))
         return kind or repr(str(self.value)[:40])
 
     def __getitem__(self, name: str) -> "Tree":
@@ -203,7 +213,8 @@ def _yaml(text: str, file: str) -> Tree:  # noqa: C901, PLR0915 - one branch for
             line = event.start_mark.line + 1
             anchor = getattr(event, "anchor", None)
             if kind == "Scalar":
-                put(tree := Tree(file, line, event.value, quoted=event.style in ("'", '"')), 1)
+                quoted = event.style in ("'", '"')
+                put(tree := Tree(file, line, None if event.value in _NULL and not quoted else event.value, quoted), 1)
                 if anchor:
                     anchors[anchor] = (tree, 1)
             elif kind in ("SequenceStart", "MappingStart"):

@@ -13,7 +13,12 @@ from carproof.layouts.located import Tree
 METRE = 1000
 WHOLE = 100
 LINES = ("LineString", "MultiLineString")
+KNOWN = {"id", "startid", "endid", "frame", "metadata"}
+LIMITS = {"abs_speed_limit", "speed_limit"}
 LEFT_OUT = {
+    "operations": "operations at nodes and edges",
+    "cost": "costs of edges",
+    "overridable": "costs of edges",
     "penalty": "costs of edges",
     "class": "classes of nodes and edges",
     "abs_time_taken": "times measured on edges",
@@ -39,10 +44,9 @@ def read(tree: Tree) -> Layout:
             layout.note("frames of nodes other than map", frame if frame is not None and frame.value != "map" else None)
         elif kind.value not in LINES:
             raise kind.refuse(f"the type must be Point, LineString or MultiLineString, not {kind.shown}")
-        layout.note("operations at nodes and edges", properties.get("operations"))
-        metadata = properties.get("metadata")
-        for name, feature in LEFT_OUT.items():
-            layout.note(feature, None if metadata is None else metadata.get(name))
+        layout.note_others(properties, KNOWN, LEFT_OUT)
+        if "metadata" in properties.fields:
+            layout.note_others(properties["metadata"], LIMITS if kind.value in LINES else (), LEFT_OUT)
     for each in features:
         if each["geometry"]["type"].value in LINES:
             _edge(layout, each["properties"])
@@ -56,7 +60,6 @@ def _pair(place: Tree) -> tuple[Tree, Tree]:
 
 
 def _edge(layout: Layout, edge: Tree) -> None:
-    layout.note("costs of edges", edge.get("cost"))
     metadata = edge.get("metadata")
     limit = None if metadata is None else metadata.get("abs_speed_limit")
     share = None if metadata is None else metadata.get("speed_limit")

@@ -25,18 +25,22 @@ FLATNESS = Decimal("0.00669437999014")
 """The square of its eccentricity."""
 RADIAN = Decimal("3.14159265358979323846") / 180
 STANDS = ("is_parking_spot", "is_charger", "is_holding_point")
+OF_LANES = {"bidirectional", "is_bidirectional", "graph_idx", "mutex", "speed_limit"}
+OF_VERTICES = {"name", "spawn_robot_name", "mutex", "lift", "lift_cabin", *STANDS}
 LEFT_OUT = {
     "door_name": "doors",
     "orientation": "orientations of robots on lanes",
     "orientation_constraint": "orientations of robots on lanes",
     "dock_name": "docks",
     "undock_name": "docks",
+    "demo_mock_floor_name": "lifts that lanes stand for",
     "demo_mock_lift_name": "lifts that lanes stand for",
 }
 LEFT_OUT_AT_VERTICES = {
     "dock_name": "docks",
     "is_passthrough_point": "points that robots only pass through; here they may wait there",
     "is_cleaning_zone": "zones to be cleaned",
+    "spawn_robot_type": "types of robots",
     "pickup_dispenser": "dispensers and ingestors",
     "dropoff_ingestor": "dispensers and ingestors",
 }
@@ -181,16 +185,14 @@ def _vertices(layout: Layout, level: Tree, onto: Onto, prefix: str) -> list[str]
         given = options.get("name")
         if given is None and len(vertex.entries) > 3:  # noqa: PLR2004 - x, y, z, name
             given = vertex.entries[3]
-        name = "" if given is None else given.text
+        name = "" if given is None or given.value is None else given.text
         id = f"{prefix}{name or number}"
         if id in layout.points:
             id = f"{prefix}{name} {number}"
         at = onto(*_place(vertex))
         flags = [_plain(options.get(each)) for each in STANDS]
         layout.point(vertex, id, at, stands=bool(name) or any(each is not None and each.is_true for each in flags))
-        for name, feature in LEFT_OUT_AT_VERTICES.items():
-            value = _plain(options.get(name))
-            layout.note(feature, None if value is None or value.value in ("false", "False") else vertex)
+        _note_others(layout, options, OF_VERTICES, LEFT_OUT_AT_VERTICES)
         robot = _plain(options.get("spawn_robot_name"))
         if robot is not None and robot.value:
             layout.vehicle(vertex, robot.text, id)
@@ -206,12 +208,19 @@ def _lane(layout: Layout, lane: Tree, ids: list[str], groups: Groups) -> None:
     speed = None if limit is None or limit.number == 0 else METRE * limit.positive
     back = both is not None and both.is_true
     lanes = layout.lane(lane, None, (source, target), speed=speed, back=back, back_speed=speed)
-    for name, feature in LEFT_OUT.items():
-        layout.note(feature, _plain(options.get(name)))
+    _note_others(layout, options, OF_LANES, LEFT_OUT)
     graph = _plain(options.get("graph_idx"))
     if graph is not None and graph.whole:
         layout.note("the fleets to which graphs of lanes belong; lanes of all graphs are open to all", lane)
     _add(groups, "mutex", options.get("mutex"), lane, *lanes)
+
+
+def _note_others(layout: Layout, options: Mapping[str, Tree], known: set[str], features: Mapping[str, str]) -> None:
+    """Note the parameters that are not known, but for those that are off."""
+    for name, value in options.items():
+        plain = _plain(value)
+        if name not in known and plain is not None and plain.value not in ("false", "False"):
+            layout.note(features.get(name, f"the field {name}"), plain)
 
 
 def _remove_unused(layout: Layout, used: set[str]) -> None:

@@ -30,6 +30,7 @@ def read(tree: Tree) -> Layout:
         layout.point(point, name, (x.number, y.number), stands=stands)
         if kind is not None and kind.value == "REPORT_POSITION":
             layout.note("report positions, at which vehicles may not halt", point)
+        layout.note("properties of points and paths", _first(point, "property"))
         layout.note("vehicle envelopes of points", point.get("<vehicleEnvelope>"))
         layout.note("bounding boxes that vehicles must fit at points", _first(point, "maxVehicleBoundingBox"))
         angle = point.get("vehicleOrientationAngle")
@@ -62,6 +63,7 @@ def _path(layout: Layout, path: Tree) -> tuple[str, ...]:
     forward, backward = (path[each].number for each in ("maxVelocity", "maxReverseVelocity"))
     if min(forward, backward) < 0:
         raise path.refuse("the speeds of a path must not be below 0")
+    layout.note("properties of points and paths", _first(path, "property"))
     layout.note("peripheral operations", path.get("<peripheralOperation>"))
     layout.note("vehicle envelopes of paths", path.get("<vehicleEnvelope>"))
     locked = path.get("locked")
@@ -119,6 +121,9 @@ def _block(layout: Layout, block: Tree, paths: dict[str, tuple[str, ...]], locat
 def _vehicle(layout: Layout, vehicle: Tree) -> None:
     """Add a vehicle, if the file says where it is; other vehicles are left to `--robots`."""
     layout.note("speeds of vehicles; --speed sets one for all", vehicle.get("maxVelocity"))
+    layout.note(
+        "sizes of vehicles; --footprint sets one for all", _first(vehicle, "boundingBox") or vehicle.get("length")
+    )
     start = [
         each["value"] for each in elements(vehicle, "property") if each["name"].value == "loopback:initialPosition"
     ]

@@ -12,6 +12,8 @@ from carproof.layouts.layout import Layout, Reader
 from carproof.layouts.located import Tree, elements
 
 METRE = 1000
+OF_NODES = {"id", "x", "y", "pos"}
+OF_EDGES = {"id", "source", "target", "key", "length", "speed"}
 
 
 def _looks_annotated(tree: Tree) -> bool:
@@ -40,10 +42,17 @@ def read_annotated(tree: Tree) -> Layout:
         if source not in layout.points:
             raise edge.refuse(f"the vertex {source!r} must be one of the roadmap")
         lanes.append((source,) if source == target else layout.lane(edge, None, (source, target), back=both))
+    _waiting(layout, roadmap, {ends[0] for ends in lanes if len(ends) == 1})
     _conflicts(layout, roadmap, lanes)
     for agent in tree.all("agents"):
         layout.vehicle(agent, agent["name"].text, agent["start"].text, agent["goal"].text)
     return layout
+
+
+def _waiting(layout: Layout, roadmap: Tree, loops: set[str]) -> None:
+    allowed = roadmap.get("allow_wait_actions")
+    if allowed is not None and not allowed.is_true and not loops >= layout.points.keys():
+        layout.note("vertices without an edge to themselves, where robots may not wait; here they may", allowed)
 
 
 def _conflicts(layout: Layout, roadmap: Tree, lanes: list[tuple[str, ...]]) -> None:
@@ -87,7 +96,9 @@ def read_plain(tree: Tree) -> Layout:
         pos = node.get("pos")
         at = _place(pos) if pos is not None else (METRE * node["x"].number, METRE * node["y"].number)
         layout.point(node, node["id"].text, at)
+        layout.note_others(node, OF_NODES)
     for edge in edges:
+        layout.note_others(edge, OF_EDGES)
         length, speed = edge.get("length"), edge.get("speed")
         fast = None if speed is None else METRE * speed.positive
         layout.lane(
