@@ -15,6 +15,7 @@ from carproof.conform.levels import Level
 from carproof.conform.run import Options, Report, conform
 from carproof.engines import engine_named
 from carproof.protocol.ops import OPS
+from carproof.protocol.ops.op import Session
 from carproof.protocol.ops.planning import QueryDocument, query_document
 
 BIT_15, BIT_31 = 2**15, 2**31
@@ -22,7 +23,7 @@ Tamper = Callable[[Case], Reply]
 
 
 def rightly(case: Case) -> Answer:
-    reply: Answer = OPS[case.op].handle(request_of(case), engine_named(None))
+    reply: Answer = OPS[case.op].call(request_of(case), Session(engine_named(None)))
     return reply
 
 

@@ -15,7 +15,7 @@ from tests.oracle.running import Run
 from tests.profiles import draws
 
 from carp_reference.execution import order_of
-from carp_spec import Robot
+from carp_spec import Robot, RobotId
 from carp_spec.execution.traces import Trace
 from carproof.conform.answers import Skipped
 from carproof.conform.asking.random_cases import execution_cases
@@ -33,7 +33,7 @@ from carproof.conform.reporting.saving import Origin
 from carproof.conform.run import Options, Report, conform
 from carproof.engines import engine_named
 from carproof.execution.delays import Delay, executed, in_order
-from carproof.protocol.ops.executing import DriveDocument, DriveRequest, drive
+from carproof.protocol.ops.executing import DriveDocument, drive
 from carproof.protocol.ops.op import Session
 from carproof.protocol.server import respond
 
@@ -106,7 +106,7 @@ def test_who_keeps_to_the_clock_enters_too_early() -> None:
 @settings(max_examples=draws(200))
 @given(execution_cases(Claims(stops=True)))
 def test_carproof_drives_as_its_simulation_in_order_does(case: Case) -> None:
-    driven = execution(case, lambda request: drive(request, engine_named("reference")))
+    driven = execution(case, lambda trace, ready: drive(case.instance, case.solution, trace, ready))
     assert isinstance(driven, Trace)
     delays = [Delay(*delay) for delay in case.delays]
     order = order_of(case.instance, case.solution)
@@ -117,9 +117,9 @@ def test_carproof_drives_as_its_simulation_in_order_does(case: Case) -> None:
 def test_an_execution_waits_for_delays_and_ends_with_the_last_arrival() -> None:
     asked: list[int] = []
 
-    def decide(request: DriveRequest) -> DriveDocument:
-        asked.append(request.trace.now)
-        return DriveDocument(request.ready)
+    def decide(trace: Trace, ready: tuple[RobotId, ...]) -> DriveDocument:
+        asked.append(trace.now)
+        return DriveDocument(ready)
 
     late = replace(ALONE, delays=WAITING)
     trace = execution(late, decide)
@@ -129,7 +129,7 @@ def test_an_execution_waits_for_delays_and_ends_with_the_last_arrival() -> None:
 
 
 def test_who_lets_nobody_go_is_given_up_after_the_ticks_of_plans_and_delays() -> None:
-    trace = execution(ALONE, lambda _: DriveDocument(()))
+    trace = execution(ALONE, lambda *_: DriveDocument(()))
     assert isinstance(trace, Trace)
     assert trace.now == 2
     (finding,) = execution_findings(ALONE, trace, Level.SOUND)
@@ -144,7 +144,7 @@ MEETING = Case("random", EXECUTION, EXECUTION, TWO, PLANS)
 
 def decided(case: Case, *entering: tuple[int, tuple[str, ...]]) -> Trace:
     """The execution in which robots enter at ticks, each when it is asked for."""
-    trace = execution(case, lambda request: DriveDocument(dict(entering).get(request.trace.now, ())))
+    trace = execution(case, lambda trace, _: DriveDocument(dict(entering).get(trace.now, ())))
     assert isinstance(trace, Trace)
     return trace
 
@@ -178,7 +178,7 @@ def test_patience_starts_again_whenever_a_robot_enters() -> None:
 
 def test_a_program_that_does_not_drive_is_skipped() -> None:
     skipped = Skipped("no drive here")
-    assert execution(ALONE, lambda _: skipped) is skipped
+    assert execution(ALONE, lambda *_: skipped) is skipped
 
 
 def test_an_executor_has_its_programs_name_and_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -194,7 +194,7 @@ def test_an_executor_has_its_programs_name_and_ends_it(monkeypatch: pytest.Monke
 @pytest.mark.parametrize("named", [("first", "first"), ("second",)])
 def test_only_robots_that_are_ready_may_be_named_each_once(named: tuple[str, ...]) -> None:
     with pytest.raises(Fault) as caught:
-        execution(ALONE, lambda _: DriveDocument(named))
+        execution(ALONE, lambda *_: DriveDocument(named))
     assert caught.value.finding.rule == "program/ready"
     assert caught.value.finding.message == f"at tick 0 robots ['first'] are ready, and {[*named]} are to enter"
 

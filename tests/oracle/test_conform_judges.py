@@ -23,6 +23,7 @@ from carproof.conform.run import Options, Report, conform
 from carproof.engines import engine_named
 from carproof.optima import OptimumDocument
 from carproof.protocol.ops import OPS
+from carproof.protocol.ops.op import Session
 from carproof.protocol.ops.planning import QueryDocument, query_document
 
 LATE = {"query/optimal", "joint/capacity", "joint/exchange", "fleet/history"}
@@ -30,7 +31,7 @@ Tamper = Callable[[Case, Reply], Reply]
 
 
 def right_reply(case: Case) -> Reply:
-    reply: Reply = OPS[case.op].handle(request_of(case), engine_named("reference"))
+    reply: Reply = OPS[case.op].call(request_of(case), Session(engine_named("reference")))
     return reply
 
 

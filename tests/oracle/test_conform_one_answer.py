@@ -25,7 +25,6 @@ from carproof.conform.judging.gave_up import Effort, effort, why_undecided
 from carproof.conform.judging.judges import first_finding
 from carproof.conform.judging.optimum import cost_alone, found_cost
 from carproof.conform.levels import Level
-from carproof.engines import engine_named
 from carproof.optima import OptimumDocument
 from carproof.protocol.ops import OPS
 from carproof.protocol.ops.planning import QueryDocument, query_document
@@ -213,7 +212,7 @@ CHECKS: Sequence[Row] = (
     (CHECK_RIGHT, changed(VALID, violations=VERDICT.violations), {Level.SOUND: "joint/exchange"}),
 )
 OPTIMUM = case("optimum", LAST_FIRST)
-BEST: OptimumDocument = OPS["optimum"].handle(replace(request_of(OPTIMUM), limit=PATIENT), engine_named("reference"))
+BEST: OptimumDocument = OPS["optimum"].handle(**{**request_of(OPTIMUM), "limit": PATIENT})
 CARP = right(case("plan", LAST_FIRST, planner=Carp()))
 UNDECIDED = claimed(None, None, decided=False, solution=None)
 NONE = claimed(None, None, decided=True, solution=None)

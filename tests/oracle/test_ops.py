@@ -2,7 +2,6 @@
 
 import importlib
 import json
-from dataclasses import dataclass
 from functools import cache
 from typing import cast
 
@@ -17,10 +16,9 @@ from carp_spec.documents.schema import schema_file
 from carproof.commands.judge import conform as conform_command
 from carproof.commands.run import serve as serve_command
 from carproof.conform.cases import ASKED_OPS
-from carproof.engines import Engine
 from carproof.protocol.lines import Request
 from carproof.protocol.ops import OPS
-from carproof.protocol.ops.op import Op, op_of, request_fields
+from carproof.protocol.ops.op import Op, op_of
 from carproof.protocol.ops.published import NAME, schema, table
 from carproof.testing.vectors import vectors
 
@@ -47,14 +45,14 @@ def test_requests_and_responses_keep_to_the_schema(op: str) -> None:
     request = {"id": 1, "op": op, **REQUESTS[op]}
     validator().validate(request)
     assert not validator().is_valid({**request, "colour": "red"})
-    validator(OPS[op].request.__name__.replace("Request", "Response")).validate(asked(op, **REQUESTS[op]))
+    validator(f"{OPS[op].title}Response").validate(asked(op, **REQUESTS[op]))
     validator("Refused").validate(asked(op, **REQUESTS[op], colour="red"))
 
 
 @pytest.mark.parametrize("op", REQUESTS)
 def test_a_request_written_is_read_as_it_was(op: str) -> None:
     request = OPS[op].read(Request(json.dumps(REQUESTS[op]).encode()))
-    again = OPS[op].read(Request(msgspec.json.encode(request_fields(request))))
+    again = OPS[op].read(Request(msgspec.json.encode(OPS[op].request_fields(request))))
     assert again == request
 
 
@@ -72,24 +70,15 @@ def test_every_op_of_a_vector_is_in_the_table() -> None:
     assert set(ASKED_OPS) <= set(OPS)
 
 
-@dataclass(frozen=True, slots=True)
-class FlyRequest:
-    """A robot that flies."""
-
-    instance: Instance
-    height: int = 7
-
-
 class FlyDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """How it went."""
 
     landed: bool
 
 
-def fly_low(request: FlyRequest, engine: Engine) -> FlyDocument:
+def fly_low(instance: Instance, height: int = 7) -> FlyDocument:
     """Fly over it. Mind the racks."""
-    del engine
-    return FlyDocument(request.height < 10)
+    return FlyDocument(bool(instance.robots) and height < 10)
 
 
 def test_an_op_in_the_table_is_answered_and_shows_up_everywhere(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -98,8 +87,8 @@ def test_an_op_in_the_table_is_answered_and_shows_up_everywhere(monkeypatch: pyt
     assert asked("fly-low", instance=TWO, height="7")["error"]["path"] == "$.height"
     assert "fly-low" in asked("start", version=1)["result"]["ops"]
     published = json.loads(schema())
-    assert {"$ref": "#/$defs/FlyRequest"} in published["anyOf"]
-    assert published["$defs"]["FlyRequest"]["properties"]["height"] == {"type": "integer", "default": 7}
+    assert {"$ref": "#/$defs/FlyLowRequest"} in published["anyOf"]
+    assert published["$defs"]["FlyLowRequest"]["properties"]["height"] == {"type": "integer", "default": 7}
     row = "| `fly-low` | Fly over it. Mind the racks. | `instance`, `height` (default 7) | `landed`. How it went. |"
     assert row in table()
     monkeypatch.setattr("carproof.conform.cases.ASKED_OPS", (*ASKED_OPS, "fly-low"))

@@ -6,7 +6,6 @@ import re
 import subprocess
 import sys
 from collections.abc import Callable
-from dataclasses import fields
 from importlib import import_module
 from inspect import getdoc, isroutine, signature
 from pathlib import Path
@@ -198,28 +197,24 @@ def of_command(path: str, option: str) -> object:
     return next(each.default for each in group.params if each.name == option)
 
 
-def of_request(kind: type, field: str) -> object:
-    return next(each.default for each in fields(kind) if each.name == field)
-
-
 def of_function(function: Callable[..., object], parameter: str) -> object:
     return signature(function).parameters[parameter].default
 
 
 def test_defaults_are_the_same_in_python_on_the_command_line_and_in_ops() -> None:
     same: list[tuple[object, ...]] = [
-        (of_function(carproof.query, "now"), of_command("query", "now"), of_request(planning.QueryRequest, "now")),
-        (of_function(carproof.add, "now"), of_command("add", "now"), of_request(planning.AddRequest, "now")),
+        (of_function(carproof.query, "now"), of_command("query", "now"), of_function(planning.query, "now")),
+        (of_function(carproof.add, "now"), of_command("add", "now"), of_function(planning.add, "now")),
         (
             of_function(carproof.optimum, "limit"),
             of_command("optimum", "limit"),
-            of_request(searching.OptimumRequest, "limit"),
+            of_function(searching.optimum, "limit"),
             of_command("gap", "limit"),
             of_function(carproof.optimality_gap, "limit"),
             of_function(carproof.write_proof, "limit"),
         ),
         (of_command("plan", "planner"), carproof.Neighbourhood.name, of_function(carproof.add, "options").name),  # type: ignore[attr-defined]
-        (of_function(carproof.plan, "planner"), of_request(planning.PlanRequest, "planner")),
+        (of_function(carproof.plan, "planner"), of_function(planning.plan, "planner")),
         (of_function(carproof.plan, "repair"), of_command("plan", "repair")),
         (of_function(carproof.conforms, "examples"), of_command("conform", "number"), Options().examples),
         (of_function(carproof.conforms, "level"), of_command("conform", "level")),

@@ -1,14 +1,13 @@
 """A case: one question to a program. It holds nothing of the answer."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
 from carp_spec import Instance, Neighbourhood, Planner, Resource, ResourceId, Robot, RobotId, Solution
 from carp_spec.shapes import Number, numbers_of
 from carproof.engines import Engine, engine_named
 from carproof.protocol.ops import OPS
-from carproof.protocol.ops import op as wire
 from carproof.protocol.ops.op import PolishOptions
 
 ASKED_OPS = ("check", "query", "plan", "add", "polish", "optimum", "bound")
@@ -90,22 +89,21 @@ def engine_for(instance: Instance) -> Engine:
     return engine_named(None if is_large(instance) else "reference")
 
 
-def request_of(case: Case) -> Any:  # noqa: ANN401 - the request of its op
-    """The request, as the op's type in the table says."""
+def request_of(case: Case) -> dict[str, Any]:
+    """The request: values for the parameters of its op."""
     settings: dict[str, dict[str, Any]] = {
         "polish": {"options": PolishOptions(POLISH_ROUNDS)},
         "optimum": {"limit": OPTIMUM_SECONDS},
         "bound": {"steps": BOUND_STEPS},
         "execute": {"driver": "order", "now": None},
     }
-    kind = OPS[case.op].request
-    of_case = {field.name: getattr(case, field.name) for field in fields(kind) if hasattr(case, field.name)}
-    return kind(**{**of_case, **settings.get(case.op, {})})
+    of_case = {part.name: getattr(case, part.name) for part in OPS[case.op].parts if hasattr(case, part.name)}
+    return {**of_case, **settings.get(case.op, {})}
 
 
 def request_fields(case: Case) -> dict[str, Any]:
     """The fields of the request besides its id and op."""
-    return wire.request_fields(request_of(case))
+    return OPS[case.op].request_fields(request_of(case))
 
 
 def case_input(case: Case) -> dict[str, Any]:

@@ -48,6 +48,6 @@ def case_of(vector: Vector, op: str) -> Case:
     request = Request(write({"id": vector.id, **vector.request}))
     asked = OPS[request.op()].read(request)
     names = ("solution", "robot", "now", "planner", "delays")
-    fields = {name: getattr(asked, name) for name in names if getattr(asked, name, None) is not None}
-    options = {"planner": asked.options} if op == "add" else {}
-    return Case("vectors", vector.id, op, asked.instance, **fields, **options)
+    fields = {name: asked[name] for name in names if asked.get(name) is not None}
+    options = {"planner": asked["options"]} if op == "add" else {}
+    return Case("vectors", vector.id, op, asked["instance"], **fields, **options)

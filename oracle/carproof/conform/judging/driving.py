@@ -10,9 +10,10 @@ from carproof.conform.answers import Skipped
 from carproof.conform.cases import Case
 from carproof.conform.findings import Fault, Finding, all_arrive, are_ready, wrong
 from carproof.conform.levels import Level
-from carproof.protocol.ops.executing import DriveDocument, DriveRequest
+from carproof.protocol.ops.executing import DriveDocument
 
-Decide = Callable[[DriveRequest], DriveDocument | Skipped]
+Decide = Callable[[Trace, tuple[RobotId, ...]], DriveDocument | Skipped]
+"""Which of the robots that are ready enter their next visits, after what has happened."""
 
 
 def patience(case: Case) -> int:
@@ -41,7 +42,7 @@ def execution(case: Case, decide: Decide) -> Trace | Skipped:
             if len(entered[plan.robot]) < len(plan.visits) and _free_at(case, plan, entered[plan.robot]) <= now
         )
         if ready:
-            decided = decide(DriveRequest(case.instance, case.solution, trace, ready))
+            decided = decide(trace, ready)
             if isinstance(decided, Skipped):
                 return decided
             if not are_ready(decided.enter, ready):

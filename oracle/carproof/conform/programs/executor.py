@@ -1,11 +1,15 @@
 """A program that executes plans: it decides at each tick which robots go on."""
 
+from typing import Any
+
+from carp_spec import RobotId
+from carp_spec.execution.traces import Trace
 from carproof.conform.answers import Reply, protocol_error
 from carproof.conform.cases import EXECUTION, Case
 from carproof.conform.findings import answers_enough
 from carproof.conform.judging.driving import execution
 from carproof.conform.programs.program import Program
-from carproof.protocol.ops.op import request_fields
+from carproof.protocol.ops import OPS
 
 
 class Executor:
@@ -28,7 +32,12 @@ class Executor:
 
     def ask(self, case: Case, seconds: float | None = None) -> Reply:
         """The trace of the execution, up to the first collision or the last tick."""
-        return execution(case, lambda request: self._program.answer("drive", request_fields(request), seconds))
+
+        def decide(trace: Trace, ready: tuple[RobotId, ...]) -> Any:  # noqa: ANN401 - of the op
+            asked = {"instance": case.instance, "solution": case.solution, "trace": trace, "ready": ready}
+            return self._program.answer("drive", OPS["drive"].request_fields(asked), seconds)
+
+        return execution(case, decide)
 
     def finish(self) -> None:
         """Ask the program to stop; raises `Fault` if it does not end with 0."""

@@ -1,20 +1,17 @@
 """The ops of the protocol, in one table from which server, `conform`, schema, documentation and help are made.
 
-To add an op, write a dataclass of its request, a class of its result and a handler in a module of this package, and put
-the handler into `OPS`. `make generated` then writes the schema and the documentation again.
+To add an op, write a class of its result, and a handler whose parameters are the fields of a request, into a module of
+this package, and put the handler into `OPS`. `make generated` then writes the schema and the documentation again.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from difflib import get_close_matches
-from importlib.metadata import version
-from typing import Any
+from importlib.metadata import version as installed
 
 import msgspec
 
 from carp_spec import Refusal
 from carp_verify.kernel import UndecidedError, is_answer
-from carproof.engines import Engine
 from carproof.protocol.lines import RIGHT_FIELDS, SPOKEN_VERSION, VERSION, Request
 from carproof.protocol.ops.executing import (
     check_grants,
@@ -44,13 +41,6 @@ from carproof.protocol.ops.planning import add, assign, plan, plan_within, polis
 from carproof.protocol.ops.searching import bound, optimum
 
 
-@dataclass(frozen=True, slots=True)
-class StartRequest:
-    """The version of the protocol that is spoken."""
-
-    version: int
-
-
 class StartDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The name and version of the program, and the ops that it offers."""
 
@@ -59,31 +49,24 @@ class StartDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     ops: tuple[str, ...]
 
 
-def start(request: StartRequest, engine: Engine) -> StartDocument:
+def start(version: int) -> StartDocument:
     """Agree on the version of the protocol, and list the ops that may be asked."""
-    del engine
-    if request.version != VERSION:
-        message = f"the version must be {VERSION}, not {request.version}"
+    if version != VERSION:
+        message = f"the version must be {VERSION}, not {version}"
         raise Refusal("request", "$.version", SPOKEN_VERSION.id, message)
-    return StartDocument("carproof", version("carproof"), tuple(OPS))
-
-
-@dataclass(frozen=True, slots=True)
-class StopRequest:
-    """Nothing."""
+    return StartDocument("carproof", installed("carproof"), tuple(OPS))
 
 
 class StopDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """An empty object."""
 
 
-def stop(request: StopRequest, engine: Engine) -> StopDocument:
+def stop() -> StopDocument:
     """End the process after this response."""
-    del request, engine
     return StopDocument()
 
 
-_HANDLERS: tuple[Callable[[Any, Any], object], ...] = (
+_HANDLERS: tuple[Callable[..., object], ...] = (
     start,
     check,
     query,

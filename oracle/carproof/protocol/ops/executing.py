@@ -1,6 +1,6 @@
 """The ops of executions: traces, dependency graphs, simulations, plans for the rest, and giving way."""
 
-from dataclasses import dataclass
+from typing import TypeAlias
 
 import msgspec
 
@@ -29,52 +29,27 @@ from carproof.execution.simulation import execute as executed
 from carproof.execution.untangling import untangle as untangled
 from carproof.requests import inside, sound_within
 
-
-@dataclass(frozen=True, slots=True)
-class CheckTraceRequest:
-    """A solution, and the trace of what has happened."""
-
-    instance: Instance
-    solution: Solution
-    trace: Trace
+DelayFields: TypeAlias = tuple[RobotId, int, int]
+"""A robot, the position of a visit, and ticks."""
 
 
-def check_trace(request: CheckTraceRequest, engine: Engine) -> VerdictDocument:
+def check_trace(instance: Instance, solution: Solution, trace: Trace) -> VerdictDocument:
     """Judge whether a trace follows a solution: paths, durations, and the planned order."""
-    del engine
-    sound = sound_within(request.instance, request.solution)
-    violations = trace_violations(request.instance, sound, request.trace)
-    cost = total_cost(request.instance, sound.plans)
+    sound = sound_within(instance, solution)
+    violations = trace_violations(instance, sound, trace)
+    cost = total_cost(instance, sound.plans)
     return verdict_document(Verdict(cost, len(sound.unplanned), violations))
 
 
-@dataclass(frozen=True, slots=True)
-class DependenciesRequest:
-    """A solution, and delays whose effect is asked for: each is [robot, position of the visit, ticks]."""
+def dependencies(instance: Instance, solution: Solution, delays: tuple[DelayFields, ...] = ()) -> DependenciesDocument:
+    """Make the action dependency graph of a solution, and compute the effect of delays.
 
-    instance: Instance
-    solution: Solution
-    delays: tuple[tuple[RobotId, int, int], ...] = ()
-
-
-def dependencies(request: DependenciesRequest, engine: Engine) -> DependenciesDocument:
-    """Make the action dependency graph of a solution, and compute the effect of delays."""
-    del engine
-    sound = sound_within(request.instance, request.solution)
-    delays = _delays(sound, request.delays)
-    order = order_of(request.instance, sound)
-    return dependencies_document(order, late_robots(order, delays) if delays else None)
-
-
-@dataclass(frozen=True, slots=True)
-class ExecuteRequest:
-    """A solution, a driver, and delays, each [robot, position of the visit, ticks]; `now` is the end of the trace."""
-
-    instance: Instance
-    solution: Solution
-    driver: Driver
-    delays: tuple[tuple[RobotId, int, int], ...] = ()
-    now: int | None = None
+    Each of `delays` is [robot, position of the visit, ticks].
+    """
+    sound = sound_within(instance, solution)
+    late = _delays(sound, delays)
+    order = order_of(instance, sound)
+    return dependencies_document(order, late_robots(order, late) if late else None)
 
 
 class ExecutedDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -86,43 +61,34 @@ class ExecutedDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     standing: tuple[RobotId, ...]
 
 
-def execute(request: ExecuteRequest, engine: Engine) -> ExecutedDocument:
-    """Simulate robots that need longer at some visits than planned."""
-    del engine
-    if request.now is not None:
-        require_tick(request.now, "$.now")
-    sound = sound_within(request.instance, request.solution)
-    found = executed(request.instance, sound, request.driver, _delays(sound, request.delays))
+def execute(
+    instance: Instance,
+    solution: Solution,
+    driver: Driver,
+    delays: tuple[DelayFields, ...] = (),
+    now: int | None = None,
+) -> ExecutedDocument:
+    """Simulate robots that need longer at some visits than planned.
+
+    Each of `delays` is [robot, position of the visit, ticks]. The trace ends at the tick `now`, if that is given.
+    """
+    if now is not None:
+        require_tick(now, "$.now")
+    sound = sound_within(instance, solution)
+    found = executed(instance, sound, driver, _delays(sound, delays))
     return ExecutedDocument(
-        trace_document(found.trace if request.now is None else until(found.trace, request.now)),
+        trace_document(found.trace if now is None else until(found.trace, now)),
         solution_document(found.followed),
         tuple(map(str, found.collisions)),
         found.standing,
     )
 
 
-@dataclass(frozen=True, slots=True)
-class RetimeRequest:
-    """A solution, and the trace of what has happened."""
-
-    instance: Instance
-    solution: Solution
-    trace: Trace
-
-
-def retime(request: RetimeRequest, engine: Engine) -> Solution:
+def retime(instance: Instance, solution: Solution, trace: Trace, *, engine: Engine) -> Solution:
     """Make plans for the rest of the way, in the same order and as early as possible."""
-    sound = sound_within(request.instance, request.solution)
+    sound = sound_within(instance, solution)
     with inside("$.trace"):
-        return engine.retime(request.instance, sound, request.trace)
-
-
-@dataclass(frozen=True, slots=True)
-class UntangleRequest:
-    """A solution that may have rotations."""
-
-    instance: Instance
-    solution: Solution
+        return engine.retime(instance, sound, trace)
 
 
 class UntangledDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -136,23 +102,12 @@ class UntangledDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True)
     rotation: tuple[RobotId, ...]
 
 
-def untangle(request: UntangleRequest, engine: Engine) -> UntangledDocument:
+def untangle(instance: Instance, solution: Solution, *, engine: Engine) -> UntangledDocument:
     """Replan robots until no robots enter each other's places in a circle."""
-    sound = sound_within(request.instance, request.solution)
+    sound = sound_within(instance, solution)
     with inside("$.instance"):
-        found = untangled(request.instance, sound, engine)
+        found = untangled(instance, sound, engine)
     return UntangledDocument(solution_document(found.solution), found.extra, found.rotation)
-
-
-@dataclass(frozen=True, slots=True)
-class GiveWayRequest:
-    """A robot that must go first at the tick `now`, perhaps on a route, which has visits like those of a plan."""
-
-    instance: Instance
-    solution: Solution
-    robot: RobotId
-    now: int = 0
-    route: tuple[tuple[ResourceId, int, int | None], ...] | None = None
 
 
 class GivenWayDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -169,13 +124,24 @@ class GivenWayDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     stuck: tuple[RobotId, ...]
 
 
-def give_way(request: GiveWayRequest, engine: Engine) -> GivenWayDocument:
-    """Give a robot the earliest plan that the histories of the others allow, and plan the others around it."""
-    require_tick(request.now, "$.now")
-    require_robot(request.instance, request.robot, "$.robot")
-    sound = sound_within(request.instance, request.solution)
-    route = None if request.route is None else tuple(Visit(*visit) for visit in request.route)
-    found = given_way(request.instance, sound, request.robot, request.now, engine, route)
+def give_way(
+    instance: Instance,
+    solution: Solution,
+    robot: RobotId,
+    now: int = 0,
+    route: tuple[tuple[ResourceId, int, int | None], ...] | None = None,
+    *,
+    engine: Engine,
+) -> GivenWayDocument:
+    """Give a robot the earliest plan that the histories of the others allow, and plan the others around it.
+
+    It goes at the tick `now`, perhaps on a route, which has visits like those of a plan.
+    """
+    require_tick(now, "$.now")
+    require_robot(instance, robot, "$.robot")
+    sound = sound_within(instance, solution)
+    visits = None if route is None else tuple(Visit(*visit) for visit in route)
+    found = given_way(instance, sound, robot, now, engine, visits)
     return GivenWayDocument(
         None if found.solution is None else solution_document(found.solution),
         found.arrival,
@@ -185,79 +151,59 @@ def give_way(request: GiveWayRequest, engine: Engine) -> GivenWayDocument:
     )
 
 
-@dataclass(frozen=True, slots=True)
-class DriveRequest:
-    """A solution, the trace of what has happened by the tick now, and the robots that can go on then.
-
-    A robot that is `ready` has been released, or has stayed in its last visit for the duration and its delay.
-    """
-
-    instance: Instance
-    solution: Solution
-    trace: Trace
-    ready: tuple[RobotId, ...]
-
-
 class DriveDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The robots among those ready that enter their next visit at the tick `now` of the trace."""
 
     enter: tuple[RobotId, ...]
 
 
-def drive(request: DriveRequest, engine: Engine) -> DriveDocument:
-    """Let robots enter their next visits, in the planned order at each resource."""
-    del engine
-    sound = sound_within(request.instance, request.solution)
+def drive(instance: Instance, solution: Solution, trace: Trace, ready: tuple[RobotId, ...]) -> DriveDocument:
+    """Let robots enter their next visits, in the planned order at each resource.
+
+    A robot that is `ready` has been released, or has stayed in its last visit for the duration and its delay.
+    """
+    sound = sound_within(instance, solution)
     with inside("$.trace"):
-        require_followed(request.instance, sound, request.trace)
-    for robot in request.ready:
-        require_robot(request.instance, robot, "$.ready")
-    return DriveDocument(may_enter(order_of(request.instance, sound), request.trace, request.ready))
+        require_followed(instance, sound, trace)
+    for robot in ready:
+        require_robot(instance, robot, "$.ready")
+    return DriveDocument(may_enter(order_of(instance, sound), trace, ready))
 
 
-@dataclass(frozen=True, slots=True)
-class ReleaseRequest:
-    """A solution, the trace of what has happened, and the robots for which grants beyond the order are searched."""
+def release(
+    instance: Instance,
+    solution: Solution,
+    trace: Trace,
+    beyond: tuple[RobotId, ...] = (),
+    states: int | None = None,
+    seconds: float | None = None,
+) -> ReleaseDocument:
+    """Tell which further resources of their plans robots may be granted, so that everybody can still finish.
 
-    instance: Instance
-    solution: Solution
-    trace: Trace
-    beyond: tuple[RobotId, ...] = ()
-    states: int | None = None
-    seconds: float | None = None
-
-
-def release(request: ReleaseRequest, engine: Engine) -> ReleaseDocument:
-    """Tell which further resources of their plans robots may be granted, so that everybody can still finish."""
-    del engine
-    sound = sound_within(request.instance, request.solution)
+    For the robots of `beyond`, grants beyond the planned order are searched.
+    """
+    sound = sound_within(instance, solution)
     with inside("$.trace"):
-        found = released(request.instance, sound, request.trace, request.beyond, request.states, request.seconds)
+        found = released(instance, sound, trace, beyond, states, seconds)
     return released_document(found)
 
 
-@dataclass(frozen=True, slots=True)
-class CheckGrantsRequest:
-    """A solution, the trace of what has happened, and what robots are granted."""
-
-    instance: Instance
-    solution: Solution
-    trace: Trace
-    grants: tuple[GrantDocument, ...]
-    states: int | None = None
-    seconds: float | None = None
-
-
-def check_grants(request: CheckGrantsRequest, engine: Engine) -> GrantsVerdictDocument:
+def check_grants(
+    instance: Instance,
+    solution: Solution,
+    trace: Trace,
+    grants: tuple[GrantDocument, ...],
+    states: int | None = None,
+    seconds: float | None = None,
+) -> GrantsVerdictDocument:
     """Decide whether everybody can still finish if robots are granted these resources, and show why."""
-    del engine
-    sound = sound_within(request.instance, request.solution)
-    grants = [Grant(each.robot, each.resources) for each in request.grants]
-    verdict = grants_checked(request.instance, sound, request.trace, grants, request.states, request.seconds)
-    return grants_verdict_document(request.instance, verdict)
+    sound = sound_within(instance, solution)
+    wanted = [Grant(each.robot, each.resources) for each in grants]
+    verdict = grants_checked(instance, sound, trace, wanted, states, seconds)
+    return grants_verdict_document(instance, verdict)
 
 
-def _delays(solution: Solution, delays: tuple[tuple[RobotId, int, int], ...]) -> tuple[Delay, ...]:
+def _delays(solution: Solution, delays: tuple[DelayFields, ...]) -> tuple[Delay, ...]:
     """The delays of a request; raises `Refusal` if they are not right."""
     found = tuple(Delay(*delay) for delay in delays)
     if not delays_are_right(solution, found):

@@ -1,6 +1,5 @@
 """The ops that judge: solutions, and certificates."""
 
-from dataclasses import dataclass
 from time import perf_counter
 
 from carp_spec import Instance, Solution
@@ -13,77 +12,45 @@ from carproof.judging.audit import ask_kernel, audit_in_order
 from carproof.judging.documents import AuditDocument, VerifiedBoundDocument, VerifiedQueryDocument, audit_document
 from carproof.judging.verdicts import verify_bound as bound_verdict
 from carproof.judging.verdicts import verify_query as query_verdict
-from carproof.layouts.settings import footprint, step_of_cells
+from carproof.layouts.settings import footprint as footprint_of
+from carproof.layouts.settings import step_of_cells
 from carproof.requests import deadline, inside, sound_within
 
 
-@dataclass(frozen=True, slots=True)
-class CheckRequest:
-    """A solution to judge; the size of vehicles that must keep apart, and the step of the positions of cells."""
-
-    instance: Instance
-    solution: Solution
-    footprint: str | None = None
-    cells: str | None = None
-
-
-def check(request: CheckRequest, engine: Engine) -> VerdictDocument:
+def check(
+    instance: Instance, solution: Solution, footprint: str | None = None, cells: str | None = None
+) -> VerdictDocument:
     """Judge a solution, with a footprint like 900x600mm also by it, and list the first 100 violations of each rule."""
-    del engine
-    size = None if request.footprint is None else footprint(request.footprint)
-    cells = None if request.cells is None else step_of_cells(request.cells)
+    size = None if footprint is None else footprint_of(footprint)
+    step = None if cells is None else step_of_cells(cells)
     with inside("$.instance"):
-        verdict = judged(request.instance, request.solution, footprint=size, cells=cells)
+        verdict = judged(instance, solution, footprint=size, cells=step)
     return verdict_document(verdict)
 
 
-@dataclass(frozen=True, slots=True)
-class VerifyBoundRequest:
-    """The certificate of a lower bound, and whether the proved kernel is to decide."""
-
-    instance: Instance
-    certificate: BoundDocument
-    kernel: bool = False
+def verify_bound(instance: Instance, certificate: BoundDocument, kernel: bool = False) -> VerifiedBoundDocument:
+    """Check the certificate of a lower bound. With `kernel` the proved kernel decides."""
+    return bound_verdict(instance, certificate, kernel)
 
 
-def verify_bound(request: VerifyBoundRequest, engine: Engine) -> VerifiedBoundDocument:
-    """Check the certificate of a lower bound."""
-    del engine
-    return bound_verdict(request.instance, request.certificate, request.kernel)
+def verify_query(
+    instance: Instance, solution: Solution, certificate: QueryCertificateDocument, kernel: bool = False
+) -> VerifiedQueryDocument:
+    """Check the certificate of a query. It is about the plans of a solution; `kernel` lets the proved kernel decide."""
+    return query_verdict(instance, solution, certificate, kernel)
 
 
-@dataclass(frozen=True, slots=True)
-class VerifyQueryRequest:
-    """The certificate of a query beside the plans of a solution, and whether the proved kernel is to decide."""
+def audit(
+    instance: Instance, solution: Solution, kernel: bool = False, seconds: float | None = None, *, engine: Engine
+) -> AuditDocument:
+    """Certify that no robot can arrive earlier beside the plans before its own in planning order.
 
-    instance: Instance
-    solution: Solution
-    certificate: QueryCertificateDocument
-    kernel: bool = False
-
-
-def verify_query(request: VerifyQueryRequest, engine: Engine) -> VerifiedQueryDocument:
-    """Check the certificate of a query."""
-    del engine
-    return query_verdict(request.instance, request.solution, request.certificate, request.kernel)
-
-
-@dataclass(frozen=True, slots=True)
-class AuditRequest:
-    """A solution, whether the proved kernel is to decide, and the time to look at plans."""
-
-    instance: Instance
-    solution: Solution
-    kernel: bool = False
-    seconds: float | None = None
-
-
-def audit(request: AuditRequest, engine: Engine) -> AuditDocument:
-    """Certify that no robot can arrive earlier beside the plans before its own in planning order."""
-    until = deadline(request.seconds)
-    sound = sound_within(request.instance, request.solution)
+    With `kernel` the proved kernel decides. Plans that are not looked at in `seconds` are undecided.
+    """
+    until = deadline(seconds)
+    sound = sound_within(instance, solution)
     with inside("$.instance"):
-        found = audit_in_order(request.instance, sound, engine, goes_on=lambda: perf_counter() < until)
-    if request.kernel:
-        ask_kernel(request.instance, found)
+        found = audit_in_order(instance, sound, engine, goes_on=lambda: perf_counter() < until)
+    if kernel:
+        ask_kernel(instance, found)
     return audit_document(found, sound)

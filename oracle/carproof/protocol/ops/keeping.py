@@ -2,7 +2,7 @@
 
 import gc
 import re
-from dataclasses import dataclass, field
+from dataclasses import asdict
 
 import msgspec
 
@@ -46,137 +46,85 @@ class FleetDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     audit: AuditDocument | msgspec.UnsetType = msgspec.UNSET
 
 
-@dataclass(frozen=True, slots=True)
-class FleetOpenRequest:
-    """A name, and the fleet at the tick now."""
-
-    fleet: str
-    instance: Instance
-    solution: Solution | None = None
-    now: int = 0
-    audit: bool = False
-    options: Neighbourhood = field(default_factory=Neighbourhood)
-
-
-def fleet_open(request: FleetOpenRequest, session: Session) -> FleetDocument:
+def fleet_open(  # noqa: PLR0913 - one parameter for each field
+    fleet: str,
+    instance: Instance,
+    solution: Solution | None = None,
+    now: int = 0,
+    audit: bool = False,
+    *,
+    options: Neighbourhood,
+    session: Session,
+) -> FleetDocument:
     """Keep a fleet under a name. Robots without a plan are planned one by one, as `add` does with the options."""
-    require_tick(request.now)
-    _require_room(request, session)
-    sound = None if request.solution is None else sound_within(request.instance, request.solution)
+    require_tick(now)
+    _require_room(fleet, instance, session)
+    sound = None if solution is None else sound_within(instance, solution)
     with inside("$.instance"):
-        fleet = Fleet(request.instance, sound, request.now, request.options, audit=request.audit)
-    session.fleets[request.fleet] = fleet
+        opened = Fleet(instance, sound, now, options, audit=audit)
+    session.fleets[fleet] = opened
     gc.freeze()  # its many plans need not be looked through for garbage again and again
-    return _document(fleet, fleet.opening)
+    return _document(opened, opened.opening)
 
 
-@dataclass(frozen=True, slots=True)
-class FleetAddRequest:
-    """A robot to add at the tick now, which is that of the news before unless given."""
+def fleet_add(
+    fleet: str, robot: Robot, now: int | None = None, audit: bool = False, *, session: Session
+) -> FleetDocument:
+    """Add a robot to a fleet; robots near it may get new plans from `now` on.
 
-    fleet: str
-    robot: Robot
-    now: int | None = None
-    audit: bool = False
-
-
-def fleet_add(request: FleetAddRequest, session: Session) -> FleetDocument:
-    """Add a robot to a fleet; robots near it may get new plans from `now` on."""
-    fleet = _named(request.fleet, session)
+    `now` is the tick of the news before unless given.
+    """
+    kept = _named(fleet, session)
     try:
-        change = fleet.add(request.robot, now=request.now, audit=request.audit)
+        change = kept.add(robot, now=now, audit=audit)
     except Refusal as refusal:
         path = re.sub(r"^\$\.robots(\[0\])?", "$.robot", refusal.path)
         raise Refusal(refusal.kind, path, refusal.rule, refusal.message) from refusal
-    return _document(fleet, change)
+    return _document(kept, change)
 
 
-@dataclass(frozen=True, slots=True)
-class FleetAssignRequest:
-    """A robot of a fleet that gets further stops at the tick now, which is that of the news before unless given."""
+def fleet_assign(
+    fleet: str,
+    robot: RobotId,
+    stops: tuple[StopDocument, ...],
+    now: int | None = None,
+    audit: bool = False,
+    *,
+    session: Session,
+) -> FleetDocument:
+    """Give a robot under way or parked further stops; it and robots near it get new plans from `now` on.
 
-    fleet: str
-    robot: RobotId
-    stops: tuple[StopDocument, ...]
-    now: int | None = None
-    audit: bool = False
-
-
-def fleet_assign(request: FleetAssignRequest, session: Session) -> FleetDocument:
-    """Give a robot under way or parked further stops; it and robots near it get new plans from `now` on."""
-    fleet = _named(request.fleet, session)
-    stops = all_converted(request.stops, Stop)
-    return _document(fleet, fleet.assign(request.robot, stops, request.now, audit=request.audit))
-
-
-@dataclass(frozen=True, slots=True)
-class FleetForgetRequest:
-    """A fleet."""
-
-    fleet: str
+    `now` is the tick of the news before unless given.
+    """
+    kept = _named(fleet, session)
+    return _document(kept, kept.assign(robot, all_converted(stops, Stop), now, audit=audit))
 
 
-def fleet_forget(request: FleetForgetRequest, session: Session) -> FleetDocument:
+def fleet_forget(fleet: str, session: Session) -> FleetDocument:
     """Forget what is done by now: stops that are served, and all visits but those under way and to come."""
-    fleet = _named(request.fleet, session)
-    fleet.forget()
-    return _document(fleet, Change(fleet.now, tuple(map(PlanColumns.of, fleet.solution.plans)), (), ()))
+    kept = _named(fleet, session)
+    kept.forget()
+    return _document(kept, Change(kept.now, tuple(map(PlanColumns.of, kept.solution.plans)), (), ()))
 
 
-@dataclass(frozen=True, slots=True)
-class FleetAdvanceRequest:
-    """A fleet, and the tick that it is now."""
-
-    fleet: str
-    now: int
-
-
-def fleet_advance(request: FleetAdvanceRequest, session: Session) -> FleetDocument:
+def fleet_advance(fleet: str, now: int, session: Session) -> FleetDocument:
     """Let time go on: what was planned by `now` has happened. No plan changes."""
-    fleet = _named(request.fleet, session)
-    return _document(fleet, fleet.advance(request.now))
+    kept = _named(fleet, session)
+    return _document(kept, kept.advance(now))
 
 
-@dataclass(frozen=True, slots=True)
-class FleetTraceRequest:
-    """A fleet, and a trace of the robots that have not done what was planned by the tick `now` of the trace."""
-
-    fleet: str
-    trace: Trace
-    audit: bool = False
-
-
-def fleet_trace(request: FleetTraceRequest, session: Session) -> FleetDocument:
+def fleet_trace(fleet: str, trace: Trace, audit: bool = False, *, session: Session) -> FleetDocument:
     """Report delays: plans are made later, in the same order. Robots not named have done what was planned."""
-    fleet = _named(request.fleet, session)
+    kept = _named(fleet, session)
     with inside("$.trace"):
-        change = fleet.trace(request.trace, audit=request.audit)
-    return _document(fleet, change)
+        change = kept.trace(trace, audit=audit)
+    return _document(kept, change)
 
 
-@dataclass(frozen=True, slots=True)
-class FleetPolishRequest:
-    """A fleet, and how long to improve its plans."""
-
-    fleet: str
-    audit: bool = False
-    options: PolishOptions = field(default_factory=PolishOptions)
-
-
-def fleet_polish(request: FleetPolishRequest, session: Session) -> FleetDocument:
+def fleet_polish(fleet: str, audit: bool = False, *, options: PolishOptions, session: Session) -> FleetDocument:
     """Improve the plans for the rest of the way, for a number of rounds or for a time."""
-    fleet, options = _named(request.fleet, session), request.options
-    change = fleet.polish(
-        iterations=options.iterations, seconds=options.seconds, seed=options.seed, audit=request.audit
-    )
-    return _document(fleet, change)
-
-
-@dataclass(frozen=True, slots=True)
-class FleetRestRequest:
-    """A fleet."""
-
-    fleet: str
+    kept = _named(fleet, session)
+    return _document(kept, kept.polish(**asdict(options), audit=audit))
 
 
 class FleetRestDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -187,18 +135,11 @@ class FleetRestDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True)
     solution: SolutionDocument
 
 
-def fleet_rest(request: FleetRestRequest, session: Session) -> FleetRestDocument:
+def fleet_rest(fleet: str, session: Session) -> FleetRestDocument:
     """Show all that is to come after the moves of the tick `now`."""
-    fleet = _named(request.fleet, session)
-    instance, solution = fleet.rest()
-    return FleetRestDocument(fleet.now, instance_document(instance), solution_document(solution))
-
-
-@dataclass(frozen=True, slots=True)
-class FleetCloseRequest:
-    """A fleet."""
-
-    fleet: str
+    kept = _named(fleet, session)
+    instance, solution = kept.rest()
+    return FleetRestDocument(kept.now, instance_document(instance), solution_document(solution))
 
 
 class FleetClosedDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -207,24 +148,24 @@ class FleetClosedDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=Tru
     fleets: tuple[str, ...]
 
 
-def fleet_close(request: FleetCloseRequest, session: Session) -> FleetClosedDocument:
+def fleet_close(fleet: str, session: Session) -> FleetClosedDocument:
     """Forget a fleet."""
-    _named(request.fleet, session)
-    del session.fleets[request.fleet]
+    _named(fleet, session)
+    del session.fleets[fleet]
     return FleetClosedDocument(tuple(session.fleets))
 
 
-def _require_room(request: FleetOpenRequest, session: Session) -> None:
-    if request.fleet in session.fleets:
-        message = f"the name must be new, and there is a fleet {request.fleet!r}"
+def _require_room(name: str, instance: Instance, session: Session) -> None:
+    if name in session.fleets:
+        message = f"the name must be new, and there is a fleet {name!r}"
         raise Refusal("request", "$.fleet", OWN_NAMES.id, message)
-    if len(request.fleet) > LONGEST_NAME:
-        message = f"the name must have at most {LONGEST_NAME} characters, and has {len(request.fleet)}"
+    if len(name) > LONGEST_NAME:
+        message = f"the name must have at most {LONGEST_NAME} characters, and has {len(name)}"
         raise Refusal("limit", "$.fleet", OWN_NAMES.id, message)
     if len(session.fleets) == MOST_FLEETS:
         message = f"there must be at most {MOST_FLEETS} fleets; fleet/close forgets one"
         raise Refusal("limit", "$.fleet", OWN_NAMES.id, message)
-    graphs = [request.instance.graph, *(fleet.instance.graph for fleet in session.fleets.values())]
+    graphs = [instance.graph, *(fleet.instance.graph for fleet in session.fleets.values())]
     size = sum(len(graph.resources) for graph in graphs)
     if size > MOST_RESOURCES:
         message = f"all fleets together must have at most {MOST_RESOURCES} resources, and would have {size}"

@@ -1,13 +1,15 @@
-"""An op of the protocol: its request, its result and its handler, and the JSON of the first two.
+"""An op of the protocol: a handler with its request and its result, and the JSON of these.
 
-A request is a dataclass. Each of its fields is a field of the request, or several if it holds options (`OPTIONS`). A
-type in `DOCUMENTS` stands in JSON as its document; any other type is one that msgspec reads and writes.
+Each parameter of the handler is a field of the request, or several if it holds options (`OPTIONS`). A type in
+`DOCUMENTS` stands in JSON as its document; any other type is one that msgspec reads and writes.
 """
 
 import dataclasses
-from collections.abc import Callable, Iterator, Mapping
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import MISSING, asdict, dataclass
 from functools import cache
+from inspect import signature
 from types import NoneType
 from typing import Any, Literal, Union, get_args, get_type_hints
 
@@ -129,32 +131,53 @@ class Session:
 
 @dataclass(frozen=True, slots=True)
 class Op:
-    """An op: `request` is a dataclass of these `parts`, `result` what the handler returns.
+    """An op: `parts` are the parameters of its handler that a request has, `result` is what the handler returns.
 
-    The handler gets the session or the engine.
+    The other parameters of a handler, `session` and `engine`, are `given` by the server.
     """
 
     name: str
-    request: type[Any]
+    parts: tuple[Field, ...]
     result: Any
-    handle: Callable[[Any, Any], Any]
-    is_of_session: bool
-    parts: tuple[tuple[dataclasses.Field[Any], Any], ...]
+    handle: Callable[..., Any]
+    given: frozenset[str]
 
-    def read(self, request: Request) -> Any:  # noqa: ANN401 - the op's own request
+    def read(self, request: Request) -> dict[str, Any]:
         """Read the fields of a request; raises `Refusal` for the first wrong one, and for an unknown one."""
         values = {}
-        for field, hint in self.parts:
-            if hint in OPTIONS:
-                values[field.name] = OPTIONS[hint].take(request)
-            elif field.default is MISSING or field.name in request:
-                values[field.name] = request.take(field.name, reader_of(hint))
+        for part in self.parts:
+            if part.type in OPTIONS:
+                values[part.name] = OPTIONS[part.type].take(request)
+            elif part.default is MISSING or part.name in request:
+                values[part.name] = request.take(part.name, reader_of(part.type))
         request.end()
-        return self.request(**values)
+        return values
+
+    def call(self, values: Mapping[str, Any], session: Session) -> Any:  # noqa: ANN401 - the op's own result
+        """What the handler returns."""
+        ours = {"session": session, "engine": session.engine}
+        return self.handle(**values, **{name: ours[name] for name in self.given})
 
     def answer(self, request: Request, session: Session) -> object:
         """The result of a request, as JSON holds it."""
-        return made(self.handle(self.read(request), session if self.is_of_session else session.engine))
+        return made(self.call(self.read(request), session))
+
+    def request_fields(self, values: Mapping[str, Any]) -> dict[str, Any]:
+        """The fields of a request besides id and op; what is `None` is left out."""
+        fields: dict[str, Any] = {}
+        for part in self.parts:
+            value = values.get(part.name)
+            if value is None or part.type not in OPTIONS:
+                fields[part.name] = made(value)
+                continue
+            name = {"planner": value.name} if len(OPTIONS[part.type].kinds) > 1 else {}
+            fields |= {**name, **asdict(value)}
+        return {name: value for name, value in fields.items() if value is not None}
+
+    @property
+    def title(self) -> str:
+        """Its name in the schema."""
+        return "".join(word.capitalize() for word in re.split("[-/]", self.name))
 
     @property
     def statement(self) -> str:
@@ -164,28 +187,35 @@ class Op:
     @property
     def fields(self) -> Iterator[Field]:
         """The fields of its request besides id and op."""
-        for field, hint in self.parts:
-            if hint not in OPTIONS:
-                yield Field(field.name, document_of(hint), field.default)
+        for part in self.parts:
+            if part.type not in OPTIONS:
+                yield Field(part.name, document_of(part.type), part.default)
                 continue
-            kinds = OPTIONS[hint].kinds
+            kinds = OPTIONS[part.type].kinds
             if len(kinds) > 1:
                 yield Field("planner", Literal[tuple(PLANNERS)], Neighbourhood.name)
-            options = (each for kind in kinds for each in _hints(kind))
-            yield from {each.name: Field(each.name, of, each.default) for each, of in options}.values()
+            options = (Field(each.name, hints[each.name], each.default) for each, hints in _fields_of(kinds))
+            yield from {each.name: each for each in options}.values()
 
 
-def op_of(handle: Callable[[Any, Any], Any]) -> Op:
+def _fields_of(kinds: Iterable[type[Any]]) -> Iterator[tuple[dataclasses.Field[Any], Mapping[str, Any]]]:
+    """The fields of dataclasses, each with the types of its class."""
+    for kind in kinds:
+        hints = get_type_hints(kind)
+        yield from ((field, hints) for field in dataclasses.fields(kind))
+
+
+def op_of(handle: Callable[..., Any]) -> Op:
     """The op of a handler, by its annotations; `_` in the handler's name is `-` in the op's, and `/` after fleet."""
     hints = get_type_hints(handle)
     name = handle.__name__.replace("fleet_", "fleet/").replace("_", "-")
-    request = hints["request"]
-    return Op(name, request, hints["return"], handle, "session" in hints, _hints(request))
-
-
-def _hints(kind: type[Any]) -> tuple[tuple[dataclasses.Field[Any], Any], ...]:
-    hints = get_type_hints(kind)
-    return tuple((field, hints[field.name]) for field in dataclasses.fields(kind))
+    given = frozenset({"session", "engine"} & hints.keys())
+    parameters = [each for each in signature(handle).parameters.values() if each.name not in given]
+    parts = (
+        Field(each.name, hints[each.name], MISSING if each.default is each.empty else each.default)
+        for each in parameters
+    )
+    return Op(name, tuple(parts), hints["return"], handle, given)
 
 
 def _required(hint: Any) -> Any:  # noqa: ANN401 - a type hint
@@ -210,18 +240,3 @@ def reader_of(hint: Any) -> Callable[[bytes], Any]:  # noqa: ANN401 - a type hin
 def made(value: object) -> Any:  # noqa: ANN401 - whatever msgspec writes
     """The JSON value of a field or a result."""
     return DOCUMENTS[type(value)].make(value) if type(value) in DOCUMENTS else value
-
-
-def request_fields(request: Any) -> dict[str, Any]:  # noqa: ANN401 - the request of any op
-    """The fields of a request besides id and op; what is `None` is left out."""
-    fields: dict[str, Any] = {}
-    for field, hint in _hints(type(request)):
-        value = getattr(request, field.name)
-        if value is None:
-            continue
-        if hint in OPTIONS:
-            name = {"planner": value.name} if len(OPTIONS[hint].kinds) > 1 else {}
-            fields |= {**name, **asdict(value)}
-        else:
-            fields[field.name] = made(value)
-    return {name: value for name, value in fields.items() if value is not None}

@@ -23,13 +23,10 @@ ABOUT = "A request of the protocol. The response to an XRequest is an XResponse,
 def schema() -> str:
     """The JSON Schema of the protocol."""
     requests = [
-        _line(op.request.__name__, op.statement, ("op", Literal[op.name]), *map(_typed, op.fields))
+        _line(f"{op.title}Request", op.statement, ("op", Literal[op.name]), *map(_typed, op.fields))
         for op in OPS.values()
     ]
-    responses = [
-        _line(op.request.__name__.replace("Request", "Response"), "", ("result", document_of(op.result)))
-        for op in OPS.values()
-    ]
+    responses = [_line(f"{op.title}Response", "", ("result", document_of(op.result))) for op in OPS.values()]
     refused = _line("Refused", "The reason why a request was refused.", ("error", ErrorDocument))
     skipped = _line("Skipped", "The reason why a program does not answer a request.", ("skipped", str))
     lines = [*requests, *responses, refused, skipped]

@@ -1,56 +1,35 @@
 """The ops that search for optima and bounds; they need the extra `prove`."""
 
-from dataclasses import dataclass
-
 from carp_spec import Instance, Refusal
 from carp_spec.documents.bounds import BoundDocument
 from carp_spec.inputs.options import SEARCH_SECONDS
-from carproof.engines import Engine, warm
+from carproof.engines import warm
 from carproof.extras import require
 from carproof.optima import OptimumDocument, optimum_document
 from carproof.requests import POSITIVE_LIMIT, inside
 
 
-@dataclass(frozen=True, slots=True)
-class OptimumRequest:
-    """An instance, and the seconds to search."""
-
-    instance: Instance
-    limit: float = SEARCH_SECONDS
-
-
-def optimum(request: OptimumRequest, engine: Engine) -> OptimumDocument:
-    """Search for the least total cost of plans for all robots."""
+def optimum(instance: Instance, limit: float = SEARCH_SECONDS) -> OptimumDocument:
+    """Search for the least total cost of plans for all robots. The search takes at most `limit` seconds."""
     require("pysat")
     from carp_optimum.optimum import optimum as search  # noqa: PLC0415 - a server that is not asked need not load it
 
-    del engine
-    if request.limit <= 0:
-        message = f"the limit must be a number of seconds above 0, not {request.limit}"
+    if limit <= 0:
+        message = f"the limit must be a number of seconds above 0, not {limit}"
         raise Refusal("request", "$.limit", POSITIVE_LIMIT.id, message)
     warm()
     with inside("$.instance"):
-        return optimum_document(search(request.instance, request.limit))
+        return optimum_document(search(instance, limit))
 
 
-@dataclass(frozen=True, slots=True)
-class BoundRequest:
-    """An instance, and the limit of the search."""
-
-    instance: Instance
-    seconds: float | None = None
-    steps: int | None = None
-
-
-def bound(request: BoundRequest, engine: Engine) -> BoundDocument:
+def bound(instance: Instance, seconds: float | None = None, steps: int | None = None) -> BoundDocument:
     """Search for a lower bound on the total cost, with a certificate. Without a limit it takes 10 s."""
     require("pysat")
     from carp_optimum.bound import lower_bound  # noqa: PLC0415 - a server that is not asked need not load it
 
-    del engine
-    for name, limit in (("seconds", request.seconds), ("steps", request.steps)):
+    for name, limit in (("seconds", seconds), ("steps", steps)):
         if limit is not None and limit <= 0:
             raise Refusal("request", f"$.{name}", POSITIVE_LIMIT.id, f"it must be a number above 0, not {limit}")
     warm()
     with inside("$.instance"):
-        return lower_bound(request.instance, request.seconds, request.steps)
+        return lower_bound(instance, seconds, steps)
