@@ -91,13 +91,6 @@ def test_instance_and_plans_are_not_written_over_each_other(carproof: Run, elsew
     assert not (elsewhere / "same.json").exists()
 
 
-def test_the_op_answers_with_the_instance_and_the_plans() -> None:
-    fields = {"instance": HALL, "solution": PLANS, "robot": "r2", "now": 4}
-    result = asked("assign", **fields, stops=[{"resource": "d", "service": 2}, {"resource": "p"}])["result"]
-    instance, plans = (json.dumps(result[name]).encode() for name in ("instance", "solution"))
-    assert judge(read_instance(instance), read_solution(plans)).valid
-
-
 def test_a_stop_to_which_no_way_leads_changes_nothing() -> None:
     blocked = {**HALL, "graph": {**HALL["graph"], "nodes": [*HALL["graph"]["nodes"], {"id": "far"}]}}
     result = asked("assign", instance=blocked, solution=PLANS, robot="r2", now=4, stops=[{"resource": "far"}])["result"]

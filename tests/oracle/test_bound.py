@@ -8,7 +8,7 @@ from msgspec import to_builtins
 from tests.oracle.running import HEAD_ON, Run, corridor, save
 
 from carp_optimum.bound import Progress
-from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, read_bound
+from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument
 
 EMPTY = BoundDocument(BOUND_FORMAT, "", 0, 1, 0, (), (), (), ())
 
@@ -27,15 +27,6 @@ def test_a_bound_is_found_shown_and_verified(carproof: Run) -> None:
     assert document == {
         "bound": 5, "path": None, "rule": None, "reason": None, "by": "carp_verify", "assumed": []
     }  # fmt: skip
-
-
-def test_plans_given_are_set_against_the_bound(carproof: Run) -> None:
-    outcome = carproof("bound town.json --steps 0 --plans plans.json")
-    assert outcome.stdout.splitlines()[-1].split()[:6] == ["2", "5", "5", "5", "0.00", "%"]
-
-
-def test_the_certificate_as_a_document(carproof: Run) -> None:
-    assert read_bound(carproof("bound town.json --steps 3 --json").stdout.encode()).bound == 5
 
 
 def test_a_robot_without_a_way_is_told(carproof: Run) -> None:

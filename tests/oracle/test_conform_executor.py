@@ -5,7 +5,6 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
-from unittest.mock import Mock
 
 import msgspec
 import pytest
@@ -179,16 +178,6 @@ def test_patience_starts_again_whenever_a_robot_enters() -> None:
 def test_a_program_that_does_not_drive_is_skipped() -> None:
     skipped = Skipped("no drive here")
     assert execution(ALONE, lambda *_: skipped) is skipped
-
-
-def test_an_executor_has_its_programs_name_and_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    program = Called("order")
-    finished = Mock()
-    monkeypatch.setattr(program, "finish", finished)
-    executor = Executor(program)
-    executor.finish()
-    assert executor.name == program.name
-    finished.assert_called_once_with()
 
 
 @pytest.mark.parametrize("named", [("first", "first"), ("second",)])

@@ -14,7 +14,6 @@ from carproof.conform.asking.smoke import EAST, row, smoke_cases
 from carproof.conform.asking.vector_cases import vector_cases
 from carproof.conform.cases import Case, Stage
 from carproof.conform.findings import (
-    PROGRAM_RULES,
     Category,
     Fault,
     Finding,
@@ -34,7 +33,7 @@ from carproof.conform.judging.claims import Claims
 from carproof.conform.judging.deciding import Tally, random_shortfalls, smoke_shortfalls
 from carproof.conform.judging.gave_up import Effort
 from carproof.conform.judging.outcome import Outcome
-from carproof.conform.levels import CLASSICAL_LEVELS, EXECUTOR_LEVELS, JUDGED_OPS, LEVELS, WHOLE_LEVELS, Level
+from carproof.conform.levels import EXECUTOR_LEVELS, JUDGED_OPS, Level
 from carproof.conform.run import MOST_FAULTS, Options, Report, conform, label
 from carproof.formats.movingai_writer import is_classical
 from carproof.protocol.ops.planning import QueryDocument
@@ -208,17 +207,6 @@ def test_a_level_is_shown_by_its_own_ops_and_by_plan_where_whole_instances_are_a
     assert report(Level.OPTIMAL, tried("smoke", "optimum"), tried(op="check")).conforms is None
 
 
-def test_each_level_asks_more_than_the_one_before_and_has_a_name_and_a_statement() -> None:
-    labels = ["sound", "complete-in-context", "context-optimal", "complete", "optimal", "exact"]
-    assert [level.label for level in Level] == labels
-    assert list(Level) == sorted(Level)
-    assert dict(zip(labels, Level, strict=True)) == LEVELS
-    assert len({level.statement for level in Level}) == len(labels)
-    assert Level.SOUND.statement == "no plan breaks a rule"
-    assert [*WHOLE_LEVELS] == list(Level)[:-1]
-    assert set(CLASSICAL_LEVELS) < {*WHOLE_LEVELS}
-
-
 def test_of_failures_of_one_rule_the_smallest_is_shown_and_counted_once() -> None:
     made = report(Level.SOUND, failed("smoke", robots=3), failed("vectors", robots=2), tried("smoke"))
     made.add(failed("vectors", finding=CRASH, robots=5))
@@ -236,12 +224,6 @@ def test_findings_of_one_category_and_rule_are_of_one_fault() -> None:
     assert jumps.key == wrong("plan/move", "it flies").key
     assert jumps.key != wrong("plan/goal", "it jumps").key
     assert jumps.key != replace(jumps, category=Category.CRASH).key
-
-
-def test_rules_of_programs_have_ids_and_state_their_shares() -> None:
-    assert [each.id.partition("/")[0] for each in PROGRAM_RULES] == ["program"] * len(PROGRAM_RULES)
-    assert "at least 90 in 100" in answers_enough.statement
-    assert "at most 50 in 100" in tries_enough.statement
 
 
 def test_each_rule_of_programs_is_kept_and_broken_where_it_says() -> None:

@@ -43,16 +43,6 @@ def test_each_finding_is_saved_with_advice_and_the_way_to_repeat_it(tmp_path: Pa
     assert f"This case alone: ./planner '{tmp_path}/instance.json' 2" in lines
 
 
-def test_a_finding_of_a_vector_has_its_comment_and_its_features(tmp_path: Path) -> None:
-    case = next(
-        each for each in vector_cases(("query",), Level.SOUND, whole=False) if each.instance.after_goal == "park"
-    )
-    save_all([Outcome(case, wrong("plan/move", "it is wrong"), NOBODY)], tmp_path, ORIGIN)
-    (about,) = (each for each in (tmp_path / "finding.txt").read_text().splitlines() if each.startswith("About"))
-    assert about.endswith("park")
-    assert len(about) > len("About the case: ; park")
-
-
 def test_the_map_shows_starts_and_goals_where_no_plan_was_made(tmp_path: Path) -> None:
     save_all(FAILURES, tmp_path, ORIGIN)
     assert (tmp_path / "map.txt").read_text() == (

@@ -163,28 +163,6 @@ def test_an_audit_names_who_is_late_after_a_delay_and_nobody_before(late_town: P
     assert {*audit["certified"]} == after.keys() - late
 
 
-def test_wrong_delays_in_a_file_are_named_with_it(carproof: Run) -> None:
-    save(delays=[["r0", 0, 1], ["r1", 0, -2]])
-    outcome = carproof("execution simulate train.json plans.json --delays delays.json")
-    sentence = "the delay must be of a visit that is planned, for at least a tick, not ['r1', 0, -2] [request/delays]"
-    assert (outcome.code, outcome.stderr) == (2, f"Error: delays.json: $[1]: {sentence}\n")
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ("--driver order --now 3", "--now needs --trace."),
-        ("--trace t.json", "--trace and --followed need --driver."),
-        ("--driver order --trace t.json --now -1", "--now: it must be a whole number of at least 0, not -1"),
-    ],
-)
-def test_wrong_options_of_an_execution_write_nothing(options: str, message: str, carproof: Run) -> None:
-    outcome = carproof(f"execution simulate train.json plans.json {options}")
-    assert outcome.code == 2
-    assert message in outcome.stderr
-    assert not Path("t.json").exists()
-
-
 def test_retimed_plans_are_a_fleet_under_way(carproof: Run) -> None:
     outcome = carproof("execution retime train.json plans.json trace.json -o late.json")
     assert outcome.code == 0

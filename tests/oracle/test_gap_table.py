@@ -1,14 +1,7 @@
 """The tables of certified gaps: what is counted, and what is left out."""
 
-from time import process_time, process_time_ns
-
-import pytest
-
 from carp_experiments.measuring import gap_table
 from carp_experiments.measuring.gap_table import Found, Task
-from carp_optimum.bound import lower_bound
-from carp_spec import Instance, Solution
-from carp_spec.documents.bounds import BoundDocument
 
 TASK = Task(10, 100, 2, 1)
 
@@ -30,20 +23,3 @@ def test_a_measurement_of_a_few_robots_is_bracketed_by_bound_and_plans() -> None
     assert found.plans is not None
     assert found.optimum is not None
     assert found.shortest <= found.bound <= found.optimum <= found.plans
-
-
-def test_other_work_on_the_machine_takes_no_time_from_a_measurement(monkeypatch: pytest.MonkeyPatch) -> None:
-    clocks: list[object] = []
-
-    def plans(_: Instance, solution: Solution, __: float, **options: object) -> Solution:
-        clocks.append(options["clock"])
-        return solution
-
-    def bound(instance: Instance, **options: object) -> BoundDocument:
-        clocks.append(options.get("clock"))
-        return lower_bound(instance, steps=0)
-
-    monkeypatch.setattr(gap_table, "anneal", plans)
-    monkeypatch.setattr(gap_table, "lower_bound", bound)
-    gap_table.measure(Task(20, 6, 1, 60), 1)
-    assert clocks[:2] == [process_time, process_time_ns]

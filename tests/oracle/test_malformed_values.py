@@ -15,7 +15,6 @@ import carp_optimized
 import carp_reference
 import carp_spec
 import carproof
-from carp_optimum.gap import gap
 from carp_optimum.sat.proving import write_proof
 from carp_spec import (
     Carp,
@@ -42,8 +41,6 @@ from carp_verify.query.verify import verify_query
 from carproof.formats import named_as, read_foreign_solution, write_foreign_solution
 from carproof.formats.plans.vda5050 import write_orders
 from carproof.generate import Fleet, Grid, Range, Traits, Warehouse, grid_instance, warehouse_instance
-from carproof.viewer.page import page
-from carproof.viewer.stills import chart_still, map_still
 
 RIGHT = Instance(
     ResourceGraph((Resource("a"), Resource("b", 2), Resource("c", x=1, y=2)), (("a", "b"), ("b", "c"))),
@@ -151,7 +148,6 @@ OF_INSTANCES: Mapping[str, Callable[[Instance], object]] = {
     "carp_reference.retime": lambda instance: carp_reference.retime(instance, SOLVED, NOTHING),
     "bound": lambda instance: carproof.bound(instance, steps=1),
     "optimum": lambda instance: carproof.optimum(instance, 1),
-    "gap": lambda instance: gap(instance, [Carp()], 1),
     "write_proof": lambda instance: write_proof(instance, carproof.optimum(RIGHT, 1), Path("nowhere"), 1),
     "verify_bound": lambda instance: carproof.verify_bound(instance, carproof.bound(RIGHT, steps=1)),
     "verify_query": lambda instance: verify_query(instance, SOLVED, CERTIFICATE),
@@ -162,9 +158,6 @@ OF_INSTANCES: Mapping[str, Callable[[Instance], object]] = {
     "read_foreign_solution": lambda instance: read_foreign_solution(write_solution(SOLVED), instance),
     "write_foreign_solution": lambda instance: write_foreign_solution(instance, SOLVED, "carproof"),
     "named_as": lambda instance: named_as(instance, "carproof"),
-    "page": lambda instance: page(instance, SOLVED, "title"),
-    "map_still": lambda instance: map_still(instance, SOLVED, 0, "title"),
-    "chart_still": lambda instance: chart_still(instance, SOLVED, "title"),
     "Fleet": carproof.Fleet,
     "assign": lambda instance: carproof.assign(instance, ALONE, "s", [Stop("c")]),
     "audit": lambda instance: carproof.audit(instance, SOLVED),
@@ -204,9 +197,6 @@ OF_SOLUTIONS: Mapping[str, Callable[[Solution], object]] = {
     "release": lambda solution: carproof.release(RIGHT, solution, NOTHING),
     "check_grants": lambda solution: carproof.check_grants(RIGHT, solution, NOTHING, ()),
     "write_orders": lambda solution: write_orders(RIGHT, solution),
-    "page": lambda solution: page(RIGHT, solution, "title"),
-    "map_still": lambda solution: map_still(RIGHT, solution, 0, "title"),
-    "chart_still": lambda solution: chart_still(RIGHT, solution, "title"),
     "Fleet": lambda solution: carproof.Fleet(RIGHT, solution),
     "assign": lambda solution: carproof.assign(RIGHT, solution, "s", [Stop("c")]),
     "audit": lambda solution: carproof.audit(RIGHT, solution),

@@ -31,11 +31,6 @@ def test_the_optimum_is_shown_and_its_plans_are_written(carproof: Run, folder: P
     assert carproof("check town.json best.json").code == 0
 
 
-def test_the_optimum_as_a_document(carproof: Run) -> None:
-    best = {"cost": 5, "lower": 5, "decided": True, "solution": TWO_PLANNED}
-    assert document_of(carproof, "optimum town.json") == best
-
-
 def test_that_robots_cannot_all_be_planned_is_found_and_with_a_proof_proved(carproof: Run) -> None:
     obstacle = "a search over all states of the robots together finds no plan set"
     for option, answer in (("", ["found,", "not", "proved"]), ("--proof proof", ["proved"])):

@@ -15,7 +15,6 @@ from tests.oracle.running import (
     TWO,
     TWO_PLANNED,
     Document,
-    Outcome,
     Run,
     asked,
     corridor,
@@ -90,14 +89,6 @@ def test_check_prints_the_first_hundred_violations_of_a_rule_and_all_of_them_if_
     assert sum(violation["rule"] == "plan/duration" for violation in verdict["violations"]) == 100
 
 
-def test_check_writes_a_verdict(carproof: Run) -> None:
-    outcome = carproof("check town.json broken.json --json -o verdict.json")
-    assert outcome.code == 1
-    verdict = json.loads(outcome.stdout)
-    assert (verdict["valid"], len(verdict["violations"])) == (False, 2)
-    assert json.loads(Path("verdict.json").read_text()) == verdict
-
-
 def test_check_asks_for_plans_of_all_robots_only_where_it_is_asked_to(carproof: Run) -> None:
     save(nobody=solution({}, ["r1", "r2"]))
     for plans, code, last in (
@@ -128,11 +119,6 @@ def test_add_plans_the_robot_and_tells_what_changed(carproof: Run) -> None:
     assert json.loads(carproof("add town.json one.json r2 --m 1 --json").stdout) == TWO_PLANNED
 
 
-def test_add_says_no_where_there_is_no_plan(carproof: Run) -> None:
-    outcome = carproof("add three.json plans.json r3")
-    assert outcome == Outcome(1, f"unplanned: robot r3: {HAS_NO_WAY}\n", "")
-
-
 def test_query_prints_the_plan(carproof: Run) -> None:
     outcome = carproof("query town.json one.json r2")
     assert outcome.code == 0
@@ -147,11 +133,6 @@ def test_query_says_no_where_there_is_no_plan(carproof: Run) -> None:
     outcome = carproof("query three.json plans.json r3")
     assert (outcome.code, outcome.stdout) == (1, f"no plan: {HAS_NO_WAY}\n")
     assert carproof("query three.json plans.json r3 --json").stdout == '{"plan":null}\n'
-
-
-def test_a_parked_robot_stays_for_ever(carproof: Run) -> None:
-    save(park=corridor([EAST], "park"))
-    assert carproof("query park.json none.json r1").stdout.splitlines()[-2].split() == ["c", "2", "for", "ever"]
 
 
 def test_a_plan_that_is_in_the_way_of_others_can_be_replaced(carproof: Run) -> None:
@@ -210,12 +191,6 @@ def test_python_and_the_op_repair_as_the_command_does_but_an_op_gives_the_plans_
         assert len(asked("plan", instance=pocket, **fields)["result"]["unplanned"]) == left_out
 
 
-@pytest.mark.usefixtures("pocket")
-def test_polish_plans_small_groups_jointly(carproof: Run) -> None:
-    carproof("plan pocket.json --planner carp -o plans.json")
-    assert carproof("polish pocket.json plans.json --iterations 20").code == 0
-
-
 def test_polish_leaves_numbers_too_large_for_groups_as_they_are(carproof: Run, pocket: Document) -> None:
     pocket["graph"]["nodes"][3]["duration"] = 2**40
     save(slow=pocket)
@@ -231,29 +206,7 @@ def test_the_examples_of_add_work(process: Run) -> None:
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_plan_within_a_time_gives_lawful_plans(carproof: Run) -> None:
-    outcome = carproof("plan town.json --seconds 0.2 -o out.json")
-    assert (outcome.code, outcome.stderr) == (0, "")
-    assert carproof("check town.json out.json").code == 0
-
-
 def test_plan_by_rounds_gives_equal_plans_for_equal_seeds(carproof: Run) -> None:
     once = carproof("plan town.json --iterations 20 --seed 3 --json")
     assert once.code == 0
     assert once.stdout == carproof("plan town.json --iterations 20 --seed 3 --json").stdout
-
-
-@pytest.mark.parametrize(
-    ("options", "rule"),
-    [
-        ("--seconds 0", "polish/options"),
-        ("--seconds 1 --iterations 1", "polish/options"),
-        ("--seconds 1 --planner carp", "planner/options"),
-        ("--iterations 1 --m 3", "planner/options"),
-        ("--seconds 1 --engine reference", "planner/options"),
-    ],
-)
-def test_plan_within_a_time_refuses_options_that_do_not_go_with_it(carproof: Run, options: str, rule: str) -> None:
-    outcome = carproof(f"plan town.json {options}")
-    assert outcome.code == 2
-    assert rule in outcome.stderr

@@ -56,12 +56,6 @@ def test_after_tick_0_a_robot_without_a_plan_gets_none(carproof: Run) -> None:
     assert (outcome.code, json.loads(outcome.stdout)["unplanned"]) == (1, ["r2"])
 
 
-def test_a_robot_without_a_plan_gets_one(carproof: Run) -> None:
-    outcome = carproof("polish town.json one.json --json --iterations 1")
-    assert outcome.code == 0
-    assert not json.loads(outcome.stdout)["unplanned"]
-
-
 def test_a_robot_that_cannot_be_planned_is_told_and_the_answer_is_no(carproof: Run) -> None:
     save(three=corridor([*TWO["robots"], HEAD_ON]))
     outcome = carproof("polish three.json plans.json --iterations 20")

@@ -124,6 +124,11 @@ PLANNING = (
     ("polish town.json plans.json --seed -1", "--seed: the seed must be a whole number between 0 and"),
     ("polish town.json plans.json --bound bound-high.json", "bound-high.json: $."),
     ("execution give-way town.json plans.json r1 --route route.json --engine reference", "[plan/start]"),
+    ("plan town.json --seconds 0", "[polish/options]"),
+    ("plan town.json --seconds 1 --iterations 1", "[polish/options]"),
+    ("plan town.json --seconds 1 --planner carp", "[planner/options]"),
+    ("plan town.json --iterations 1 --m 3", "[planner/options]"),
+    ("plan town.json --seconds 1 --engine reference", "[planner/options]"),
 )
 EXECUTING = (
     ("execution retime east.json east-plans.json trace-early.json", "trace-early.json: $.", "[trace/ticks]"),
@@ -138,6 +143,16 @@ EXECUTING = (
     *(
         (f"execution simulate east.json east-plans.json --delays {delays}.json", "[request/delays]")
         for delays in ("delays-nobody", "delays-last", "delays-zero", "delays-twice", "nothing")
+    ),
+    (
+        "execution simulate east.json east-plans.json --delays delays-zero.json",
+        "delays-zero.json: $[0]: the delay",
+    ),
+    ("execution simulate east.json east-plans.json --driver order --now 3", "--now needs --trace."),
+    ("execution simulate east.json east-plans.json --trace t.json", "--trace and --followed need --driver."),
+    (
+        "execution simulate east.json east-plans.json --driver order --trace t.json --now -1",
+        "--now: it must be a whole",
     ),
 )
 PROOFS = (
@@ -169,6 +184,13 @@ MAKING = (
     ("view town.json plans.json --at 1 --chart", "Only one of --at and --chart can be drawn."),
     ("view town.json far.json", "and there is 1000000000 [view/ticks]"),
     ("view town.json plans.json --at -10000001", "[view/ticks]"),
+    ("view town.json broken.json --at 900", "from tick 0 to tick 5"),
+    ("view town.json plans.json --trace plans.json --chart", "--trace is for the page, without --at and --chart."),
+    ("view town.json plans.json --trace plans.json --at 1", "--trace is for the page, without --at and --chart."),
+    ("view town.json broken.json -o x.pdf", ".html", ".svg"),
+    ("view town.json broken.json -o x.svg", ".html", "--at", "--chart"),
+    ("view town.json broken.json --at 1 -o x.html", ".svg"),
+    ("view town.json broken.json --chart -o x.PNG", ".svg"),
 )
 FORMATS = (
     ("check m.json", "Give INSTANCE and SOLUTION, or --map, --scen and SOLUTION."),

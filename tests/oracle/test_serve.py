@@ -12,7 +12,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from tests.oracle.running import (
-    BEHIND_PLAN,
     BROKEN,
     EAST,
     EAST_PLAN,
@@ -27,7 +26,6 @@ from tests.oracle.running import (
     solution,
 )
 
-from carp_spec.documents.bounds import read_bound
 from carproof.engines import engine_named
 from carproof.protocol.lines import LONGEST_LINE
 from carproof.protocol.ops import OPS
@@ -66,57 +64,9 @@ def test_start_tells_name_version_and_ops() -> None:
     assert result(op="start", version=1) == {"name": "carproof", "version": version("carproof"), "ops": list(OPS)}
 
 
-def test_check_gives_a_verdict() -> None:
-    right = {"format": "carproof-verdict/1", "valid": True, "cost": 5, "unplanned": 0, "violations": []}
-    assert result(op="check", instance=TWO, solution=TWO_PLANNED) == right
-    broken = result(op="check", instance=TWO, solution=BROKEN)
-    assert [violation["rule"] for violation in broken["violations"]] == ["joint/capacity", "joint/capacity"]
-    assert not broken["valid"]
-
-
-def test_query_gives_a_plan_or_null() -> None:
-    assert result(op="query", instance=TWO, solution=ONE_PLANNED, robot="r2") == {"plan": BEHIND_PLAN}
-    assert result(op="query", instance=THREE, solution=TWO_PLANNED, robot="r3") == {"plan": None}
-
-
-def test_query_keeps_what_the_robot_has_done_by_now() -> None:
-    plan = result(op="query", instance=TWO, solution=TWO_PLANNED, robot="r2", now=2)["plan"]
-    assert plan[:3] == BEHIND_PLAN[:3]
-
-
 def test_plan_takes_a_planner_and_its_options() -> None:
     assert result(op="plan", instance=TWO, planner="carp") == TWO_PLANNED
     assert result(op="plan", instance=TWO) == result(op="plan", instance=TWO, planner="neighbourhood", m=4, sample=None)
-
-
-def test_add_gives_a_solution_with_the_robot() -> None:
-    assert result(op="add", instance=TWO, solution=ONE_PLANNED, robot="r2", m=1) == TWO_PLANNED
-    assert result(op="add", instance=THREE, solution=TWO_PLANNED, robot="r3")["unplanned"] == ["r3"]
-
-
-def test_audit_gives_who_is_certified_and_who_is_late() -> None:
-    audit = result(op="audit", instance=TWO, solution=TWO_PLANNED)
-    assert (audit["certified"], audit["late"]) == (["r1", "r2"], [])
-    waiting = solution({"r1": [["a", 0, 1], ["b", 1, 3], ["c", 3, 4]]})
-    assert result(op="audit", instance=corridor([EAST]), solution=waiting)["late"][0]["earliest"] == 2
-
-
-def test_bound_gives_a_certificate() -> None:
-    for limit in ({"steps": 3}, {"seconds": 0.5}):
-        assert read_bound(json.dumps(result(op="bound", instance=TWO, **limit)).encode()).bound == 5
-
-
-def test_optimum_gives_the_least_cost_and_plans_of_it() -> None:
-    best = {"cost": 5, "lower": 5, "decided": True, "solution": TWO_PLANNED}
-    assert result(op="optimum", instance=TWO, limit=30) == best
-    head_on = corridor([{**EAST, "goal": "e"}, HEAD_ON])
-    assert result(op="optimum", instance=head_on)["cost"] is None
-
-
-def test_polish_gives_plans_of_all_robots() -> None:
-    polished = result(op="polish", instance=TWO, solution=ONE_PLANNED, iterations=9)
-    assert [plan["robot"] for plan in polished["plans"]] == polished["order"]
-    assert polished["unplanned"] == []
 
 
 @pytest.mark.parametrize("id", [None, 0, "x", [1, {"a": [None]}], 1.5, 10**30])
@@ -306,10 +256,6 @@ def test_the_process_answers_each_line_before_it_reads_the_next() -> None:
             process.stdin.flush()
             assert process.stdout.readline().startswith(b'{"id":')
         assert process.wait(timeout=20) == 0
-
-
-def test_plans_that_a_query_returns_are_those_of_the_command_line() -> None:
-    assert result(op="query", instance=TWO, solution=TWO_PLANNED, robot="r1") == {"plan": EAST_PLAN}
 
 
 FLEET = line(id=0, op="fleet/open", fleet="f", instance=corridor([EAST]))

@@ -5,8 +5,6 @@ import re
 import pytest
 from tests.oracle.running import Run
 
-from carproof.command_line.tables import print_table
-
 WIDTH = 40
 ESCAPE = re.compile(r"\x1b\[[0-9;]*m")
 TIME = re.compile(r"\d+(\.\d+)? (m?s|s)\b")
@@ -48,15 +46,3 @@ def test_a_narrow_terminal_shows_every_word_of_a_table_whole(
     shown = " ".join(lines_of(narrow.stdout)).replace(":", " ").split()
     missing = {word for word in words(lines_of(piped.stdout)) if word not in shown and word.rstrip(":") not in shown}
     assert missing == set(), narrow.stdout
-
-
-def test_a_table_whose_words_fit_stays_a_table(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setenv("FORCE_COLOR", "1")
-    monkeypatch.setenv("TERM", "xterm")
-    monkeypatch.setenv("COLUMNS", str(WIDTH))
-    print_table(["rule", "statement"], [("joint/capacity", "at no tick are more robots in a resource than fit")])
-    lines = lines_of(capsys.readouterr().out)
-    assert lines[0].split() == ["rule", "statement"]
-    assert max(map(len, lines)) <= WIDTH

@@ -79,14 +79,6 @@ def test_what_a_broken_solution_names_beyond_the_instance_is_shown_too(carproof:
     assert scene["first"] == -2
 
 
-def test_a_robot_with_two_plans_is_shown_with_each(carproof: Run, tmp_path: Path) -> None:
-    twice = solution({"r1": EAST_PLAN})
-    twice["plans"] *= 2
-    scene = scene_of(drawn(carproof, tmp_path, corridor([EAST]), twice))
-    assert [track["note"] for track in scene["tracks"]] == ["one of 2 plans"] * 2
-    assert scene["violations"][0]["tracks"] == [0, 1]
-
-
 def test_ids_cannot_leave_their_text(carproof: Run, tmp_path: Path) -> None:
     robot = {**EAST, "id": HOSTILE}
     instance = corridor([robot])
@@ -281,31 +273,6 @@ def test_an_instance_alone_is_shown_with_its_starts_and_goals(carproof: Run, tmp
     assert (refused.code, "give SOLUTION" in refused.stderr) == (2, True)
 
 
-@pytest.mark.parametrize(
-    ("name", "options", "named"),
-    [
-        ("x.pdf", "", (".html", ".svg")),
-        ("x.svg", "", (".html", "--at", "--chart")),
-        ("x.html", "--at 1", (".svg",)),
-        ("x.PNG", "--chart", (".svg",)),
-    ],
-)
-def test_a_file_that_promises_another_format_is_refused(
-    carproof: Run, folder: Path, name: str, options: str, named: tuple[str, ...]
-) -> None:
-    outcome = carproof(f"view town.json broken.json {options} -o {name}")
-    assert outcome.code == 2
-    assert all(each in outcome.stderr for each in named)
-    assert not (folder / name).exists()
-
-
-@pytest.mark.usefixtures("folder")
-def test_a_tick_after_all_plans_is_refused_with_the_last_one(carproof: Run) -> None:
-    outcome = carproof("view town.json broken.json --at 900")
-    assert outcome.code == 2
-    assert "from tick 0 to tick 5" in outcome.stderr
-
-
 def test_an_instance_without_resources_or_robots_is_drawn(carproof: Run, tmp_path: Path) -> None:
     instance = {**corridor([]), "graph": {"nodes": [], "edges": []}}
     for options in ((), ("--at", "0"), ("--chart",)):
@@ -369,14 +336,6 @@ def test_the_rules_that_a_trace_breaks_are_listed_where_the_plans_break_none(car
     assert scene["violations"][0]["tracks"] == [0]
     scene = scene_of(drawn(carproof, tmp_path, CORRIDOR, COLLIDING, *option))
     assert [rule["id"] for rule in scene["rules"]] == ["joint/capacity"]
-
-
-@pytest.mark.usefixtures("folder")
-@pytest.mark.parametrize("option", ["--chart", "--at 1"])
-def test_a_still_with_a_trace_is_refused(carproof: Run, option: str) -> None:
-    outcome = carproof(f"view town.json plans.json --trace plans.json {option}")
-    assert outcome.code == 2
-    assert "--trace is for the page, without --at and --chart." in outcome.stderr
 
 
 def test_only_the_first_of_very_many_violations_are_listed(
