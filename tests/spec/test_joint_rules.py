@@ -1,8 +1,10 @@
 """Robots together: who is blamed, where and when."""
 
+from dataclasses import replace
+
 from tests.spec.making import VANISHING, instance_on, line, plan_of
 
-from carp_spec import Instance, Resource, ResourceGraph, Robot, Solution, Violation
+from carp_spec import Group, Instance, Plan, Resource, ResourceGraph, Robot, Solution, Violation, violations_of
 from carp_spec.joint_rules import capacity_is_kept, exchanges_are_avoided, solution_covers_robots, solution_orders_plans
 
 NAMES = ("r1", "r2", "r3", "r4")
@@ -114,6 +116,75 @@ def test_moves_to_and_from_nowhere_are_no_exchange() -> None:
 def test_staying_on_in_a_second_visit_is_no_exchange() -> None:
     plans = [plan_of(name, ("b", 0, 1), ("b", 1, 2)) for name in ("r1", "r2")]
     assert list(exchanges_are_avoided(VANISHING, plans)) == []
+
+
+def told(instance: Instance, *plans: Plan) -> list[str]:
+    """What the checker says of the plans together."""
+    return [str(each) for each in violations_of(instance, plans) if each.rule.startswith("joint/")]
+
+
+def grouped(*groups: Group, names: str = "abcde") -> Instance:
+    graph = line(names)
+    roomy = tuple(replace(each, capacity=4) for each in graph.resources)
+    return replace(ROW, graph=replace(graph, resources=roomy, groups=groups))
+
+
+def test_a_crowd_of_a_group_is_blamed_on_the_place_at_which_it_begins() -> None:
+    instance = grouped(Group("all", ("c", "a", "b")))
+    plans = [plan_of("r1", ("a", 0, 6), ("c", 6, 7)), plan_of("r2", ("b", 2, 4), ("d", 4, 5))]
+    assert told(instance, *plans) == [
+        "[joint/group] resource b in [2,4): robots r1, r2 (capacity 1 of group all)",
+    ]
+
+
+def test_the_name_of_a_group_is_told_unless_it_is_that_of_its_resource() -> None:
+    plans = [plan_of("r1", ("b", 0, 6)), plan_of("r2", ("b", 2, 4))]
+    for name in "acz":
+        (said,) = told(grouped(Group(name, ("b",))), *plans)
+        assert said.endswith(f"(capacity 1 of group {name})")
+
+
+def test_moves_between_close_resources_are_an_exchange() -> None:
+    """The two move into each other's group; d is in a group of two, and so is close to itself alone."""
+    instance = grouped(Group("left", ("a", "b")), Group("right", ("c",)), Group("wide", ("c", "d"), 2))
+    into, out_of = plan_of("r2", ("a", 0, 3), ("c", 3, 4)), plan_of("r1", ("c", 0, 3), ("b", 3, 4))
+    assert told(instance, into, out_of)[-1] == (
+        "[joint/exchange] resource a in [3,4): robots r2, r1 (they exchange ('a', 'c') and ('c', 'b') at tick 3)"
+    )
+    assert told(instance, into, plan_of("r1", ("c", 0, 4), ("b", 4, 5)))[1:] == []
+    assert told(instance, into, plan_of("r1", ("d", 0, 3), ("b", 3, 4))) == []
+
+
+def test_an_exchange_is_told_as_that_of_two_resources_where_it_is_one() -> None:
+    instance = grouped(Group("left", ("a", "b")))
+    for there, back, said in (
+        ("ac", "ca", "a and c"),
+        ("ac", "cb", "('a', 'c') and ('c', 'b')"),
+        ("bc", "ca", "('b', 'c') and ('c', 'a')"),
+    ):
+        ends = zip(("r1", "r2"), (there, back), strict=True)
+        plans = [plan_of(robot, (one, 0, 3), (two, 3, 4)) for robot, (one, two) in ends]
+        assert [each.split(" (", 1)[1] for each in told(instance, *plans)] == [f"they exchange {said} at tick 3)"]
+
+
+def test_two_robots_that_make_a_move_within_a_group_exchange() -> None:
+    instance = grouped(Group("left", ("a", "b")))
+    same = [plan_of(name, ("a", 0, 3), ("b", 3, 4)) for name in ("r2", "r1")]
+    assert told(instance, *same) == [
+        "[joint/group] resource a in [0,4): robots r1, r2 (capacity 1 of group left)",
+        "[joint/exchange] resource a in [3,4): robots r2, r1 (they exchange ('a', 'b') and ('a', 'b') at tick 3)",
+    ]
+    assert told(instance, same[0]) == []
+
+
+def test_where_following_is_forbidden_a_robot_enters_after_a_free_tick() -> None:
+    instance = replace(ROW, following="forbidden")
+    before = plan_of("r1", ("a", 0, 3), ("b", 3, 4))
+    assert told(instance, before, plan_of("r2", ("a", 4, 5))) == []
+    assert told(instance, before, plan_of("r2", ("a", 3, 4))) == [
+        "[joint/following] resource a in [3,4): robots r1, r2 (capacity 1, with a free tick after each robot)"
+    ]
+    assert told(ROW, before, plan_of("r2", ("a", 3, 4))) == []
 
 
 def test_a_solution_is_told_what_it_names_too_often_and_too_rarely() -> None:
