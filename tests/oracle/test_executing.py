@@ -190,6 +190,14 @@ def test_a_rotation_is_untangled_at_least_cost_or_named(carproof: Run, elsewhere
     assert outcome.stderr.startswith("Out of the rotation of the robots ")
 
 
+def test_a_rotation_that_there_is_no_time_for_stays(carproof: Run) -> None:
+    assert carproof("execution untangle ring.json turning.json --seconds 0").code == 2
+    for seconds, ticks in ((1e-9, 0), (60, 2)):
+        asked = line(id=1, op="untangle", instance=moves(RING), solution=steps(RING), seconds=seconds)
+        found = json.loads(carproof("serve", stdin=asked).stdout)["result"]
+        assert (found["extra"], found["undecided"]) == (ticks, not ticks)
+
+
 @settings(max_examples=draws(60), deadline=None)
 @given(planned_instances(SIZES))
 def test_untangled_plans_are_lawful_and_can_be_followed_in_order(case: PlannedInstance) -> None:

@@ -4,8 +4,9 @@ In a rotation, robots enter each other's places at one tick. A robot of the rota
 and gets the earliest plan beside the others. This is done with the robot whose cost grows least.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import takewhile
 
 from carp_spec import Instance, Plan, Robot, RobotId, Solution, Visit, plan_cost
 from carp_spec.execution.dependencies import dependencies, shortest_cycle
@@ -18,24 +19,29 @@ MOST_ROUNDS = 10_000
 class Untangled:
     """The solution without rotations, the number of rounds, and the ticks by which its cost grew.
 
-    `rotation` has the robots of a rotation in which no robot finds another plan; it stays in the solution.
+    `rotation` has the robots of a rotation that stays in the solution, as none of them finds another plan. If it is
+    `undecided`, the time was over, and more rotations may be left than the one that was found last.
     """
 
     solution: Solution
     rounds: int
     extra: int
     rotation: tuple[RobotId, ...]
+    undecided: bool
 
 
-def untangle(instance: Instance, solution: Solution, engine: Engine) -> Untangled:
-    """Remove all rotations of a lawful solution, the shortest first."""
+def untangle(
+    instance: Instance, solution: Solution, engine: Engine, goes_on: Callable[[], bool] = lambda: True
+) -> Untangled:
+    """Remove all rotations of a lawful solution, the shortest first, for as long as it is to go on."""
     plans = {plan.robot: plan for plan in solution.plans}
     kept_out: dict[RobotId, list[Visit]] = {}
     extra = 0
     for done in range(MOST_ROUNDS):
-        cycle = shortest_cycle(tuple(dependencies(instance, list(plans.values()))))
+        edges = dependencies(instance, list(plans.values()))
+        cycle = shortest_cycle(tuple(takewhile(lambda _: goes_on(), edges)))
         found: list[tuple[int, int, Plan, Visit]] = []
-        for number, edge in enumerate(cycle):
+        for number, edge in enumerate(takewhile(lambda _: goes_on(), cycle)):
             robot, place = edge.after
             entered = plans[robot].visits[place]
             block = Visit(entered.resource, entered.enter, entered.enter + 1)
@@ -43,9 +49,11 @@ def untangle(instance: Instance, solution: Solution, engine: Engine) -> Untangle
             plan = query_kept_out(instance, others, robot, [*kept_out.get(robot, ()), block], engine)
             if plan is not None:
                 found.append((plan_cost(instance, plan) - plan_cost(instance, plans[robot]), number, plan, block))
-        if not found:
-            order = tuple(plans[robot] for robot in solution.order)
-            return Untangled(replace(solution, plans=order), done, extra, tuple(edge.after[0] for edge in cycle))
+        is_over = not goes_on()
+        if is_over or not found:
+            in_order = replace(solution, plans=tuple(plans[robot] for robot in solution.order))
+            rotation = tuple(edge.after[0] for edge in cycle)
+            return Untangled(in_order, done, extra, rotation, is_over)
         more, _, plan, block = min(found, key=lambda each: each[:2])
         extra += more
         plans[plan.robot] = plan

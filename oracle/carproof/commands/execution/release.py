@@ -1,7 +1,6 @@
 """`carproof release`: which further resources robots may be granted so that everybody can still finish."""
 
 from pathlib import Path
-from time import perf_counter
 
 import click
 
@@ -21,6 +20,7 @@ from carproof.command_line.options import (
 )
 from carproof.command_line.output import write_result
 from carproof.command_line.tables import counted, print_line, print_table
+from carproof.command_line.time_left import time_left
 from carproof.execution.release_documents import (
     GrantsVerdictDocument,
     ReleaseDocument,
@@ -30,9 +30,6 @@ from carproof.execution.release_documents import (
 )
 from carproof.execution.releasing import MOST_STATES
 
-ENDING = 0.05
-"""The seconds that it takes to print the answer, and to end."""
-SHORTEST = 1e-3
 MOST_SHOWN = 8
 """The resources of a grant that are printed."""
 ANSWERS = {"safe": Answer.YES, "unsafe": Answer.NO, "undecided": Answer.UNDECIDED}
@@ -88,27 +85,21 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     """
     if beyond and grants is not None:
         raise click.UsageError("--beyond lists grants, and --grants asks about some: give one of them.")
-    started: float = context.find_root().obj
-
-    def left() -> float | None:
-        """What is left of a time that is right, and otherwise the wrong time, which is refused."""
-        if seconds is None or not seconds > 0:
-            return seconds
-        return max(seconds - (perf_counter() - started) - ENDING, SHORTEST)
-
     problem, sound = read_sound(instance, solution, trace, *([] if grants is None else [grants]))
     done = read_file(trace, read_trace)
     if grants is not None:
         wanted = read_file(grants, read_grants)
         with naming(grants):
-            verdict = grants_verdict_document(problem, check_grants(problem, sound, done, wanted, states, left()))
+            verdict = grants_verdict_document(
+                problem, check_grants(problem, sound, done, wanted, states, time_left(context, seconds))
+            )
         write_result(write(verdict), output, as_json)
         if not as_json:
             print_line(_sentence(verdict, states, seconds))
         return ANSWERS[verdict.answer]
     robots = [plan.robot for plan in sound.plans] if beyond else []
     with naming(trace):
-        document = released_document(released_of(problem, sound, done, robots, states, left()))
+        document = released_document(released_of(problem, sound, done, robots, states, time_left(context, seconds)))
     write_result(write(document), output, as_json)
     if not as_json:
         _show(document)

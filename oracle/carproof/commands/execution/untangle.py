@@ -1,6 +1,7 @@
 """`carproof execution untangle`: a solution that robots can follow in order."""
 
 from pathlib import Path
+from time import perf_counter
 
 import click
 
@@ -11,8 +12,10 @@ from carproof.command_line.files import read_sound
 from carproof.command_line.options import examples, gives_plans, instance_argument, solution_argument
 from carproof.command_line.output import write_result
 from carproof.command_line.tables import print_table, remark
+from carproof.command_line.time_left import time_left
 from carproof.engines import engine_named
 from carproof.execution.untangling import untangle
+from carproof.requests import deadline
 
 
 @click.command(
@@ -21,17 +24,32 @@ from carproof.execution.untangling import untangle
 )
 @instance_argument
 @solution_argument
+@click.option("--seconds", type=float, help="The time of the whole command.")
 @gives_plans
-def command(*, instance: str, solution: str, engine: str | None, output: Path | None, as_json: bool) -> Answer:
+@click.pass_context
+def command(  # noqa: PLR0913 - one parameter for each argument and option
+    context: click.Context,
+    *,
+    instance: str,
+    solution: str,
+    seconds: float | None,
+    engine: str | None,
+    output: Path | None,
+    as_json: bool,
+) -> Answer:
     """Replan robots of SOLUTION until no robots enter each other's places in a circle.
 
     In each such rotation, the robot is replanned whose plan becomes longer by the least; the others keep their plans.
+    With --seconds, rotations that there is no time for stay in the plans.
 
-    Exit codes: 0 no rotation is left, 1 no robot of a rotation finds another plan, and nothing is written, 2 bad input.
+    Exit codes: 0 no rotation is left, 1 no robot of a rotation finds another plan, and nothing is written, 2 bad input,
+    3 the time was over, and rotations may be left.
     """
     problem, sound = read_sound(instance, solution)
-    found = untangle(problem, sound, engine_named(engine))
-    if found.rotation:
+    chosen = engine_named(engine)
+    until = deadline(time_left(context, seconds))
+    found = untangle(problem, sound, chosen, lambda: perf_counter() < until)
+    if found.rotation and not found.undecided:
         names = ", ".join(map(str, found.rotation))
         remark(f"Out of the rotation of the robots {names} none finds another plan.")
         return Answer.NO
@@ -40,4 +58,7 @@ def command(*, instance: str, solution: str, engine: str | None, output: Path | 
         columns = ["robots", "rotations removed", "total cost", "extra"]
         row = [len(sound.plans), found.rounds, total_cost(problem, found.solution.plans), found.extra]
         print_table(columns, [row], numbers=columns)
+    if found.undecided:
+        remark("The time was over, and rotations may be left.")
+        return Answer.UNDECIDED
     return Answer.YES

@@ -21,6 +21,7 @@ from carproof.command_line.foreign import MovingAI, from_option, movingai_option
 from carproof.command_line.options import engine_option, examples, json_option, kernel_option
 from carproof.command_line.output import shown_plan
 from carproof.command_line.tables import print_line, print_table
+from carproof.command_line.time_left import time_left
 from carproof.engines import engine_named
 from carproof.formats import format_of, read_foreign_solution
 from carproof.judging.audit import Audit, ask_kernel, audit_in_order, audit_in_some_order
@@ -29,8 +30,6 @@ from carproof.progress import progress
 from carproof.requests import deadline
 
 COLUMNS = ("robots", "certified", "late", "undecided", "unplanned", "decided by", "time")
-ENDING = 0.05
-"""The seconds that it takes to print the answer, and to end."""
 OWN_FORMAT = "carproof"
 
 
@@ -80,7 +79,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
     Exit codes: 0 each plan is certified, 1 a plan is late, 2 bad input, 3 no plan is late, and some are undecided.
     """
-    until = deadline(seconds) - perf_counter() + context.find_root().obj - ENDING
+    until = deadline(time_left(context, seconds))
     *instances, solution = files
     benchmark = MovingAI.of(map, scen, agents)
     if len(instances) != (benchmark is None):

@@ -23,13 +23,12 @@ from carproof.command_line.options import (
 )
 from carproof.command_line.output import show_found, show_solution, write_result
 from carproof.command_line.planning import plan_showing
-from carproof.engines import engine_named, fastest_with, repaired, repairs_by_default, warm
+from carproof.command_line.time_left import time_left, time_of_compiling
+from carproof.engines import engine_named, fastest_with, repaired, repairs_by_default
 from carproof.progress import found_so_far, search_progress
 
 SHORTEST = 0.15
 """The seconds left at least."""
-ENDING = 0.05
-"""The seconds that it takes to print the table, and to end."""
 
 
 @click.command(
@@ -127,10 +126,7 @@ def _plan_within(  # noqa: PLR0913 - they are the command's
     from carp_optimized.improve.anytime import find_within  # noqa: PLC0415 - numba is slow to load
 
     require_polish_options(iterations, seconds, seed)
-    started: float = context.find_root().obj
-    compiling = perf_counter()
-    if warm():
-        started += perf_counter() - compiling
+    compiling = time_of_compiling()
     problem = read_instance_file(name)
     played = 0
     with naming(name), search_progress("planning", iterations, seconds) as show:
@@ -140,11 +136,12 @@ def _plan_within(  # noqa: PLR0913 - they are the command's
             played = rounds
             show(rounds, found_so_far(total, 0, unplanned))
 
-        left = None if seconds is None else max(seconds - (perf_counter() - started) - ENDING, SHORTEST)
+        left = time_left(context, seconds, compiling)
+        left = None if left is None else max(left, SHORTEST)
         found = find_within(problem, lambda each: write(each.document()), iterations, left, seed=seed, advance=advance)
     document = found.document()
     write_result(write(document), output, as_json)
     if not as_json:
-        time = perf_counter() - started
+        time = perf_counter() - context.find_root().obj - compiling
         show_found(problem, found, document.unplanned, f"best of {played} rounds", time)
     return Answer.of(not document.unplanned)

@@ -16,7 +16,8 @@ from carproof.command_line.foreign import Problem, solution_files
 from carproof.command_line.options import examples, gives_plans, now_option
 from carproof.command_line.output import show_unplanned, write_result
 from carproof.command_line.tables import print_table
-from carproof.engines import engine_named, repaired, sum_of_shortest_paths, warm
+from carproof.command_line.time_left import time_left, time_of_compiling
+from carproof.engines import engine_named, repaired, sum_of_shortest_paths
 from carproof.progress import found_so_far, gap, search_progress
 
 COLUMNS = ("plans", "unplanned", "total cost", "bound", "gap", "rounds", "time")
@@ -38,13 +39,15 @@ COLUMNS = ("plans", "unplanned", "total cost", "bound", "gap", "rounds", "time")
 @click.option(
     "--seconds",
     type=float,
-    help="For how long, in place of a number of rounds; to plan robots that are left out may take longer.",
+    help="The time of the whole command, in place of rounds; to plan robots that are left out may take longer.",
 )
 @click.option("--seed", type=int, default=0, help="The seed of all choices.")
 @now_option
 @click.option("--bound", type=InputFile(), help="The certificate of a lower bound, of `carproof bound`.")
 @gives_plans
+@click.pass_context
 def command(  # noqa: PLR0913 - one parameter for each argument and option
+    context: click.Context,
     *,
     problem: Problem,
     iterations: int | None,
@@ -80,8 +83,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
         before = sound_solution(instance, given)
     least = bound_of(instance, bound)
     played = 0
-    if seconds is not None:
-        warm()
+    compiling = 0.0 if seconds is None else time_of_compiling()
     started = perf_counter()
     with naming(problem.names[0]), search_progress("polishing", last_round(iterations, seconds), seconds) as show:
 
@@ -91,7 +93,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
             show(rounds, found_so_far(total, least, unplanned))
 
         polish = engine_named(engine).polish
-        after = polish(instance, before, iterations=iterations, seconds=seconds, seed=seed, now=now, advance=advance)
+        left = time_left(context, seconds, compiling)
+        after = polish(instance, before, iterations=iterations, seconds=left, seed=seed, now=now, advance=advance)
         if seconds is None and now == 0:
             after = repaired(instance, after)
     time = perf_counter() - started

@@ -1,5 +1,6 @@
 """The ops of executions: traces, dependency graphs, simulations, plans for the rest, and giving way."""
 
+from time import perf_counter
 from typing import TypeAlias
 
 import msgspec
@@ -27,7 +28,7 @@ from carproof.execution.release_documents import (
 from carproof.execution.simulation import DependenciesDocument, Driver, delays_are_right, dependencies_document
 from carproof.execution.simulation import execute as executed
 from carproof.execution.untangling import untangle as untangled
-from carproof.requests import inside, sound_within
+from carproof.requests import deadline, inside, sound_within
 
 DelayFields: TypeAlias = tuple[RobotId, int, int]
 """A robot, the position of a visit, and ticks."""
@@ -94,20 +95,25 @@ def retime(instance: Instance, solution: Solution, trace: Trace, *, engine: Engi
 class UntangledDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The solution without rotations, and the ticks by which its cost grew.
 
-    `rotation` has the robots of a rotation that is left because none of them finds another plan.
+    `rotation` has the robots of a rotation that is left, as none of them finds another plan. If it is `undecided`, the
+    time was over, and more rotations may be left than the one that was found last.
     """
 
     solution: SolutionDocument
     extra: int
     rotation: tuple[RobotId, ...]
+    undecided: bool
 
 
-def untangle(instance: Instance, solution: Solution, *, engine: Engine) -> UntangledDocument:
-    """Replan robots until no robots enter each other's places in a circle."""
+def untangle(
+    instance: Instance, solution: Solution, seconds: float | None = None, *, engine: Engine
+) -> UntangledDocument:
+    """Replan robots until no robots enter each other's places in a circle, or the `seconds` are over."""
+    ends = deadline(seconds)
     sound = sound_within(instance, solution)
     with inside("$.instance"):
-        found = untangled(instance, sound, engine)
-    return UntangledDocument(solution_document(found.solution), found.extra, found.rotation)
+        found = untangled(instance, sound, engine, lambda: perf_counter() < ends)
+    return UntangledDocument(solution_document(found.solution), found.extra, found.rotation, found.undecided)
 
 
 class GivenWayDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

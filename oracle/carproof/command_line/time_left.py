@@ -1,0 +1,25 @@
+"""The time of a whole command: from its start to the last line that it prints."""
+
+from time import perf_counter
+
+import click
+
+from carproof.engines import warm
+
+ENDING = 0.05
+"""The seconds that it takes to print the answer, and to end."""
+SHORTEST = 1e-3
+
+
+def time_left(context: click.Context, seconds: float | None, compiling: float = 0.0) -> float | None:
+    """What is left of the seconds of the command, not counting those of `compiling`; wrong ones stay, to be refused."""
+    if seconds is None or not seconds > 0:
+        return seconds
+    started: float = context.find_root().obj
+    return max(seconds + compiling - (perf_counter() - started) - ENDING, SHORTEST)
+
+
+def time_of_compiling() -> float:
+    """The seconds that it takes to compile what runs, if that has not been done before."""
+    started = perf_counter()
+    return perf_counter() - started if warm() else 0.0
