@@ -9,9 +9,7 @@ import pytest
 
 from carp_experiments.paper import space_time
 from carp_experiments.paper.conventions import (
-    CONVENTIONS,
     DIVISORS,
-    PROPOSED,
     Convention,
     add_robot,
     conventions_row,
@@ -19,10 +17,8 @@ from carp_experiments.paper.conventions import (
     ints,
     meetings_of,
     one_pass,
-    remaining_row,
     world_of,
 )
-from carp_experiments.paper.conventions_report import conventions_report
 from carp_experiments.paper.drawn_maps import drawn_tree, grid_edges
 from carp_experiments.paper.map_cases import MapCase, instance_of
 from carp_experiments.recomputed import plans_of
@@ -149,16 +145,3 @@ def test_the_nearest_robot_is_that_of_the_divisor(divisor: str) -> None:
         outside = [each for each in range(planned) if each != member]
         near = space_time.nearest(world, world, ints(outside), ints([member]), False, DIVISORS.index(divisor))
         assert outside[near] == min(outside, key=lambda each: distance(each, member))
-
-
-def test_the_report_says_where_robots_meet() -> None:
-    report = conventions_report([MapCase(remaining_row, map, 0, 6).run() for map in (10, 20)], 6)
-    assert [row[0] for row in report.tables[-1].rows] == ["failure keep"] * len(PROPOSED)
-    assert report.tables[-1].rows[0][2:] == ("0 of 1", "0 of 1")
-
-
-def test_the_report_has_each_convention_twice() -> None:
-    rows = [MapCase(conventions_row, map, 0, 6).run() for map in (10, 20)]
-    summary = conventions_report(rows, 6).summary
-    assert isinstance(summary, tuple)
-    assert len(summary) == 2 * len(CONVENTIONS)

@@ -4,8 +4,8 @@ from time import process_time
 
 from hypothesis import given
 
-from carp_optimized.improve.anytime import plan_within
 from carp_spec import Instance, judge
+from carproof import plan_within
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 from carproof.testing.strategies import instances
 

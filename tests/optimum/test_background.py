@@ -6,8 +6,7 @@ from multiprocessing import active_children
 import pytest
 
 from carp_optimum.background import BackgroundSearch, Look
-from carp_optimum.sat.solver import TimeOver
-from carp_spec import Refusal
+from carproof import Refusal, TimeOver
 
 
 @pytest.fixture(params=[False, True], ids=["here", "own process"])

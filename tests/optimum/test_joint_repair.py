@@ -8,7 +8,7 @@ from hypothesis import given
 from carp_optimized import plan
 from carp_optimized.improve.repair import plan_failed_first, repair, repair_jointly
 from carp_spec import Carp, Instance, Resource, ResourceGraph, Robot, Solution, judge
-from carp_spec.model import Following
+from carproof import Following
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances
 

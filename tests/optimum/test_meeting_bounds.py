@@ -8,9 +8,8 @@ from tests.profiles import draws
 from tests.verify.tiny import TINY
 
 from carp_optimum.bound import lower_bound
-from carp_spec import Instance, Resource, ResourceGraph, Robot
-from carp_verify.bound.verify import verify_bound
 from carp_verify.optimum.joint_search import least_total_cost
+from carproof import Instance, Resource, ResourceGraph, Robot, verify_bound
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.testing.strategies import instances
 

@@ -21,10 +21,10 @@ from carp_optimum.optimum import optimum
 from carp_optimum.sat.between import Between
 from carp_optimum.sat.core_guided import core_guided
 from carp_optimum.sat.proving import write_proof
-from carp_optimum.sat.solver import TimeOver
 from carp_spec import AfterGoal, Carp, Instance, Plan, Robot, judge, total_cost
 from carp_verify.optimum.joint_search import least_total_cost
-from carp_verify.optimum.proof import solution_of, verify_proof
+from carp_verify.optimum.proof import solution_of
+from carproof import TimeOver, verify_proof
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.testing.strategies import instances
 
@@ -177,46 +177,6 @@ def test_a_bound_of_one_half_is_none_of_all_plans(half: int, monkeypatch: pytest
     monkeypatch.setattr(BackgroundSearch, "latest", lambda _: ahead[0][1] if half else None)
     best = optimum(instance, SECONDS)
     assert best.lower < total_cost(instance, dear)
-
-
-@pytest.mark.usefixtures("beside_at_once")
-def test_a_crowd_is_searched_whole_after_halves_that_end_early(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Their plans are kept, and the bound of the search beside is one of all plans again."""
-    instance, cheap, dear = crowd_with_plans()
-    least = total_cost(instance, cheap)
-    found_in_halves(monkeypatch, [(0, Between(instance, 0, cheap))], [])
-    monkeypatch.setattr("carp_optimum.optimum.narrowed", lambda *_: iter([(0, Between(instance, least, dear))]))
-    slices = iter([None] * 10)
-    monkeypatch.setattr("carp_optimum.sat.core_guided.Solver.satisfiable", lambda *_: next(slices))
-    best = optimum(instance, SECONDS)
-    assert best.solution is not None
-    assert (best.decided, best.solution.plans) == (True, cheap)
-
-
-@pytest.mark.usefixtures("beside_at_once")
-def test_a_crowd_without_plans_or_with_too_large_tables_is_searched_whole(monkeypatch: pytest.MonkeyPatch) -> None:
-    instance = grid_instance(Grid(4, 4, 20), Fleet(16, 2))
-    least = core_guided(instance, SECONDS).cost
-    with monkeypatch.context() as patched:
-        patched.setattr("carp_optimum.branching.branching.MOST_NODES", 200)
-        assert {known.lower for _, known in half_narrowed(instance, nothing, 0)} == {0}
-        assert optimum(instance, SECONDS).cost == least
-    monkeypatch.setattr("carp_optimum.sat.heuristics.ever_better", lambda *_: iter(()))
-    assert [known for _, known in half_narrowed(instance, nothing, 0)] == [Between(instance)] * 2
-    assert optimum(instance, SECONDS).cost == least
-
-
-@pytest.mark.usefixtures("beside_at_once")
-def test_a_long_search_goes_on_where_the_plans_found_beside_cost_more_than_its_bound(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    instance = town(9, "vanish")
-    plans = carproof.plan(instance, Carp()).plans
-    monkeypatch.setattr("carp_optimum.optimum.narrowed", lambda *_: iter([(0, Between(instance, 0, plans))]))
-    best = optimum(instance, SECONDS)
-    assert best.decided
-    assert best.cost == core_guided(instance, SECONDS).cost
-    assert best.cost != total_cost(instance, plans)
 
 
 @pytest.mark.usefixtures("beside_at_once")

@@ -14,12 +14,12 @@ from carp_optimum.sat.core_guided import core_guided
 from carp_optimum.sat.priced_formula import priced_formula
 from carp_optimum.sat.solver import Deadline, Solver
 from carp_spec import AfterGoal, Instance, judge
-from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument
+from carp_spec.documents.bounds import BOUND_FORMAT
 from carp_spec.documents.instances import digest
-from carp_verify.bound.verify import verify_bound
 from carp_verify.optimum.encoding import Encoding
 from carp_verify.optimum.joint_search import least_total_cost
 from carp_verify.optimum.proof import solution_of
+from carproof import BoundDocument, verify_bound
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.testing.strategies import instances
 

@@ -1,11 +1,7 @@
 """Lower bounds by prices: plans that break no rule pay no more than the prices collect, and cost no less."""
 
-import ast
-import subprocess
-import sys
 from dataclasses import replace
 from itertools import count, product
-from pathlib import Path
 from random import Random
 
 import msgspec
@@ -27,12 +23,10 @@ from tests.verify.tiny import TINY
 
 from carp_optimum.bound import Progress, lower_bound
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
-from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, read_bound
-from carp_spec.documents.decoding import write
+from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument
 from carp_spec.documents.instances import digest
 from carp_spec.model import AfterGoal, Group
 from carp_spec.plan_rules import plan_cost
-from carp_verify.bound import verify as page
 from carp_verify.bound.tariff import Fees, Tariff
 from carp_verify.bound.verify import verify_bound
 from carp_verify.optimum.joint_search import least_total_cost
@@ -164,46 +158,6 @@ def test_prices_end_early_where_ticks_are_many_and_the_bound_holds_all_the_same(
     certificate = lower_bound(Instance(lane, robots), steps=30)
     assert certificate.horizon == 20_000
     assert verify_bound(Instance(lane, robots), certificate) == certificate.bound >= 2
-
-
-def test_the_same_steps_give_the_same_certificate() -> None:
-    assert write(lower_bound(crossing(), steps=30)) == write(lower_bound(crossing(), steps=30))
-
-
-def test_a_certificate_is_read_as_it_was_written() -> None:
-    certificate = lower_bound(crossing(), steps=30)
-    assert read_bound(write(certificate)) == certificate
-
-
-def test_the_verifier_shares_nothing_with_the_finder_and_loads_nothing_compiled() -> None:
-    pages = [Path(str(page.__file__)).parent / f"{name}.py" for name in ("verify", "least", "network", "tariff")]
-    nodes = [node for each in pages for node in ast.walk(ast.parse(each.read_text()))]
-    names = {node.module for node in nodes if isinstance(node, ast.ImportFrom) and node.module is not None}
-    assert {name for name in names if name.startswith("carp_")} == {
-        "carp_spec",
-        "carp_spec.documents.bounds",
-        "carp_spec.documents.instances",
-        "carp_spec.inputs.values",
-        "carp_spec.model",
-        "carp_spec.rule",
-        "carp_verify.bound.cuts",
-        "carp_verify.bound.least",
-        "carp_verify.bound.network",
-        "carp_verify.bound.rules",
-        "carp_verify.bound.tariff",
-        "carp_verify.optimum.refutation",
-        "carp_verify.routes",
-    }
-    program = "import sys; own = {*sys.modules}; import carp_verify.bound.verify; print(*({*sys.modules} - own))"
-    loaded = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True).stdout.split()
-    outside = {name.partition(".")[0] for name in loaded} - sys.stdlib_module_names
-    assert {name for name in outside if not name.startswith("_")} <= {
-        "carp_spec",
-        "carp_verify",
-        "msgspec",
-        "typing_extensions",
-    }
-    assert not {"carp_optimum.bound", "carp_optimum.lagrangian.price_search", "carp_verify.bound.cuts"} & set(loaded)
 
 
 def test_a_robot_in_a_resource_pays_its_price_once_and_all_at_most_price_times_capacity() -> None:
