@@ -11,9 +11,7 @@ from time import process_time
 
 import carproof
 from carp_optimized.fleet import PlannedFleet
-from carp_spec import Carp
-from carp_spec.documents.instances import read_instance, write_instance
-from carp_spec.documents.solutions import read_solution, write_solution
+from carproof import Carp, read_instance, read_solution, write_instance, write_solution
 from carproof.generate import Fleet, Range, Warehouse, warehouse_instance
 
 TURNS = 7

@@ -12,8 +12,7 @@ from tests.foreign.building import built
 from tests.profiles import rest_in
 
 from carp_spec import judge
-from carp_spec.documents.instances import read_instance
-from carp_spec.documents.solutions import read_solution
+from carproof import read_instance, read_solution
 
 BUGS = {
     ("cpp", "one-tick-short"): {"plan/goal", "plan/duration"},

@@ -14,8 +14,7 @@ from typing import Literal
 
 import carp_optimized
 import carp_reference
-from carp_spec import Instance, Neighbourhood, Solution
-from carp_spec.documents.solutions import write_solution
+from carproof import Instance, Neighbourhood, Solution, write_solution
 from carproof.generate import Fleet, Grid, grid_instance
 
 DIGESTS = Path(__file__).with_suffix(".txt")

@@ -13,11 +13,10 @@ from carp_optimized import retime as compiled
 from carp_optimized.execution.following import Timetable, timetable
 from carp_reference.execution import earliest as read_earliest
 from carp_reference.execution import order_of, retime
-from carp_spec import Carp, Instance, Plan, Refusal, Solution
 from carp_spec.execution.dependencies import Node
-from carp_spec.execution.traces import Trace
 from carp_spec.permutations import splitmix64
-from carproof.execution.delays import Delay, delayed, executed, in_order, planned
+from carproof import Carp, Delay, Instance, Plan, Refusal, Solution, Trace
+from carproof.execution.delays import delayed, executed, in_order, planned
 from carproof.testing.random_instances import Draw, draw_instance
 
 Engine: TypeAlias = Callable[[Instance, Solution, Trace], Solution]

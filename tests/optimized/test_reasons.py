@@ -16,8 +16,7 @@ from carp_optimized.queries.relevant_plans import reasons
 from carp_optimized.queries.search import find_plan_by
 from carp_optimized.state.arrays import NEVER, NONE, PLANS
 from carp_optimized.state.encoding import no_answers
-from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Visit
-from carp_spec.model import Following
+from carproof import Following, Instance, Plan, Resource, ResourceGraph, Robot, Visit
 from carproof.testing.strategies import FleetUnderWay, Sizes, fleets_under_way
 
 pytestmark = pytest.mark.skipif(os.environ.get("NUMBA_DISABLE_JIT") != "1", reason="it runs uncompiled")

@@ -23,8 +23,8 @@ from carp_spec import (
     Stop,
     has_ended,
 )
-from carp_spec.model import AfterGoal
 from carp_spec.planners import PathKind
+from carproof import AfterGoal
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.testing.strategies import FleetUnderWay, Sizes, fleets_under_way, instances
 

@@ -11,12 +11,11 @@ from carp_optimized.execution import following as execution
 from carp_optimized.execution import trace_check
 from carp_optimized.execution.trace_check import follows
 from carp_reference.execution import order_of
-from carp_spec import Carp, Instance, Plan, Refusal, Resource, ResourceGraph, Robot, Solution, Visit
 from carp_spec.execution.execution_rules import trace_violations
-from carp_spec.execution.traces import Trace
 from carp_spec.permutations import splitmix64
+from carproof import Carp, Delay, Instance, Plan, Refusal, Resource, ResourceGraph, Robot, Solution, Trace, Visit
 from carproof.conform.asking.smoke import committed, row
-from carproof.execution.delays import Delay, executed, in_order, on_the_clock
+from carproof.execution.delays import executed, in_order, on_the_clock
 from carproof.testing.random_instances import Draw, draw_fleet, draw_instance
 
 

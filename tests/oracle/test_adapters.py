@@ -12,14 +12,8 @@ from tests.oracle.running import Run
 from tests.profiles import draws
 
 from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, Robot, Solution, Visit, judge
-from carp_spec.documents.instances import write_instance
-from carp_spec.documents.solutions import write_solution
-from carproof.formats import (
-    ADAPTERS,
-    read_foreign_solution,
-    walks,
-    write_foreign_solution,
-)
+from carproof import read_foreign_solution, write_foreign_solution, write_instance, write_solution
+from carproof.formats import ADAPTERS, walks
 from carproof.formats.walks import instance_has_walks
 from carproof.generate.grid import cell_edges, cell_id
 from carproof.testing.strategies import PlannedInstance, Sizes, instances, planned_instances

@@ -11,9 +11,8 @@ from tests.oracle.running import Run, asked, save, solution, town
 
 import carproof
 from carp_spec import Refusal, Stop, check_update, judge
-from carp_spec.documents.instances import read_instance
-from carp_spec.documents.solutions import read_solution
 from carp_spec.plan_rules import has_ended
+from carproof import read_instance, read_solution
 from carproof.testing.strategies import FleetUnderWay, Sizes, fleets_under_way
 
 PICK = {"id": "r1", "start": "a", "stops": [{"resource": "c", "service": 3}, {"resource": "a"}]}
@@ -47,17 +46,6 @@ def test_a_robot_serves_further_stops_and_all_keep_their_histories(fleet: FleetU
         assert judge(further, after).violations == ()
         assert {plan.robot for plan in after.plans} == {plan.robot for plan in before.plans}
         assert check_update(before.plans, after.plans, now) == ()
-
-
-def test_a_parked_robot_moves_again(carproof: Run, elsewhere: Path) -> None:
-    del elsewhere
-    save(hall=HALL, plans=PLANS)
-    outcome = carproof("assign hall.json plans.json r2 d:2 p --now 4 -o next.json --instance after.json")
-    assert (outcome.code, outcome.stdout.splitlines()[0]) == (0, "robot r2 arrives at tick 14")
-    assert carproof("check after.json next.json").code == 0
-    plan = read_solution(Path("next.json").read_bytes()).plan_of("r2")
-    assert plan is not None
-    assert [visit.resource for visit in plan.visits] == ["d", "c", "b", "p", "b", "c", "d", "c", "b", "p"]
 
 
 @pytest.mark.parametrize(

@@ -8,14 +8,12 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.oracle.running import EAST, EAST_PLAN, TWO_PLANNED, Run, corridor, line, save, solution, town
+from tests.oracle.running import EAST, EAST_PLAN, Run, corridor, line, save, solution, town
 
 import carp_reference
 from carp_spec import Carp, Plan, RobotId, Solution, plan_cost, violations_of
-from carp_spec.documents.instances import read_instance
-from carp_spec.documents.query_certificates import QueryCertificateDocument
-from carp_spec.documents.solutions import read_solution
 from carp_verify.bound.rules import ContradictionError
+from carproof import QueryCertificateDocument, read_instance, read_solution
 from carproof.engines import engine_named
 from carproof.generate import Fleet, Grid, Range, grid_instance
 from carproof.judging.audit import audit_in_order, audit_in_some_order, in_order
@@ -35,15 +33,6 @@ def _alone(folder: Path) -> None:
 
 def last_row(stdout: str) -> list[str]:
     return stdout.splitlines()[2].split()[:6]
-
-
-def test_plans_that_are_optimal_in_their_order_are_certified(carproof: Run) -> None:
-    save(plans={**TWO_PLANNED, "order": ["r2", "r1"]})
-    outcome = carproof("audit town.json plans.json")
-    assert (outcome.code, outcome.stderr) == (0, "")
-    assert last_row(outcome.stdout) == ["2", "2", "0", "0", "0", "carp_verify"]
-    document = json.loads(carproof("audit town.json plans.json --json").stdout)
-    assert document == {"certified": ["r2", "r1"], "late": [], "undecided": [], "unplanned": 0, "by": "carp_verify"}
 
 
 def test_a_late_plan_is_shown_with_an_earlier_one(carproof: Run) -> None:

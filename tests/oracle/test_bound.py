@@ -16,19 +16,6 @@ EMPTY = BoundDocument(BOUND_FORMAT, "", 0, 1, 0, (), (), (), ())
 pytestmark = pytest.mark.usefixtures("folder")
 
 
-def test_a_bound_is_found_shown_and_verified(carproof: Run) -> None:
-    outcome = carproof("bound town.json -o certificate.json")
-    assert outcome.code == 0
-    assert outcome.stdout.splitlines()[-1].split()[:6] == ["2", "5", "5", "5", "0.00", "%"]
-    verified = carproof("verify town.json certificate.json")
-    assert (verified.code, verified.stderr) == (0, "")
-    assert verified.stdout.splitlines()[-1].split()[:2] == ["5", "2"]
-    document = json.loads(carproof("verify town.json certificate.json --json").stdout)
-    assert document == {
-        "bound": 5, "path": None, "rule": None, "reason": None, "by": "carp_verify", "assumed": []
-    }  # fmt: skip
-
-
 def test_a_robot_without_a_way_is_told(carproof: Run) -> None:
     document = corridor([{"id": "r1", "start": "a", "goal": "island"}, HEAD_ON])
     document["graph"]["nodes"].append({"id": "island"})

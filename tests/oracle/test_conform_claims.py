@@ -10,15 +10,14 @@ from tests.oracle.running import Run
 from tests.oracle.test_conform_judges import Tampered, as_it_is
 
 import carp_reference
-from carp_spec import Carp, Greedy, Instance, Plan, Resource, ResourceGraph, Robot, Solution, Stop
 from carp_spec.limits import goals_stand_alone
+from carproof import Carp, Greedy, Instance, Plan, Resource, ResourceGraph, Robot, Solution, Stop, conforms
 from carproof.conform.asking.smoke import EAST, FIRST, FIRST_GOES, WEST, committed, passing_place, row
 from carproof.conform.cases import ASKED_OPS, Case
 from carproof.conform.judging import optimum
 from carproof.conform.judging.claims import FEATURES, Claims, features, is_solvable
 from carproof.conform.levels import Level
 from carproof.conform.programs.function import Function
-from carproof.conform.python import conforms
 from carproof.conform.run import Options, conform
 from carproof.engines import engine_named
 

@@ -14,8 +14,7 @@ from tests.oracle.running import Run
 from tests.profiles import draws
 
 from carp_reference.execution import order_of
-from carp_spec import Robot, RobotId
-from carp_spec.execution.traces import Trace
+from carproof import Delay, Report, Robot, RobotId, Trace
 from carproof.conform.answers import Skipped
 from carproof.conform.asking.random_cases import execution_cases
 from carproof.conform.asking.smoke import committed, row
@@ -29,9 +28,9 @@ from carproof.conform.programs.executor import Executor
 from carproof.conform.programs.program import Program
 from carproof.conform.reporting.saved import read_saved, save_all
 from carproof.conform.reporting.saving import Origin
-from carproof.conform.run import Options, Report, conform
+from carproof.conform.run import Options, conform
 from carproof.engines import engine_named
-from carproof.execution.delays import Delay, executed, in_order
+from carproof.execution.delays import executed, in_order
 from carproof.protocol.ops.executing import DriveDocument, drive
 from carproof.protocol.ops.op import Session
 from carproof.protocol.server import respond

@@ -44,13 +44,10 @@ from tests.oracle.test_kernel_option import stand_in
 from tests.verify.kernel_program import program
 
 from carp_spec import Carp, Stop, judge
-from carp_spec.documents.instances import read_instance
-from carp_spec.documents.query_certificates import read_query_certificate
-from carp_spec.documents.solutions import read_solution
 from carp_spec.documents.verdicts import VerdictDocument
 from carp_verify.bound.rules import ContradictionError
 from carp_verify.kernel import KernelVerdict, ask, version
-from carp_verify.query.verify import verify_query
+from carproof import Report, read_instance, read_query_certificate, read_solution, verify_query
 from carproof.conform.answers import Answer
 from carproof.conform.asking.smoke import FIRST_GOES
 from carproof.conform.cases import Case
@@ -59,7 +56,7 @@ from carproof.conform.judging import by_kernel
 from carproof.conform.judging.by_kernel import EARLY, LAWFUL, require_agreement
 from carproof.conform.judging.judges import first_finding
 from carproof.conform.levels import Level
-from carproof.conform.run import Options, Report, conform
+from carproof.conform.run import Options, conform
 
 CONTEXT_OPTIMAL = Level.CONTEXT_OPTIMAL
 OPS = ("check", "query", "plan", "add", "polish")

@@ -11,9 +11,9 @@ from tests.oracle.test_conform_judges import later, right_reply
 
 import carp_verify.bound.verify
 from carp_spec import Carp, Greedy, Instance, Neighbourhood, Plan, Planner, Resource, ResourceGraph, Robot, Solution
-from carp_spec.documents.bounds import BoundDocument
 from carp_spec.documents.solutions import solution_document
 from carp_spec.documents.verdicts import VerdictDocument
+from carproof import BoundDocument
 from carproof.conform.answers import Answer
 from carproof.conform.asking.smoke import EAST, FIRST, FIRST_GOES, WEST, Stay, committed, passing_place, row
 from carproof.conform.cases import Case, request_of

@@ -6,10 +6,9 @@ from typing import Any
 import msgspec
 import pytest
 
-from carp_spec import Solution
-from carp_spec.documents.bounds import BoundDocument
 from carp_spec.documents.solutions import solution_document
 from carp_spec.documents.verdicts import VerdictDocument
+from carproof import BoundDocument, Solution
 from carproof.conform.answers import MOST_SHOWN, Skipped, decode_solution, read_result, result_of, shown
 from carproof.conform.asking.smoke import EAST, FIRST_GOES, committed, row
 from carproof.conform.findings import Category, Fault

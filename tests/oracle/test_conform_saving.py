@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from tests.oracle.test_conform_judges import Tampered, no_plan
 
-from carp_spec import Solution
+from carproof import RULES, Report, Solution
 from carproof.conform.asking.smoke import EAST, FIRST, WEST, passing_place, row, smoke_cases
 from carproof.conform.asking.vector_cases import vector_cases
 from carproof.conform.cases import ASKED_OPS, Case
@@ -18,8 +18,7 @@ from carproof.conform.levels import Level
 from carproof.conform.reporting.advice import _ADVICE, advice_for
 from carproof.conform.reporting.saved import Saved, own_folder, read_saved, save_all
 from carproof.conform.reporting.saving import Origin
-from carproof.conform.run import Options, Report, conform
-from carproof.registry import RULES
+from carproof.conform.run import Options, conform
 from carproof.rules import ALL_RULES
 
 CASE = Case("smoke", "plan: head-on", "plan", passing_place([FIRST, WEST]), Solution((), (), ("first", "new")))

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from tests.oracle.running import Run
 
-from carp_spec.documents.instances import read_instance
+from carproof import read_instance
 from carproof.formats.movingai import read_map, read_scenario
 
 EXAMPLES = Path(__file__).parent.parent.parent / "oracle/carproof/examples"

@@ -12,16 +12,8 @@ from carp_spec import Carp, Instance, Solution, violations_of
 from carp_spec.execution.dependencies import Node
 from carp_spec.execution.execution_rules import is_acyclic, trace_violations
 from carp_spec.permutations import splitmix64
-from carproof.execution.delays import (
-    Delay,
-    executed,
-    in_order,
-    late_robots,
-    on_the_clock,
-    slack,
-    smallest_collision,
-    stuck,
-)
+from carproof import Delay
+from carproof.execution.delays import executed, in_order, late_robots, on_the_clock, slack, smallest_collision, stuck
 from carproof.testing.random_instances import Draw, Mix, draw_instance
 
 MIX = Mix(

@@ -9,11 +9,9 @@ from tests.oracle.running import Document, Outcome, Run, line, save, solution, t
 from tests.profiles import draws
 
 from carp_spec import Solution, check_update, judge, violations_of
-from carp_spec.documents.instances import read_instance
-from carp_spec.documents.solutions import read_solution, read_trace
 from carp_spec.execution.execution_rules import is_acyclic, trace_violations
+from carproof import Delay, read_instance, read_solution, read_trace
 from carproof.engines import engine_named
-from carproof.execution.delays import Delay
 from carproof.execution.simulation import DRIVERS, execute, random_delays
 from carproof.execution.untangling import untangle
 from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances
@@ -161,18 +159,6 @@ def test_an_audit_names_who_is_late_after_a_delay_and_nobody_before(late_town: P
     late = {each["robot"] for each in audit["late"]}
     assert late == {robot for robot, tick in after.items() if tick > arrivals[robot]}
     assert {*audit["certified"]} == after.keys() - late
-
-
-def test_retimed_plans_are_a_fleet_under_way(carproof: Run) -> None:
-    outcome = carproof("execution retime train.json plans.json trace.json -o late.json")
-    assert outcome.code == 0
-    assert outcome.stdout.splitlines() == [
-        "total cost 2 before, 7 now",
-        "robot r0 arrives 2 ticks later",
-        "robot r1 arrives 3 ticks later",
-    ]
-    assert carproof("check train.json late.json").code == 0
-    assert carproof("query train.json late.json r1 --now 3 --engine reference").code == 0
 
 
 def test_a_rotation_is_untangled_at_least_cost_or_named(carproof: Run, elsewhere: Path) -> None:

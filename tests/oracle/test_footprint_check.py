@@ -12,9 +12,8 @@ from tests.oracle.roadmaps import Place, graphml
 from tests.oracle.running import Run
 
 from carp_spec import Carp, Instance, Plan, Refusal, Resource, ResourceGraph, Robot, Solution, Visit
-from carproof import Footprint, check, write_instance, write_solution
+from carproof import Footprint, Settings, check, import_layout, write_instance, write_solution
 from carproof.engines import engine_named
-from carproof.layouts import Settings, import_layout
 
 Pairs = set[frozenset[object]]
 

@@ -8,10 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.oracle.roadmaps import Place, graphml
 
-from carp_spec import Instance
-from carp_verify.footprint.rules import Footprint
+from carproof import Footprint, Instance, Settings, import_layout
 from carproof.engines import engine_named
-from carproof.layouts import Settings, import_layout
 
 
 def roadmap(lanes: list[tuple[Place, Place]], **settings: object) -> Instance:

@@ -39,30 +39,6 @@ def test_plans_without_a_free_tick_are_wrong(carproof: Run) -> None:
     assert outcome.stdout.startswith("[joint/following] ")
 
 
-@pytest.mark.parametrize(
-    "command",
-    [
-        "check --z3 forbidding.json apart.json",
-        "audit forbidding.json plans.json",
-        "audit forbidding.json plans.json --find-order",
-        "verify forbidding.json bound.json",
-        "verify forbidding.json one.json query.json",
-    ],
-)
-def test_commands_that_prove_keep_a_free_tick(command: str, carproof: Run) -> None:
-    assert carproof("plan forbidding.json --engine reference -o plans.json").code == 0
-    assert carproof("bound forbidding.json --steps 1 -o bound.json").code == 0
-    assert carproof("query forbidding.json one.json r2 --engine reference --certificate query.json").code == 1
-    assert carproof(command).code == 0
-
-
-def test_a_plan_that_keeps_no_free_tick_is_no_rival(carproof: Run) -> None:
-    assert carproof("query forbidding.json one.json r2 --engine reference --certificate none.json").code == 1
-    assert carproof("verify forbidding.json one.json none.json").code == 0
-    outcome = carproof("verify allowing.json one.json none.json")
-    assert (outcome.code, "query-certificate/closed" in outcome.stdout) == (1, True)
-
-
 def test_optima_and_gaps_keep_a_free_tick(carproof: Run) -> None:
     assert carproof("optimum forbidding.json -o best.json --proof proof").code == 0
     assert carproof("check forbidding.json best.json").code == 0

@@ -6,9 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.oracle.running import Run
 
-from carp_spec import Instance, Refusal, ResourceId
-from carp_spec.documents.instances import write_instance
 from carp_spec.instance_rules import instance_faults
+from carproof import Instance, Refusal, ResourceId, write_instance
 from carproof.generate import Fleet, Grid, Range, Traits, Warehouse, grid_instance, warehouse_instance
 
 SEEDS = st.integers(min_value=0, max_value=2**64 - 1)

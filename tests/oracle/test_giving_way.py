@@ -32,14 +32,6 @@ def _corridor_with_a_bay(elsewhere: Path) -> None:
     save(town=town("ab bc cd bx", ROBOTS), plans=solution({"r1": EAST}, ["person"]))
 
 
-def test_the_others_give_way(carproof: Run) -> None:
-    outcome = carproof(f"{PERSON_FIRST} -o after.json")
-    assert (outcome.code, outcome.stderr) == (0, "")
-    assert outcome.stdout.startswith("robot person arrives at tick 3: no lawful update is earlier\n")
-    assert outcome.stdout.splitlines()[-1].split()[0] == "r1"
-    assert carproof("check town.json after.json").code == 0
-
-
 def test_a_fixed_route_is_kept_and_a_wrong_one_refused(carproof: Run, elsewhere: Path) -> None:
     save(route=APART, half=APART[:2])
     outcome = carproof(f"{PERSON_FIRST} --route route.json -o after.json")

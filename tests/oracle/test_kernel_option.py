@@ -13,8 +13,8 @@ from tests.verify.kernel_program import program
 
 import carp_verify.kernel
 from carp_spec.documents.decoding import write
-from carp_spec.documents.instances import write_instance
 from carp_verify.kernel import PROGRAM, VARIABLE
+from carproof import write_instance
 
 STAND_IN = """#!{python}
 import json, sys

@@ -22,8 +22,7 @@ from tests.oracle.layout_files import (
 from tests.oracle.running import Run
 
 from carp_spec import Instance, Plan, Refusal, Robot, Solution, Visit, judge
-from carp_spec.documents.instances import read_instance
-from carproof.layouts import Settings, import_layout
+from carproof import Settings, import_layout, read_instance
 
 
 def imported(text: str, **settings: object) -> Instance:

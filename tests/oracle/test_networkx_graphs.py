@@ -8,8 +8,7 @@ import pytest
 
 import carp_reference
 from carp_spec import Carp, Refusal, Resource, Robot, judge
-from carp_spec.documents.instances import read_instance, write_instance
-from carproof.formats import instance_from_networkx
+from carproof import instance_from_networkx, read_instance, write_instance
 
 
 def test_nodes_are_resources_and_edges_moves() -> None:

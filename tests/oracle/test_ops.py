@@ -1,25 +1,18 @@
 """The table of ops: what is made of it, and that requests and results keep to the schema made of it."""
 
-import importlib
 import json
 from functools import cache
-from typing import cast
 
 import msgspec
 import pytest
-from click.testing import CliRunner
 from jsonschema import Draft202012Validator
-from tests.oracle.running import REQUESTS, TWO, asked
+from tests.oracle.running import REQUESTS, asked
 
-from carp_spec import Instance
 from carp_spec.documents.schema import schema_file
-from carproof.commands.judge import conform as conform_command
-from carproof.commands.run import serve as serve_command
 from carproof.conform.cases import ASKED_OPS
 from carproof.protocol.lines import Request
 from carproof.protocol.ops import OPS
-from carproof.protocol.ops.op import Op, op_of
-from carproof.protocol.ops.published import NAME, schema, table
+from carproof.protocol.ops.published import NAME, schema
 from carproof.testing.vectors import vectors
 
 
@@ -68,33 +61,3 @@ def test_every_vector_of_an_op_is_a_request() -> None:
 def test_every_op_of_a_vector_is_in_the_table() -> None:
     assert {vector.op for vector in vectors() if "/" not in vector.op} <= set(OPS)
     assert set(ASKED_OPS) <= set(OPS)
-
-
-class FlyDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """How it went."""
-
-    landed: bool
-
-
-def fly_low(instance: Instance, height: int = 7) -> FlyDocument:
-    """Fly over it. Mind the racks."""
-    return FlyDocument(bool(instance.robots) and height < 10)
-
-
-def test_an_op_in_the_table_is_answered_and_shows_up_everywhere(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(cast("dict[str, Op]", OPS), "fly-low", op_of(fly_low))
-    assert asked("fly-low", instance=TWO) == {"id": 1, "result": {"landed": True}}
-    assert asked("fly-low", instance=TWO, height="7")["error"]["path"] == "$.height"
-    assert "fly-low" in asked("start", version=1)["result"]["ops"]
-    published = json.loads(schema())
-    assert {"$ref": "#/$defs/FlyLowRequest"} in published["anyOf"]
-    assert published["$defs"]["FlyLowRequest"]["properties"]["height"] == {"type": "integer", "default": 7}
-    row = "| `fly-low` | Fly over it. Mind the racks. | `instance`, `height` (default 7) | `landed`. How it went. |"
-    assert row in table()
-    monkeypatch.setattr("carproof.conform.cases.ASKED_OPS", (*ASKED_OPS, "fly-low"))
-    for module in (serve_command, conform_command):
-        text = CliRunner().invoke(importlib.reload(module).command, ["--help"]).output
-        assert "fly-low        Fly over it\n" in text
-    monkeypatch.undo()
-    for module in (serve_command, conform_command):
-        assert "fly-low" not in CliRunner().invoke(importlib.reload(module).command, ["--help"]).output

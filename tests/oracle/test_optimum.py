@@ -9,9 +9,6 @@ from tests.oracle.running import HEAD_ON, TWO_PLANNED, Document, Outcome, Run, c
 UNSOLVABLE = corridor([{"id": "r1", "start": "a", "goal": "e"}, HEAD_ON])
 
 
-PLANNERS = ["carp", "shuffled", "longest-first", "greedy", "fixed-paths", "neighbourhood"]
-
-
 @pytest.fixture(autouse=True)
 def _unsolvable(folder: Path) -> None:
     del folder
@@ -21,14 +18,6 @@ def _unsolvable(folder: Path) -> None:
 def document_of(carproof: Run, command: str) -> Document:
     document: Document = json.loads(carproof(f"{command} --json").stdout)
     return document
-
-
-def test_the_optimum_is_shown_and_its_plans_are_written(carproof: Run, folder: Path) -> None:
-    outcome = carproof("optimum town.json -o best.json")
-    assert (outcome.code, outcome.stderr) == (0, "")
-    assert outcome.stdout.splitlines()[-1].split()[:7] == ["2", "5", "5", "5", "found,", "not", "proved"]
-    assert json.loads((folder / "best.json").read_text()) == TWO_PLANNED
-    assert carproof("check town.json best.json").code == 0
 
 
 def test_that_robots_cannot_all_be_planned_is_found_and_with_a_proof_proved(carproof: Run) -> None:
@@ -83,15 +72,6 @@ def test_a_proof_that_does_not_hold_is_refused_with_its_reason(carproof: Run, fo
     assert carproof("verify proof") == Outcome(1, f"not proved: {reason}\n", "")
     document = document_of(carproof, "verify proof")
     assert (document["proved"], document["reason"]) == (False, reason)
-
-
-def test_the_gap_of_every_planner_is_shown(carproof: Run) -> None:
-    outcome = carproof("gap town.json")
-    assert (outcome.code, outcome.stderr) == (0, "")
-    rows = [row.split() for row in outcome.stdout.splitlines()[2:]]
-    assert rows[0][:3] == ["optimum", "0", "5"]
-    assert [row[0] for row in rows[1:]] == ["best", *PLANNERS]
-    assert rows[2] == ["carp", "0", "5", *["+0", "(0.0", "%)"] * 3]
 
 
 def test_the_gap_as_a_document(carproof: Run) -> None:

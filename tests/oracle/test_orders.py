@@ -19,10 +19,7 @@ from tests.profiles import draws
 import carproof
 from carp_reference import plan as reference_plan
 from carp_spec import Carp, Instance, Plan, Refusal, Resource, ResourceGraph, Robot, Solution, Stop, Visit
-from carp_spec.documents.instances import read_instance, write_instance
-from carp_spec.documents.solutions import write_solution
-from carp_spec.model import Following
-from carproof import OrderSettings, write_orders
+from carproof import Following, OrderSettings, read_instance, write_instance, write_orders, write_solution
 from carproof.testing.strategies import PlannedInstance, Sizes, instances
 
 NEEDED: Mapping[str, type | tuple[type, ...]] = {

@@ -35,15 +35,6 @@ def _three(folder: Path) -> None:
     save(three=corridor([*TWO["robots"], HEAD_ON]), none=solution({}))
 
 
-def test_plan_prints_a_table_and_writes_the_document(carproof: Run) -> None:
-    outcome = carproof("plan town.json --planner carp -o out.json")
-    assert (outcome.code, outcome.stderr) == (0, "")
-    heading, _, row = outcome.stdout.splitlines()
-    assert heading.split() == ["planner", "robots", "unplanned", "total", "cost", "shortest", "paths", "ratio", "time"]
-    assert row.split()[:6] == ["carp", "2", "0", "5", "5", "1.0000"]
-    assert json.loads(Path("out.json").read_text()) == TWO_PLANNED
-
-
 def test_an_unplanned_robot_is_told_with_its_reason_and_the_answer_is_no(carproof: Run) -> None:
     outcome = carproof("plan three.json --planner carp")
     assert outcome.code == 1
@@ -117,16 +108,6 @@ def test_add_plans_the_robot_and_tells_what_changed(carproof: Run) -> None:
     ]
     assert json.loads(Path("more.json").read_text()) == TWO_PLANNED
     assert json.loads(carproof("add town.json one.json r2 --m 1 --json").stdout) == TWO_PLANNED
-
-
-def test_query_prints_the_plan(carproof: Run) -> None:
-    outcome = carproof("query town.json one.json r2")
-    assert outcome.code == 0
-    assert [row.split() for row in outcome.stdout.splitlines()[2:-1]] == [
-        [resource, str(enter), str(leave)] for resource, enter, leave in BEHIND_PLAN
-    ]
-    assert outcome.stdout.endswith("cost 3\n")
-    assert json.loads(carproof("query town.json one.json r2 --json").stdout) == {"plan": BEHIND_PLAN}
 
 
 def test_query_says_no_where_there_is_no_plan(carproof: Run) -> None:

@@ -13,9 +13,7 @@ from pathlib import Path
 import pytest
 
 from carp_optimized import plan
-from carp_spec import Carp
-from carp_spec.documents.instances import write_instance
-from carp_spec.documents.solutions import write_solution
+from carproof import Carp, write_instance, write_solution
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.progress import search_progress
 

@@ -7,7 +7,7 @@ import pytest
 from tests.oracle.foreign_files import INSTANCE, LACAM, MAP, SCENARIO
 from tests.oracle.running import HEAD_ON, TWO, TWO_PLANNED, Run, corridor, save
 
-from carp_spec.documents.instances import write_instance
+from carproof import write_instance
 
 EMPTY_VERDICT = {"format": "carproof-verdict/1", "valid": True, "cost": 0, "unplanned": 0, "violations": []}
 EAST, BEHIND = TWO["robots"]

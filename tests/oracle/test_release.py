@@ -14,12 +14,12 @@ from tests.oracle.running import Run
 
 from carp_spec import Carp, Instance, Plan, Refusal, Resource, ResourceGraph, Robot, RobotId, Solution, Visit
 from carp_spec.execution.execution_rules import is_acyclic
-from carp_spec.execution.traces import Trace
 from carp_spec.permutations import splitmix64
 from carp_verify.release.verify import Finish
 from carproof import (
     Delay,
     Grant,
+    Trace,
     check_grants,
     execute,
     judge_log,

@@ -3,9 +3,8 @@
 import pytest
 from tests.oracle.running import BROKEN, Run, line
 
-from carp_spec import Refusal, Rule, Violation
-from carp_spec.documents.solutions import read_solution
 from carp_spec.requests import path_to, require_tick
+from carproof import Refusal, Rule, Violation, read_solution
 from carproof.rules import ALL_RULES
 
 

@@ -7,9 +7,8 @@ from typing import Any
 import pytest
 from jsonschema import Draft202012Validator
 
-from carp_spec import Refusal
 from carp_spec.documents.schema import DOCUMENTS, document_schema, schema_file
-from carproof import read_instance, read_solution
+from carproof import Refusal, read_instance, read_solution
 from carproof.testing.vectors import vectors
 
 SHAPE = {

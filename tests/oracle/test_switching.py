@@ -10,13 +10,9 @@ from carp_reference import plan
 from carp_reference.execution import order_of
 from carp_spec import Carp, Group, Instance, Solution, judge, violations_of
 from carp_spec.execution.execution_rules import trace_violations
+from carproof import Delay
 from carproof.execution import switching
-from carproof.execution.delays import (
-    Delay,
-    executed,
-    in_order,
-    stuck,
-)
+from carproof.execution.delays import executed, in_order, stuck
 from carproof.execution.simulation import random_delays
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 

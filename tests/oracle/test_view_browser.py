@@ -14,11 +14,8 @@ from tests.oracle.viewing import COLLIDING, CORRIDOR, HOSTILE, SVG, picture_of, 
 
 from carp_reference import plan
 from carp_spec import Carp, Instance, Plan, Resource, ResourceGraph, Robot, Solution, Visit
-from carp_spec.documents.instances import read_instance
-from carp_spec.documents.solutions import read_solution
-from carp_spec.execution.traces import Trace
+from carproof import Settings, Trace, import_layout, read_instance, read_solution
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
-from carproof.layouts import Settings, import_layout
 from carproof.viewer.map_picture import ROBOT_RADIUS
 from carproof.viewer.page import page
 from carproof.viewer.stills import map_still

@@ -10,8 +10,7 @@ from xml.etree import ElementTree as ET
 from tests.oracle.layout_files import OPENTCS
 from tests.oracle.running import BROKEN, TWO, Document, Run
 
-from carp_spec import Instance, Plan, Robot, Solution, Stop, Visit
-from carproof.layouts import import_layout
+from carproof import Instance, Plan, Robot, Solution, Stop, Visit, import_layout
 
 SVG = "{http://www.w3.org/2000/svg}"
 COLLIDING, CORRIDOR = BROKEN, TWO

@@ -5,10 +5,10 @@ from tests.profiles import draws
 
 import carp_optimized
 from carp_experiments.measuring.tiled_plant import tiled_instance
-from carp_optimized.improve.anytime import plan_within
 from carp_optimized.improve.holding import plan_holding_starts
 from carp_spec import Carp, judge
 from carp_spec.permutations import splitmix64
+from carproof import plan_within
 from carproof.testing.random_instances import Draw, Mix, draw_instance
 
 MIX = Mix(robots=(3, 4, 5), groups=(0, 1, 2), followings=("allowed", "allowed", "forbidden"), stops=2, services=(0, 2))

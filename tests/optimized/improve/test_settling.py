@@ -6,10 +6,8 @@ import pytest
 
 import carp_optimized
 from carp_experiments.measuring.tiled_plant import tiled_instance
-from carp_optimized.improve.anytime import plan_within
 from carp_optimized.improve.repair import repair
-from carp_spec import Carp, Instance, Solution
-from carproof import audit
+from carproof import Carp, Instance, Solution, audit, plan_within
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 
 WAYS: dict[str, Callable[[Instance], Solution]] = {
