@@ -1,6 +1,6 @@
 """`carproof experiment`: run an experiment of the paper, or continue one."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -8,15 +8,10 @@ import click
 
 from carp_experiments.experiments import EXPERIMENTS, Experiment, Profile
 from carp_experiments.measuring.benchmark import benchmark_cases, benchmark_report
-from carp_experiments.measuring.crosscheck_campaign import (
-    FULL_QUESTIONS,
-    QUICK_QUESTIONS,
-    Kind,
-    crosscheck_cases,
-    crosscheck_report,
-)
-from carp_experiments.measuring.kernel_texts import FULL_TEXTS, QUICK_TEXTS, text_cases, text_report
-from carp_experiments.measuring.kernel_verdicts import FULL_VERDICTS, QUICK_VERDICTS, kernel_cases, kernel_report
+from carp_experiments.measuring.blocks import Questions
+from carp_experiments.measuring.crosscheck_campaign import CROSSCHECKS, Kind
+from carp_experiments.measuring.kernel_texts import TEXTS
+from carp_experiments.measuring.kernel_verdicts import VERDICTS
 from carp_experiments.paper.map_cases import SORTING, WAREHOUSE
 from carp_experiments.recomputed import AGAIN, DRAWN, again_report, cases_again
 from carp_verify.kernel import program
@@ -36,6 +31,7 @@ if TYPE_CHECKING:
 
 FOLDER = click.Path(path_type=Path, file_okay=False, exists=True)
 TABLE = click.Path(path_type=Path, dir_okay=False, exists=True)
+AT_LEAST_1 = click.IntRange(min=1)
 PROGRAM = click.Path(dir_okay=False, exists=True, resolve_path=True)
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -69,7 +65,7 @@ def campaign_options(function: F) -> F:
         click.option("--store", type=click.Path(path_type=Path, dir_okay=False), help="Keep the results in this file."),
         click.option("--report", type=click.Path(path_type=Path, file_okay=False), help="Write tables, figures there."),
         click.option("--note", default="", help="With --report: on what the run was made, in a sentence."),
-        click.option("--workers", type=click.IntRange(min=1), default=1, help="Processes on this machine."),
+        click.option("--workers", type=AT_LEAST_1, default=1, help="Processes on this machine."),
         click.option("--backend", type=click.Choice(["loky", "dask"]), default="loky", help="Who computes."),
         click.option("--scheduler", metavar="ADDRESS", help="The address of the dask scheduler."),
         click.option("--json", "as_json", is_flag=True, help="Print one document on standard output, nothing else."),
@@ -101,8 +97,8 @@ def command_of(experiment: Experiment) -> click.Command:
         short_help=experiment.sentence,
     )
     @click.option("--quick", is_flag=True, help="The quick size.")
-    @click.option("--assignments", type=click.IntRange(min=1), help="How many assignments.")
-    @click.option("--robots", type=click.IntRange(min=1), help="How many robots.")
+    @click.option("--assignments", type=AT_LEAST_1, help="How many assignments.")
+    @click.option("--robots", type=AT_LEAST_1, help="How many robots.")
     @click.option(
         "--map",
         "maps",
@@ -136,70 +132,50 @@ def command_of(experiment: Experiment) -> click.Command:
     return run
 
 
-@command.command("crosscheck")
-@click.option("--quick", is_flag=True, help=f"{QUICK_QUESTIONS} questions.")
-@click.option("--questions", type=click.IntRange(min=1), default=FULL_QUESTIONS, help="The number of random questions.")
-@click.option("--seed", type=click.IntRange(0, 2**64 - 1), default=0, help="The seed of the questions.")
-@click.option("--stops", "kind", flag_value="stops", help="Robots have stops; a search tick by tick is asked too.")
-@click.option("--groups", "kind", flag_value="groups", help="There are groups; searches tick by tick are asked too.")
-@campaign_options
-def crosscheck(
-    quick: bool,
-    questions: int,
-    seed: int,
-    kind: Kind | None,
-    **campaign: Any,  # noqa: ANN401 - click's
-) -> Answer:
-    """Ask both engines the same random questions on small instances.
-
-    Exit codes: 0 no difference, 1 a difference, 2 bad usage.
-    """
-    size = QUICK_QUESTIONS if quick else questions
-    cases = crosscheck_cases(size, seed, kind)
-    command = f"carproof experiment crosscheck --questions {size} --seed {seed}{f' --{kind}' if kind else ''}"
-    return go("crosscheck", "crosscheck", command, f"{size} questions", cases, crosscheck_report, **campaign)
+KINDS = {
+    "stops": "Robots have stops; a search tick by tick is asked too.",
+    "groups": "There are groups; searches tick by tick are asked too.",
+}
 
 
-@command.command("kernel")
-@click.option("--quick", is_flag=True, help=f"{QUICK_VERDICTS} verdicts.")
-@click.option("--verdicts", type=click.IntRange(min=1), default=FULL_VERDICTS, help="The number of random verdicts.")
-@click.option("--seed", type=click.IntRange(0, 2**64 - 1), default=0, help="The seed of the questions.")
-@campaign_options
-def kernel(quick: bool, verdicts: int, seed: int, **campaign: Any) -> Answer:  # noqa: ANN401 - click's
-    """Ask the proved kernel and the checkers in Python for the same verdicts.
+def command_of_questions(campaigns: Mapping[Kind | None, Questions]) -> click.Command:
+    """The command of random questions, with an option for each kind of them."""
+    usual = campaigns[None]
+    what, codes = usual.what, "Exit codes: 0 no difference, 1 a difference, 2 bad usage"
 
-    Exit codes: 0 no difference, 1 a difference, 2 bad usage, or no kernel.
-    """
-    program()  # before the store is there
-    size = QUICK_VERDICTS if quick else verdicts
-    cases = kernel_cases(size, seed)
-    command = f"carproof experiment kernel --verdicts {size} --seed {seed}"
-    return go("kernel", "kernel", command, f"{size} verdicts", cases, kernel_report, **campaign)
+    @click.command(usual.name, help=f"{usual.about}\n\n{codes}{', or no kernel' if usual.of_kernel else ''}.")
+    @click.option("--quick", is_flag=True, help=f"{usual.quick} {what}.")
+    @click.option(f"--{what}", "number", type=AT_LEAST_1, default=usual.full, help=f"The number of random {what}.")
+    @click.option("--seed", type=click.IntRange(0, 2**64 - 1), default=0, help=f"The seed of the {what}.")
+    @campaign_options
+    def run(
+        quick: bool,
+        number: int,
+        seed: int,
+        kind: Kind | None = None,
+        **campaign: Any,  # noqa: ANN401 - click's
+    ) -> Answer:
+        if usual.of_kernel:
+            program()  # before the store is there
+        asked, size = campaigns[kind], usual.quick if quick else number
+        line = f"carproof experiment {usual.name} --{what} {size} --seed {seed}{f' --{kind}' if kind else ''}"
+        return go(usual.name, usual.name, line, f"{size} {what}", asked.cases(size, seed), asked.report, **campaign)
+
+    run.params[3:3] = [
+        click.Option([f"--{kind}", "kind"], flag_value=kind, help=KINDS[kind]) for kind in campaigns if kind
+    ]
+    return run
 
 
-@command.command("texts")
-@click.option("--quick", is_flag=True, help=f"{QUICK_TEXTS} texts.")
-@click.option("--texts", type=click.IntRange(min=1), default=FULL_TEXTS, help="The number of random texts.")
-@click.option("--seed", type=click.IntRange(0, 2**64 - 1), default=0, help="The seed of the texts.")
-@campaign_options
-def texts(quick: bool, texts: int, seed: int, **campaign: Any) -> Answer:  # noqa: ANN401 - click's
-    """Let the proved kernel and Python read the same texts, nearly right ones, and decide on those that they can read.
-
-    Exit codes: 0 no difference, 1 a difference, 2 bad usage, or no kernel.
-    """
-    program()  # before the store is there
-    size = QUICK_TEXTS if quick else texts
-    cases = text_cases(size, seed)
-    command = f"carproof experiment texts --texts {size} --seed {seed}"
-    return go("texts", "texts", command, f"{size} texts", cases, text_report, **campaign)
+ASKED: tuple[Mapping[Kind | None, Questions], ...] = (CROSSCHECKS, {None: VERDICTS}, {None: TEXTS})
+for campaigns in ASKED:
+    command.add_command(command_of_questions(campaigns))
 
 
 @command.command("benchmark")
 @click.option("--maps", type=FOLDER, required=True, help="The folder with the files of MovingAI, at any depth.")
 @click.option("--bounds", type=TABLE, required=True, help="The table: map,scen,agents,lower,upper.")
-@click.option(
-    "--seconds", type=click.IntRange(min=1), multiple=True, default=(10,), show_default=True, help="May be repeated."
-)
+@click.option("--seconds", type=AT_LEAST_1, multiple=True, default=(10,), show_default=True, help="May be repeated.")
 @click.option("--bound-seconds", type=click.IntRange(min=0), default=0, show_default=True, help="For a bound; 0: none.")
 @click.option("--lacam3", type=PROGRAM, help="The program of LaCAM3, to be compared with.")
 @click.option("--lns2", type=PROGRAM, help="The program of MAPF-LNS2, to be compared with.")
@@ -230,9 +206,9 @@ def benchmark(  # noqa: PLR0913, PLR0917 - one parameter for each option
 @command.command("recomputed")
 @click.argument("experiment", metavar="EXPERIMENT", type=click.Choice([*AGAIN]))
 @click.argument("stored", metavar="STORED", type=TABLE)
-@click.option("--cases", "count", type=click.IntRange(min=1), default=DRAWN, show_default=True, help="How many cases.")
+@click.option("--cases", "count", type=AT_LEAST_1, default=DRAWN, show_default=True, help="How many cases.")
 @click.option("--seed", type=click.IntRange(0, 2**64 - 1), default=0, show_default=True, help="The seed of the draw.")
-@click.option("--robots", type=click.IntRange(min=1), help="How many robots the stored run has, if not in full size.")
+@click.option("--robots", type=AT_LEAST_1, help="How many robots the stored run has, if not in full size.")
 @campaign_options
 def recomputed(
     experiment: str,

@@ -1,14 +1,16 @@
 """The results of an experiment: tables, figures, and its numbers for programs."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import msgspec
 
 from carp_experiments.statistics import Interval
 from carproof.markdown import markdown_table
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +27,17 @@ class Table:
     def markdown(self) -> str:
         """The table in Markdown."""
         return markdown_table(self.columns, self.rows, self.numbers)
+
+
+def table_of(
+    name: str, title: str, rows: Iterable[T], cells: Mapping[str, Callable[[T], object]], names: int = 0
+) -> Table:
+    """A table with a line for each row, and by column the cell of a row.
+
+    But for the first columns, as many as `names`, all hold numbers.
+    """
+    lines = tuple(tuple(str(cell(row)) for cell in cells.values()) for row in rows)
+    return Table(name, title, tuple(cells), lines, tuple(cells)[names:])
 
 
 @dataclass(frozen=True, slots=True)

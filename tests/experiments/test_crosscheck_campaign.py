@@ -3,7 +3,7 @@
 import pytest
 
 import carp_optimized
-from carp_experiments.measuring.crosscheck_campaign import CrosscheckCase, Kind, crosscheck_cases, crosscheck_report
+from carp_experiments.measuring.crosscheck_campaign import CROSSCHECKS, Block, Kind, ask_both
 from carp_spec import Instance, Neighbourhood, Planner, Refusal, ResourceGraph, Solution, judge
 from carp_spec.instance_rules import instance_faults
 from carproof.testing.random_instances import question
@@ -33,19 +33,19 @@ def test_questions_mix_everything() -> None:
 
 @pytest.mark.parametrize("kind", [None, "stops"])
 def test_the_engines_agree(kind: Kind | None) -> None:
-    report = crosscheck_report(case.run() for case in crosscheck_cases(150, seed=3, kind=kind))
+    report = CROSSCHECKS[kind].report(case.run() for case in CROSSCHECKS[kind].cases(150, seed=3))
     assert report.holds
     assert report.tables[0].rows[0][0] == "150"
 
 
 def test_the_engines_and_searches_tick_by_tick_agree_with_groups() -> None:
-    report = crosscheck_report(case.run() for case in crosscheck_cases(60, seed=3, kind="groups"))
+    report = CROSSCHECKS["groups"].report(case.run() for case in CROSSCHECKS["groups"].cases(60, seed=3))
     assert report.holds
 
 
 def test_windows_that_forget_groups_differ_by_ticks(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ResourceGraph, "constraints_of", lambda graph, resource: (graph.index[resource],))
-    report = crosscheck_report([CrosscheckCase(0, 30, kind="groups").run()])
+    report = CROSSCHECKS["groups"].report(case.run() for case in CROSSCHECKS["groups"].cases(30, seed=0))
     assert not report.holds
     assert '"by ticks"' in report.lines[0]
 
@@ -53,7 +53,9 @@ def test_windows_that_forget_groups_differ_by_ticks(monkeypatch: pytest.MonkeyPa
 @pytest.mark.parametrize("number", [277171, 286610, 726564])
 def test_the_engines_agree_where_they_once_differed(number: int) -> None:
     """A robot whose new plan, but not the one that it follows, has ended by now can still be taken in."""
-    assert CrosscheckCase(number, 1).run()["differences"] == []
+    block = Block(1)
+    ask_both(block, seed=0, number=number)
+    assert block.differences == []
 
 
 def test_a_planted_difference_is_told_with_its_question(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -64,7 +66,7 @@ def test_a_planted_difference_is_told_with_its_question(monkeypatch: pytest.Monk
         return Solution(right.plans[::-1], right.order, right.unplanned)
 
     monkeypatch.setattr(carp_optimized, "plan", forgetful)
-    report = crosscheck_report([CrosscheckCase(0, 30).run()])
+    report = CROSSCHECKS[None].report(case.run() for case in CROSSCHECKS[None].cases(30, seed=0))
     assert not report.holds
     assert "A DIFFERENCE" in report.lines[0]
     assert '"question"' in report.lines[0]
@@ -76,6 +78,6 @@ def test_an_engine_that_fails_differs(monkeypatch: pytest.MonkeyPatch) -> None:
         raise Refusal("limit", "$", "limit/ticks", "too much")
 
     monkeypatch.setattr(carp_optimized, "plan", refusing)
-    report = crosscheck_report([CrosscheckCase(0, 30).run()])
+    report = CROSSCHECKS[None].report(case.run() for case in CROSSCHECKS[None].cases(30, seed=0))
     assert not report.holds
     assert "too much" in report.lines[0]

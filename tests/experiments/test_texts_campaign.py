@@ -10,7 +10,8 @@ import pytest
 from tests.oracle.running import Run
 from tests.verify.kernel_program import program
 
-from carp_experiments.measuring.kernel_texts import TextCase, Texts, decided, drawn_texts, text_cases, text_report
+from carp_experiments.measuring.blocks import BlockCase
+from carp_experiments.measuring.kernel_texts import TEXTS, Texts, decided, drawn_texts
 from carp_verify.kernel import PROGRAM, VARIABLE
 
 STAND_IN = """#!/bin/sh
@@ -26,7 +27,7 @@ def stand_in(monkeypatch: pytest.MonkeyPatch, folder: Path, does: str) -> None:
     monkeypatch.setenv(VARIABLE, str(path))
 
 
-def differences(cases: Sequence[TextCase]) -> list[dict[str, Any]]:
+def differences(cases: Sequence[BlockCase]) -> list[dict[str, Any]]:
     """The texts on which the kernel differs."""
     return [each for case in cases for each in msgspec.convert(case.run(), Texts).differences]
 
@@ -44,14 +45,14 @@ def test_texts_are_the_same_every_time_and_of_all_kinds() -> None:
 
 def test_the_kernel_reads_and_decides_as_python_does(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(VARIABLE, program())
-    report = text_report(case.run() for case in text_cases(2000, seed=3))
+    report = TEXTS.report(case.run() for case in TEXTS.cases(2000, seed=3))
     assert report.lines == ()
     assert report.holds
 
 
 def test_a_kernel_that_reads_what_python_refuses_differs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     stand_in(monkeypatch, tmp_path, """echo '{"kernel": "7", "verdict": "accepted"}'""")
-    report = text_report([TextCase(0, 50).run()])
+    report = TEXTS.report(case.run() for case in TEXTS.cases(50, seed=0))
     assert not report.holds
     assert '"bad input"' in report.lines[0]
 
@@ -59,7 +60,7 @@ def test_a_kernel_that_reads_what_python_refuses_differs(monkeypatch: pytest.Mon
 def test_a_kernel_that_does_not_answer_differs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr("carp_experiments.measuring.kernel_texts.LONGEST", 0.2)
     stand_in(monkeypatch, tmp_path, "exec sleep 100")
-    assert len(differences([TextCase(0, 2)])) == 2
+    assert len(differences(TEXTS.cases(2, seed=0))) == 2
 
 
 def test_the_command_continues_where_it_stopped(carproof: Run, monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:

@@ -12,15 +12,13 @@ from tests.verify.kernel_program import program
 import carp_optimized
 import carp_reference
 from carp_experiments.measuring import kernel_verdicts
+from carp_experiments.measuring.blocks import BLOCK
 from carp_experiments.measuring.kernel_verdicts import (
-    BLOCK,
-    KernelCase,
+    VERDICTS,
     Question,
     Verdicts,
     checked,
     compared,
-    kernel_cases,
-    kernel_report,
     verified,
 )
 from carp_spec import Carp, Instance, Solution
@@ -107,7 +105,7 @@ def test_the_kernel_agrees_on_solutions_of_the_size_of_movingai_benchmarks() -> 
 
 
 def test_the_campaign_finds_no_difference_and_draws_all_kinds() -> None:
-    report = kernel_report(case.run() for case in kernel_cases(300, seed=5))
+    report = VERDICTS.report(case.run() for case in VERDICTS.cases(300, seed=5))
     assert report.holds
     counts = [int(cell) for cell in report.tables[0].rows[0]]
     assert counts[0] == sum(counts[1:5]) == 300
@@ -123,12 +121,12 @@ def test_a_planted_difference_is_shown_with_its_question(
         return [msgspec.structs.replace(answer, **change) for answer in ask(requests)]
 
     monkeypatch.setattr(kernel_verdicts, "ask", wrong)
-    row = KernelCase(0, 30).run()
+    (row,) = (case.run() for case in VERDICTS.cases(30, seed=0))
     block = msgspec.convert(row, Verdicts)
     accepted = block.sound + block.proved
     assert accepted > 0
     assert len(block.differences) == (30 if "verdict" in change else accepted)
-    report = kernel_report([row])
+    report = VERDICTS.report([row])
     assert not report.holds
     assert "A DIFFERENCE" in report.lines[0]
     assert '"request"' in report.lines[0]

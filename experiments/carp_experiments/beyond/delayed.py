@@ -10,7 +10,7 @@ import msgspec
 
 from carp_experiments.paper.map_cases import FULL_MAP, MapCase, instance_of, place_name, rows_by_map
 from carp_experiments.paper.quality import ALGORITHMS, seeded
-from carp_experiments.report import ExperimentReport, Figure, Table
+from carp_experiments.report import ExperimentReport, Figure, Table, table_of
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import Row
 from carp_spec import Instance, Solution, violations_of
@@ -145,26 +145,24 @@ def driver_of(map: int, planner: str, driver: str, place: int, found: Sequence[E
 
 def execution_tables(summary: Sequence[DriverOf]) -> tuple[Table, ...]:
     """A table of each map."""
-    columns = ("planner", "driver", "delayed, %", "late", "worst", "arrivals", "collisions", "standing", "switches")
     return tuple(
-        Table(
+        table_of(
             f"execution-{map}",
             f"On {place_name(map)}, means of {executions} executions with 95 % intervals: the ticks by which robots "
             "are late, and the latest is; arrivals in 100 ticks; collisions; robots that stand for ever; switches",
-            columns,
-            tuple(
-                (
-                    each.planner,
-                    each.driver,
-                    str(each.share),
-                    *(f"{value:.1f}" for value in (each.late, each.worst, each.arrivals, each.collisions)),
-                    str(each.standing),
-                    f"{each.switches:.1f}",
-                )
-                for each in summary
-                if each.map == map
-            ),
-            columns[2:],
+            [each for each in summary if each.map == map],
+            {
+                "planner": lambda each: each.planner,
+                "driver": lambda each: each.driver,
+                "delayed, %": lambda each: each.share,
+                "late": lambda each: f"{each.late:.1f}",
+                "worst": lambda each: f"{each.worst:.1f}",
+                "arrivals": lambda each: f"{each.arrivals:.1f}",
+                "collisions": lambda each: f"{each.collisions:.1f}",
+                "standing": lambda each: each.standing,
+                "switches": lambda each: f"{each.switches:.1f}",
+            },
+            names=2,
         )
         for map, executions in sorted({(each.map, each.executions) for each in summary})
     )

@@ -1,6 +1,6 @@
 """The price of plans that can be executed in order: following forbidden, or allowed and rotations removed."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import msgspec
@@ -8,7 +8,7 @@ import msgspec
 from carp_experiments.beyond.delayed import PLANNERS
 from carp_experiments.paper.map_cases import MAP_AXIS, WAREHOUSE, MapCase, instance_of, place_name, rows_by_map
 from carp_experiments.paper.quality import ALGORITHMS, seeded
-from carp_experiments.report import ExperimentReport, Figure, Table
+from carp_experiments.report import ExperimentReport, Figure, table_of
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import Row
 from carp_spec import total_cost
@@ -89,37 +89,23 @@ def following_report(rows: Iterable[Row]) -> ExperimentReport:
         for map, each in by_map.items()
         for name in PLANNERS
     )
-    columns = (
-        "place",
-        "planner",
-        "unplanned, allowed",
-        "unplanned, forbidden",
-        "forbidden, %",
-        "tangled",
-        "left",
-        "rotations",
-        "removed, %",
-    )
     title = (
         "Means with 95 % intervals: robots without a plan with following allowed and forbidden; the excess of the "
         "total where it is forbidden, over the robots that have plans both ways; assignments with a rotation, "
         " and those in which one stays; rotations removed, and the excess of the total by this"
     )
-    lines = [
-        (
-            place_name(each.map),
-            each.planner,
-            *(f"{value:.1f}" for value in each.unplanned),
-            f"{each.forbidden:.2f}",
-            f"{each.tangled}/{each.assignments}",
-            str(each.left),
-            f"{each.rotations:.1f}",
-            f"{each.extra:.3f}",
-        )
-        for each in summary
-    ]
-    table = Table("following", title, columns, tuple(lines), columns[2:])
-    return ExperimentReport(summary, (table,))
+    cells: Mapping[str, Callable[[FollowingOf], object]] = {
+        "place": lambda each: place_name(each.map),
+        "planner": lambda each: each.planner,
+        "unplanned, allowed": lambda each: f"{each.unplanned[0]:.1f}",
+        "unplanned, forbidden": lambda each: f"{each.unplanned[1]:.1f}",
+        "forbidden, %": lambda each: f"{each.forbidden:.2f}",
+        "tangled": lambda each: f"{each.tangled}/{each.assignments}",
+        "left": lambda each: each.left,
+        "rotations": lambda each: f"{each.rotations:.1f}",
+        "removed, %": lambda each: f"{each.extra:.3f}",
+    }
+    return ExperimentReport(summary, (table_of("following", title, summary, cells, names=2),))
 
 
 def following_figures(summary: Sequence[FollowingOf]) -> tuple[Figure, ...]:

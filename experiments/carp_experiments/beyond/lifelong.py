@@ -4,7 +4,7 @@ Robots come in docks at random ticks, as in a stream, each with an order: a pick
 in memory takes them up one by one, by CARP or by the neighbourhood planner, or improves its plans by polish after each.
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from time import process_time
 
@@ -12,7 +12,7 @@ import msgspec
 
 from carp_experiments.beyond.streams import TICKS, middle_half, stream_instance
 from carp_experiments.paper.map_cases import SORTING, MapCase, place_name, rows_by_map
-from carp_experiments.report import ExperimentReport, Table
+from carp_experiments.report import ExperimentReport, table_of
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import Row
 from carp_spec import Instance, Neighbourhood, Plan, RobotId, Stop, violations_of
@@ -113,24 +113,20 @@ def lifelong_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
         for place, rate in enumerate(RATES)
         for planner in PLANNERS
     )
-    columns = ("place", "orders", "planner", "done", "ticks in system", "ms an order")
     title = (
         f"Streams of {robots} pick-and-drop orders, means with 95 % intervals: orders that come in {TICKS} ticks, "
         f"orders done in as many, ticks from an order's arrival to its drop, and processor time. A pick takes "
         f"{SERVICE} ticks; polish plays {ROUNDS} rounds after each arrival"
     )
-    lines = [
-        (
-            place_name(each.map),
-            str(each.rate),
-            each.planner,
-            f"{each.throughput:.0f}",
-            f"{each.taken:.1f}",
-            f"{each.milliseconds:.2f}",
-        )
-        for each in summary
-    ]
-    return ExperimentReport(summary, (Table("lifelong", title, columns, tuple(lines), columns[3:]),))
+    cells: Mapping[str, Callable[[LifelongOf], object]] = {
+        "place": lambda each: place_name(each.map),
+        "orders": lambda each: each.rate,
+        "planner": lambda each: each.planner,
+        "done": lambda each: f"{each.throughput:.0f}",
+        "ticks in system": lambda each: f"{each.taken:.1f}",
+        "ms an order": lambda each: f"{each.milliseconds:.2f}",
+    }
+    return ExperimentReport(summary, (table_of("lifelong", title, summary, cells, names=3),))
 
 
 def _mean(map: int, planner: str, rate: int, found: list[Served], robots: int) -> LifelongOf:

@@ -1,6 +1,6 @@
 """People among robots: some travellers get priority one after the other, and the robots give way."""
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import fmean
 from time import process_time_ns
@@ -9,7 +9,7 @@ import msgspec
 
 from carp_experiments.paper.map_cases import MapCase, instance_of, place_name, rows_by_map
 from carp_experiments.paper.quality import ALGORITHMS, seeded
-from carp_experiments.report import ExperimentReport, Figure, Table
+from carp_experiments.report import ExperimentReport, Figure, table_of
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import MEASURED, Row
 from carp_spec import Instance, Plan, RobotId, Solution, plan_cost
@@ -131,39 +131,25 @@ def people_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
         for count in PEOPLE
         if (enough := [row for row in each if len(row.people) >= count])
     )
-    columns = (
-        "map",
-        "people",
-        "proved first",
-        "no plan",
-        "largest delay",
-        "stuck",
-        "replanned",
-        "extra cost",
-        "pushed",
-        "ms",
-    )
     title = (
         f"People among {robots} robots that have plans by {GIVEN}, one each {EVERY} ticks. How many arrive as early as "
         "any lawful update allows, how many get no new plan, and the largest delay of the others; robots that find no "
         "plan around the earliest one, in all. Means with 95 % intervals: robots replanned for a person, ticks that "
         "all robots cost more, ticks by which people are late because of later people, processor time"
     )
-    lines = [
-        (
-            str(each.map),
-            str(each.count),
-            f"{each.first}/{each.people}",
-            str(each.unserved),
-            str(each.delay),
-            str(each.stuck),
-            *(f"{value:.1f}" for value in (each.replanned, each.extra, each.pushed)),
-            f"{each.milliseconds:.0f}",
-        )
-        for each in summary
-    ]
-    table = Table("people", title, columns, tuple(lines), columns)
-    return ExperimentReport(summary, (table,))
+    cells: Mapping[str, Callable[[PeopleOf], object]] = {
+        "map": lambda each: each.map,
+        "people": lambda each: each.count,
+        "proved first": lambda each: f"{each.first}/{each.people}",
+        "no plan": lambda each: each.unserved,
+        "largest delay": lambda each: each.delay,
+        "stuck": lambda each: each.stuck,
+        "replanned": lambda each: f"{each.replanned:.1f}",
+        "extra cost": lambda each: f"{each.extra:.1f}",
+        "pushed": lambda each: f"{each.pushed:.1f}",
+        "ms": lambda each: f"{each.milliseconds:.0f}",
+    }
+    return ExperimentReport(summary, (table_of("people", title, summary, cells),))
 
 
 def people_figures(summary: Sequence[PeopleOf]) -> tuple[Figure, ...]:

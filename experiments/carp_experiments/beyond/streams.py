@@ -5,14 +5,14 @@ comes in a dock beside its start, with room for all, where it waits until its pl
 plan, and those that the map cannot take at the rate wait in the docks.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import msgspec
 
 from carp_experiments.paper.map_cases import MapCase, map_instance, place_name, rows_by_map
 from carp_experiments.paper.quality import ALGORITHMS, seeded
-from carp_experiments.report import ExperimentReport, Figure, Table
+from carp_experiments.report import ExperimentReport, Figure, table_of
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import Row
 from carp_spec import Instance, Neighbourhood, Plan, Resource, ResourceGraph, total_cost, violations_of
@@ -125,23 +125,19 @@ def stream_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
         for planner in PLANNERS
         for place, rate in enumerate(RATES)
     )
-    columns = ("place", "planner", "rate", "throughput", "ticks taken", "waited")
     title = (
         f"Streams of {robots} robots, means with 95 % intervals: arrivals in {TICKS} ticks, robots that reach their "
         "goals in as many, ticks from a robot's arrival to its goal, and how much more this is than its shortest path"
     )
-    lines = [
-        (
-            place_name(each.map),
-            each.planner,
-            str(each.rate),
-            f"{each.throughput:.0f}",
-            *(f"{value:.1f}" for value in (each.taken, each.waited)),
-        )
-        for each in summary
-    ]
-    table = Table("stream", title, columns, tuple(lines), columns[2:])
-    return ExperimentReport(summary, (table,))
+    cells: Mapping[str, Callable[[StreamOf], object]] = {
+        "place": lambda each: place_name(each.map),
+        "planner": lambda each: each.planner,
+        "rate": lambda each: each.rate,
+        "throughput": lambda each: f"{each.throughput:.0f}",
+        "ticks taken": lambda each: f"{each.taken:.1f}",
+        "waited": lambda each: f"{each.waited:.1f}",
+    }
+    return ExperimentReport(summary, (table_of("stream", title, summary, cells, names=2),))
 
 
 def stream_of(map: int, planner: str, rate: int, found: Sequence[Streamed], robots: int) -> StreamOf:

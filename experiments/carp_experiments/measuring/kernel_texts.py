@@ -2,20 +2,19 @@
 
 A text is a request to the kernel, of a test vector or about a random fleet, changed in up to three places. Of each text
 it is asked whether it is read, and if so, whether it is accepted. Sizes are no difference: each may have limits of its
-own. A case is a block of texts, put to one run of the kernel.
+own. A block of texts is put to one run of the kernel.
 """
 
 from collections import Counter
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
 import msgspec
 
+from carp_experiments.measuring.blocks import Questions
 from carp_experiments.measuring.kernel_verdicts import certified, fleet_questions
 from carp_experiments.measuring.texts import changed, vector_requests
-from carp_experiments.report import ExperimentReport, Table
-from carp_experiments.store import Row
 from carp_spec import Instance, Plan, Refusal, Solution, judge
 from carp_spec.documents.bounds import read_bound
 from carp_spec.documents.decoding import require_json
@@ -29,39 +28,15 @@ from carp_verify.kernel import KernelVerdict, is_answer, replies, request, verdi
 from carp_verify.query.verify import Traffic, require_certificate, verify_query
 from carproof.testing.random_instances import SMALL, WITH_STOPS, Draw, draw_fleet, draw_instance
 
-BLOCK = 1000
-FULL_TEXTS = 1_000_000
-QUICK_TEXTS = 20_000
 FLEETS = 4
-SHOWN = 3
 LONGEST = 30
 """The seconds in which the kernel must answer a block."""
-VERDICTS = ("accepted", "refused", "bad input")
 SIZES = {"bound/size", "query-certificate/size"}
 ABSENT = msgspec.Raw()
 
 
-@dataclass(frozen=True, slots=True)
-class TextCase:
-    """The texts of a seed numbered from `first` on."""
-
-    first: int
-    texts: int = BLOCK
-    seed: int = 0
-
-    @property
-    def key(self) -> str:
-        """Blocks in their order."""
-        return f"seed {self.seed} texts {self.first:09} to {self.first + self.texts - 1:09}"
-
-    def run(self) -> Row:
-        """The number of texts of each verdict, and the texts on which the verdicts differ."""
-        block = compared(self.first, drawn_texts(self.seed, self.first, self.texts))
-        return msgspec.to_builtins(block)  # type: ignore[no-any-return] # a struct becomes a dict
-
-
 class Texts(msgspec.Struct):
-    """A row of the campaign: how often which verdict was Python's, and the texts on which the kernel's is another."""
+    """A row: how often which verdict was Python's, and the texts on which the kernel's is another."""
 
     texts: int
     verdicts: dict[str, int]
@@ -219,18 +194,17 @@ def audit_of(draw: Draw) -> bytes:
     return request("audit", instance, solution=solution_document(solution), certificates=certificates).rstrip()
 
 
-def text_cases(texts: int, seed: int) -> tuple[TextCase, ...]:
-    """That many texts, in blocks."""
-    return tuple(TextCase(first, min(BLOCK, texts - first), seed) for first in range(0, texts, BLOCK))
-
-
-def text_report(rows: Iterable[Row]) -> ExperimentReport:
-    """The number of texts of each verdict, and those on which the verdicts differ."""
-    blocks = [msgspec.convert(row, Texts) for row in rows]
-    differences = [each for block in blocks for each in block.differences]
-    columns = ("texts", *VERDICTS, "differences")
-    sums = [sum(block.verdicts.get(verdict, 0) for block in blocks) for verdict in VERDICTS]
-    counts = (sum(block.texts for block in blocks), *sums, len(differences))
-    shown = tuple(f"A DIFFERENCE: {msgspec.json.encode(each).decode()}" for each in differences[:SHOWN])
-    table = Table("texts", "Texts read by the kernel and by Python", columns, (tuple(map(str, counts)),), columns)
-    return ExperimentReport({"differences": differences}, (table,), shown, holds=not differences)
+TEXTS = Questions(
+    "texts",
+    "Let the proved kernel and Python read the same texts, nearly right ones, and decide on those that they can read.",
+    "texts",
+    "Texts read by the kernel and by Python",
+    lambda case: compared(case.first, drawn_texts(case.seed, case.first, case.count)),
+    Texts,
+    {
+        "texts": lambda block: block.texts,
+        "accepted": lambda block: block.verdicts.get("accepted", 0),
+        "refused": lambda block: block.verdicts.get("refused", 0),
+        "bad input": lambda block: block.verdicts.get("bad input", 0),
+    },
+)

@@ -1,18 +1,17 @@
 """A campaign of random verdicts: the proved kernel and the checkers in Python must agree on all.
 
 A question is a solution to check, sound or broken in one place, or a query certificate to verify, honest or changed.
-Each drawn fleet gives some of each kind. A case is a block of questions, put to one run of the kernel.
+Each drawn fleet gives some of each kind. A block of questions is put to one run of the kernel.
 """
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from itertools import chain, count, islice
 from typing import Any, Literal
 
 import msgspec
 
-from carp_experiments.report import ExperimentReport, Table
-from carp_experiments.store import Row
+from carp_experiments.measuring.blocks import BlockCase, Questions
 from carp_spec import Instance, RobotId, Solution, judge
 from carp_spec.documents.query_certificates import QueryCertificateDocument, ServedLayer, certificate_of
 from carp_spec.documents.solutions import solution_document
@@ -20,38 +19,13 @@ from carp_spec.permutations import shuffle, splitmix64
 from carp_verify.kernel import KernelVerdict, ask, request
 from carproof.testing.random_instances import SMALL, WITH_STOPS, Draw, draw_fleet, draw_instance
 
-BLOCK = 1000
-FULL_VERDICTS = 1_000_000
-QUICK_VERDICTS = 20_000
 BROKEN = 4
 CHANGED = 3
 OF_A_FLEET = BROKEN + CHANGED + 3
-SHOWN = 3
-
-
-@dataclass(frozen=True, slots=True)
-class KernelCase:
-    """The verdicts of a seed numbered from `first` on."""
-
-    first: int
-    verdicts: int = BLOCK
-    seed: int = 0
-
-    @property
-    def key(self) -> str:
-        """Blocks in their order."""
-        return f"seed {self.seed} verdicts {self.first:09} to {self.first + self.verdicts - 1:09}"
-
-    def run(self) -> Row:
-        """The number of documents accepted and refused of each kind, and the questions on which verdicts differ."""
-        fleets = (fleet_questions(self.seed, number) for number in count(self.first // OF_A_FLEET))
-        questions = list(islice(chain.from_iterable(fleets), self.verdicts))
-        block = compared(self.first, questions, ask([each.request for each in questions]))
-        return msgspec.to_builtins(block)  # type: ignore[no-any-return] # a struct becomes a dict
 
 
 class Verdicts(msgspec.Struct):
-    """A row of the campaign."""
+    """A row: the number of documents accepted and refused of each kind, and the differences."""
 
     verdicts: int
     sound: int = 0
@@ -78,6 +52,13 @@ class Question:
             figures = (answer.cost, answer.unplanned, answer.bound)
             return answer.verdict == "accepted" and figures == (self.cost, self.unplanned, self.bound)
         return answer.verdict == "refused" and answer.rule in self.rules
+
+
+def asked(case: BlockCase) -> Verdicts:
+    """Ask the kernel the questions of a block."""
+    fleets = (fleet_questions(case.seed, number) for number in count(case.first // OF_A_FLEET))
+    questions = list(islice(chain.from_iterable(fleets), case.count))
+    return compared(case.first, questions, ask([each.request for each in questions]))
 
 
 def fleet_questions(seed: int, number: int) -> list[Question]:
@@ -169,27 +150,18 @@ def compared(first: int, questions: Sequence[Question], answers: Sequence[Kernel
     return block
 
 
-def kernel_cases(verdicts: int, seed: int) -> tuple[KernelCase, ...]:
-    """That many verdicts, in blocks."""
-    return tuple(KernelCase(first, min(BLOCK, verdicts - first), seed) for first in range(0, verdicts, BLOCK))
-
-
-def kernel_report(rows: Iterable[Row]) -> ExperimentReport:
-    """The number of verdicts of each kind, and those that differ."""
-    blocks = [msgspec.convert(row, Verdicts) for row in rows]
-    differences = [each for block in blocks for each in block.differences]
-    counts = ("verdicts", "sound", "broken", "proved", "refused")
-    columns = (
-        "verdicts",
-        "sound solutions",
-        "broken solutions",
-        "certificates proved",
-        "certificates refused",
-        "differences",
-    )
-    sums = [str(sum(getattr(block, name) for block in blocks)) for name in counts]
-    shown = tuple(f"A DIFFERENCE: {msgspec.json.encode(each).decode()}" for each in differences[:SHOWN])
-    table = Table(
-        "kernel", "The kernel and the checkers in Python", columns, ((*sums, str(len(differences))),), columns
-    )
-    return ExperimentReport({"differences": differences}, (table,), shown, holds=not differences)
+VERDICTS = Questions(
+    "kernel",
+    "Ask the proved kernel and the checkers in Python for the same verdicts.",
+    "verdicts",
+    "The kernel and the checkers in Python",
+    asked,
+    Verdicts,
+    {
+        "verdicts": lambda block: block.verdicts,
+        "sound solutions": lambda block: block.sound,
+        "broken solutions": lambda block: block.broken,
+        "certificates proved": lambda block: block.proved,
+        "certificates refused": lambda block: block.refused,
+    },
+)
